@@ -7,7 +7,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
-#include "camera/bezier.h"
+#include "camera/keyframe.h"
 
 namespace astrosplat {
 namespace {

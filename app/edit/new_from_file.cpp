@@ -22,7 +22,7 @@
 #include "source/picture.h"
 #include "splat_files/splat_file.h"
 #include "splats/splat_set.h"
-#include "stars/catalogue_kind.h"
+#include "stars/picture_table.h"
 
 namespace astrosplat {
 namespace fs = std::filesystem;

@@ -7,7 +7,7 @@
 #include <glm/geometric.hpp>
 #include <utility>
 
-#include "camera/handles.h"
+#include "camera/keyframe.h"
 #include "edit/keyframes.h"
 #include "edit/project_line.h"
 #include "gui/key_codes.h"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <functional>
 
-#include "render/backdrop.h"
+#include "render/environment.h"
 
 namespace astrosplat {
 namespace {

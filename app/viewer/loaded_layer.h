@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "edit/status.h"
-#include "merge/sums.h"
+#include "merge/tree.h"
 #include "sets/automatic_values.h"
 #include "source/source.h"
 #include "splats/splat_set.h"

@@ -12,6 +12,7 @@
 #include "camera/projection.h"
 #include "camera/stereo.h"
 #include "core/error.h"
+#include "core/quaternion.h"
 #include "core/real.h"
 
 namespace astrosplat {
@@ -188,6 +189,13 @@ AnyLens lens_of(const Camera& camera) {
 Lens make_lens(const Camera& camera) { return lens_of<Lens>(camera); }
 ExactLens make_exact_lens(const Camera& camera) { return lens_of<ExactLens>(camera); }
 
+glm::dvec3 direction_to(const Camera& camera, const glm::dvec3& place) {
+    const glm::dvec3 ray = place - camera.eye;
+    const double length = glm::length(ray);
+    const bool parallel = camera.projection == Projection::orthographic || !(length > 0.0);
+    return parallel ? view_direction(camera) : ray / length;
+}
+
 bool shows(const Camera& camera, double x_px, double y_px) {
     return exact::shows(make_exact_lens(camera), x_px, y_px);
 }
@@ -254,10 +262,7 @@ glm::dmat3 rotation_from_quaternion(const glm::dvec4& q) {
         throw InputError(fmt::format(
             "camera.rotation: expected a quaternion x y z w that is not zero, found [{}, {}, {}, {}]", q.x,
             q.y, q.z, q.w));
-    double x = q.x / length, y = q.y / length, z = q.z / length, w = q.w / length;
-    return glm::dmat3(1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y + w * z), 2.0 * (x * z - w * y),  //
-                      2.0 * (x * y - w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z + w * x),  //
-                      2.0 * (x * z + w * y), 2.0 * (y * z - w * x), 1.0 - 2.0 * (x * x + y * y));
+    return matrix_of_quaternion(q / length);
 }
 
 }  // namespace astrosplat

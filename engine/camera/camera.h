@@ -97,6 +97,11 @@ Camera make_camera(const CameraParams& params, double width_px, double height_px
 Lens make_lens(const Camera& camera);
 ExactLens make_exact_lens(const Camera& camera);
 
+/// Where the camera looks: a unit vector in world space.
+inline glm::dvec3 view_direction(const Camera& camera) { return -camera.world_from_camera[2]; }
+/// The unit direction in which it sees a place; where it looks if rays are parallel or the eye is there.
+glm::dvec3 direction_to(const Camera& camera, const glm::dvec3& place);
+
 /// Whether the camera shows anything at a point of the frame: outside a fisheye's circle it does not.
 bool shows(const Camera& camera, double x_px, double y_px);
 /// Unit direction in world space through a point of the frame (px, y down), for environments.

@@ -1,8 +1,10 @@
-// Keyframes: a value at a frame, how it goes on to the next one, and the handles that shape Bezier segments.
+// Keyframes: a value at a frame, how it goes on to the next one, and the handles that shape Bezier segments,
+// as they stand and as they act.
 #pragma once
 
 #include <algorithm>
 #include <cstddef>
+#include <glm/vec3.hpp>
 #include <span>
 #include <type_traits>
 
@@ -56,6 +58,61 @@ auto tangent(std::span<const Keyframe<T>> keyframes, const Value& value, std::si
     if (end && ends == Ends::ease) return Number(0.0);
     std::size_t before = i == 0 ? 0 : i - 1, after = std::min(i + 1, keyframes.size() - 1);
     return Number((value(after) - value(before)) / (keyframes[after].frame - keyframes[before].frame));
+}
+
+/// The point at u in [0, 1] of the curve from a to d.
+template <class T>
+T bezier_point(const T& a, const T& b, const T& c, const T& d, double u) {
+    const double v = 1.0 - u;
+    return a * (v * v * v) + b * (3.0 * v * v * u) + c * (3.0 * v * u * u) + d * (u * u * u);
+}
+
+/// Its derivative with respect to u.
+template <class T>
+T bezier_slope(const T& a, const T& b, const T& c, const T& d, double u) {
+    const double v = 1.0 - u;
+    return (b - a) * (3.0 * v * v) + (c - b) * (6.0 * v * u) + (d - c) * (3.0 * u * u);
+}
+
+/// u at which the curve from 0 to 1 with the control points b and c, both in [0, 1], is at x in [0, 1]: it
+/// rises all the way.
+inline double bezier_parameter(double b, double c, double x) {
+    double lo = 0.0, hi = 1.0;
+    for (int k = 0; k < 54; ++k) {
+        const double mid = 0.5 * (lo + hi);
+        (bezier_point(0.0, b, c, 1.0, mid) < x ? lo : hi) = mid;
+    }
+    return 0.5 * (lo + hi);
+}
+
+// T is double or glm::dvec3. Keyframes are ascending in frame.
+
+/// The handles of keyframe i as they act: free ones shortened to their segment, the others worked out. 0
+/// where there is no segment.
+template <class T>
+Handle<T> handle_before(std::span<const Keyframe<T>> keyframes, std::size_t i, Ends ends);
+template <class T>
+Handle<T> handle_after(std::span<const Keyframe<T>> keyframes, std::size_t i, Ends ends);
+
+/// Segment i as a Bezier curve.
+template <class T>
+struct BezierSegment {
+    T a, b, c, d;
+    double out, in;  // frames of b and c, as shares of the segment's
+
+    /// The parameter at a share of the segment's frames.
+    double parameter(double share) const { return bezier_parameter(out, in, share); }
+    T at(double u) const { return bezier_point(a, b, c, d, u); }
+    T slope(double u) const { return bezier_slope(a, b, c, d, u); }
+};
+
+template <class T>
+BezierSegment<T> bezier_segment(std::span<const Keyframe<T>> keyframes, std::size_t i, Ends ends) {
+    const Keyframe<T>&from = keyframes[i], &to = keyframes[i + 1];
+    const double span = to.frame - from.frame;
+    const Handle<T> out = handle_after(keyframes, i, ends), in = handle_before(keyframes, i + 1, ends);
+    return {from.value, from.value + out.value, to.value + in.value,
+            to.value,   out.frames / span,      1.0 + in.frames / span};
 }
 
 }  // namespace astrosplat

@@ -11,7 +11,7 @@
 #include <cstddef>
 #include <glm/geometric.hpp>
 
-#include "camera/handles.h"
+#include "camera/keyframe.h"
 #include "core/real.h"
 
 namespace astrosplat {

@@ -53,13 +53,6 @@ glm::dmat3 LayerAppearance::axes_of(std::size_t i) const {
                                   : layer_.world_from_layer * glm::dmat3(splats.stretch[i]);
 }
 
-glm::dvec3 LayerAppearance::ray_to(const glm::dvec3& place) const {
-    const glm::dvec3 ray = place - camera_.eye;
-    const double length = glm::length(ray);
-    const bool parallel = camera_.projection == Projection::orthographic || !(length > 0.0);
-    return parallel ? camera_.world_from_camera[2] : ray / length;
-}
-
 LayerAppearance::Blended LayerAppearance::blended(const glm::vec3& color, float s, const glm::dvec3& place,
                                                   BakeCounts& counts) const {
     const LayerRender& r = layer_.render;
@@ -79,7 +72,7 @@ LayerAppearance::Blended LayerAppearance::blended(const glm::vec3& color, float 
 
 float LayerAppearance::hybrid(const glm::dvec3& place) const {
     if (layer_.render.blend != Blend::hybrid) return 0.0f;
-    return shared::hybrid_amount(static_cast<float>(std::abs(glm::dot(axis_, ray_to(place)))),
+    return shared::hybrid_amount(static_cast<float>(std::abs(glm::dot(axis_, direction_to(camera_, place)))),
                                  layer_.render.hybrid_from_deg, layer_.render.hybrid_to_deg);
 }
 

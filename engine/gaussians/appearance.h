@@ -32,8 +32,6 @@ class LayerAppearance {
     SplatAppearance of(std::size_t i, BakeCounts& counts) const;
     /// World axes that the ball of standard deviation 1 becomes, as columns: a turn where splats are balls.
     glm::dmat3 axes_of(std::size_t i) const;
-    /// The direction in which the camera sees a place.
-    glm::dvec3 ray_to(const glm::dvec3& place) const;
 
   private:
     struct Blended {

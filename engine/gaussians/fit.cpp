@@ -1,7 +1,7 @@
 // Our own renderer lays the encoded Gaussians over each other as their readers do, and every
 // Gaussian's light is multiplied by what is wanted over what came out, where its centre is seen; several
 // times, because alphas that were raised hide more of what lies behind.
-#include "gaussians/fit.h"
+#include "gaussians/gaussians.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
-// Gaussians into files that other programs read: the PLY of 3D Gaussian Splatting, and binary glTF with
-// KHR_gaussian_splatting. Atomic, and the same bytes for any thread count.
+// Gaussians into files that other programs read: the PLY of 3D Gaussian Splatting, binary glTF with
+// KHR_gaussian_splatting, and USD. Atomic, and the same bytes for any thread count.
 #pragma once
 
 #include "core/progress.h"
@@ -19,5 +19,12 @@ void write_gaussian_ply(const WriteTarget& target, const Gaussians& gaussians, c
 /// more Gaussians than 4 GiB hold, the most of this format, OutputError, Cancelled.
 void write_gaussian_glb(const WriteTarget& target, const Gaussians& gaussians, bool encoded,
                         const Progress& progress = {});
+
+/// USD as text (.usda): one ParticleField3DGaussianSplat of OpenUSD's UsdVol (26.03) with positions,
+/// orientations (w first), scales (standard deviations), opacities and harmonics, those of each together and
+/// in the order of their degrees; y up. Shortest numbers that read back to the same floats. Throws
+/// OutputError, Cancelled.
+void write_gaussian_usda(const WriteTarget& target, const Gaussians& gaussians,
+                         const Progress& progress = {});
 
 }  // namespace astrosplat

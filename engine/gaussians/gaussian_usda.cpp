@@ -1,6 +1,6 @@
 // Each array is as many rows of text as there are Gaussians, or as their harmonics; they follow each other as
 // rows of one long table.
-#include "gaussians/gaussian_usda.h"
+#include "gaussians/gaussian_file.h"
 
 #include <fmt/format.h>
 

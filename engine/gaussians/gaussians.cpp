@@ -1,7 +1,6 @@
 #include "gaussians/gaussians.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
@@ -9,7 +8,6 @@
 #include "core/color.h"
 #include "core/memory.h"
 #include "core/parallel.h"
-#include "core/quadrature.h"
 #include "core/quaternion.h"
 #include "core/real.h"
 #include "gaussians/appearance.h"
@@ -19,18 +17,12 @@
 namespace astrosplat {
 namespace {
 
-/// Integral of w(t) e^(-k t^2) over the unit disc. Panels shrink towards the centre; the core's end is a
-/// kink.
+/// Integral of w(t) e^(-k t^2) over the unit disc.
 double integral_with_gaussian(const Falloff& falloff, double k) {
-    constexpr std::array<double, 9> ends = {0.0, 0.003, 0.01, 0.03, 0.1, 0.2, 0.4, 0.7, 1.0};
-    const double kink = falloff.shape == Falloff::Shape::trapezoid ? double(falloff.core) : 0.0;
-    const auto ring = [&](double t) { return falloff_value(falloff, t) * real::exp(-k * t * t) * t; };
-    double sum = 0.0;
-    for (std::size_t i = 0; i + 1 < ends.size(); ++i) {
-        const double split = kink > ends[i] && kink < ends[i + 1] ? kink : ends[i];
-        sum += integrate_panel(ends[i], split, ring) + integrate_panel(split, ends[i + 1], ring);
-    }
-    return 2.0 * real::pi * sum;
+    constexpr double ends[] = {0.0, 0.003, 0.01, 0.03, 0.1, 0.2, 0.4, 0.7, 1.0};
+    return 2.0 * real::pi * integrate_falloff(falloff, ends, [&](double t) {
+               return falloff_value(falloff, t) * real::exp(-k * t * t) * t;
+           });
 }
 
 /// The place of the least value of f in [low, high], by golden sections.

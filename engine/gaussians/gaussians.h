@@ -1,15 +1,19 @@
 // A scene's splats as the Gaussians that other programs draw (3D Gaussian Splatting). In: shaded layers, a
-// camera and an exposure. Out: Gaussians in world space, which are laid over each other.
+// camera and an exposure. Out: Gaussians in world space, which are laid over each other; fewer splats in the
+// place of many before, and colours that look right where readers blend display values after.
 #pragma once
 
 #include <cstdint>
 #include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
+#include <span>
 #include <vector>
 
 #include "camera/camera.h"
 #include "core/buffer.h"
+#include "core/image.h"
+#include "core/progress.h"
 #include "render/frame.h"
 #include "splats/harmonics.h"
 
@@ -73,5 +77,20 @@ void bake_layer(const RenderLayer& layer, const Camera& camera, double gain, Gau
 
 /// Colours as a display shows them, for readers that blend those.
 void encode_for_display(Gaussians& gaussians);
+
+/// Changes colours, and alphas where colours would exceed 1, until the encoded Gaussians laid over each other
+/// as they are look from the camera like `wanted` on black, encoded: piles of faint splats would be too dark.
+/// `wanted` is a frame of `settings`, linear light with the gain in it.
+void fit_to_view(Gaussians& gaussians, const Image& wanted, const Camera& camera,
+                 const RenderSettings& settings);
+
+/// Fewer splats, by the preview's tree (merge/README.md): at most `count` dots of all layers together, which
+/// stand for all of them, seen from everywhere; those of layer i at place i, with its opacity in their
+/// alphas; where the layers have no more than that, a copy of them. Their size is judged along the view of
+/// `world_from_camera` (right, up, back), all as if equally far, so that no side of the model is coarser and
+/// nothing is left out. `count` is at least 1. Throws InputError (memory), Cancelled.
+std::vector<ShadedSplats> reduce_splats(std::span<const RenderLayer> layers,
+                                        const glm::dmat3& world_from_camera, std::int64_t count,
+                                        const Progress& progress = {});
 
 }  // namespace astrosplat

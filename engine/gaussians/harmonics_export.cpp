@@ -144,10 +144,7 @@ void finish_harmonics(Gaussians& gaussians, const Camera& camera, bool encoded) 
             const std::size_t i = source.begin + n;
             Harmonics& h = gaussians.harmonics[i];
             h = turned(h, turn);
-            const glm::dvec3 ray = glm::dvec3(gaussians.position[i]) - camera.eye;
-            const double length = glm::length(ray);
-            const bool parallel = camera.projection == Projection::orthographic || !(length > 0.0);
-            const glm::vec3 seen(parallel ? -camera.world_from_camera[2] : ray / length);
+            const glm::vec3 seen(direction_to(camera, glm::dvec3(gaussians.position[i])));
             const glm::vec3 became = gaussians.color[i],
                             factors = factors_of(
                                 color_between(color_towards(h, seen), source.display, encoded), became);

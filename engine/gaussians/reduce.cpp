@@ -1,4 +1,4 @@
-#include "gaussians/reduce.h"
+#include "gaussians/gaussians.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,6 @@
 
 #include "core/bounds.h"
 #include "merge/cut.h"
-#include "merge/sums.h"
 #include "merge/tree.h"
 
 namespace astrosplat {

@@ -5,7 +5,6 @@
 #include <glm/geometric.hpp>
 
 #include "core/shared_maths.h"
-#include "render/child_noise.h"
 #include "render/lod.h"
 #include "render/shared_render.h"
 

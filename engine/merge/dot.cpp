@@ -1,10 +1,9 @@
 // Optical depths are tabulated once for a falloff; a faint dot takes three look-ups and no logarithm.
-#include "merge/dot.h"
+#include "merge/cut.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "core/quadrature.h"
 #include "core/real.h"
 #include "render/falloff.h"
 #include "render/shared_render.h"
@@ -12,18 +11,12 @@
 namespace astrosplat {
 namespace {
 
-/// Integral of -ln(1 - alpha w) over the unit disc. Panels shrink towards both ends of the radius; the core's
-/// end is a kink.
+/// Integral of -ln(1 - alpha w) over the unit disc. Panels shrink towards both ends of the radius.
 double integrate_depth(const Falloff& falloff, double alpha) {
     constexpr double ends[] = {0.0, 0.001, 0.003, 0.01, 0.03, 0.1, 0.3, 0.6, 1.0};
-    const double kink = falloff.shape == Falloff::Shape::trapezoid ? double(falloff.core) : 0.0;
-    const auto ring = [&](double t) { return -t * real::log(1.0 - alpha * falloff_value(falloff, t)); };
-    double sum = 0.0;
-    for (std::size_t i = 0; i + 1 < std::size(ends); ++i) {
-        const double split = kink > ends[i] && kink < ends[i + 1] ? kink : ends[i];
-        sum += integrate_panel(ends[i], split, ring) + integrate_panel(split, ends[i + 1], ring);
-    }
-    return 2.0 * real::pi * sum;
+    return 2.0 * real::pi * integrate_falloff(falloff, ends, [&](double t) {
+               return -t * real::log(1.0 - alpha * falloff_value(falloff, t));
+           });
 }
 
 /// -ln(1 - x), x in [0, 1].

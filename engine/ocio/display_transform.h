@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "core/error.h"
-#include "ocio/glsl_transform.h"
 
 namespace astrosplat {
 
@@ -46,6 +45,21 @@ std::filesystem::path config_file(const OcioParams& params);
 
 /// Throws InputError where there is no such file or it is no configuration.
 ColorConfig read_color_config(const std::filesystem::path& file);
+
+/// A table that the text reads by a sampler of this name.
+struct GlslTable {
+    std::string sampler;
+    int dimensions = 1;         // of the texture: 1, 2 or 3
+    int width = 1, height = 1;  // texels; a cube has `width` on each side
+    int channels = 3;           // 1 or 3
+    bool smooth = true;         // interpolated linearly by the sampler
+    std::vector<float> values;  // x fastest
+};
+
+struct GlslTransform {
+    std::string text;  // of "vec4 ocio_display(vec4)", GLSL 4.0
+    std::vector<GlslTable> tables;
+};
 
 /// Scene light (linear, primaries of Rec. 709) to one view of one display. Threads may share it.
 class DisplayTransform {

@@ -1,6 +1,6 @@
 // Blocks of 8x8 px between exact places; blocks round a pole of the picture, where places are not nearly
 // linear, are looked up pixel by pixel.
-#include "render/backdrop.h"
+#include "render/environment.h"
 
 #include <algorithm>
 #include <cmath>

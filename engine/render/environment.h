@@ -10,6 +10,7 @@
 #include <memory>
 #include <vector>
 
+#include "camera/camera.h"
 #include "core/image.h"
 #include "core/progress.h"
 #include "source/tiled_sky.h"
@@ -71,5 +72,14 @@ glm::vec3 sample_environment(const Environment& environment, const glm::dvec3& e
 /// Colour seen along a unit direction in world space; `spread` is the angle in radians between neighbouring
 /// pixels, which picks the mip level (trilinear).
 glm::vec3 sample_environment(const Environment& environment, const glm::dvec3& direction, double spread);
+
+/// The environment as one camera sees it, for frames in motion: a ready image that render() puts behind the
+/// splats instead of asking the environment at every pixel, where exact directions cost more than all splats
+/// of a preview. Four floats a pixel, of which the last means nothing, as sample_environment has them but for
+/// two things: places on an equirectangular picture are exact at every eighth pixel only and interpolated in
+/// between, and the nearest mip level is taken, not a mix of two. Uses the image's memory again where the
+/// size stays.
+void draw_backdrop(const Environment& environment, const Camera& camera, std::int64_t width,
+                   std::int64_t height, Image& image);
 
 }  // namespace astrosplat

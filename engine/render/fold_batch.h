@@ -7,7 +7,7 @@
 #include <cstdint>
 
 #include "core/buffer.h"
-#include "render/discs.h"
+#include "render/bin_rects.h"
 #include "render/fold.h"
 #include "render/footprint.h"
 

@@ -62,7 +62,8 @@ double bessel_j0(double x) {
 /// Ends of the panels over which a falloff is smooth, as shares of the radius.
 std::vector<double> panel_ends(const Falloff& falloff) {
     std::vector<double> ends = {0.0, 0.25, 0.5, 0.75, 1.0};
-    if (falloff.shape == Falloff::Shape::trapezoid) ends.push_back(falloff.core);
+    const std::vector<double> kinks = falloff_kinks(falloff);
+    ends.insert(ends.end(), kinks.begin(), kinks.end());
     const bool decays =
         falloff.shape == Falloff::Shape::gaussian || falloff.shape == Falloff::Shape::exponential;
     if (decays && falloff.sharpness > 8.0f) ends.insert(ends.end(), {0.005, 0.02, 0.06, 0.12});

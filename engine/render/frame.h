@@ -11,7 +11,6 @@
 
 #include "core/image.h"
 #include "render/layer_render.h"
-#include "render/star_psf.h"
 #include "splats/shaded_splats.h"
 #include "splats/splat_set.h"
 

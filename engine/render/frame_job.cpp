@@ -1,18 +1,19 @@
 #include "render/frame_job.h"
 
 #include <algorithm>
+#include <cstdlib>
 
 #include "camera/projection.h"
 #include "core/parallel.h"
 #include "core/real.h"
-#include "render/child_noise.h"
-#include "render/near_star.h"
-#include "render/project_stars.h"
+#include "render/lod.h"
+#include "render/project.h"
+#include "render/shape.h"
 #include "render/shared_render.h"
-#include "render/spectrum.h"
 #include "splats/splat_set.h"
 
 namespace astrosplat {
+
 namespace {
 
 RenderCache::State::Profile numbers_of(const Falloff& falloff) {
@@ -125,6 +126,200 @@ void make_footprints(const FrameJob& job, const TileBins::Sums& sums, RenderCach
     for (const RenderLayer& layer : job.layers)
         make_footprint_nodes(cache.footprint(layer.render.falloff, job.settings.pixel_filter), sums.least_px,
                              largest_px, job.progress);
+}
+
+namespace {
+
+bool has_blocks(const FrameJob& job) {
+    return std::ranges::any_of(job.layers, [](const RenderLayer& layer) { return layer.blocks != nullptr; });
+}
+
+/// Tile rows of each band so that it takes no more than the limit: its records, or the pixels between slabs.
+std::int64_t rows_per_band(const FrameJob& job, const Tiles& tiles) {
+    const std::int64_t limit = job.settings.memory_limit_bytes, rows = tiles.grid.rows();
+    const std::int64_t records = tiles.records * static_cast<std::int64_t>(sizeof(ScreenSplat));
+    if (limit <= 0 || records <= limit) return rows;
+    const std::int64_t bytes = has_blocks(job) ? 4 * carried_bytes(job, tiles.grid) : records;
+    const std::int64_t bands = std::max<std::int64_t>(1, (bytes + limit - 1) / limit);
+    return std::max<std::int64_t>(1, rows / std::min(rows, bands));
+}
+
+/// The same heights for all, but for what is left over at the end.
+std::vector<std::int64_t> limited_rows(const FrameJob& job, const Tiles& tiles) {
+    const std::int64_t each = rows_per_band(job, tiles);
+    std::vector<std::int64_t> rows;
+    for (std::int64_t left = tiles.grid.rows(); left > 0; left -= rows.back())
+        rows.push_back(std::min(each, left));
+    return rows;
+}
+
+/// Bands above a middle one, and as many below it; 0: one band is all. Each costs another look at all splats,
+/// and together they may take a part of the time of the records.
+int watched_parts(const FrameJob& job, const Tiles& tiles) {
+    constexpr double record_of_look = 16.0;  // a record is worth so many looks
+    constexpr double most_share = 0.15, records_of_part = 1e6;
+    constexpr int most = 2;
+    double splats = 1.0;
+    for (const RenderLayer& layer : job.layers) splats += static_cast<double>(layer.size());
+    const auto records = static_cast<double>(tiles.records);
+    const double bands = std::min(records / records_of_part, most_share * record_of_look * records / splats);
+    return std::min(most, static_cast<int>(bands / 2.0));
+}
+
+void add_parts(std::int64_t rows, int parts, std::vector<std::int64_t>& heights) {
+    for (std::int64_t i = 0; i < parts; ++i) {
+        const std::int64_t part = rows * (i + 1) / parts - rows * i / parts;
+        if (part > 0) heights.push_back(part);
+    }
+}
+
+/// For who watches the frame: a narrow band in the middle, whose tiles are there soon, between higher ones,
+/// which then use its memory again.
+std::vector<std::int64_t> watched_rows(const FrameJob& job, const Tiles& tiles) {
+    const std::int64_t rows = tiles.grid.rows(), columns = tiles.grid.columns();
+    const std::int64_t to_share = (4 * thread_count() + columns - 1) / columns;
+    const std::int64_t middle = std::max(rows / 12, to_share);
+    const int parts = has_blocks(job) ? 0 : watched_parts(job, tiles);
+    if (parts == 0 || 3 * middle > rows) return {rows};
+    std::vector<std::int64_t> heights;
+    const std::int64_t above = (rows - middle) / 2;
+    add_parts(above, parts, heights);
+    heights.push_back(middle);
+    add_parts(rows - middle - above, parts, heights);
+    return heights;
+}
+
+}  // namespace
+
+/// Large tiles cut fewer splats into several records; small ones keep a tile's records in a core's cache.
+Tiles choose_tiles(const FrameJob& job) {
+    constexpr int small_px = 32, large_px = 64;
+    constexpr std::int64_t records_in_cache = 16384;  // measured: up to here the larger tiles are quicker,
+    constexpr double worth_missing_it = 1.5;          // and beyond if they save so many records
+    TileGrid grid{job.region.x, job.region.y, job.region.width, job.region.height, large_px};
+    if (job.settings.tile_px > 0) {
+        grid.tile_px = job.settings.tile_px;
+        return {grid, estimate_records(job.projections, grid, {&grid.tile_px, 1}, job.progress)[0]};
+    }
+    const int sizes[] = {small_px, large_px};
+    const std::vector<std::int64_t> records = estimate_records(job.projections, grid, sizes, job.progress);
+    const bool enough_to_share = grid.tiles() >= 8 * thread_count();
+    const bool in_cache = static_cast<double>(records[1]) * job.settings.splats_each <=
+                          static_cast<double>(records_in_cache * grid.tiles());
+    const bool saves = static_cast<double>(records[0]) >= worth_missing_it * static_cast<double>(records[1]);
+    if (enough_to_share && (in_cache || saves)) return {grid, records[1]};
+    grid.tile_px = small_px;
+    return {grid, records[0]};
+}
+
+std::int64_t carried_bytes(const FrameJob& job, const TileGrid& grid) {
+    const std::int64_t planes =
+        9 + (job.fold.aovs ? 3 + 4 * static_cast<std::int64_t>(job.layers.size()) : 0);
+    const std::int64_t pixels = grid.tiles() * grid.tile_px * grid.tile_px;
+    return pixels * planes * static_cast<std::int64_t>(sizeof(float) * job.groups.size());
+}
+
+Bands make_bands(const FrameJob& job) {
+    const Tiles tiles = choose_tiles(job);
+    const TileGrid& grid = tiles.grid;
+    std::vector<std::int64_t> heights = limited_rows(job, tiles);
+    if (job.tile_done && heights.size() == 1) heights = watched_rows(job, tiles);
+    Bands bands;
+    std::int64_t row = 0, highest = 0;
+    for (const std::int64_t rows : heights) {
+        TileGrid band = grid;
+        band.y0 = grid.y0 + row * grid.tile_px;
+        band.height = std::min(rows * grid.tile_px, grid.y0 + grid.height - band.y0);
+        band.first_band = row == 0;
+        row += rows;
+        band.last_band = row == grid.rows();
+        bands.grids.push_back(band);
+        highest = std::max(highest, rows);
+    }
+    bands.records = tiles.records * highest / grid.rows();
+    if (!job.tile_done) return bands;
+    const auto from_middle = [&](const TileGrid& band) {
+        return std::abs(2 * (band.y0 - grid.y0) + band.height - grid.height);
+    };
+    std::ranges::stable_sort(
+        bands.grids, [&](const TileGrid& a, const TileGrid& b) { return from_middle(a) < from_middle(b); });
+    return bands;
+}
+
+namespace {
+
+/// Calls visit(layer, splats, shapes, how many splats each of these stands for) for a sample of all layers.
+template <class Visit>
+void sample_layers(std::span<const LayerProjection> layers, const TileGrid& grid, const Progress& progress,
+                   const Visit& visit) {
+    constexpr std::int64_t block = 16, stride = 64 * block;
+    const ScreenRect rect = rect_of(grid);
+    Buffer<ScreenSplat> splats;
+    Buffer<Shape> shapes;
+    const auto sample = [&](const LayerProjection& layer, std::int64_t begin, std::int64_t end, double each) {
+        progress.check();
+        splats.clear();
+        shapes.clear();
+        project(layer, begin, end, rect, splats, shapes);
+        visit(layer, splats, shapes, each);
+    };
+    for (const LayerProjection& layer : layers) {
+        if (layer.blocks) {
+            LayerProjection here = layer;
+            here.splats = &layer.blocks->sample();
+            const std::vector<BlockFacts>& blocks = layer.blocks->blocks();
+            for (std::size_t b = 0; b + 1 < blocks.size(); ++b) {
+                const std::int64_t begin = blocks[b].first_sample, end = blocks[b + 1].first_sample;
+                const double each = static_cast<double>(blocks[b].splats) /
+                                    static_cast<double>(std::max<std::int64_t>(1, end - begin));
+                for (std::int64_t i = begin; i < end; i += block)
+                    sample(here, i, std::min(i + block, end), each);
+            }
+            continue;
+        }
+        const std::int64_t count = layer.splats->size(), rest = count % stride;
+        const std::int64_t sampled = count / stride * block + std::min(rest, block);
+        const double each =
+            static_cast<double>(count) / static_cast<double>(std::max<std::int64_t>(1, sampled));
+        for (std::int64_t begin = 0; begin < count; begin += stride)
+            sample(layer, begin, std::min(begin + block, count), each);
+    }
+}
+
+/// Records that a splat leaves in tiles of a size, about.
+float records_of(const LayerProjection& layer, const ScreenSplat& splat, const Buffer<Shape>& shapes,
+                 int tile_px) {
+    const float tiles = 1.0f + 2.0f * support_px(layer, splat, shapes) / static_cast<float>(tile_px);
+    return std::min(9.0f, tiles * tiles);
+}
+
+}  // namespace
+
+std::vector<std::int64_t> estimate_records(std::span<const LayerProjection> layers, const TileGrid& grid,
+                                           std::span<const int> tile_sizes_px, const Progress& progress) {
+    std::vector<double> sums(tile_sizes_px.size(), 0.0);
+    sample_layers(layers, grid, progress,
+                  [&](const LayerProjection& layer, const auto& splats, const auto& shapes, double each) {
+                      for (const ScreenSplat& splat : splats)
+                          for (std::size_t t = 0; t < sums.size(); ++t)
+                              sums[t] += each * records_of(layer, splat, shapes, tile_sizes_px[t]);
+                  });
+    std::vector<std::int64_t> records;
+    for (const double sum : sums) records.push_back(static_cast<std::int64_t>(sum));
+    return records;
+}
+
+DepthSample sample_depths(std::span<const LayerProjection> layers, const TileGrid& grid,
+                          const Progress& progress) {
+    DepthSample sample;
+    sample_layers(
+        layers, grid, progress,
+        [&](const LayerProjection& layer, const auto& splats, const auto& shapes, double each) {
+            for (const ScreenSplat& splat : splats)
+                sample.shares.push_back({splat.depth, each * records_of(layer, splat, shapes, grid.tile_px)});
+        });
+    std::ranges::sort(sample.shares, {}, &DepthShare::depth);
+    return sample;
 }
 
 }  // namespace astrosplat

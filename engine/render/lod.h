@@ -1,8 +1,14 @@
-// Level of detail: a splat that would be too large on screen becomes N = 4^level smaller ones in its own
-// volume, fixed in layer space, so that a close-up shows a cloud instead of a disc (DESIGN 7). In: projected
-// diameter, alpha, blend. Out: which levels to draw, with which alphas, and where the children lie.
+// Close-ups. A splat that would be too large on screen becomes N = 4^level smaller ones in its own volume,
+// fixed in layer space, so that one sees a cloud instead of a disc (DESIGN 7): in, projected diameter, alpha,
+// blend; out, which levels to draw, with which alphas, and where the children lie. Their light has structure,
+// e^(strength n) with n octaves of noise in layer space between the splat's size and the child's, so that
+// clouds close by show clouds and not blur (DEPTH 6). A star of a picture has no size that one could see: its
+// dot is the telescope's blur, and would be a blurred disc close by, so its image grows less.
 #pragma once
 
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstdint>
 #include <glm/vec3.hpp>
 #include <map>
@@ -78,5 +84,40 @@ class LodTable {
     std::vector<double> nodes_, weights_;
     std::vector<Level> levels_;  // by level; 0 is the parent itself
 };
+
+/// Noise for the children of one splat at one level. It depends on nothing but the splat's radius, the level
+/// and the layer's seed: a child keeps its light however near the camera is.
+struct ChildNoise {
+    struct Octave {
+        float frequency;  // per scene unit, a power of two: the same field for splats of every size
+        float amplitude;  // factor of the noise in the exponent
+        glm::vec3 shift;  // of the field, cells
+        std::uint32_t seed;
+    };
+    std::array<Octave, 12> octaves;
+    int count = 0;
+    float limit = 0.0f;   // of the exponent
+    float offset = 0.0f;  // of the exponent: makes the mean over space 1
+};
+
+/// `strength` is lod.noise, 0..2; `radius` in layer space, > 0; `level` as in LevelChoice. Level 0 has none.
+ChildNoise make_child_noise(float strength, float radius, int level, std::uint32_t seed);
+
+/// Factor of the light of a child at `p` in layer space: > 0, 1 on average over space, and at most
+/// largest_child_light.
+float child_light(const ChildNoise& noise, const glm::vec3& p);
+float largest_child_light(float strength);
+
+/// The most that such a star's colour is multiplied by.
+inline constexpr float brightest_near_star = 16.0f;
+
+/// Radius of the image of a star at a share `nearness`, in (0, 1), of lod.star_distance, over that of a dot
+/// there. From that distance on the image grows only with the fourth root of 1 / nearness, as a brighter star
+/// in a photograph is a little larger, until its light, which is the dot's, is brightest_near_star times as
+/// dense. 1 where nearness is 1.
+inline float near_star_size(float nearness) {
+    const float root = std::sqrt(nearness);
+    return std::max(1.0f / std::sqrt(brightest_near_star), root * std::sqrt(root));
+}
 
 }  // namespace astrosplat

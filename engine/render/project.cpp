@@ -6,10 +6,7 @@
 #include <glm/common.hpp>
 
 #include "camera/projection.h"
-#include "render/child_noise.h"
-#include "render/near_star.h"
-#include "render/project_stars.h"
-#include "render/project_vector.h"
+#include "render/lod.h"
 #include "render/shape.h"
 #include "render/shared_render.h"
 #include "render/sphere_shape.h"

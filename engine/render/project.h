@@ -15,6 +15,8 @@
 
 namespace astrosplat {
 
+struct FootprintTable;
+
 /// Where on the frame splats are wanted, px of the whole frame.
 struct ScreenRect {
     float x0, y0, x1, y1;
@@ -81,5 +83,48 @@ void project_most(const LayerProjection& layer, std::int64_t begin, std::int64_t
                   Buffer<ScreenSplat>& out, Buffer<Shape>& shapes, Buffer<std::int64_t>& rest);
 void project_rows(const LayerProjection& layer, std::span<const std::int64_t> rows, const ScreenRect& rect,
                   Buffer<ScreenSplat>& out);
+
+// ---- for stars
+
+/// The dots that a star's image is made of, the core first; `footprint` is that of a gaussian falloff.
+///
+/// Moffat's (1 + r^2)^-b and a spike's e^-|x| are mixtures of gaussians, by the gamma distribution of their
+/// inverse variance and the exponential one of their variance; here in steps of a factor of two. The core's
+/// gaussian and the pixel filter's together have the deviation core_px, as far as the filter is not wider.
+std::vector<StarDot> star_dots(const StarPsf& psf, const FootprintTable& footprint);
+
+/// As project() does. A star at r from the layer's origin and c from the eye has (r / c)^2 of its colour as
+/// light over all pixels, c no less than near and near_fade; at infinity just its colour. Wings and spikes
+/// whose peak is below 2^-14 of scene light are left out with a soft edge, their light goes to the core. Onto
+/// the sphere cores and wings are round there; spikes point and are as long as on a flat frame, in px of this
+/// one, at the star.
+void project_stars(const LayerProjection& layer, std::int64_t begin, std::int64_t end, const ScreenRect& rect,
+                   Buffer<ScreenSplat>& out, Buffer<Shape>& shapes);
+
+/// Largest light of a pixel of the layer's stars.
+float largest_star_light(const LayerProjection& layer);
+
+// ---- for the files that project
+
+/// Projects splats [begin, end) as far as they fill whole vectors; returns where the others begin. Those that
+/// level of detail may divide and may show, and stars that stay points close by, are left to `rest`.
+std::int64_t project_whole_blocks(const LayerProjection& layer, std::int64_t begin, std::int64_t end,
+                                  const ScreenRect& rect, Buffer<ScreenSplat>& out,
+                                  Buffer<std::int64_t>& rest);
+
+/// Appends a splat at each of the places at which the frame shows it, as far as the square of half width
+/// support_px around it touches `rect`; period_px is the lens's.
+inline void push_places(ScreenSplat splat, float period_px, float support_px, const ScreenRect& rect,
+                        Buffer<ScreenSplat>& out) {
+    const float x_px = splat.x_px;
+    for (const float turn_px : {0.0f, -period_px, period_px}) {
+        splat.x_px = x_px + turn_px;
+        if (splat.x_px + support_px > rect.x0 && splat.x_px - support_px < rect.x1) out.push_back(splat);
+        if (period_px == 0.0f) break;
+    }
+}
+
+/// h of the hybrid blend for a splat at p in camera space, 65535 = 1; 0 for other blends.
+std::uint16_t hybrid_of(const LayerProjection& layer, const glm::vec3& p);
 
 }  // namespace astrosplat

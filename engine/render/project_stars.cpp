@@ -1,4 +1,4 @@
-#include "render/project_stars.h"
+#include "render/project.h"
 
 #include <algorithm>
 #include <bit>
@@ -7,7 +7,6 @@
 
 #include "camera/projection.h"
 #include "core/real.h"
-#include "render/project_vector.h"
 #include "render/shape.h"
 #include "render/sphere_shape.h"
 

@@ -1,4 +1,4 @@
-#include "render/project_vector.h"
+#include "render/project.h"
 
 #include <bit>
 

@@ -20,7 +20,6 @@
 #include "render/depth_slabs.h"
 #include "render/project.h"
 #include "render/screen_splat.h"
-#include "render/tie_ids.h"
 
 namespace astrosplat {
 

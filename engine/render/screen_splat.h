@@ -1,12 +1,14 @@
-// A splat on the frame: what projection makes of a shaded splat and what the fold consumes. 40 bytes,
-// because tens of millions of them stream through memory.
+// A splat on the frame: what projection makes of a shaded splat and what the fold consumes, and the total
+// order of such splats.
 #pragma once
 
 #include <bit>
 #include <cstdint>
+#include <vector>
 
 namespace astrosplat {
 
+/// 40 bytes, because tens of millions of them stream through memory.
 struct ScreenSplat {
     float x_px, y_px;      // centre, y down, snapped to 1/256 px
     float radius_px;       // where the falloff reaches zero; not round: the number of a shape
@@ -46,6 +48,26 @@ inline bool in_front_of(const ScreenSplat& a, const ScreenSplat& b) {
     if (a.x_px != b.x_px) return a.x_px < b.x_px;
     if (a.y_px != b.y_px) return a.y_px < b.y_px;
     return a.radius_px < b.radius_px;
+}
+
+/// Ids of splats that come by the block, as far as ties in depth may ask for them: a record has no room for
+/// more than a number. By layer: for each of its blocks, in the file's order, the ids of those splats of it
+/// that left records, in the order of rows. Layers in memory have none; their indices ascend as ids do.
+struct TieIds {
+    static constexpr int row_bits = 16;
+    std::vector<std::vector<const std::uint64_t*>> of_layer;
+
+    std::uint64_t id(const ScreenSplat& splat) const {
+        return of_layer[splat.layer][splat.index >> row_bits][splat.index & ((1u << row_bits) - 1)];
+    }
+};
+
+/// The total order of in_front_of, with ids where indices do not stand for them.
+inline bool in_front_of(const ScreenSplat& a, const ScreenSplat& b, const TieIds& ids) {
+    if (a.depth != b.depth || a.layer != b.layer || a.index == b.index || ids.of_layer[a.layer].empty())
+        return in_front_of(a, b);
+    const std::uint64_t id_a = ids.id(a), id_b = ids.id(b);
+    return id_a != id_b ? id_a < id_b : a.index < b.index;
 }
 
 }  // namespace astrosplat

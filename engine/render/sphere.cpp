@@ -6,8 +6,7 @@
 
 #include "camera/projection.h"
 #include "core/real.h"
-#include "render/counted_gains.h"
-#include "render/spectrum.h"
+#include "render/shape.h"
 #include "render/sphere_sums.h"
 
 namespace astrosplat {

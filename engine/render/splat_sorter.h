@@ -8,7 +8,6 @@
 #include "core/buffer.h"
 #include "core/progress.h"
 #include "render/screen_splat.h"
-#include "render/tie_ids.h"
 
 namespace astrosplat {
 

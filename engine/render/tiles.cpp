@@ -101,13 +101,6 @@ void render_tile(const FrameJob& job, const TileBins& bins, std::int64_t tile, T
     });
 }
 
-std::int64_t CarriedTiles::bytes(const FrameJob& job, const TileGrid& grid) {
-    const std::int64_t planes =
-        9 + (job.fold.aovs ? 3 + 4 * static_cast<std::int64_t>(job.layers.size()) : 0);
-    const std::int64_t pixels = grid.tiles() * grid.tile_px * grid.tile_px;
-    return pixels * planes * static_cast<std::int64_t>(sizeof(float) * job.groups.size());
-}
-
 void CarriedTiles::fold_slab(const TileBins& bins, std::int64_t tile, TileWorker& worker) {
     for (std::size_t g = 0; g < job_.groups.size(); ++g) {
         bins.collect(tile, static_cast<int>(g), worker.runs);

@@ -37,9 +37,6 @@ class CarriedTiles {
     CarriedTiles(const FrameJob& job, const TileGrid& grid)
         : job_(job), grid_(grid), planes_(static_cast<std::size_t>(grid.tiles()) * job.groups.size()) {}
 
-    /// What the tiles take where splats are everywhere.
-    static std::int64_t bytes(const FrameJob& job, const TileGrid& grid);
-
     /// Folds a slab's records into a tile. Different tiles may be folded at once.
     void fold_slab(const TileBins& bins, std::int64_t tile, TileWorker& worker);
     /// After the last slab.

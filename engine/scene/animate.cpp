@@ -6,7 +6,7 @@
 #include <cmath>
 #include <span>
 
-#include "camera/handles.h"
+#include "camera/keyframe.h"
 #include "scene/describe.h"
 
 namespace astrosplat {

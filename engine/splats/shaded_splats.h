@@ -27,14 +27,20 @@ struct ShadedSplats {
     std::int64_t size() const { return static_cast<std::int64_t>(position.size()); }
 };
 
-/// Calls visit(array) for all but stretch, which look/view_dependent.h adds.
+/// Calls visit(pointer to member) for all arrays but stretch, which look/view_dependent.h adds.
+template <class Visit>
+void for_each_member(const Visit& visit) {
+    visit(&ShadedSplats::position);
+    visit(&ShadedSplats::color);
+    visit(&ShadedSplats::alpha);
+    visit(&ShadedSplats::radius);
+    visit(&ShadedSplats::id);
+}
+
+/// Calls visit(array) for the same.
 template <class Visit>
 void for_each_array(ShadedSplats& splats, const Visit& visit) {
-    visit(splats.position);
-    visit(splats.color);
-    visit(splats.alpha);
-    visit(splats.radius);
-    visit(splats.id);
+    for_each_member([&](auto member) { visit(splats.*member); });
 }
 
 /// A block after the look. Without splats the box is empty.

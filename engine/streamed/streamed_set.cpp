@@ -21,15 +21,6 @@ SplatSet& block_of_thread() {
     return block;
 }
 
-template <class Visit>
-void for_each_member(const Visit& visit) {
-    visit(&ShadedSplats::position);
-    visit(&ShadedSplats::color);
-    visit(&ShadedSplats::alpha);
-    visit(&ShadedSplats::radius);
-    visit(&ShadedSplats::id);
-}
-
 /// The rows of a block that are its sample.
 std::int64_t sample_row(std::int64_t n, std::int64_t samples, std::int64_t splats) {
     return (2 * n + 1) * splats / (2 * samples);

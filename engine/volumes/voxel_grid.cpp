@@ -14,7 +14,7 @@
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "core/sorting.h"
-#include "volumes/voxel_body.h"
+#include "volumes/voxel_splats.h"
 
 namespace astrosplat {
 namespace {

@@ -1,4 +1,4 @@
-#include "volumes/openvdb/openvdb_module.h"
+#include "volumes/openvdb_file.h"
 
 #include <openvdb/io/Archive.h>
 #include <openvdb/openvdb.h>

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
-#include "camera/handles.h"
+#include "camera/keyframe.h"
 #include "camera/path.h"
 #include "core/real.h"
 

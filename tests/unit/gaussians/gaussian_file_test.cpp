@@ -9,7 +9,6 @@
 #include "core/quaternion.h"
 #include "core/rotation.h"
 #include "gaussians/gaussian_file.h"
-#include "gaussians/gaussian_usda.h"
 #include "gaussians/gaussians.h"
 #include "splat_files/splat_file.h"
 #include "support/capture.h"

@@ -8,8 +8,6 @@
 #include <numbers>
 
 #include "core/color.h"
-#include "gaussians/fit.h"
-#include "gaussians/reduce.h"
 #include "render/falloff.h"
 #include "render/render.h"
 

@@ -12,7 +12,6 @@
 #include "core/real.h"
 #include "core/rotation.h"
 #include "gaussians/gaussian_file.h"
-#include "gaussians/gaussian_usda.h"
 #include "gaussians/harmonics_export.h"
 #include "splat_files/splat_file.h"
 #include "splats/harmonics.h"

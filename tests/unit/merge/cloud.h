@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "merge/cut.h"
-#include "merge/sums.h"
+#include "merge/tree.h"
 
 namespace astrosplat::test {
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "core/shared_maths.h"
-#include "render/child_noise.h"
+#include "render/lod.h"
 #include "render/render.h"
 #include "splats/splat_set.h"
 #include "unit/merge/cloud.h"

@@ -1,6 +1,6 @@
 // The backdrop against the environment's own colours: smooth pictures must agree to interpolation, across the
 // seam and over the poles, and a frame with a backdrop must treat it as the environment.
-#include "render/backdrop.h"
+#include "render/environment.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // Structure of children: its mean over space, its bounds, what it depends on, and that it keeps the light of
 // their parents.
-#include "render/child_noise.h"
+#include "render/lod.h"
 
 #include <gtest/gtest.h>
 

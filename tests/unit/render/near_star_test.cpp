@@ -1,5 +1,5 @@
 // Stars of pictures close by: points that keep the light of their dots, and nothing else changes.
-#include "render/near_star.h"
+#include "render/lod.h"
 
 #include <gtest/gtest.h>
 

@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "core/parallel.h"
-#include "volumes/voxel_body.h"
+#include "volumes/voxel_splats.h"
 
 namespace astrosplat::test {
 namespace {

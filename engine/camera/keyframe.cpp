@@ -1,13 +1,14 @@
-#include "camera/handles.h"
+#include "camera/keyframe.h"
 
 #include <algorithm>
 #include <cmath>
 
 namespace astrosplat {
+
 namespace {
 
-// Tangent per frame of an automatic handle: that of the neighbours; for scalars limited as above, and 0 where
-// the values turn.
+// Tangent per frame of an automatic handle: that of the neighbours; for scalars limited to three times the
+// slopes beside it (Fritsch and Carlson, 1980), and 0 where the values turn.
 glm::dvec3 automatic_tangent(std::span<const Keyframe<glm::dvec3>> keyframes, std::size_t i, Ends ends) {
     return tangent(
         keyframes, [&](std::size_t k) { return keyframes[k].value; }, i, ends);
