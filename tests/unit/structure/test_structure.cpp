@@ -157,7 +157,7 @@ TEST(Structure, LibrariesStayBehindTheFilesThatWrapThem) {
                                                  "^engine/source/picture_file\\.h$")},
         {std::regex("^png\\.h"), std::regex("^engine/output/png_frame\\.cpp$")},
         {std::regex("^tiffio"), std::regex("^engine/output/tiff_frame\\.cpp$")},
-        {std::regex("^OpenColorIO/"), std::regex("^engine/ocio/processor\\.h$")},
+        {std::regex("^OpenColorIO/"), std::regex("^engine/ocio/display_transform\\.cpp$")},
         {std::regex("^fitsio"), std::regex("^engine/source/([^/]*\\.cpp|fits_tiles\\.h)$")},
         {std::regex("^openssl/"), std::regex("^engine/core/sha256\\.cpp$")},
         {std::regex("^openvdb/"), std::regex("^engine/volumes/openvdb/[^/]*\\.cpp$")},
@@ -222,7 +222,7 @@ TEST(Structure, NoTwoTypesHaveOneName) {
 
 // What one file alone needs stands in that file. The number of the others may only fall.
 TEST(Structure, AHeaderHasTwoUsersOrATest) {
-    constexpr std::size_t allowed = 123;
+    constexpr std::size_t allowed = 87;
     std::map<std::string, std::set<std::string>> users;  // of each header, by its path
     for (const char* const folder : {"engine", "app", "tests"})
         for (const Include& include : includes_below(folder))
@@ -234,7 +234,9 @@ TEST(Structure, AHeaderHasTwoUsersOrATest) {
     for (const auto& [header, files] : users) {
         const std::string source = header.substr(0, header.size() - 2) + ".cpp";
         const auto is_test = [](const std::string& file) { return file.starts_with("tests/"); };
-        if (std::ranges::any_of(files, is_test) || files.size() - files.count(source) >= 2) continue;
+        const bool is_kernel = header.ends_with("-inl.h");  // Highway compiles it once per instruction set
+        if (is_kernel || std::ranges::any_of(files, is_test) || files.size() - files.count(source) >= 2)
+            continue;
         lonely += "\n" + header;
         ++count;
     }
