@@ -53,11 +53,12 @@ bool is_complete(Sequence& sequence) {
         sequence, [](auto& eye) { return std::ssize(eye.second.of(Found::same)) == eye.second.count; });
 }
 
-/// Submissions to Slurm that have tasks in the queue, and the last one.
+/// Submissions to Slurm that have tasks in the queue, and the last one; and what all of them were made of.
 struct Farm {
     std::vector<Submission> submissions;
     std::vector<SubmissionState> states;
     std::string problem;
+    std::vector<SubmittedFrames> submitted;
 };
 
 Farm ask_farm(const BatchPlan& plan) {
@@ -65,6 +66,7 @@ Farm ask_farm(const BatchPlan& plan) {
     const QueueState queue = ask_queue(all);
     Farm farm;
     farm.problem = queue.problem;
+    farm.submitted = submitted_frames(all);
     for (std::size_t i = 0; i < all.size(); ++i) {
         if (!queue.submissions[i].is_active() && i + 1 < all.size()) continue;
         farm.submissions.push_back(all[i]);
@@ -101,6 +103,13 @@ Report to_report(const Farm& farm) {
     return queue;
 }
 
+Report to_report(const std::vector<SubmittedFrames>& submitted) {
+    Report all = Report::array();
+    for (const SubmittedFrames& one : submitted)
+        all.push_back({{"options", one.options}, {"frames", one.frames}});
+    return all;
+}
+
 void print_for_people(const BatchPlan& plan, Sequence& sequence) {
     fmt::print("scene {}\n", printable(plan.scene.file.string()));
     fmt::print("frames {}\n", printable(plan.scene.output.path));
@@ -133,7 +142,8 @@ void print_as_json(const BatchPlan& plan, Sequence& sequence) {
                   {"complete", is_complete(sequence)},
                   {"eyes", eyes},
                   {"queue", to_report(farm)},
-                  {"queue_problem", farm.problem}},
+                  {"queue_problem", farm.problem},
+                  {"submitted", to_report(farm.submitted)}},
                  true);
 }
 

@@ -3,6 +3,7 @@
 #include "core/error.h"
 #ifdef ASTROSPLAT_WINDOW
 #include "core/assets.h"
+#include "farm/child_process.h"
 #include "interrupt.h"
 #include "places.h"
 #include "viewer/run_viewer.h"
@@ -29,6 +30,7 @@ int run_window(Invocation& call) {
     ViewerOptions viewer{call.input,
                          {},
                          call.batch_options.cache,
+                         own_program(),
                          !call.common.threads.empty(),
                          !call.common.cache.empty() || call.common.no_cache};
     for (const std::string& text : call.batch_options.assignments)

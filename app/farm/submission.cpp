@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 #include <sstream>
+#include <utility>
 
 #include "core/atomic_file.h"
 #include "core/error.h"
@@ -105,6 +106,28 @@ std::vector<Submission> submissions_of(const std::string& output) {
         }
     }
     return submissions;
+}
+
+std::vector<SubmittedFrames> submitted_frames(const std::vector<Submission>& submissions) {
+    std::vector<std::pair<const Submission*, std::set<std::int64_t>>> groups;
+    for (const Submission& one : submissions) {
+        std::set<std::int64_t> frames;
+        try {
+            for (const std::string& chunk : one.chunks)
+                for (const std::int64_t frame : parse_frames(chunk, record_name)) frames.insert(frame);
+        } catch (const InputError&) {
+            continue;
+        }
+        if (one.options.empty() || frames.empty()) continue;
+        auto same = std::ranges::find_if(
+            groups, [&](const auto& group) { return have_same_options(*group.first, one); });
+        if (same == groups.end()) same = groups.insert(groups.end(), {&one, {}});
+        same->second.merge(frames);
+    }
+    std::vector<SubmittedFrames> submitted;
+    for (const auto& [first, frames] : groups)
+        submitted.push_back({first->options, frames_text({frames.begin(), frames.end()})});
+    return submitted;
 }
 
 bool is_active(const std::string& state) {

@@ -36,6 +36,15 @@ void write_submission(const Submission& submission);
 /// All submissions of this pattern, in the order they were made; folders without a record are passed over.
 std::vector<Submission> submissions_of(const std::string& output);
 
+/// Frames that were handed over with the same options, in one submission or several.
+struct SubmittedFrames {
+    std::vector<std::string> options;
+    std::string frames;  // as --frames reads them: "1-240"
+};
+/// In the order in which they were first submitted; submissions whose options or frames nobody knows any more
+/// are left out.
+std::vector<SubmittedFrames> submitted_frames(const std::vector<Submission>& submissions);
+
 /// States as squeue names them, "PENDING", "RUNNING", "FAILED"; Slurm forgets tasks some minutes after their
 /// end.
 struct SubmissionState {

@@ -1,10 +1,7 @@
-// What a farm has made of the frames it was given, as the program's own `status --json` tells it. In: what
-// that has written. Out: numbers, and a line for a person.
 // A rendering on the machines of a farm: the program itself hands the frames to Slurm (--submit slurm), and
-// is asked again and again (status) until all are there. So the window does what the command line does, and
-// what was submitted goes on when the window is closed.
-// What was submitted to a farm of this scene's frames before the window was opened: the records beside the
-// frames tell. In: the pattern of the frames. Out: jobs for the queue.
+// is asked again and again (status --json) until all are there. So the window does what the command line
+// does, and what was submitted goes on when the window is closed. All that the window knows of Slurm it reads
+// here.
 #pragma once
 
 #include <cstdint>
@@ -14,20 +11,23 @@
 #include <vector>
 
 #include "farm/child_process.h"
-#include "viewer/background_work.h"
+#include "farm/submission.h"
 
 namespace astrosplat {
 
+/// What a farm has made of the frames it was given.
 struct FarmReport {
     bool complete = false;  // every frame is there
     bool active = false;    // a task waits or runs, or nobody knows
     std::int64_t frames = 0, done = 0;
-    std::vector<std::int64_t> done_frames;  // their numbers, ascending; of pairs those of the first eye
-    std::vector<std::int64_t> jobs;         // in Slurm's queue, of submissions that are not over
-    std::string text;                       // "12 of 240 done, in the queue: 3 running, 21 pending"
+    std::vector<std::int64_t> done_frames;   // their numbers, ascending; of pairs those of the first eye
+    std::vector<std::int64_t> jobs;          // in Slurm's queue, of submissions that are not over
+    std::string output;                      // the pattern of their files, with an absolute folder
+    std::vector<SubmittedFrames> submitted;  // of this pattern, whatever their options
+    std::string text;                        // "12 of 240 done, in the queue: 3 running, 21 pending"
 };
 
-/// Nothing where it is no report.
+/// Of what `status --json` has written; nothing where that is no report.
 std::optional<FarmReport> read_farm_report(const std::string& output);
 
 /// Jobs of "30 frames in 3 tasks submitted as job 2, which waits for the sets of job 1": 2, 1. None where
@@ -80,26 +80,6 @@ class FarmJob {
     double began_s_ = 0.0, next_s_ = 0.0;
     int idle_reports_ = 0;  // that found frames missing and nothing in the queue
     bool cancelled_ = false;
-};
-
-/// Submissions of the same scene with the same options count as one.
-struct EarlierFarmJob {
-    std::string frames;     // of all of them: "1-240"
-    FarmCommands commands;  // without those that submit
-};
-/// In the order in which they were first submitted; one of a scene or frames that nobody can read any more is
-/// left out.
-std::vector<EarlierFarmJob> earlier_farm_jobs(const std::string& pattern);
-
-struct FoundFarmJobs {
-    std::vector<EarlierFarmJob> jobs;
-    std::string error;
-};
-
-/// Finds them beside the window: the folder may be a network's.
-class EarlierFarmJobs : public LatestWork<std::string, FoundFarmJobs> {
-  public:
-    EarlierFarmJobs();
 };
 
 }  // namespace astrosplat

@@ -8,16 +8,13 @@
 #include "core/atomic_file.h"
 #include "core/error.h"
 #include "core/text.h"
-#include "farm/child_process.h"
 
 namespace astrosplat {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* busy_message = "a rendering is under way: cancel it first, or wait";
-
-// "frame 12 (3/10)" of "frame 12 (3/10) 37% eta 00:04:10".
+/// "frame 12 (3/10)" of "frame 12 (3/10) 37% eta 00:04:10".
 std::string without_share(const std::string& line) {
     const std::size_t percent = line.find("% eta ");
     if (percent == std::string::npos) return line;
@@ -25,7 +22,7 @@ std::string without_share(const std::string& line) {
     return blank == std::string::npos ? line : line.substr(0, blank);
 }
 
-// Of "saved FILE 3.59s".
+/// Of "saved FILE 3.59s".
 std::optional<fs::path> file_of_line(const std::string& line) {
     constexpr std::string_view begin = "saved ";
     const std::size_t end = line.rfind(' ');
@@ -53,123 +50,93 @@ std::optional<float> share_of_line(const std::string& line) {
     return static_cast<float>(std::clamp(done, 0.0, 1.0));
 }
 
-struct RenderJob::Impl {
-    State state = State::none;
-    std::vector<ProcessStep> steps;
-    std::size_t step = 0;
-    std::optional<ChildProcess> process;
-    std::string partial, last_line;
-    float progress = 0.0f;
-    std::int64_t frames = 0;
-    std::vector<fs::path> saved;
-    fs::path folder;
-
-    void begin_step() {
-        partial.clear();
-        process.emplace(steps[step].arguments);
-    }
-    void take_line(const std::string& line) {
-        if (trim(line).empty()) return;
-        last_line = without_share(without_prefix(line));
-        if (const auto file = file_of_line(last_line)) saved.push_back(*file);
-        if (const auto share = share_of_line(line)) progress = *share;
-        // Short frames are saved faster than progress is reported.
-        if (frames > 0)
-            progress = std::max(progress, static_cast<float>(saved.size()) / static_cast<float>(frames));
-    }
-    void read_output() {
-        partial += process->output();
-        for (std::size_t end; (end = partial.find_first_of("\r\n")) != std::string::npos;) {
-            take_line(partial.substr(0, end));
-            partial.erase(0, end + 1);
-        }
-    }
-    void finish_step(bool good) {
-        take_line(partial);
-        process.reset();
-        if (state == State::running && good && ++step < steps.size()) return begin_step();
-        if (state == State::running) state = good ? State::done : State::failed;
-        clean();
-    }
-    void clean() {
-        std::error_code ignored;
-        if (!folder.empty()) fs::remove_all(folder, ignored);
-        folder.clear();
-    }
-};
-
-RenderJob::RenderJob() : impl_(std::make_unique<Impl>()) {}
-
 RenderJob::~RenderJob() {
-    impl_->process.reset();
-    impl_->clean();
+    process_.reset();
+    clean();
 }
 
-void RenderJob::start(ProcessStep step) {
-    if (impl_->process) throw InputError(busy_message);
-    impl_ = std::make_unique<Impl>();
-    step.arguments.insert(step.arguments.begin(), own_program());
-    step.arguments.insert(step.arguments.end(), {"--progress", "plain"});
-    impl_->steps.push_back(std::move(step));
-    impl_->begin_step();
-    impl_->state = State::running;
+void RenderJob::begin_step() {
+    partial_.clear();
+    process_.emplace(plan_.steps[step_].arguments);
 }
 
-void RenderJob::start(const fs::path& folder, const std::string& scene_text, std::int64_t frames,
-                      const std::vector<std::string>& arguments, std::vector<ProcessStep> afterwards) {
-    if (impl_->process) throw InputError(busy_message);
-    impl_ = std::make_unique<Impl>();
-    impl_->folder = folder;
-    impl_->frames = frames;
-    const fs::path scene = folder / "scene.toml";
-    ProcessStep render{"Rendering", {own_program(), "--batch", scene.string(), "--progress", "plain"}};
-    render.arguments.insert(render.arguments.end(), arguments.begin(), arguments.end());
-    impl_->steps.push_back(std::move(render));
-    for (ProcessStep& step : afterwards) impl_->steps.push_back(std::move(step));
+void RenderJob::take_line(const std::string& line) {
+    if (trim(line).empty()) return;
+    last_line_ = without_share(without_prefix(line));
+    if (const auto file = file_of_line(last_line_)) saved_.push_back(*file);
+    if (const auto share = share_of_line(line)) progress_ = *share;
+    // Short frames are saved faster than progress is reported.
+    if (plan_.frames > 0)
+        progress_ = std::max(progress_, static_cast<float>(saved_.size()) / static_cast<float>(plan_.frames));
+}
+
+void RenderJob::read_output() {
+    partial_ += process_->output();
+    for (std::size_t end; (end = partial_.find_first_of("\r\n")) != std::string::npos;) {
+        take_line(partial_.substr(0, end));
+        partial_.erase(0, end + 1);
+    }
+}
+
+void RenderJob::finish_step(bool good) {
+    take_line(partial_);
+    process_.reset();
+    if (state_ == State::running && good && ++step_ < plan_.steps.size()) return begin_step();
+    if (state_ == State::running) state_ = good ? State::done : State::failed;
+    clean();
+}
+
+void RenderJob::clean() {
+    std::error_code ignored;
+    if (!plan_.folder.empty()) fs::remove_all(plan_.folder, ignored);
+    plan_.folder.clear();
+}
+
+void RenderJob::start(JobPlan plan) {
+    if (process_) throw InputError("a rendering is under way: cancel it first, or wait");
+    plan_ = std::move(plan);
+    step_ = 0;
+    last_line_.clear();
+    progress_ = 0.0f;
+    saved_.clear();
     try {
-        write_file_atomically(scene, scene_text);
-        impl_->begin_step();
-        impl_->state = State::running;
+        if (!plan_.folder.empty()) write_file_atomically(plan_.folder / "scene.toml", plan_.scene_text);
+        begin_step();
+        state_ = State::running;
     } catch (...) {
-        impl_->clean();
+        clean();
         throw;
     }
 }
 
 void RenderJob::cancel() {
-    if (!impl_->process) return;
-    impl_->state = State::cancelled;
-    impl_->process->terminate();
+    if (!process_) return;
+    state_ = State::cancelled;
+    process_->terminate();
 }
 
-RenderJob::State RenderJob::state() const { return impl_->state; }
-
 void RenderJob::poll() {
-    if (!impl_->process) return;
-    const std::optional<int> code = impl_->process->exit_code();
-    impl_->read_output();  // after the question, so that nothing written before the end is lost
+    if (!process_) return;
+    const std::optional<int> code = process_->exit_code();
+    read_output();  // after the question, so that nothing written before the end is lost
     if (!code) return;
     try {
-        impl_->finish_step(*code == 0);
+        finish_step(*code == 0);
     } catch (const OutputError& error) {  // the next step did not start
-        impl_->last_line = error.what();
-        impl_->state = State::failed;
-        impl_->clean();
+        last_line_ = error.what();
+        state_ = State::failed;
+        clean();
     }
 }
 
 std::string RenderJob::text() const {
-    if (impl_->state == State::running && impl_->step > 0) return impl_->steps[impl_->step].name;
-    return impl_->last_line.empty() ? "Rendering" : impl_->last_line;
+    if (state_ == State::running && step_ > 0) return plan_.steps[step_].name;
+    return last_line_.empty() ? "Rendering" : last_line_;
 }
 
-const std::vector<fs::path>& RenderJob::saved_files() const { return impl_->saved; }
-
-float RenderJob::progress() const { return impl_->progress; }
-
 RenderJob::State RenderJob::take_result() {
-    if (impl_->state == State::running || impl_->process) return State::none;
-    return std::exchange(impl_->state, State::none);
+    if (state_ == State::running || process_) return State::none;
+    return std::exchange(state_, State::none);
 }
 
 }  // namespace astrosplat

@@ -5,17 +5,25 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "farm/child_process.h"
+
 namespace astrosplat {
 
-/// One step of a job.
 struct ProcessStep {
     std::string name;                    // "Rendering", "Writing the movie"
     std::vector<std::string> arguments;  // [0] is the program
+};
+
+/// What a job does.
+struct JobPlan {
+    std::vector<ProcessStep> steps;  // one after the other
+    std::int64_t frames = 0;         // that are saved; 0: none
+    std::filesystem::path folder;    // its own, removed at the end; empty: it needs none
+    std::string scene_text;          // which is written there as scene.toml
 };
 
 /// How much of all frames is done, 0..1, by a line of --progress plain such as
@@ -24,32 +32,38 @@ std::optional<float> share_of_line(const std::string& line);
 
 class RenderJob {
   public:
-    RenderJob();
+    RenderJob() = default;
     ~RenderJob();  // cancels and waits
 
-    /// `frames` frames of the scene `scene_text` as `arguments` after --batch SCENE say, then `afterwards`.
-    /// `folder` is the job's own: scene.toml is written there, and it is removed at the end. Throws
-    /// OutputError, and InputError while a job runs.
-    void start(const std::filesystem::path& folder, const std::string& scene_text, std::int64_t frames,
-               const std::vector<std::string>& arguments, std::vector<ProcessStep> afterwards = {});
-    /// One step, whose arguments are those of the program itself. Throws as above.
-    void start(ProcessStep step);
+    /// Throws OutputError, and InputError while a job runs.
+    void start(JobPlan plan);
     void cancel();
 
     enum class State { none, running, done, failed, cancelled };
-    State state() const;
+    State state() const { return state_; }
     /// Takes what the process has said since the last call. Cheap; call every frame.
     void poll();
-    std::string text() const;  // "frame 12 (3/10)", or the last line of a job that failed
-    float progress() const;    // 0..1
+    std::string text() const;                     // "frame 12 (3/10)", or the last line of a job that failed
+    float progress() const { return progress_; }  // 0..1
     /// Frames it has saved, in the order in which they came.
-    const std::vector<std::filesystem::path>& saved_files() const;
+    const std::vector<std::filesystem::path>& saved_files() const { return saved_; }
     /// done, failed or cancelled: seen once, then none.
     State take_result();
 
   private:
-    struct Impl;
-    std::unique_ptr<Impl> impl_;
+    void begin_step();
+    void take_line(const std::string& line);
+    void read_output();
+    void finish_step(bool good);
+    void clean();
+
+    JobPlan plan_;
+    State state_ = State::none;
+    std::size_t step_ = 0;
+    std::optional<ChildProcess> process_;
+    std::string partial_, last_line_;
+    float progress_ = 0.0f;
+    std::vector<std::filesystem::path> saved_;
 };
 
 }  // namespace astrosplat

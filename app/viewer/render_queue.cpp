@@ -51,6 +51,15 @@ void RenderQueue::push(QueuedJob job, Work work) {
     work_.push_back(std::move(work));
 }
 
+void RenderQueue::add_farm_job(FarmCommands commands, const std::string& title, fs::path target,
+                               bool is_news) {
+    QueuedJob job;
+    job.state = JobState::submitted;
+    job.title = title + ", Slurm";
+    job.target = std::move(target);
+    push(std::move(job), {{}, std::make_unique<FarmJob>(std::move(commands)), is_news});
+}
+
 /// Tasks read the scene until the last of them has run, whatever becomes of the document meanwhile. The same
 /// text has the same name, so that what is submitted again is known to be the same.
 void RenderQueue::add_to_farm(const RenderTask& task, const Document& document) {
@@ -64,33 +73,51 @@ void RenderQueue::add_to_farm(const RenderTask& task, const Document& document) 
     write_file_atomically(scene, text);
     FarmCommands commands;
     commands.pattern = render_files(task).string();
-    commands.submit = {own_program(), "--submit", "slurm", scene.string()};
-    commands.status = {own_program(), "status", scene.string(), "--json"};
+    commands.submit = {program_, "--submit", "slurm", scene.string()};
+    commands.status = {program_, "status", scene.string(), "--json"};
     append(commands.submit, submit_arguments(task));
     append(commands.status, frame_arguments(task));
     if (!cache_.folder.empty()) append(commands.submit, {"--cache", cache_.folder.string()});
-    QueuedJob job;
-    job.state = JobState::submitted;
-    job.title = document.name() + ": " + render_title(task) + ", Slurm";
-    job.target = render_target(task);
-    Work work;
-    work.farm = std::make_unique<FarmJob>(std::move(commands));
-    push(std::move(job), std::move(work));
+    add_farm_job(std::move(commands), document.name() + ": " + render_title(task), render_target(task), true);
 }
 
-void RenderQueue::add_earlier(const EarlierFarmJob& earlier, const std::string& title) {
+/// Looks at a single frame: the answer tells of the others' submissions, too.
+void RenderQueue::list_earlier(const Document& document) {
+    lookup_.reset();
+    if (document.file().empty()) return;
+    const auto first =
+        static_cast<double>(parse_frames(document.scene().output.frames, "output.frames").front());
+    Lookup& lookup = lookup_.emplace();
+    lookup.title = document.name();
+    lookup.command = {program_, "status", document.file().string(), "--json"};
+    append(lookup.command, frame_arguments(make_render_task(document, RenderKind::frame, first)));
+}
+
+void RenderQueue::take_earlier() try {
+    if (!lookup_->process) lookup_->process.emplace(lookup_->command);
+    const std::optional<int> code = lookup_->process->exit_code();
+    lookup_->answer += lookup_->process->output();  // after the question, so that nothing is lost
+    if (!code) return;
+    if (const std::optional<FarmReport> report = read_farm_report(lookup_->answer))
+        for (const SubmittedFrames& submitted : report->submitted) add_earlier(submitted, report->output);
+    lookup_.reset();
+} catch (const OutputError&) {  // a program that does not start, which is not tried again
+    lookup_.reset();
+    throw;
+}
+
+/// Unless it is in the list.
+void RenderQueue::add_earlier(const SubmittedFrames& submitted, const std::string& output) {
+    FarmCommands commands;
+    commands.pattern = output;
+    commands.status = {program_, "status"};
+    append(commands.status, submitted.options);
+    append(commands.status, {"--frames=" + submitted.frames, "--json"});
     const auto is_known = [&](const Work& work) {
-        return work.farm && is_same(work.farm->commands(), earlier.commands);
+        return work.farm && is_same(work.farm->commands(), commands);
     };
-    if (std::ranges::any_of(work_, is_known)) return;
-    QueuedJob job;
-    job.state = JobState::submitted;
-    job.title = title + ": Frames " + earlier.frames + ", Slurm";
-    job.target = earlier.commands.pattern;
-    Work work;
-    work.farm = std::make_unique<FarmJob>(earlier.commands);
-    work.is_news = false;
-    push(std::move(job), std::move(work));
+    if (std::ranges::none_of(work_, is_known))
+        add_farm_job(std::move(commands), lookup_->title + ": Frames " + submitted.frames, output, false);
 }
 
 void RenderQueue::add(const RenderTask& task, const Document& document) {
@@ -101,30 +128,34 @@ void RenderQueue::add(const RenderTask& task, const Document& document) {
     QueuedJob job;
     job.title = document.name() + ": " + render_title(task);
     job.target = render_target(task);
-    Work work;
-    work.frames = static_cast<std::int64_t>(parse_frames(task.frames, "frames").size());
-    work.arguments = batch_arguments(task);
-    if (!cache_.folder.empty())
-        work.arguments.insert(work.arguments.end(), {"--cache", cache_.folder.string()});
+    JobPlan plan;
+    plan.frames = static_cast<std::int64_t>(parse_frames(task.frames, "frames").size());
+    plan.folder = make_temporary_folder();
+    const fs::path scene = plan.folder / "scene.toml";
+    ProcessStep& render = plan.steps.emplace_back();
+    render = {"Rendering", {program_, "--batch", scene.string(), "--progress", "plain"}};
+    append(render.arguments, batch_arguments(task));
+    if (!cache_.folder.empty()) append(render.arguments, {"--cache", cache_.folder.string()});
     if (task.kind == RenderKind::movie)
-        work.movie = {"Writing the movie", movie_command(job.target, document.scene().output.fps)};
-    work.folder = make_temporary_folder();
+        plan.steps.push_back({"Writing the movie", movie_command(job.target, document.scene().output.fps)});
     try {
-        work.scene_text = document.text_for(work.folder / "scene.toml");
+        plan.scene_text = document.text_for(scene);
     } catch (...) {
-        remove_folder(work.folder);
+        remove_folder(plan.folder);
         throw;
     }
-    push(std::move(job), std::move(work));
+    push(std::move(job), {std::move(plan), nullptr, true});
 }
 
 void RenderQueue::add_preparation(const SourceParams& source, const fs::path& folder) {
     QueuedJob job;
     job.title = "Prepared picture";
     job.target = folder;
-    Work work;
-    work.arguments = prepare_command(source, folder);
-    push(std::move(job), std::move(work));
+    JobPlan plan;
+    plan.steps = {{"Preparing", {program_}}};
+    append(plan.steps[0].arguments, prepare_command(source, folder));
+    append(plan.steps[0].arguments, {"--progress", "plain"});
+    push(std::move(job), {std::move(plan), nullptr, true});
 }
 
 QueuedJob* RenderQueue::running_job() {
@@ -134,7 +165,7 @@ QueuedJob* RenderQueue::running_job() {
 
 RenderQueue::~RenderQueue() {
     for (std::size_t i = 0; i < jobs_.size(); ++i)
-        if (jobs_[i].state == JobState::waiting) remove_folder(work_[i].folder);
+        if (jobs_[i].state == JobState::waiting) remove_folder(work_[i].plan.folder);
 }
 
 void RenderQueue::cancel(std::uint64_t number) {
@@ -145,7 +176,7 @@ void RenderQueue::cancel(std::uint64_t number) {
     if (job->state == JobState::submitted) work.farm->cancel();
     if (job->state != JobState::waiting) return;
     job->state = JobState::cancelled;
-    remove_folder(work.folder);
+    remove_folder(work.plan.folder);
 }
 
 void RenderQueue::remove(std::uint64_t number) {
@@ -156,20 +187,13 @@ void RenderQueue::remove(std::uint64_t number) {
     jobs_.erase(job);
 }
 
-void RenderQueue::begin(const Work& work) {
-    if (work.folder.empty()) return job_.start({"Preparing", work.arguments});
-    std::vector<ProcessStep> afterwards;
-    if (work.movie) afterwards.push_back(*work.movie);
-    job_.start(work.folder, work.scene_text, work.frames, work.arguments, std::move(afterwards));
-}
-
 void RenderQueue::begin_next(double now) {
     const auto next = std::ranges::find(jobs_, JobState::waiting, &QueuedJob::state);
     if (next == jobs_.end()) return;
     next->state = JobState::running;
     began_ = now;
     try {
-        begin(work_[static_cast<std::size_t>(next - jobs_.begin())]);
+        job_.start(work_[static_cast<std::size_t>(next - jobs_.begin())].plan);
     } catch (const std::exception& error) {
         next->state = JobState::failed;
         next->text = error.what();
@@ -181,7 +205,7 @@ std::optional<RenderQueue::News> RenderQueue::take_end(QueuedJob& job) {
     const std::string last = job_.text();
     switch (job_.take_result()) {
         case RenderJob::State::done: {
-            const bool movie = work_[static_cast<std::size_t>(&job - jobs_.data())].movie.has_value();
+            const bool movie = work_[static_cast<std::size_t>(&job - jobs_.data())].plan.steps.size() > 1;
             std::error_code ignored;
             if (movie) fs::remove_all(movie_folder(job.target), ignored);
             if (movie) job.files.clear();
@@ -226,6 +250,7 @@ std::optional<RenderQueue::News> RenderQueue::poll_farm(QueuedJob& job, Work& wo
 
 std::optional<RenderQueue::News> RenderQueue::poll(double now) {
     constexpr float enough = 0.02f;  // of the work, to tell how long the rest takes
+    if (lookup_) take_earlier();
     for (std::size_t i = 0; i < jobs_.size(); ++i)
         if (jobs_[i].state == JobState::submitted)
             if (auto news = poll_farm(jobs_[i], work_[i], now)) return news;

@@ -21,7 +21,9 @@ namespace astrosplat {
 
 class RenderQueue {
   public:
-    explicit RenderQueue(SetCache cache) : cache_(std::move(cache)) {}
+    /// `program`: this very program's file, which does the jobs.
+    RenderQueue(SetCache cache, std::string program)
+        : cache_(std::move(cache)), program_(std::move(program)) {}
     ~RenderQueue();  // jobs that wait are dropped
 
     /// Renders the scene as it stands, once all before it is done; a farm's job is submitted at once, with a
@@ -30,8 +32,9 @@ class RenderQueue {
     /// Writes a layer's prepared picture, as the command `prepare` does. Throws InputError.
     void add_preparation(const SourceParams& source, const std::filesystem::path& folder);
 
-    /// A farm's job of before the window was opened, unless it is in the list. Throws OutputError.
-    void add_earlier(const EarlierFarmJob& earlier, const std::string& title);
+    /// What was submitted to a farm of the document's frames before comes into the list, once poll() has
+    /// heard of it. In place of another document's.
+    void list_earlier(const Document& document);
 
     /// A job that waits never begins; one that runs, here or on a farm, ends, and its finished files stay.
     void cancel(std::uint64_t number);
@@ -50,26 +53,34 @@ class RenderQueue {
     const std::vector<QueuedJob>& jobs() const { return jobs_; }
 
   private:
-    // What a job needs to begin.
+    /// What a job needs to begin.
     struct Work {
-        std::filesystem::path folder;  // its own; empty: a preparation
-        std::string scene_text;
-        std::int64_t frames = 0;
-        std::vector<std::string> arguments;
-        std::optional<ProcessStep> movie;
+        JobPlan plan;
         std::unique_ptr<FarmJob> farm;  // null: this machine does it
         bool is_news = true;            // what becomes of it
+    };
+    /// The question about earlier jobs.
+    struct Lookup {
+        std::vector<std::string> command;
+        std::string title;
+        std::optional<ChildProcess> process;  // once it is asked
+        std::string answer;
     };
 
     void push(QueuedJob job, Work work);
     void begin_next(double now);
-    void begin(const Work& work);
     QueuedJob* running_job();
     std::optional<News> take_end(QueuedJob& job);
     void add_to_farm(const RenderTask& task, const Document& document);
+    void add_farm_job(FarmCommands commands, const std::string& title, std::filesystem::path target,
+                      bool is_news);
+    void take_earlier();
+    void add_earlier(const SubmittedFrames& submitted, const std::string& output);
     std::optional<News> poll_farm(QueuedJob& job, Work& work, double now);
 
     SetCache cache_;
+    std::string program_;
+    std::optional<Lookup> lookup_;
     RenderJob job_;
     std::vector<QueuedJob> jobs_;
     std::vector<Work> work_;  // of each

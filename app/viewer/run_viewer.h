@@ -17,6 +17,7 @@ struct ViewerOptions {
     std::filesystem::path input;          // scene, picture, mesh or splat file; empty: the demo
     std::vector<Assignment> assignments;  // --set
     SetCache cache;
+    std::string program;                              // this very program's file, which does the jobs
     bool threads_given = false, cache_given = false;  // by the command line, which wins over the settings
 };
 

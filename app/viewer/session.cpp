@@ -97,6 +97,13 @@ void open_snapshots(Session& session) {
         say(session.status, counted(count, "snapshot") + " of this scene: View > Snapshots shows them");
 }
 
+/// Of the scene that was opened: its snapshots, and what a farm was given of it, where there is a farm to
+/// ask.
+void show_what_was_made(Session& session) {
+    open_snapshots(session);
+    if (session.status.has_slurm) session.jobs.list_earlier(session.document);
+}
+
 Command::Kind command_for(FileKind kind, bool fresh) {
     if (kind == FileKind::scene) return Command::Kind::open;
     if (kind == FileKind::look) return Command::Kind::apply_look;
@@ -130,7 +137,7 @@ Session::Session(const ViewerOptions& options, const GlInfo& gl_info)
                                      : document_for(options.input, options.assignments)),
       sets(options.cache, sample_limit),
       front(front_check(1280, options.cache)),
-      jobs(options.cache),
+      jobs(options.cache, options.program),
       fresh_demo(options.input.empty()) {
     view.hint_open = fresh_demo;
     static_cast<PanelSizes&>(view) = preferences;
@@ -144,8 +151,7 @@ Session::Session(const ViewerOptions& options, const GlInfo& gl_info)
     status.has_slurm = has_program("sbatch");
     status.recent = preferences.recent;
     if (!options.input.empty()) note_recent(*this, options.input);
-    open_snapshots(*this);
-    list_earlier_jobs(*this);
+    show_what_was_made(*this);
 }
 
 void say(Status& status, const std::string& text, bool error) {
@@ -188,8 +194,7 @@ void take_document(Session& session, Document next) {
     view.play_last.reset();
     view.hint_open = session.fresh_demo = false;
     view.grey_layer.clear();
-    open_snapshots(session);
-    list_earlier_jobs(session);
+    show_what_was_made(session);
     session.autosave.remove();
 }
 

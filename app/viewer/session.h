@@ -80,8 +80,6 @@ struct Session {
     Playback playback;
     DiskWatch disk;
     RenderQueue jobs;
-    EarlierFarmJobs earlier_jobs;
-    std::string earlier_pattern;  // of frames whose earlier jobs are to be listed; empty: they are
     std::optional<CommandSource> command_source;  // of the command in the status
     FinishedFrames finished{finished_frames()};
     std::pair<std::filesystem::path, FrameHeader> finished_header;  // of the file looked at

@@ -14,15 +14,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A name is enough where every shell finds the program.
-std::string program_name() { return has_program("astrosplat") ? "astrosplat" : own_program(); }
-
 void fill_command(Session& session) {
     if (!session.view.render_open) return;
     const CommandSource source{session.document.revision(), session.document.file(), session.view.render};
     if (session.command_source == source) return;
     session.command_source = source;
-    const BatchCommand command = render_command(session.document, session.view.render, program_name());
+    // A name is enough where every shell finds the program.
+    const std::string program = has_program("astrosplat") ? "astrosplat" : own_program();
+    const BatchCommand command = render_command(session.document, session.view.render, program);
     session.status.render_command = command.text;
     session.status.no_render_command = command.reason;
 }
@@ -69,27 +68,9 @@ void show_finished_frame(Session& session) {
     shown.aspect = picture.aspect();
 }
 
-void take_earlier_jobs(Session& session) {
-    if (session.earlier_pattern.empty()) return;
-    const auto found = session.earlier_jobs.found(session.earlier_pattern);
-    if (!found) return;
-    session.earlier_pattern.clear();
-    for (const EarlierFarmJob& job : found->jobs) session.jobs.add_earlier(job, session.document.name());
-}
-
 }  // namespace
 
-void list_earlier_jobs(Session& session) {
-    session.earlier_pattern.clear();
-    if (session.document.file().empty()) return;
-    const RenderTask all = make_render_task(session.document, RenderKind::range, session.view.frame);
-    session.earlier_pattern = render_files(all).string();
-    session.earlier_jobs.forget();
-    session.earlier_jobs.want(session.earlier_pattern);
-}
-
 void show_renderings(Session& session, double now) {
-    take_earlier_jobs(session);
     const auto news = session.jobs.poll(now);
     if (news) say(session.status, news->text, news->error);
     session.status.jobs = session.jobs.jobs();

@@ -76,8 +76,5 @@ void take_alignment(Session& session);
 /// Brings the jobs forward and fills their part of the status. `now` in seconds. Throws what a job throws
 /// that cannot begin.
 void show_renderings(Session& session, double now);
-/// The scene has been opened: what was submitted to a farm of it before comes into the queue, once it is
-/// found.
-void list_earlier_jobs(Session& session);
 
 }  // namespace astrosplat

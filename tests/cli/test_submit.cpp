@@ -242,6 +242,8 @@ TEST_F(Submit, StatusTellsTheQueue) {
     EXPECT_EQ(report.at("queue").at(0).at("tasks"), (nlohmann::json{{"FAILED", 1}, {"PENDING", 2}}));
     EXPECT_EQ(report.at("queue").at(0).at("sets"), "RUNNING");
     EXPECT_EQ(report.at("queue_problem"), "");
+    EXPECT_EQ(report.at("submitted").at(0).at("frames"), "1-3");
+    EXPECT_EQ(report.at("submitted").at(0).at("options").at(0), (folder / "scene.toml").string());
     // Other frames have no queue; a queue that cannot be asked is no fault of the frames.
     EXPECT_EQ(status({"-o", "frames/other.#.exr"}).out.find("queue"), std::string::npos);
     fs::remove(folder / "bin/squeue");

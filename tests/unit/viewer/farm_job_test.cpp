@@ -4,20 +4,27 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
+#include <filesystem>
 #include <thread>
 
+#include "support/run_program.h"
 #include "support/temp_folder.h"
+#include "viewer/render_queue.h"
 
 namespace astrosplat {
 namespace {
 
+namespace fs = std::filesystem;
+
+using test::text_of;
 std::string status_of(int done, const std::string& frames, bool complete, const std::string& queue,
                       const std::string& problem = "") {
     return R"({"scene": "a", "output": "b", "complete": )" + std::string(complete ? "true" : "false") +
            R"(, "eyes": [{"eye": "centre", "frames": 12, "done": {"count": )" + std::to_string(done) +
            R"(, "frames": ")" + frames + R"("}}], "queue": [)" + queue + R"(], "queue_problem": ")" +
-           problem + "\"}\n";
+           problem + R"(", "submitted": [{"options": ["/a.toml"], "frames": "1-12"}]})" + "\n";
 }
 
 const std::string at_work =
@@ -36,6 +43,10 @@ TEST(FarmReport, CountsFramesAndTasks) {
     EXPECT_EQ(report->jobs, (std::vector<std::int64_t>{7, 8}));
     EXPECT_TRUE(report->active);
     EXPECT_FALSE(report->complete);
+    EXPECT_EQ(report->output, "b");
+    ASSERT_EQ(report->submitted.size(), 1u);
+    EXPECT_EQ(report->submitted[0].options, std::vector<std::string>{"/a.toml"});
+    EXPECT_EQ(report->submitted[0].frames, "1-12");
     EXPECT_EQ(report->text, "5 of 12 done, in the queue: 2 pending, 1 running");
 }
 
@@ -127,6 +138,85 @@ TEST_F(FarmJobTest, SaysWhyItWasNotSubmitted) {
     ASSERT_TRUE(ends(farm));
     EXPECT_EQ(farm.state(), FarmJob::State::failed);
     EXPECT_EQ(farm.text(), "sbatch: error: invalid partition: x");
+}
+
+/// What the records beside the frames tell a window that was not there when they were written.
+class SubmittedFramesTest : public testing::Test {
+  protected:
+    void submitted(const std::string& number, std::vector<std::string> options,
+                   std::vector<std::string> chunks) const {
+        Submission one;
+        one.folder = submissions_folder(pattern) / number;
+        one.name = "astrosplat-m51";
+        one.output = comparable_output(pattern);
+        one.options = std::move(options);
+        one.sets_job = 1;
+        one.frames_job = 2;
+        one.chunks = std::move(chunks);
+        fs::create_directories(one.folder);
+        write_submission(one);
+    }
+    std::vector<SubmittedFrames> found() const { return submitted_frames(submissions_of(pattern)); }
+
+    const TempFolder folder;
+    const std::string pattern = (folder / "frames/m51.####.exr").string();
+};
+
+TEST_F(SubmittedFramesTest, SubmissionsOfTheSameAreOne) {
+    submitted("0001", {"/a.toml", "--output=" + pattern}, {"1-10", "11-20"});
+    submitted("0002", {"/b.toml"}, {"3"});
+    submitted("0003", {"/a.toml", "--output=" + pattern}, {"15-25"});
+    ASSERT_EQ(found().size(), 2u);
+    EXPECT_EQ(found()[0].options, (std::vector<std::string>{"/a.toml", "--output=" + pattern}));
+    EXPECT_EQ(found()[0].frames, "1-25");
+    EXPECT_EQ(found()[1].frames, "3");
+}
+
+TEST_F(SubmittedFramesTest, WhatCannotBeReadIsLeftOut) {
+    EXPECT_TRUE(found().empty());
+    submitted("0001", {"/a.toml"}, {"nonsense"});
+    submitted("0002", {}, {"1"});
+    EXPECT_TRUE(found().empty());
+}
+
+/// The program is asked, and what it tells is listed once, however often a scene is opened.
+TEST(EarlierFarmJobs, AreThoseThatStatusTells) {
+    const TempFolder folder;
+    std::string told = status_of(0, "", false, "");
+    told.insert(told.rfind("]}"), R"(, {"options": ["/a.toml", "--resolution=8x8"], "frames": "1-3"})");
+    const fs::path program =
+        folder.file("program", "#!/bin/sh\necho \"$@\" >> '" + (folder / "asked").string() + "'\ncat '" +
+                                   folder.file("told", told).string() + "'\n");
+    fs::permissions(program, fs::perms::owner_all);
+    const Document document = Document::open(
+        folder.file("m51.toml",
+                    "astrosplat = 1\n[output]\nframes = \"5-9\"\npath = \"m51.####.exr\"\n"
+                    "[[layer]]\nname = \"a\"\n[layer.source]\nmeshes = [ { mesh = \"plane\" } ]\n"));
+    RenderQueue queue(SetCache(), program.string());
+    double now = 0.0;
+    const auto poll_until = [&](std::size_t asked) {
+        for (int i = 0; i < 2000; ++i) {
+            queue.poll(now += 0.001);
+            const std::string text = text_of(folder / "asked");
+            if (std::count(text.begin(), text.end(), '\n') >= std::ptrdiff_t(asked)) break;
+            std::this_thread::sleep_for(std::chrono::milliseconds(5));
+        }
+        for (int i = 0; i < 20; ++i) {
+            queue.poll(now += 0.001);
+            std::this_thread::sleep_for(std::chrono::milliseconds(5));
+        }
+    };
+    queue.list_earlier(document);
+    poll_until(3);  // the question, and one about each of two jobs
+    queue.list_earlier(document);
+    poll_until(4);
+    ASSERT_EQ(queue.jobs().size(), 2u);
+    EXPECT_EQ(queue.jobs()[0].title, "m51.toml: Frames 1-12, Slurm");
+    EXPECT_EQ(queue.jobs()[1].title, "m51.toml: Frames 1-3, Slurm");
+    EXPECT_EQ(queue.jobs()[1].state, QueuedJob::State::submitted);
+    EXPECT_EQ(text_of(folder / "asked").find("status " + document.file().string() + " --json --frames=5 "),
+              0u)
+        << text_of(folder / "asked");
 }
 
 }  // namespace

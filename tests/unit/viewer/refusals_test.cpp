@@ -71,7 +71,7 @@ TEST(Refusals, AJobThatIsRefusedLeavesNoFolder) {
     const Document document = Document::open(folder.file("scene.toml", scene));
     fs::remove(preset);  // without it the scene cannot be written
     const Variable place("TMPDIR", temporary.c_str());
-    RenderQueue jobs{SetCache{}};
+    RenderQueue jobs(SetCache{}, "astrosplat");
     EXPECT_THROW(jobs.add(make_render_task(document, RenderKind::range, 1.0), document), InputError);
     EXPECT_TRUE(jobs.jobs().empty());
     EXPECT_TRUE(fs::is_empty(temporary));
@@ -86,7 +86,7 @@ TEST(Refusals, AJobThatWaitsLeavesNothingBehind) {
         Document::open(folder.file("scene.toml",
                                    "astrosplat = 1\n[[layer]]\nname = \"a\"\n[layer.source]\n"
                                    "meshes = [ { mesh = \"plane\", texture = \"a.png\" } ]\n"));
-    RenderQueue jobs{SetCache{}};
+    RenderQueue jobs(SetCache{}, "astrosplat");
     jobs.add(make_render_task(document, RenderKind::range, 1.0), document);
     EXPECT_FALSE(fs::is_empty(temporary)) << "the scene as it is now";
     jobs.cancel(1);
@@ -95,7 +95,7 @@ TEST(Refusals, AJobThatWaitsLeavesNothingBehind) {
     jobs.remove(1);
     EXPECT_TRUE(jobs.jobs().empty());
     {
-        RenderQueue dropped{SetCache{}};
+        RenderQueue dropped(SetCache{}, "astrosplat");
         dropped.add(make_render_task(document, RenderKind::range, 1.0), document);
     }
     EXPECT_TRUE(fs::is_empty(temporary));
