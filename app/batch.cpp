@@ -23,7 +23,6 @@
 #include "pipeline.h"
 #include "places.h"
 #include "progress_report.h"
-#include "scene/animate.h"
 #include "stats.h"
 
 namespace astrosplat {
@@ -56,8 +55,8 @@ class BatchRun {
     FrameFigures render_frame(const FramePlan& frame, const Progress& progress);
     void fail(const FramePlan& frame, const std::string& error);
     void find_lost_frames();
-    FrameMetadata metadata(const FramePlan& frame, const Scene& now, const RenderSettings& settings);
-    RenderSettings settings(const FramePlan& frame) const;
+    FrameMetadata metadata(const FramePlan& frame, const FrameScene& now, const RenderSettings& settings);
+    RenderSettings settings(const OutputParams& output) const;
 
     const BatchPlan& plan_;
     FrameHasher hasher_;
@@ -83,26 +82,27 @@ void BatchRun::prepare() {
     check_unchanged(plan_.hasher.files(), Progress{{}, &interrupted()});
 }
 
-RenderSettings BatchRun::settings(const FramePlan& frame) const {
-    RenderSettings settings = pipeline_->settings(static_cast<double>(frame.frame));
+RenderSettings BatchRun::settings(const OutputParams& output) const {
+    RenderSettings settings = render_settings(output);
     settings.region = plan_.region;
     settings.memory_limit_bytes = renderer_bytes_;
     return settings;
 }
 
-FrameMetadata BatchRun::metadata(const FramePlan& frame, const Scene& now, const RenderSettings& settings) {
+FrameMetadata BatchRun::metadata(const FramePlan& frame, const FrameScene& now,
+                                 const RenderSettings& settings) {
     FrameMetadata metadata;
+    const Scene& scene = now.scene;
     metadata.frame = frame.frame;
     metadata.eye = frame.eye;
-    metadata.fps = now.output.fps;
+    metadata.fps = scene.output.fps;
     metadata.frame_hash = frame.hash;
-    hasher_.show_eye(frame.eye);
-    metadata.hashed_text = hasher_.canonical_text(frame.frame);
-    metadata.provenance = now.provenance;
+    metadata.hashed_text = hasher_.canonical_text(now);
+    metadata.provenance = scene.provenance;
     if (metadata.provenance.credit.empty()) metadata.provenance.credit = pipeline_->input_credit();
-    if (!now.layers.empty())
-        metadata.seed = resolved_seed(now.layers.front().source.seed, now.layers.front().name);
-    const Camera camera = pipeline_->camera(static_cast<double>(frame.frame), settings);
+    if (!scene.layers.empty())
+        metadata.seed = resolved_seed(scene.layers.front().source.seed, scene.layers.front().name);
+    const Camera camera = pipeline_->camera(now, settings);
     if (!is_onto_sphere(camera.projection))  // which no matrix can say
         metadata.matrices =
             exr_matrices(camera, static_cast<double>(settings.width), static_cast<double>(settings.height));
@@ -111,18 +111,16 @@ FrameMetadata BatchRun::metadata(const FramePlan& frame, const Scene& now, const
 
 FrameFigures BatchRun::render_frame(const FramePlan& frame, const Progress& progress) {
     const Clock::time_point start = Clock::now();
-    const auto time = static_cast<double>(frame.frame);
-    pipeline_->show_eye(frame.eye);
-    const Scene now = scene_at(plan_.scene, time);
-    const RenderSettings settings = this->settings(frame);
+    const FrameScene now = pipeline_->frame_scene(static_cast<double>(frame.frame), frame.eye);
+    const RenderSettings settings = this->settings(now.scene.output);
     if (frame.existing == Existing::keep) refuse_existing(frame.file);
-    const RenderedFrame rendered = pipeline_->frame(time, settings, progress);
+    const RenderedFrame rendered = pipeline_->frame(now, settings, progress);
     FrameMetadata metadata = this->metadata(frame, now, settings);
     metadata.pixel_hash = pixel_hash(rendered.beauty);
     progress.check();
     const Clock::time_point writing = Clock::now();
-    write_frame({frame.file, now.output, settings.width, settings.height, settings.region,
-                 pipeline_->layer_names(time), frame.existing},
+    write_frame({frame.file, now.scene.output, settings.width, settings.height, settings.region,
+                 pipeline_->layer_names(now), frame.existing},
                 rendered, metadata);
     FrameFigures figures;
     figures.frame = frame.frame;

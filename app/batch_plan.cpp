@@ -11,7 +11,6 @@
 #include "core/text.h"
 #include "estimate.h"
 #include "output/format.h"
-#include "output/frame_hash.h"
 #include "output/read_frame.h"
 #include "output/write.h"
 #include "pipeline.h"
@@ -199,7 +198,7 @@ BatchPlan plan_scene(const BatchOptions& options) {
     if (plan.memory_limit_bytes > 0)
         for (LayerParams& layer : plan.scene.layers)
             if (ever_visible(plan.scene, layer)) limit_bodies(layer, plan.memory_limit_bytes, plan.cache);
-    plan.hasher = FrameHasher(plan.scene, plan.region);
+    plan.hasher = FrameHasher(plan.region);
     return plan;
 }
 
@@ -208,9 +207,8 @@ BatchPlan plan_frames(const BatchOptions& options) {
     const std::vector<Eye> eyes = eyes_of(plan.output, plan.scene.camera);
     for (const std::int64_t frame : frame_numbers(plan, options.frames.has_value()))
         for (const Eye eye : eyes) {
-            plan.hasher.show_eye(eye);
-            plan.frames.push_back(
-                {frame, eye, plan.output.resolve(frame, eye), plan.hasher.frame_hash(frame)});
+            const FrameScene now = frame_scene(plan.scene, static_cast<double>(frame), eye);
+            plan.frames.push_back({frame, eye, plan.output.resolve(frame, eye), plan.hasher.frame_hash(now)});
         }
     return plan;
 }

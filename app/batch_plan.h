@@ -10,8 +10,8 @@
 #include "batch.h"
 #include "core/atomic_file.h"
 #include "core/image.h"
+#include "frame/frame_hash.h"
 #include "frame/output_pattern.h"
-#include "output/frame_hash.h"
 #include "scene/scene.h"
 
 namespace astrosplat {

@@ -86,8 +86,11 @@ std::int64_t frame_bytes(const BatchPlan& plan) {
     const std::int64_t pixels = whole ? output.width * output.height : plan.region.width * plan.region.height;
     const std::int64_t layers =
         output.holds("layers") ? static_cast<std::int64_t>(plan.scene.layers.size()) : 0;
-    const std::int64_t planes = output.holds("depth") + output.holds("coverage") + output.holds("count");
-    const std::int64_t images = is_blurred(plan.scene.camera) ? 2 : 1;
+    const bool blurred =
+        is_blurred(plan.scene.camera);  // two renderings, each with what depth is weighted by
+    const std::int64_t planes =
+        output.holds("depth") * (blurred ? 2 : 1) + output.holds("coverage") + output.holds("count");
+    const std::int64_t images = blurred ? 2 : 1;
     const std::int64_t made = images * (4 + planes + 4 * layers);
     return pixels * (made * std::int64_t{sizeof(float)} + (4 + 4 * layers) * written_bytes(output));
 }

@@ -130,8 +130,8 @@ void keep_exported(Scene& scene, const std::optional<std::string>& wanted) {
 }
 
 /// The frame that display colours are fitted to: the scene's, smaller.
-RenderSettings fitted_settings(const Pipeline& pipeline, double frame) {
-    RenderSettings settings = pipeline.settings(frame);
+RenderSettings fitted_settings(const FrameScene& now) {
+    RenderSettings settings = render_settings(now.scene.output);
     settings.aov_depth = settings.aov_coverage = settings.aov_count = settings.aov_layers = false;
     const double scale = std::min(1.0, double(fitted_height_px) / double(settings.height));
     settings.width = std::max<std::int64_t>(1, std::llround(scale * double(settings.width)));
@@ -194,15 +194,16 @@ int run_export(const ExportOptions& options) {
     prove_writable(folder_of(options.output));
     ProgressReport progress(options.progress);
     Pipeline pipeline(scene, progress.begin_step("loading"), options.cache);
-    const RenderSettings settings = fitted_settings(pipeline, frame);
-    const Camera camera = pipeline.camera(frame, settings);
+    const FrameScene now = pipeline.frame_scene(frame);
+    const RenderSettings settings = fitted_settings(now);
+    const Camera camera = pipeline.camera(now, settings);
     const double gain = std::exp2(double(settings.exposure));
     Image wanted;
-    std::vector<RenderLayer> layers = pipeline.shaded_layers(frame);
+    std::vector<RenderLayer> layers = pipeline.shaded_layers(now);
     const bool fits = std::ranges::all_of(layers, [](const RenderLayer& l) { return l.splats->encoded; });
     if (encoded && !fits) {
-        wanted = pipeline.frame(frame, settings, progress.begin_step("rendering")).beauty;
-        layers = pipeline.shaded_layers(frame);
+        wanted = pipeline.frame(now, settings, progress.begin_step("rendering")).beauty;
+        layers = pipeline.shaded_layers(now);
     }
     for (float& value : wanted.pixels) value *= static_cast<float>(gain);
     std::vector<ShadedSplats> reduced;
@@ -210,7 +211,7 @@ int run_export(const ExportOptions& options) {
     if (count > 0) merge_splats(layers, reduced, camera, count, baking);
     const WriteTarget target{options.output, existing_of(options.overwrite)};
     if (kind == Kind::vdb) {
-        const VolumeExport volume{gain, voxel_size, words_about(scene, pipeline, frame), target};
+        const VolumeExport volume{gain, voxel_size, words_about(now, pipeline.input_credit()), target};
         if (!export_volume(layers, camera, volume, baking)) refuse_nothing(scene);
         return exit_done;
     }

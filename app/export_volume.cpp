@@ -62,14 +62,14 @@ void report(const WriteTarget& target, const VoxelGrid& grid, const BakeCounts& 
 
 }  // namespace
 
-VolumeWords words_about(const Scene& scene, const Pipeline& pipeline, double frame) {
-    const ProvenanceParams& from = scene.provenance;
+VolumeWords words_about(const FrameScene& frame, const std::string& input_credit) {
+    const ProvenanceParams& from = frame.scene.provenance;
     VolumeWords words = {{"creator", std::string("astrosplat ") + ASTROSPLAT_VERSION},
                          {"title", from.title},
-                         {"credit", from.credit.empty() ? pipeline.input_credit() : from.credit},
+                         {"credit", from.credit.empty() ? input_credit : from.credit},
                          {"type", from.type},
-                         {"frame", fmt::format("{}", frame)},
-                         {"exposure_stops", fmt::format("{}", pipeline.settings(frame).exposure)},
+                         {"frame", fmt::format("{}", frame.number)},
+                         {"exposure_stops", fmt::format("{}", render_settings(frame.scene.output).exposure)},
                          {"density", "extinction per scene unit"},
                          {"emission", "linear light per scene unit, primaries of Rec. 709"},
                          {"Cd", "straight colour: emission / density of what blends over"},

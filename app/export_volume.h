@@ -18,8 +18,8 @@ struct VolumeExport {
     WriteTarget target;
 };
 
-/// What a volume's file says about itself.
-VolumeWords words_about(const Scene& scene, const Pipeline& pipeline, double frame);
+/// What a volume's file says about itself; `input_credit`: of the scene's files, where it gives none.
+VolumeWords words_about(const FrameScene& frame, const std::string& input_credit);
 
 /// False where no splat is seen, and then nothing is written. Throws InputError (memory, voxels too small),
 /// OutputError, Cancelled.

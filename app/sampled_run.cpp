@@ -93,8 +93,8 @@ const SampledRun::Layer* SampledRun::find(const std::string& name) const {
     return found == layers_.end() ? nullptr : &*found;
 }
 
-RenderSettings SampledRun::settings(const FramePlan& frame) const {
-    RenderSettings settings = pipeline_.settings(static_cast<double>(frame.frame));
+RenderSettings SampledRun::settings(const FrameScene& frame) const {
+    RenderSettings settings = render_settings(frame.scene.output);
     settings.region = plan_.region;
     settings.splats_each = each_;
     return settings;
@@ -104,38 +104,35 @@ std::int64_t SampledRun::record_bytes() {
     std::int64_t most = 0;
     if (layers_.empty()) return most;
     for (const FramePlan* const frame : frames_) {
-        const auto time = static_cast<double>(frame->frame);
-        pipeline_.show_eye(frame->eye);
-        const std::vector<RenderLayer> layers = pipeline_.shaded_layers(time, stoppable());
+        const FrameScene now = scene_of(*frame);
+        const std::vector<RenderLayer> layers = pipeline_.shaded_layers(now, stoppable());
         if (layers.empty()) continue;
-        const RenderSettings settings = this->settings(*frame);
+        const RenderSettings settings = this->settings(now);
         most = std::max(
-            most, scattered_bytes(layers, pipeline_.camera(time, settings), settings, cache_, stoppable()));
+            most, scattered_bytes(layers, pipeline_.camera(now, settings), settings, cache_, stoppable()));
     }
     return most;
 }
 
 /// The shorter of two renderings: the first one also makes what stays.
-double SampledRun::seconds_of(Pipeline& pipeline, const FramePlan& frame, RenderedFrame& rendered) const {
+double SampledRun::seconds_of(Pipeline& pipeline, const FrameScene& frame, RenderedFrame& rendered) const {
     double least = std::numeric_limits<double>::max();
-    pipeline.show_eye(frame.eye);
     for (int i = 0; i < 2; ++i) {
         const Clock::time_point start = Clock::now();
-        rendered = pipeline.frame(static_cast<double>(frame.frame), settings(frame), stoppable());
+        rendered = pipeline.frame(frame, settings(frame), stoppable());
         least = std::min(least, seconds_since(start));
     }
     return least;
 }
 
 /// None where there is no place to write to.
-std::optional<std::int64_t> SampledRun::bytes_of(const FramePlan& frame, const RenderedFrame& rendered) const
-    try {
+std::optional<std::int64_t> SampledRun::bytes_of(const fs::path& name, const FrameScene& frame,
+                                                 const RenderedFrame& rendered) const try {
     const TemporaryFolder folder;
-    const fs::path file = folder.path() / frame.file.filename();
-    const auto time = static_cast<double>(frame.frame);
+    const fs::path file = folder.path() / name;
     const RenderSettings settings = this->settings(frame);
-    write_frame({file, scene_at(plan_.scene, time).output, settings.width, settings.height, settings.region,
-                 pipeline_.layer_names(time)},
+    write_frame({file, frame.scene.output, settings.width, settings.height, settings.region,
+                 pipeline_.layer_names(frame)},
                 rendered, {});
     return static_cast<std::int64_t>(fs::file_size(file));
 } catch (const OutputError&) {
@@ -150,10 +147,11 @@ FrameCost SampledRun::frame_cost() {
     bool has_bytes = true;
     for (const FramePlan* const frame : frames_) {
         RenderedFrame rendered;
-        const double without = seconds_of(empty_, *frame, rendered);
-        const double with = seconds_of(pipeline_, *frame, rendered);
+        const FrameScene now = scene_of(*frame);
+        const double without = seconds_of(empty_, now, rendered);
+        const double with = seconds_of(pipeline_, now, rendered);
         const Clock::time_point writing = Clock::now();
-        const std::optional<std::int64_t> written = bytes_of(*frame, rendered);
+        const std::optional<std::int64_t> written = bytes_of(frame->file.filename(), now, rendered);
         cost.seconds += (without + each_ * std::max(0.0, with - without) + seconds_since(writing)) / count;
         has_bytes &= written.has_value();
         bytes += static_cast<double>(written.value_or(0)) / count;

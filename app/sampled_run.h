@@ -47,9 +47,13 @@ class SampledRun {
     FrameCost frame_cost();
 
   private:
-    RenderSettings settings(const FramePlan& frame) const;
-    double seconds_of(Pipeline& pipeline, const FramePlan& frame, RenderedFrame& rendered) const;
-    std::optional<std::int64_t> bytes_of(const FramePlan& frame, const RenderedFrame& rendered) const;
+    FrameScene scene_of(const FramePlan& frame) const {
+        return pipeline_.frame_scene(static_cast<double>(frame.frame), frame.eye);
+    }
+    RenderSettings settings(const FrameScene& frame) const;
+    double seconds_of(Pipeline& pipeline, const FrameScene& frame, RenderedFrame& rendered) const;
+    std::optional<std::int64_t> bytes_of(const std::filesystem::path& name, const FrameScene& frame,
+                                         const RenderedFrame& rendered) const;
 
     const BatchPlan& plan_;
     std::vector<const FramePlan*> frames_;  // that are looked at

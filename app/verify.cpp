@@ -24,7 +24,6 @@
 #include "output/write.h"
 #include "pipeline.h"
 #include "report.h"
-#include "scene/animate.h"
 
 namespace astrosplat {
 namespace {
@@ -78,11 +77,10 @@ class Verification {
         if (!fits(header.region, header.whole_width, header.whole_height))
             return damaged("its region lies outside its frame");
         VerifyJob& job = job_for(header, file);
-        job.plan.hasher.show_eye(header.eye);
-        const std::string text = job.plan.hasher.canonical_text(*header.frame);
-        if (job.plan.hasher.frame_hash(*header.frame) != header.frame_hash)
-            return {Verdict::Kind::other_scene, "", keys(header, text), {}};
-        return compare(file, header, index);
+        const FrameScene now = frame_scene(job.plan.scene, static_cast<double>(*header.frame), header.eye);
+        if (job.plan.hasher.frame_hash(now) != header.frame_hash)
+            return {Verdict::Kind::other_scene, "", keys(header, job.plan.hasher.canonical_text(now)), {}};
+        return compare(file, header, now, index);
     }
 
   private:
@@ -104,9 +102,10 @@ class Verification {
         return *job_;
     }
 
-    Verdict compare(const fs::path& file, const FrameHeader& header, std::int64_t index) {
+    Verdict compare(const fs::path& file, const FrameHeader& header, const FrameScene& now,
+                    std::int64_t index) {
         const fs::path copy = folder_.path() / ("frame" + file.extension().string());
-        const std::string pixels = render(copy, header, index);
+        const std::string pixels = render(copy, header, now, index);
         Verdict verdict;
         verdict.pixels = compare_stored(file, copy);
         const bool same_hash = pixels == header.pixel_hash;
@@ -121,8 +120,8 @@ class Verification {
     }
 
     /// Into `copy`; returns the pixel hash.
-    std::string render(const fs::path& copy, const FrameHeader& header, std::int64_t index) {
-        const auto time = static_cast<double>(*header.frame);
+    std::string render(const fs::path& copy, const FrameHeader& header, const FrameScene& now,
+                       std::int64_t index) {
         BatchPlan& plan = job_->plan;
         if (!job_->pipeline) {
             const JobEstimate job = estimate(plan);
@@ -133,16 +132,15 @@ class Verification {
         }
         Pipeline& pipeline = *job_->pipeline;
         const Progress progress = report_.begin_frame(*header.frame, index, std::ssize(options_.files));
-        pipeline.show_eye(header.eye);
-        Scene now = scene_at(plan.scene, time);
-        take_compression(now.output, header.dwaa);
-        RenderSettings settings = pipeline.settings(time);
+        OutputParams output = now.scene.output;
+        take_compression(output, header.dwaa);
+        RenderSettings settings = render_settings(output);
         settings.region = plan.region;
         settings.memory_limit_bytes = job_->renderer_bytes;
-        const RenderedFrame rendered = pipeline.frame(time, settings, progress);
+        const RenderedFrame rendered = pipeline.frame(now, settings, progress);
         progress.check();
         write_frame(
-            {copy, now.output, settings.width, settings.height, settings.region, pipeline.layer_names(time)},
+            {copy, output, settings.width, settings.height, settings.region, pipeline.layer_names(now)},
             rendered, {});
         return pixel_hash(rendered.beauty);
     }

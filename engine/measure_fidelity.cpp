@@ -76,11 +76,12 @@ class FidelityViews {
         scene_.camera =
             judging_camera(frame, view, static_cast<double>(width_px) / static_cast<double>(height_px));
         pipeline_.set_scene(scene_, sets_);
-        RenderSettings settings = pipeline_.settings(0.0);
+        const FrameScene now = pipeline_.frame_scene(0.0);
+        RenderSettings settings = render_settings(now.scene.output);
         settings.width = width_px;
         settings.height = height_px;
         settings.aov_depth = settings.aov_coverage = settings.aov_count = settings.aov_layers = false;
-        return pipeline_.frame(0.0, settings, progress).beauty;
+        return pipeline_.frame(now, settings, progress).beauty;
     }
 
   private:

@@ -10,9 +10,9 @@
 #include "core/buffer.h"
 #include "core/clock.h"
 #include "core/text.h"
+#include "frame/mean_frame.h"
 #include "look/apply.h"
 #include "look/view_dependent.h"
-#include "mean_frame.h"
 #include "scene/animate.h"
 #include "scene/layer_setup.h"
 #include "scene/layer_source.h"
@@ -22,6 +22,8 @@
 
 namespace astrosplat {
 namespace {
+
+using SetList = std::vector<std::shared_ptr<const SplatSet>>;  // one a layer; null: left out
 
 constexpr double farthest_in_world = 1000.0 * largest_number;  // scene units, of splats in place
 
@@ -92,13 +94,15 @@ struct Pipeline::State {
     std::optional<Environment> environment;
     RenderCache render_cache;
 
+    bool has_splats(std::size_t index) const { return layers[index].set || layers[index].streamed; }
     bool drawn(const Scene& now, std::size_t index) const {
-        return now.layers[index].visible && (layers[index].set || layers[index].streamed);
+        return now.layers[index].visible && has_splats(index);
     }
+    std::vector<std::size_t> drawn_layers(const FrameScene& frame) const;
     LoadedSet load_set(const LayerParams& params, const SetCache& cache, const Progress& progress) const;
     void open_layer(std::size_t index);
     void load_layer(std::size_t index, const SetCache& cache, const Progress& progress);
-    LayerState take_layer(const std::string& name, const std::shared_ptr<const SplatSet>& set);
+    std::vector<std::size_t> find_layers(const Scene& wanted, const SetList& sets) const;
     void shade(std::size_t index, const LayerParams& params, const Camera& seen, const Progress& progress);
     void shade_visible(const Scene& now, const Camera& seen, const Progress& progress);
     std::vector<RenderLayer> visible_layers(const Scene& now) const;
@@ -160,20 +164,19 @@ void Pipeline::State::load_layer(std::size_t index, const SetCache& cache, const
     release_spare_pages();  // nothing of their sizes comes again, and frames are long
 }
 
-/// The state of a layer that had this set, under the same name if there are several; else a new one.
-LayerState Pipeline::State::take_layer(const std::string& name, const std::shared_ptr<const SplatSet>& set) {
-    LayerState taken;
-    if (!set) return taken;
-    std::size_t found = layers.size();
-    for (std::size_t i = 0; i < layers.size(); ++i) {
-        if (layers[i].set != set) continue;
-        if (found == layers.size() || scene.layers[i].name == name) found = i;
+/// For every set the index of a layer that has it, of the same name if there are several, each once; else
+/// their number.
+std::vector<std::size_t> Pipeline::State::find_layers(const Scene& wanted, const SetList& sets) const {
+    std::vector<std::size_t> found(sets.size(), layers.size());
+    std::vector<char> used(layers.size(), 0);
+    for (std::size_t i = 0; i < sets.size(); ++i) {
+        for (std::size_t l = 0; sets[i] && l < layers.size(); ++l) {
+            if (layers[l].set != sets[i] || used[l]) continue;
+            if (found[i] == layers.size() || scene.layers[l].name == wanted.layers[i].name) found[i] = l;
+        }
+        if (found[i] < layers.size()) used[found[i]] = 1;
     }
-    if (found < layers.size()) return std::exchange(layers[found], {});
-    taken.set = set;
-    taken.box = bounds(*set);
-    check_extent(taken.box, name);
-    return taken;
+    return found;
 }
 
 /// Applies the look where anything that it depends on has changed since the last frame.
@@ -285,44 +288,65 @@ void Pipeline::set_scene(const Scene& scene, std::vector<std::shared_ptr<const S
                          const Environment* loaded, const Progress& progress) {
     assert(sets.size() == scene.layers.size());
     State& state = *state_;
-    if (!same_pictures(scene.environment, state.scene.environment)) {
-        std::optional<Environment> environment;
-        if (has_environment(scene.environment))
-            environment = loaded ? *loaded : load_environment(scene.environment, {{}, progress.cancelled});
-        state.environment = std::move(environment);
-    }
-    std::vector<LayerState> layers;
-    std::vector<LayerStatistics> statistics;
+    // All that may throw comes first: what is moved out of the old scene below is lost to it.
+    std::optional<Environment> environment;
+    const bool has_other_pictures = !same_pictures(scene.environment, state.scene.environment);
+    if (has_other_pictures && has_environment(scene.environment))
+        environment = loaded ? *loaded : load_environment(scene.environment, {{}, progress.cancelled});
+    const std::vector<std::size_t> old = state.find_layers(scene, sets);
+    std::vector<LayerState> layers(sets.size());
+    std::vector<LayerStatistics> statistics(sets.size());
     for (std::size_t i = 0; i < sets.size(); ++i) {
-        layers.push_back(state.take_layer(scene.layers[i].name, sets[i]));
-        LayerStatistics counts;
-        counts.name = scene.layers[i].name;
-        if (sets[i]) count_set(*sets[i], sets[i]->size(), counts);
-        counts.drawn = layers.back().shaded.size();
-        statistics.push_back(counts);
+        statistics[i].name = scene.layers[i].name;
+        if (!sets[i]) continue;
+        count_set(*sets[i], sets[i]->size(), statistics[i]);
+        if (old[i] < state.layers.size()) continue;
+        layers[i].set = sets[i];
+        layers[i].box = bounds(*sets[i]);
+        check_extent(layers[i].box, scene.layers[i].name);
     }
-    state.scene = scene;
+    Scene taken = scene;
+    for (std::size_t i = 0; i < sets.size(); ++i) {
+        if (old[i] < state.layers.size()) layers[i] = std::move(state.layers[old[i]]);
+        statistics[i].drawn = layers[i].shaded.size();
+    }
+    if (has_other_pictures) state.environment = std::move(environment);
+    state.scene = std::move(taken);
     state.layers = std::move(layers);
     state.statistics = std::move(statistics);
 }
 
-void Pipeline::show_eye(Eye eye) { state_->scene.camera.eye = eye; }
+FrameScene Pipeline::frame_scene(double number, std::optional<Eye> eye) const {
+    return astrosplat::frame_scene(state_->scene, number, eye);
+}
 
-RenderedFrame Pipeline::frame(double frame, const RenderSettings& settings, const Progress& progress,
-                              const TileDone& tile_done) {
-    const Scene now = scene_at(state_->scene, frame);
-    if (!is_blurred(now.camera)) return state_->rendering(now, {}, settings, progress, tile_done);
-    const auto samples = static_cast<int>(now.output.samples);
+/// Those of a frame that are visible at some moment, in file order.
+std::vector<std::size_t> Pipeline::State::drawn_layers(const FrameScene& frame) const {
+    std::vector<std::size_t> drawn = shown_layers(frame);
+    std::erase_if(drawn, [&](std::size_t i) { return !has_splats(i); });
+    return drawn;
+}
+
+RenderedFrame Pipeline::frame(const FrameScene& frame, const RenderSettings& settings,
+                              const Progress& progress, const TileDone& tile_done) {
+    if (!frame.is_blurred()) return state_->rendering(frame.scene, {}, settings, progress, tile_done);
+    const std::vector<std::size_t> drawn = state_->drawn_layers(frame);
+    const auto samples = static_cast<int>(frame.samples.size());
+    RenderSettings of_sample = settings;
+    of_sample.opacity = settings.aov_depth;
     RenderedFrame sum;
     for (int i = 0; i < samples; ++i) {
         Progress part = progress;
         if (progress.report)
             part.report = [&](double fraction) { progress.report((i + fraction) / samples); };
-        const CameraSample sample = camera_sample(now.camera, i, samples);
-        const Scene then = sample.frames == 0.0 ? now : scene_at(state_->scene, frame + sample.frames);
-        add_rendering(sum, state_->rendering(then, sample.lens, settings, part, {}));
+        const Scene& then = frame.at_sample(static_cast<std::size_t>(i));
+        std::vector<std::size_t> shown;  // at this moment, as indices of `drawn`
+        for (std::size_t l = 0; l < drawn.size(); ++l)
+            if (state_->drawn(then, drawn[l])) shown.push_back(l);
+        const glm::dvec2& lens = frame.samples[static_cast<std::size_t>(i)].lens;
+        add_rendering(sum, state_->rendering(then, lens, of_sample, part, {}), shown);
     }
-    divide_sum(sum, samples);
+    divide_sum(sum, samples, settings.aov_layers ? drawn.size() : 0);
     const Region& region = settings.region;
     const Region whole{0, 0, settings.width, settings.height};
     if (tile_done) tile_done(region.width > 0 ? region : whole, sum);
@@ -339,9 +363,9 @@ void Pipeline::State::shade_visible(const Scene& now, const Camera& seen, const 
     }
 }
 
-std::vector<RenderLayer> Pipeline::shaded_layers(double frame, const Progress& progress) {
-    const Scene now = scene_at(state_->scene, frame);
-    state_->shade_visible(now, state_->camera(now, settings(frame)), progress);
+std::vector<RenderLayer> Pipeline::shaded_layers(const FrameScene& frame, const Progress& progress) {
+    const Scene& now = frame.scene;
+    state_->shade_visible(now, state_->camera(now, render_settings(now.output)), progress);
     return state_->visible_layers(now);
 }
 
@@ -355,8 +379,7 @@ RenderedFrame Pipeline::State::rendering(const Scene& now, const glm::dvec2& len
                   tile_done);
 }
 
-RenderSettings Pipeline::settings(double frame) const {
-    const OutputParams output = scene_at(state_->scene, frame).output;
+RenderSettings render_settings(const OutputParams& output) {
     RenderSettings settings;
     settings.width = output.width;
     settings.height = output.height;
@@ -369,18 +392,15 @@ RenderSettings Pipeline::settings(double frame) const {
     return settings;
 }
 
-Camera Pipeline::camera(double frame, const RenderSettings& settings) const {
-    return state_->camera(scene_at(state_->scene, frame), settings);
+Camera Pipeline::camera(const FrameScene& frame, const RenderSettings& settings) const {
+    return state_->camera(frame.scene, settings);
 }
 
 const std::vector<LayerStatistics>& Pipeline::statistics() const { return state_->statistics; }
 
-std::vector<std::string> Pipeline::layer_names(double frame) const {
+std::vector<std::string> Pipeline::layer_names(const FrameScene& frame) const {
     std::vector<std::string> names;
-    const Scene now = scene_at(state_->scene, frame);
-    for (std::size_t i = 0; i < now.layers.size(); ++i) {
-        if (state_->drawn(now, i)) names.push_back(now.layers[i].name);
-    }
+    for (const std::size_t i : state_->drawn_layers(frame)) names.push_back(frame.scene.layers[i].name);
     return names;
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/progress.h"
+#include "frame/frame_scene.h"
 #include "render/render.h"
 #include "scene/scene.h"
 #include "sets/set_cache.h"
@@ -22,6 +23,9 @@ struct LayerStatistics {
     bool cached = false;  // the set came from the cache; generate_seconds is how long reading it took
     bool geometry_cached = false;  // its positions did, also where pictures had to be read again
 };
+
+/// Render settings as [output] has them.
+RenderSettings render_settings(const OutputParams& output);
 
 /// What stays between frames: the sets, the maps, the environment pictures, the last shaded splats
 /// of each layer.
@@ -45,23 +49,27 @@ class Pipeline {
     void set_scene(const Scene& scene, std::vector<std::shared_ptr<const SplatSet>> sets,
                    const Environment* loaded = nullptr, const Progress& progress = {});
 
-    /// The eye that frames are seen with from now on, whatever the scene says.
-    void show_eye(Eye eye);
+    /// A frame of the scene, which all that follows can be asked of.
+    FrameScene frame_scene(double number, std::optional<Eye> eye = {}) const;
 
-    /// Renders one frame of the scene. `tile_done` as in render().
-    RenderedFrame frame(double frame, const RenderSettings& settings, const Progress& progress = {},
-                        const TileDone& tile_done = {});
+    /// Renders one frame of the scene. `tile_done` as in render(), but once and for the whole frame where
+    /// that is blurred.
+    RenderedFrame frame(const FrameScene& frame, const RenderSettings& settings,
+                        const Progress& progress = {}, const TileDone& tile_done = {});
+    RenderedFrame frame(double number, const RenderSettings& settings, const Progress& progress = {},
+                        const TileDone& tile_done = {}) {
+        return frame(frame_scene(number), settings, progress, tile_done);
+    }
 
-    /// The layers of a frame after their looks, as the renderer gets them, in file order; their splats stay
-    /// until the next call of any method that is not const. None may be streamed.
-    std::vector<RenderLayer> shaded_layers(double frame, const Progress& progress = {});
+    /// The layers of a frame after their looks, at its own time, as the renderer gets them, in file order;
+    /// their splats stay until the next call of any method that is not const. None may be streamed.
+    std::vector<RenderLayer> shaded_layers(const FrameScene& frame, const Progress& progress = {});
 
-    /// Render settings as the scene's [output] has them.
-    RenderSettings settings(double frame) const;
-    Camera camera(double frame, const RenderSettings& settings) const;
+    /// The camera at the frame's own time, between lens and shutter.
+    Camera camera(const FrameScene& frame, const RenderSettings& settings) const;
     const std::vector<LayerStatistics>& statistics() const;
-    /// Names of the layers drawn at a frame, in file order: those of RenderedFrame::layers.
-    std::vector<std::string> layer_names(double frame) const;
+    /// Names of the layers drawn at some moment of a frame, in file order: those of RenderedFrame::layers.
+    std::vector<std::string> layer_names(const FrameScene& frame) const;
     /// Credits of all pictures and splat files in use, each once, joined with "; ".
     std::string input_credit() const;
 

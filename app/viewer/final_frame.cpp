@@ -54,7 +54,8 @@ void render_run(Pipeline& pipeline, Run& run) {
     Progress progress;
     progress.cancelled = &run.cancelled;
     pipeline.set_scene(request.scene, request.sets, request.environment.get(), progress);
-    RenderSettings settings = pipeline.settings(request.frame);
+    const FrameScene now = pipeline.frame_scene(request.frame);
+    RenderSettings settings = render_settings(now.scene.output);
     settings.width = request.width;
     settings.height = request.height;
     settings.region = request.region;
@@ -69,8 +70,7 @@ void render_run(Pipeline& pipeline, Run& run) {
         const std::lock_guard lock(run.mutex);
         run.fresh.push_back(here);
     };
-    auto frame =
-        std::make_shared<RenderedFrame>(pipeline.frame(request.frame, settings, progress, tile_done));
+    auto frame = std::make_shared<RenderedFrame>(pipeline.frame(now, settings, progress, tile_done));
     run.end({FinalFrame::State::done, {}, seconds_since(start), std::move(frame)});
     run.progress = 1.0f;
 }

@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <cstdint>
-#include <glm/geometric.hpp>
 
 #include "core/real.h"
 
@@ -34,8 +33,7 @@ Camera through_lens(const Camera& camera, const CameraParams& params, const glm:
     if (!(params.f_number > 0.0) || camera.projection != Projection::perspective) return camera;
     const double focal_mm = camera.focal_px / width_px * params.film_width;
     const double radius = 0.5 * focal_mm / params.f_number / params.unit_mm;
-    const double to_target = -glm::dot(camera.world_from_camera[2], params.target - camera.eye);
-    const double wanted = params.focus_distance > 0.0 ? params.focus_distance : to_target;
+    const double wanted = params.focus_distance > 0.0 ? params.focus_distance : camera.target_distance;
     const double focus = std::fmax(wanted, camera.near);
     Camera seen = camera;
     seen.eye += radius * (lens.x * camera.world_from_camera[0] + lens.y * camera.world_from_camera[1]);

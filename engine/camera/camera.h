@@ -85,6 +85,9 @@ struct Camera {
     double edge = 0.0;      // as in Lens
     double parallax = 0.0;  // as in Lens
     double aspect = 1.0;    // width / height
+    /// Scene units to the point that it looks at: along the view axis, of a camera with a rotation in a
+    /// straight line. What convergence and focus are measured to where they are 0.
+    double target_distance = 0.0;
 };
 
 /// Resolves the parameters for a frame of width x height px. `scene_box` (may be empty) is what a camera

@@ -18,11 +18,10 @@ glm::dmat3 turned_left(const glm::dmat3& world_from_camera, double angle) {
 
 }  // namespace
 
-void move_to_eye(Camera& camera, const CameraParams& params, const glm::dvec3& target) {
+void move_to_eye(Camera& camera, const CameraParams& params) {
     if (params.eye == Eye::centre || !has_two_eyes(params.projection)) return;
-    const double to_target = params.rotation ? glm::length(target - camera.eye)
-                                             : -glm::dot(camera.world_from_camera[2], target - camera.eye);
-    const double meeting = std::fmax(params.convergence > 0.0 ? params.convergence : to_target, camera.near);
+    const double wanted = params.convergence > 0.0 ? params.convergence : camera.target_distance;
+    const double meeting = std::fmax(wanted, camera.near);
     const double to_right = 0.5 * params.eye_separation * (params.eye == Eye::right ? 1.0 : -1.0);
     if (params.projection == Projection::perspective) {
         camera.eye += to_right * camera.world_from_camera[0];

@@ -52,7 +52,8 @@ struct RenderSettings {
     float pixel_filter = 0.5f;  // px, standard deviation
     float exposure = 0.0f;      // stops; only tightens the stop rule
     bool aov_depth = false, aov_coverage = false, aov_count = false, aov_layers = false;
-    int tile_px = 0;  // a multiple of 8 from 16 to 128; 0: the quicker of 32 and 64. Changes no bit
+    bool opacity = false;  // with aov_depth: what depth is weighted by, for means of several renderings
+    int tile_px = 0;       // a multiple of 8 from 16 to 128; 0: the quicker of 32 and 64. Changes no bit
     /// For all that rendering takes beside the splats in memory and the frame's images; 0: none. What takes
     /// more is rendered in bands and slabs of depth, same bits. `what_is_free`: what there is of memory when
     /// the splats are shaded.
@@ -75,6 +76,7 @@ struct RenderStatistics {
 struct RenderedFrame {
     Image beauty;    // RGBA, linear, premultiplied; region-sized
     Image depth;     // 1 channel: opacity-weighted mean distance along the view axis, 0 where alpha is 0
+    Image opacity;   // 1 channel, in no file: the splats' own, without an environment behind them
     Image coverage;  // 1 channel: 1 - product of (1 - weight), whatever the opacity
     Image count;     // 1 channel: splats that reached the pixel
     std::vector<Image> layers;  // RGBA each, in the order given: the layer's light as it arrives

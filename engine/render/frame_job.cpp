@@ -103,6 +103,7 @@ void prepare(FrameJob& job, RenderCache::State& cache) {
             make_projection(layers[l], static_cast<std::uint16_t>(l), camera, settings);
         projection.reach = footprints.reach;
         projection.variance = footprints.variance;
+        projection.cancelled = job.progress.cancelled;
         if (projection.lod_limit_px > 0.0f)
             projection.lod = &cache.lod(render.falloff, finest_level(render.lod.max_children), job.progress);
         if (layers[l].stars) projection.star_dots = star_dots(*layers[l].stars, footprints);

@@ -6,6 +6,7 @@
 #include <glm/common.hpp>
 
 #include "camera/projection.h"
+#include "core/progress.h"
 #include "render/lod.h"
 #include "render/shape.h"
 #include "render/shared_render.h"
@@ -169,7 +170,9 @@ void project_level(const LayerProjection& layer, const CameraSplat& parent, std:
     const ChildNoise noise = make_child_noise(structure, radius, level, layer.seed);
     CameraSplat child{parent.position, parent.radius * child_radius_scale(level), shade.alpha, shade.color};
     const std::int64_t children = children_of_level(level);
+    constexpr std::int64_t uninterrupted = 4096;
     for (std::int64_t k = 0; k < children; ++k) {
+        if (k % uninterrupted == 0) Progress{{}, layer.cancelled}.check();
         glm::vec3 p = splats.position[index];
         if (level > 0) {
             p += radius * layer.lod->child_offset(level, k, layer.seed, splats.id[index]);

@@ -2,6 +2,7 @@
 // hybrid angle and level of detail. The mathematics of the projections is shaders/shared/projection.glsl.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <glm/vec2.hpp>
 #include <span>
@@ -51,9 +52,10 @@ struct LayerProjection {
     LayerRender render;
     std::uint32_t seed = 1;
     std::uint16_t layer = 0;
-    const LodTable* lod = nullptr;   // set when lod_limit_px > 0
-    std::vector<StarDot> star_dots;  // of a layer of stars; else empty
-    StarPixels star_pixels;          // theirs, as in RenderLayer
+    const LodTable* lod = nullptr;                 // set when lod_limit_px > 0
+    const std::atomic<bool>* cancelled = nullptr;  // as in Progress: one splat may have millions of children
+    std::vector<StarDot> star_dots;                // of a layer of stars; else empty
+    StarPixels star_pixels;                        // theirs, as in RenderLayer
 };
 
 LayerProjection make_projection(const RenderLayer& layer, std::uint16_t number, const Camera& camera,
@@ -73,7 +75,8 @@ float support_px(const LayerProjection& layer, const ScreenSplat& splat, const B
 
 /// Appends the screen splats of shaded splats [begin, end) whose support touches `rect`, and the shapes of
 /// those that are not round. A frame that goes all the way round shows splats at up to three places, a period
-/// apart; of these the fold takes the one that is nearest to its cell.
+/// apart; of these the fold takes the one that is nearest to its cell. Throws Cancelled within some thousand
+/// children.
 void project(const LayerProjection& layer, std::int64_t begin, std::int64_t end, const ScreenRect& rect,
              Buffer<ScreenSplat>& out, Buffer<Shape>& shapes);
 

@@ -227,7 +227,8 @@ std::int64_t scattered_bytes(const FrameJob& job, RenderCache::State& cache) {
 
 std::int64_t image_bytes(std::span<const RenderLayer> layers, const RenderSettings& settings,
                          std::int64_t width, std::int64_t height) {
-    const std::int64_t channels = 4 + settings.aov_depth + settings.aov_coverage + settings.aov_count +
+    const std::int64_t channels = 4 + settings.aov_depth + settings.opacity + settings.aov_coverage +
+                                  settings.aov_count +
                                   (settings.aov_layers ? 4 * static_cast<std::int64_t>(layers.size()) : 0);
     return width * height * channels * static_cast<std::int64_t>(sizeof(float));
 }
@@ -253,6 +254,7 @@ RenderedFrame make_frame(std::span<const RenderLayer> layers, const RenderSettin
     RenderedFrame frame;
     frame.beauty = make_image(region.width, region.height, 4);
     if (settings.aov_depth) frame.depth = make_image(region.width, region.height, 1);
+    if (settings.opacity) frame.opacity = make_image(region.width, region.height, 1);
     if (settings.aov_coverage) frame.coverage = make_image(region.width, region.height, 1);
     if (settings.aov_count) frame.count = make_image(region.width, region.height, 1);
     if (settings.aov_layers)

@@ -171,6 +171,7 @@ void TileResolver::write(const TilePlanes& tile, std::int64_t x0, std::int64_t y
             if (settings_.aov_depth)
                 *frame.depth.at(px, py) =
                     pixel.depth_weight > 0.0f ? pixel.depth_sum / pixel.depth_weight : 0.0f;
+            if (settings_.opacity) *frame.opacity.at(px, py) = std::clamp(pixel.depth_weight, 0.0f, 1.0f);
             if (settings_.aov_coverage) *frame.coverage.at(px, py) = 1.0f - pixel.uncovered;
             if (settings_.aov_count) *frame.count.at(px, py) = pixel.count;
             for (std::size_t l = 0; l < frame.layers.size(); ++l)

@@ -150,7 +150,7 @@ std::vector<Track> camera_file_tracks(Scene& scene, const fs::path& file) {
 }
 
 void attach_camera_file(Scene& scene, const std::string& place) {
-    scene.imported = {};
+    scene.imported.camera.reset();
     const fs::path& file = scene.camera.file;
     if (file.empty()) return;
     if (!is_camera_file(file) && !is_table(file))
@@ -164,6 +164,9 @@ void attach_camera_file(Scene& scene, const std::string& place) {
     }
     auto imported = std::make_shared<ImportedCamera>();
     imported->tracks = camera_file_tracks(scene, file);
+    std::erase_if(imported->tracks, [&](const Track& track) {
+        return std::ranges::find(scene.imported.overruled, track.key) != scene.imported.overruled.end();
+    });
     imported->source = source_of(scene);
     scene.imported.camera = std::move(imported);
 }

@@ -168,7 +168,9 @@ class Loader {
         const toml::node& node = *value.get("value");
         const ParameterKey& key = assignment.key;
         if (key.is_below("animation")) {
-            add_track(read_track(key.below("animation"), node, scene_, "--set"));
+            Track track = read_track(key.below("animation"), node, scene_, "--set");
+            overrule(track.key);
+            scene_.animation.push_back(std::move(track));
             return;
         }
         const std::string layer = key.layer();
@@ -186,7 +188,9 @@ class Loader {
         }
         apply_entries(
             entries, origin, [this] { return describe(scene_); }, places_);
-        for (const Entry& entry : entries) drop_track(entry.key);
+        for (const Entry& entry : entries)
+            if (overrule(full_key(describe(scene_), entry.key)))
+                log_info(fmt::format("--set {} replaces its animation", entry.key));
         if (key == "output.preset") read_output_preset();
     }
 
@@ -209,22 +213,22 @@ class Loader {
             if (track.key.layer() == from) track.key = track.key.moved(layer_key(from), layer_key(to));
     }
 
-    void add_track(Track track) {
-        const auto old = std::ranges::find(scene_.animation, track.key, &Track::key);
-        if (old == scene_.animation.end())
-            scene_.animation.push_back(std::move(track));
-        else
-            *old = std::move(track);
+    /// --set wins over what moves a parameter, [animation] here and camera.file when that is read, and over a
+    /// parameter that replaces it. Whether there was animation.
+    bool overrule(const ParameterKey& key) {
+        if (key == "camera.fov") {
+            scene_.camera.focal_length = 0.0;
+            drop_tracks("camera.focal_length");
+        } else if (key == "camera.target") {
+            scene_.camera.rotation.reset();
+            drop_tracks("camera.rotation");
+        }
+        return drop_tracks(key);
     }
 
-    /// --set wins over the scene: a parameter set there is no longer animated.
-    void drop_track(const ParameterKey& key) {
-        const ParameterKey full = full_key(describe(scene_), key);
-        auto& tracks = scene_.animation;
-        const auto found = std::ranges::find(tracks, full, &Track::key);
-        if (found == tracks.end()) return;
-        log_info(fmt::format("--set {} replaces its animation", key));
-        tracks.erase(found);
+    bool drop_tracks(const ParameterKey& key) {
+        scene_.imported.overruled.push_back(key);
+        return std::erase_if(scene_.animation, [&](const Track& track) { return track.key == key; }) > 0;
     }
 
     std::string file_;

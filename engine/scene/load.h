@@ -1,4 +1,5 @@
-// Scene files (TOML) to Scene values. Precedence: defaults < preset < scene < --set. Every error is one line
+// Scene files (TOML) to Scene values. Precedence: defaults < preset < scene < animation <
+// camera.file < --set < window. Every error is one line
 // with file, line and the nearest known key; nothing half-loaded is ever returned.
 #pragma once
 

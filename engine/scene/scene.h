@@ -131,6 +131,7 @@ struct ImportedCamera {
 /// Shared by the copies of a scene: some thousand frames.
 struct SharedCamera {
     std::shared_ptr<const ImportedCamera> camera;  // null: no file
+    std::vector<ParameterKey> overruled;           // by --set: `camera` has no tracks of these
     bool operator==(const SharedCamera& other) const {
         return camera == other.camera || (camera && other.camera && *camera == *other.camera);
     }

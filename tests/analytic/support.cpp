@@ -10,6 +10,7 @@
 #include "frame/output_pattern.h"
 #include "output/write.h"
 #include "scene/load.h"
+#include "support/frames.h"
 
 namespace astrosplat::analytic {
 namespace {
@@ -68,9 +69,7 @@ Scene scene_of(const TempFolder& folder, const std::string& toml) {
     return parse_scene(toml, folder / "scene.toml");
 }
 
-RenderedFrame render_frame(Pipeline& pipeline, double frame) {
-    return pipeline.frame(frame, pipeline.settings(frame));
-}
+RenderedFrame render_frame(Pipeline& pipeline, double frame) { return frame_of(pipeline, frame); }
 
 RenderedFrame render_text(const TempFolder& folder, const std::string& toml, double frame) {
     Pipeline pipeline(scene_of(folder, toml));
@@ -83,7 +82,9 @@ std::filesystem::path write_text(const TempFolder& folder, const std::string& to
     const RenderedFrame frame = render_frame(pipeline);
     const std::filesystem::path file = OutputPattern{folder, scene.output.path}.resolve(1);
     const OutputParams& output = scene.output;
-    write_frame({file, output, output.width, output.height, {}, pipeline.layer_names(1.0)}, frame, {});
+    write_frame(
+        {file, output, output.width, output.height, {}, pipeline.layer_names(pipeline.frame_scene(1.0))},
+        frame, {});
     return file;
 }
 

@@ -16,6 +16,7 @@
 #include "measure.h"
 #include "pipeline.h"
 #include "scene/load.h"
+#include "support/frames.h"
 #include "support/temp_folder.h"
 
 namespace astrosplat::bench {
@@ -78,7 +79,7 @@ double median(std::vector<double> values) {
 
 double frame_ms(Pipeline& pipeline, double frame) {
     const auto start = std::chrono::steady_clock::now();
-    const RenderedFrame picture = pipeline.frame(frame, pipeline.settings(frame));
+    const RenderedFrame picture = frame_of(pipeline, frame);
     benchmark::DoNotOptimize(picture.beauty.pixels.data());
     return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
 }

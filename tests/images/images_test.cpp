@@ -80,8 +80,9 @@ TEST_P(Images, AreThoseOfTheReferences) {
     const fs::path got_file = output / "got.exr",
                    reference_file = folder / "references" / (GetParam() + ".exr");
     const OutputParams& params = scene.output;
-    write_frame({got_file, params, params.width, params.height, {}, pipeline.layer_names(1.0)},
-                analytic::render_frame(pipeline), {});
+    write_frame(
+        {got_file, params, params.width, params.height, {}, pipeline.layer_names(pipeline.frame_scene(1.0))},
+        analytic::render_frame(pipeline), {});
     ASSERT_TRUE(fs::exists(reference_file))
         << "no reference. Look at " << got_file << ", and when it is right copy it to " << reference_file;
 

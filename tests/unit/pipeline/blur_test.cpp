@@ -11,6 +11,7 @@
 #include "camera/aperture.h"
 #include "camera/projection.h"
 #include "pipeline.h"
+#include "support/frames.h"
 #include "support/small_scene.h"
 
 namespace astrosplat {
@@ -46,7 +47,7 @@ struct MovingScene : SmallScene {
 
 Image picture_of(const Scene& scene, double frame) {
     Pipeline pipeline(scene);
-    return pipeline.frame(frame, pipeline.settings(frame)).beauty;
+    return frame_of(pipeline, frame).beauty;
 }
 
 TEST(Blur, SamplesFillShutterAndAperture) {
@@ -102,6 +103,15 @@ TEST(Blur, TheLensIsThin) {
     params.focus_distance = 0.0;  // at the target
     const Camera at_target = through_lens(camera, params, place, 720);
     EXPECT_LT(glm::length(at(at_target, {0.3, 0.4, 0.0}) - at(camera, {0.3, 0.4, 0.0})), 1e-9);
+    // A camera without a position looks at the middle of what it frames, wherever `target` lies.
+    params.position.reset();
+    params.target = {50.0, 60.0, 70.0};
+    Bounds box;
+    box.add(glm::dvec3(9.0, 19.0, -31.0));
+    box.add(glm::dvec3(11.0, 21.0, -29.0));
+    const Camera automatic = make_camera(params, 720, 480, box);
+    const Camera focused = through_lens(automatic, params, place, 720);
+    EXPECT_LT(glm::length(at(focused, box.center()) - at(automatic, box.center())), 1e-9);
 }
 
 TEST(Blur, OffLeavesNoTrace) {
@@ -124,7 +134,7 @@ TEST(Blur, AnOpenShutterGivesTheMeanOverItsTime) {
         Pipeline pipeline(small.scene);
         for (int i = 0; i < steps; ++i) {
             const double time = 6.0 + 0.5 * ((i + 0.5) / steps - 0.5);
-            const Image one = pipeline.frame(time, pipeline.settings(time)).beauty;
+            const Image one = frame_of(pipeline, time).beauty;
             if (reference.pixels.empty()) reference = make_image(one.width, one.height, 4);
             for (std::size_t k = 0; k < one.pixels.size(); ++k) reference.pixels[k] += one.pixels[k] / steps;
         }
@@ -152,26 +162,36 @@ TEST(Blur, DepthOfFieldKeepsLightAndConverges) {
     EXPECT_LT(psnr_db(sharp, reference), 39.0) << "or there is nothing to blur";
 }
 
-TEST(Blur, DepthsAreWeightedByAlpha) {
+/// Behind nothing and before a sky, under which beauty's alpha is 1 everywhere.
+class BlurBeforeASky : public testing::TestWithParam<bool> {};
+INSTANTIATE_TEST_SUITE_P(Off, BlurBeforeASky, testing::Values(false));
+INSTANTIATE_TEST_SUITE_P(On, BlurBeforeASky, testing::Values(true));
+
+TEST_P(BlurBeforeASky, DepthsAreWeightedByTheAlphaOfSplats) {
     MovingScene small;
     small.scene.camera.shutter = 360.0;
     small.scene.output.aovs = {"depth", "coverage", "count", "layers"};
     small.scene.output.samples = 4;
-    Pipeline blurred(small.scene);
-    const RenderedFrame frame = blurred.frame(6.0, blurred.settings(6.0));
+    Scene before_sky = small.scene;
+    if (GetParam()) before_sky.environment.image = small.folder / "picture.ppm";
+    Pipeline blurred(before_sky);
+    const RenderedFrame frame = frame_of(blurred, 6.0);
     const CameraParams params = small.scene.camera;
     small.scene.camera.shutter = 0.0;
     Pipeline plain(small.scene);
     Image sum = make_image(160, 100, 1), weight = sum, coverage = sum, light_of_gas = sum;
+    RenderStatistics mean;
     for (int i = 0; i < 4; ++i) {
         const double time = 6.0 + camera_sample(params, i, 4).frames;
-        const RenderedFrame one = plain.frame(time, plain.settings(time));
+        const RenderedFrame one = frame_of(plain, time);
         for (std::size_t k = 0; k < sum.pixels.size(); ++k) {
             sum.pixels[k] += one.depth.pixels[k] * one.beauty.pixels[4 * k + 3];
             weight.pixels[k] += one.beauty.pixels[4 * k + 3];
             coverage.pixels[k] += one.coverage.pixels[k] / 4.0f;
             light_of_gas.pixels[k] += one.layers[0].pixels[4 * k] / 4.0f;
         }
+        mean.splats_in += one.statistics.splats_in / 4;
+        mean.mean_overlap += one.statistics.mean_overlap / 4.0;
     }
     for (std::size_t k = 0; k < sum.pixels.size(); ++k) {
         const float depth = weight.pixels[k] > 0.0f ? sum.pixels[k] / weight.pixels[k] : 0.0f;
@@ -179,6 +199,43 @@ TEST(Blur, DepthsAreWeightedByAlpha) {
         ASSERT_NEAR(frame.coverage.pixels[k], coverage.pixels[k], 1e-5f);
         ASSERT_NEAR(frame.layers[0].pixels[4 * k], light_of_gas.pixels[k], 1e-5f);
     }
+    EXPECT_NEAR(double(frame.statistics.splats_in), double(mean.splats_in), 4.0);
+    if (!GetParam()) {  // a sky covers every pixel
+        EXPECT_NEAR(frame.statistics.mean_overlap, mean.mean_overlap, 1e-9);
+    }
+}
+
+/// Light and alpha of all layers.
+Image sum_of_layers(const RenderedFrame& frame) {
+    Image sum = make_image(frame.beauty.width, frame.beauty.height, 4);
+    for (const Image& layer : frame.layers)
+        for (std::size_t k = 0; k < sum.pixels.size(); ++k) sum.pixels[k] += layer.pixels[k];
+    return sum;
+}
+
+TEST(Blur, LayersThatComeAndGoWithinTheShutterKeepTheirPlaces) {
+    for (const char* const key : {"layer.gas.visible", "layer.dust.visible"})
+        for (const auto& [at_first, later] : {std::pair{1.0, 0.0}, std::pair{0.0, 1.0}}) {
+            SmallScene small;
+            for (LayerParams& layer : small.scene.layers) layer.render.blend = Blend::over;
+            small.scene.camera.shutter = 360.0;
+            small.scene.output.aovs = {"layers"};
+            small.scene.output.samples = 5;
+            Track track{ParameterKey(key), {}};
+            track.keyframes.emplace_back(1.0, std::vector<double>{at_first}, Interpolation::step);
+            track.keyframes.emplace_back(6.1, std::vector<double>{later}, Interpolation::step);
+            small.scene.animation = {track};
+            Pipeline pipeline(small.scene);
+            const RenderedFrame frame = frame_of(pipeline, 6.0);
+            EXPECT_EQ(pipeline.layer_names(pipeline.frame_scene(6.0)),
+                      (std::vector<std::string>{"gas", "dust"}));
+            ASSERT_EQ(frame.layers.size(), 2u);
+            const Image sum = sum_of_layers(frame);
+            for (std::size_t k = 0; k < sum.pixels.size();
+                 ++k)  // alpha ends at exactly 1, 2^-16 before it is
+                ASSERT_NEAR(sum.pixels[k], frame.beauty.pixels[k], k % 4 == 3 ? 0x1p-16f : 1e-5f)
+                    << key << at_first;
+        }
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include "pipeline.h"
 #include "scene/scene.h"
 #include "support/ewa_reference.h"
+#include "support/frames.h"
 #include "support/temp_folder.h"
 
 namespace astrosplat {
@@ -43,11 +44,11 @@ struct CaptureScene {
     LayerParams& layer() { return scene.layers[0]; }
     Image picture() const {
         Pipeline pipeline(scene);
-        return pipeline.frame(1.0, pipeline.settings(1.0)).beauty;
+        return frame_of(pipeline, 1.0).beauty;
     }
     Camera camera() const {
         Pipeline pipeline(scene);
-        return pipeline.camera(1.0, pipeline.settings(1.0));
+        return pipeline.camera(pipeline.frame_scene(1.0), settings_of(pipeline, 1.0));
     }
 };
 
@@ -148,7 +149,7 @@ TEST(Capture, LooksTheSameFromAMovedLayer) {
 TEST(Capture, ColoursFollowTheEye) {
     CaptureScene scene(capture(300, 2), 2);
     Pipeline pipeline(scene.scene);
-    const RenderSettings settings = pipeline.settings(1.0);
+    const RenderSettings settings = settings_of(pipeline, 1.0);
     const Image first = pipeline.frame(1.0, settings).beauty;
     Scene moved = scene.scene;
     moved.camera.position = glm::dvec3(-5.0, 1.0, 4.0);
@@ -166,7 +167,7 @@ TEST(Capture, DroppedSplatsTakeTheirShapesWithThem) {
     scene.layer().look.density = 0.4f;
     const Image thinned = scene.picture();
     Pipeline pipeline(scene.scene);
-    const std::vector<RenderLayer> layers = pipeline.shaded_layers(1.0);
+    const std::vector<RenderLayer> layers = pipeline.shaded_layers(pipeline.frame_scene(1.0));
     ASSERT_LT(layers[0].splats->size(), 300);
     ASSERT_GT(layers[0].splats->size(), 100);
     std::vector<Trained> kept;
@@ -189,7 +190,7 @@ TEST(Capture, HasTheSameBitsOnThreadsTilesAndInstructionSets) {
     }
     set_vector_target("best");
     Pipeline pipeline(scene.scene);
-    RenderSettings settings = pipeline.settings(1.0);
+    RenderSettings settings = settings_of(pipeline, 1.0);
     settings.tile_px = 16;
     EXPECT_EQ(pipeline.frame(1.0, settings).beauty.pixels, expected.pixels);
     settings.region = {40, 30, 64, 48};

@@ -10,6 +10,7 @@
 #include "pipeline.h"
 #include "scene/describe.h"
 #include "sets/load_source.h"
+#include "support/frames.h"
 #include "support/quiet.h"
 #include "support/small_scene.h"
 
@@ -39,7 +40,7 @@ class Extremes : public testing::Test {
         try {
             Pipeline pipeline;
             pipeline.set_scene(scene, sets);
-            const RenderedFrame frame = pipeline.frame(1.0, pipeline.settings(1.0));
+            const RenderedFrame frame = frame_of(pipeline, 1.0);
             EXPECT_TRUE(is_finite(frame.beauty)) << what;
             EXPECT_TRUE(is_finite(frame.depth)) << what;
             for (const Image& layer : frame.layers) EXPECT_TRUE(is_finite(layer)) << what;
@@ -104,11 +105,11 @@ TEST_F(Extremes, SplatsThatTheirTransformPutsTooFarOutNameTheirLayer) {
     sets[1] = std::make_shared<const SplatSet>(std::move(far_out));
     Pipeline pipeline;
     pipeline.set_scene(small.scene, sets);
-    EXPECT_NO_THROW(pipeline.frame(1.0, pipeline.settings(1.0)));
+    EXPECT_NO_THROW(frame_of(pipeline, 1.0));
     small.scene.layers[1].transform.scale = 1e9;
     pipeline.set_scene(small.scene, sets);
     try {
-        pipeline.frame(1.0, pipeline.settings(1.0));
+        frame_of(pipeline, 1.0);
         FAIL() << "expected an InputError";
     } catch (const InputError& error) {
         EXPECT_EQ(std::string(error.what()).find("layer.dust: expected splats within 1e+15 scene units of 0"),

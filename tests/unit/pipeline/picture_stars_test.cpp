@@ -13,6 +13,7 @@
 #include "scene/layer_source.h"
 #include "scene/load.h"
 #include "source/write_image.h"
+#include "support/frames.h"
 #include "support/painted_picture.h"
 #include "support/temp_folder.h"
 
@@ -72,7 +73,7 @@ class PictureStars : public testing::Test {
     /// What arrives of the layer of stars.
     static Image arrived(const Scene& scene, double times = 1.0) {
         Pipeline pipeline(scene);
-        RenderSettings settings = pipeline.settings(1.0);
+        RenderSettings settings = settings_of(pipeline, 1.0);
         settings.width = std::llround(times * double(settings.width));
         settings.height = std::llround(times * double(settings.height));
         settings.aov_layers = true;

@@ -8,6 +8,7 @@
 #include "output/write.h"
 #include "pipeline.h"
 #include "sets/load_source.h"
+#include "support/frames.h"
 #include "support/quiet.h"
 #include "support/small_scene.h"
 
@@ -23,9 +24,7 @@ class SetScene : public testing::Test {
             sets.push_back(std::make_shared<const SplatSet>(load_source(layer.source, layer.name)));
     }
 
-    static std::string picture(Pipeline& pipeline) {
-        return pixel_hash(pipeline.frame(1.0, pipeline.settings(1.0)).beauty);
-    }
+    static std::string picture(Pipeline& pipeline) { return pixel_hash(frame_of(pipeline, 1.0).beauty); }
     static std::string picture_of(const Scene& scene, const Sets& given) {
         Pipeline fresh;
         fresh.set_scene(scene, given);
@@ -100,10 +99,21 @@ TEST_F(SetScene, ShadesOnlyWhatChanged) {
     EXPECT_EQ(pipeline.statistics()[0].drawn, drawn);
 }
 
+TEST_F(SetScene, LayersMayShareASet) {
+    Pipeline pipeline;
+    Scene twice = small.scene;
+    twice.layers[1].source = twice.layers[0].source;
+    pipeline.set_scene(twice, {sets[0], sets[0]});
+    const std::string first = picture(pipeline);
+    EXPECT_EQ(first, picture_of(twice, {sets[0], sets[0]}));
+    pipeline.set_scene(twice, {sets[0], sets[0]});
+    EXPECT_EQ(picture(pipeline), first);
+}
+
 TEST_F(SetScene, ALayerWithoutASetIsLeftOut) {
     Pipeline pipeline;
     pipeline.set_scene(small.scene, {sets[0], nullptr});
-    EXPECT_EQ(pipeline.layer_names(1.0), std::vector<std::string>{"gas"});
+    EXPECT_EQ(pipeline.layer_names(pipeline.frame_scene(1.0)), std::vector<std::string>{"gas"});
     Scene alone = small.scene;
     alone.layers.pop_back();
     EXPECT_EQ(picture(pipeline), picture_of(alone, {sets[0]}));
@@ -116,6 +126,12 @@ TEST_F(SetScene, ARefusedSceneLeavesTheOldOne) {
     Scene bad = small.scene;
     bad.environment.image = small.folder / "missing.png";
     EXPECT_THROW(pipeline.set_scene(bad, sets), InputError);
+    EXPECT_EQ(picture(pipeline), before);
+    // The second set is refused when the first layer has already been found again.
+    auto far = std::make_shared<SplatSet>(*sets[1]);
+    far->position.front().x = 1e13f;
+    bad = small.scene;
+    EXPECT_THROW(pipeline.set_scene(bad, {sets[0], far}), InputError);
     EXPECT_EQ(picture(pipeline), before);
 }
 
@@ -141,7 +157,7 @@ TEST_F(SetScene, TilesCoverThePictureOnce) {
     Pipeline pipeline;
     pipeline.set_scene(small.scene, sets);
     std::atomic<std::int64_t> pixels{0};
-    pipeline.frame(1.0, pipeline.settings(1.0), {},
+    pipeline.frame(1.0, settings_of(pipeline, 1.0), {},
                    [&](const Region& tile, const RenderedFrame&) { pixels += tile.width * tile.height; });
     EXPECT_EQ(pixels, 160 * 100);
 }

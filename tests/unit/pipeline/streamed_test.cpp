@@ -11,6 +11,7 @@
 #include "sets/load_source.h"
 #include "splat_files/native.h"
 #include "streamed/streamed_set.h"
+#include "support/frames.h"
 #include "support/quiet.h"
 #include "support/small_scene.h"
 
@@ -58,7 +59,7 @@ TEST_F(Streamed, LooksGiveTheSameBits) {
     scene.layers[0].render.lod.max_children = 16;
     Pipeline whole(scene), streamed(scene, {}, {}, names), one(scene, {}, {}, {names[1]});
     for (const double frame : {1.0, 2.0}) {
-        RenderSettings settings = whole.settings(frame);
+        RenderSettings settings = settings_of(whole, frame);
         const RenderedFrame expected = whole.frame(frame, settings);
         settings.memory_limit_bytes = 3'000'000;
         for (Pipeline* each : {&streamed, &one}) {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
 #include <bit>
 #include <cmath>
 #include <cstring>
@@ -90,6 +91,28 @@ TEST(Project, TheLimitOfLevelsIsForTheLinesOfThePicture) {
     EXPECT_EQ(limit(540), 45.0f);
     layer.render.blend = Blend::lighten;  // never split
     EXPECT_EQ(limit(1080), 0.0f);
+}
+
+// A million children of one splat are no reason to keep somebody waiting.
+TEST(Project, StopsAmongTheChildrenOfASplat) {
+    const ShadedSplats splats = make_splats({{{0.0f, 0.0f, -2.0f}, 0.5f}});
+    RenderLayer layer = layer_of("one", splats);
+    layer.render.lod.max_px = 0.01f;
+    layer.render.lod.max_children = 1 << 20;
+    LodTable table(layer.render.falloff);
+    table.prepare(10);
+    std::atomic<bool> cancelled{false};
+    LayerProjection projection = make_projection(layer, 0, perspective_camera(), settings_of(64, 64));
+    projection.lod = &table;
+    projection.cancelled = &cancelled;
+    Buffer<ScreenSplat> out;
+    Buffer<Shape> shapes;
+    project(projection, 0, 1, everywhere, out, shapes);
+    EXPECT_EQ(out.size(), std::size_t{1} << 20);
+    out.clear();
+    cancelled = true;
+    EXPECT_THROW(project(projection, 0, 1, everywhere, out, shapes), Cancelled);
+    EXPECT_LT(out.size(), 5000u);
 }
 
 TEST(Project, NothingOutsideNearAndFar) {

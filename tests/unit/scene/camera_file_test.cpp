@@ -79,6 +79,36 @@ TEST_F(CameraFile, WithoutAFieldOfViewTheSceneKeepsItsOwn) {
     EXPECT_EQ(scene_at(s, 3).camera.focal_length, 50.0);
 }
 
+// defaults < preset < scene < animation < camera.file < --set
+TEST_F(CameraFile, SetWinsOverTheFile) {
+    put("cam.chan", two_frames);
+    const auto with = [&](std::vector<std::string> words) {
+        std::vector<Assignment> assignments;
+        for (const std::string& word : words) assignments.push_back(parse_assignment(word));
+        return parse_scene("astrosplat = 1\n[camera]\nfile = \"cam.chan\"\nfocal_length = 50.0\n",
+                           folder / "scene.toml", assignments);
+    };
+    Scene set = with({"camera.fov=90", "camera.position=[7, 8, 9]"});
+    for (const bool again : {false, true}) {  // it stays so where the file's tracks are made anew
+        if (again) {
+            set.camera.file_scale = 2.0;
+            refresh_camera_file(set, "");
+        }
+        const CameraParams now = scene_at(set, 10).camera;
+        EXPECT_EQ(now.fov, 90.0);
+        EXPECT_EQ(now.focal_length, 0.0) << "which would replace fov";
+        EXPECT_EQ(now.position, glm::dvec3(7, 8, 9));
+        EXPECT_TRUE(now.rotation) << "the file's";
+    }
+    const CameraParams looking = scene_at(with({"camera.target=[1, 0, 0]"}), 10).camera;
+    EXPECT_FALSE(looking.rotation) << "which would replace target";
+    EXPECT_EQ(looking.target, glm::dvec3(1, 0, 0));
+    const Scene moved =
+        with({"animation.camera.fov={ keys = [[1, 20], [11, 30]], interpolation = \"linear\" }"});
+    EXPECT_EQ(scene_at(moved, 6).camera.fov, 25.0);
+    EXPECT_EQ(scene_at(with({}), 1e6).camera.fov, 40.0);
+}
+
 TEST_F(CameraFile, UnitAxisOffsetAndRateOfTheFile) {
     put("cam.chan", two_frames);
     const Scene s =

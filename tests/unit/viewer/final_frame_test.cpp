@@ -13,6 +13,7 @@
 #include "output/write.h"
 #include "pipeline.h"
 #include "sets/load_source.h"
+#include "support/frames.h"
 #include "support/small_scene.h"
 
 namespace astrosplat {
@@ -42,7 +43,7 @@ class FinalFrameTest : public testing::Test {
     static std::string hash_of(const FinalRequest& wanted) {
         Pipeline pipeline;
         pipeline.set_scene(wanted.scene, wanted.sets);
-        RenderSettings settings = pipeline.settings(wanted.frame);
+        RenderSettings settings = settings_of(pipeline, wanted.frame);
         settings.width = wanted.width;
         settings.height = wanted.height;
         settings.region = wanted.region;

@@ -10,12 +10,13 @@
 #include "core/file.h"
 #include "core/image.h"
 #include "core/progress.h"
-#include "scene/scene.h"
+#include "frame/frame_scene.h"
+#include "scene/parameter.h"
 
 namespace astrosplat {
 
 /// Raised whenever the program's own arithmetic changes a pixel of any scene.
-inline constexpr int pixel_version = 2;
+inline constexpr int pixel_version = 3;
 
 /// Input files as they were when they were hashed.
 struct HashedFile {
@@ -28,35 +29,30 @@ using HashedFiles = std::map<std::filesystem::path, HashedFile>;
 /// may not be what was hashed; Cancelled.
 void check_unchanged(const HashedFiles& files, const Progress& progress = {});
 
-/// Hashes frames of one scene; input files are hashed by content, once each.
+/// Hashes frames; input files are hashed by content, once each.
 class FrameHasher {
   public:
-    /// `region` as in RenderSettings: the part of the frame that is rendered; empty: all.
-    explicit FrameHasher(const Scene& scene, const Region& region = {}) : scene_(scene), region_(region) {}
-    FrameHasher() = default;
-
-    /// The eye of the frames hashed from now on, whatever the scene says.
-    void show_eye(Eye eye) { scene_.camera.eye = eye; }
+    /// `region` as in RenderSettings: the part of the frames that is rendered; empty: all.
+    explicit FrameHasher(const Region& region = {}) : region_(region) {}
 
     /// 64 hex digits. Throws InputError when an input file exists but cannot be read.
-    std::string frame_hash(std::int64_t frame);
+    std::string frame_hash(const FrameScene& frame);
 
     /// What is hashed: lines "key = value" of every parameter that reaches the frame, evaluated there, files
-    /// as their content's hash. Left out: where and how often frames go (path, frames, fps, compression),
-    /// provenance, presets (their values are in the scene), layers and environments that do not show, and the
-    /// animation's keyframes.
-    std::string canonical_text(std::int64_t frame);
+    /// as their content's hash; under an open shutter again "sample key = value" of all that moves. Left out:
+    /// where and how often frames go (path, frames, fps, compression), provenance, presets (their values are
+    /// in the scene), layers and environments that do not show at any moment, and the animation's keyframes.
+    std::string canonical_text(const FrameScene& frame);
 
     /// All files that the hashes so far depend on.
     const HashedFiles& files() const { return files_; }
 
   private:
     std::string file_text(const std::filesystem::path& file);
+    std::string line(const Parameter& parameter);
     std::string ocio_text(const DisplayTransform& ocio);
-    std::string own_pictures(const LayerParams& layer);
-    std::string moving_text(double frame, const Scene& now) const;
+    std::string layer_text(const Scene& scene, const LayerParams& layer);
 
-    Scene scene_;
     Region region_;
     HashedFiles files_;
     std::map<std::filesystem::path, std::string> material_lists_;  // of meshes

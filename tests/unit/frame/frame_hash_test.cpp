@@ -1,5 +1,5 @@
 // The frame hash changes with everything that reaches the frame's pixels, and with nothing else.
-#include "output/frame_hash.h"
+#include "frame/frame_hash.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -60,8 +60,9 @@ file = "dust.pda"
     }
 
     std::string hash(const Scene& scene, std::int64_t frame = 1) {
-        return FrameHasher(scene).frame_hash(frame);
+        return FrameHasher().frame_hash(frame_scene(scene, static_cast<double>(frame)));
     }
+    std::string text(const Scene& scene) { return FrameHasher().canonical_text(frame_scene(scene, 1.0)); }
     std::string changed(const std::function<void(Scene&)>& change, std::int64_t frame = 1) {
         Scene other = scene();
         change(other);
@@ -72,8 +73,8 @@ file = "dust.pda"
 };
 
 TEST_F(FrameHashTest, FilesThatChangedSinceAreRefused) {
-    FrameHasher hasher(scene());
-    hasher.frame_hash(1);
+    FrameHasher hasher;
+    hasher.frame_hash(frame_scene(scene(), 1.0));
     EXPECT_EQ(hasher.files().size(), 3u);
     EXPECT_NO_THROW(check_unchanged(hasher.files()));
     put("dust.pda", "two");
@@ -92,8 +93,8 @@ TEST_F(FrameHashTest, FilesThatChangedSinceAreRefused) {
 TEST_F(FrameHashTest, MaterialsAndTheirPicturesCount) {
     Scene own = scene();
     own.layers[0].source.meshes = {{folder_ / "disk.obj", {}, 0.15}};
-    FrameHasher hasher(own);
-    const std::string before = hasher.frame_hash(1);
+    FrameHasher hasher;
+    const std::string before = hasher.frame_hash(frame_scene(own, 1.0));
     for (const char* name : {"disk.obj", "disk.mtl", "own.png"})
         EXPECT_TRUE(hasher.files().count(folder_ / name)) << name;
     put("own.png", "five");
@@ -101,20 +102,13 @@ TEST_F(FrameHashTest, MaterialsAndTheirPicturesCount) {
     EXPECT_THROW(check_unchanged(hasher.files()), InputError);
 }
 
-TEST_F(FrameHashTest, OnlyLayersMatchedToTheirPictureSayHowTheyAre) {
-    Scene now = scene();
-    EXPECT_EQ(FrameHasher(now).canonical_text(1).find("matched"), std::string::npos);
-    now.layers[0].look.vertical.match = VerticalAlpha::Match::picture;
-    EXPECT_NE(FrameHasher(now).canonical_text(1).find("layer.stars.matched light = 2\n"), std::string::npos);
-}
-
 TEST_F(FrameHashTest, IsSixtyFourHexDigitsAndStable) {
     EXPECT_EQ(hash(scene()).size(), 64u);
     EXPECT_EQ(hash(scene()), hash(scene()));
-    FrameHasher hasher(scene());
-    const std::string first = hasher.frame_hash(3);
-    hasher.frame_hash(7);
-    EXPECT_EQ(hasher.frame_hash(3), first);
+    FrameHasher hasher;
+    const std::string first = hasher.frame_hash(frame_scene(scene(), 3.0));
+    hasher.frame_hash(frame_scene(scene(), 7.0));
+    EXPECT_EQ(hasher.frame_hash(frame_scene(scene(), 3.0)), first);
 }
 
 TEST_F(FrameHashTest, IgnoresWhereAndHowOftenFramesGo) {
@@ -184,6 +178,38 @@ TEST_F(FrameHashTest, AnOpenShutterSeesWhatMovesAroundTheFrame) {
     EXPECT_NE(with_end(180.0, 6.0, 20.0), with_end(180.0, 6.0, 40.0));
 }
 
+// A layer or a sky that only some of the shutter's moments show counts with all its keys, moving or not.
+TEST_F(FrameHashTest, WhatIsVisibleWithinTheShutterCounts) {
+    const auto switched = [&](const char* key, const auto& change, std::vector<double> at_frame,
+                              std::vector<double> after) {
+        return changed(
+            [&](Scene& s) {
+                s.camera.shutter = 180.0;
+                Track track{ParameterKey(key), {}};
+                track.keyframes.emplace_back(1.0, at_frame, Interpolation::step);
+                track.keyframes.emplace_back(5.1, after, Interpolation::step);
+                s.animation = {track};
+                change(s);
+            },
+            5);
+    };
+    const auto nothing = [](Scene&) {};
+    const auto thinner = [](Scene& s) { s.layers[1].look.density = 0.25; };
+    const auto brighter = [](Scene& s) { s.environment.gain = 2.0f; };
+    const auto other_file = [&](Scene& s) { s.layers[1].source.file = folder_ / "stars.png"; };
+    for (const auto& [first, then] : {std::pair{0.0, 1.0}, std::pair{1.0, 0.0}}) {
+        const std::string dust = switched("layer.dust.visible", nothing, {first}, {then});
+        EXPECT_NE(switched("layer.dust.visible", thinner, {first}, {then}), dust) << first;
+        EXPECT_NE(switched("layer.dust.visible", other_file, {first}, {then}), dust) << first;
+        EXPECT_NE(switched("environment.visible", brighter, {first}, {then}),
+                  switched("environment.visible", nothing, {first}, {then}))
+            << first;
+    }
+    EXPECT_EQ(switched("layer.dust.visible", thinner, {0.0}, {0.0}),
+              switched("layer.dust.visible", nothing, {0.0}, {0.0}))
+        << "at no moment";
+}
+
 TEST_F(FrameHashTest, EyesCountWhereThereAreTwo) {
     const auto of_eye = [&](Eye eye, double separation, Projection projection = Projection::perspective) {
         return changed([&](Scene& s) {
@@ -196,9 +222,8 @@ TEST_F(FrameHashTest, EyesCountWhereThereAreTwo) {
     EXPECT_NE(of_eye(Eye::left, 1.0), of_eye(Eye::left, 2.0));
     EXPECT_NE(of_eye(Eye::left, 1.0), of_eye(Eye::right, 1.0));
     EXPECT_EQ(of_eye(Eye::left, 1.0, Projection::fisheye), of_eye(Eye::right, 1.0, Projection::fisheye));
-    FrameHasher hasher(scene());
-    hasher.show_eye(Eye::right);
-    EXPECT_EQ(hasher.frame_hash(1), changed([](Scene& s) { s.camera.eye = Eye::right; }));
+    EXPECT_EQ(FrameHasher().frame_hash(frame_scene(scene(), 1.0, Eye::right)),
+              changed([](Scene& s) { s.camera.eye = Eye::right; }));
 }
 
 TEST_F(FrameHashTest, AConfigurationCountsWhereAViewIsWritten) {
@@ -219,20 +244,18 @@ TEST_F(FrameHashTest, AConfigurationCountsWhereAViewIsWritten) {
     Scene other = scene();
     other.output.path = "a.png";
     other.output.ocio.config = config;
-    const std::string text = FrameHasher(other).canonical_text(1);
+    const std::string text = this->text(other);
     EXPECT_NE(text.find("OpenColorIO " + ocio_version()), std::string::npos) << text;
     EXPECT_EQ(text.find("output.view"), std::string::npos) << "which has no effect";
     std::ofstream(config, std::ios::app) << "# more\n";
     EXPECT_NE(film, managed("a.png", {config, "", "", ""}));
 }
 
-TEST_F(FrameHashTest, OtherPrimariesCountAndTheUsualOnesAreNotTold) {
-    EXPECT_EQ(FrameHasher(scene()).canonical_text(1).find("primaries"), std::string::npos);
+TEST_F(FrameHashTest, KeysOfOtherLensesAndOfBlursThatAreOffAreNotTold) {
     EXPECT_NE(changed([](Scene& s) { s.output.primaries = OutputParams::Primaries::acescg; }), hash(scene()));
-    for (const char* key :
-         {"camera.eye", "camera.convergence", "camera.shift", "camera.fisheye_tilt", "camera.panorama_fov",
-          "camera.shutter", "camera.f_number", "camera.focus_distance", "camera.unit_mm", "output.samples"})
-        EXPECT_EQ(FrameHasher(scene()).canonical_text(1).find(key), std::string::npos) << key;
+    for (const char* key : {"camera.eye", "camera.convergence", "camera.fisheye_tilt", "camera.panorama_fov",
+                            "camera.f_number", "camera.focus_distance", "camera.unit_mm", "output.samples"})
+        EXPECT_EQ(text(scene()).find(key), std::string::npos) << key;
     EXPECT_NE(changed([](Scene& s) { s.camera.shift.x = 0.1; }), hash(scene()));
     EXPECT_NE(changed([](Scene& s) { s.camera.shutter = 90.0; }), hash(scene()));
     EXPECT_NE(changed([](Scene& s) { s.camera.f_number = 2.0; }), hash(scene()));
@@ -250,7 +273,7 @@ TEST_F(FrameHashTest, OtherPrimariesCountAndTheUsualOnesAreNotTold) {
 }
 
 TEST_F(FrameHashTest, MixingInDisplayValuesCountsWhereItIsDone) {
-    EXPECT_EQ(FrameHasher(scene()).canonical_text(1).find("render.space"), std::string::npos);
+    EXPECT_EQ(text(scene()).find("render.space"), std::string::npos);
     const auto display = [](Scene& s) { s.layers[0].render.space = BlendSpace::display; };
     EXPECT_EQ(changed(display), hash(scene()));
     const auto alone = [](Scene& s) { s.layers[0].render.isolate = true; };
@@ -258,8 +281,8 @@ TEST_F(FrameHashTest, MixingInDisplayValuesCountsWhereItIsDone) {
 }
 
 TEST_F(FrameHashTest, TheImageOfStarsCountsForStarsAndIsNotToldOfOthers) {
-    EXPECT_EQ(FrameHasher(scene()).canonical_text(1).find("wings"), std::string::npos);
-    EXPECT_EQ(FrameHasher(scene()).canonical_text(1).find("spikes"), std::string::npos);
+    EXPECT_EQ(text(scene()).find("wings"), std::string::npos);
+    EXPECT_EQ(text(scene()).find("spikes"), std::string::npos);
     const auto stars = [](Scene& s) { s.layers[0].source.kind = SourceKind::stars; };
     const std::string before = changed(stars);
     EXPECT_NE(before, changed([&](Scene& s) { stars(s), s.layers[0].source.stars.psf = 2.0; }));
@@ -270,10 +293,9 @@ TEST_F(FrameHashTest, TheImageOfStarsCountsForStarsAndIsNotToldOfOthers) {
 // Stars of a picture lie where that picture's layer has it, even one that is not seen; keys of others are not
 // told of.
 TEST_F(FrameHashTest, TheLayerOfAPictureCountsForItsStars) {
-    EXPECT_EQ(FrameHasher(scene()).canonical_text(1).find("source.like"), std::string::npos);
-    EXPECT_EQ(FrameHasher(scene()).canonical_text(1).find("source.slab"), std::string::npos);
-    EXPECT_EQ(FrameHasher(scene()).canonical_text(1).find("environment.tile"), std::string::npos);
-    EXPECT_EQ(FrameHasher(scene()).canonical_text(1).find("environment.behind"), std::string::npos);
+    EXPECT_EQ(text(scene()).find("source.like"), std::string::npos);
+    EXPECT_EQ(text(scene()).find("source.slab"), std::string::npos);
+    EXPECT_EQ(text(scene()).find("environment.tile"), std::string::npos);
     const auto stars = [](Scene& s) {
         s.layers[0].visible = false;
         s.layers[1].visible = true;
@@ -334,8 +356,7 @@ TEST_F(FrameHashTest, ACameraFileCountsByWhatItSaysAtTheFrame) {
     for (Track& track : keys.animation)
         if (track.key == "camera.position") track.keyframes = {{1.0, {0, 0, 5}, Interpolation::linear}};
     EXPECT_EQ(with(before, 1), hash(keys, 1));
-    EXPECT_EQ(FrameHasher(scene()).canonical_text(1).find("file_"), std::string::npos)
-        << "frames keep their hash";
+    EXPECT_EQ(text(scene()).find("file_"), std::string::npos) << "frames keep their hash";
 }
 
 TEST_F(FrameHashTest, HiddenLayersAndSkiesDoNotCount) {
@@ -375,14 +396,15 @@ TEST_F(FrameHashTest, AMeshsOwnPicturesCount) {
 }
 
 TEST_F(FrameHashTest, TheRegionCounts) {
-    FrameHasher all(scene()), part(scene(), {10, 10, 50, 40}), other(scene(), {10, 10, 50, 41});
-    EXPECT_NE(all.frame_hash(1), part.frame_hash(1));
-    EXPECT_NE(other.frame_hash(1), part.frame_hash(1));
+    const FrameScene frame = frame_scene(scene(), 1.0);
+    const std::string part = FrameHasher({10, 10, 50, 40}).frame_hash(frame);
+    EXPECT_NE(FrameHasher().frame_hash(frame), part);
+    EXPECT_NE(FrameHasher({10, 10, 50, 41}).frame_hash(frame), part);
 }
 
 TEST_F(FrameHashTest, CanonicalTextShowsWhatIsHashed) {
-    const std::string text = FrameHasher(scene()).canonical_text(1);
-    EXPECT_EQ(text.rfind("pixels = 2\n", 0), 0u);
+    const std::string text = this->text(scene());
+    EXPECT_EQ(text.rfind("pixels = 3\n", 0), 0u);
     EXPECT_NE(text.find("\ncamera.position = [0.0, 0.0, 30.0]\n"), std::string::npos) << text;
     EXPECT_NE(text.find("\nlayer.stars.source.meshes.0.mesh = \"plane\"\n"), std::string::npos) << text;
     EXPECT_EQ(text.find(folder_.string()), std::string::npos) << text;
