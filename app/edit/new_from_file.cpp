@@ -217,10 +217,10 @@ std::string sky_scene_text(const fs::path& file, const fs::path& place) {
                        fmt::arg("catalogue", path_from(file, place)));
 }
 
-std::string picture_text(const fs::path& file, const fs::path& place) {
+PictureScene scene_of_picture(const fs::path& file) {
     require_picture(file);
     StructureChoice choice;
-    return picture_scene_text(picture_scene(file, {}, choice), place);
+    return picture_scene(file, {}, choice);
 }
 
 /// Stars of a picture come with it: prepare writes both into one folder.
@@ -230,7 +230,9 @@ std::string catalogue_scene_text(const fs::path& file, CatalogueKind kind, const
     std::error_code ignored;
     if (!fs::is_regular_file(picture, ignored))
         bad_input(file.string(), "", "picture.exr beside the stars of a picture", "none");
-    return picture_text(picture, place);
+    PictureScene scene = scene_of_picture(picture);
+    take_stars(scene, file);
+    return picture_scene_text(scene, place);
 }
 
 }  // namespace
@@ -263,7 +265,7 @@ std::string scene_text_for(const fs::path& file, const fs::path& place) {
     require_readable(file);
     switch (kind_of_file(file)) {
         case FileKind::picture:
-            return picture_text(file, place);
+            return picture_scene_text(scene_of_picture(file), place);
         case FileKind::mesh:
             return mesh_scene_text(file, place);
         case FileKind::splats:

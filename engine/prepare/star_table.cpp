@@ -6,7 +6,7 @@
 namespace astrosplat {
 
 std::string star_table(std::span<const PictureStar> stars, std::int64_t width, std::int64_t height) {
-    std::string text = "x,y,u,v,flux_r,flux_g,flux_b,sigma_px,saturated\n";
+    std::string text = fmt::format("{}\nx,y,u,v,flux_r,flux_g,flux_b,sigma_px,saturated\n", star_table_mark);
     for (const PictureStar& star : stars) {
         text +=
             fmt::format("{:.3f},{:.3f},{:.7f},{:.7f},{:.6g},{:.6g},{:.6g},{:.4f},{}\n", star.x, star.y,

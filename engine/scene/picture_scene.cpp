@@ -14,7 +14,11 @@
 #include "bodies/choose.h"
 #include "bodies/picture_light.h"
 #include "bodies/picture_splats.h"
+#include "core/file.h"
+#include "core/log.h"
 #include "core/real.h"
+#include "core/text.h"
+#include "prepare/star_table.h"
 #include "scene/new_scene.h"
 #include "scene/value.h"
 #include "source/texture.h"
@@ -215,15 +219,14 @@ std::string extent_of(const PictureScene& scene) {
     return scene.object == SkyObject::field ? "height = 0.05, depth = 0.01" : "depth = 0.15";
 }
 
-// What `prepare` writes beside a picture that it took stars from.
+// What `prepare` writes beside a picture that it took stars from. A table of that name that is not its own
+// says nothing about this picture.
 void find_stars(PictureScene& scene, const Progress& progress) {
     const std::filesystem::path table = scene.image.parent_path() / "stars.csv";
-    std::error_code ignored;
-    if (!std::filesystem::is_regular_file(table, ignored)) return;
-    const PictureTable stars = read_picture_table(table, progress);
-    if (stars.stars.empty()) return;
-    scene.stars = table;
-    scene.star_px = median_sigma_px(stars);
+    if (read_beginning(table, star_table_mark.size()) == star_table_mark)
+        take_stars(scene, table, progress);
+    else if (std::error_code ignored; std::filesystem::is_regular_file(table, ignored))
+        log_info(fmt::format("{}: not a table of prepare's, and left alone", printable(table.string())));
 }
 
 std::string stars_text(const PictureScene& scene, const std::string& picture, double frame_px_per_px,
@@ -246,6 +249,13 @@ double margin_of(const PictureScene& scene) {
 }
 
 }  // namespace
+
+void take_stars(PictureScene& scene, const std::filesystem::path& table, const Progress& progress) {
+    const PictureTable stars = read_picture_table(table, progress);
+    if (stars.stars.empty()) return;
+    scene.stars = table;
+    scene.star_px = median_sigma_px(stars);
+}
 
 PictureScene picture_scene(const std::filesystem::path& image, std::optional<SkyObject> shown,
                            StructureChoice& choice, const Progress& progress) {

@@ -28,11 +28,14 @@ struct PictureScene {
     double star_px = 1.0;              // standard deviation of their images, px of the picture
 };
 
-/// Reads the picture, for its size and to choose a structure for it, or for what it is said to show. A
-/// stars.csv beside the picture is that of its stars, which are then a layer of their own. Throws InputError,
+/// Reads the picture, for its size and to choose a structure for it, or for what it is said to show. The
+/// stars.csv that `prepare` wrote beside the picture (star_table_mark) is taken, too. Throws InputError,
 /// Cancelled.
 PictureScene picture_scene(const std::filesystem::path& image, std::optional<SkyObject> shown,
                            StructureChoice& choice, const Progress& progress = {});
+
+/// Makes the stars of a table, if it has any, a layer of their own. Throws InputError, Cancelled.
+void take_stars(PictureScene& scene, const std::filesystem::path& table, const Progress& progress = {});
 
 /// The text of a scene in `file`. Its first frame is the picture itself, filled exactly; with a film the
 /// camera holds it, tilts, passes close by and flies on.

@@ -45,12 +45,12 @@ TEST_F(PrepareCommand, WritesAPictureAndATableOfItsStars) {
     EXPECT_EQ(std::count(result.out.begin(), result.out.end(), '\n'), 5) << result.out;
     EXPECT_NE(result.out.find("96x64 px"), std::string::npos) << result.out;
     EXPECT_NE(result.out.find("9 taken away, 0 of them saturated"), std::string::npos) << result.out;
-    EXPECT_EQ(
-        text_of(folder / "ready/stars.csv").rfind("x,y,u,v,flux_r,flux_g,flux_b,sigma_px,saturated\n", 0),
-        0u);
-    EXPECT_EQ(lines("ready/stars.csv"), 10u);
+    EXPECT_TRUE(text_of(folder / "ready/stars.csv")
+                    .starts_with("# stars that astrosplat prepare took out of a picture\n"
+                                 "x,y,u,v,flux_r,flux_g,flux_b,sigma_px,saturated\n"));
+    EXPECT_EQ(lines("ready/stars.csv"), 11u);
     EXPECT_EQ(run({"prepare", "ready/picture.exr", "-o", "again"}).code, 0);
-    EXPECT_EQ(lines("again/stars.csv"), 1u) << "no star is left";
+    EXPECT_EQ(lines("again/stars.csv"), 2u) << "no star is left";
     EXPECT_EQ(run({"new", "ready/picture.exr", "-o", "ready.toml"}).code, 0);
 }
 
@@ -75,7 +75,7 @@ TEST_F(PrepareCommand, SaturationAndThresholdAct) {
     ASSERT_EQ(prepare({"-o", "saturated", "--saturation", "0.2"}).code, 0);
     EXPECT_NE(text_of(folder / "saturated/stars.csv").find(",1\n"), std::string::npos);
     ASSERT_EQ(prepare({"-o", "none", "--threshold", "1e6"}).code, 0);
-    EXPECT_EQ(lines("none/stars.csv"), 1u);
+    EXPECT_EQ(lines("none/stars.csv"), 2u);
 }
 
 TEST_F(PrepareCommand, TakesTheSkyOffAndSaysSo) {
@@ -160,7 +160,7 @@ TEST_F(PrepareCommand, RefusesWhatItShould) {
     expect_one_line(prepare({"-o", "mine"}), 2, "--overwrite");
     EXPECT_EQ(text_of(folder / "mine/stars.csv"), "mine");
     EXPECT_EQ(prepare({"-o", "mine", "--overwrite"}).code, 0);
-    EXPECT_EQ(lines("mine/stars.csv"), 10u);
+    EXPECT_EQ(lines("mine/stars.csv"), 11u);
     EXPECT_EQ(prepare({"-o", "/proc/astrosplat"}).code, 4);
 }
 

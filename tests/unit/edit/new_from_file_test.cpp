@@ -179,6 +179,8 @@ TEST_F(NewFromFile, StarsOfAPictureNeedItBesideThem) {
     const fs::path table = folder.file("stars.csv", "u,v,flux_r,flux_g,flux_b\n0.5,0.5,1,1,1\n");
     EXPECT_EQ(message_of<InputError>([&] { scene_text_for(table, place); }),
               table.string() + ": expected picture.exr beside the stars of a picture, found none");
+    folder.file("picture.exr", tiny_picture);  // what it is, its first bytes say
+    EXPECT_EQ(scene_for(table).layers.at(1).source.stars.catalogue, table) << "the file that was opened";
 }
 
 TEST_F(NewFromFile, OtherFilesAreRefused) {

@@ -262,6 +262,7 @@ TEST(Stars, AreATable) {
     star.amplitude = {0.5, 0.25, 0.125};
     star.saturated = true;
     EXPECT_EQ(star_table(std::vector{star}, 40, 100),
+              "# stars that astrosplat prepare took out of a picture\n"
               "x,y,u,v,flux_r,flux_g,flux_b,sigma_px,saturated\n"
               "10.250,25.000,0.2562500,0.7500000,3.14159,1.5708,0.785398,1.0000,1\n");
 }

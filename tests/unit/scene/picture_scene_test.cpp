@@ -5,10 +5,12 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "prepare/star_table.h"
 #include "scene/animate.h"
 #include "scene/load.h"
 #include "scene/save.h"
 #include "source/picture_camera.h"
+#include "support/temp_folder.h"
 
 namespace astrosplat {
 namespace {
@@ -60,6 +62,22 @@ TEST(PictureScene, StarsThatWereTakenOutAreALayerOfTheirOwn) {
     EXPECT_EQ(scene.layers[1].source.stars.psf, 2.5) << "in a frame twice as wide";
     picture.image = "stars.exr";
     EXPECT_EQ(parsed(picture).layers[1].name, "more_stars");
+}
+
+// Any program may write a stars.csv: only prepare's own, which says so, is of the picture beside it.
+TEST(PictureScene, AForeignTableBesideAPictureIsLeftAlone) {
+    const TempFolder folder;
+    const std::filesystem::path picture = folder.file("picture.ppm", "P3\n2 1\n255\n9 9 9 200 90 10\n");
+    StructureChoice choice;
+    for (const char* foreign :
+         {"name,ra,dec,mag\nVega,279.2,38.8,0.03\n", "u,v,flux_r,flux_g,flux_b\n0.5,0.5,1,1,1\n", "", "#"}) {
+        folder.file("stars.csv", foreign);
+        EXPECT_TRUE(picture_scene(picture, {}, choice).stars.empty()) << foreign;
+    }
+    const PictureStar star{.x = 0.5, .y = 0.5, .amplitude = {1.0, 1.0, 1.0}};
+    const std::filesystem::path own = folder.file("stars.csv", star_table({{star}}, 2, 1));
+    EXPECT_EQ(picture_scene(picture, {}, choice).stars, own);
+    EXPECT_NEAR(picture_scene(picture, {}, choice).star_px, star.sigma_px(), 1e-3);
 }
 
 TEST(PictureScene, FilmsHoldThePictureAndThenFly) {
