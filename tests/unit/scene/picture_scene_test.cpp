@@ -74,8 +74,9 @@ TEST(PictureScene, AForeignTableBesideAPictureIsLeftAlone) {
         folder.file("stars.csv", foreign);
         EXPECT_TRUE(picture_scene(picture, {}, choice).stars.empty()) << foreign;
     }
-    const PictureStar star{.x = 0.5, .y = 0.5, .amplitude = {1.0, 1.0, 1.0}};
-    const std::filesystem::path own = folder.file("stars.csv", star_table({{star}}, 2, 1));
+    PictureStar star;
+    star.amplitude = {1.0, 1.0, 1.0};
+    const std::filesystem::path own = folder.file("stars.csv", star_table(std::vector{star}, 2, 1));
     EXPECT_EQ(picture_scene(picture, {}, choice).stars, own);
     EXPECT_NEAR(picture_scene(picture, {}, choice).star_px, star.sigma_px(), 1e-3);
 }
