@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "bodies/bodies.h"
+#include "bodies/picture_size.h"
 #include "camera/aperture.h"
 #include "core/error.h"
 #include "core/memory.h"
@@ -17,9 +17,8 @@
 #include "pipeline.h"
 #include "scene/animate.h"
 #include "scene/layer_setup.h"
+#include "sets/kept.h"
 #include "sets/load_source.h"
-#include "sets/prepared_cache.h"
-#include "sets/sky_cache.h"
 #include "source/picture.h"
 
 namespace astrosplat {

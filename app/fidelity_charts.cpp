@@ -8,7 +8,7 @@
 #include <span>
 
 #include "core/base64.h"
-#include "fidelity/signed_difference.h"
+#include "fidelity/display.h"
 #include "fidelity_table.h"
 #include "output/encode.h"
 #include "source/write_image.h"

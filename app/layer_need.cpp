@@ -6,16 +6,16 @@
 #include <string_view>
 #include <vector>
 
-#include "bodies/bodies.h"
+#include "bodies/picture_size.h"
 #include "core/error.h"
 #include "core/file_format.h"
-#include "generate/columns.h"
+#include "generate/generate.h"
 #include "generate/lattice.h"
 #include "interrupt.h"
 #include "scene/animate.h"
 #include "scene/layer_setup.h"
+#include "sets/kept.h"
 #include "sets/load_source.h"
-#include "sets/prepared_cache.h"
 #include "splat_files/native_blocks.h"
 #include "splat_files/splat_file.h"
 #include "streamed/streamed_set.h"

@@ -16,7 +16,7 @@
 #include "scene/front_picture.h"
 #include "scene/layer_setup.h"
 #include "scene/layer_source.h"
-#include "sets/prepared_cache.h"
+#include "sets/kept.h"
 #include "source/texture.h"
 
 namespace astrosplat {

@@ -12,9 +12,8 @@
 
 #include "core/image.h"
 #include "core/progress.h"
-#include "fidelity/edge_on.h"
 #include "fidelity/front.h"
-#include "fidelity/needles.h"
+#include "fidelity/side.h"
 #include "scene/front_frame.h"
 #include "scene/scene.h"
 #include "sets/set_cache.h"

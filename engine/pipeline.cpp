@@ -12,11 +12,10 @@
 #include "core/text.h"
 #include "frame/mean_frame.h"
 #include "look/apply.h"
-#include "look/view_dependent.h"
 #include "scene/animate.h"
 #include "scene/layer_setup.h"
 #include "scene/layer_source.h"
-#include "sets/sky_cache.h"
+#include "sets/kept.h"
 #include "source/texture.h"
 #include "streamed/streamed_set.h"
 

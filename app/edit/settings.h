@@ -6,7 +6,7 @@
 #include <span>
 #include <string>
 
-#include "sets/cache_folder.h"
+#include "sets/kept.h"
 
 namespace astrosplat {
 

@@ -11,7 +11,7 @@
 #include "core/log.h"
 #include "core/primaries.h"
 #include "core/text.h"
-#include "image/area.h"
+#include "image/resample.h"
 #include "output/encode.h"
 #include "output/read_frame.h"
 #include "source/stored_picture.h"

@@ -7,7 +7,7 @@
 #include <bit>
 
 #include "core/shared_maths.h"
-#include "generate/columns.h"
+#include "generate/generate.h"
 
 namespace astrosplat {
 namespace {

@@ -15,7 +15,7 @@
 
 #include "core/progress.h"
 #include "merge/tree.h"
-#include "sets/cache_folder.h"
+#include "sets/kept.h"
 #include "splats/splat_set.h"
 
 namespace astrosplat {

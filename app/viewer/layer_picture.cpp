@@ -7,7 +7,7 @@
 
 #include "core/color.h"
 #include "core/parallel.h"
-#include "fidelity/signed_difference.h"
+#include "fidelity/display.h"
 #include "measure_fidelity.h"
 #include "scene/animate.h"
 #include "source/prepared_picture.h"

@@ -13,7 +13,7 @@
 #include "core/image.h"
 #include "fidelity/front.h"
 #include "scene/scene.h"
-#include "sets/cache_folder.h"
+#include "sets/kept.h"
 #include "splats/splat_set.h"
 #include "viewer/background_work.h"
 

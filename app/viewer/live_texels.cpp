@@ -9,7 +9,7 @@
 
 #include "core/parallel.h"
 #include "core/real.h"
-#include "generate/columns.h"
+#include "generate/generate.h"
 #include "image/blur.h"
 #include "image/channels.h"
 #include "source/textured_mesh.h"

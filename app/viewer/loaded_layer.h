@@ -12,7 +12,7 @@
 
 #include "edit/status.h"
 #include "merge/tree.h"
-#include "sets/automatic_values.h"
+#include "sets/load_source.h"
 #include "source/source.h"
 #include "splats/splat_set.h"
 #include "viewer/growing_set.h"

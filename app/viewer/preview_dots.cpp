@@ -5,7 +5,6 @@
 
 #include "core/clock.h"
 #include "look/apply.h"
-#include "look/view_dependent.h"
 
 namespace astrosplat {
 namespace {

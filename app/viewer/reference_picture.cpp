@@ -5,7 +5,7 @@
 
 #include "core/color.h"
 #include "core/parallel.h"
-#include "image/area.h"
+#include "image/resample.h"
 #include "source/texture.h"
 
 namespace astrosplat {

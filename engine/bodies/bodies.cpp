@@ -9,11 +9,10 @@
 #include <utility>
 #include <vector>
 
-#include "bodies/bands.h"
-#include "bodies/dot_count.h"
 #include "bodies/dust.h"
 #include "bodies/front_fit.h"
 #include "bodies/picture_light.h"
+#include "bodies/picture_size.h"
 #include "bodies/picture_splats.h"
 #include "bodies/picture_stars.h"
 #include "bodies/placement.h"
@@ -23,41 +22,19 @@
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "core/text.h"
-#include "image/area.h"
 #include "image/channels.h"
+#include "image/resample.h"
 
 namespace astrosplat {
 namespace {
 
-constexpr std::int64_t bytes_a_texel = 92;  // while bodies are made, measured
-constexpr int most_pictures = 255;          // ids hold 8 bits of their number
 constexpr int picture_bit = 56, instance_bit = 42;
 constexpr int most_faces = 64;             // that show one dot: ids hold 6 bits of which
 constexpr float nearest_approach = 0.95f;  // of the way to the picture's camera that a dot comes at most
 
-// A picture of a mesh's material, where a face shows it.
-struct PictureOnMesh {
-    const TexturedMesh* mesh = nullptr;
-    std::uint32_t mesh_index = 0, material = 0;
-    const Texture& texture() const { return mesh->textures[material]; }
-};
-
 glm::vec2 uv_of(const glm::vec3& texel, const Image& image) {
     return {texel.x / static_cast<float>(image.width) + 0.5f,
             texel.y / static_cast<float>(image.height) + 0.5f};
-}
-
-std::int64_t texels_of(const Texture& texture) { return texture.image.width * texture.image.height; }
-
-std::vector<PictureOnMesh> pictures_of(std::span<const TexturedMesh> meshes) {
-    std::vector<PictureOnMesh> pictures;
-    for (std::uint32_t m = 0; m < meshes.size(); ++m)
-        for (std::uint32_t i = 0; i < meshes[m].textures.size(); ++i)
-            if (meshes[m].textures[i].image.width > 0) pictures.push_back({&meshes[m], m, i});
-    if (pictures.size() > most_pictures)
-        throw InputError(fmt::format("source.structure: expected at most {} pictures on the meshes, found {}",
-                                     most_pictures, pictures.size()));
-    return pictures;
 }
 
 // To nothing, before the first one.
@@ -198,161 +175,6 @@ void append(SplatSet rows, SplatSet& set) {
         rows.*column = Buffer<T>();
     });
 }
-
-}  // namespace
-
-std::int64_t expected_dots(std::span<const TexturedMesh> meshes, const StructureParams& params) {
-    double dots = 0.0;
-    for (const PictureOnMesh& picture : pictures_of(meshes)) dots += expected_dots(picture.texture(), params);
-    return static_cast<std::int64_t>(dots);
-}
-
-std::int64_t most_texels_within(std::int64_t bytes) {
-    return std::max<std::int64_t>(1, bytes / bytes_a_texel);
-}
-
-std::int64_t bodies_memory_bytes(std::span<const TexturedMesh> meshes, std::int64_t dots) {
-    // Measured. Blocks that wait for their next use are a part of it (core/buffer.cpp).
-    constexpr std::int64_t bytes_a_dot = 44, bytes_on_mesh = 68;
-    constexpr std::int64_t most_waiting = std::int64_t{256} << 20;
-    const std::int64_t images = largest_picture(meshes) * bytes_a_texel;
-    const std::int64_t used = std::max(images + dots * bytes_a_dot, dots * bytes_on_mesh);
-    return used + std::max(used / 8, std::min(most_waiting, images));
-}
-
-namespace {
-
-// What no pictures of their sizes take more than.
-std::int64_t most_bytes(std::span<const TexturedMesh> meshes, const StructureParams& params) {
-    double dots = 0.0;
-    for (const PictureOnMesh& picture : pictures_of(meshes))
-        dots += most_dots(picture.texture().image.width, picture.texture().image.height, params);
-    return bodies_memory_bytes(meshes, static_cast<std::int64_t>(dots));
-}
-
-// How much of the limit is used; more than 1 is too much.
-double used_share(std::span<const TexturedMesh> meshes, const StructureParams& params,
-                  const BodiesLimit& limit) {
-    const std::int64_t dots = expected_dots(meshes, params);
-    const double memory = static_cast<double>(bodies_memory_bytes(meshes, dots)) /
-                          static_cast<double>(std::max<std::int64_t>(1, limit.room_bytes));
-    if (limit.most_dots <= 0) return memory;
-    return std::max(memory, static_cast<double>(dots) / static_cast<double>(limit.most_dots));
-}
-
-Texture* largest_texture(std::vector<TexturedMesh>& meshes) {
-    Texture* largest = nullptr;
-    for (TexturedMesh& mesh : meshes)
-        for (Texture& texture : mesh.textures)
-            if (!largest || texels_of(texture) > texels_of(*largest)) largest = &texture;
-    return largest;
-}
-
-// The picture at `area` of its texels, but no less than so many px a side.
-Image at_area(const Image& image, double area, double smallest_px) {
-    const ImageSize size = size_of_area(image.width, image.height, area, smallest_px);
-    return reduced_by_area(image, size.width, size.height);
-}
-
-// Before it was reduced as it was read, or enlarged.
-ImageSize size_in_file(const Texture& texture) {
-    if (texture.file_width > 0) return {texture.file_width, texture.file_height};
-    return {texture.image.width / texture.times, texture.image.height / texture.times};
-}
-
-// What reduce_to() makes of a picture.
-ImageSize size_within(const Texture& texture, std::int64_t most_texels) {
-    const bool enlarged_before = texture.times > 1;
-    const ImageSize whole =
-        enlarged_before ? ImageSize{texture.image.width, texture.image.height} : size_in_file(texture);
-    if (most_texels <= 0) return whole;
-    return size_of_area(whole.width, whole.height, static_cast<double>(most_texels), 1.0);
-}
-
-// Reduces one picture until the limit is just kept, as far as this one can do it.
-void reduce(Texture& texture, double first_share, const std::function<double()>& share_now) {
-    constexpr int most_tries = 8;
-    constexpr double aimed_at = 0.91, enough = 0.87;  // what is told may be too little by 8 %
-    const Image whole = std::move(texture.image);
-    double area = static_cast<double>(whole.width * whole.height), share = first_share;
-    for (int i = 0; i < most_tries && (share > 1.0 || share < enough); ++i) {
-        area = std::min(area * aimed_at / share, static_cast<double>(whole.width * whole.height));
-        texture.image = at_area(whole, area, 64.0);
-        share = share_now();
-    }
-}
-
-}  // namespace
-
-void enlarge_small_pictures(std::vector<TexturedMesh>& meshes, const std::string& layer_name) {
-    constexpr std::int64_t most_texels = 4 * texels_read_whole;
-    constexpr int most_times = 4;
-    for (TexturedMesh& mesh : meshes) {
-        for (Texture& texture : mesh.textures) {
-            const std::int64_t texels = texels_of(texture);
-            int times = 1;
-            while (times < most_times && texels * (times + 1) * (times + 1) <= most_texels) ++times;
-            if (times == 1 || texels == 0 || texture.file_width > 0) continue;
-            log_detail(fmt::format("layer '{}': a picture of {}x{} px is enlarged {} times", layer_name,
-                                   texture.image.width, texture.image.height, times));
-            texture.image = enlarged(texture.image, times);
-            texture.times = times;
-        }
-    }
-}
-
-void reduce_pictures(std::vector<TexturedMesh>& meshes, const StructureParams& params,
-                     const BodiesLimit& limit, const std::string& layer_name) {
-    if (limit.most_dots <= 0 && most_bytes(meshes, params) <= limit.room_bytes) return;
-    const auto share_now = [&] { return used_share(meshes, params, limit); };
-    std::vector<const Texture*> reduced;
-    for (double share = share_now(); share > 1.0; share = share_now()) {
-        Texture* const largest = largest_texture(meshes);
-        if (!largest || std::ranges::count(reduced, largest) > 0) return;
-        const auto [width, height] = size_in_file(*largest);
-        reduce(*largest, share, share_now);
-        reduced.push_back(largest);
-        const bool few = limit.most_dots <= 0 || expected_dots(meshes, params) < limit.most_dots * 4 / 5;
-        const std::string why =
-            few ? fmt::format("would not fit into {} of memory",
-                              human_bytes(static_cast<double>(limit.room_bytes)))
-                : fmt::format("would be more than {}", human_count(limit.most_dots, "dot"));
-        const std::string message =
-            fmt::format("layer '{}': a picture of {}x{} px is reduced to {}x{}, for its bodies {}",
-                        layer_name, width, height, largest->image.width, largest->image.height, why);
-        if (largest->image.width < width) log_warning(message);  // else it was only enlarged too much
-    }
-}
-
-void reduce_to(std::vector<TexturedMesh>& meshes, std::int64_t most_texels, const std::string& layer_name) {
-    for (TexturedMesh& mesh : meshes) {
-        for (Texture& texture : mesh.textures) {
-            Image& image = texture.image;
-            const ImageSize before = size_in_file(texture), size = size_within(texture, most_texels);
-            if (size.width < image.width || size.height < image.height)
-                image = reduced_by_area(image, size.width, size.height);
-            if (image.width < before.width || image.height < before.height)
-                log_detail(fmt::format("layer '{}': a picture of {}x{} px is reduced to {}x{}", layer_name,
-                                       before.width, before.height, image.width, image.height));
-        }
-    }
-}
-
-bool have_all_texels(std::span<const TexturedMesh> meshes, std::int64_t most_texels) {
-    return std::ranges::all_of(pictures_of(meshes), [&](const PictureOnMesh& picture) {
-        const ImageSize size = size_within(picture.texture(), most_texels);
-        return picture.texture().image.width >= size.width && picture.texture().image.height >= size.height;
-    });
-}
-
-std::int64_t largest_picture(std::span<const TexturedMesh> meshes) {
-    std::int64_t largest = 0;
-    for (const PictureOnMesh& picture : pictures_of(meshes))
-        largest = std::max(largest, texels_of(picture.texture()));
-    return largest;
-}
-
-namespace {
 
 // Dots before the fit, and how many faces show each.
 struct MadeDots {

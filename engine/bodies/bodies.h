@@ -16,40 +16,6 @@
 
 namespace astrosplat {
 
-/// Dots that make_bodies() will make, within some 5 %: told from samples of the pictures.
-std::int64_t expected_dots(std::span<const TexturedMesh> meshes, const StructureParams& params);
-
-/// Bytes that make_bodies() will take at its peak beside the meshes and pictures for so many dots, within
-/// about 15 %.
-std::int64_t bodies_memory_bytes(std::span<const TexturedMesh> meshes, std::int64_t dots);
-
-/// No picture of more texels could be made bodies of in so many bytes.
-std::int64_t most_texels_within(std::int64_t bytes);
-
-struct BodiesLimit {
-    std::int64_t room_bytes = 0;
-    std::int64_t most_dots = 0;  // 0: as many as there are
-};
-
-/// Enlarges pictures that are small by whole numbers, to no more than a picture of 2048x2048 has: a texel is
-/// then several dots, which together show it as sharp as it was. Says so at detail level.
-void enlarge_small_pictures(std::vector<TexturedMesh>& meshes, const std::string& layer_name);
-
-/// Reduces every picture of more texels by an area filter to so many; 0: none. Says so at detail level, also
-/// of those that were reduced as they were read.
-void reduce_to(std::vector<TexturedMesh>& meshes, std::int64_t most_texels, const std::string& layer_name);
-
-/// Whether all pictures are at least as large as reduce_to() makes their files.
-bool have_all_texels(std::span<const TexturedMesh> meshes, std::int64_t most_texels);
-
-/// Texels of the largest picture.
-std::int64_t largest_picture(std::span<const TexturedMesh> meshes);
-
-/// Reduces the largest picture by an area filter until make_bodies() just keeps to the limit, as far as that
-/// can be told before; then the next one where that does not suffice. A warning says so.
-void reduce_pictures(std::vector<TexturedMesh>& meshes, const StructureParams& params,
-                     const BodiesLimit& limit, const std::string& layer_name);
-
 /// Every picture of every mesh by itself; its pixels are given back once they are read. `params.kind` is not
 /// columns. A picture that becomes more than its share of `most_dots` (0: any number) is reduced and taken
 /// again. Announces its memory before taking it and says at detail level what was found. The same bits with

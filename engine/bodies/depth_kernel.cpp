@@ -27,7 +27,7 @@ using namespace astrosplat::glsl;
 
 #define ASTROSPLAT_DEPTH_LOOP HWY_FLATTEN void
 
-constexpr float unit_deviation = 1.0f / 0.26f;  // of an octave
+constexpr float unit_deviation = 1.0f / 0.26f;  // of an octave; these are DEPTH 4's
 constexpr int coarse_octaves = 3;
 constexpr int coarse_candidates = 24, fine_candidates = 8;
 

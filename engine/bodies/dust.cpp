@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "bodies/dot_lattice.h"
+#include "bodies/picture_splats.h"
 #include "core/parallel.h"
 #include "core/real.h"
 #include "core/shared_maths.h"
@@ -22,6 +22,7 @@ namespace {
 
 using shared::as_hash, shared::as_log, shared::as_uniform;
 
+// As DEPTH 5 has them, but for the sheet, which is torn, and thinner.
 constexpr float least_transmittance = 0.1f;
 constexpr float dark_sky = 0.004f;  // added to both sides of the ratio: noise of dark dark_sky is no dust
 // Of H. Thicker, lanes smear into curtains for a camera that comes close.

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "bodies/fields.h"
-#include "bodies/shell.h"
+#include "bodies/surfaces.h"
 #include "core/parallel.h"
 #include "core/real.h"
 #include "core/sorting.h"
@@ -14,6 +14,7 @@
 namespace astrosplat {
 namespace {
 
+// Found on M42, the Red Spider and Sh2-106: cores are taken, filaments and rims are not.
 constexpr double line_length = 0.2;  // of the width
 constexpr double share_blur = 0.01;  // of the width; lines leave straight edges
 constexpr int directions = 12;
@@ -73,8 +74,7 @@ Image grown(const Image& image, std::int64_t reach) {
 }
 
 double smooth(double from, double to, double value) {
-    const double t = std::clamp((value - from) / (to - from), 0.0, 1.0);
-    return t * t * (3.0 - 2.0 * t);
+    return real::smoothstep(std::clamp((value - from) / (to - from), 0.0, 1.0));
 }
 
 }  // namespace

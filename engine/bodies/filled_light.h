@@ -16,7 +16,7 @@ struct FilledLight {
 
 /// A core is what an opening by lines takes away, a fifth of the width long, in the best of twelve
 /// directions: filaments survive it. It is as deep as it is wide. The sky is what lies outside of the
-/// silhouette of shell.h.
+/// silhouette of surfaces.h.
 FilledLight find_filled_light(const Image& brightest);
 
 }  // namespace astrosplat

@@ -9,15 +9,17 @@
 
 #include "core/log.h"
 #include "core/parallel.h"
+#include "core/real.h"
 #include "core/shared_maths.h"
 #include "core/shared_noise.h"
-#include "image/area.h"
 #include "image/channels.h"
-#include "source/picture_camera.h"
+#include "image/resample.h"
+#include "source/textured_mesh.h"
 
 namespace astrosplat {
 namespace {
 
+// Found in films of W5, the Bubble, M42 and Sh2-106: no straight edge and no corner stands out.
 constexpr std::int64_t margin_rows = 16;
 constexpr std::int64_t local_px = 48;     // pixels along the longer side of the local brightness
 constexpr float brightest_detail = 1.6f;  // times the local brightness; what is brighter is a star
@@ -51,8 +53,6 @@ std::int64_t mirrored(std::int64_t i, std::int64_t count) {
     const std::int64_t in = i < 0 ? -1 - i : i >= count ? 2 * count - 1 - i : i;
     return std::clamp<std::int64_t>(in, 0, count - 1);
 }
-
-float smooth_step(float t) { return t * t * (3.0f - 2.0f * t); }
 
 // What a texel beyond the picture is made of, besides the picture itself.
 struct Surroundings {
@@ -114,7 +114,8 @@ float fade_at(const Surroundings& around, glm::vec2 px, float away_px, float rea
     const float corner = std::fabs(from_middle.x * from_middle.y), way = away_px / reach_px;
     const float ragged = way * (steepness + around.nearer_at_corners * corner * corner +
                                 raggedness * std::clamp(noise, -1.0f, 1.0f));
-    return smooth_step(1.0f - std::clamp(ragged, 0.0f, 1.0f)) * smooth_step(1.0f - std::min(way, 1.0f));
+    return real::smoothstep(1.0f - std::clamp(ragged, 0.0f, 1.0f)) *
+           real::smoothstep(1.0f - std::min(way, 1.0f));
 }
 
 // The texel at x, y of the picture, which lies beyond it: its mirrored details on the light of the rim, which

@@ -1,9 +1,14 @@
 #include "bodies/picture_light.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
+#include <utility>
 
 #include "core/parallel.h"
+#include "core/real.h"
+#include "image/blur.h"
+#include "image/channels.h"
 
 namespace astrosplat {
 namespace {
@@ -14,8 +19,7 @@ constexpr std::int64_t rows_per_chunk = 16;
 float edge_fade(std::int64_t i, std::int64_t count, double width) {
     if (width <= 0.0) return 1.0f;
     const double inside = std::min(double(i) + 0.5, double(count - i) - 0.5) / width;
-    const double t = std::clamp(inside, 0.0, 1.0);
-    return static_cast<float>(t * t * (3.0 - 2.0 * t));
+    return static_cast<float>(real::smoothstep(std::clamp(inside, 0.0, 1.0)));
 }
 
 float finite_light(float value) { return value > 0.0f && std::isfinite(value) ? value : 0.0f; }
@@ -43,6 +47,90 @@ PictureLight picture_light(const Texture& texture, double border) {
                     [](float a) { return a == 1.0f; }))
         result.alpha = {};
     return result;
+}
+
+namespace {
+
+constexpr double finest_blur_px = 1.2;
+constexpr double coarsest_blur_share = 80.0 / 1920.0;  // of the width
+constexpr float contrast_share = 0.5f;                 // of the deviation that stays out of the coarser band
+constexpr double finest_hole_px = 2.0;
+constexpr float highest_peak = 2.0f;     // times what is around it, that counts for its surroundings
+constexpr double widest_peak_px = 12.0;  // blur up to which peaks are small; beyond are bulges
+constexpr float least_share = 0.25f;     // of the mean that the coarser band gets
+
+void multiply(Image& values, const Image& factor) {
+    parallel_each(factor.pixels.size(), 65536, [&](std::size_t i) { values.pixels[i] *= factor.pixels[i]; });
+}
+
+// The share of the mean that the coarser bands get.
+Image common_share(Image brightest, double blur) {
+    const Image means = gaussian_blur(brightest, blur);
+    parallel_each(brightest.pixels.size(), 65536,
+                  [&](std::size_t i) { brightest.pixels[i] *= brightest.pixels[i]; });
+    Image share = gaussian_blur(brightest, blur);
+    parallel_each(share.pixels.size(), 65536, [&](std::size_t i) {
+        const float mean = means.pixels[i], square = share.pixels[i];
+        const float deviation = std::sqrt(std::max(0.0f, square - mean * mean));
+        share.pixels[i] =
+            std::clamp(1.0f - contrast_share * deviation / std::max(1e-6f, mean), least_share, 1.0f);
+    });
+    return share;
+}
+
+// Cuts off peaks that are small beside the blur: what is between stars is not dark because they are bright.
+Image peak_factor(const Image& brightest, double blur) {
+    Image factor = opened(brightest, std::llround(2.0 * blur));
+    parallel_each(factor.pixels.size(), 65536, [&](std::size_t i) {
+        factor.pixels[i] =
+            std::min(1.0f, highest_peak * factor.pixels[i] / std::max(1e-6f, brightest.pixels[i]));
+    });
+    return factor;
+}
+
+// Leaves in `light` what the coarser bands share and returns the rest. A channel at a time: pictures are
+// large.
+Image take_band(Image& light, double blur, bool fill_holes) {
+    Image brightest = brightest_channel(light);
+    const bool peaked = fill_holes && blur < widest_peak_px;
+    const Image factor = peaked ? peak_factor(brightest, blur) : Image();  // without pixels: of 1
+    multiply(brightest, factor);
+    const Image share = common_share(std::move(brightest), blur);
+    Image band = unfilled_image(light.width, light.height, 3);
+    for (std::size_t c = 0; c < 3; ++c) {
+        Image channel = channel_of(light, static_cast<int>(c));
+        multiply(channel, factor);
+        const Image mean = gaussian_blur(channel, blur);
+        parallel_each(mean.pixels.size(), 65536, [&](std::size_t i) {
+            float& here = light.pixels[3 * i + c];
+            const float common = std::max(0.0f, mean.pixels[i] * share.pixels[i]);
+            const float coarser = fill_holes ? common : std::min(common, here);
+            band.pixels[3 * i + c] = std::max(0.0f, here - coarser);
+            here = coarser;
+        });
+    }
+    return band;
+}
+
+}  // namespace
+
+std::vector<Band> make_bands(std::int64_t width_px) {
+    std::vector<Band> bands;
+    const double coarsest = coarsest_blur_share * static_cast<double>(width_px);
+    double blur = finest_blur_px;
+    for (; blur < 1.2 * coarsest; blur *= 2.0)
+        bands.push_back({static_cast<int>(bands.size()), blur, blur * 5.0 / 3.0});
+    bands.push_back({static_cast<int>(bands.size()), blur / 2.0, blur * 1.25});
+    return bands;
+}
+
+void split_bands(Image light, const std::vector<Band>& bands, bool fill_holes,
+                 const std::function<void(const Band&, const Image&)>& visit) {
+    assert(light.channels == 3 && !bands.empty());
+    for (const Band& band : bands) {
+        const bool last = band.index + 1 == static_cast<int>(bands.size());
+        visit(band, last ? light : take_band(light, band.blur, fill_holes && band.blur >= finest_hole_px));
+    }
 }
 
 }  // namespace astrosplat

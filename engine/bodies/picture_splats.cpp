@@ -5,7 +5,6 @@
 #include <optional>
 #include <span>
 
-#include "bodies/dot_lattice.h"
 #include "core/real.h"
 #include "core/shared_maths.h"
 #include "image/channels.h"

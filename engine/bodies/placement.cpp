@@ -6,9 +6,7 @@
 
 #include "bodies/fields.h"
 #include "bodies/margin.h"
-#include "bodies/octaves.h"
 #include "bodies/picture_light.h"
-#include "bodies/shell.h"
 #include "bodies/surfaces.h"
 #include "core/parallel.h"
 #include "core/real.h"
@@ -23,6 +21,7 @@ using shared::as_hash, shared::as_log, shared::as_mix, shared::as_uniform;
 constexpr float least_sigma = 0.45f;  // texels; .62 as published ends 2 dB below
 // Scale height of a knot, of its sigma. On a sheet those along a rim that runs up the picture lie one before
 // the other from aslant: each taller, they are one needle.
+// Of a knot's sigma. On sheets found by the needles of the Bubble and the Pillars: below .2 knots are lenses.
 constexpr float knot_depth = 0.6f, knot_depth_on_sheets = 0.35f;
 constexpr float widest_in_knots = 5.0f;   // texels, sigma of the largest dots that follow their knot
 constexpr double widest_filament = 45.0;  // texels at a width of 1920; what is wider is glow

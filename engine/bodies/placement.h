@@ -7,12 +7,12 @@
 #include <span>
 #include <vector>
 
-#include "bodies/bands.h"
 #include "bodies/depth_kernel.h"
 #include "bodies/filled_light.h"
-#include "bodies/knots.h"
+#include "bodies/picture_light.h"
 #include "bodies/stars.h"
 #include "core/image.h"
+#include "detect/knots.h"
 #include "source/source.h"
 
 namespace astrosplat {

@@ -1,5 +1,7 @@
-// The stars of a picture in depth. In: where the picture has them, and the mesh that carries it. Out: places
-// in the layer, each on the ray to the picture's camera, and the camera that sees them there.
+// The stars of a picture in depth, and how much of their light arrives at the camera of the picture, past the
+// splats before them. In: where the picture has them, the mesh that carries it and the splats of their layer.
+// Out: places in the layer, each on the ray to the picture's camera, and the camera that sees them there;
+// stars of which hardly any light would pass are moved before what hides them.
 #pragma once
 
 #include <cstdint>
@@ -9,8 +11,10 @@
 #include <vector>
 
 #include "camera/camera.h"
+#include "core/progress.h"
 #include "source/source.h"
 #include "source/textured_mesh.h"
+#include "splats/splat_set.h"
 
 namespace astrosplat {
 
@@ -41,5 +45,18 @@ PlacedStars place_stars(const TexturedMesh& mesh, std::span<const SeenStar> star
 
 /// The texture of that material; null where none is shown.
 const Texture* shown_picture(const TexturedMesh& mesh);
+
+struct FrontView {
+    Camera camera;              // in the layer's own space
+    double height_px = 1080.0;  // of what it shows
+    double filter_px = 0.5;     // standard deviation of the pixel filter
+    double star_px = 1.0;       // the same of a star's image
+};
+
+/// Share of the light of each star that arrives, red, green and blue; `position` may change. The splats have
+/// radii and alphas of their own and the default falloff: those of bodies. The same bits with any number of
+/// threads. Throws Cancelled.
+std::vector<glm::dvec3> passing_light(const FrontView& view, const SplatSet& splats,
+                                      std::vector<glm::vec3>& position, const Progress& progress = {});
 
 }  // namespace astrosplat

@@ -4,23 +4,26 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
-#include <limits>
 #include <optional>
+#include <span>
 
 #include "bodies/picture_light.h"
 #include "core/parallel.h"
 #include "core/real.h"
+#include "core/sorting.h"
+#include "detect/background.h"
+#include "detect/peaks.h"
 #include "image/blur.h"
 #include "image/channels.h"
 
 namespace astrosplat {
 namespace {
 
-constexpr std::int64_t median_reach = 5;  // px: a window of 11 x 11
-constexpr std::int64_t margin = 6;        // px without stars at the picture's edges
-constexpr std::int64_t noise_step = 6;    // px between the places where the noise is measured
+// As DEPTH 1 has them, but for a least excess of .04 there: faint stars in dark parts are points, too.
+constexpr std::int64_t star_reach_px = 2;  // 5x5
+constexpr std::int64_t margin = 6;         // px without stars at the picture's edges
+constexpr std::int64_t noise_step = 6;     // px between the places where the noise is measured
 constexpr double noise_blur_px = 12.0;
 constexpr float least_excess = 0.012f;  // of the displayed white
 constexpr float noise_factor = 4.5f;
@@ -31,36 +34,6 @@ constexpr float uneven_share = 0.3f;  // of the peak, that this light may differ
 constexpr double explained_sigmas = 2.5;
 constexpr double most_unseen = 0.1;  // share of a star's light that the picture may not have
 
-constexpr std::size_t window_px = (2 * median_reach + 1) * (2 * median_reach + 1);
-
-// The value with `rank` smaller ones, of values >= 0, whose bits are in the same order: found bit by bit,
-// which takes a third of the time of a partial sort.
-float value_of_rank(const std::array<std::int32_t, window_px>& bits, std::int32_t rank) {
-    std::int32_t found = 0;
-    for (int bit = 30; bit >= 0; --bit) {
-        const std::int32_t candidate = found | std::int32_t{1} << bit;
-        std::int32_t smaller = 0;
-        for (const std::int32_t value : bits) smaller += value < candidate ? 1 : 0;
-        if (smaller <= rank) found = candidate;
-    }
-    return std::bit_cast<float>(found);
-}
-
-/// Median of the brightness over the window about a pixel.
-float background(const Image& brightest, std::int64_t x, std::int64_t y) {
-    std::array<std::int32_t, window_px> bits;
-    std::size_t count = 0;
-    for (std::int64_t j = y - median_reach; j <= y + median_reach; ++j) {
-        if (j < 0 || j >= brightest.height) continue;
-        for (std::int64_t i = x - median_reach; i <= x + median_reach; ++i)
-            if (i >= 0 && i < brightest.width)
-                bits[count++] = std::bit_cast<std::int32_t>(*brightest.at(i, j));
-    }
-    std::fill(bits.begin() + static_cast<std::ptrdiff_t>(count), bits.end(),
-              std::numeric_limits<std::int32_t>::max());
-    return value_of_rank(bits, static_cast<std::int32_t>(count / 2));
-}
-
 // Mean excess over the background around each place, on the grid of noise_step.
 Image local_noise(const Image& brightest) {
     Image noise = make_image((brightest.width + noise_step - 1) / noise_step,
@@ -69,22 +42,9 @@ Image local_noise(const Image& brightest) {
         for (std::int64_t y = begin; y < end; ++y)
             for (std::int64_t x = 0; x < noise.width; ++x)
                 *noise.at(x, y) = std::fabs(*brightest.at(x * noise_step, y * noise_step) -
-                                            background(brightest, x * noise_step, y * noise_step));
+                                            median_about(brightest, x * noise_step, y * noise_step));
     });
     return gaussian_blur(noise, noise_blur_px / static_cast<double>(noise_step));
-}
-
-// The first of equal neighbours counts.
-bool is_brightest(const Image& brightest, std::int64_t x, std::int64_t y) {
-    const float here = *brightest.at(x, y);
-    for (std::int64_t j = -2; j <= 2; ++j) {
-        for (std::int64_t i = -2; i <= 2; ++i) {
-            const float there = *brightest.at(x + i, y + j);
-            const bool earlier = j < 0 || (j == 0 && i < 0);
-            if (there > here || (there == here && earlier)) return false;
-        }
-    }
-    return true;
 }
 
 // Directions all around.
@@ -126,9 +86,7 @@ float ring_median(const Image& light, std::int64_t x, std::int64_t y, int channe
     for (std::int64_t j = -4; j <= 4; ++j)
         for (std::int64_t i = -4; i <= 4; ++i)
             if (i * i + j * j >= 12 && i * i + j * j <= 20) values[count++] = light.at(x + i, y + j)[channel];
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(count / 2);
-    std::nth_element(values.begin(), middle, values.begin() + static_cast<std::ptrdiff_t>(count));
-    return *middle;
+    return median(std::span(values).first(count));
 }
 
 // Whether the picture has the light that the star's Gaussian gives it. Among crowded stars a Gaussian may be
@@ -168,8 +126,8 @@ struct StarInSky {
 std::optional<StarInSky> star_at(const Image& light, const Image& brightest, std::int64_t x, std::int64_t y,
                                  float noise) {
     const float least = std::max(least_excess, noise_factor * noise);
-    if (*brightest.at(x, y) < least || !is_brightest(brightest, x, y)) return {};
-    const float sky = background(brightest, x, y);
+    if (*brightest.at(x, y) < least || !is_peak(brightest, x, y, star_reach_px)) return {};
+    const float sky = median_about(brightest, x, y);
     const float excess = *brightest.at(x, y) - sky;
     if (excess < least) return {};
     constexpr std::int64_t reach = 2;
@@ -220,7 +178,7 @@ void level(Image& light, const Image& before, const StarInSky& found, std::int64
     const Star& star = found.star;
     const auto reach = static_cast<std::int64_t>(3.0f * star.sigma + 1.0f);
     const float most =
-        1.15f * background(before, static_cast<std::int64_t>(star.x), static_cast<std::int64_t>(star.y)) +
+        1.15f * median_about(before, static_cast<std::int64_t>(star.x), static_cast<std::int64_t>(star.y)) +
         least_level;
     for_each_pixel(light, star, reach, begin, end, [&](float* pixel, std::int64_t, std::int64_t) {
         const float brightest = std::max({pixel[0], pixel[1], pixel[2]});
@@ -244,39 +202,14 @@ void for_each_strip(const Image& light, const std::vector<StarInSky>& stars, con
 
 }  // namespace
 
-PointLight light_about(const Image& brightest, std::int64_t x, std::int64_t y, std::int64_t reach,
-                       float floor) {
-    double sum = 0.0, sum_x = 0.0, sum_y = 0.0;
-    for (std::int64_t j = -reach; j <= reach; ++j) {
-        for (std::int64_t i = -reach; i <= reach; ++i) {
-            const double light = std::max(0.0f, *brightest.at(x + i, y + j) - floor);
-            sum += light;
-            sum_x += light * static_cast<double>(i);
-            sum_y += light * static_cast<double>(j);
-        }
-    }
-    const double least = std::max(sum, 1e-12);
-    return {sum, static_cast<float>(static_cast<double>(x) + 0.5 + sum_x / least),
-            static_cast<float>(static_cast<double>(y) + 0.5 + sum_y / least)};
-}
-
 std::vector<Star> take_stars(Image& light, float least_left, StarsTaken taken) {
     const Image brightest = brightest_channel(light);
     const Image noise = local_noise(brightest);
-    std::vector<std::vector<StarInSky>> rows(static_cast<std::size_t>(light.height));
-    parallel_chunks(light.height, 16, [&](std::int64_t begin, std::int64_t end, int) {
-        for (std::int64_t y = std::max(begin, margin); y < std::min(end, light.height - margin); ++y) {
-            for (std::int64_t x = margin; x < light.width - margin; ++x) {
-                const float around = *noise.at(x / noise_step, y / noise_step);
-                if (const auto star = star_at(light, brightest, x, y, around))
-                    rows[static_cast<std::size_t>(y)].push_back(*star);
-            }
-        }
+    std::vector<StarInSky> found = found_by_rows(light, margin, [&](std::int64_t x, std::int64_t y) {
+        return star_at(light, brightest, x, y, *noise.at(x / noise_step, y / noise_step));
     });
-    std::vector<StarInSky> found;
-    for (const auto& row : rows)
-        for (const StarInSky& each : row)
-            if (taken == StarsTaken::round || is_explained(light, each.star)) found.push_back(each);
+    if (taken == StarsTaken::explained)
+        std::erase_if(found, [&](const StarInSky& each) { return !is_explained(light, each.star); });
     for_each_strip(light, found, [&](const StarInSky& star, std::int64_t begin, std::int64_t end) {
         subtract(light, star, least_left, begin, end);
     });

@@ -17,14 +17,6 @@ struct Star {
     std::uint32_t body = 0;    // Gaussians of one star have one depth
 };
 
-/// Light above `floor` within `reach` px of a pixel, and where its middle is, px.
-struct PointLight {
-    double sum = 0.0;
-    float x = 0.0f, y = 0.0f;
-};
-PointLight light_about(const Image& brightest, std::int64_t x, std::int64_t y, std::int64_t reach,
-                       float floor);
-
 /// Of the light around a star, down to which it is taken out where there is dust: a hole would become some.
 inline constexpr float least_left_in_dust = 0.9f;
 

@@ -7,7 +7,7 @@
 #include <optional>
 #include <utility>
 
-#include "source/picture_camera.h"
+#include "source/textured_mesh.h"
 
 namespace astrosplat {
 namespace {

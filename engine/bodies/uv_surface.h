@@ -27,7 +27,7 @@ class UvSurface {
   public:
     /// The faces of one material under a picture of width x height texels. `repeats`: the picture goes on
     /// beyond 0..1; else places beyond it belong to no texel. `camera`: that took the picture, by which the
-    /// mesh has its coordinates (picture_camera.h).
+    /// mesh has its coordinates (textured_mesh.h).
     UvSurface(const Mesh& mesh, std::uint32_t material, std::int64_t width, std::int64_t height, bool repeats,
               const Camera* camera = nullptr);
 

@@ -30,4 +30,10 @@ OnCircle on_circle(float turns);
 inline double radians(double degrees) { return degrees * (pi / 180.0); }
 inline double degrees(double radians) { return radians * (180.0 / pi); }
 
+/// From 0 to 1 without a kink at either end; 0 <= t <= 1.
+template <class Real>
+constexpr Real smoothstep(Real t) {
+    return t * t * (Real(3) - Real(2) * t);
+}
+
 }  // namespace astrosplat::real

@@ -1,14 +1,50 @@
-// All measures of a front view against the picture it is made of. In: both as linear light at one size.
-// Out: numbers.
+// A front view against the picture it is made of: how alike they look, whether there is as much light, in all
+// and place by place, and as much detail of every size. In: both as linear light on black, of one size. Out:
+// numbers.
 #pragma once
 
+#include <array>
 #include <vector>
 
-#include "fidelity/color_difference.h"
-#include "fidelity/flux.h"
-#include "fidelity/scale_power.h"
+#include "core/image.h"
+#include "fidelity/display.h"
 
 namespace astrosplat {
+
+/// Peak signal to noise ratio of the displayed channels, dB: 10 log10(1 / mean square error), at most 120.
+double psnr_db(const Image& a, const Image& b);
+
+/// Structural similarity (Wang, Bovik, Sheikh, Simoncelli 2004) of the displayed channels' mean: Gaussian
+/// window of 1.5 px, constants .01^2 and .03^2, mean over all pixels; 1 for equal pictures.
+double ssim(const Image& a, const Image& b);
+
+/// Cells along either side of the grid that a picture is divided into.
+inline constexpr std::int64_t flux_cells = 32;
+/// A cell of the reference darker than this, as the mean of its channels (1: white), holds no light to
+/// compare with.
+inline constexpr double darkest_cell = 0.002;
+
+struct FluxRatios {
+    std::array<double, 3> channels{};  // light of the picture over light of the reference: red, green, blue
+    double frame = 0.0;                // of all three
+    std::vector<double> cells;         // flux_cells^2 from the top left; NaN where the reference is dark
+    double cells_5 = 0.0, cells_50 = 0.0,
+           cells_95 = 0.0;  // percentiles of the lit cells; 0 where none is lit
+};
+
+/// NaN where the reference has no light.
+FluxRatios flux_ratios(const Image& picture, const Image& reference);
+
+/// Detail between two sizes: the difference of the picture's Gaussian blurs of standard deviations finer
+/// and coarser.
+struct ScalePower {
+    double finer_px = 0.0, coarser_px = 0.0;  // 0: the picture itself
+    double ratio = 0.0;  // mean square of the picture's band over that of the reference's
+};
+
+/// Bands 0 to 1, 1 to 2, 2 to 4 ... px up to an eighth of the shorter side, of the displayed channels'
+/// mean. NaN where the reference has no detail of a size.
+std::vector<ScalePower> power_by_scale(const Image& picture, const Image& reference);
 
 struct FrontFidelity {
     std::int64_t width_px = 0, height_px = 0;  // of the whole view

@@ -1,5 +1,5 @@
 // Lattice positions moved by their own random numbers.
-#include "generate/block_places.h"
+#include "generate/blocks.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "generate/block_places.cpp"

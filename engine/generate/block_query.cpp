@@ -1,6 +1,6 @@
 // Eight positions at a time walk down the tree of triangles: eight boxes at once are asked whether they may
 // hold a closest point, then each triangle that is left by its disc, then what is left of those exactly.
-#include "generate/block_query.h"
+#include "generate/blocks.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "generate/block_query.cpp"

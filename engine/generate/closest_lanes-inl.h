@@ -11,7 +11,7 @@
 
 #include <cstddef>
 
-#include "generate/closest_triangle.h"
+#include "generate/triangle_tree.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace astrosplat {

@@ -1,16 +1,99 @@
-// The cull's positions become a set.
+// A native file's order is that of 64^3 cells along a Morton curve, and of ids within a cell. So cubes of 8^n
+// cells follow each other in the file: each is made by a cull of the part of the lattice that reaches into
+// it.
 #include "generate/generate.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cassert>
+#include <cfloat>
+#include <cmath>
+#include <utility>
 #include <vector>
 
 #include "core/memory.h"
-#include "generate/block_places.h"
-#include "generate/columns.h"
+#include "core/parallel.h"
+#include "generate/blocks.h"
+#include "generate/kept_store.h"
 #include "generate/lattice_cull.h"
+#include "generate/surface.h"
 #include "generate/triangle_tree.h"
+#include "source/sample.h"
+#include "splat_files/native_blocks.h"
+#include "splats/row_order.h"
+#include "splats/splat_set.h"
 
 namespace astrosplat {
+namespace {
+
+constexpr std::int64_t rows_at_once = 1 << 14;
+
+/// Rows whose alpha is not 0, before each chunk of rows; the last is the number of all.
+std::vector<std::int64_t> lit_before_chunks(const Buffer<float>& alpha) {
+    const auto rows = static_cast<std::int64_t>(alpha.size());
+    std::vector<std::int64_t> before(static_cast<std::size_t>((rows + rows_at_once - 1) / rows_at_once) + 1);
+    parallel_chunks(rows, rows_at_once, [&](std::int64_t begin, std::int64_t end, int) {
+        std::int64_t lit = 0;
+        for (std::int64_t i = begin; i < end; ++i) lit += alpha[i] > 0.0f;
+        before[begin / rows_at_once + 1] = lit;
+    });
+    for (std::size_t i = 1; i < before.size(); ++i) before[i] += before[i - 1];
+    return before;
+}
+
+template <class T>
+Buffer<T> lit_rows(const Buffer<T>& all, const Buffer<float>& alpha,
+                   const std::vector<std::int64_t>& before) {
+    Buffer<T> lit(static_cast<std::size_t>(before.back()));
+    parallel_chunks(static_cast<std::int64_t>(all.size()), rows_at_once,
+                    [&](std::int64_t begin, std::int64_t end, int) {
+                        std::int64_t to = before[begin / rows_at_once];
+                        for (std::int64_t i = begin; i < end; ++i)
+                            if (alpha[i] > 0.0f) lit[to++] = all[i];
+                    });
+    return lit;
+}
+
+}  // namespace
+
+void read_texels(std::span<const TexturedMesh> meshes, Columns& columns, const Progress& progress) {
+    SplatSet& set = columns.splats;
+    describe_pictures(meshes, set);
+    const Buffer<SurfaceTriangle> surface = surface_triangles(meshes, set.spacing);
+    set.color.resize(set.position.size());
+    set.alpha.resize(set.position.size());
+    constexpr std::int64_t ahead = 16;  // rows whose triangles are on their way
+    parallel_chunks(set.size(), rows_at_once, [&](std::int64_t begin, std::int64_t end, int) {
+        progress.check();
+        for (std::int64_t i = begin; i < end; ++i) {
+            __builtin_prefetch(&surface[set.face[std::min(i + ahead, end - 1)]]);
+            const SurfaceTriangle& triangle = surface[set.face[i]];
+            const TextureSample picture = sample(*triangle.texture, set.uv[i], triangle.box_texels);
+            set.color[i] = picture.color;
+            set.alpha[i] = picture.alpha;
+        }
+    });
+}
+
+void show_end(const Columns& columns, KeptWatcher& watcher) {
+    watcher.ends({sample_rows(columns.splats, watcher.sample_limit())}, columns.splats.size());
+}
+
+SplatSet lit_splats(Columns columns) {
+    SplatSet set = std::move(columns.splats);
+    drop_columns(set, {});
+    const std::vector<std::int64_t> before = lit_before_chunks(set.alpha);
+    const std::int64_t dark = set.size() - before.back();
+    if (dark == 0) return set;
+    set.zero_alpha += dark;
+    const Buffer<float> alpha = set.alpha;
+    for_each_column([&](auto column, SplatColumn) {
+        if (!(set.*column).empty()) set.*column = lit_rows(set.*column, alpha, before);
+    });
+    return set;
+}
+
 namespace {
 
 // Adds what is kept to the set.
@@ -29,8 +112,7 @@ double bytes_of_positions(double positions) {
            std::min(0.5 * positions, most_in_batch) * static_cast<double>(sizeof(KeptSplat));
 }
 
-}  // namespace
-
+// What is known of columns before any of them is made: zero_alpha is 0.
 SplatSetFacts facts_of_columns(std::span<const TexturedMesh> meshes, const Lattice& lattice,
                                double max_distance) {
     SplatSetFacts facts;
@@ -41,6 +123,8 @@ SplatSetFacts facts_of_columns(std::span<const TexturedMesh> meshes, const Latti
     describe_pictures(meshes, facts);
     return facts;
 }
+
+}  // namespace
 
 std::int64_t columns_memory_bytes(std::int64_t positions) {
     return static_cast<std::int64_t>(bytes_of_positions(static_cast<double>(positions)));
@@ -85,6 +169,191 @@ Columns make_columns(std::span<const TexturedMesh> meshes, const Lattice& lattic
 SplatSet generate(std::span<const TexturedMesh> meshes, const Lattice& lattice, double max_distance,
                   double jitter, std::uint32_t seed, const Progress& progress) {
     return lit_splats(make_columns(meshes, lattice, max_distance, jitter, seed, progress));
+}
+
+namespace {
+
+/// What is known of the set before any of it is written.
+struct Survey {
+    std::int64_t lit = 0, dark = 0, unseen = 0;  // positions: alpha above 0, alpha 0, no picture there
+    Bounds lit_box;                              // of positions whose alpha is above 0
+    std::vector<std::int64_t> kept;              // positions with either alpha, in each cell of `cells`
+};
+
+constexpr std::int64_t runs_at_once = 64;
+
+void add_to(std::span<const KeptStore::Run> runs, const SpatialCells& cells, std::vector<Survey>& workers) {
+    parallel_chunks(static_cast<std::int64_t>(runs.size()), runs_at_once,
+                    [&](std::int64_t begin, std::int64_t end, int number) {
+                        Survey& own = workers[static_cast<std::size_t>(number)];
+                        for (std::int64_t i = begin; i < end; ++i) {
+                            const KeptStore::Run& run = runs[static_cast<std::size_t>(i)];
+                            for (const KeptSplat& splat : std::span(run.splats, run.count)) {
+                                ++own.kept[cells.of(splat.position)];
+                                if (splat.alpha > 0.0f) own.lit_box.add(glm::dvec3(splat.position));
+                            }
+                            own.lit += static_cast<std::int64_t>(run.lit);
+                            own.dark += static_cast<std::int64_t>(run.count - run.lit);
+                        }
+                    });
+}
+
+/// Slabs of the lattice, of whole blocks each, along its longest axis.
+std::vector<CellRange> slabs_of(const Lattice& lattice, std::int64_t count) {
+    int axis = 0;
+    for (int other = 1; other < 3; ++other)
+        if (lattice.n[other] > lattice.n[axis]) axis = other;
+    const std::int64_t layers = lattice.n[axis] / block_cells + 1,
+                       wanted = std::clamp<std::int64_t>(count, 1, layers);
+    std::vector<CellRange> slabs(static_cast<std::size_t>(wanted));
+    for (std::int64_t i = 0; i < wanted; ++i) {
+        CellRange& slab = slabs[static_cast<std::size_t>(i)];
+        slab.lo[axis] = i * layers / wanted * block_cells;
+        slab.hi[axis] = (i + 1) * layers / wanted * block_cells;
+    }
+    return slabs;
+}
+
+Survey survey_of(const LatticeCull& cull, const std::vector<CellRange>& slabs, const SpatialCells& cells,
+                 const Progress& progress) {
+    std::vector<Survey> workers(static_cast<std::size_t>(thread_count()));
+    for (Survey& worker : workers) worker.kept.resize(SpatialCells::count);
+    Survey survey;
+    for (std::size_t i = 0; i < slabs.size(); ++i) {
+        const auto share = [&](std::size_t done) {
+            return static_cast<double>(done) / static_cast<double>(slabs.size());
+        };
+        survey.unseen +=
+            cull.run(cull.blocks(slabs[i], progress), progress.part(share(i), share(i + 1)),
+                     [&](std::span<const KeptStore::Run> runs) { add_to(runs, cells, workers); });
+    }
+    survey.kept.resize(SpatialCells::count);
+    for (const Survey& worker : workers) {
+        survey.lit += worker.lit;
+        survey.dark += worker.dark;
+        survey.lit_box.add(worker.lit_box);
+        for (std::size_t cell = 0; cell < survey.kept.size(); ++cell) survey.kept[cell] += worker.kept[cell];
+    }
+    return survey;
+}
+
+/// Cells of the file's order, from `first` on.
+struct Part {
+    std::uint32_t first, cells;
+    std::int64_t most;  // positions that a cull of it keeps, at most
+};
+
+/// Halves space until parts hold no more than `most` positions.
+class PartList {
+  public:
+    PartList(const Survey& survey, const SpatialCells& surveyed, const SpatialCells& cells, std::int64_t most)
+        : survey_(survey), surveyed_(surveyed), cells_(cells), most_(most) {
+        add(0, SpatialCells::count);
+    }
+    std::vector<Part> parts;
+
+  private:
+    void add(std::uint32_t first, std::uint32_t count) {
+        const std::int64_t kept = kept_about(cells_.cube(first, count));
+        if (kept == 0) return;
+        if (kept <= most_ || count == 1 || !cells_.extended()) {
+            parts.push_back({first, count, kept});
+            return;
+        }
+        for (std::uint32_t child = 0; child < 8; ++child) add(first + child * (count / 8), count / 8);
+    }
+
+    /// Positions in all surveyed cells that the cube reaches, and in its neighbourhood's.
+    std::int64_t kept_about(const Bounds& cube) const {
+        const glm::dvec3 margin(1e-6 * cube.extent().x);
+        const glm::uvec3 lo = surveyed_.place_of(cube.lo - margin), hi = surveyed_.place_of(cube.hi + margin);
+        std::int64_t kept = 0;
+        for (std::uint32_t z = lo.z; z <= hi.z; ++z)
+            for (std::uint32_t y = lo.y; y <= hi.y; ++y)
+                for (std::uint32_t x = lo.x; x <= hi.x; ++x)
+                    kept += survey_.kept[SpatialCells::number_of({x, y, z})];
+        return kept;
+    }
+
+    const Survey& survey_;
+    const SpatialCells &surveyed_, &cells_;
+    std::int64_t most_;
+};
+
+/// The cells of the lattice whose positions, moved by jitter and rounded, may lie in the cube.
+CellRange cells_about(const Bounds& cube, const Lattice& lattice) {
+    const glm::dvec3 size = glm::max(glm::abs(lattice.box.lo), glm::abs(lattice.box.hi));
+    const glm::dvec3 rounding(2.0 * FLT_EPSILON * std::max({size.x, size.y, size.z}));
+    const glm::dvec3 spacing = lattice.spacing();
+    CellRange range;
+    for (int axis = 0; axis < 3; ++axis) {
+        const double lo = (cube.lo[axis] - rounding[axis] - lattice.box.lo[axis]) / spacing[axis];
+        const double hi = (cube.hi[axis] + rounding[axis] - lattice.box.lo[axis]) / spacing[axis];
+        const auto last = static_cast<double>(lattice.n[axis]);
+        range.lo[axis] = static_cast<std::int64_t>(std::clamp(std::floor(lo) - 2.0, 0.0, last));
+        range.hi[axis] = static_cast<std::int64_t>(std::clamp(std::ceil(hi) + 2.0, 0.0, last) + 1.0);
+    }
+    return range;
+}
+
+/// Writes the part's rows: the lit positions in its cells.
+void write_part(const LatticeCull& cull, const Lattice& lattice, const SpatialCells& cells, const Part& part,
+                const Progress& progress, NativeStream& file) {
+    const std::vector<LatticeBlock> blocks =
+        cull.blocks(cells_about(cells.cube(part.first, part.cells), lattice), progress);
+    SplatSet set;
+    reserve(set, blocks.size() * 2 * block_positions);
+    cull.run(blocks, progress, [&](std::span<const KeptStore::Run> runs) { append_sorted(runs, set); });
+    Buffer<std::uint32_t> bins(set.position.size());
+    parallel_each(bins.size(), 1 << 14, [&](std::size_t i) {
+        const std::uint32_t cell = cells.of(set.position[i]) - part.first;
+        bins[i] = cell < part.cells && set.alpha[i] > 0.0f ? cell : part.cells;
+    });
+    const auto others = static_cast<std::size_t>(std::ranges::count(bins, part.cells));
+    const Buffer<std::uint32_t> rows = rows_by_bin<std::uint32_t>(bins, part.cells + 1, set.id);
+    file.append(set, std::span(rows).first(rows.size() - others));
+}
+
+// Without splats none.
+SplatColumns written_columns(std::int64_t splats) {
+    SplatColumns columns;
+    for_each_column([&](auto, SplatColumn column) {
+        columns.set(index_of(column), splats > 0 && is_generated(column) && column != SplatColumn::face);
+    });
+    return columns;
+}
+
+}  // namespace
+
+std::int64_t write_columns(const WriteTarget& target, std::span<const TexturedMesh> meshes,
+                           const Lattice& lattice, double max_distance, double jitter, std::uint32_t seed,
+                           std::int64_t room_bytes, const Progress& progress) {
+    constexpr double positions_of_block = 4.0;  // few: of the thinnest sheets
+    const LatticeCull cull(meshes, lattice, {max_distance, jitter, seed});
+    const SpatialCells surveyed(lattice.box);
+    const double blocks = expected_positions(lattice, meshes, max_distance) / positions_of_block;
+    const double slabs = std::ceil(blocks * sizeof(LatticeBlock) / (0.25 * static_cast<double>(room_bytes)));
+    const Survey survey = survey_of(cull, slabs_of(lattice, static_cast<std::int64_t>(std::min(slabs, 1e9))),
+                                    surveyed, progress.part(0.0, 0.45));
+
+    SplatSetFacts facts = facts_of_columns(meshes, lattice, max_distance);
+    facts.zero_alpha = survey.dark + survey.unseen;
+    NativeStream file(target, facts, written_columns(survey.lit), survey.lit);
+    if (survey.lit > 0) {
+        const std::int64_t bytes_per_row = static_cast<std::int64_t>(bytes_per_splat(is_generated)) +
+                                           2 * sizeof(std::uint32_t) + sizeof(LatticeBlock);
+        const SpatialCells cells(survey.lit_box);
+        const std::vector<Part> parts = PartList(survey, surveyed, cells, room_bytes / bytes_per_row).parts;
+        for (std::size_t i = 0; i < parts.size(); ++i) {
+            const auto share = [&](std::size_t done) {
+                return 0.45 + 0.55 * static_cast<double>(done) / static_cast<double>(parts.size());
+            };
+            claim_memory(parts[i].most * bytes_per_row, "a part of the splats");
+            write_part(cull, lattice, cells, parts[i], progress.part(share(i), share(i + 1)), file);
+        }
+    }
+    file.finish();
+    return survey.lit;
 }
 
 }  // namespace astrosplat

@@ -1,5 +1,6 @@
 // The test positions of a mesh source (DESIGN 4): corners and centres of equal cells over a box, each moved a
-// little by its own random numbers. In: source parameters and meshes. Out: Lattice, and positions by id.
+// little by its own random numbers; and how much room there is near meshes, which tells how many of them are
+// kept. In: source parameters and meshes. Out: Lattice, and positions by id.
 #pragma once
 
 #include <cstdint>
@@ -67,5 +68,16 @@ double expected_kept(const Lattice& lattice, std::span<const TexturedMesh> meshe
 /// How many a source's set will have, about: that, or source.splats where the lattice is chosen by it.
 double expected_splats(const SourceParams& source, const Lattice& lattice,
                        std::span<const TexturedMesh> meshes, double max_distance);
+
+/// Of the box, cubic scene units.
+struct Neighbourhood {
+    double volume = 0.0;  // within the distance of a surface
+    double lit = 0.0;     // that part of it whose closest point has an alpha above 0
+};
+
+/// Measures it, within about 1 %: thin meshes, rims and overlaps make it differ from twice the area times the
+/// distance. Zeros where the box has no extent along an axis, or is too large for what is in it.
+Neighbourhood measure_neighbourhood(std::span<const TexturedMesh> meshes, const Bounds& box,
+                                    double max_distance);
 
 }  // namespace astrosplat

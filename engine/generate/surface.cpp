@@ -9,7 +9,7 @@
 
 #include "core/parallel.h"
 #include "core/text.h"
-#include "source/picture_camera.h"
+#include "source/textured_mesh.h"
 
 namespace astrosplat {
 namespace {

@@ -9,7 +9,7 @@
 #include <span>
 
 #include "core/buffer.h"
-#include "generate/closest_triangle.h"
+#include "generate/triangle_tree.h"
 #include "source/textured_mesh.h"
 #include "splats/splat_set.h"
 

@@ -1,11 +1,16 @@
-// The tree: triangles sorted so that neighbours lie together, eight to a box, eight boxes to the next; and
-// the search of one position, nearest boxes first.
+// Closest points by Ericson's regions of a triangle; one without a usable inside counts as its three edges.
+// Bounds come from a triangle's smallest circle, its unit normal and its corners. Triangles are sorted so
+// that neighbours lie together, eight to a box, eight boxes to the next; a search takes the nearest boxes
+// first.
 #include "generate/triangle_tree.h"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
 
 #include "core/bounds.h"
 #include "core/error.h"
@@ -13,6 +18,104 @@
 
 namespace astrosplat {
 namespace {
+
+double squared(const glm::dvec3& v) { return v.x * v.x + v.y * v.y + v.z * v.z; }
+double dot(const glm::dvec3& a, const glm::dvec3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+
+ClosestPoint at(const glm::dvec3& ap, const TriangleShape& s, double v, double w) {
+    return {squared(ap - s.ab * v - s.ac * w), 0, {v, w}};
+}
+
+// Parameter in [0, 1] of the closest point on the segment from the origin along `edge`; 0 for a segment of no
+// length.
+double along(const glm::dvec3& p, const glm::dvec3& edge) {
+    const double length_squared = squared(edge);
+    return length_squared > 0.0 ? std::clamp(dot(p, edge) / length_squared, 0.0, 1.0) : 0.0;
+}
+
+ClosestPoint closest_on_edges(const glm::dvec3& ap, const TriangleShape& s) {
+    const double t_ab = along(ap, s.ab), t_ac = along(ap, s.ac), t_bc = along(ap - s.ab, s.ac - s.ab);
+    ClosestPoint best = at(ap, s, t_ab, 0.0);
+    for (const ClosestPoint& other : {at(ap, s, 0.0, t_ac), at(ap, s, 1.0 - t_bc, t_bc)}) {
+        if (other.distance_squared < best.distance_squared) best = other;
+    }
+    return best;
+}
+
+}  // namespace
+
+ClosestPoint closest_on_triangle(const glm::dvec3& p, const TriangleShape& s) {
+    const glm::dvec3 ap = p - s.a;
+    const double d1 = dot(s.ab, ap), d2 = dot(s.ac, ap);  // from a; from b and c the same dot products follow
+    const double d3 = d1 - s.ab_ab, d4 = d2 - s.ab_ac;
+    const double d5 = d1 - s.ab_ac, d6 = d2 - s.ac_ac;
+    if (has_no_inside(s)) return closest_on_edges(ap, s);
+    if (d1 <= 0.0 && d2 <= 0.0) return at(ap, s, 0.0, 0.0);
+    if (d3 >= 0.0 && d4 <= d3) return at(ap, s, 1.0, 0.0);
+    if (d6 >= 0.0 && d5 <= d6) return at(ap, s, 0.0, 1.0);
+    const double vc = d1 * d4 - d3 * d2;
+    if (vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0) return at(ap, s, d1 / s.ab_ab, 0.0);
+    const double vb = d5 * d2 - d1 * d6;
+    if (vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0) return at(ap, s, 0.0, d2 / s.ac_ac);
+    const double va = d3 * d6 - d5 * d4;
+    const double to_c = d4 - d3, to_b = d5 - d6;
+    if (va <= 0.0 && to_c >= 0.0 && to_b >= 0.0) {
+        const double w = to_c / (to_c + to_b);
+        return at(ap, s, 1.0 - w, w);
+    }
+    const double scale = 1.0 / (va + vb + vc);
+    return at(ap, s, vb * scale, vc * scale);
+}
+
+namespace {
+
+struct TriangleBox {
+    glm::vec3 lo, hi;
+};
+
+double squared_length(const glm::dvec3& v) { return v.x * v.x + v.y * v.y + v.z * v.z; }
+
+// The middle of the smallest circle around a triangle, from its first corner: the circumcentre where all
+// angles are acute, else the middle of the longest side.
+glm::dvec3 circle_middle(const TriangleShape& s) {
+    const double at_b = s.ab_ab - s.ab_ac, at_c = s.ac_ac - s.ab_ac;
+    if (has_no_inside(s) || s.ab_ac <= 0.0 || at_b <= 0.0 || at_c <= 0.0) {
+        const double bc_bc = at_b + at_c;
+        if (s.ab_ab >= s.ac_ac && s.ab_ab >= bc_bc) return s.ab * 0.5;
+        return s.ac_ac >= bc_bc ? s.ac * 0.5 : (s.ab + s.ac) * 0.5;
+    }
+    const double area_squared = s.ab_ab * s.ac_ac - s.ab_ac * s.ab_ac;
+    return (s.ab * (s.ac_ac * at_b) + s.ac * (s.ab_ab * at_c)) / (2.0 * area_squared);
+}
+
+// How far closest_on_triangle may place a point outside the triangle, as a part of its size.
+double overshoot(const TriangleShape& s) {
+    const double corners = s.ab_ab * s.ac_ac;
+    const double sine_squared = corners > 0.0 ? (corners - s.ab_ac * s.ab_ac) / corners : 0.0;
+    return 1e-6 + (sine_squared > 1e-14 ? 1e-15 / sine_squared : 0.0);
+}
+
+// Unit, or 0 for triangles that have no plane worth a bound.
+glm::dvec3 usable_normal(const TriangleShape& s) {
+    const glm::dvec3 normal = glm::cross(s.ab, s.ac);
+    const double length = std::sqrt(squared_length(normal));
+    return length > 0.0 && !is_narrow(s) ? normal / length : glm::dvec3(0.0);
+}
+
+TriangleBox triangle_box(const TriangleShape& s, const glm::dvec3& origin) {
+    const glm::dvec3 a = s.a - origin, b = a + s.ab, c = a + s.ac;
+    const glm::dvec3 lo = glm::min(glm::min(a, b), c), hi = glm::max(glm::max(a, b), c);
+    const glm::dvec3 more = (hi - lo) * overshoot(s);
+    return {glm::vec3(lo - more), glm::vec3(hi + more)};
+}
+
+TriangleDisc triangle_disc(const TriangleShape& s, const glm::dvec3& origin) {
+    const glm::dvec3 middle = circle_middle(s);
+    const double radius = std::sqrt(
+        std::max({squared_length(middle), squared_length(middle - s.ab), squared_length(middle - s.ac)}));
+    return {glm::vec3(s.a - origin + middle), glm::vec3(usable_normal(s)),
+            static_cast<float>(radius * (1.0 + overshoot(s)))};
+}
 
 constexpr std::size_t fan = TriangleTree::fan;
 constexpr std::int64_t triangles_per_chunk = 4096;

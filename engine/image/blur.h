@@ -1,6 +1,10 @@
-// Gaussian blurs of images in memory. In and out: interleaved float channels; beyond its edges an image
-// is mirrored (half-sample symmetric). The same bits with any number of threads.
+// Images less their detail: Gaussian blurs, and grey-scale openings, which cut off what is small and bright.
+// In and out: interleaved float channels; the same bits with any number of threads and on every instruction
+// set. For a blur an image is mirrored beyond its edges (half-sample symmetric).
 #pragma once
+
+#include <cstdint>
+#include <span>
 
 #include "core/image.h"
 
@@ -24,5 +28,15 @@ Image halved(const Image& image);
 
 /// The inverse step: `width` x `height` px, interpolated linearly; `image` has half of each, rounded up.
 Image doubled(const Image& image, std::int64_t width, std::int64_t height);
+
+/// The largest, over all squares of 2 reach_px + 1 about the pixel's neighbours that hold it, of the least
+/// value in the square: peaks narrower than a square are gone, slopes and edges stay. Squares that leave the
+/// image count with what lies within. One channel, reach_px >= 0; the time hardly grows with reach_px.
+Image opened(Image image, std::int64_t reach_px);
+
+/// The inner loop of blurs: out[i] = sum of weights[k] * rows[k][i] for i in [0, count), terms in ascending
+/// k. `out` overlaps no row.
+void weighted_rows(std::span<const float> weights, std::span<const float* const> rows, std::int64_t count,
+                   float* out);
 
 }  // namespace astrosplat

@@ -1,6 +1,7 @@
 #include "image/channels.h"
 
 #include <algorithm>
+#include <cassert>
 
 #include "core/parallel.h"
 
@@ -25,6 +26,18 @@ Image brightest_channel(const Image& light) {
         }
     });
     return brightest;
+}
+
+Image mean_of_channels(const Image& image) {
+    assert(image.channels >= 3);
+    Image mean = make_image(image.width, image.height, 1);
+    parallel_each(image.height, 16, [&](std::int64_t y) {
+        for (std::int64_t x = 0; x < image.width; ++x) {
+            const float* const p = image.at(x, y);
+            *mean.at(x, y) = (p[0] + p[1] + p[2]) / 3.0f;
+        }
+    });
+    return mean;
 }
 
 Image channel_of(const Image& image, int channel) {

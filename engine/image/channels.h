@@ -13,6 +13,9 @@ Image copied(const Image& image);
 /// max(R, G, B) of every pixel.
 Image brightest_channel(const Image& light);
 
+/// The mean of the first three channels.
+Image mean_of_channels(const Image& image);
+
 /// One channel alone.
 Image channel_of(const Image& image, int channel);
 

@@ -1,13 +1,212 @@
 #include "image/resample.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <glm/matrix.hpp>
+#include <memory>
+#include <numeric>
+#include <span>
+#include <utility>
+#include <vector>
 
 #include "core/parallel.h"
 #include "image/blur.h"
 
 namespace astrosplat {
+namespace {
+
+// Which of the old pixels along a side a new one covers, and its share of each.
+struct Cover {
+    std::int64_t first = 0;
+    std::vector<float> shares;
+};
+
+Cover cover_of(std::int64_t i, std::int64_t before, std::int64_t after) {
+    const double width = static_cast<double>(before) / static_cast<double>(after);
+    const double begin = static_cast<double>(i) * width, end = static_cast<double>(i + 1) * width;
+    Cover cover{static_cast<std::int64_t>(begin), {}};
+    for (std::int64_t k = cover.first; k < before && static_cast<double>(k) < end; ++k) {
+        const double lo = std::max(begin, static_cast<double>(k)),
+                     hi = std::min(end, static_cast<double>(k + 1));
+        cover.shares.push_back(static_cast<float>((hi - lo) / width));
+    }
+    return cover;
+}
+
+float light(float value) { return value > 0.0f && std::isfinite(value) ? value : 0.0f; }
+
+// Towards its neighbours, linearly: a pixel's values at the middles of its parts, row by row.
+class Parts {
+  public:
+    explicit Parts(int times) : values(static_cast<std::size_t>(times) * static_cast<std::size_t>(times)) {
+        for (int i = 0; i < times; ++i)
+            offsets_.push_back((static_cast<float>(i) + 0.5f) / static_cast<float>(times) - 0.5f);
+    }
+
+    void set(const float (&around)[3][3]) {
+        std::size_t at = 0;
+        for (const float y : offsets_) {
+            const int row = y < 0.0f ? 0 : 2;
+            for (const float x : offsets_) {
+                const int column = x < 0.0f ? 0 : 2;
+                const float a = std::fabs(x), b = std::fabs(y);
+                values[at++] = (1.0f - b) * ((1.0f - a) * around[1][1] + a * around[1][column]) +
+                               b * ((1.0f - a) * around[row][1] + a * around[row][column]);
+            }
+        }
+        const float sum = std::accumulate(values.begin(), values.end(), 0.0f);
+        const float gain = sum > 0.0f ? around[1][1] * static_cast<float>(values.size()) / sum : 0.0f;
+        for (float& value : values) value *= gain;
+    }
+
+    std::vector<float> values;
+
+  private:
+    std::vector<float> offsets_;  // of the parts' middles, in pixels
+};
+
+class Reduction {
+  public:
+    Reduction(std::int64_t width_before, std::int64_t height_before, int channels, std::int64_t width,
+              std::int64_t height)
+        : width_before_(width_before),
+          height_before_(height_before),
+          out_(make_image(width, height, channels)) {
+        assert(0 < width && width <= width_before && 0 < height && height <= height_before);
+        for (std::int64_t x = 0; x < width; ++x) columns_.push_back(cover_of(x, width_before, width));
+    }
+
+    Cover rows_under(std::int64_t y) const { return cover_of(y, height_before_, out_.height); }
+
+    // Rows of the result; row(y) gives those of the image that they cover.
+    template <class Row>
+    void make(std::int64_t begin, std::int64_t end, const Row& row) {
+        parallel_each(end - begin, 4, [&](std::int64_t i) {
+            const Cover under = rows_under(begin + i);
+            std::vector<const float*> covered;
+            for (std::size_t k = 0; k < under.shares.size(); ++k)
+                covered.push_back(row(under.first + static_cast<std::int64_t>(k)));
+            make_row(under, covered, begin + i);
+        });
+    }
+
+    Image take() { return std::move(out_); }
+
+  private:
+    void make_row(const Cover& under, std::span<const float* const> covered, std::int64_t y) {
+        Image row = unfilled_image(width_before_, 1, out_.channels);
+        weighted_rows(under.shares, covered, width_before_ * out_.channels, row.pixels.data());
+        for (std::int64_t x = 0; x < out_.width; ++x) {
+            const Cover& column = columns_[static_cast<std::size_t>(x)];
+            for (std::size_t k = 0; k < column.shares.size(); ++k)
+                for (int c = 0; c < out_.channels; ++c)
+                    out_.at(x, y)[c] +=
+                        column.shares[k] * row.at(column.first + static_cast<std::int64_t>(k), 0)[c];
+        }
+    }
+
+    std::int64_t width_before_, height_before_;
+    std::vector<Cover> columns_;
+    Image out_;
+};
+
+// Rows of an image in order, of which only those are held that are still to be used.
+class RowWindow {
+  public:
+    explicit RowWindow(const ImageRows& rows) : rows_(rows), row_floats_(rows.width * rows.channels) {}
+
+    // Begins no earlier, and ends no earlier, than the last time.
+    void move_to(std::int64_t begin, std::int64_t end) {
+        const std::int64_t kept = std::max<std::int64_t>(0, end_ - begin);
+        std::copy(values_.end() - kept * row_floats_, values_.end(), values_.begin());
+        values_.resize(static_cast<std::size_t>((end - begin) * row_floats_));
+        rows_.read(begin + kept, end, values_.data() + kept * row_floats_);
+        begin_ = begin;
+        end_ = end;
+    }
+    const float* row(std::int64_t y) const { return values_.data() + (y - begin_) * row_floats_; }
+
+  private:
+    const ImageRows& rows_;
+    std::int64_t row_floats_, begin_ = 0, end_ = 0;
+    Buffer<float> values_;
+};
+
+}  // namespace
+
+ImageRows rows_of(Image image) {
+    const auto held = std::make_shared<const Image>(std::move(image));
+    return {held->width, held->height, held->channels,
+            [held](std::int64_t begin, std::int64_t end, float* rows) {
+                std::copy(held->at(0, begin), held->at(0, end), rows);
+            }};
+}
+
+Image read_whole(const ImageRows& rows) {
+    Image image = unfilled_image(rows.width, rows.height, rows.channels);
+    const std::int64_t at_once = strip_rows(rows);
+    for (std::int64_t begin = 0; begin < rows.height; begin += at_once)
+        rows.read(begin, std::min(rows.height, begin + at_once), image.at(0, begin));
+    return image;
+}
+
+ImageSize size_of_area(std::int64_t width, std::int64_t height, double area, double smallest_px) {
+    const auto w = static_cast<double>(width), h = static_cast<double>(height);
+    const double least = std::min(1.0, smallest_px / std::min(w, h));
+    const double side = std::clamp(std::sqrt(area / (w * h)), least, 1.0);
+    return {std::llround(side * w), std::llround(side * h)};
+}
+
+std::int64_t strip_rows(const ImageRows& rows) {
+    constexpr std::int64_t floats = std::int64_t{1} << 23;
+    return std::clamp<std::int64_t>(floats / std::max<std::int64_t>(1, rows.width * rows.channels), 1,
+                                    rows.height);
+}
+
+Image reduced_by_area(const ImageRows& rows, std::int64_t width, std::int64_t height) {
+    Reduction reduction(rows.width, rows.height, rows.channels, width, height);
+    RowWindow window(rows);
+    const std::int64_t at_once = std::max<std::int64_t>(1, strip_rows(rows) * height / rows.height);
+    for (std::int64_t begin = 0; begin < height; begin += at_once) {
+        const std::int64_t end = std::min(height, begin + at_once);
+        const Cover last = reduction.rows_under(end - 1);
+        window.move_to(reduction.rows_under(begin).first,
+                       last.first + static_cast<std::int64_t>(last.shares.size()));
+        reduction.make(begin, end, [&](std::int64_t y) { return window.row(y); });
+    }
+    return reduction.take();
+}
+
+Image reduced_by_area(const Image& image, std::int64_t width, std::int64_t height) {
+    Reduction reduction(image.width, image.height, image.channels, width, height);
+    reduction.make(0, height, [&](std::int64_t y) { return image.at(0, y); });
+    return reduction.take();
+}
+
+Image enlarged(const Image& image, int times) {
+    Image out = unfilled_image(image.width * times, image.height * times, image.channels);
+    parallel_each(image.height, 16, [&](std::int64_t y) {
+        Parts parts(times);
+        for (std::int64_t x = 0; x < image.width; ++x) {
+            for (int c = 0; c < image.channels; ++c) {
+                float around[3][3];
+                for (int j = 0; j < 3; ++j)
+                    for (int i = 0; i < 3; ++i)
+                        around[j][i] =
+                            light(image.at(std::clamp(x + i - 1, std::int64_t{0}, image.width - 1),
+                                           std::clamp(y + j - 1, std::int64_t{0}, image.height - 1))[c]);
+                parts.set(around);
+                for (int j = 0; j < times; ++j)
+                    for (int i = 0; i < times; ++i)
+                        out.at(x * times + i, y * times + j)[c] =
+                            parts.values[static_cast<std::size_t>(j * times + i)];
+            }
+        }
+    });
+    return out;
+}
+
 namespace {
 
 // Two neighbouring texels along an axis of n and the share of the second.

@@ -1,13 +1,49 @@
-// Images at another size, as the renderer's pixels would show them. In: an image and where each output
-// pixel lies in it. Out: the image convolved with the pixel filter and sampled at the output pixels.
+// Images at another size: smaller by any ratio or larger by whole numbers, in pixels that are the means of
+// what they cover; or as the renderer's pixels would show them. In: an image in memory, or by rows. Out:
+// another.
 #pragma once
 
+#include <functional>
 #include <glm/mat2x2.hpp>
 #include <glm/vec2.hpp>
 
 #include "core/image.h"
 
 namespace astrosplat {
+
+/// An image that is handed out by rows, from the first one on: `read` writes those from `begin` to `end`, of
+/// width * channels values each. Whoever takes them asks for each row once, in their order.
+struct ImageRows {
+    std::int64_t width = 0, height = 0;  // px
+    int channels = 0;
+    std::function<void(std::int64_t begin, std::int64_t end, float* rows)> read;
+};
+
+/// Those of an image, which they hold.
+ImageRows rows_of(Image image);
+
+/// All of them, taken a strip at a time.
+Image read_whole(const ImageRows& rows);
+
+/// How many rows are taken at once: some 32 MiB of them.
+std::int64_t strip_rows(const ImageRows& rows);
+
+struct ImageSize {
+    std::int64_t width = 0, height = 0;  // px
+};
+
+/// That of an image reduced to `area` px^2, but to no less than `smallest_px` a side, if it had as many.
+ImageSize size_of_area(std::int64_t width, std::int64_t height, double area, double smallest_px);
+
+/// The image on width x height pixels, no more than it has. Its mean is kept. Of rows, a strip is held at a
+/// time; the bits are the same.
+Image reduced_by_area(const Image& image, std::int64_t width, std::int64_t height);
+Image reduced_by_area(const ImageRows& rows, std::int64_t width, std::int64_t height);
+
+/// Each pixel becomes times x times. They rise and fall towards its neighbours, and their mean is what the
+/// pixel was: no light moves from one pixel into another, and nothing overshoots below 0. A value that is not
+/// finite, or is less than 0, counts as 0.
+Image enlarged(const Image& image, int times);
 
 /// Texel place = offset + linear * pixel place. Places are in px from the top left corner, so that the
 /// centre of the first pixel is at (1/2, 1/2), on either side.

@@ -4,7 +4,7 @@
 // after foreach_target
 #include <hwy/highway.h>
 
-#include "image/weighted_rows.h"
+#include "image/blur.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace astrosplat::HWY_NAMESPACE {

@@ -1,11 +1,13 @@
 // The seven operators of DESIGN 5, in order: SplatSet + Look -> ShadedSplats. The arithmetic of one splat is
 // shaders/shared/look.glsl, which the preview compiles too; this prepares its uniforms and runs it over the
-// set.
+// set. Gaussians have more than other splats: colours that depend on where they are seen from, which come
+// before the look, and shapes, which come after it.
 #pragma once
 
 #include <cstdint>
 #include <glm/vec3.hpp>
 
+#include "core/buffer.h"
 #include "core/image.h"
 #include "core/progress.h"
 #include "look/look.h"
@@ -52,5 +54,21 @@ void apply_look(const SplatSet& set, const Look& look, const LookInputs& inputs,
 /// Cancelled: a set that was changed in part would be of no use.
 ShadedSplats apply_look_in_place(SplatSet& set, const Look& look, const LookInputs& inputs,
                                  const Progress& progress = {}, LookStatistics* statistics = nullptr);
+
+/// Where a layer is seen from, in its own space.
+struct SeenFrom {
+    glm::dvec3 eye{0.0};
+    glm::dvec3 along{0.0};  // parallel rays: their direction, length 1; else 0
+    bool operator==(const SeenFrom&) const = default;
+};
+
+/// Linear colours of a set with harmonics. Throws Cancelled.
+Buffer<glm::vec3> seen_colors(const SplatSet& set, const SeenFrom& from, const Progress& progress = {});
+
+/// Gives the splats that a look left of a set of Gaussians their shapes.
+void add_shapes(const SplatSet& set, ShadedSplats& shaded);
+
+/// Linear colours as a display shows them, beyond 0..1 too (sRGB), for layers that are composited so.
+void encode_colors(ShadedSplats& shaded);
 
 }  // namespace astrosplat

@@ -74,7 +74,7 @@ struct HorizontalAlpha {
 /// along the axis, and the sum is the mean over all places the surface may have between two of them, 2 reach
 /// / step * Integral p f. Both count only where there are splats: up to max_distance, should reach go beyond.
 /// picture: coverage, and every small part of a front view has the opacity and the light of the picture
-/// there, whatever the blend, the splats' width, and which of the positions became splats (normalise.h).
+/// there, whatever the blend, the splats' width, and which of the positions became splats (picture_fit.h).
 struct VerticalAlpha {
     enum class Shape { none, constant, linear, exponential, s106, curve };
     friend constexpr auto names_of(Shape) {

@@ -1,14 +1,32 @@
 // The pictures of a set as grids of cells about as small as the footprints of its splats, one grid for each
-// mesh, and what a footprint is there. In: a set and its look. Out: the grids; no values yet.
+// mesh: what a footprint is there, what the splats of a cell show, and what they should. In: a set, and its
+// look as the preview's own arithmetic has it (look.glsl), for a splat's chances rather than its fate. Out:
+// the grids; sums over the positions of a cell, the cell of every position that became a splat, and values on
+// cells blurred by the footprints there: nothing lies beyond a picture's edges, and pictures of different
+// meshes do not mix.
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
 #include <vector>
 
+#include "core/buffer.h"
 #include "look/kernel.h"
 #include "splats/splat_set.h"
 
 namespace astrosplat {
+
+struct OneSplat {
+    bool keep = false;
+    float probability = 0.0f;  // of being kept
+    glm::vec3 color{0.0f};
+    float alpha = 0.0f, radius = 0.0f;
+};
+
+/// Under `uniforms`, which need not be the run's own.
+OneSplat look_at(const LookRun& run, const LookUniforms& uniforms, std::int64_t i);
 
 /// What footprints are in one part of a picture.
 struct ChartBlock {
@@ -42,5 +60,60 @@ struct PictureChart {
 
 /// `falloff_variance`: along an axis, square radii. At most as many cells as the set has positions.
 PictureChart picture_chart(const LookRun& run, const SplatSet& set, double falloff_variance);
+
+/// A float for each cell of a chart.
+using CellValues = Buffer<float>;
+
+class ChartBlur {
+  public:
+    /// A footprint's weights on the cells about its own, which sum to 1; `squared`: the squares of these.
+    ChartBlur(const PictureChart& chart, bool squared);
+
+    /// The same bits with any number of threads and on any instruction set.
+    void operator()(CellValues& values);
+
+  private:
+    using Taps = std::vector<float>;  // an odd number, the middle one of the cell itself
+
+    void along_rows(const CellValues& from, CellValues& to) const;
+    void along_columns(const CellValues& from, CellValues& to) const;
+
+    const PictureChart& chart_;
+    std::vector<Taps> taps_u_, taps_v_;  // of each block
+    std::int64_t reach_ = 0;             // cells, of the widest footprint
+    CellValues between_;                 // rows are done, columns not yet
+};
+
+/// Opacity, and light in red, green and blue.
+inline constexpr std::size_t picture_channels = 4;
+using ChannelValues = std::array<CellValues, picture_channels>;
+
+/// In place of a cell: not a splat; one beyond an edge of the picture, whose light is no cell's.
+inline constexpr std::uint32_t no_cell = 0xffffffffu, beyond_cells = 0xfffffffeu;
+
+/// Sums over the positions of a block.
+struct CoverSums {
+    double due = 0.0;  // the column's mean of optical depth that each stands for, of a depth of 1, in cells
+    double unclamped = 0.0;  // how many there are in `due`; the others are as opaque as can be
+};
+
+/// Sums over the positions of each cell, or where it says so over those of them that became splats.
+struct PictureCells {
+    ChannelValues depth;   // of splats: alpha * color (of opacity: 1) * the area of the footprint in cells
+    CellValues squares;    // of splats: the square of that of opacity
+    ChannelValues wanted;  // what a front view shows where all is of the position's colour and alpha
+    CellValues positions;  // how many there are
+    /// Expected depth as the look's noise and crops leave it, and without them. Empty where it has none.
+    CellValues varied, plain;
+    std::vector<CoverSums> cover;        // of each block
+    std::vector<std::uint32_t> cell_of;  // of each position, or one of the two above
+};
+
+/// Memory that a chart's sums take, bytes.
+std::int64_t picture_cells_bytes(const PictureChart& chart, std::int64_t positions);
+
+/// The same bits with any number of threads.
+PictureCells picture_cells(const LookRun& run, const SplatSet& set, const PictureChart& chart,
+                           double falloff_integral);
 
 }  // namespace astrosplat

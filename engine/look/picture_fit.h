@@ -1,20 +1,35 @@
-// The factors of opacity and light that give every part of a picture its light back when its splats are
-// drawn. In: a chart and the sums of its cells. Out: four factors for each cell.
+// match = "picture": a front view shows the light of the picture, whichever of its positions became splats
+// and however wide they are. In: a set and its look, a chart and the sums of its cells. Out: factors of alpha
+// and colour for each splat that is kept.
 #pragma once
 
 #include <cstdint>
+#include <glm/vec4.hpp>
+#include <vector>
 
-#include "look/picture_cells.h"
+#include "look/kernel.h"
 #include "look/picture_chart.h"
+#include "splats/shaded_splats.h"
 
 namespace astrosplat {
 
-/// Of alpha * color for red, green and blue, and of alpha alone; from 1/4 to 4. `match` is one of
-/// MATCH_LIGHT, MATCH_TRANSMITTANCE and MATCH_SCREEN. Uses the sums up.
-/// `positions_due` of a square scene unit of surface, black ones too; 0: not known.
-ChannelValues picture_fit(const PictureChart& chart, PictureCells& cells, int match, double positions_due);
+/// What the layer's falloff looks like from afar.
+struct FalloffMoments {
+    double integral = 1.0;  // over the unit disc
+    double variance = 0.1;  // along an axis, square radii
+};
 
-/// Memory that it takes beside the sums at its peak, bytes.
-std::int64_t picture_fit_bytes(const PictureChart& chart);
+struct PictureFactors {
+    std::vector<std::uint32_t>
+        cell_of;            // of each splat that shade_run keeps, in order of the set, or beyond_cells
+    ChannelValues of_cell;  // of alpha, and of alpha * color
+};
+
+/// picture_chart, picture_cells and picture_fit. Empty for a set without u and v. Reads the set before its
+/// arrays are written over. The same bits with any number of threads. Throws InputError for want of memory.
+PictureFactors picture_factors(const LookRun& run, const SplatSet& set, const FalloffMoments& falloff);
+
+/// Multiplies; alphas end at 1.
+void apply_factors(const PictureFactors& factors, ShadedSplats& shaded);
 
 }  // namespace astrosplat

@@ -13,8 +13,7 @@
 #include "core/log.h"
 #include "core/parallel.h"
 #include "core/rotation.h"
-#include "look/columns.h"
-#include "look/curves.h"
+#include "look/profiles.h"
 #include "look/shared_look.h"
 
 namespace astrosplat {

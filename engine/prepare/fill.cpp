@@ -15,8 +15,8 @@
 namespace astrosplat {
 namespace {
 
-constexpr int sweeps = 24;  // of relaxation a level
-constexpr float over_relaxation = 1.5f;
+constexpr int sweeps = 24;                                 // of relaxation a level
+constexpr float over_relaxation = 1.5f;                    // between 1 and 2, where the sweeps converge
 constexpr std::int64_t rim_px = 2;                         // known pixels around a hole that its box takes in
 constexpr int directions = 16;                             // in which pieces of texture are looked for
 constexpr std::array<double, 3> distances{1.0, 1.6, 2.5};  // of the box's diagonal
@@ -101,7 +101,7 @@ void solve_membrane(Patch& patch) {
 }
 
 // Where a hole's box lies in the picture, with a rim of known pixels.
-Region with_rim(const Hole& hole, const Image& image) {
+Region with_rim(const PixelPart& hole, const Image& image) {
     const std::int64_t left = std::max<std::int64_t>(0, hole.box.x - rim_px);
     const std::int64_t top = std::max<std::int64_t>(0, hole.box.y - rim_px);
     return {left, top, std::min(image.width, hole.box.x + hole.box.width + rim_px) - left,
@@ -179,7 +179,7 @@ void clone(const Image& image, const Region& box, const Offset& offset, Patch& p
 }
 
 // Reads known pixels alone and writes those of the hole: holes can be filled in any order.
-void fill_hole(Image& image, const PixelMask& holes, const Hole& hole, FillKind kind) {
+void fill_hole(Image& image, const PixelMask& holes, const PixelPart& hole, FillKind kind) {
     const Region box = with_rim(hole, image);
     const Patch rim = patch_of(image, holes, box);
     Patch filled = rim;
@@ -196,54 +196,13 @@ void fill_hole(Image& image, const PixelMask& holes, const Hole& hole, FillKind 
     }
 }
 
-// Takes what is connected with a pixel out of the mask.
-Hole take_part(PixelMask& mask, std::int64_t first) {
-    Hole hole;
-    std::int64_t left = mask.width, top = mask.height, right = 0, bottom = 0;
-    std::vector<std::int64_t> open{first};
-    mask.pixels[static_cast<std::size_t>(first)] = 0;
-    while (!open.empty()) {
-        const std::int64_t i = open.back(), x = i % mask.width, y = i / mask.width;
-        open.pop_back();
-        hole.pixels.push_back(i);
-        left = std::min(left, x);
-        right = std::max(right, x + 1);
-        top = std::min(top, y);
-        bottom = std::max(bottom, y + 1);
-        for (std::int64_t v = std::max<std::int64_t>(0, y - 1); v <= std::min(mask.height - 1, y + 1); ++v) {
-            for (std::int64_t u = std::max<std::int64_t>(0, x - 1); u <= std::min(mask.width - 1, x + 1);
-                 ++u) {
-                if (mask.at(u, v) == 0) continue;
-                mask.at(u, v) = 0;
-                open.push_back(v * mask.width + u);
-            }
-        }
-    }
-    hole.box = {left, top, right - left, bottom - top};
-    std::sort(hole.pixels.begin(), hole.pixels.end());
-    return hole;
-}
-
 }  // namespace
 
-PixelMask make_mask(std::int64_t width, std::int64_t height) {
-    PixelMask mask{width, height, {}};
-    mask.pixels.assign(static_cast<std::size_t>(width * height), 0);
-    return mask;
-}
-
-std::vector<Hole> connected_parts(const PixelMask& mask) {
-    PixelMask left = mask;
-    std::vector<Hole> parts;
-    for (std::size_t i = 0; i < left.pixels.size(); ++i)
-        if (left.pixels[i] != 0) parts.push_back(take_part(left, static_cast<std::int64_t>(i)));
-    return parts;
-}
-
 void fill(Image& image, const PixelMask& holes, FillKind kind, const Progress& progress) {
-    const std::vector<Hole> parts = connected_parts(holes);
+    std::vector<PixelPart> parts = connected_parts(holes);
     parallel_each(parts.size(), 1, [&](std::size_t i) {
         progress.check();
+        std::ranges::sort(parts[i].pixels);
         fill_hole(image, holes, parts[i], kind);
     });
 }

@@ -40,7 +40,7 @@ std::vector<double> ring(const Image& image, double x, double y, double radius) 
     return values;
 }
 
-PictureStar core_of(const Hole& part, std::int64_t width, double noise) {
+PictureStar core_of(const PixelPart& part, std::int64_t width, double noise) {
     PictureStar star;
     for (const std::int64_t i : part.pixels) {
         star.x += static_cast<double>(i % width) + 0.5;
@@ -55,7 +55,7 @@ PictureStar core_of(const Hole& part, std::int64_t width, double noise) {
     return star;
 }
 
-bool is_round_patch(const Hole& part, const PictureStar& star) {
+bool is_round_patch(const PixelPart& part, const PictureStar& star) {
     const auto w = static_cast<double>(part.box.width), h = static_cast<double>(part.box.height);
     return part.pixels.size() >= fewest_pixels && star.core_px <= widest_core_px &&
            std::max(w, h) <= longest * std::min(w, h);
@@ -143,7 +143,7 @@ PixelMask saturated_pixels(const Image& image, double level) {
 
 std::vector<PictureStar> take_saturated_stars(Image& image, const PixelMask& saturated, double noise) {
     std::vector<PictureStar> stars;
-    for (const Hole& part : connected_parts(saturated)) {
+    for (const PixelPart& part : connected_parts(saturated)) {
         PictureStar star = core_of(part, saturated.width, noise);
         if (is_round_patch(part, star) && falls_off(image, star) && fit_wings(image, saturated, star))
             stars.push_back(star);

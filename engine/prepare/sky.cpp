@@ -6,18 +6,19 @@
 #include <cmath>
 #include <vector>
 
+#include "core/color.h"
 #include "core/parallel.h"
+#include "core/real.h"
 #include "core/sorting.h"
-#include "prepare/cells.h"
+#include "detect/background.h"
 #include "prepare/least_squares.h"
 
 namespace astrosplat {
 namespace {
 
-constexpr std::int64_t most_cells_a_side = 48;
+constexpr std::int64_t most_cells_a_side = 48;  // enough for a surface of six numbers
 constexpr int most_sky_clips = 20;
 constexpr double above = 1.5, below = 4.0;  // times the scatter of the cells, that are left out
-constexpr double sigma_of_sky_deviation = 1.4826;
 
 Vector<6> terms(double u, double v) { return {1.0, u, v, u * u, u * v, v * v}; }
 
@@ -65,7 +66,7 @@ double scatter_below(const std::vector<double>& away) {
     std::vector<double> sizes;
     for (const double d : away)
         if (d <= 0.0) sizes.push_back(-d);
-    return sigma_of_sky_deviation * percentile(std::move(sizes), 0.5);
+    return sigma_of_median_distance * percentile(std::move(sizes), 0.5);
 }
 
 Vector<6> fit_channel(std::vector<SkyCell> cells, int degree) {
@@ -108,6 +109,57 @@ void subtract_sky(Image& image, const SkySurface& sky) {
             const double v = across(static_cast<double>(y) + 0.5, image.height);
             const float alpha = image.channels > 3 ? p[3] : 1.0f;
             for (int c = 0; c < 3; ++c) p[c] -= alpha * static_cast<float>(sky.at(u, v, c));
+        }
+    });
+}
+
+namespace {
+
+// Multiplies all channels of every pixel by factor(x, y).
+template <class Factor>
+void fade(Image& image, const Factor& factor) {
+    parallel_each(image.height, 16, [&](std::int64_t y) {
+        for (std::int64_t x = 0; x < image.width; ++x) {
+            const float f = factor(x, y);
+            for (int c = 0; c < image.channels; ++c) image.at(x, y)[c] *= f;
+        }
+    });
+}
+
+}  // namespace
+
+double inside(const CutEllipse& ellipse, double x, double y) {
+    const double angle = real::radians(ellipse.angle_deg), c = real::cos(angle), s = real::sin(angle);
+    const double dx = x - ellipse.center_px.x, dy = y - ellipse.center_px.y;
+    const double u = (c * dx + s * dy) / ellipse.radii_px.x, v = (c * dy - s * dx) / ellipse.radii_px.y;
+    const double radius = std::sqrt(u * u + v * v);
+    if (!(ellipse.feather > 0.0)) return radius <= 1.0 ? 1.0 : 0.0;
+    return real::smoothstep(std::clamp((1.0 - radius) / ellipse.feather, 0.0, 1.0));
+}
+
+void cut_ellipse(Image& image, const CutEllipse& ellipse) {
+    fade(image, [&](std::int64_t x, std::int64_t y) {
+        return static_cast<float>(
+            inside(ellipse, static_cast<double>(x) + 0.5, static_cast<double>(y) + 0.5));
+    });
+}
+
+void cut_with_mask(Image& image, const Image& mask) {
+    assert(mask.width == image.width && mask.height == image.height && mask.channels >= 3);
+    fade(image, [&](std::int64_t x, std::int64_t y) {
+        const float* const p = mask.at(x, y);
+        return std::clamp((p[0] + p[1] + p[2]) / 3.0f, 0.0f, 1.0f);
+    });
+}
+
+void alpha_from_luminance(Image& image, double low, double high) {
+    assert(image.channels == 4 && low < high);
+    parallel_each(image.height, 16, [&](std::int64_t y) {
+        for (std::int64_t x = 0; x < image.width; ++x) {
+            float* const p = image.at(x, y);
+            const auto light = static_cast<double>(luminance(p[0], p[1], p[2]));
+            p[3] *= static_cast<float>(std::clamp((light - low) / (high - low), 0.0, 1.0));
+            if (p[3] == 0.0f) std::fill_n(p, 3, 0.0f);
         }
     });
 }

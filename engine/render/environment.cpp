@@ -17,8 +17,8 @@
 #include "core/parallel.h"
 #include "core/real.h"
 #include "core/rotation.h"
-#include "source/cube_faces.h"
 #include "source/texture.h"
+#include "source/tiled_sky.h"
 
 namespace astrosplat {
 namespace {

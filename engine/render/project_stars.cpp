@@ -76,8 +76,8 @@ float brightest(const glm::vec3& light) { return std::max({light.x, light.y, lig
 
 /// Which share of a dot of a wing or a spike is drawn.
 float shown_share(const StarDot& dot, float light) {
-    const float t = std::clamp((light * dot.share * dot.per_light / faintest_peak - 1.0f) / 3.0f, 0.0f, 1.0f);
-    return t * t * (3.0f - 2.0f * t);
+    return real::smoothstep(
+        std::clamp((light * dot.share * dot.per_light / faintest_peak - 1.0f) / 3.0f, 0.0f, 1.0f));
 }
 
 }  // namespace

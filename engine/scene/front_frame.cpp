@@ -4,7 +4,7 @@
 #include <glm/geometric.hpp>
 
 #include "core/error.h"
-#include "source/picture_camera.h"
+#include "source/textured_mesh.h"
 
 namespace astrosplat {
 namespace {

@@ -13,8 +13,8 @@
 #include "core/error.h"
 #include "core/memory.h"
 #include "core/parallel.h"
-#include "source/picture_camera.h"
 #include "source/sample.h"
+#include "source/textured_mesh.h"
 
 namespace astrosplat {
 namespace {

@@ -18,7 +18,7 @@
 #include "core/log.h"
 #include "core/real.h"
 #include "core/text.h"
-#include "prepare/star_table.h"
+#include "prepare/star_removal.h"
 #include "scene/new_scene.h"
 #include "scene/value.h"
 #include "source/texture.h"
@@ -95,7 +95,7 @@ struct CameraKeyframe {
 void tilt(double distance, double exposure, std::vector<CameraKeyframe>& keyframes) {
     constexpr int first = 36, last = 100, step = 8;
     for (int frame = first; frame <= last; frame += step) {
-        const double t = static_cast<double>(frame - first) / (last - first), eased = t * t * (3.0 - 2.0 * t);
+        const double t = static_cast<double>(frame - first) / (last - first), eased = real::smoothstep(t);
         const double angle = real::radians(45.0 * eased);
         keyframes.push_back(
             {frame,

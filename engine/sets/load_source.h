@@ -1,13 +1,16 @@
 // The front door of a layer's source. In: what [layer.source] says. Out: its SplatSet, generated from meshes
-// and pictures or read from a splat file; of columns also the steps on the way to it.
+// and pictures or read from a splat file; of columns also the steps on the way to it, of bodies what can be
+// seen before they are made, and what keys of 0 (automatic) come to.
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "core/progress.h"
-#include "generate/columns.h"
+#include "generate/generate.h"
+#include "generate/kept_store.h"
 #include "generate/lattice.h"
 #include "source/prepared_picture.h"
 #include "source/source.h"
@@ -68,9 +71,22 @@ ColumnPlan plan_columns(const SourceParams& source, const std::string& layer_nam
 Columns make_columns(const ColumnPlan& plan, const std::string& layer_name, const Progress& progress,
                      KeptWatcher* watcher = nullptr);
 
-/// The set of columns into a .splats file, without ever having it in memory (write_columns.h). Returns how
+/// The set of columns into a .splats file, without ever having it in memory (generate.h). Returns how
 /// many splats it has. Throws as load_source does, and OutputError.
 std::int64_t write_columns(const WriteTarget& target, const ColumnPlan& plan, const std::string& layer_name,
                            const Progress& progress);
+
+/// Of the first mesh and its first picture; 0 where nothing is automatic, or there is no such thing.
+struct AutomaticValues {
+    double body_height = 0.0;  // source.structure.height, scene units
+    double uv_width = 0.0;     // source.uv_width, scene units
+};
+
+/// Reads meshes, and pictures at a small size, where one of them is automatic. Throws InputError, Cancelled.
+AutomaticValues automatic_values(const SourceParams& source, const Progress& progress = {});
+
+/// Shows the watcher about as many splats as it can hold in any case, spread evenly over all pictures, each
+/// with the mean colour of its part.
+void show_flat(std::span<const TexturedMesh> meshes, KeptWatcher& watcher);
 
 }  // namespace astrosplat

@@ -18,9 +18,8 @@
 #include "core/log.h"
 #include "core/memory.h"
 #include "generate/kept_store.h"
-#include "sets/kept_sets.h"
+#include "sets/kept.h"
 #include "sets/load_source.h"
-#include "sets/prepared_cache.h"
 #include "sets/recipe.h"
 #include "sets/star_source.h"
 

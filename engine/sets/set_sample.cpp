@@ -8,13 +8,13 @@
 #include <utility>
 
 #include "bodies/bodies.h"
+#include "bodies/picture_size.h"
 #include "core/clock.h"
 #include "core/error.h"
 #include "core/file_format.h"
-#include "generate/columns.h"
-#include "sets/kept_sets.h"
+#include "generate/generate.h"
+#include "sets/kept.h"
 #include "sets/load_source.h"
-#include "sets/prepared_cache.h"
 #include "sets/recipe.h"
 #include "sets/set_cache.h"
 #include "splat_files/native_blocks.h"

@@ -8,7 +8,7 @@
 #include <string>
 
 #include "core/progress.h"
-#include "sets/cache_folder.h"
+#include "sets/kept.h"
 #include "source/source.h"
 #include "splats/splat_set.h"
 

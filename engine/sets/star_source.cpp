@@ -7,7 +7,6 @@
 #include <numeric>
 #include <vector>
 
-#include "bodies/front_hiding.h"
 #include "bodies/star_places.h"
 #include "core/error.h"
 #include "core/log.h"

@@ -1,6 +1,9 @@
-// Maps that a picture's own light tells of: where dust absorbs it, where it is redder or bluer than the rest.
-// In: linear light. Out: one channel, each value the share of light that the map stands for.
+// What a picture's own light tells of it: maps of where dust absorbs it and where it is redder or bluer than
+// the rest, and masks of where it is to show, told by brightness and colour, by an ellipse or by another
+// picture. In: linear light. Out: one channel: shares of light, weights.
 #pragma once
+
+#include <span>
 
 #include "core/image.h"
 #include "source/source.h"
@@ -17,5 +20,12 @@ namespace astrosplat {
 /// - young_stars: the share of blue light beyond s (R + G) / 2 in the same way.
 /// Light of 0.002 of white counts as noise in all of them. The same bits with any number of threads.
 Image derived_picture(const Image& light, Derived kind);
+
+/// One channel of the picture's size, 0..1: the product over masks of the product of their terms and the
+/// largest of their alternatives; `invert` makes 1 - w of a mask, or of an alternative. `light` is RGBA,
+/// linear, premultiplied: colours are those seen over black. Edges are linear ramps of the width `feather`
+/// about the border. Hue and saturation as in HSV, of display values; grey has no hue and is outside.
+/// Throws InputError where an image cannot be read.
+Image mask_weights(const Image& light, std::span<const MaskParams> masks);
 
 }  // namespace astrosplat

@@ -18,7 +18,6 @@
 #include "core/real.h"
 #include "core/text.h"
 #include "source/fits_headers.h"
-#include "source/fits_tiles.h"
 
 namespace astrosplat {
 namespace {

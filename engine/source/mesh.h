@@ -1,5 +1,5 @@
-// Triangle meshes: their measures, planar projections and the built-in shapes. In: a name, or a Mesh of
-// obj.h.
+// Triangle meshes: their measures, planar projections and the built-in shapes; polygons split into triangles.
+// In: a name, a Mesh of obj.h, or corners.
 #pragma once
 
 #include <array>
@@ -59,7 +59,16 @@ bool is_builtin_mesh(const std::filesystem::path& name);
 /// "plane": in xz, centred, longer side 10, `aspect` = width / height of the picture, u to +x, v to -z.
 /// "disk": radius 5 in xz, uv as the plane's, and the largest circle around the middle of the picture.
 /// "sphere": radius 5, equirectangular uv, seen from outside right way round. (The others are
-/// in relief.h and shapes.h.)
+/// in shapes.h.)
 Mesh builtin_mesh(const std::string& name, double aspect);
+
+/// The most corners a polygon that is not convex may have: clipping takes cubic time at worst.
+inline constexpr std::size_t max_concave_corners = 4096;
+
+/// Triangles of a polygon with n >= 3 corners, as n - 2 triples of indices into `corners`, wound as the
+/// polygon is. Convex ones become a fan around corner 0; others lose ears (Meisters 1975) in the plane their
+/// normal (Newell's) is closest to. A polygon that crosses itself becomes some n - 2 triangles of its
+/// corners. Empty when it is concave and has more than max_concave_corners.
+std::vector<std::array<std::uint32_t, 3>> triangulate(std::span<const glm::vec3> corners);
 
 }  // namespace astrosplat

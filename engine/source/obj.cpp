@@ -15,7 +15,7 @@
 #include "core/file.h"
 #include "core/log.h"
 #include "core/text.h"
-#include "source/polygon.h"
+#include "source/mesh.h"
 
 namespace astrosplat {
 namespace {

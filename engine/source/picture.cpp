@@ -10,14 +10,14 @@
 #include <utility>
 
 #include "core/color.h"
+#include "core/error.h"
 #include "core/log.h"
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "core/text.h"
-#include "source/credit.h"
 #include "source/fits.h"
-#include "source/jpeg_end.h"
 #include "source/picture.h"
+#include "source/picture_bytes.h"
 
 namespace astrosplat {
 namespace {
@@ -73,10 +73,40 @@ std::int64_t band_rows(const ImageSpec& spec) {
     return std::max<std::int64_t>(1, floats / row / step) * step;
 }
 
+// OpenEXR's cube maps are six faces one above the other; the display window that they come with is the first.
+bool is_cube_map(const ImageSpec& spec) {
+    return spec.get_string_attribute("textureformat") == "CubeFace Environment" &&
+           spec.height == 6 * spec.width;
+}
+
+// The window the picture shows, in the file's coordinates; the data window where the two do not meet.
+Region display_window(const ImageSpec& spec) {
+    const Region data{spec.x, spec.y, spec.width, spec.height};
+    if (is_cube_map(spec)) return data;
+    const Region display{spec.full_x, spec.full_y, spec.full_width, spec.full_height};
+    const bool meet = display.x < data.x + data.width && data.x < display.x + display.width &&
+                      display.y < data.y + data.height && data.y < display.y + display.height;
+    return meet ? display : data;
+}
+
+// A window may show much more than the file has pixels for, as that of a cropped frame does; but a few bytes
+// of header must not cost minutes and all memory. 16384 x 16384 px is more than any frame.
+void check_window(const fs::path& file, const ImageSpec& spec) {
+    constexpr std::int64_t largest_frame_px = std::int64_t{1} << 28, most_times = 64;
+    const Region window = display_window(spec);
+    const std::int64_t stored_px = std::int64_t{spec.width} * spec.height;
+    if (window.width <= std::max(largest_frame_px, most_times * stored_px) / window.height) return;
+    bad_input(
+        file.string(), "display window",
+        fmt::format("at most {} px for the {}x{} px that it has", largest_frame_px, spec.width, spec.height),
+        fmt::format("{}x{} px", window.width, window.height));
+}
+
 void check_spec(const fs::path& file, const ImageSpec& spec) {
     if (spec.deep) fail_picture(file, "it holds deep samples");
     if (spec.depth > 1) fail_picture(file, "it is a volume");
     if (spec.width < 1 || spec.height < 1 || spec.nchannels < 1) fail_picture(file, "it has no pixels");
+    check_window(file, spec);
     claim_memory(band_rows(spec) * spec.width * spec.nchannels * 4,
                  fmt::format("a band of {}", file.string()));
 }
@@ -135,22 +165,6 @@ void to_rgb(float* c) {
     c[0] = r;
     c[1] = g;
     c[2] = b;
-}
-
-// OpenEXR's cube maps are six faces one above the other; the display window that they come with is the first.
-bool is_cube_map(const ImageSpec& spec) {
-    return spec.get_string_attribute("textureformat") == "CubeFace Environment" &&
-           spec.height == 6 * spec.width;
-}
-
-// The window the picture shows, in the file's coordinates; the data window where the two do not meet.
-Region display_window(const ImageSpec& spec) {
-    const Region data{spec.x, spec.y, spec.width, spec.height};
-    if (is_cube_map(spec)) return data;
-    const Region display{spec.full_x, spec.full_y, spec.full_width, spec.full_height};
-    const bool meet = display.x < data.x + data.width && data.x < display.x + display.width &&
-                      display.y < data.y + data.height && data.y < display.y + display.height;
-    return meet ? display : data;
 }
 
 // One row of the window from a row of the file.
@@ -292,7 +306,7 @@ void require_picture(const fs::path& file) {
     if (is_fits(file))
         require_fits_picture(file);
     else
-        open_picture(file);
+        check_spec(file, open_picture(file)->spec());
 }
 
 }  // namespace astrosplat

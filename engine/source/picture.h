@@ -6,7 +6,7 @@
 
 #include "core/image.h"
 #include "core/progress.h"
-#include "image/area.h"
+#include "image/resample.h"
 
 namespace astrosplat {
 

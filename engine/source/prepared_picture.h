@@ -1,7 +1,9 @@
 // A picture made ready for a scene: put on another's grid, its holes filled, without its stars and its sky,
-// cut out. In: files and what is asked for. Out: linear light, and what was taken away.
+// cut out. In: files and what is asked for. Out: linear light that is not cut off anywhere, and what was
+// taken away.
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <functional>
 #include <optional>
@@ -10,6 +12,8 @@
 
 #include "core/image.h"
 #include "core/progress.h"
+#include "prepare/fill.h"
+#include "prepare/filters.h"
 #include "prepare/sky.h"
 #include "prepare/star_fit.h"
 #include "source/source.h"
@@ -35,6 +39,7 @@ PreparedPicture prepare_picture(const std::vector<std::filesystem::path>& files,
 using PictureMaker =
     std::function<PreparedPicture(const std::vector<std::filesystem::path>& files,
                                   const TextureSettings& settings, const Progress& progress)>;
+
 PreparedPicture make_prepared(const std::vector<std::filesystem::path>& files,
                               const TextureSettings& settings, const Progress& progress);
 

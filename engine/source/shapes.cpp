@@ -4,11 +4,15 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "core/color.h"
 #include "core/error.h"
 #include "core/real.h"
+#include "image/blur.h"
+#include "source/sample.h"
 
 namespace astrosplat {
 namespace {
@@ -155,6 +159,169 @@ Mesh turned_shape(const std::string& name, const ShapeParams& shape) {
         std::ranges::find_if(turned_shapes, [&](const TurnedShape& s) { return name == s.name; });
     Mesh mesh = found->make(shape);
     mesh.name = name;
+    return mesh;
+}
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::int64_t cells = 256;      // along the longer side
+constexpr double blur_of_longer = 0.02;  // standard deviation of the smoothing, of the longer side
+
+// One value per grid vertex, columns x rows, row 0 on top.
+struct Heights {
+    std::int64_t columns, rows;
+    std::vector<double> values;
+
+    double& at(std::int64_t x, std::int64_t y) { return values[y * columns + x]; }
+};
+
+// A value for each vertex of what the texels of its cell average to.
+template <class ValueOf>
+Heights sampled(const Texture& texture, std::int64_t columns, std::int64_t rows, const ValueOf& value_of) {
+    Texture lookup;
+    lookup.image = texture.image;
+    lookup.filter = TextureSettings::Filter::area;
+    lookup.wrap = TextureSettings::Wrap::clamp;
+    const glm::vec2 box(static_cast<float>(texture.image.width) / static_cast<float>(columns - 1),
+                        static_cast<float>(texture.image.height) / static_cast<float>(rows - 1));
+    Heights heights{columns, rows, std::vector<double>(columns * rows)};
+    for (std::int64_t y = 0; y < rows; ++y) {
+        for (std::int64_t x = 0; x < columns; ++x) {
+            const glm::vec2 uv(static_cast<float>(x) / static_cast<float>(columns - 1),
+                               1.0f - static_cast<float>(y) / static_cast<float>(rows - 1));
+            heights.at(x, y) = value_of(sample(lookup, uv, box));
+        }
+    }
+    return heights;
+}
+
+// What the eye sees as brightness: the display value of the luminance.
+Heights brightness(const Texture& texture, std::int64_t columns, std::int64_t rows) {
+    return sampled(texture, columns, rows, [](const TextureSample& s) {
+        const float light = luminance(s.color.x, s.color.y, s.color.z) * s.alpha;
+        return real::linear_to_srgb(std::min(light, 1.0f));
+    });
+}
+
+// One pass of a separable gaussian; the edge values continue outside.
+void blur(Heights& heights, double sigma, bool along_x) {
+    const auto reach = static_cast<std::int64_t>(std::ceil(3.0 * sigma));
+    std::vector<double> weight;
+    double total = 0.0;
+    for (std::int64_t k = -reach; k <= reach; ++k) {
+        weight.push_back(real::exp(-0.5 * static_cast<double>(k * k) / (sigma * sigma)));
+        total += weight.back();
+    }
+    Heights from = heights;
+    for (std::int64_t y = 0; y < heights.rows; ++y) {
+        for (std::int64_t x = 0; x < heights.columns; ++x) {
+            double sum = 0.0;
+            for (std::int64_t k = -reach; k <= reach; ++k) {
+                const std::int64_t sx = along_x ? std::clamp<std::int64_t>(x + k, 0, heights.columns - 1) : x;
+                const std::int64_t sy = along_x ? y : std::clamp<std::int64_t>(y + k, 0, heights.rows - 1);
+                sum += weight[k + reach] * from.at(sx, sy);
+            }
+            heights.at(x, y) = sum / total;
+        }
+    }
+}
+
+// The brightest place is 1, so that `height` means what it says for dark pictures too.
+void normalise(Heights& heights) {
+    const double most = *std::ranges::max_element(heights.values);
+    if (!(most > 0.0)) return;
+    for (double& value : heights.values) value /= most;
+}
+
+// The grid's corners over a picture of that aspect, `cells_of_longer` along its longer side.
+struct Grid {
+    double width, depth;  // scene units
+    std::int64_t columns, rows;
+};
+
+Grid grid_over(const Image& image, std::int64_t cells_of_longer) {
+    assert(image.width > 0 && image.height > 0);
+    const double aspect = static_cast<double>(image.width) / static_cast<double>(image.height);
+    const auto along = [&](double part_of_longer) {
+        const double rounded = std::floor(static_cast<double>(cells_of_longer) * part_of_longer + 0.5);
+        return std::max<std::int64_t>(1, static_cast<std::int64_t>(rounded)) + 1;
+    };
+    const double width = aspect >= 1.0 ? 10.0 : 10.0 * aspect;
+    return {width, width / aspect, along(std::min(1.0, aspect)), along(std::min(1.0, 1.0 / aspect))};
+}
+
+// The plane with every vertex (x, y), row 0 on top, lifted to height(x, y).
+template <class Height>
+Mesh lifted_plane(const Grid& grid, const Height& height) {
+    Mesh mesh;
+    for (std::int64_t y = 0; y < grid.rows; ++y) {
+        for (std::int64_t x = 0; x < grid.columns; ++x) {
+            const double u = static_cast<double>(x) / static_cast<double>(grid.columns - 1);
+            const double down = static_cast<double>(y) / static_cast<double>(grid.rows - 1);
+            mesh.positions.emplace_back((u - 0.5) * grid.width, height(x, y), (down - 0.5) * grid.depth);
+            mesh.uvs.emplace_back(u, 1.0 - down);
+        }
+    }
+    for (std::int64_t y = 0; y + 1 < grid.rows; ++y) {
+        for (std::int64_t x = 0; x + 1 < grid.columns; ++x) {
+            const auto d = static_cast<std::uint32_t>(y * grid.columns + x),
+                       a = static_cast<std::uint32_t>(d + grid.columns);
+            mesh.triangles.push_back({{a, a + 1, d + 1}, {a, a + 1, d + 1}, 0});
+            mesh.triangles.push_back({{a, d + 1, d}, {a, d + 1, d}, 0});
+        }
+    }
+    return mesh;
+}
+
+// The mean of a map's channels at every vertex, each averaging the texels of one cell.
+Heights map_values(const fs::path& file, const Grid& grid) {
+    const Image raw = load_raw_image(file);
+    Texture grey;
+    grey.image = make_image(raw.width, raw.height, 4, 1.0f);
+    for (std::int64_t i = 0; i < raw.width * raw.height; ++i) {
+        const float* const p = raw.pixels.data() + 3 * i;
+        std::fill_n(grey.image.pixels.data() + 4 * i, 3, (p[0] + p[1] + p[2]) / 3.0f);
+    }
+    return sampled(grey, grid.columns, grid.rows, [](const TextureSample& s) { return s.color.x; });
+}
+
+// Stretched so that the lowest is 0 and the highest 1; even ground is 1/2.
+void stretch(Image& heights) {
+    const auto [lowest, highest] = std::ranges::minmax_element(heights.pixels);
+    const float lo = *lowest, span = *highest - lo;
+    const bool is_even = span <= 1e-5f * std::max(std::fabs(lo), std::fabs(*highest));  // up to rounding
+    for (float& value : heights.pixels) value = is_even ? 0.5f : (value - lo) / span;
+}
+
+}  // namespace
+
+Mesh relief_mesh(const Texture& texture, double height) {
+    const Grid grid = grid_over(texture.image, cells);
+    Heights heights = brightness(texture, grid.columns, grid.rows);
+    blur(heights, blur_of_longer * cells, true);
+    blur(heights, blur_of_longer * cells, false);
+    normalise(heights);
+    Mesh mesh = lifted_plane(
+        grid, [&](std::int64_t x, std::int64_t y) { return heights.at(x, y) * height * grid.width; });
+    mesh.name = "relief";
+    return mesh;
+}
+
+Mesh sheet_mesh(const Texture& texture, const ShapeParams& shape) {
+    constexpr std::int64_t sheet_cells = 512;
+    const Grid grid = grid_over(texture.image, sheet_cells);
+    const Heights raw = shape.depth_map.empty() ? brightness(texture, grid.columns, grid.rows)
+                                                : map_values(shape.depth_map, grid);
+    Image heights = make_image(grid.columns, grid.rows, 1);
+    for (std::size_t i = 0; i < raw.values.size(); ++i) heights.pixels[i] = static_cast<float>(raw.values[i]);
+    heights = gaussian_blur(heights, shape.blur * static_cast<double>(sheet_cells));
+    stretch(heights);
+    Mesh mesh = lifted_plane(grid, [&](std::int64_t x, std::int64_t y) {
+        return (static_cast<double>(*heights.at(x, y)) - 0.5) * shape.depth * grid.width;
+    });
+    mesh.name = "sheet";
     return mesh;
 }
 

@@ -1,10 +1,12 @@
-// The built-in shapes beyond plane, disk and sphere. In: a name and the shape's own measures. Out: a mesh
-// about the origin, 10 scene units across or along, normals outward, with texture coordinates.
+// The built-in shapes beyond plane, disk and sphere, and the relief and sheet that a picture's brightness or
+// another map raises. In: a name and the shape's own measures; a picture. Out: a mesh about the origin, 10
+// scene units across or along, normals outward, with texture coordinates.
 #pragma once
 
 #include <string>
 
 #include "source/mesh.h"
+#include "source/texture.h"
 
 namespace astrosplat {
 
@@ -18,5 +20,15 @@ namespace astrosplat {
 /// Throws InputError for an outline of fewer than two points.
 Mesh turned_shape(const std::string& name, const ShapeParams& shape);
 bool is_turned_shape(const std::string& name);
+
+/// The built-in "relief": the plane of the texture's aspect, lifted towards +y by the smoothed brightness of
+/// the picture; `height` is a fraction of the plane's width. 256 cells along the longer side.
+Mesh relief_mesh(const Texture& texture, double height);
+
+/// "sheet": the same plane, displaced along y by `shape.depth_map`, whose mean channel is the height as
+/// stored, or without one by the picture's displayed brightness. Blurred, then stretched to `shape.depth` of
+/// the width, half of it on either side. 512 cells along the longer side. Throws InputError where the map
+/// cannot be read.
+Mesh sheet_mesh(const Texture& texture, const ShapeParams& shape);
 
 }  // namespace astrosplat

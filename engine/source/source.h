@@ -120,7 +120,7 @@ struct TextureSettings {
     bool operator==(const TextureSettings&) const = default;
 };
 
-/// Measures of the built-in shapes (shapes.h, relief.h), each of the shapes it names.
+/// Measures of the built-in shapes (shapes.h), each of the shapes it names.
 struct ShapeParams {
     std::vector<glm::vec2> outline;   // revolution: (r, y) from end to end, scene units
     double width = 0.5;               // hourglass: radius of a lobe without its share of the waist, of 5

@@ -17,7 +17,6 @@
 #include "image/blur.h"
 #include "source/derived_picture.h"
 #include "source/fits.h"
-#include "source/mask.h"
 #include "source/picture.h"
 
 namespace astrosplat {

@@ -1,19 +1,156 @@
+// Projections are in double; a face's coordinates are affine in the picture, not on the face.
 #include "source/textured_mesh.h"
 
 #include <algorithm>
 #include <cassert>
 #include <functional>
+#include <glm/matrix.hpp>
 #include <utility>
+#include <vector>
 
+#include "camera/projection.h"
 #include "core/error.h"
 #include "core/log.h"
+#include "core/real.h"
+#include "core/shared_noise.h"
 #include "source/obj.h"
-#include "source/picture_camera.h"
-#include "source/planar_uv.h"
-#include "source/relief.h"
 #include "source/shapes.h"
 
 namespace astrosplat {
+namespace {
+
+constexpr float displacement = 0.35f;  // of the picture, by noise of 1
+constexpr double noise_feature = 0.3;  // of the box's longest side
+constexpr std::uint32_t noise_seed = 0x5eedu;
+
+// The axis along which a picture is projected; it reads right from its positive end.
+int depth_axis(UvMode mode) { return mode == UvMode::planar_xy ? 2 : mode == UvMode::planar_xz ? 1 : 0; }
+
+// 0 from the middle of the box on forward, 1 at its back.
+double backness(const glm::dvec3& p, int axis, const Bounds& box) {
+    const double middle = 0.5 * (box.lo[axis] + box.hi[axis]), half = middle - box.lo[axis];
+    return half > 0.0 ? std::clamp((middle - p[axis]) / half, 0.0, 1.0) : 0.0;
+}
+
+void vary(Mesh& mesh, int axis, const Bounds& box) {
+    const glm::dvec3 extent = box.extent();
+    const double frequency = 1.0 / (noise_feature * std::max({extent.x, extent.y, extent.z, 1e-12}));
+    for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+        const glm::dvec3 p(mesh.positions[i]);
+        const double t = backness(p, axis, box);
+        const auto fade = static_cast<float>(real::smoothstep(t));
+        const glm::vec3 at((p - box.lo) * frequency);
+        mesh.uvs[i].x += displacement * fade * shared::as_noise(at.x, at.y, at.z, noise_seed);
+        mesh.uvs[i].y += displacement * fade * shared::as_noise(at.x, at.y, at.z, noise_seed + 1);
+    }
+}
+
+void mirror(Mesh& mesh, int axis, const Bounds& box) {
+    const auto count = static_cast<std::uint32_t>(mesh.uvs.size());
+    for (std::uint32_t i = 0; i < count; ++i) mesh.uvs.emplace_back(1.0f - mesh.uvs[i].x, mesh.uvs[i].y);
+    for (Mesh::Triangle& triangle : mesh.triangles) {
+        glm::dvec3 middle(0.0);
+        for (const std::uint32_t corner : triangle.position)
+            middle += glm::dvec3(mesh.positions[corner]) / 3.0;
+        if (backness(middle, axis, box) > 0.0)
+            for (std::uint32_t& uv : triangle.uv) uv += count;
+    }
+}
+
+// The box over which apply_uv projects a picture, `aspect` = width / height, so that it covers `width` scene
+// units about `center`.
+Bounds picture_box(UvMode mode, double width, const glm::dvec3& center, double aspect) {
+    assert(width > 0.0 && aspect > 0.0);
+    const double height = width / aspect;
+    glm::dvec3 extent(width, height, height);
+    if (mode == UvMode::planar_yz) extent = {0.0, height, width};
+    return {center - 0.5 * extent, center + 0.5 * extent};
+}
+
+// Changes planar uvs of what lies behind the middle of `box`, seen from where the projection reads right
+// (planar-xy: from +z). A closed shape whose walls show one picture is its own mirror image from the side.
+// - mirrored: faces whose middle is behind show the picture left to right, so that it reads right from there
+//   too.
+// - varied: they show it displaced by smooth noise, not at all at the box's middle and at the back by up to
+//   0.3 of the picture, .1 on average; features of 0.3 of the box. Follows the vertices.
+void tell_back_apart(Mesh& mesh, UvMode mode, BackWall back, const Bounds& box) {
+    assert(mode != UvMode::mesh && mesh.uvs.size() == mesh.positions.size());
+    if (back == BackWall::varied) vary(mesh, depth_axis(mode), box);
+    if (back == BackWall::mirrored) mirror(mesh, depth_axis(mode), box);
+}
+
+}  // namespace
+
+void apply_source_uv(Mesh& mesh, const SourceParams& source, const Bounds& box, double aspect) {
+    const bool in_units = source.uv != UvMode::mesh && source.uv_width > 0.0;
+    apply_uv(mesh, source.uv,
+             in_units ? picture_box(source.uv, source.uv_width, source.uv_center, aspect) : box);
+    if (source.uv != UvMode::mesh) tell_back_apart(mesh, source.uv, source.back, box);
+}
+
+Camera picture_camera(const UvCamera& params, double aspect) {
+    assert(params.position && aspect > 0.0);
+    CameraParams camera;
+    camera.projection = params.height > 0.0 ? Projection::orthographic : Projection::perspective;
+    camera.position = params.position;
+    camera.target = params.target;
+    camera.up = params.up;
+    camera.fov = params.fov;
+    camera.height = params.height;
+    camera.near = 1e-9;
+    return make_camera(camera, aspect, 1.0, {});
+}
+
+CameraParams params_of(const Camera& camera) {
+    const bool parallel = exact::has_parallel_rays(make_exact_lens(camera));
+    CameraParams params;
+    params.projection = camera.projection;
+    params.position = camera.eye;
+    params.target = camera.eye - camera.world_from_camera[2];
+    params.up = camera.world_from_camera[1];
+    params.near = camera.near;
+    if (parallel)
+        params.height = picture_height_at(camera, 1.0);
+    else
+        params.fov = 2.0 * real::degrees(real::atan2(0.5, camera.focal_px));
+    return params;
+}
+
+std::optional<PlaceInPicture> place_in_picture(const Camera& camera, const glm::dvec3& point) {
+    const ExactLens lens = make_exact_lens(camera);
+    const glm::dvec3 p = glm::transpose(camera.world_from_camera) * (point - camera.eye);
+    if (!exact::is_in_range(lens, -p.z)) return std::nullopt;
+    const auto seen = exact::instance_of(lens, p);
+    return PlaceInPicture{{seen.x_px / camera.aspect, 1.0 - seen.y_px}, -p.z};
+}
+
+double picture_height_at(const Camera& camera, double depth) {
+    const bool parallel = exact::has_parallel_rays(make_exact_lens(camera));
+    return (parallel ? 1.0 : depth) / camera.focal_px;
+}
+
+Camera widened(Camera camera, glm::dvec2 times) {
+    camera.focal_px /= times.y;
+    camera.aspect *= times.x / times.y;
+    camera.center_x_px = 0.5 * camera.aspect;
+    return camera;
+}
+
+void apply_camera_uv(Mesh& mesh, const Camera& camera) {
+    std::vector<bool> seen;
+    mesh.uvs.clear();
+    for (const glm::vec3& position : mesh.positions) {
+        const std::optional<PlaceInPicture> place = place_in_picture(camera, glm::dvec3(position));
+        seen.push_back(place.has_value());
+        mesh.uvs.push_back(place ? glm::vec2(place->uv) : glm::vec2(0.0f));
+    }
+    for (Mesh::Triangle& triangle : mesh.triangles) {
+        const auto& [a, b, c] = triangle.position;
+        triangle.uv = triangle.position;
+        if (!(seen[a] && seen[b] && seen[c])) triangle.uv = {Mesh::no_uv, Mesh::no_uv, Mesh::no_uv};
+    }
+}
+
 namespace {
 
 using Wrap = TextureSettings::Wrap;

@@ -1,21 +1,53 @@
-// A mesh together with the pictures that colour it: what generation reads.
+// A mesh together with the pictures that colour it: what generation reads. Its texture coordinates may be
+// projections: planar ones beyond the stretch over a mesh's own box (pictures in scene units, and back walls
+// that differ from the front), and the camera that took a picture, which projects it back onto what stands
+// before it (uv = "camera"). In: a source's keys. Out: meshes; where points are seen in a picture.
 #pragma once
 
+#include <glm/vec2.hpp>
 #include <optional>
 #include <span>
 #include <vector>
 
 #include "camera/camera.h"
 #include "source/mesh.h"
+#include "source/source.h"
 #include "source/texture.h"
 
 namespace astrosplat {
+
+/// All of it for one mesh of a source; `box` is that of all its meshes, `aspect` of this one's picture.
+/// UvMode::mesh: as apply_uv.
+void apply_source_uv(Mesh& mesh, const SourceParams& source, const Bounds& box, double aspect);
+
+/// As one that takes a picture `aspect` px wide and 1 px high. `params` has a position and is not degenerate.
+Camera picture_camera(const UvCamera& params, double aspect);
+
+/// The same as parameters, for rendering what it saw.
+CameraParams params_of(const Camera& camera);
+
+struct PlaceInPicture {
+    glm::dvec2 uv;  // v = 0 is the bottom row; 0..1 within the picture
+    double depth;   // scene units before the eye, along the view axis
+};
+
+/// Where the picture shows a point; empty for what is not before the eye.
+std::optional<PlaceInPicture> place_in_picture(const Camera& camera, const glm::dvec3& point);
+
+/// Scene units from the picture's bottom to its top at a depth.
+double picture_height_at(const Camera& camera, double depth);
+
+/// The camera of a picture that is so many times as wide and high, with what this one sees in its middle.
+Camera widened(Camera camera, glm::dvec2 times);
+
+/// Gives every vertex the place where the picture shows it, and none to faces not wholly before the eye.
+void apply_camera_uv(Mesh& mesh, const Camera& camera);
 
 /// A mesh with one picture per material (exactly one where the texture was named in the scene).
 struct TexturedMesh {
     Mesh mesh;
     std::vector<Texture> textures;
-    std::optional<Camera> camera;  // uv = "camera": that took the pictures (picture_camera.h)
+    std::optional<Camera> camera;  // uv = "camera": that took the pictures
 };
 
 /// Loads the meshes and pictures of a mesh source (paths already resolved). Wrap::automatic is clamp for

@@ -1,12 +1,102 @@
 #include "source/write_image.h"
 
+#include <OpenImageIO/filesystem.h>
+#include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
-// fmt first: OpenImageIO brings a copy of it with other settings.
-#include "source/picture_file.h"
 
+#include <algorithm>
 #include <cassert>
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "core/error.h"
+#include "core/guarded_file.h"
+#include "source/open_picture.h"
+
+// fmt first: OpenImageIO brings a copy of it with other settings.
 
 namespace astrosplat {
+namespace {
+
+// One picture file on its way to the disk: OpenImageIO encodes, an AtomicFile takes the bytes, so that
+// every write that fails is an error whatever the format's plug-in makes of it.
+class PictureFile {
+  public:
+    /// Writes the header of a picture in the `format` that OpenImageIO knows under this name or ending
+    /// ("tiff", "x.png"). Throws OutputError, as all functions here.
+    PictureFile(const std::filesystem::path& file, const std::string& format, const OIIO::ImageSpec& spec,
+                Existing existing = Existing::replace);
+
+    /// All rows, from memory where a pixel takes x_stride bytes.
+    void write_all(OIIO::TypeDesc type, const void* pixels, OIIO::stride_t x_stride = OIIO::AutoStride);
+
+    /// Finishes the file, which then appears under its name.
+    void commit();
+
+  private:
+    /// Takes the plug-in's bytes, and remembers what went wrong: plug-ins need not report it.
+    class Sink : public OIIO::Filesystem::IOProxy {
+      public:
+        Sink(const std::filesystem::path& file, Existing existing);
+        const char* proxytype() const override { return "astrosplat"; }
+        std::size_t write(const void* bytes, std::size_t size) override;
+        std::size_t pwrite(const void* bytes, std::size_t size, std::int64_t offset) override;
+        std::size_t size() const override { return static_cast<std::size_t>(file.size()); }
+
+        AtomicFile file;
+        GuardedFile guarded;
+    };
+    /// Throws the sink's failure, else the plug-in's where it is not `done`.
+    void check(bool done);
+
+    Sink sink_;  // outlives out_, which may write at its end
+    std::unique_ptr<OIIO::ImageOutput> out_;
+};
+
+PictureFile::Sink::Sink(const std::filesystem::path& path, Existing existing)
+    : IOProxy(path.string(), Write), file(path, existing), guarded(file) {}
+
+std::size_t PictureFile::Sink::write(const void* bytes, std::size_t size) {
+    const std::size_t written = pwrite(bytes, size, m_pos);
+    m_pos += static_cast<std::int64_t>(written);
+    return written;
+}
+
+std::size_t PictureFile::Sink::pwrite(const void* bytes, std::size_t size, std::int64_t offset) {
+    return guarded.write_at(offset, bytes, size) ? size : 0;
+}
+
+PictureFile::PictureFile(const std::filesystem::path& file, const std::string& format,
+                         const OIIO::ImageSpec& spec, Existing existing)
+    : sink_(file, existing), out_(OIIO::ImageOutput::create(format)) {
+    check(out_ && out_->set_ioproxy(&sink_) && out_->open(file.string(), spec));
+}
+
+void PictureFile::write_all(OIIO::TypeDesc type, const void* pixels, OIIO::stride_t x_stride) {
+    check(out_->write_image(type, pixels, x_stride));
+}
+
+void PictureFile::commit() {
+    check(out_->close());
+    sink_.file.commit();
+}
+
+void PictureFile::check(bool done) {
+    if (done && !sink_.guarded.failed()) return;
+    std::string reason = out_ ? out_->geterror() : OIIO::geterror();
+    if (out_) {
+        const QuietStderr quiet;  // libpng says that pixels are missing
+        out_->close();
+        (void)out_->geterror();  // a message left behind would be printed
+    }
+    sink_.guarded.rethrow_failure();
+    std::ranges::replace(reason, '\n', ' ');
+    if (reason.empty()) reason = "unknown reason";
+    throw OutputError(fmt::format("{}: cannot be written: {}", sink_.file.target().string(), reason));
+}
+
+}  // namespace
 
 void write_image(const std::filesystem::path& file, std::int64_t width, std::int64_t height,
                  std::span<const unsigned char> rgba) {

@@ -27,7 +27,7 @@ struct ShadedSplats {
     std::int64_t size() const { return static_cast<std::int64_t>(position.size()); }
 };
 
-/// Calls visit(pointer to member) for all arrays but stretch, which look/view_dependent.h adds.
+/// Calls visit(pointer to member) for all arrays but stretch, which look/apply.h adds.
 template <class Visit>
 void for_each_member(const Visit& visit) {
     visit(&ShadedSplats::position);

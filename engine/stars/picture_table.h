@@ -1,4 +1,4 @@
-// The stars of a picture as `prepare` lists them (prepare/star_table.h), and which files hold stars at all.
+// The stars of a picture as `prepare` lists them (prepare/star_removal.h), and which files hold stars at all.
 // In: a table's text, or a file of any kind. Out: places and light, with the rows that cannot be used counted
 // and named; or which reader would take it.
 #pragma once

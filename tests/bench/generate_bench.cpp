@@ -5,7 +5,6 @@
 #include <chrono>
 
 #include "core/buffer.h"
-#include "generate/columns.h"
 #include "generate/generate.h"
 #include "inputs.h"
 #include "measure.h"

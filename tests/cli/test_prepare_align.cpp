@@ -4,7 +4,7 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
-#include "prepare/sky_grid.h"
+#include "prepare/filters.h"
 #include "scene_fixture.h"
 #include "source/texture.h"
 #include "support/fits_text.h"

@@ -9,7 +9,7 @@
 
 #include "core/image.h"
 #include "edit/view_state.h"
-#include "sets/cache_folder.h"
+#include "sets/kept.h"
 
 namespace astrosplat::test {
 

@@ -1,4 +1,4 @@
-#include "bodies/bands.h"
+#include "bodies/picture_light.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,6 @@
 // Whole pictures on meshes, and what carries them.
 #include "bodies/bodies.h"
+#include "bodies/picture_size.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +10,6 @@
 #include <string>
 #include <vector>
 
-#include "bodies/dot_count.h"
 #include "bodies/front_fit.h"
 #include "bodies/picture_splats.h"
 #include "bodies/uv_surface.h"
@@ -18,11 +18,11 @@
 #include "core/error.h"
 #include "core/parallel.h"
 #include "core/real.h"
-#include "image/area.h"
 #include "image/blur.h"
 #include "image/channels.h"
+#include "image/resample.h"
 #include "render/render.h"
-#include "source/picture_camera.h"
+#include "source/textured_mesh.h"
 #include "support/painted_picture.h"
 #include "support/printing.h"
 

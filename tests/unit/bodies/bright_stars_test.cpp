@@ -1,5 +1,5 @@
 // Stars that are too wide and too bright for one Gaussian: taken whole, and in one place in depth.
-#include "bodies/bright_stars.h"
+#include "bodies/picture_stars.h"
 
 #include <gtest/gtest.h>
 

@@ -8,7 +8,7 @@
 
 #include "bodies/choose.h"
 #include "core/parallel.h"
-#include "source/picture_camera.h"
+#include "source/textured_mesh.h"
 #include "support/painted_picture.h"
 
 namespace astrosplat {

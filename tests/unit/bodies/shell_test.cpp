@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "bodies/placement.h"
-#include "bodies/shell.h"
+#include "bodies/surfaces.h"
 #include "core/shared_maths.h"
 #include "image/channels.h"
 #include "support/painted_picture.h"

@@ -6,10 +6,10 @@
 #include <cmath>
 #include <vector>
 
-#include "bodies/knots.h"
 #include "bodies/picture_light.h"
 #include "bodies/picture_stars.h"
 #include "core/parallel.h"
+#include "detect/knots.h"
 #include "image/channels.h"
 #include "support/painted_picture.h"
 

@@ -1,5 +1,5 @@
 // CIEDE2000 against the published pairs, and L*a*b* of known colours.
-#include "fidelity/color_difference.h"
+#include "fidelity/display.h"
 
 #include <gtest/gtest.h>
 

@@ -9,7 +9,6 @@
 #include "core/color.h"
 #include "core/parallel.h"
 #include "drawn.h"
-#include "fidelity/likeness.h"
 #include "image/resample.h"
 
 namespace astrosplat {

@@ -5,8 +5,7 @@
 #include <cmath>
 
 #include "drawn.h"
-#include "fidelity/edge_on.h"
-#include "fidelity/needles.h"
+#include "fidelity/side.h"
 
 namespace astrosplat {
 namespace {

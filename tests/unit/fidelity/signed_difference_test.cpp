@@ -1,5 +1,5 @@
 // Colours of a signed difference.
-#include "fidelity/signed_difference.h"
+#include "fidelity/display.h"
 
 #include <gtest/gtest.h>
 

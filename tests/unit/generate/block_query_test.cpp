@@ -1,6 +1,6 @@
 // Block queries against every triangle, for meshes that bounds could get wrong: needles, points, huge beside
 // tiny triangles, few triangles, very many, far from the origin; on every instruction set.
-#include "generate/block_query.h"
+#include "generate/blocks.h"
 
 #include <gtest/gtest.h>
 

@@ -1,10 +1,10 @@
 // Pictures read again into columns that are there: the bits of a generation, and nothing lost that was dark.
-#include "generate/columns.h"
+#include "generate/generate.h"
 
 #include <gtest/gtest.h>
 
 #include "core/parallel.h"
-#include "source/picture_camera.h"
+#include "source/textured_mesh.h"
 #include "unit/generate/generate_support.h"
 
 namespace astrosplat {

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "core/real.h"
-#include "generate/closest_triangle.h"
 #include "generate/generate.h"
+#include "generate/triangle_tree.h"
 #include "unit/splats/same_bits.h"
 
 namespace astrosplat {

@@ -9,8 +9,8 @@
 
 #include "core/error.h"
 #include "core/parallel.h"
-#include "source/picture_camera.h"
 #include "source/sample.h"
+#include "source/textured_mesh.h"
 #include "unit/generate/generate_support.h"
 #include "unit/generate/lattice_positions.h"
 

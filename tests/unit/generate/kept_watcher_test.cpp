@@ -7,7 +7,7 @@
 #include <mutex>
 
 #include "core/parallel.h"
-#include "generate/columns.h"
+#include "generate/generate.h"
 #include "unit/generate/generate_support.h"
 
 namespace astrosplat {

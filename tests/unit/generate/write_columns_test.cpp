@@ -1,5 +1,5 @@
 // A set written in parts is the file of the set written as a whole, whatever the parts.
-#include "generate/write_columns.h"
+#include "generate/generate.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,6 @@
 #include <sstream>
 
 #include "core/parallel.h"
-#include "generate/generate.h"
 #include "splat_files/native.h"
 #include "support/temp_folder.h"
 #include "unit/generate/generate_support.h"

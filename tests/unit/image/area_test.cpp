@@ -1,5 +1,5 @@
 // The area filter against sums over the pixels covered, and enlarging against what each pixel was.
-#include "image/area.h"
+#include "image/resample.h"
 
 #include <gtest/gtest.h>
 

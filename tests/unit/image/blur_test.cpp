@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "core/parallel.h"
-#include "image/weighted_rows.h"
 
 namespace astrosplat {
 namespace {

@@ -1,4 +1,4 @@
-#include "image/opening.h"
+#include "image/blur.h"
 
 #include <gtest/gtest.h>
 

@@ -6,8 +6,7 @@
 #include <vector>
 
 #include "core/real.h"
-#include "look/columns.h"
-#include "look/curves.h"
+#include "look/profiles.h"
 #include "unit/look/sets.h"
 
 namespace astrosplat {

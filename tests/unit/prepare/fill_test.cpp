@@ -95,7 +95,7 @@ TEST(Fill, PartsAreConnectedAtCornersToo) {
     PixelMask mask = make_mask(8, 6);
     mask.at(1, 1) = mask.at(2, 2) = mask.at(3, 1) = 1;
     mask.at(6, 5) = 1;
-    const std::vector<Hole> parts = connected_parts(mask);
+    const std::vector<PixelPart> parts = connected_parts(mask);
     ASSERT_EQ(parts.size(), 2u);
     EXPECT_EQ(parts[0].pixels, (std::vector<std::int64_t>{9, 11, 18}));
     EXPECT_EQ(parts[0].box.width, 3);

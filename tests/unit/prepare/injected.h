@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/sorting.h"
-#include "prepare/star_finder.h"
+#include "detect/peaks.h"
 #include "prepare/star_removal.h"
 #include "unit/prepare/painted.h"
 

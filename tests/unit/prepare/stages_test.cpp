@@ -3,10 +3,8 @@
 
 #include "core/color.h"
 #include "core/real.h"
-#include "prepare/cut.h"
-#include "prepare/lupton.h"
+#include "prepare/filters.h"
 #include "prepare/sky.h"
-#include "prepare/sky_grid.h"
 #include "unit/prepare/painted.h"
 
 namespace astrosplat {

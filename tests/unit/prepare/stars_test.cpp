@@ -5,7 +5,9 @@
 
 #include "core/parallel.h"
 #include "core/real.h"
-#include "prepare/star_table.h"
+#include "image/channels.h"
+#include "prepare/saturated_stars.h"
+#include "prepare/star_removal.h"
 #include "source/texture.h"
 #include "support/test_data.h"
 #include "unit/prepare/injected.h"
@@ -197,6 +199,31 @@ TEST(Stars, SoftKnotsAndEdgesAreNone) {
 }
 
 // Ten stars whose cores are cut off, with a cross of spikes.
+// A star whose peak is cut off, and a bar as bright, which has no wings.
+TEST(Stars, OfSaturatedPatchesRoundOnesThatFallOffAreStars) {
+    PictureStar star;
+    star.x = 40.4;
+    star.y = 33.7;
+    star.profile = {6.0, 2};
+    star.amplitude = {8.0, 8.0, 8.0};
+    Image image = with_stars(painted(140, 70, 3, [](double, double, int) { return 0.05; }), {star});
+    for (std::int64_t x = 95; x < 125; ++x)
+        for (std::int64_t y = 30; y < 36; ++y) std::fill_n(image.at(x, y), 3, 1.0f);
+    for (float& value : image.pixels) value = std::min(value, 1.0f);
+    const PixelMask saturated = saturated_pixels(image, 1.0);
+    EXPECT_EQ(connected_parts(saturated).size(), 2u);
+    const std::vector<PictureStar> found = take_saturated_stars(image, saturated, 1e-3);
+    ASSERT_EQ(found.size(), 1u);
+    EXPECT_NEAR(found[0].x, star.x, 0.1);
+    EXPECT_NEAR(found[0].y, star.y, 0.1);
+    EXPECT_NEAR(found[0].amplitude[1], 8.0, 2.0);
+    EXPECT_NEAR(image.at(52, 33)[1], 0.05f, 0.02f) << "its wings went with it";
+    PixelMask distrusted = make_mask(140, 70);
+    mark_core_and_spikes(image, found[0], distrusted);
+    EXPECT_TRUE(distrusted.at(40, 33));
+    EXPECT_FALSE(distrusted.at(100, 33));
+}
+
 TEST(Stars, SaturatedOnesAreFittedFromTheirWings) {
     std::vector<PictureStar> truth;
     for (int i = 0; i < 10; ++i) {

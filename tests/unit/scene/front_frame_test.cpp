@@ -10,7 +10,7 @@
 #include "core/parallel.h"
 #include "core/rotation.h"
 #include "scene/front_picture.h"
-#include "source/picture_camera.h"
+#include "source/textured_mesh.h"
 #include "support/errors.h"
 
 namespace astrosplat {

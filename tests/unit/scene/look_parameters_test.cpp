@@ -4,7 +4,7 @@
 #include <map>
 #include <set>
 
-#include "look/one_splat.h"
+#include "look/picture_chart.h"
 #include "look/prepare.h"
 #include "scene/describe.h"
 #include "scene_texts.h"

@@ -5,11 +5,11 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
-#include "prepare/star_table.h"
+#include "prepare/star_removal.h"
 #include "scene/animate.h"
 #include "scene/load.h"
 #include "scene/save.h"
-#include "source/picture_camera.h"
+#include "source/textured_mesh.h"
 #include "support/temp_folder.h"
 
 namespace astrosplat {

@@ -1,12 +1,11 @@
 // Before its bodies are made, a picture is seen as it is: in its place, the right way round, in its colours.
-#include "sets/flat_start.h"
+#include "sets/load_source.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <vector>
 
-#include "sets/load_source.h"
 #include "unit/splat_files/file_support.h"
 
 namespace astrosplat {

@@ -3,9 +3,8 @@
 
 #include <cmath>
 
-#include "bodies/bodies.h"
+#include "bodies/picture_size.h"
 #include "core/log.h"
-#include "sets/automatic_values.h"
 #include "sets/load_source.h"
 #include "source/textured_mesh.h"
 #include "splat_files/splat_file.h"

@@ -1,6 +1,6 @@
 // source.prepare: a source that prepares its picture is one of the prepared picture, to the bit; the picture
 // is kept beside the sets, and everything that reaches it reaches both names.
-#include "sets/prepared_cache.h"
+#include "sets/kept.h"
 
 #include <gtest/gtest.h>
 

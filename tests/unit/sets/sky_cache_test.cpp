@@ -1,6 +1,6 @@
 // Skies of one picture are kept beside the sets, to the bit, under a name that everything enters that makes
 // them.
-#include "sets/sky_cache.h"
+#include "sets/kept.h"
 
 #include <gtest/gtest.h>
 

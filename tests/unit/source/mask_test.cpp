@@ -1,5 +1,5 @@
 // Masks by closed form: areas of ellipses, ranges of luminance, wedges of hue, and how they combine.
-#include "source/mask.h"
+#include "source/derived_picture.h"
 
 #include <gtest/gtest.h>
 

@@ -14,7 +14,6 @@
 #include "core/log.h"
 #include "core/real.h"
 #include "source/obj.h"
-#include "source/polygon.h"
 #include "support/errors.h"
 #include "support/temp_folder.h"
 

@@ -1,5 +1,5 @@
 // The camera that took a picture: places worked out by hand.
-#include "source/picture_camera.h"
+#include "source/textured_mesh.h"
 
 #include <gtest/gtest.h>
 

@@ -10,9 +10,12 @@
 #include <limits>
 #include <vector>
 
-#include "image/area.h"
+#include "core/error.h"
+#include "image/resample.h"
+#include "source/picture.h"
 #include "source/stored_picture.h"
 #include "source/texture.h"
+#include "support/errors.h"
 #include "support/temp_folder.h"
 
 namespace astrosplat {
@@ -102,6 +105,30 @@ TEST(PictureRows, OfEveryKindOfFileAreReducedToTheSameBits) {
         }
     }
     expect_same_bits({folder / "a.jpg", folder / "a.png", folder / "tiles.exr"});
+}
+
+// An EXR file of one pixel that is said to be a part of a picture so large.
+fs::path one_pixel_of(const fs::path& file, int width, int height) {
+    OIIO::ImageSpec spec(1, 1, 3, OIIO::TypeHalf);
+    spec.full_width = width;
+    spec.full_height = height;
+    const float pixel[] = {0.5f, 0.5f, 0.5f};
+    const auto out = OIIO::ImageOutput::create(file.string());
+    EXPECT_TRUE(out->open(file.string(), spec) && out->write_image(OIIO::TypeFloat, pixel) && out->close());
+    return file;
+}
+
+// The size is judged by the header alone, before anything is read or taken.
+TEST(PictureRows, OfAWindowThatHoldsNextToNothingAreRefused) {
+    const TempFolder folder;
+    const fs::path file = one_pixel_of(folder / "a.exr", 60000, 60000);
+    const std::string message =
+        file.string() +
+        ":display window: expected at most 268435456 px for the 1x1 px that it has, found 60000x60000 px";
+    EXPECT_EQ(message_of<InputError>([&] { open_picture_rows(file); }), message);
+    EXPECT_EQ(message_of<InputError>([&] { require_picture(file); }), message);
+    EXPECT_EQ(open_picture_rows(one_pixel_of(folder / "b.exr", 16384, 16384)).rows.height, 16384)
+        << "as a crop of a large frame";
 }
 
 TEST(PictureRows, OfSmallPicturesAreNotReduced) {

@@ -1,5 +1,5 @@
 // Pictures in scene units and back walls: places worked out by hand, and what stays as it was.
-#include "source/planar_uv.h"
+#include "source/textured_mesh.h"
 
 #include <gtest/gtest.h>
 

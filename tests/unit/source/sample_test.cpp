@@ -5,8 +5,8 @@
 #include <glm/geometric.hpp>
 #include <limits>
 
-#include "source/relief.h"
 #include "source/sample.h"
+#include "source/shapes.h"
 #include "source/texture.h"
 
 namespace astrosplat {

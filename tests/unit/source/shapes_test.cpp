@@ -11,7 +11,6 @@
 
 #include "core/error.h"
 #include "core/real.h"
-#include "source/relief.h"
 #include "support/errors.h"
 #include "support/temp_folder.h"
 

@@ -11,9 +11,7 @@
 #include "core/error.h"
 #include "core/parallel.h"
 #include "core/real.h"
-#include "source/cube_faces.h"
-#include "source/picture_objects.h"
-#include "source/sky_patches.h"
+#include "detect/parts.h"
 #include "support/errors.h"
 #include "support/painted_picture.h"
 

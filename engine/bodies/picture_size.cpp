@@ -1,0 +1,295 @@
+// Dots are told from samples: squares spread evenly over the picture are split into bands, and the shares of
+// dots that are kept are added up pixel by pixel. Coarse bands are not as in the whole picture, but have few
+// dots.
+#include "bodies/picture_size.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <functional>
+#include <limits>
+#include <numeric>
+
+#include "bodies/dust.h"
+#include "bodies/picture_light.h"
+#include "bodies/picture_splats.h"
+#include "bodies/picture_stars.h"
+#include "bodies/placement.h"
+#include "core/error.h"
+#include "core/log.h"
+#include "core/memory.h"
+#include "core/parallel.h"
+#include "image/channels.h"
+#include "image/resample.h"
+
+namespace astrosplat {
+namespace {
+
+constexpr std::int64_t bytes_a_texel = 92;  // while bodies are made, measured
+constexpr int most_pictures = 255;          // ids hold 8 bits of their number
+constexpr std::int64_t sample_px = 64, margin_px = 16;
+constexpr std::int64_t apart_px = 240, most_samples = 16;  // along a side
+constexpr std::int64_t whole_px = 1024;                    // up to which a side is looked at as a whole
+
+// Of a picture that is like `whole`, its part from (x, y) on.
+Texture part_of(const Texture& whole, std::int64_t x, std::int64_t y, std::int64_t width,
+                std::int64_t height) {
+    Texture part;
+    part.alpha_from_light = whole.alpha_from_light;
+    part.times = whole.times;
+    part.image = make_image(width, height, whole.image.channels);
+    for (std::int64_t row = 0; row < height; ++row)
+        std::copy_n(whole.image.at(x, y + row), width * whole.image.channels, part.image.at(0, row));
+    return part;
+}
+
+// The sum of value(x, y) over the middle of a part.
+template <class Value>
+double sum_inside(const Image& part, const Value& value) {
+    double sum = 0.0;
+    for (std::int64_t y = margin_px; y < part.height - margin_px; ++y)
+        for (std::int64_t x = margin_px; x < part.width - margin_px; ++x)
+            sum += static_cast<double>(value(x, y));
+    return sum;
+}
+
+// Dots a texel in the middle of a part.
+double dots_a_texel(const Texture& part, const StructureParams& params, const Placement& placement,
+                    const std::vector<Band>& bands) {
+    const PictureLight picture = picture_light(part, 0.0);
+    const Image brightest = brightest_channel(picture.light);
+    Image rest = picture.light;
+    take_picture_stars(rest, params, picture.enlarged);
+    const Image without_stars = brightest_channel(rest);
+    Image emission = make_image(rest.width, rest.height, 3);
+    const auto shows = [&](std::int64_t x, std::int64_t y) {
+        return picture.alpha.pixels.empty() || *picture.alpha.at(x, y) > 0.0f;
+    };
+    double dots = 0.0;
+    split_bands(std::move(rest), bands, dust_of(params) > 0.0, [&](const Band& band, const Image& light) {
+        std::ranges::transform(emission.pixels, light.pixels, emission.pixels.begin(), std::plus());
+        const bool coarsest = band.index + 1 == static_cast<int>(bands.size());
+        const BandDots size = band_dots(band, coarsest, placement)[0];
+        const double kept = sum_inside(brightest, [&](std::int64_t x, std::int64_t y) {
+            const float* const p = light.at(x, y);
+            return shows(x, y) ? kept_share(std::max({p[0], p[1], p[2]}), *brightest.at(x, y), size) : 0.0f;
+        });
+        dots += kept / static_cast<double>(size.spacing * size.spacing);
+    });
+    if (dust_of(params) > 0.0) {
+        const Image seen = transmittance_of(without_stars, emission, picture.alpha);
+        dots += sum_inside(seen, [&](std::int64_t x, std::int64_t y) {
+            return expected_dust_dots(*seen.at(x, y), dust_of(params));
+        });
+    }
+    return dots / sum_inside(brightest, [](std::int64_t, std::int64_t) { return 1.0f; });
+}
+
+// Where samples of a side begin, and how long they are.
+struct Samples {
+    std::int64_t count, length, size;
+    std::int64_t begin(std::int64_t i) const { return ((2 * i + 1) * size / count - length) / 2; }
+};
+
+Samples samples_of(std::int64_t size) {
+    if (size <= whole_px) return {1, size, size};
+    return {std::min(size / apart_px, most_samples), sample_px + 2 * margin_px, size};
+}
+
+}  // namespace
+
+double most_dots(std::int64_t width, std::int64_t height, const StructureParams& params) {
+    const Placement placement = placement_without_fields(width, height, params, 0.0);
+    double each_texel = dust_of(params) > 0.0 ? static_cast<double>(expected_dust_dots(0.0f, 1.0)) : 0.0;
+    const std::vector<Band> bands = make_bands(width);
+    for (const Band& band : bands) {
+        const bool coarsest = band.index + 1 == static_cast<int>(bands.size());
+        float spacing = std::numeric_limits<float>::infinity();  // a place has dots of one size
+        for (const BandDots& size : band_dots(band, coarsest, placement))
+            spacing = std::min(spacing, size.spacing);
+        each_texel += 1.0 / static_cast<double>(spacing * spacing);
+    }
+    return each_texel * static_cast<double>(width * height);
+}
+
+double expected_dots(const Texture& texture, const StructureParams& params) {
+    const Image& image = texture.image;
+    if (std::min(image.width, image.height) <= 2 * margin_px)
+        return static_cast<double>(image.width * image.height);
+    const Placement placement = placement_without_fields(image.width, image.height, params, 0.0);
+    const std::vector<Band> bands = make_bands(image.width);
+    const Samples columns = samples_of(image.width), rows = samples_of(image.height);
+    std::vector<double> densities(static_cast<std::size_t>(columns.count * rows.count));
+    parallel_each(densities.size(), 1, [&](std::size_t i) {
+        const auto number = static_cast<std::int64_t>(i);
+        const Texture part = part_of(texture, columns.begin(number % columns.count),
+                                     rows.begin(number / columns.count), columns.length, rows.length);
+        densities[i] = dots_a_texel(part, params, placement, bands);
+    });
+    const double mean =
+        std::accumulate(densities.begin(), densities.end(), 0.0) / static_cast<double>(densities.size());
+    return mean * static_cast<double>(image.width * image.height);
+}
+
+std::vector<PictureOnMesh> pictures_of(std::span<const TexturedMesh> meshes) {
+    std::vector<PictureOnMesh> pictures;
+    for (std::uint32_t m = 0; m < meshes.size(); ++m)
+        for (std::uint32_t i = 0; i < meshes[m].textures.size(); ++i)
+            if (meshes[m].textures[i].image.width > 0) pictures.push_back({&meshes[m], m, i});
+    if (pictures.size() > most_pictures)
+        throw InputError(fmt::format("source.structure: expected at most {} pictures on the meshes, found {}",
+                                     most_pictures, pictures.size()));
+    return pictures;
+}
+
+Image at_area(const Image& image, double area, double smallest_px) {
+    const ImageSize size = size_of_area(image.width, image.height, area, smallest_px);
+    return reduced_by_area(image, size.width, size.height);
+}
+
+std::int64_t expected_dots(std::span<const TexturedMesh> meshes, const StructureParams& params) {
+    double dots = 0.0;
+    for (const PictureOnMesh& picture : pictures_of(meshes)) dots += expected_dots(picture.texture(), params);
+    return static_cast<std::int64_t>(dots);
+}
+
+std::int64_t most_texels_within(std::int64_t bytes) {
+    return std::max<std::int64_t>(1, bytes / bytes_a_texel);
+}
+
+std::int64_t bodies_memory_bytes(std::span<const TexturedMesh> meshes, std::int64_t dots) {
+    // Measured. Blocks that wait for their next use are a part of it (core/buffer.cpp).
+    constexpr std::int64_t bytes_a_dot = 44, bytes_on_mesh = 68;
+    constexpr std::int64_t most_waiting = std::int64_t{256} << 20;
+    const std::int64_t images = largest_picture(meshes) * bytes_a_texel;
+    const std::int64_t used = std::max(images + dots * bytes_a_dot, dots * bytes_on_mesh);
+    return used + std::max(used / 8, std::min(most_waiting, images));
+}
+
+namespace {
+
+// What no pictures of their sizes take more than.
+std::int64_t most_bytes(std::span<const TexturedMesh> meshes, const StructureParams& params) {
+    double dots = 0.0;
+    for (const PictureOnMesh& picture : pictures_of(meshes))
+        dots += most_dots(picture.texture().image.width, picture.texture().image.height, params);
+    return bodies_memory_bytes(meshes, static_cast<std::int64_t>(dots));
+}
+
+// How much of the limit is used; more than 1 is too much.
+double used_share(std::span<const TexturedMesh> meshes, const StructureParams& params,
+                  const BodiesLimit& limit) {
+    const std::int64_t dots = expected_dots(meshes, params);
+    const double memory = static_cast<double>(bodies_memory_bytes(meshes, dots)) /
+                          static_cast<double>(std::max<std::int64_t>(1, limit.room_bytes));
+    if (limit.most_dots <= 0) return memory;
+    return std::max(memory, static_cast<double>(dots) / static_cast<double>(limit.most_dots));
+}
+
+Texture* largest_texture(std::vector<TexturedMesh>& meshes) {
+    Texture* largest = nullptr;
+    for (TexturedMesh& mesh : meshes)
+        for (Texture& texture : mesh.textures)
+            if (!largest || texels_of(texture) > texels_of(*largest)) largest = &texture;
+    return largest;
+}
+
+// Before it was reduced as it was read, or enlarged.
+ImageSize size_in_file(const Texture& texture) {
+    if (texture.file_width > 0) return {texture.file_width, texture.file_height};
+    return {texture.image.width / texture.times, texture.image.height / texture.times};
+}
+
+// What reduce_to() makes of a picture.
+ImageSize size_within(const Texture& texture, std::int64_t most_texels) {
+    const bool enlarged_before = texture.times > 1;
+    const ImageSize whole =
+        enlarged_before ? ImageSize{texture.image.width, texture.image.height} : size_in_file(texture);
+    if (most_texels <= 0) return whole;
+    return size_of_area(whole.width, whole.height, static_cast<double>(most_texels), 1.0);
+}
+
+// Reduces one picture until the limit is just kept, as far as this one can do it.
+void reduce(Texture& texture, double first_share, const std::function<double()>& share_now) {
+    constexpr int most_tries = 8;
+    constexpr double aimed_at = 0.91, enough = 0.87;  // what is told may be too little by 8 %
+    const Image whole = std::move(texture.image);
+    double area = static_cast<double>(whole.width * whole.height), share = first_share;
+    for (int i = 0; i < most_tries && (share > 1.0 || share < enough); ++i) {
+        area = std::min(area * aimed_at / share, static_cast<double>(whole.width * whole.height));
+        texture.image = at_area(whole, area, 64.0);
+        share = share_now();
+    }
+}
+
+}  // namespace
+
+void enlarge_small_pictures(std::vector<TexturedMesh>& meshes, const std::string& layer_name) {
+    constexpr std::int64_t most_texels = 4 * texels_read_whole;
+    constexpr int most_times = 4;
+    for (TexturedMesh& mesh : meshes) {
+        for (Texture& texture : mesh.textures) {
+            const std::int64_t texels = texels_of(texture);
+            int times = 1;
+            while (times < most_times && texels * (times + 1) * (times + 1) <= most_texels) ++times;
+            if (times == 1 || texels == 0 || texture.file_width > 0) continue;
+            log_detail(fmt::format("layer '{}': a picture of {}x{} px is enlarged {} times", layer_name,
+                                   texture.image.width, texture.image.height, times));
+            texture.image = enlarged(texture.image, times);
+            texture.times = times;
+        }
+    }
+}
+
+void reduce_pictures(std::vector<TexturedMesh>& meshes, const StructureParams& params,
+                     const BodiesLimit& limit, const std::string& layer_name) {
+    if (limit.most_dots <= 0 && most_bytes(meshes, params) <= limit.room_bytes) return;
+    const auto share_now = [&] { return used_share(meshes, params, limit); };
+    std::vector<const Texture*> reduced;
+    for (double share = share_now(); share > 1.0; share = share_now()) {
+        Texture* const largest = largest_texture(meshes);
+        if (!largest || std::ranges::count(reduced, largest) > 0) return;
+        const auto [width, height] = size_in_file(*largest);
+        reduce(*largest, share, share_now);
+        reduced.push_back(largest);
+        const bool few = limit.most_dots <= 0 || expected_dots(meshes, params) < limit.most_dots * 4 / 5;
+        const std::string why =
+            few ? fmt::format("would not fit into {} of memory",
+                              human_bytes(static_cast<double>(limit.room_bytes)))
+                : fmt::format("would be more than {}", human_count(limit.most_dots, "dot"));
+        const std::string message =
+            fmt::format("layer '{}': a picture of {}x{} px is reduced to {}x{}, for its bodies {}",
+                        layer_name, width, height, largest->image.width, largest->image.height, why);
+        if (largest->image.width < width) log_warning(message);  // else it was only enlarged too much
+    }
+}
+
+void reduce_to(std::vector<TexturedMesh>& meshes, std::int64_t most_texels, const std::string& layer_name) {
+    for (TexturedMesh& mesh : meshes) {
+        for (Texture& texture : mesh.textures) {
+            Image& image = texture.image;
+            const ImageSize before = size_in_file(texture), size = size_within(texture, most_texels);
+            if (size.width < image.width || size.height < image.height)
+                image = reduced_by_area(image, size.width, size.height);
+            if (image.width < before.width || image.height < before.height)
+                log_detail(fmt::format("layer '{}': a picture of {}x{} px is reduced to {}x{}", layer_name,
+                                       before.width, before.height, image.width, image.height));
+        }
+    }
+}
+
+bool have_all_texels(std::span<const TexturedMesh> meshes, std::int64_t most_texels) {
+    return std::ranges::all_of(pictures_of(meshes), [&](const PictureOnMesh& picture) {
+        const ImageSize size = size_within(picture.texture(), most_texels);
+        return picture.texture().image.width >= size.width && picture.texture().image.height >= size.height;
+    });
+}
+
+std::int64_t largest_picture(std::span<const TexturedMesh> meshes) {
+    std::int64_t largest = 0;
+    for (const PictureOnMesh& picture : pictures_of(meshes))
+        largest = std::max(largest, texels_of(picture.texture()));
+    return largest;
+}
+
+}  // namespace astrosplat

@@ -1,0 +1,224 @@
+#include "fidelity/side.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <vector>
+
+#include "core/color.h"
+#include "core/sorting.h"
+#include "detect/parts.h"
+#include "detect/peaks.h"
+#include "fidelity/display.h"
+#include "image/blur.h"
+#include "image/channels.h"
+#include "image/resample.h"
+
+namespace astrosplat {
+namespace {
+
+using Profile = std::vector<double>;
+
+struct Profiles {
+    Profile rows, columns;  // mean light of each
+};
+
+Profiles mean_profiles(const Image& light) {
+    Profiles p{Profile(static_cast<std::size_t>(light.height)),
+               Profile(static_cast<std::size_t>(light.width))};
+    for (std::int64_t y = 0; y < light.height; ++y)
+        for (std::int64_t x = 0; x < light.width; ++x) {
+            p.rows[static_cast<std::size_t>(y)] += *light.at(x, y) / static_cast<double>(light.width);
+            p.columns[static_cast<std::size_t>(x)] += *light.at(x, y) / static_cast<double>(light.height);
+        }
+    return p;
+}
+
+double greatest(const Profile& p) { return *std::max_element(p.begin(), p.end()); }
+
+// First and last index whose value is above a threshold that the greatest exceeds.
+struct Span {
+    std::int64_t first, last;
+    std::int64_t length() const { return last - first + 1; }
+};
+
+Span span_above(const Profile& p, double threshold) {
+    const auto above = [&](double v) { return v > threshold; };
+    const auto first = std::find_if(p.begin(), p.end(), above) - p.begin();
+    const auto last = std::find_if(p.rbegin(), p.rend(), above) - p.rbegin();
+    return {first, static_cast<std::int64_t>(p.size()) - 1 - last};
+}
+
+Profile blurred(const Profile& profile, double sigma_px) {
+    Image line = make_image(static_cast<std::int64_t>(profile.size()), 1, 1);
+    std::copy(profile.begin(), profile.end(), line.pixels.begin());
+    line = convolved_with_gaussian(line, sigma_px);
+    return {line.pixels.begin(), line.pixels.end()};
+}
+
+// The least of the middle half of the profile between its half maxima, below their greatest.
+double depth_of_lane(const Profile& rows, const Span& half) {
+    if (half.length() <= 6) return 0.0;
+    const Profile all = blurred(rows, 0.8);
+    const Profile inside(all.begin() + half.first, all.begin() + half.last + 1);
+    const std::int64_t quarter = half.length() / 4;
+    return 1.0 - *std::min_element(inside.begin() + quarter, inside.end() - quarter) / greatest(inside);
+}
+
+// Values [begin, end) as far as they exist; one at least.
+Profile part(const Profile& p, std::int64_t begin, std::int64_t end) {
+    const auto size = static_cast<std::int64_t>(p.size());
+    const std::int64_t from = std::clamp<std::int64_t>(begin, 0, size - 1);
+    return {p.begin() + from, p.begin() + std::clamp(end, from + 1, size)};
+}
+
+double mean(const Profile& p) {
+    double sum = 0.0;
+    for (const double v : p) sum += v;
+    return sum / static_cast<double>(p.size());
+}
+
+double center_over_half_radius(const Image& light, const Profile& columns, const Span& disk) {
+    const Image smooth = convolved_with_gaussian(light, 1.5);
+    Profile peak(columns.size());
+    for (std::int64_t y = 0; y < smooth.height; ++y)
+        for (std::size_t x = 0; x < peak.size(); ++x)
+            peak[x] = std::max(peak[x], static_cast<double>(*smooth.at(static_cast<std::int64_t>(x), y)));
+    const std::int64_t length = disk.length(), middle = (disk.first + disk.last) / 2,
+                       reach = std::max<std::int64_t>(2, length / 40);
+    const Profile wide = blurred(columns, static_cast<double>(length) / 30.0);
+    const std::int64_t brightest = std::max_element(wide.begin(), wide.end()) - wide.begin();
+    const std::int64_t begin = std::max<std::int64_t>(0, brightest - reach);
+    const double center = percentile(part(peak, begin, begin + 2 * reach), 0.5);
+    const auto at = [&](std::int64_t x) { return mean(part(peak, x - reach, x + reach)); };
+    const double half = 0.5 * (at(middle - length / 4) + at(middle + length / 4));
+    return center / std::max(half, 1e-6);
+}
+
+double body_brightness(const Image& light) {
+    const Image smooth = convolved_with_gaussian(light, 6.0);
+    const float threshold = 0.3f * *std::max_element(smooth.pixels.begin(), smooth.pixels.end());
+    double sum = 0.0, count = 0.0;
+    for (std::size_t i = 0; i < light.pixels.size(); ++i) {
+        if (!(smooth.pixels[i] > threshold)) continue;
+        sum += static_cast<double>(light.pixels[i]);
+        count += 1.0;
+    }
+    return static_cast<double>(display_srgb(static_cast<float>(sum / count)));
+}
+
+}  // namespace
+
+EdgeOnProfile edge_on_profile(const Image& edge_view) {
+    const Image light = brightest_channel(edge_view);
+    const auto [rows, columns] = mean_profiles(light);
+    if (rows.empty() || columns.empty() || !(greatest(rows) > 0.0)) return {};
+    const Span half = span_above(rows, 0.5 * greatest(rows)),
+               disk = span_above(columns, 0.15 * greatest(columns));
+    EdgeOnProfile result;
+    result.fwhm_over_length = static_cast<double>(half.length()) / static_cast<double>(disk.length());
+    result.dust_dip = depth_of_lane(rows, half);
+    result.center_over_half = center_over_half_radius(light, columns, disk);
+    result.body_srgb = body_brightness(light);
+    return result;
+}
+
+namespace {
+
+constexpr std::size_t most_points = 400;
+constexpr std::int64_t edge_px = 12, peak_reach_px = 4;
+constexpr std::int64_t reach_px = 9, side_px = 2 * reach_px + 1;  // of the square around a point
+constexpr float least_height = 1e-4f;  // of white: below, peaks are those of rounding
+constexpr double needle_elongation = 1.6;
+constexpr double pixel_variance = 0.08;  // px^2, so that a single pixel has a width (about 1/12)
+constexpr float background_share = 0.35f;
+
+struct Peak {
+    std::int64_t x, y;
+    float height;
+};
+
+// The strongest first; of equal ones the first from the top left.
+std::vector<Peak> strongest_peaks(const Image& image) {
+    std::vector<Peak> peaks =
+        found_by_rows(image, edge_px, [&](std::int64_t x, std::int64_t y) -> std::optional<Peak> {
+            const float height = *image.at(x, y);
+            if (height < least_height || !is_peak(image, x, y, peak_reach_px)) return {};
+            return Peak{x, y, height};
+        });
+    std::stable_sort(peaks.begin(), peaks.end(),
+                     [](const Peak& a, const Peak& b) { return a.height > b.height; });
+    if (peaks.size() > most_points) peaks.resize(most_points);
+    return peaks;
+}
+
+using Square = std::array<float, static_cast<std::size_t>(side_px* side_px)>;
+
+// What stands out of the surroundings of a point, 0 elsewhere.
+Square standing_out(const Image& brightness, const Peak& peak) {
+    Square square;
+    for (std::int64_t j = 0; j < side_px; ++j)
+        std::copy_n(brightness.at(peak.x - reach_px, peak.y + j - reach_px), side_px,
+                    square.data() + j * side_px);
+    const float middle = median(Square(square));
+    const float center = *brightness.at(peak.x, peak.y);
+    const float floor = middle + background_share * (center - middle);
+    for (float& value : square) value = std::max(value - floor, 0.0f);
+    return square;
+}
+
+// Keeps what is connected with the middle, side by side; false where there is nothing.
+bool keep_connected(Square& square) {
+    PixelMask mask = make_mask(side_px, side_px);
+    for (std::size_t i = 0; i < square.size(); ++i) mask.pixels[i] = square[i] > 0.0f;
+    const PixelPart part = take_part(mask, reach_px * side_px + reach_px, Touching::sides);
+    for (std::size_t i = 0; i < square.size(); ++i)
+        if (mask.pixels[i]) square[i] = 0.0f;
+    return !part.pixels.empty();
+}
+
+// Length from top to bottom over width; nothing where the point does not stand out.
+std::optional<double> elongation(const Image& brightness, const Peak& peak) {
+    Square square = standing_out(brightness, peak);
+    if (!keep_connected(square)) return std::nullopt;
+    double sum = 0.0, x1 = 0.0, y1 = 0.0, x2 = 0.0, y2 = 0.0;
+    for (std::int64_t i = 0; i < side_px * side_px; ++i) {
+        const double w = square[static_cast<std::size_t>(i)];
+        const auto x = static_cast<double>(i % side_px - reach_px),
+                   y = static_cast<double>(i / side_px - reach_px);
+        sum += w;
+        x1 += w * x;
+        y1 += w * y;
+        x2 += w * x * x;
+        y2 += w * y * y;
+    }
+    const double vx = x2 / sum - (x1 / sum) * (x1 / sum), vy = y2 / sum - (y1 / sum) * (y1 / sum);
+    return std::sqrt((vy + pixel_variance) / (vx + pixel_variance));
+}
+
+}  // namespace
+
+Needles needles(const Image& side_view) {
+    const Image brightness = display_max(side_view);
+    Image detail = convolved_with_gaussian(brightness, 1.0);
+    const Image surroundings = convolved_with_gaussian(brightness, 7.0);
+    for (std::size_t i = 0; i < detail.pixels.size(); ++i) detail.pixels[i] -= surroundings.pixels[i];
+    Needles result;
+    int long_ones = 0;
+    for (const Peak& peak : strongest_peaks(detail)) {
+        const std::optional<double> e = elongation(brightness, peak);
+        if (!e) continue;
+        ++result.points;
+        long_ones += *e > needle_elongation;
+    }
+    if (result.points > 0) result.share = static_cast<double>(long_ones) / result.points;
+    return result;
+}
+
+Needles flat_needles(const Image& picture) {
+    const PixelMap half_as_high{{}, {1.0, 0.0, 0.0, 2.0}};
+    return needles(resampled(picture, half_as_high, picture.width, picture.height / 2, 0.5));
+}
+
+}  // namespace astrosplat

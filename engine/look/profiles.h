@@ -1,0 +1,34 @@
+// The curves an artist drags: points in, monotone cubic out, evaluated by look_curve in
+// shaders/shared/look.glsl; and what a front view through a layer with such profiles adds up to: the
+// integrals behind `match` (DESIGN 5, step 5), one number per thickness stop.
+#pragma once
+
+#include <glm/vec2.hpp>
+#include <span>
+#include <string>
+
+#include "look/shared_uniforms.h"
+
+namespace astrosplat {
+
+/// Tangents after Fritsch and Carlson (Monotone Piecewise Cubic Interpolation, SIAM J. Numer. Anal. 17,
+/// 1980): the curve passes through every point and never leaves the range of the two points around it. No
+/// points: constant 1. Throws InputError, naming `key`, for more than 16 points or x that does not ascend.
+LookCurve make_curve(std::span<const glm::vec2> points, const std::string& key);
+
+/// Profiles and lengths of one column, on one side of the surface.
+struct ColumnProfile {
+    LookProfile pdf;              // p(x)
+    LookProfile vertical;         // f(x)
+    double density = 1.0;         // positions kept: min(1, density * p(x))
+    double end = 1.0;             // x up to which there are positions, 0..1
+    double vertical_ratio = 1.0;  // f is read at x * this
+};
+
+/// Integral over x in [0, end] of min(1, density p(x)) f(x vertical_ratio) lerp(1, vertical_scale, x)^2.
+double column_integral(const ColumnProfile& column, double vertical_scale);
+
+/// Mean of the square of a radius uniform in [min, max].
+double mean_square(double min, double max);
+
+}  // namespace astrosplat

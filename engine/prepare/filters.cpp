@@ -1,0 +1,138 @@
+// Sky to plane and back, with a blur before sampling where pixels grow. Of Lupton's stretch one factor a
+// pixel for all three channels.
+#include "prepare/filters.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "core/color.h"
+#include "core/parallel.h"
+#include "core/real.h"
+#include "image/blur.h"
+
+namespace astrosplat {
+namespace {
+
+constexpr int lobes = 3;
+
+double determinant(const TanGrid& grid) {
+    return grid.deg_per_px[0] * grid.deg_per_px[3] - grid.deg_per_px[1] * grid.deg_per_px[2];
+}
+
+double lanczos(double x) {
+    if (std::fabs(x) < 1e-9) return 1.0;
+    if (std::fabs(x) >= lobes) return 0.0;
+    const double t = real::pi * x;
+    return lobes * real::sin(t) * real::sin(t / lobes) / (t * t);
+}
+
+// Weights of the six pixels from `first` on about a place, px from the first pixel's middle; their sum is 1.
+struct Weights {
+    std::int64_t first;
+    std::array<double, 2 * lobes> of;
+};
+
+Weights weights_at(double place) {
+    Weights w{static_cast<std::int64_t>(std::floor(place)) - lobes + 1, {}};
+    double sum = 0.0;
+    for (std::size_t i = 0; i < w.of.size(); ++i) {
+        w.of[i] = lanczos(place - static_cast<double>(w.first + static_cast<std::int64_t>(i)));
+        sum += w.of[i];
+    }
+    for (double& weight : w.of) weight /= sum;
+    return w;
+}
+
+// (x, y) in px from the top left corner. Beyond the edges the last pixel goes on.
+void sample(const Image& image, double x, double y, float* out) {
+    const Weights across = weights_at(x - 0.5), down = weights_at(y - 0.5);
+    for (int c = 0; c < image.channels; ++c) {
+        double sum = 0.0;
+        for (std::size_t j = 0; j < down.of.size(); ++j) {
+            const auto v =
+                std::clamp<std::int64_t>(down.first + static_cast<std::int64_t>(j), 0, image.height - 1);
+            for (std::size_t i = 0; i < across.of.size(); ++i) {
+                const auto u =
+                    std::clamp<std::int64_t>(across.first + static_cast<std::int64_t>(i), 0, image.width - 1);
+                sum += down.of[j] * across.of[i] * static_cast<double>(image.at(u, v)[c]);
+            }
+        }
+        out[c] = static_cast<float>(sum);
+    }
+}
+
+}  // namespace
+
+glm::dvec2 sky_at(const TanGrid& grid, const glm::dvec2& px) {
+    const glm::dvec2 d = px - grid.reference_px;
+    const double xi = real::radians(grid.deg_per_px[0] * d.x + grid.deg_per_px[1] * d.y);
+    const double eta = real::radians(grid.deg_per_px[2] * d.x + grid.deg_per_px[3] * d.y);
+    const double ra = real::radians(grid.reference_deg.x), dec = real::radians(grid.reference_deg.y);
+    const double towards = real::cos(dec) - eta * real::sin(dec);
+    const double found = ra + real::atan2(xi, towards);
+    const double up = real::sin(dec) + eta * real::cos(dec);
+    const double degrees = real::degrees(found);
+    return {degrees - 360.0 * std::floor(degrees / 360.0),
+            real::degrees(real::atan2(up, std::sqrt(xi * xi + towards * towards)))};
+}
+
+std::optional<glm::dvec2> place_of(const TanGrid& grid, const glm::dvec2& sky_deg) {
+    const double away = real::radians(sky_deg.x - grid.reference_deg.x), dec = real::radians(sky_deg.y);
+    const double dec0 = real::radians(grid.reference_deg.y);
+    const double depth =
+        real::sin(dec) * real::sin(dec0) + real::cos(dec) * real::cos(dec0) * real::cos(away);
+    if (!(depth > 0.0)) return {};
+    const double xi = real::degrees(real::cos(dec) * real::sin(away) / depth);
+    const double eta = real::degrees(
+        (real::sin(dec) * real::cos(dec0) - real::cos(dec) * real::sin(dec0) * real::cos(away)) / depth);
+    const double whole = determinant(grid);
+    return grid.reference_px + glm::dvec2((grid.deg_per_px[3] * xi - grid.deg_per_px[1] * eta) / whole,
+                                          (grid.deg_per_px[0] * eta - grid.deg_per_px[2] * xi) / whole);
+}
+
+Image regridded(const Image& image, const TanGrid& own, const TanGrid& target, std::int64_t width,
+                std::int64_t height, PixelMask& outside) {
+    const double texels = std::sqrt(std::fabs(determinant(target) / determinant(own)));
+    const Image source = texels > 1.0 ? gaussian_blur(image, 0.5 * std::sqrt(texels * texels - 1.0)) : image;
+    Image out = make_image(width, height, image.channels);
+    outside = make_mask(width, height);
+    parallel_each(height, 8, [&](std::int64_t y) {
+        for (std::int64_t x = 0; x < width; ++x) {
+            const glm::dvec2 px(static_cast<double>(x) + 1.0, static_cast<double>(height - y));
+            const std::optional<glm::dvec2> place = place_of(own, sky_at(target, px));
+            const double u = place ? place->x - 0.5 : -1.0;
+            const double v = place ? static_cast<double>(image.height) + 0.5 - place->y : -1.0;
+            const bool within = u >= 0.0 && v >= 0.0 && u <= static_cast<double>(image.width) &&
+                                v <= static_cast<double>(image.height);
+            if (within)
+                sample(source, u, v, out.at(x, y));
+            else
+                outside.at(x, y) = 1;
+        }
+    });
+    return out;
+}
+
+void apply_lupton(Image& image, const LuptonSettings& settings) {
+    const double tenth = 0.1 / real::asinh(0.1 * settings.q);
+    parallel_each(image.height, 16, [&](std::int64_t y) {
+        for (std::int64_t x = 0; x < image.width; ++x) {
+            float* const p = image.at(x, y);
+            std::array<double, 3> light;
+            for (std::size_t c = 0; c < 3; ++c) light[c] = std::max(0.0, static_cast<double>(p[c]));
+            const double mean = (light[0] + light[1] + light[2]) / 3.0;
+            if (!(mean > 0.0)) {
+                std::fill_n(p, 3, 0.0f);
+                continue;
+            }
+            double factor = tenth * real::asinh(settings.q * mean / settings.stretch) / mean;
+            factor /= std::max(1.0, factor * *std::max_element(light.begin(), light.end()));
+            for (std::size_t c = 0; c < 3; ++c)
+                p[c] = static_cast<float>(real::srgb_to_linear(factor * light[c]));
+        }
+    });
+}
+
+}  // namespace astrosplat

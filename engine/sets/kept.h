@@ -1,0 +1,98 @@
+// The folder in which sets and pictures are kept from run to run: whole sets, geometry and texels of columns,
+// prepared pictures (removing stars takes seconds, and a set is made again for every change of its
+// structure), and skies made of one picture, whose cut-outs take some 16 s. In: the folder's name and limit,
+// and recipes of what is wanted. Out: the same as if made, to the bit; room for more.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/progress.h"
+#include "generate/generate.h"
+#include "sets/recipe.h"
+#include "source/prepared_picture.h"
+#include "source/textured_mesh.h"
+#include "source/tiled_sky.h"
+#include "splat_files/native.h"
+#include "splats/splat_set.h"
+
+namespace astrosplat {
+
+struct SetCache {
+    std::filesystem::path folder;  // made when something is kept; empty: no cache
+    /// Bytes of all entries; the least recently used go first. 0: 20 GiB or a tenth of the disk, whichever is
+    /// less.
+    std::int64_t limit_bytes = 0;
+};
+
+/// $ASTROSPLAT_CACHE, else $XDG_CACHE_HOME/astrosplat, else ~/.cache/astrosplat; empty without a home.
+std::filesystem::path default_cache_folder();
+
+/// What the limit 0 means for this folder, or the limit.
+std::int64_t limit_bytes(const SetCache& cache);
+
+/// Removes entries (.splats, .texels, .tree, .exr), least recently used first, until they take at most
+/// `bytes` together.
+void shrink_cache(const SetCache& cache, std::int64_t bytes);
+
+/// A warning: the run goes on without the cache.
+void warn_unkept(const SetCache& cache, const std::string& why);
+
+/// NAME.splats: a whole set, or the geometry of columns.
+std::filesystem::path set_file(const SetCache& cache, const std::string& name);
+/// NAME.texels: colours and alphas of columns.
+std::filesystem::path texel_file(const SetCache& cache, const std::string& name);
+
+/// An entry that is damaged, or that was made of something else, is removed with a warning; so are those of
+/// the functions below. All throw Cancelled.
+std::optional<SplatSet> read_whole(const SetCache& cache, const Recipe& recipe, const Progress& progress,
+                                   const OptionalColumns& wanted);
+
+/// All positions, to which texels are to be read.
+std::optional<Columns> read_geometry(const SetCache& cache, const std::string& name,
+                                     const Progress& progress);
+
+struct KeptColumns {
+    SplatSet set;
+    Columns sample;              // of all positions
+    std::int64_t positions = 0;  // that there are
+};
+/// The set of geometry and texels that belong together, and a sample of at most so many positions.
+std::optional<KeptColumns> read_columns(const SetCache& cache, const Recipe& recipe,
+                                        std::int64_t sample_limit, const OptionalColumns& wanted,
+                                        const Progress& progress);
+
+/// What the texels' file has as its recipe: the set's own, and the name of the geometry.
+std::string texel_recipe(const Recipe& recipe, const std::string& geometry_name);
+
+/// One file to be written.
+struct KeptFile {
+    std::filesystem::path file;
+    NativePart part;
+    std::string recipe;
+};
+/// Files of one set, where the cache has room for all of them; else a line says so. What cannot be written
+/// costs a warning. SplatSet::recipe is empty before and after.
+void keep(const SetCache& cache, const std::vector<KeptFile>& entries, SplatSet& set,
+          const Progress& progress);
+
+/// Reads prepared pictures where they are kept (as NAME.exr), else prepares and keeps them. A damaged entry
+/// is made again; a folder that cannot be written costs a warning.
+PictureMaker kept_pictures(const SetCache& cache);
+
+/// load_meshes() with them, and larger files reduced to so many texels; 0: none.
+std::vector<TexturedMesh> load_meshes(const SetCache& cache, const SourceParams& source,
+                                      const Progress& progress = {}, std::int64_t most_texels = 0);
+
+/// Reads skies where they are kept (as NAME.exr, one face below the other), else makes and keeps them. A
+/// damaged entry is made again; a folder that cannot be written costs a warning.
+SkyMaker kept_skies(const SetCache& cache);
+
+/// Whether this one is kept. Throws Cancelled.
+bool is_kept(const SetCache& cache, const std::filesystem::path& file, const SkyTiling& tiling,
+             const Progress& progress = {});
+
+}  // namespace astrosplat
