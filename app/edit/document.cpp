@@ -157,6 +157,12 @@ struct Document::State {
         history[now].text = std::make_shared<const std::string>(content);
     }
 
+    /// Of `shown` in the file `target`, with the comments and the order of what was read.
+    std::string text_of(Scene shown, const fs::path& target) const {
+        shown.file = text_place;
+        return save_text(shown, text, target);
+    }
+
     void forget_assignments() {
         assignments.clear();
         assigned_keys.clear();
@@ -357,9 +363,7 @@ std::string pattern_from(const std::string& pattern, const fs::path& file, const
 std::string Document::text_for(const fs::path& file) const {
     const Step& step = state_->history[state_->now];
     if (step.text && fs::absolute(file) == state_->file) return *step.text;
-    Scene placed = scene();
-    placed.file = state_->text_place;
-    return save_text(placed, state_->text, fs::absolute(file));
+    return state_->text_of(scene(), fs::absolute(file));
 }
 
 void Document::save() {
@@ -369,11 +373,12 @@ void Document::save() {
 
 void Document::save_as(const fs::path& file) {
     const fs::path target = fs::absolute(file);
-    const std::string pattern = pattern_from(scene().output.path, state_->file, target);
-    if (pattern != scene().output.path)
-        edit("Keep where frames go", [&](Scene& moved) { moved.output.path = pattern; });
-    const std::string text = text_for(target);
+    Scene moved = scene();
+    moved.output.path = pattern_from(moved.output.path, state_->file, target);
+    const bool same = moved == scene();
+    const std::string text = same ? text_for(target) : state_->text_of(moved, target);
     write_file_atomically(target, text);
+    if (!same) state_->record({std::make_shared<const Scene>(std::move(moved)), "Keep where frames go"});
     state_->text = text;
     state_->text_place = target;
     state_->move_to(target);

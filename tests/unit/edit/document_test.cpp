@@ -341,6 +341,20 @@ TEST(Document, AFileThatCannotBeWrittenLeavesTheDocument) {
     EXPECT_FALSE(document.edited());
 }
 
+TEST(Document, AFailedSaveAsLeavesNoEdit) {
+    const SceneFolder f;
+    Document document = Document::open(f.file);
+    document.set(opacity, 0.25, 1.0);
+    document.undo();
+    const Scene before = document.scene();
+    const std::uint64_t revision = document.revision();
+    EXPECT_THROW(document.save_as(f.folder / "no such folder/szene.toml"), OutputError);
+    EXPECT_EQ(document.scene(), before);
+    EXPECT_EQ(document.revision(), revision);
+    EXPECT_FALSE(document.edited());
+    EXPECT_TRUE(document.can_redo() && !document.can_undo());
+}
+
 TEST(Document, AssignmentsAreEdits) {
     const SceneFolder f;
     const std::vector<Assignment> assignments{{opacity, "0.25"}, {"layer.dust.look.alpha", "{power=3}"}};
