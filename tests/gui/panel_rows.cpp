@@ -248,6 +248,25 @@ TEST(PanelRows, TheMenuPastesASetOption) {
     EXPECT_NE(d.panel.message(), "");
 }
 
+TEST(PanelRows, WhatIsCopiedIsPasted) {
+    PanelDriver d(rows_scene);
+    d.show(PanelTab::output);
+    const std::string title = "provenance.title";
+    for (const std::string wanted : {"E = m c2", "\"quoted\" it's", "path=frames/a.exr"})
+        for (const std::string copy : {"Copy value", "Copy --set"}) {
+            d.document.set(title, wanted, 1.0);
+            d.frames(2);
+            choose(d, title, copy);
+            d.document.set(title, "", 1.0);
+            d.frames(2);
+            choose(d, title, "Paste");
+            EXPECT_EQ(d.value(title), Value(wanted)) << copy;
+        }
+    d.clipboard = "a = b";  // from elsewhere
+    choose(d, title, "Paste");
+    EXPECT_EQ(d.value(title), Value("a = b"));
+}
+
 TEST(PanelRows, ACheckBoxAndAVectorsComponent) {
     PanelDriver d(rows_scene);
     d.show(PanelTab::mixing);

@@ -9,6 +9,7 @@
 #include "gui/panel/section.h"
 #include "gui/panel/words.h"
 #include "gui/theme.h"
+#include "scene/load.h"
 
 namespace astrosplat::panel {
 namespace {
@@ -80,21 +81,32 @@ void animation_menu(Context& context, const Row& row) {
     ImGui::Separator();
 }
 
-// "key=value", "--set key=value" or the value alone.
-std::string pasted_value(std::string text) {
-    for (const char* head : {"--set '", "--set "})
-        if (text.rfind(head, 0) == 0) {
-            text.erase(0, std::string(head).size());
-            if (!text.empty() && text.back() == '\'') text.pop_back();
-            break;
-        }
+std::string without_shell_quotes(const std::string& text) {
+    if (text.size() < 2 || text.front() != '\'' || text.back() != '\'') return text;
+    std::string plain = text.substr(1, text.size() - 2);
+    for (std::size_t at = 0; (at = plain.find("'\\''", at)) != std::string::npos; ++at)
+        plain.replace(at, 4, "'");
+    return plain;
+}
+
+/// The value of "key=value" or "--set key=value", or the value alone. A text may have a = of its own: only a
+/// key of the scene, or of a row like this one in another, is taken off.
+std::string pasted_value(const Context& context, const Row& row, std::string text) {
+    constexpr std::string_view option = "--set ";
+    if (text.starts_with(option)) text = without_shell_quotes(text.substr(option.size()));
     const std::size_t equals = text.find('=');
-    return equals == std::string::npos ? text : text.substr(equals + 1);
+    if (equals == std::string::npos) return text;
+    const ParameterKey head = text.substr(0, equals);
+    const bool is_key = find(context, head) || head.generic() == row.parameter.spec.generic_key;
+    return is_key ? text.substr(equals + 1) : text;
 }
 
 void paste(Context& context, const Row& row) {
-    const char* text = ImGui::GetClipboardText();
-    if (text && *text) set_value(context, row.key(), value_from_text(pasted_value(text), row.parameter.spec));
+    const char* const text = ImGui::GetClipboardText();
+    if (!text || !*text) return;
+    const std::string raw = pasted_value(context, row, text);
+    const bool quoted = raw.size() >= 2 && raw.front() == '"' && raw.back() == '"';  // TOML, as it was copied
+    set_value(context, row.key(), quoted ? typed_value(raw) : value_from_text(raw, row.parameter.spec));
 }
 
 void row_menu(Context& context, const Row& row) {
