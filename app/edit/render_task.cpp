@@ -113,7 +113,7 @@ std::vector<std::string> submit_arguments(const RenderTask& task) {
     return words;
 }
 
-std::vector<std::string> batch_arguments(const RenderTask& task) {
+std::vector<std::string> batch_arguments(const RenderTask& task, const MachineLimits& limits) {
     std::vector<std::string> words = frame_arguments(task);
     // A movie's frames lie in a folder of its own, where nothing is in the way, and are plain PNG whatever
     // the scene's own files hold.
@@ -123,6 +123,8 @@ std::vector<std::string> batch_arguments(const RenderTask& task) {
     if (task.kind == RenderKind::movie)
         for (const char* const key : {"aovs=[]", "depth=auto", "compression=auto", "alpha=auto"})
             words.insert(words.end(), {"--set", std::string("output.") + key});
+    const std::vector<std::string> limited = limit_arguments(limits);
+    words.insert(words.end(), limited.begin(), limited.end());
     return words;
 }
 

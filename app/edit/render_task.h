@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "edit/document.h"
+#include "edit/settings.h"
 
 namespace astrosplat {
 
@@ -56,8 +57,9 @@ std::filesystem::path movie_folder(const std::filesystem::path& movie);
 /// Words that decide frames and their files, as --batch and `status` have them.
 std::vector<std::string> frame_arguments(const RenderTask& task);
 
-/// Words of --batch behind the scene: frames, size, files, and what becomes of those that are there.
-std::vector<std::string> batch_arguments(const RenderTask& task);
+/// Words of --batch behind the scene: frames, size, files, and what becomes of those that are there. A job of
+/// the window takes no more of the machine than the window itself.
+std::vector<std::string> batch_arguments(const RenderTask& task, const MachineLimits& limits = {});
 
 /// The farm renders it.
 bool renders_by_slurm(const RenderTask& task);

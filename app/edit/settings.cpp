@@ -26,7 +26,8 @@ constexpr SettingRow rows[] = {
      &Settings::settles, settles},
     {"engine", "Preview by", "How views begin; the tools' Engine changes the one that is open",
      &Settings::engine, engines},
-    {"threads", "Threads", "From the next start; --threads wins", &Settings::threads, threads},
+    {"threads", "Threads", "Of the window and of each of its jobs, from the next start; --threads wins",
+     &Settings::threads, threads},
     {"memory_gib", "Memory",
      "Most that the window takes, from the next start, as if the machine had no more: sets that are larger "
      "are made "
@@ -50,6 +51,17 @@ std::string problem_of_cache_folder(const std::string& folder) {
     if (std::filesystem::exists(path, ignored) && !std::filesystem::is_directory(path, ignored))
         return "expected a folder, found the file '" + folder + "'";
     return "";
+}
+
+MachineLimits limits_with(const Settings& settings, int threads_given) {
+    return {threads_given > 0 ? threads_given : settings.threads, settings.memory_gib};
+}
+
+std::vector<std::string> limit_arguments(const MachineLimits& limits) {
+    std::vector<std::string> words;
+    if (limits.threads > 0) words.push_back("--threads=" + std::to_string(limits.threads));
+    if (limits.memory_gib > 0) words.push_back("--memory=" + std::to_string(limits.memory_gib));
+    return words;
 }
 
 SetCache cache_with(const Settings& settings, const SetCache& asked, bool given) {

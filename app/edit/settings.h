@@ -5,6 +5,7 @@
 
 #include <span>
 #include <string>
+#include <vector>
 
 #include "sets/kept.h"
 
@@ -21,6 +22,13 @@ struct Settings {
     int engine = 0;                 // a PreviewEngine, with which views begin
     std::string cache_folder = {};  // absolute; empty: as default_cache_folder() has it
     bool operator==(const Settings&) const = default;
+};
+
+/// What the window and each of its jobs may take of the machine.
+struct MachineLimits {
+    int threads = 0;     // 0: the cores this process may use
+    int memory_gib = 0;  // 0: what is free
+    bool operator==(const MachineLimits&) const = default;
 };
 
 struct SettingChoice {
@@ -41,6 +49,11 @@ std::span<const SettingRow> setting_rows();
 
 /// Why this cannot be the cache's folder: "expected an absolute path, found 'x'"; empty: it can.
 std::string problem_of_cache_folder(const std::string& folder);
+
+/// Those of the settings, but for --threads where the command line has it (0: it has not).
+MachineLimits limits_with(const Settings& settings, int threads_given);
+/// As words of a command: "--threads=4".
+std::vector<std::string> limit_arguments(const MachineLimits& limits);
 
 /// The window's cache: `asked` where the command line (`given`) or the environment names one, else that of
 /// the settings; never larger than these say.

@@ -134,7 +134,7 @@ void RenderQueue::add(const RenderTask& task, const Document& document) {
     const fs::path scene = plan.folder / "scene.toml";
     ProcessStep& render = plan.steps.emplace_back();
     render = {"Rendering", {program_, "--batch", scene.string(), "--progress", "plain"}};
-    append(render.arguments, batch_arguments(task));
+    append(render.arguments, batch_arguments(task, limits_));
     if (!cache_.folder.empty()) append(render.arguments, {"--cache", cache_.folder.string()});
     if (task.kind == RenderKind::movie)
         plan.steps.push_back({"Writing the movie", movie_command(job.target, document.scene().output.fps)});
@@ -154,6 +154,7 @@ void RenderQueue::add_preparation(const SourceParams& source, const fs::path& fo
     JobPlan plan;
     plan.steps = {{"Preparing", {program_}}};
     append(plan.steps[0].arguments, prepare_command(source, folder));
+    append(plan.steps[0].arguments, limit_arguments({.threads = limits_.threads}));
     append(plan.steps[0].arguments, {"--progress", "plain"});
     push(std::move(job), {std::move(plan), nullptr, true});
 }

@@ -12,6 +12,7 @@
 
 #include "edit/document.h"
 #include "edit/render_task.h"
+#include "edit/settings.h"
 #include "edit/status.h"
 #include "sets/set_cache.h"
 #include "viewer/farm_job.h"
@@ -21,9 +22,9 @@ namespace astrosplat {
 
 class RenderQueue {
   public:
-    /// `program`: this very program's file, which does the jobs.
-    RenderQueue(SetCache cache, std::string program)
-        : cache_(std::move(cache)), program_(std::move(program)) {}
+    /// `program`: this very program's file, which does the jobs, each within these limits.
+    RenderQueue(SetCache cache, std::string program, MachineLimits limits = {})
+        : cache_(std::move(cache)), program_(std::move(program)), limits_(limits) {}
     ~RenderQueue();  // jobs that wait are dropped
 
     /// Renders the scene as it stands, once all before it is done; a farm's job is submitted at once, with a
@@ -80,6 +81,7 @@ class RenderQueue {
 
     SetCache cache_;
     std::string program_;
+    MachineLimits limits_;
     std::optional<Lookup> lookup_;
     RenderJob job_;
     std::vector<QueuedJob> jobs_;

@@ -162,8 +162,9 @@ int run_viewer(const ViewerOptions& options, const std::atomic<bool>& interrupte
     keep_little_freed_memory();
     const Preferences preferences = load_preferences();
     const Settings& settings = preferences.settings;
-    if (settings.threads > 0 && !options.threads_given) set_thread_count(settings.threads);
     ViewerOptions with_settings = options;
+    with_settings.limits = limits_with(settings, options.threads_given ? thread_count() : 0);
+    if (with_settings.limits.threads > 0) set_thread_count(with_settings.limits.threads);
     with_settings.cache = cache_with(settings, options.cache, options.cache_given);
     limit_memory(std::int64_t{settings.memory_gib} << 30, "Edit > Settings > Memory");
     std::unique_ptr<Loop> loop;

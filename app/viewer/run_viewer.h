@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "edit/settings.h"
 #include "scene/load.h"
 #include "sets/set_cache.h"
 
@@ -19,6 +20,7 @@ struct ViewerOptions {
     SetCache cache;
     std::string program;                              // this very program's file, which does the jobs
     bool threads_given = false, cache_given = false;  // by the command line, which wins over the settings
+    MachineLimits limits = {};                        // of jobs; run_viewer() takes them from the settings
 };
 
 struct ScreenshotOptions {

@@ -137,7 +137,7 @@ Session::Session(const ViewerOptions& options, const GlInfo& gl_info)
                                      : document_for(options.input, options.assignments)),
       sets(options.cache, sample_limit),
       front(front_check(1280, options.cache)),
-      jobs(options.cache, options.program),
+      jobs(options.cache, options.program, options.limits),
       fresh_demo(options.input.empty()) {
     view.hint_open = fresh_demo;
     static_cast<PanelSizes&>(view) = preferences;

@@ -54,6 +54,15 @@ TEST(RenderTask, KeepsReplacesOrRefusesWhatIsThere) {
     EXPECT_TRUE(has(batch_arguments(task), "--output=/films/[one]*/a.####.exr"));
 }
 
+TEST(RenderTask, AJobTakesNoMoreThanTheWindow) {
+    const RenderTask task = task_of(RenderKind::range, "a.####.exr");
+    std::vector<std::string> words = batch_arguments(task);
+    EXPECT_EQ(batch_arguments(task, limits_with(Settings(), 0)), words) << "the settings say nothing";
+    words.insert(words.end(), {"--threads=4", "--memory=8"});
+    EXPECT_EQ(batch_arguments(task, limits_with({.threads = 4, .memory_gib = 8}, 0)), words);
+    EXPECT_EQ(batch_arguments(task, limits_with({.threads = 2, .memory_gib = 8}, 4)), words) << "--threads 4";
+}
+
 TEST(RenderTask, AMoviesFramesLieBesideIt) {
     const RenderTask task = task_of(RenderKind::movie, "a.mp4");
     EXPECT_EQ(render_files(task), "/films/[one]*/a.mp4.frames/frame.######.png");
