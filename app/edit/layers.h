@@ -1,10 +1,12 @@
-// Editing the list of layers: free functions on a scene. Names stay unique and valid; tracks follow a layer's
-// name.
+// Editing the list of layers: free functions on a scene, and what a person does to a layer as steps of a
+// document. Names stay unique and valid; tracks follow a layer's name.
 #pragma once
 
 #include <filesystem>
 #include <string>
 
+#include "edit/document.h"
+#include "edit/view_state.h"
 #include "scene/scene.h"
 
 namespace astrosplat {
@@ -24,5 +26,18 @@ void rename_layer(Scene& scene, std::size_t index, const std::string& name);
 
 /// Look and render of a preset file (see save_preset_text) put on a layer. Throws InputError.
 void apply_preset(LayerParams& layer, const std::filesystem::path& preset);
+
+bool is_visible(const Scene& scene, std::size_t index, double frame);
+
+// One undo step each, "Hide dust"; the selection follows. Throw InputError as Document::edit does.
+
+/// Shows a layer that is hidden at the view's frame, or hides it: by a keyframe there where that is animated.
+void toggle_visible(Document& document, const ViewState& view, std::size_t index);
+void duplicate_layer(Document& document, ViewState& view, std::size_t index);
+void remove_layer(Document& document, ViewState& view, std::size_t index);
+void move_layer(Document& document, ViewState& view, std::size_t from, std::size_t to);
+
+/// Only layers that are solo are seen, while there are any; of the window, not of the scene.
+void toggle_solo(ViewState& view, const std::string& layer);
 
 }  // namespace astrosplat

@@ -112,36 +112,24 @@ void swap_a_b(GuiFrame& f) {
 }
 
 void duplicate_selected_layer(GuiFrame& f) {
-    edit(f, "Duplicate " + selected_name(f),
-         [&](Scene& scene) { f.view.layer = duplicate_layer(scene, f.view.layer); });
+    try_edit([&] { duplicate_layer(f.document, f.view, f.view.layer); });
 }
 void remove_selected_layer(GuiFrame& f) {
-    edit(f, "Remove " + selected_name(f), [&](Scene& scene) { remove_layer(scene, f.view.layer); });
-    const std::size_t count = f.document.scene().layers.size();
-    f.view.layer = std::min(f.view.layer, count == 0 ? 0 : count - 1);
+    try_edit([&] { remove_layer(f.document, f.view, f.view.layer); });
 }
 void hide_layer(GuiFrame& f) {
-    const bool visible = layer_visible(f);
-    edit(f, (visible ? "Hide " : "Show ") + selected_name(f),
-         [&](Scene& scene) { scene.layers[f.view.layer].visible = !visible; });
+    try_edit([&] { toggle_visible(f.document, f.view, f.view.layer); });
 }
-void solo_layer(GuiFrame& f) {
-    const std::string name = selected_name(f);
-    if (f.view.solo.erase(name) == 0) f.view.solo.insert(name);
-}
+void solo_layer(GuiFrame& f) { toggle_solo(f.view, selected_name(f)); }
 bool layer_visible(const GuiFrame& f) {
-    return has_layer(f) && f.document.scene().layers[f.view.layer].visible;
+    return has_layer(f) && is_visible(f.document.scene(), f.view.layer, f.view.frame);
 }
 bool layer_solo(const GuiFrame& f) { return has_layer(f) && f.view.solo.count(selected_name(f)) > 0; }
 void move_layer_up(GuiFrame& f) {
-    edit(f, "Move " + selected_name(f),
-         [&](Scene& scene) { move_layer(scene, f.view.layer, f.view.layer - 1); });
-    --f.view.layer;
+    try_edit([&] { move_layer(f.document, f.view, f.view.layer, f.view.layer - 1); });
 }
 void move_layer_down(GuiFrame& f) {
-    edit(f, "Move " + selected_name(f),
-         [&](Scene& scene) { move_layer(scene, f.view.layer, f.view.layer + 1); });
-    ++f.view.layer;
+    try_edit([&] { move_layer(f.document, f.view, f.view.layer, f.view.layer + 1); });
 }
 bool can_move_up(const GuiFrame& f) { return has_layer(f) && f.view.layer > 0; }
 bool can_move_down(const GuiFrame& f) { return f.view.layer + 1 < f.document.scene().layers.size(); }

@@ -10,6 +10,7 @@
 #include "gui/key_codes.h"
 #include "gui/panel/panel.h"
 #include "gui/test_window.h"
+#include "scene/animate.h"
 
 namespace astrosplat {
 namespace {
@@ -220,6 +221,25 @@ TEST(Shortcuts, ViewsAndSwitches) {
     window.tap(key_code::f11);
     EXPECT_FALSE(window.view.panels);
     EXPECT_FALSE(window.has("ruler"));
+}
+
+TEST(Shortcuts, HSetsAKeyframeWhereVisibilityIsAnimated) {
+    TestWindow window(example_document());
+    const std::string key = "layer.dust.visible";
+    window.document.edit("Animate", [&](Scene& scene) {
+        set_keyframe(scene, key, 1.0, true);
+        set_keyframe(scene, key, 100.0, false);
+    });
+    const auto seen = [&] { return scene_at(window.document.scene(), window.view.frame).layers[0].visible; };
+    window.view.frame = 50.0;
+    window.tap('H');
+    EXPECT_FALSE(seen());
+    EXPECT_EQ(window.document.undo_name(), "Hide dust");
+    window.view.frame = 120.0;
+    window.choose("Layer/Visible");
+    EXPECT_TRUE(seen());
+    EXPECT_EQ(window.document.undo_name(), "Show dust");
+    EXPECT_EQ(find_track(window.document.scene(), key)->keyframes.size(), 4U);
 }
 
 TEST(Shortcuts, TheSheetOpensAndCloses) {

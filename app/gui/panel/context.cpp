@@ -50,8 +50,6 @@ Gesture begin_gesture(Context& context) {
     return context.memory.gesture;
 }
 
-namespace {
-
 void attempt(Context& context, const ParameterKey& key, const std::function<void()>& change) {
     Memory& memory = context.memory;
     try {
@@ -62,6 +60,8 @@ void attempt(Context& context, const ParameterKey& key, const std::function<void
         memory.error = error.what();
     }
 }
+
+namespace {
 
 // A kind of source that begins with a file: whoever wishes for one of them gets both.
 struct KindWithFile {

@@ -107,6 +107,9 @@ const Value& default_of(Context& context, const ParameterSpec& spec);
 /// A fresh id for edits of the press that begins now.
 Gesture begin_gesture(Context& context);
 
+/// Runs an edit; a refusal becomes the message of the row `key`.
+void attempt(Context& context, const ParameterKey& key, const std::function<void()>& change);
+
 /// Document::set at the current frame, with what else must change for it to stand (companions.h), as one undo
 /// step; a refusal becomes the row's message. `gesture` 0: a step of its own.
 void set_value(Context& context, const ParameterKey& key, const Value& value, Gesture gesture = 0);

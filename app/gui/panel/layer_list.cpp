@@ -103,12 +103,8 @@ void switches(Context& context, std::size_t i, const Area& row) {
         toggle(context, i, "render.holdout", layer.render.holdout);
     x -= px(20);
     const bool solo = context.view.solo.count(layer.name) > 0;
-    if (letter("solo", "S", {x, row.corner.y}, solo, "Solo: only layers with S are shown")) {
-        if (solo)
-            context.view.solo.erase(layer.name);
-        else
-            context.view.solo.insert(layer.name);
-    }
+    if (letter("solo", "S", {x, row.corner.y}, solo, "Solo: only layers with S are shown"))
+        toggle_solo(context.view, layer.name);
 }
 
 void finish_renaming(Context& context, std::size_t i, bool take, const std::string& name) {
@@ -145,23 +141,13 @@ void begin_renaming(Context& context, std::size_t i) {
     context.memory.touch.entry_frames = -2;
 }
 
-void remove(Context& context, std::size_t i) {
-    edit(context, "", "Delete layer " + context.scene().layers[i].name,
-         [&](Scene& scene) { remove_layer(scene, i); });
-}
-
-void duplicate(Context& context, std::size_t i) {
-    std::size_t copy = i;
-    edit(context, "", "Duplicate layer " + context.scene().layers[i].name,
-         [&](Scene& scene) { copy = duplicate_layer(scene, i); });
-    context.view.layer = copy;
-}
-
 void layer_menu(Context& context, std::size_t i) {
     if (!begin_popup("layer")) return;
     if (ImGui::MenuItem("Rename")) begin_renaming(context, i);
-    if (ImGui::MenuItem("Duplicate")) duplicate(context, i);
-    if (ImGui::MenuItem("Delete")) remove(context, i);
+    if (ImGui::MenuItem("Duplicate"))
+        attempt(context, "", [&] { duplicate_layer(context.document, context.view, i); });
+    if (ImGui::MenuItem("Delete"))
+        attempt(context, "", [&] { remove_layer(context.document, context.view, i); });
     ImGui::Separator();
     if (ImGui::MenuItem("Frame", "F")) context.commands.push_back({Command::Kind::frame_layer, {}, "", i});
     if (ImGui::MenuItem("Regenerate")) context.commands.push_back({Command::Kind::regenerate, {}, "", i});
@@ -189,9 +175,7 @@ void reorder(Context& context, const std::vector<Area>& rows) {
     const auto from = static_cast<std::size_t>(memory.dragged_layer);
     memory.dragged_layer = -1;
     if (from == place) return;
-    edit(context, "", "Move layer " + context.scene().layers[from].name,
-         [&](Scene& scene) { move_layer(scene, from, place); });
-    context.view.layer = place;
+    attempt(context, "", [&] { move_layer(context.document, context.view, from, place); });
 }
 
 // Selecting, dragging, renaming and the menu: all of the row that is not a switch.
@@ -254,7 +238,8 @@ void draw_layer(Context& context, std::size_t i, const Area& row) {
     const bool shown = context.view.solo.empty() ? layer.visible : context.view.solo.count(layer.name) > 0;
     if (icon_button("eye", layer.visible ? Icon::eye : Icon::eye_closed, {px(24), px(line_height)}, px(14),
                     shown ? color::text : color::dim, nullptr))
-        toggle(context, i, "visible", layer.visible);
+        attempt(context, key_of(context, i, "visible"),
+                [&] { toggle_visible(context.document, context.view, i); });
     const float chip = px(10), middle = row.corner.y + px(line_height) * 0.5f;
     const ImVec2 at{row.corner.x + px(42), middle - chip * 0.5f};
     list->AddRectFilled(at, {at.x + chip, at.y + chip}, chip_color(context, i), px(2));
