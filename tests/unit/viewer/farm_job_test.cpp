@@ -219,5 +219,34 @@ TEST(EarlierFarmJobs, AreThoseThatStatusTells) {
         << text_of(folder / "asked");
 }
 
+TEST(RenderQueue, JobsTakeNoMoreOfTheMachineThanTheWindow) {
+    const TempFolder folder;
+    const fs::path program =
+        folder.file("program", "#!/bin/sh\necho \"$@ \" >> '" + (folder / "asked").string() + "'\n");
+    fs::permissions(program, fs::perms::owner_all);
+    const Document document = Document::open(folder.file("m51.toml", "astrosplat = 1\n"));
+    RenderQueue queue(SetCache(), program.string(), {.threads = 4, .memory_gib = 8});
+    RenderTask task = make_render_task(document, RenderKind::frame, 1.0);
+    task.name = "one.exr";
+    queue.add(task, document);
+    SourceParams source;
+    source.meshes = {{"plane", {folder / "m51.png"}}};
+    queue.add_preparation(source, folder / "prepared");
+    const auto ended = [&] {
+        return std::ranges::none_of(queue.jobs(), [](const QueuedJob& job) {
+            return job.state == QueuedJob::State::waiting || job.state == QueuedJob::State::running;
+        });
+    };
+    for (int i = 0; i < 4000 && !ended(); ++i) {
+        queue.poll(0.001 * i);
+        std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
+    const std::string asked = text_of(folder / "asked"), render = asked.substr(0, asked.find('\n')),
+                      prepare = asked.substr(render.size() + 1);
+    EXPECT_NE(render.find(" --threads=4 --memory=8 "), std::string::npos) << asked;
+    EXPECT_NE(prepare.find(" --threads=4 "), std::string::npos) << asked;
+    EXPECT_EQ(prepare.find("--memory"), std::string::npos) << asked;
+}
+
 }  // namespace
 }  // namespace astrosplat
