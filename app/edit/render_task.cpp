@@ -24,11 +24,15 @@ OutputPattern pattern_of(const Document& document) {
     return output_pattern(folder, document.scene().output.path);
 }
 
-std::string frame_problem(const RenderTask& task) {
+std::string frame_problem(const RenderTask& task, const CameraParams& camera) {
     try {
         const std::size_t count = parse_frames(task.frames, "frames").size();
-        const bool numbered = output_pattern("/", render_target(task).string()).is_numbered();
-        if (task.kind == RenderKind::range && count > 1 && !numbered)
+        const OutputPattern name{{}, task.name};
+        if (task.kind == RenderKind::movie && (name.is_numbered() || name.is_stereo()))
+            return "a movie is one file: its name has no place for a number or an eye";
+        const OutputPattern files = output_pattern("/", render_files(task).string());
+        eyes_of(files, camera);
+        if (task.kind == RenderKind::range && count > 1 && !files.is_numbered())
             return "the name needs #### where the number of the frame goes";
     } catch (const InputError& error) {
         return error.what();
@@ -74,7 +78,7 @@ std::string with_ending(const std::string& name, const std::string& ending) {
     return fs::path(name).replace_extension(ending).string();
 }
 
-std::string render_problem(const RenderTask& task) {
+std::string render_problem(const RenderTask& task, const CameraParams& camera) {
     constexpr std::int64_t largest = 65536, largest_chunk = 1'000'000;
     if (task.width < 1 || task.height < 1 || task.width > largest || task.height > largest)
         return fmt::format("a side is 1 to {} px long, not {} and {}", largest, task.width, task.height);
@@ -87,7 +91,7 @@ std::string render_problem(const RenderTask& task) {
         return fmt::format("the name ends with one of {}, not with '{}'", fmt::join(endings, " "), ending);
     if (renders_by_slurm(task) && (task.chunk < 1 || task.chunk > largest_chunk))
         return fmt::format("a task has 1 to {} frames, not {}", largest_chunk, task.chunk);
-    return frame_problem(task);
+    return frame_problem(task, camera);
 }
 
 std::string render_title(const RenderTask& task) {

@@ -38,8 +38,8 @@ RenderTask make_render_task(const Document& document, RenderKind kind, double fr
 /// Of the files: a whole path, with the pattern's `#`.
 std::filesystem::path render_target(const RenderTask& task);
 
-/// Why it cannot be rendered, one line; empty: it can.
-std::string render_problem(const RenderTask& task);
+/// Why it cannot be rendered by this camera, one line; empty: it can.
+std::string render_problem(const RenderTask& task, const CameraParams& camera);
 
 /// The endings that files of a kind may have, the usual one first.
 std::vector<std::string> render_endings(RenderKind kind);

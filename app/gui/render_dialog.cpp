@@ -209,7 +209,7 @@ void command_row(GuiFrame& frame) {
 std::string problem(const GuiFrame& frame) {
     const RenderTask& render = frame.view.render;
     if (render.kind == RenderKind::movie && !frame.status.has_ffmpeg) return "a movie needs ffmpeg";
-    return render_problem(render);
+    return render_problem(render, frame.document.scene().camera);
 }
 
 }  // namespace

@@ -96,11 +96,11 @@ std::string last_line(const std::string& text) {
     return without_prefix(end == std::string::npos ? whole : whole.substr(end + 1));
 }
 
+/// Of pairs those of the left eye.
 std::vector<fs::path> files_of(const std::string& output, const std::vector<std::int64_t>& frames) {
     const OutputPattern pattern = output_pattern({}, output);
     std::vector<fs::path> files;
-    if (pattern.is_stereo()) return files;
-    for (const std::int64_t frame : frames) files.push_back(pattern.resolve(frame));
+    for (const std::int64_t frame : frames) files.push_back(pattern.resolve(frame, Eye::left));
     return files;
 }
 

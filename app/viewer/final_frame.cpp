@@ -14,28 +14,10 @@
 
 #include "core/clock.h"
 #include "core/error.h"
-#include "core/worker.h"
 #include "pipeline.h"
 
 namespace astrosplat {
 namespace {
-
-/// One request and what has come of it.
-struct Run {
-    FinalRequest request;
-    std::atomic<bool> cancelled{false};
-    std::atomic<float> progress{0.0f};
-    Image canvas;  // region-sized RGBA; a tile is whole before it appears in `fresh`
-
-    std::mutex mutex;           // for all below
-    std::vector<Region> fresh;  // px of the canvas
-    FinalFrame::Outcome outcome{FinalFrame::State::running, {}, 0.0, {}};
-
-    void end(FinalFrame::Outcome how) {
-        const std::lock_guard lock(mutex);
-        outcome = std::move(how);
-    }
-};
 
 Region whole_region(const FinalRequest& request) {
     const Region& r = request.region;
@@ -48,7 +30,29 @@ void copy_tile(const Image& from, const Region& tile, Image& to) {
         std::memcpy(to.at(tile.x, y), from.at(tile.x, y), bytes);
 }
 
-void render_run(Pipeline& pipeline, Run& run) {
+}  // namespace
+
+/// One request and what has come of it.
+struct FinalFrame::Run {
+    FinalRequest request;
+    std::atomic<bool> cancelled{false};
+    std::atomic<float> progress{0.0f};
+    Image canvas;  // region-sized RGBA; a tile is whole before it appears in `fresh`
+
+    std::mutex mutex;           // for all below
+    std::vector<Region> fresh;  // px of the canvas
+    Outcome outcome{State::running, {}, 0.0, {}};
+
+    void end(Outcome how) {
+        const std::lock_guard lock(mutex);
+        outcome = std::move(how);
+    }
+};
+
+FinalFrame::FinalFrame() = default;
+FinalFrame::~FinalFrame() { cancel(); }
+
+void FinalFrame::render(Pipeline& pipeline, Run& run) {
     const auto start = Clock::now();
     const FinalRequest& request = run.request;
     Progress progress;
@@ -71,52 +75,18 @@ void render_run(Pipeline& pipeline, Run& run) {
         run.fresh.push_back(here);
     };
     auto frame = std::make_shared<RenderedFrame>(pipeline.frame(now, settings, progress, tile_done));
-    run.end({FinalFrame::State::done, {}, seconds_since(start), std::move(frame)});
+    run.end({State::done, {}, seconds_since(start), std::move(frame)});
     run.progress = 1.0f;
 }
 
-}  // namespace
-
-struct FinalFrame::Impl {
-    // With the worker's lock:
-    std::shared_ptr<Run> current;  // the latest; null before the first and after cancel()
-    std::shared_ptr<Run> next;     // not begun yet
-    // The thread's:
-    std::unique_ptr<Pipeline> pipeline;
-    std::uint64_t files = 0;  // of the request that `pipeline` was made for
-    Worker worker{[this] { return next_run(); }};
-
-    ~Impl() { replace(nullptr); }
-
-    void replace(std::shared_ptr<Run> run) {
-        {
-            const auto held = worker.lock();
-            if (current) current->cancelled = true;
-            current = next = std::move(run);
-        }
-        worker.wake();
-    }
-
-    std::shared_ptr<Run> latest() {
-        const auto held = worker.lock();
-        return current;
-    }
-
-    Worker::Task next_run() {
-        if (!next) return {};
-        return [this, run = std::exchange(next, nullptr)] { work(*run); };
-    }
-    void work(Run& run);
-};
-
-void FinalFrame::Impl::work(Run& run) {
+void FinalFrame::work(Run& run) {
     try {
         const Region region = whole_region(run.request);
         run.canvas = {region.width, region.height, 4, {}};
         run.canvas.pixels.resize(static_cast<std::size_t>(region.width * region.height * 4));
-        const bool other_files = std::exchange(files, run.request.files) != files;
-        if (!pipeline || other_files) pipeline = std::make_unique<Pipeline>();
-        render_run(*pipeline, run);
+        const bool other_files = std::exchange(files_, run.request.files) != files_;
+        if (!pipeline_ || other_files) pipeline_ = std::make_unique<Pipeline>();
+        render(*pipeline_, run);
     } catch (const Cancelled&) {
         run.end({});
     } catch (const std::bad_alloc&) {
@@ -126,37 +96,46 @@ void FinalFrame::Impl::work(Run& run) {
     }
 }
 
-FinalFrame::FinalFrame() : impl_(std::make_unique<Impl>()) {}
-FinalFrame::~FinalFrame() = default;
+void FinalFrame::replace(std::shared_ptr<Run> run) {
+    {
+        const auto held = worker_.lock();
+        if (current_) current_->cancelled = true;
+        current_ = next_ = std::move(run);
+    }
+    worker_.wake();
+}
+
+std::shared_ptr<FinalFrame::Run> FinalFrame::latest() const {
+    const auto held = worker_.lock();
+    return current_;
+}
+
+Worker::Task FinalFrame::next_run() {
+    if (!next_) return {};
+    return [this, run = std::exchange(next_, nullptr)] { work(*run); };
+}
 
 void FinalFrame::start(FinalRequest request) {
     auto run = std::make_shared<Run>();
     run->request = std::move(request);
-    impl_->replace(std::move(run));
+    replace(std::move(run));
 }
 
-void FinalFrame::cancel() { impl_->replace(nullptr); }
-
 FinalFrame::Outcome FinalFrame::outcome() const {
-    const std::shared_ptr<Run> run = impl_->latest();
+    const std::shared_ptr<Run> run = latest();
     if (!run) return {};
     const std::lock_guard lock(run->mutex);
     return run->outcome;
 }
 
 float FinalFrame::progress() const {
-    const std::shared_ptr<Run> run = impl_->latest();
+    const std::shared_ptr<Run> run = latest();
     return run ? run->progress.load() : 0.0f;
 }
 
-std::vector<Region> FinalFrame::take_tiles(Image& image) {
-    Outcome unasked;
-    return take_tiles(image, unasked);
-}
-
-std::vector<Region> FinalFrame::take_tiles(Image& image, Outcome& outcome) {
-    const std::shared_ptr<Run> run = impl_->latest();
-    outcome = {};
+std::vector<Region> FinalFrame::take_tiles(Image& image, Outcome* outcome) {
+    const std::shared_ptr<Run> run = latest();
+    if (outcome) *outcome = {};
     if (!run) return {};
     const Region region = whole_region(run->request);
     if (image.width != region.width || image.height != region.height || image.channels != 4)
@@ -165,7 +144,7 @@ std::vector<Region> FinalFrame::take_tiles(Image& image, Outcome& outcome) {
     {
         const std::lock_guard lock(run->mutex);
         tiles.swap(run->fresh);
-        outcome = run->outcome;
+        if (outcome) *outcome = run->outcome;
     }
     for (const Region& tile : tiles) copy_tile(run->canvas, tile, image);
     return tiles;

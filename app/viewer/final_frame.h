@@ -8,11 +8,14 @@
 #include <vector>
 
 #include "core/image.h"
+#include "core/worker.h"
 #include "render/render.h"
 #include "scene/scene.h"
 #include "splats/splat_set.h"
 
 namespace astrosplat {
+
+class Pipeline;
 
 /// One frame to compute.
 struct FinalRequest {
@@ -34,7 +37,7 @@ class FinalFrame {
     /// Cancels what is under way and begins again. Returns at once.
     void start(FinalRequest request);
     /// Cancels and returns at once: state() is idle from then on, and the thread stops within 50 ms of work.
-    void cancel();
+    void cancel() { replace(nullptr); }
 
     enum class State { idle, running, done, failed };
     struct Outcome {
@@ -48,15 +51,27 @@ class FinalFrame {
     float progress() const;
 
     /// Tiles finished since the last call, copied into `image` (resized to the request's). Returns their
-    /// regions, px of `image`. Never blocks on the renderer.
-    std::vector<Region> take_tiles(Image& image);
-    /// The same; `outcome` says how far the frame was when they were taken: once it is done, the image is
-    /// whole. Asked for afterwards, it could know of tiles that were not taken.
-    std::vector<Region> take_tiles(Image& image, Outcome& outcome);
+    /// regions, px of `image`. Never blocks on the renderer. `outcome`, where it is given, says how far the
+    /// frame was when they were taken: once it is done, the image is whole. Asked for afterwards, it could
+    /// know of tiles that were not taken.
+    std::vector<Region> take_tiles(Image& image, Outcome* outcome = nullptr);
 
   private:
-    struct Impl;
-    std::unique_ptr<Impl> impl_;
+    struct Run;
+
+    void replace(std::shared_ptr<Run> run);
+    std::shared_ptr<Run> latest() const;
+    Worker::Task next_run();
+    void work(Run& run);
+    static void render(Pipeline& pipeline, Run& run);
+
+    // With the worker's lock:
+    std::shared_ptr<Run> current_;  // the latest; null before the first and after cancel()
+    std::shared_ptr<Run> next_;     // not begun yet
+    // The thread's:
+    std::unique_ptr<Pipeline> pipeline_;
+    std::uint64_t files_ = 0;  // of the request that it was made for
+    Worker worker_{[this] { return next_run(); }};
 };
 
 }  // namespace astrosplat

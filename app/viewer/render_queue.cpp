@@ -121,7 +121,7 @@ void RenderQueue::add_earlier(const SubmittedFrames& submitted, const std::strin
 }
 
 void RenderQueue::add(const RenderTask& task, const Document& document) {
-    const std::string problem = render_problem(task);
+    const std::string problem = render_problem(task, document.scene().camera);
     if (!problem.empty()) throw InputError(problem);
     if (renders_by_slurm(task)) return add_to_farm(task, document);
     expect_no_movie(task);

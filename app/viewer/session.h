@@ -24,17 +24,16 @@
 #include "gl/image_texture.h"
 #include "gui/gui.h"
 #include "output/read_frame.h"
-#include "viewer/camera_overlay.h"
 #include "viewer/comparison.h"
 #include "viewer/file_pictures.h"
 #include "viewer/layer_picture.h"
-#include "viewer/navigator.h"
 #include "viewer/playback.h"
 #include "viewer/render_queue.h"
 #include "viewer/run_viewer.h"
 #include "viewer/scene_files.h"
 #include "viewer/set_wishes.h"
 #include "viewer/view_frame.h"
+#include "viewer/viewport_camera.h"
 
 namespace astrosplat {
 

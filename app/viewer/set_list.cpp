@@ -41,6 +41,11 @@ std::int64_t growing_limit(std::int64_t sample_limit) { return std::max<std::int
 
 }  // namespace
 
+SetList::Entry* SetList::find(const std::string& name) {
+    const auto found = entries_.find(name);
+    return found == entries_.end() ? nullptr : &found->second;
+}
+
 SetList::Layer SetList::find_loaded(const SourceParams& identity) const {
     for (const auto& item : entries_)
         if (item.second.loaded && satisfies(*item.second.loaded, identity)) return item.second.loaded;
@@ -54,7 +59,7 @@ void SetList::stop_growing(Entry& entry) {
 
 void SetList::stop(const std::string& name) {
     for (auto& queue : queues_) queue.second.remove(name);
-    if (const auto entry = entries_.find(name); entry != entries_.end()) stop_growing(entry->second);
+    if (Entry* const entry = find(name)) stop_growing(*entry);
     if (job_ && job_->name == name) job_->cancelled = true;
 }
 
@@ -105,41 +110,35 @@ void SetList::want(const Scene& scene) {
 }
 
 void SetList::outdate(const std::string& name) {
-    const auto found = entries_.find(name);
-    if (found == entries_.end()) return;
-    stop(name);
-    Entry& entry = found->second;
-    entry.identity.reset();
-    if (!entry.loaded) return;
-    auto old = std::make_shared<LoadedLayer>(*entry.loaded);
+    abandon(name);
+    Entry* const entry = find(name);
+    if (!entry || !entry->loaded) return;
+    auto old = std::make_shared<LoadedLayer>(*entry->loaded);
     old->outdated = true;
-    entry.loaded = std::move(old);
+    entry->loaded = std::move(old);
 }
 
 void SetList::retry(const std::string& name) {
-    const auto found = entries_.find(name);
-    if (found == entries_.end() || !found->second.identity) return;
-    Entry& entry = found->second;
-    if (entry.stage != Stage::failed && entry.stage != Stage::cancelled) return;
-    entry.stage = Stage::waiting;
-    entry.error.clear();
+    Entry* const entry = find(name);
+    if (!entry || !entry->identity) return;
+    if (entry->stage != Stage::failed && entry->stage != Stage::cancelled) return;
+    entry->stage = Stage::waiting;
+    entry->error.clear();
     queues_[SetTask::load].push_front(name);
 }
 
 void SetList::cancel(const std::string& name) {
-    const auto found = entries_.find(name);
-    if (found == entries_.end()) return;
-    Entry& entry = found->second;
-    if (entry.stage != Stage::waiting && entry.stage != Stage::loading) return;
+    Entry* const entry = find(name);
+    if (!entry || (entry->stage != Stage::waiting && entry->stage != Stage::loading)) return;
     stop(name);
-    entry.stage = Stage::cancelled;
+    entry->stage = Stage::cancelled;
 }
 
 void SetList::abandon(const std::string& name) {
-    const auto found = entries_.find(name);
-    if (found == entries_.end()) return;
+    Entry* const entry = find(name);
+    if (!entry) return;
     stop(name);
-    found->second.identity.reset();
+    entry->identity.reset();
 }
 
 std::optional<SetTask> SetList::next_task() const {

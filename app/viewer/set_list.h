@@ -98,6 +98,7 @@ class SetList {
         std::shared_ptr<const LayerHistograms> histograms;  // the latest: the next ones come late
     };
 
+    Entry* find(const std::string& name);  // null: there is none
     Layer find_loaded(const SourceParams& identity) const;
     void stop_growing(Entry& entry);
     void stop(const std::string& name);

@@ -38,8 +38,7 @@ void SetLoader::work(SetJob& job) {
         if (job.task == SetTask::describe) describe(job);
     } catch (const Cancelled&) {  // the caller that cancelled has said in the list what comes next
     } catch (const std::exception& error) {
-        const auto held = worker_.lock();
-        list_.fail(job, reason(error));
+        list()->fail(job, reason(error));
     }
 }
 
@@ -54,8 +53,7 @@ void SetLoader::sample(const SetJob& job) try {
     sample.set = std::make_shared<const SplatSet>(std::move(there->set));
     sample.kept = there->splats;
     auto layer = std::make_shared<const LoadedLayer>(growing_layer(sample, job.source, job.name));
-    const auto held = worker_.lock();
-    list_.show_sample(job, std::move(layer));
+    list()->show_sample(job, std::move(layer));
 } catch (const InputError&) {
 } catch (const std::bad_alloc&) {
     // the set may still come without one
@@ -71,10 +69,7 @@ void SetLoader::load(SetJob& job) {
     auto layer = std::make_shared<LoadedLayer>(
         whole_layer(std::move(set), job.source, job.name, sample_limit_, sample));
     layer->columns = job.growing.columns();
-
-    SetList::Layer old;  // let go after the lock
-    const auto held = worker_.lock();
-    old = list_.keep(job, std::move(layer));
+    const SetList::Layer old = list()->keep(job, std::move(layer));  // let go after the lock
 }
 
 void SetLoader::arrange(const SetJob& job) {
@@ -90,9 +85,7 @@ void SetLoader::describe(const SetJob& job) { replace(job, described_layer(*job.
 
 void SetLoader::replace(const SetJob& job, LoadedLayer layer) {
     auto better = std::make_shared<const LoadedLayer>(std::move(layer));
-    SetList::Layer old;  // let go after the lock
-    const auto held = worker_.lock();
-    old = list_.replace(job, std::move(better));
+    const SetList::Layer old = list()->replace(job, std::move(better));  // let go after the lock
 }
 
 SetLoader::SetLoader(const SetCache& cache, std::int64_t sample_limit)
@@ -112,89 +105,13 @@ SetLoader::SetLoader(Load load, Sample sample, std::int64_t sample_limit)
       sample_limit_(sample_limit),
       list_(sample_limit, sample_set_ != nullptr) {}
 
-SetLoader::~SetLoader() {
-    const auto held = worker_.lock();
-    list_.cancel_job();
-}
-
-void SetLoader::want(const Scene& scene) {
-    {
-        const auto held = worker_.lock();
-        list_.want(scene);
-    }
-    worker_.wake();
-}
-
-void SetLoader::outdate(const std::string& layer_name) {
-    const auto held = worker_.lock();
-    list_.outdate(layer_name);
-}
-
-void SetLoader::retry(const std::string& layer_name) {
-    {
-        const auto held = worker_.lock();
-        list_.retry(layer_name);
-    }
-    worker_.wake();
-}
-
-void SetLoader::cancel(const std::string& layer_name) {
-    const auto held = worker_.lock();
-    list_.cancel(layer_name);
-}
-
-void SetLoader::abandon(const std::string& layer_name) {
-    const auto held = worker_.lock();
-    list_.abandon(layer_name);
-}
+SetLoader::~SetLoader() { list()->cancel_job(); }
 
 bool SetLoader::grow() {
-    std::shared_ptr<SetJob> job;
-    {
-        const auto held = worker_.lock();
-        job = list_.growing_job();
-    }
+    const std::shared_ptr<SetJob> job = list()->growing_job();
     if (!job) return false;
     LoadedLayer grown = growing_layer(job->growing.sample(), job->source, job->name);
-    const auto held = worker_.lock();
-    return list_.grow(*job, std::move(grown));
-}
-
-std::uint64_t SetLoader::revision() const {
-    const auto held = worker_.lock();
-    return list_.revision();
-}
-
-std::shared_ptr<const LoadedLayer> SetLoader::layer(const std::string& layer_name) const {
-    const auto held = worker_.lock();
-    return list_.shown(layer_name);
-}
-
-LayerStatus SetLoader::status(const LayerParams& layer) const {
-    const auto held = worker_.lock();
-    return list_.status(layer);
-}
-
-bool SetLoader::sets_there() const {
-    const auto held = worker_.lock();
-    return !list_.loading();
-}
-
-void SetLoader::hold(bool rest) {
-    {
-        const auto held = worker_.lock();
-        if (!list_.hold(rest)) return;
-    }
-    worker_.wake();
-}
-
-bool SetLoader::idle() const {
-    const auto held = worker_.lock();
-    return list_.resting();
-}
-
-void SetLoader::wait() {
-    worker_.wait([&] { return list_.resting(); });
+    return list()->grow(*job, std::move(grown));
 }
 
 }  // namespace astrosplat

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <utility>
@@ -40,36 +41,58 @@ class SetLoader {
     /// Makes sure that every layer of the scene has its set or is on its way: starts what is missing or
     /// changed, cancels what nobody wants any more. Cheap when nothing changed. Layers never visible are not
     /// loaded.
-    void want(const Scene& scene);
+    void want(const Scene& scene) {
+        list()->want(scene);
+        worker_.wake();
+    }
     /// Files of a layer have changed: the next want() begins it again. Its old set stays until the new one is
     /// there.
-    void outdate(const std::string& layer_name);
+    void outdate(const std::string& layer_name) { list()->outdate(layer_name); }
     /// Begins again a layer that was cancelled or failed.
-    void retry(const std::string& layer_name);
+    void retry(const std::string& layer_name) {
+        list()->retry(layer_name);
+        worker_.wake();
+    }
     /// Stops one layer's loading; its old set, if any, stays.
-    void cancel(const std::string& layer_name);
+    void cancel(const std::string& layer_name) { list()->cancel(layer_name); }
     /// The same where the next want() is to begin again, whatever it wants.
-    void abandon(const std::string& layer_name);
+    void abandon(const std::string& layer_name) { list()->abandon(layer_name); }
     /// Lets layer() give a fresh sample of the set that is being generated, until it is there. An old set
     /// stays until the new one is about everywhere it will be. False: there is nothing new to be seen.
     bool grow();
 
     /// Grows whenever a layer of the wanted scene got its set or its histograms, or failed.
-    std::uint64_t revision() const;
+    std::uint64_t revision() const { return list()->revision(); }
     /// The latest set of a layer, which may be older than its source, or a sample of the one being generated;
     /// null: none yet.
-    std::shared_ptr<const LoadedLayer> layer(const std::string& layer_name) const;
+    std::shared_ptr<const LoadedLayer> layer(const std::string& layer_name) const {
+        return list()->shown(layer_name);
+    }
     /// loading, progress, found, stale, error, splats and histograms filled in.
-    LayerStatus status(const LayerParams& layer) const;
+    LayerStatus status(const LayerParams& layer) const { return list()->status(layer); }
     /// Every wanted layer has its set, or has failed or been cancelled.
-    bool sets_there() const;
+    bool sets_there() const { return !list()->loading(); }
     /// The same with all that comes later: previews in order, histograms.
-    bool idle() const;
-    void wait();
+    bool idle() const { return list()->resting(); }
+    void wait() {
+        worker_.wait([&] { return list_.resting(); });
+    }
     /// Does not begin what comes later, while something more urgent needs the processor.
-    void hold(bool rest);
+    void hold(bool rest) {
+        if (list()->hold(rest)) worker_.wake();
+    }
 
   private:
+    /// The list, under the worker's lock for as long as this lives.
+    template <class List>
+    struct Held {
+        std::unique_lock<std::mutex> lock;
+        List* list;
+        List* operator->() const { return list; }
+    };
+    Held<SetList> list() { return {worker_.lock(), &list_}; }
+    Held<const SetList> list() const { return {worker_.lock(), &list_}; }
+
     Worker::Task next_task();
     // In the worker's thread:
     void work(SetJob& job);
@@ -83,7 +106,7 @@ class SetLoader {
     Sample sample_set_;
     SetCache trees_;  // where those of large sets are kept
     std::int64_t sample_limit_;
-    SetList list_;  // used with the worker's lock
+    SetList list_;  // used by way of list(), or where the worker holds its lock
     Worker worker_{[this] { return next_task(); }};
 };
 

@@ -285,7 +285,7 @@ void ViewFrame::begin_final() {
 
 void ViewFrame::take_final(double now) {
     FinalFrame::Outcome outcome;
-    for (const Region& tile : final_.take_tiles(canvas_, outcome)) {
+    for (const Region& tile : final_.take_tiles(canvas_, &outcome)) {
         canvas_texture_.upload(canvas_, tile);
         ++version_;
     }

@@ -48,7 +48,7 @@ std::string binary_gltf(std::string json) {
            json;
 }
 
-void check(const CameraTrack& track) {
+std::size_t check(const CameraTrack& track) {
     demand(!track.samples.empty(), "a sample");
     for (const TrackSample& sample : track.samples) {
         demand(std::isfinite(sample.frame) && std::isfinite(sample.fov_deg) && std::isfinite(sample.height),
@@ -58,6 +58,7 @@ void check(const CameraTrack& track) {
     }
     for (std::size_t i = 1; i < track.samples.size(); ++i)
         demand(track.samples[i].frame > track.samples[i - 1].frame, "frames that ascend");
+    return track.samples.size();
 }
 
 }  // namespace
@@ -88,17 +89,20 @@ std::vector<std::string> camera_seeds() {
         R"({"fl_y":5,"transform_matrix":[[1,0,0,1],[0,1,0,2],[0,0,1,3],[0,0,0,1]]}]})"};
 }
 
-void read_camera_bytes(std::string_view bytes) {
+std::size_t read_camera_bytes(std::string_view bytes) {
     const std::string ending = ending_of(bytes);
     const CameraFile file(bytes, ending);
     const FrameRate rate{24.0, 0.0};
     if (ending != ".csv") return check(read_camera(file.path, rate));
     Scene scene;
+    std::size_t keyframes = 0;
     for (const Track& read : read_csv_tracks(file.path, rate, scene))
         for (const auto& keyframe : read.keyframes) {
+            ++keyframes;
             demand(std::isfinite(keyframe.frame), "finite frames");
             for (const double number : keyframe.value) demand(std::isfinite(number), "finite values");
         }
+    return keyframes;
 }
 
 }  // namespace astrosplat::fuzz

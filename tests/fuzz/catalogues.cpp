@@ -42,7 +42,7 @@ struct CatalogueFile {
     ~CatalogueFile() { std::filesystem::remove(path); }
 };
 
-void read_picture_bytes(const std::filesystem::path& file) {
+std::size_t read_picture_bytes(const std::filesystem::path& file) {
     const PictureTable table = read_picture_table(file);
     demand(table.rows == table.bad.count + static_cast<std::int64_t>(table.stars.size()),
            "every row on one side");
@@ -51,6 +51,7 @@ void read_picture_bytes(const std::filesystem::path& file) {
                "places");
         demand(std::isfinite(star.luminance()) && star.luminance() > 0.0, "light");
     }
+    return table.stars.size();
 }
 
 }  // namespace
@@ -69,7 +70,7 @@ std::vector<std::string> catalogue_seeds() {
     return {hipparcos, table, hyg, gzipped(hipparcos + hipparcos), picture};
 }
 
-void read_catalogue_bytes(std::string_view bytes) {
+std::size_t read_catalogue_bytes(std::string_view bytes) {
     const CatalogueFile file(bytes);
     if (kind_of_catalogue(file.path) == CatalogueKind::picture) return read_picture_bytes(file.path);
     const StarCatalogue catalogue = read_catalogue(file.path);
@@ -81,6 +82,7 @@ void read_catalogue_bytes(std::string_view bytes) {
     for (const glm::vec3& p : set.position) demand(all_finite(p) && p != glm::vec3(0.0f), "places");
     for (const glm::vec3& c : set.color)
         demand(all_finite(c) && c.x >= 0.0f && c.y >= 0.0f && c.z >= 0.0f, "light");
+    return catalogue.stars.size();
 }
 
 }  // namespace astrosplat::fuzz

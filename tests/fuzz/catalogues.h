@@ -1,6 +1,7 @@
 // Star catalogues for the fuzzer: seeds of every format and what is demanded of the result.
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -11,6 +12,6 @@ namespace astrosplat::fuzz {
 std::vector<std::string> catalogue_seeds();
 
 /// Reads a catalogue and makes a set of it. Throws InputError; std::logic_error for results that cannot be.
-void read_catalogue_bytes(std::string_view bytes);
+std::size_t read_catalogue_bytes(std::string_view bytes);
 
 }  // namespace astrosplat::fuzz

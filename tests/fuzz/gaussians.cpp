@@ -30,7 +30,7 @@ void demand_finite(const Vector& v) {
     for (int k = 0; k < v.length(); ++k) demand(std::isfinite(v[k]), "finite numbers");
 }
 
-void check_capture(const SplatSet& set) {
+std::size_t check_capture(const SplatSet& set) {
     const std::size_t size = set.position.size();
     demand(set.color.size() == size && set.alpha.size() == size && set.distance.size() == size &&
                set.id.size() == size && set.scale.size() == set.rotation.size(),
@@ -49,6 +49,7 @@ void check_capture(const SplatSet& set) {
     }
     for (const Harmonics& harmonics : set.harmonics)
         for (const glm::vec3& c : harmonics.c) demand_finite(c);
+    return size;
 }
 
 /// The same as text, with its bytes inside.
@@ -84,16 +85,17 @@ std::vector<std::string> usda_seeds() {
                 "    upAxis = \"Z\"\n")};
 }
 
-void read_gaussian_ply_bytes(std::string_view bytes) {
-    check_capture(read_ply(CaptureFile(bytes, ".ply").path));
+std::size_t read_gaussian_ply_bytes(std::string_view bytes) {
+    return check_capture(read_ply(CaptureFile(bytes, ".ply").path));
 }
 
-void read_usda_bytes(std::string_view bytes) {
-    check_capture(read_usda_splats(CaptureFile(bytes, ".usda").path));
+std::size_t read_usda_bytes(std::string_view bytes) {
+    return check_capture(read_usda_splats(CaptureFile(bytes, ".usda").path));
 }
 
-void read_gltf_bytes(std::string_view bytes) {
-    check_capture(read_gltf_splats(CaptureFile(bytes, bytes.starts_with("{") ? ".gltf" : ".glb").path));
+std::size_t read_gltf_bytes(std::string_view bytes) {
+    return check_capture(
+        read_gltf_splats(CaptureFile(bytes, bytes.starts_with("{") ? ".gltf" : ".glb").path));
 }
 
 }  // namespace astrosplat::fuzz

@@ -1,6 +1,7 @@
 // The fuzzed readers of captures: seeds, and checks of what was read.
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -13,8 +14,8 @@ std::vector<std::string> gltf_seeds();
 std::vector<std::string> usda_seeds();
 
 /// Reads the bytes as a file; throws InputError for bad input.
-void read_gaussian_ply_bytes(std::string_view bytes);
-void read_gltf_bytes(std::string_view bytes);
-void read_usda_bytes(std::string_view bytes);
+std::size_t read_gaussian_ply_bytes(std::string_view bytes);
+std::size_t read_gltf_bytes(std::string_view bytes);
+std::size_t read_usda_bytes(std::string_view bytes);
 
 }  // namespace astrosplat::fuzz

@@ -56,7 +56,7 @@ void demand_array(const Buffer<T>& array, std::size_t size, bool optional) {
                "finite numbers");
 }
 
-void check(const SplatSet& set) {
+std::size_t check(const SplatSet& set) {
     const std::size_t size = set.position.size();
     demand_array(set.position, size, false);
     demand_array(set.color, size, false);
@@ -67,10 +67,15 @@ void check(const SplatSet& set) {
     demand_array(set.normal, size, true);
     demand_array(set.mesh, size, true);
     demand_array(set.radius, size, true);
+    return size;
 }
 
-void read_pda_bytes(std::string_view bytes) { check(read_pda(TemporaryFile(bytes, "pda").path)); }
-void read_ply_bytes(std::string_view bytes) { check(read_ply(TemporaryFile(bytes, "ply").path)); }
+std::size_t read_pda_bytes(std::string_view bytes) {
+    return check(read_pda(TemporaryFile(bytes, "pda").path));
+}
+std::size_t read_ply_bytes(std::string_view bytes) {
+    return check(read_ply(TemporaryFile(bytes, "ply").path));
+}
 
 /// Makes the checksums of a native file of one block right again, so that mutations get past them.
 std::string with_checksums(std::string bytes) {
@@ -91,11 +96,11 @@ std::string with_checksums(std::string bytes) {
     return bytes;
 }
 
-void read_native_bytes(std::string_view bytes) {
-    check(read_native(TemporaryFile(with_checksums(std::string(bytes)), "splats").path));
+std::size_t read_native_bytes(std::string_view bytes) {
+    return check(read_native(TemporaryFile(with_checksums(std::string(bytes)), "splats").path));
 }
 
-void read_obj_bytes(std::string_view bytes) {
+std::size_t read_obj_bytes(std::string_view bytes) {
     const Mesh mesh = load_obj(TemporaryFile(bytes, "obj").path);
     demand(!mesh.triangles.empty(), "at least one triangle");
     for (const glm::vec3& p : mesh.positions) demand(finite(p), "finite coordinates");
@@ -106,21 +111,24 @@ void read_obj_bytes(std::string_view bytes) {
             demand(index == Mesh::no_uv || index < mesh.uvs.size(), "uv in range");
         demand(mesh.maps.empty() || triangle.material < mesh.maps.size(), "material in range");
     }
+    return mesh.triangles.size();
 }
 
-void read_toml_bytes(std::string_view bytes) {
+std::size_t read_toml_bytes(std::string_view bytes) {
     const Scene scene = parse_scene(std::string(bytes), fs::temp_directory_path() / "fuzz.toml");
     demand(scene.output.width > 0 && scene.output.height > 0, "a resolution");
     demand(std::isfinite(scene.camera.fov) && std::isfinite(scene.output.exposure), "finite numbers");
+    return scene.layers.size();
 }
 
-void read_fits_bytes(std::string_view bytes) {
+std::size_t read_fits_bytes(std::string_view bytes) {
     const Texture texture =
         load_texture({TemporaryFile(bytes, "fits").path}, TextureSettings{}, TextureSettings::Wrap::clamp);
     const Image& image = texture.image;
     demand(image.width > 0 && image.height > 0 && image.channels == 4, "an RGBA picture");
     demand(image.pixels.size() == static_cast<std::size_t>(image.width * image.height * 4), "all its pixels");
     for (const float value : image.pixels) demand(finite(value), "finite pixels");
+    return image.pixels.size();
 }
 
 // ---- seeds

@@ -1,7 +1,8 @@
 // The readers that take files from strangers, each behind one function from bytes to "fine" or InputError.
-// Shared by the libFuzzer programs (fuzz_*.cpp) and by the replay test that runs in every build.
+// Shared by the libFuzzer programs (fuzz_reader.cpp) and by the replay test that runs in every build.
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -11,9 +12,9 @@ namespace astrosplat::fuzz {
 struct Target {
     std::string name;                // also the file ending
     std::vector<std::string> seeds;  // small valid files
-    /// Reads the bytes as a file and checks what came out. Throws InputError for bad input; anything else is
-    /// a bug.
-    void (*read)(std::string_view bytes);
+    /// Reads the bytes as a file, checks what came out and returns how much that is: splats, triangles,
+    /// stars. Throws InputError for bad input; anything else is a bug.
+    std::size_t (*read)(std::string_view bytes);
 };
 
 /// pda, ply, splats, obj, toml, fits, stars, cameras, gaussian_ply, gltf.

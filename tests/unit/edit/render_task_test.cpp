@@ -25,11 +25,11 @@ bool has(const std::vector<std::string>& words, const std::string& word) {
 
 TEST(RenderTask, SaysWhyItCannotBeRendered) {
     const RenderTask good = task_of(RenderKind::range, "a.####.exr");
-    EXPECT_EQ(render_problem(good), "");
+    EXPECT_EQ(render_problem(good, {}), "");
     const auto with = [&](auto change) {
         RenderTask task = good;
         change(task);
-        return render_problem(task);
+        return render_problem(task, {});
     };
     EXPECT_NE(with([](RenderTask& t) { t.width = 0; }), "");
     EXPECT_NE(with([](RenderTask& t) { t.height = 65537; }), "");
@@ -40,8 +40,8 @@ TEST(RenderTask, SaysWhyItCannotBeRendered) {
     EXPECT_NE(with([](RenderTask& t) { t.name = "a.exr"; }), "") << "24 frames in one file";
     EXPECT_NE(with([](RenderTask& t) { t.frames = "9-"; }), "");
     EXPECT_EQ(with([](RenderTask& t) { t.frames = "9", t.name = "a.exr"; }), "");
-    EXPECT_EQ(render_problem(task_of(RenderKind::movie, "a.mkv")), "");
-    EXPECT_NE(render_problem(task_of(RenderKind::movie, "a.exr")), "");
+    EXPECT_EQ(render_problem(task_of(RenderKind::movie, "a.mkv"), {}), "");
+    EXPECT_NE(render_problem(task_of(RenderKind::movie, "a.exr"), {}), "");
 }
 
 TEST(RenderTask, KeepsReplacesOrRefusesWhatIsThere) {
@@ -77,10 +77,33 @@ TEST(RenderTask, AMoviesFramesLieBesideIt) {
 TEST(RenderTask, PlacesMayStandInTheNamesOfFolders) {
     const std::string text = "astrosplat = 1\n[output]\nframes = \"1-2\"\npath = \"%V/take.####/shot.exr\"\n";
     const Document document = Document::untitled(text, "/films/scene.toml");
-    EXPECT_EQ(render_problem(make_render_task(document, RenderKind::range, 1.0)), "");
+    EXPECT_EQ(render_problem(make_render_task(document, RenderKind::range, 1.0), {}), "");
     const RenderTask movie = make_render_task(document, RenderKind::movie, 1.0);
     EXPECT_EQ(render_target(movie).parent_path(), std::filesystem::current_path());
     EXPECT_EQ(movie.name, "shot.mp4");
+}
+
+/// What --batch would refuse is refused before it becomes a job.
+TEST(RenderTask, AMovieIsOneFileWhateverItsFramesAreCalled) {
+    for (const char* name : {"a.####.mp4", "a.%04d.mp4", "a{frame:04}.mp4", "%V.mp4", "a.%v.mp4"})
+        EXPECT_NE(render_problem(task_of(RenderKind::movie, name), {}), "") << name;
+    for (const std::string pattern : {"frame.####.exr", "frame.%04d.exr", "{frame:04}.exr", "%V.####.exr"}) {
+        const Document document = Document::untitled(
+            "astrosplat = 1\n[output]\npath = \"" + pattern + "\"\n", "/films/scene.toml");
+        const RenderTask movie = make_render_task(document, RenderKind::movie, 1.0);
+        EXPECT_EQ(movie.name, "frame.mp4") << pattern;
+        EXPECT_EQ(render_problem(movie, {}), "") << pattern;
+        EXPECT_EQ(render_problem(make_render_task(document, RenderKind::range, 1.0), {}), "") << pattern;
+    }
+}
+
+TEST(RenderTask, PairsNeedACameraWithTwoEyes) {
+    CameraParams camera;
+    const RenderTask pairs = task_of(RenderKind::range, "a.%v.####.exr");
+    EXPECT_EQ(render_problem(pairs, camera), "");
+    camera.projection = Projection::fisheye;
+    EXPECT_NE(render_problem(pairs, camera), "");
+    EXPECT_EQ(render_problem(task_of(RenderKind::movie, "a.mp4"), camera), "");
 }
 
 TEST(RenderTask, AnotherEndingKeepsTheName) {
@@ -100,7 +123,7 @@ TEST(RenderTask, AFarmGetsChunksAndKeepsWhatIsFinished) {
     EXPECT_EQ(submit_arguments(task)[4], "--partition=long,short");
     for (const std::int64_t chunk : {0, 1'000'001}) {
         task.chunk = chunk;
-        EXPECT_NE(render_problem(task), "") << chunk;
+        EXPECT_NE(render_problem(task, {}), "") << chunk;
     }
     task.kind = RenderKind::movie;
     EXPECT_FALSE(renders_by_slurm(task)) << "a movie is written here";

@@ -1,5 +1,5 @@
 // The scene's camera as other views show it. Seen through itself, its frame is the picture's edge.
-#include "viewer/camera_overlay.h"
+#include "viewer/viewport_camera.h"
 
 #include <gtest/gtest.h>
 

@@ -134,7 +134,7 @@ TEST_F(FinalFrameTest, IsWholeWhenItIsDone) {
         Image tiles;
         FinalFrame::Outcome outcome;
         for (picture.start(wanted); outcome.state != State::done; std::this_thread::yield())
-            picture.take_tiles(tiles, outcome);
+            picture.take_tiles(tiles, &outcome);
         ASSERT_EQ(pixel_hash(tiles), hash) << "round " << round;
     }
 }
@@ -232,8 +232,15 @@ TEST_F(FinalFrameTest, LayersStillLoadingAreLeftOut) {
 TEST_F(FinalFrameTest, EndsInTheMiddleOfAPicture) {
     FinalRequest large = request(0);
     large.width = large.height = 4000;
-    FinalFrame picture;
-    picture.start(large);
+    const long owners = sets[0].use_count();
+    {
+        FinalFrame picture;
+        picture.start(large);
+        while (picture.progress() == 0.0f) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        EXPECT_EQ(picture.outcome().state, State::running);
+        EXPECT_GT(sets[0].use_count(), owners);
+    }
+    EXPECT_EQ(sets[0].use_count(), owners) << "a thread still works on it";
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // Mouse over the viewport: when the view leaves the scene's camera, and where it stands then.
-#include "viewer/navigator.h"
+#include "viewer/viewport_camera.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-// The budget against machines of known speed.
+// The budget against machines of known speed, and steps of more dots at rest.
 #include "viewer/preview_budget.h"
 
 #include <gtest/gtest.h>
@@ -94,6 +94,24 @@ TEST(FramePace, LeavesTimeForTheRestOfTheWindow) {
     EXPECT_DOUBLE_EQ(pace.target_ms(6.0, 25.0), 25.0);  // after a pause, nothing known
     pace.drew(20.0);
     EXPECT_DOUBLE_EQ(pace.target_ms(6.1, 25.0), 10.0);  // never less
+}
+
+TEST(FinerSteps, StepsAreSharesThatTheTimeAllows) {
+    constexpr std::int64_t galaxy = 9'400'000;
+    EXPECT_EQ(dots_of_step(1, galaxy, 81'000, 0.03, 0.4), 470'000);
+    EXPECT_EQ(dots_of_step(2, galaxy, 470'000, 0.1, 0.4), 1'880'000);
+    EXPECT_EQ(dots_of_step(2, galaxy, 470'000, 0.2, 0.4), 940'000) << "which take 0.4 s";
+    EXPECT_EQ(dots_of_step(2, galaxy, 470'000, 0.2, 0.0), 1'880'000) << "whatever it takes";
+    EXPECT_EQ(dots_of_step(1, 100'000, 60'000, 0.01, 0.4), 0) << "fewer than there are";
+    EXPECT_EQ(dots_of_step(3, galaxy, 81'000, 0.01, 0.4), 0) << "there is no such step";
+}
+
+TEST(FinerSteps, QuickFinalFramesAreNotHeldUp) {
+    EXPECT_EQ(plan_steps(-1.0).count, 2) << "nobody knows yet";
+    EXPECT_EQ(plan_steps(5.0).count, 2);
+    EXPECT_EQ(plan_steps(1.7).count, 1);
+    EXPECT_LE(plan_steps(1.7).most_s, 0.09) << "within the rest before it";
+    EXPECT_EQ(plan_steps(0.2).count, 0);
 }
 
 }  // namespace

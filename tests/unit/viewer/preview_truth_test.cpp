@@ -1,19 +1,22 @@
-// A cut of few dots must show the light of a large layer: mean brightness, blocks of 64x64 px and the
-// thickness of a disk seen from its edge, against the same layer with all its splats.
+// Previews of few dots must show the light of what they stand for: mean brightness, blocks of 64x64 px and
+// the thickness of a disk seen from its edge.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <optional>
 #include <vector>
 
 #include "core/parallel.h"
 #include "core/real.h"
 #include "core/shared_maths.h"
+#include "gl/gl_fixture.h"
 #include "merge/cut.h"
 #include "render/falloff.h"
+#include "support/preview_views.h"
+#include "support/quiet.h"
+#include "support/temp_folder.h"
 #include "viewer/cpu_preview.h"
 
 namespace astrosplat {
@@ -82,24 +85,6 @@ Camera camera_at(const glm::dvec3& position) {
     return make_camera(params, frame_width, frame_height, box);
 }
 
-double brightness(const Image& picture, const Region& part) {
-    double sum = 0.0;
-    for (std::int64_t y = part.y; y < part.y + part.height; ++y)
-        for (std::int64_t x = part.x; x < part.x + part.width; ++x) {
-            const float* p = picture.at(x, y);
-            sum += 0.2126 * double(p[0]) + 0.7152 * double(p[1]) + 0.0722 * double(p[2]);
-        }
-    return sum / static_cast<double>(part.width * part.height);
-}
-
-std::vector<double> block_brightness(const Image& picture) {
-    std::vector<double> blocks;
-    for (std::int64_t y = 0; y + 64 <= frame_height; y += 64)
-        for (std::int64_t x = 0; x + 64 <= frame_width; x += 64)
-            blocks.push_back(brightness(picture, {x, y, 64, 64}));
-    return blocks;
-}
-
 struct View {
     const char* name;
     Blend blend;
@@ -162,43 +147,17 @@ class Gallery {
     CpuPreview preview_;
 };
 
-/// Rows of pixels between the halves of the brightest row's light, above and below it.
-double thickness(const Image& picture) {
-    std::vector<double> rows;
-    for (std::int64_t y = 0; y < frame_height; ++y)
-        rows.push_back(brightness(picture, {0, y, frame_width, 1}));
-    const auto middle = std::max_element(rows.begin(), rows.end()) - rows.begin();
-    const double half = 0.5 * rows[middle];
-    const auto edge = [&](std::ptrdiff_t step) {
-        std::ptrdiff_t y = middle;
-        while (rows[y] > half) y += step;
-        return std::fabs(double(y - middle)) - (half - rows[y]) / (rows[y - step] - rows[y]);
-    };
-    return edge(1) + edge(-1);
-}
-
 void expect_light_of_the_whole(Gallery& gallery, const View& view) {
     const Image full = gallery.whole(view);
-    const std::vector<double> wanted = block_brightness(full);
-    const double brightest = *std::max_element(wanted.begin(), wanted.end());
     for (const std::int64_t dots : {80000, 30000}) {
         if (dots < 80000 && view.eye == close) continue;  // where each is a tenth of the picture wide
         SCOPED_TRACE(fmt::format("{}, {} dots", view.name, dots));
-        const Image part = gallery.cut(view, dots);
-        const Region all{0, 0, frame_width, frame_height};
-        EXPECT_NEAR(brightness(part, all) / brightness(full, all), 1.0, 0.03);
-        const std::vector<double> shown = block_brightness(part);
-        int bright = 0, near = 0;
-        for (std::size_t i = 0; i < wanted.size(); ++i) {
-            if (wanted[i] < 0.1 * brightest) continue;
-            ++bright;
-            near += std::fabs(shown[i] / wanted[i] - 1.0) <= 0.2;
-        }
-        EXPECT_GT(bright, 5);
-        EXPECT_GE(near, 0.95 * bright) << "of " << bright << " blocks";
-        if (view.eye == edge_on) {
-            EXPECT_NEAR(thickness(part) / thickness(full), 1.0, 0.1);
-        }
+        const test::ViewTruth truth =
+            test::compare_frames(gallery.cut(view, dots), full, view.eye == edge_on);
+        EXPECT_NEAR(truth.light, 1.0, 0.03);
+        EXPECT_GT(truth.bright_blocks, 5);
+        EXPECT_GE(truth.near, 0.95 * truth.bright_blocks) << "of " << truth.bright_blocks << " blocks";
+        EXPECT_NEAR(truth.thickness, 1.0, 0.1);
     }
 }
 
@@ -206,6 +165,29 @@ TEST(PreviewTruth, AHundredthAsManyDotsShowTheLightOfTheWhole) {
     Gallery gallery;
     ASSERT_GT(gallery.size(), 8000000);
     for (const View& view : views) expect_light_of_the_whole(gallery, view);
+}
+
+/// What moves can be believed: six views of the shipped scenes, drawn by the viewer's own session with as
+/// many dots as hold 24 frames a second on two cores, against their final frames.
+constexpr std::int64_t dots_of_two_cores = 60'000;  // fewer than two cores drew at that rate
+
+class PreviewViewsNightly : public test::GlTest {};
+
+TEST_F(PreviewViewsNightly, MovingPicturesHaveTheLightOfTheFinalOnes) {
+    const Quiet quiet;
+    const TempFolder folder;
+    for (const test::NamedView& view : test::preview_views()) {
+        SCOPED_TRACE(view.name);
+        const test::ViewTruth truth = test::measure_truth(view, dots_of_two_cores, {folder.path(), 0});
+        EXPECT_LE(truth.dots, dots_of_two_cores);
+        EXPECT_NEAR(truth.light, 1.0, 0.03);
+        EXPECT_GT(truth.bright_blocks, 3);
+        EXPECT_GE(truth.near, 0.9 * truth.bright_blocks) << "of " << truth.bright_blocks << " blocks";
+        EXPECT_NEAR(truth.thickness, 1.0, 0.15);
+        fmt::print("{}: light {:+.1f} %, {} of {} blocks, thickness {:+.0f} %\n", view.name,
+                   100.0 * (truth.light - 1.0), truth.near, truth.bright_blocks,
+                   100.0 * (truth.thickness - 1.0));
+    }
 }
 
 }  // namespace

@@ -365,9 +365,25 @@ TEST_F(GrowingSetsTest, AnOldSetStaysUntilTheNewOneIsEverywhere) {
     }
 }
 
-TEST_F(SetLoaderTest, EndsInTheMiddleOfLoading) {
-    small.scene.layers[0].source.count = 3000000;
-    loader.want(small.scene);
+TEST_F(GrowingSetsTest, ASetThatIsHalfMadeIsGivenUpWithItsLoader) {
+    HeldGeneration held(0.3);
+    bool given_up = false;
+    const auto load = [&](const SourceParams& source, const std::string& name, const Progress& progress,
+                          KeptWatcher& watcher) {
+        try {
+            return held(source, name, progress, watcher);
+        } catch (const Cancelled&) {
+            given_up = true;
+            throw;
+        }
+    };
+    {
+        SetLoader loader(load, limit);
+        loader.want(small.scene);
+        held.wait();
+        EXPECT_FALSE(given_up);
+    }
+    EXPECT_TRUE(given_up);
 }
 
 TEST_F(SetLoaderTest, SaysWhatNoRadiusMeans) {

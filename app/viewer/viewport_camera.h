@@ -1,13 +1,16 @@
-// Mouse and keys over the viewport become a camera (VIEWER.md). Moving in the scene's camera goes to a free
-// copy of it, unless the camera is locked to the view: then the scene's camera is edited, one undo step a
-// gesture. In: what the hand did and what it saw. Out: the view's free camera, or an edit of the document.
+// The camera of the viewport, which mouse and keys over it move; and the scene's camera as views beside it
+// show it. In: what the hand did and what it saw. Out: the view's free camera, an edit of the document, or
+// lines over the frame.
 #pragma once
 
 #include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <vector>
 
 #include "edit/document.h"
 #include "edit/view_state.h"
 #include "gui/gui.h"
+#include "scene/scene.h"
 #include "viewer/view_frame.h"
 
 namespace astrosplat {
@@ -19,6 +22,8 @@ struct ShownView {
     Bounds box;  // of the visible layers, world space
 };
 
+/// Moving in the scene's camera goes to a free copy of it, unless the camera is locked to the view: then the
+/// scene's camera is edited, one undo step a gesture.
 class Navigator {
   public:
     /// One frame of mouse and keyboard; `now` in seconds. True: the view left the scene's camera. Throws
@@ -44,5 +49,20 @@ inline constexpr const char* left_camera_message = "Free view, a copy of the cam
 
 /// The whole box in a free view. True: the view left the scene's camera.
 bool frame_in_view(ViewState& view, const Bounds& box, const ShownView& shown);
+
+/// The scene camera's path and its frustum, as lines in px of the viewport.
+class CameraOverlay {
+  public:
+    using Line = std::vector<glm::vec2>;
+    /// `now` is the scene at the frame; `place` shows the frame of `request`. No lines where the camera
+    /// cannot be made: the frame's badge says why.
+    std::vector<Line> lines(const Scene& scene, const Scene& now, const Bounds& box,
+                            const ViewRequest& request, const Rect& place);
+
+  private:
+    std::vector<glm::dvec3> path_;  // of the scene's camera
+    Scene path_of_;                 // the part of the scene that it was made of, with this box
+    Bounds path_box_;
+};
 
 }  // namespace astrosplat

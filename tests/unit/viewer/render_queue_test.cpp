@@ -1,5 +1,7 @@
-// What cannot be done says why: failed pictures and layers in the message line, refused jobs by an error, and
-// nothing of them stays on the disk.
+// Jobs of the window: how far one is by the lines that it says, and what one that is refused or waits leaves
+// on the disk.
+#include "viewer/render_queue.h"
+
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -7,60 +9,21 @@
 #include "core/error.h"
 #include "support/temp_folder.h"
 #include "support/variable.h"
-#include "viewer/render_queue.h"
-#include "viewer/session_parts.h"
 
 namespace astrosplat {
 namespace {
 
 namespace fs = std::filesystem;
 
-TEST(Refusals, AFailedPictureAndLayerAreSaidOnce) {
-    Status status;
-    std::set<std::string> said;
-    status.layers.resize(2);
-    say_new_errors(status, said);
-    EXPECT_TRUE(status.log.empty());
-    status.view_frame.state = ViewFrameState::failed;
-    status.view_frame.error = "s.toml: camera.fov: expected an angle, found 0";
-    say_new_errors(status, said);
-    ASSERT_EQ(status.log.size(), 1u);
-    EXPECT_TRUE(status.message.error);
-    EXPECT_EQ(status.message.text, status.view_frame.error);
-    status.layers[1].error = "a.png: expected a picture, found none";
-    say_new_errors(status, said);
-    say_new_errors(status, said);
-    ASSERT_EQ(status.log.size(), 2u);
-    EXPECT_EQ(status.message.text, status.layers[1].error);
-    status.view_frame.state = ViewFrameState::preview;
-    say_new_errors(status, said);
-    status.view_frame.state = ViewFrameState::failed;
-    say_new_errors(status, said);
-    EXPECT_EQ(status.log.size(), 3u) << "it has failed again";
+TEST(RenderingLine, SaysTheShareOfAllFrames) {
+    EXPECT_EQ(share_of_line("astrosplat: preparing 50% eta 00:00:02"), 0.5f);
+    EXPECT_EQ(share_of_line("astrosplat: frame 12 (3/10) 50% eta 00:04:10"), 0.25f);
+    EXPECT_EQ(share_of_line("astrosplat: frame 12 (10/10) 100% eta 00:00:00"), 1.0f);
+    for (const char* other : {"", "saved a.0001.exr", "37% of nothing", "about x% more", "37%"})
+        EXPECT_FALSE(share_of_line(other)) << other;
 }
 
-TEST(Refusals, MessagesGoAndErrorsStay) {
-    Status status;
-    MessageAge age;
-    const auto seen_at = [&](double now) {
-        forget_old_message(status, age, now);
-        return status.message.text;
-    };
-    EXPECT_EQ(seen_at(0.0), "");
-    say(status, "Saved a.toml");
-    EXPECT_EQ(seen_at(100.0), "Saved a.toml");
-    EXPECT_EQ(seen_at(111.0), "Saved a.toml");
-    say(status, "Saved a.toml");
-    EXPECT_EQ(seen_at(113.0), "Saved a.toml") << "it was said again";
-    EXPECT_EQ(seen_at(124.0), "Saved a.toml");
-    EXPECT_EQ(seen_at(126.0), "");
-    EXPECT_EQ(status.log.size(), 2u) << "the log keeps them";
-    say(status, "a.toml: expected a number, found none", true);
-    seen_at(130.0);
-    EXPECT_EQ(seen_at(1e6), "a.toml: expected a number, found none");
-}
-
-TEST(Refusals, AJobThatIsRefusedLeavesNoFolder) {
+TEST(RenderQueue, AJobThatIsRefusedLeavesNoFolder) {
     const TempFolder folder;
     const fs::path temporary = folder / "temporary";
     fs::create_directory(temporary);
@@ -77,7 +40,7 @@ TEST(Refusals, AJobThatIsRefusedLeavesNoFolder) {
     EXPECT_TRUE(fs::is_empty(temporary));
 }
 
-TEST(Refusals, AJobThatWaitsLeavesNothingBehind) {
+TEST(RenderQueue, AJobThatWaitsLeavesNothingBehind) {
     const TempFolder folder;
     const fs::path temporary = folder / "tmp";
     fs::create_directories(temporary);

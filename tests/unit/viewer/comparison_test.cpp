@@ -1,4 +1,4 @@
-// Numbers of a difference that can be worked out by hand.
+// Numbers of a difference, and thumbnails of snapshots, that can be worked out by hand.
 #include "viewer/comparison.h"
 
 #include <gtest/gtest.h>
@@ -51,6 +51,22 @@ TEST(DifferenceMeter, BlackAgainstBlackHasTheSameLight) {
     EXPECT_EQ(difference_of(a, b)->light, 1.0);
     a.at(0, 0)[0] = 0.5f;
     EXPECT_TRUE(std::isinf(difference_of(a, b)->light));
+}
+
+TEST(Thumbnail, AveragesBoxes) {
+    // 4 x 3 px into boxes of 2 x 2; the row that is left over is dropped.
+    std::vector<unsigned char> rgba;
+    for (int i = 0; i < 12; ++i)
+        for (int c = 0; c < 4; ++c) rgba.push_back(static_cast<unsigned char>(c == 3 ? 255 : 10 * i + c));
+    const Image small = thumbnail_of(rgba, 4, 3, 2);
+    ASSERT_EQ(small.width, 2);
+    ASSERT_EQ(small.height, 1);
+    for (int c = 0; c < 3; ++c) {
+        EXPECT_FLOAT_EQ(small.at(0, 0)[c], (25.0f + static_cast<float>(c)) / 255.0f);
+        EXPECT_FLOAT_EQ(small.at(1, 0)[c], (45.0f + static_cast<float>(c)) / 255.0f);
+    }
+    EXPECT_EQ(small.at(1, 0)[3], 1.0f);
+    EXPECT_EQ(thumbnail_of(rgba, 4, 3, 8).width, 4) << "small pictures stay as they are";
 }
 
 }  // namespace

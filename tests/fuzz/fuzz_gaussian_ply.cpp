@@ -1,4 +1,0 @@
-// Fuzzes the reader of Gaussians; see targets.cpp for what it demands.
-#include "fuzz/entry.h"
-
-ASTROSPLAT_FUZZ("gaussian_ply")

@@ -1,4 +1,0 @@
-// Fuzzes the splats reader; see targets.cpp for what it demands.
-#include "fuzz/entry.h"
-
-ASTROSPLAT_FUZZ("splats")

@@ -1,0 +1,256 @@
+// A window's session without a window: what is waited for comes first, from a start on and between what moves
+// and the final frame; messages and the pixel under the mouse.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cmath>
+#include <cstdint>
+#include <glm/vec2.hpp>
+#include <memory>
+#include <thread>
+#include <vector>
+
+#include "gl/gl_fixture.h"
+#include "support/quiet.h"
+#include "support/temp_folder.h"
+#include "viewer/session_parts.h"
+
+namespace astrosplat::test {
+namespace {
+
+/// On a scene of one disk, of the painted galaxy in so many positions, and a clock that stands still but for
+/// what a test adds.
+class DiskSession : public GlTest {
+  protected:
+    DiskSession(std::int64_t count, glm::ivec2 size_px) : session{options(count), {}}, size_px_(size_px) {}
+
+    void draw() {
+        advance(session, now);
+        draw_viewport(session, size_px_, now);
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+
+    const Quiet quiet;
+    double now = 1000.0;  // s
+    const TempFolder folder;
+    Session session;
+
+  private:
+    ViewerOptions options(std::int64_t count) const {
+        ViewerOptions options;
+        options.input = folder.file(
+            "scene.toml", fmt::format("astrosplat = 1\n[camera]\nposition = [0.0, 6.0, 8.0]\n"
+                                      "[[layer]]\nname = \"disk\"\n[layer.source]\n"
+                                      "meshes = [ {{ mesh = \"plane\", texture = \"{}\" }} ]\ncount = {}\n",
+                                      ASTROSPLAT_SOURCE_DIR "/assets/textures/spiral.jpg", count));
+        return options;
+    }
+
+    glm::ivec2 size_px_;
+};
+
+/// From a start on, the final picture comes before all that serves the next touch.
+class Start : public DiskSession {
+  protected:
+    Start() : DiskSession(1'500'000, {320, 180}) {}
+    std::shared_ptr<const LoadedLayer> disk() const { return session.sets.loader().layer("disk"); }
+};
+
+// The clock stands: a set that arrives is no touch, after which the picture would have to rest.
+TEST_F(Start, TheFinalPictureComesBeforeTheTreesOfLaterPreviews) {
+    draw();
+    now += 0.5;
+    while (!settled(session)) draw();
+    ASSERT_TRUE(disk()->set);
+    EXPECT_FALSE(disk()->arranged);
+    EXPECT_FALSE(disk()->histograms);
+    while (!session.sets.loaded(session.document)) draw();
+    EXPECT_TRUE(disk()->arranged);
+    EXPECT_TRUE(disk()->histograms);
+    EXPECT_TRUE(settled(session)) << "what came later changed nothing";
+}
+
+// From elsewhere bodies with depth along its rays look cut off.
+TEST_F(Start, APictureIsSeenByItsOwnCamera) {
+    ASSERT_EQ(session.view.view, ViewKind::camera);
+    session.view.view = ViewKind::free;
+    open_file(session, ASTROSPLAT_SOURCE_DIR "/assets/textures/spiral.jpg");
+    EXPECT_EQ(session.view.view, ViewKind::camera);
+    ASSERT_TRUE(session.document.scene().camera.position);
+    EXPECT_EQ(*session.document.scene().camera.position,
+              session.document.scene().layers[0].source.uv_camera.position);
+}
+
+// Whoever moves needs them at once.
+TEST_F(Start, AMovingHandDoesNotHoldUpTheTrees) {
+    int moves = 0;
+    for (; !disk() || !disk()->arranged; now += 0.1) {
+        ASSERT_LT(++moves, 2000) << "they take some seconds with the set itself";
+        session.document.edit("Wider", [&](Scene& scene) { scene.camera.fov = 40.0 + 0.01 * moves; });
+        draw();
+        ASSERT_FALSE(settled(session));
+    }
+}
+
+// They would take half of the processor from it.
+TEST_F(Start, SumsForTheNextMoveGiveWayToTheFinalFrame) {
+    session.gl.software = true;
+    session.view.settle = false;
+    for (; !session.sets.loaded(session.document) || !preview_exact(session); now += 0.02) draw();
+    session.document.edit("Harder", [](Scene& scene) { scene.layers[0].look.alpha.power = 0.7f; });
+    draw();  // what moved is at rest from now on
+    draw();
+    now += 0.15;
+    draw();  // sums of the whole begin
+    ASSERT_FALSE(session.view_frame.exact());
+    session.view.settle = true;
+    now += 0.1;
+    draw();
+    ASSERT_EQ(session.view_frame.status().state, ViewFrameState::refining);
+    std::this_thread::sleep_for(std::chrono::seconds(2));  // they would long be there
+    while (!settled(session)) draw();
+    EXPECT_FALSE(session.view_frame.exact()) << "they begin again now";
+    while (!session.view_frame.exact()) draw();
+}
+
+// Which takes the system a while.
+TEST_F(Start, MemoryIsCountedEveryFiveSeconds) {
+    advance(session, now);
+    const std::int64_t before = session.status.memory_bytes;
+    EXPECT_GT(before, 0);
+    const std::vector<char> more(std::size_t{256} << 20, 'x');
+    advance(session, now + 4.9);
+    EXPECT_EQ(session.status.memory_bytes, before);
+    advance(session, now + 5.0);
+    EXPECT_GT(session.status.memory_bytes, before + (std::int64_t{200} << 20)) << more[0];
+}
+
+/// Between what moves and the final frame, the picture comes closer to it in steps.
+class FinerPreviewSession : public DiskSession {
+  protected:
+    FinerPreviewSession() : DiskSession(400'000, {640, 360}) {
+        session.gl.software = true;
+        session.fixed_splats = 3000;
+        session.view.settle = false;
+    }
+
+    std::int64_t shown() const { return session.view_frame.status().shown; }
+    double distance_to(const Image& other) const {
+        const Image image = session.view_frame.read();
+        double sum = 0.0;
+        for (std::size_t i = 0; i < image.pixels.size(); ++i)
+            sum += std::fabs(double(image.pixels[i]) - double(other.pixels[i]));
+        return sum;
+    }
+};
+
+TEST_F(FinerPreviewSession, EveryStepIsCloserToTheFinalFrame) {
+    for (; !session.sets.loaded(session.document) || !preview_exact(session); now += 0.02) draw();
+    session.document.edit("Wider", [](Scene& scene) { scene.camera.fov = 50.0; });  // the last change
+    do draw();
+    while (!session.sets.loaded(session.document) || !preview_exact(session));
+    std::vector<Image> seen{session.view_frame.read()};
+    std::vector<std::int64_t> dots{shown()};
+    session.view.settle = true;
+    draw();
+    EXPECT_EQ(shown(), dots.back()) << "the hand may still move";
+    now += 0.1;  // less than the final frame waits for
+    while (seen.size() < 3) {
+        draw();
+        ASSERT_EQ(session.view_frame.status().state, ViewFrameState::preview);
+        if (shown() == dots.back()) continue;
+        dots.push_back(shown());
+        seen.push_back(session.view_frame.read());
+    }
+    EXPECT_GT(dots[1], 3 * dots[0]);
+    EXPECT_GT(dots[2], 3 * dots[1]);
+    for (now += 1.0; !settled(session); now += 0.02) draw();
+    EXPECT_LT(distance_to(seen[1]), 0.8 * distance_to(seen[0]));
+    EXPECT_LT(distance_to(seen[2]), distance_to(seen[1]));
+    EXPECT_GE(next_due(session, now), 0.1) << "nothing is left to be done";
+}
+
+TEST(Messages, AFailedPictureAndLayerAreSaidOnce) {
+    Status status;
+    std::set<std::string> said;
+    status.layers.resize(2);
+    say_new_errors(status, said);
+    EXPECT_TRUE(status.log.empty());
+    status.view_frame.state = ViewFrameState::failed;
+    status.view_frame.error = "s.toml: camera.fov: expected an angle, found 0";
+    say_new_errors(status, said);
+    ASSERT_EQ(status.log.size(), 1u);
+    EXPECT_TRUE(status.message.error);
+    EXPECT_EQ(status.message.text, status.view_frame.error);
+    status.layers[1].error = "a.png: expected a picture, found none";
+    say_new_errors(status, said);
+    say_new_errors(status, said);
+    ASSERT_EQ(status.log.size(), 2u);
+    EXPECT_EQ(status.message.text, status.layers[1].error);
+    status.view_frame.state = ViewFrameState::preview;
+    say_new_errors(status, said);
+    status.view_frame.state = ViewFrameState::failed;
+    say_new_errors(status, said);
+    EXPECT_EQ(status.log.size(), 3u) << "it has failed again";
+}
+
+TEST(Messages, MessagesGoAndErrorsStay) {
+    Status status;
+    MessageAge age;
+    const auto seen_at = [&](double now) {
+        forget_old_message(status, age, now);
+        return status.message.text;
+    };
+    EXPECT_EQ(seen_at(0.0), "");
+    say(status, "Saved a.toml");
+    EXPECT_EQ(seen_at(100.0), "Saved a.toml");
+    EXPECT_EQ(seen_at(111.0), "Saved a.toml");
+    say(status, "Saved a.toml");
+    EXPECT_EQ(seen_at(113.0), "Saved a.toml") << "it was said again";
+    EXPECT_EQ(seen_at(124.0), "Saved a.toml");
+    EXPECT_EQ(seen_at(126.0), "");
+    EXPECT_EQ(status.log.size(), 2u) << "the log keeps them";
+    say(status, "a.toml: expected a number, found none", true);
+    seen_at(130.0);
+    EXPECT_EQ(seen_at(1e6), "a.toml: expected a number, found none");
+}
+
+/// 3 x 2 px, red is 10 x + y, the other channels 1.
+Image numbered() {
+    Image image = make_image(3, 2, 4, 1.0f);
+    for (std::int64_t y = 0; y < 2; ++y)
+        for (std::int64_t x = 0; x < 3; ++x) image.at(x, y)[0] = static_cast<float>(10 * x + y);
+    return image;
+}
+
+TEST(Probe, IsThePixelAndItsDepth) {
+    const Image pixels = numbered();
+    Image depth = make_image(3, 2, 1, 0.0f);
+    *depth.at(2, 1) = 7.5f;
+    const auto found = probe_of(pixels, &depth, {}, 2, 1);
+    ASSERT_TRUE(found);
+    EXPECT_EQ(found->x, 2);
+    EXPECT_EQ(found->y, 1);
+    EXPECT_EQ(found->rgba[0], 21.0f);
+    EXPECT_EQ(found->rgba[3], 1.0f);
+    EXPECT_EQ(found->depth, 7.5f);
+    EXPECT_FALSE(probe_of(pixels, &depth, {}, 1, 1)->depth) << "nothing is there";
+    EXPECT_FALSE(probe_of(pixels, nullptr, {}, 2, 1)->depth) << "of previews";
+    const Image without;
+    EXPECT_FALSE(probe_of(pixels, &without, {}, 2, 1)->depth) << "of scenes that write none";
+}
+
+TEST(Probe, CountsFromTheWholePicture) {
+    const Image pixels = numbered();
+    const Region part{100, 50, 3, 2};
+    const auto found = probe_of(pixels, nullptr, part, 101, 51);
+    ASSERT_TRUE(found);
+    EXPECT_EQ(found->x, 101);
+    EXPECT_EQ(found->rgba[0], 11.0f);
+    for (const auto& [x, y] : {std::pair{99, 50}, {103, 50}, {100, 49}, {100, 52}})
+        EXPECT_FALSE(probe_of(pixels, nullptr, part, x, y)) << x << " " << y;
+}
+
+}  // namespace
+}  // namespace astrosplat::test
