@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "core/file_format.h"
 #include "core/log.h"
 #include "core/memory.h"
 #include "core/text.h"
@@ -54,13 +55,13 @@ constexpr std::int64_t fitted_height_px = 540;
 enum class Kind { ply, glb, usda, vdb };
 
 Kind kind_of_output(const std::filesystem::path& file) {
-    std::string ending = file.extension().string();
-    std::ranges::transform(ending, ending.begin(), [](char c) { return c >= 'A' && c <= 'Z' ? c + 32 : c; });
-    if (ending == ".ply") return Kind::ply;
-    if (ending == ".glb") return Kind::glb;
-    if (ending == ".usda") return Kind::usda;
-    if (ending == ".vdb") return Kind::vdb;
-    bad_input(file.string(), "", "a name ending in .ply, .glb, .usda or .vdb",
+    const FileFormat* const format = format_by_name(file, FileUse::exported);
+    const std::string_view id = format ? format->id : "";
+    if (id == "ply") return Kind::ply;
+    if (id == "gltf") return Kind::glb;
+    if (id == "usda") return Kind::usda;
+    if (id == "openvdb") return Kind::vdb;
+    bad_input(file.string(), "", "a name ending in " + alternatives(endings_of(FileUse::exported)),
               "'" + file.extension().string() + "'");
 }
 

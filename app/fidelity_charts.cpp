@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <span>
 
-#include "core/base64.h"
+#include "core/text.h"
 #include "fidelity/display.h"
 #include "fidelity_table.h"
 #include "output/encode.h"

@@ -9,8 +9,8 @@
 #include <nlohmann/json.hpp>
 #include <variant>
 
-#include "core/assets.h"
 #include "core/file.h"
+#include "core/folders.h"
 #include "report.h"
 #include "scene/describe.h"
 #include "scene/load.h"

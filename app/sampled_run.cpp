@@ -7,7 +7,7 @@
 
 #include "core/clock.h"
 #include "core/error.h"
-#include "core/temporary_folder.h"
+#include "core/folders.h"
 #include "interrupt.h"
 #include "output/write.h"
 #include "scene/animate.h"

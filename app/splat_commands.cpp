@@ -37,7 +37,7 @@ const LayerParams& layer_named(const Scene& scene, const std::string& name) {
 
 void check_splat_output(const std::filesystem::path& file, bool overwrite) {
     const FileFormat* format = format_by_name(file);
-    if (kind_of(format) != FileKind::splats || !format->written)
+    if (kind_of(format) != FileKind::splats || !includes(format->uses, FileUse::written))
         bad_input(file.string(), "",
                   fmt::format("a name ending in {}",
                               fmt::join(endings_of({FileKind::splats}, FileUse::written), " or ")),

@@ -13,8 +13,8 @@
 
 #include "batch_plan.h"
 #include "core/error.h"
+#include "core/folders.h"
 #include "core/log.h"
-#include "core/temporary_folder.h"
 #include "core/text.h"
 #include "estimate.h"
 #include "interrupt.h"

@@ -20,10 +20,10 @@
 #include "core/atomic_file.h"
 #include "core/error.h"
 #include "core/file.h"
+#include "core/folders.h"
+#include "core/hash.h"
 #include "core/log.h"
-#include "core/sha256.h"
 #include "core/text.h"
-#include "core/user_folders.h"
 #include "scene/save.h"
 
 namespace astrosplat {

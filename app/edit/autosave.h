@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "core/file_lock.h"
+#include "core/atomic_file.h"
 #include "edit/document.h"
 #include "edit/settings.h"
 

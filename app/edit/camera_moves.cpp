@@ -66,8 +66,6 @@ struct Move {
     std::optional<glm::dvec3> up_at_end = {};  // where the camera's up turns, too
 };
 
-double ease(double t) { return t * t * (3.0 - 2.0 * t); }
-
 template <class Gone>
 void remove_keyframes(Scene& scene, const std::string& key, const Gone& gone) {
     for (Track& track : scene.animation)
@@ -180,7 +178,7 @@ void add_path(Scene& scene, const Move& move, double frame, LaterKeys later) {
     const char* const keys[] = {position_key, target_key, up_key};
     make_room(scene, std::span(keys).first(move.up_at_end ? 3 : 2), frame, frames, later);
     const double distance = std::fmax(glm::distance(move.place(0.0), move.middle), 1e-9);
-    const auto place = [&](double at) { return move.place(ease((at - frame) / frames)); };
+    const auto place = [&](double at) { return move.place(real::smoothstep((at - frame) / frames)); };
     const double step = least_share * distance;
     insert_positions(scene, fit_path(place, frame, frame + frames, tolerance * distance), step);
     for (const double at : {frame, frame + frames})

@@ -2,7 +2,7 @@
 #include "edit/disk_file.h"
 
 #include "core/error.h"
-#include "core/sha256.h"
+#include "core/hash.h"
 
 namespace astrosplat {
 namespace fs = std::filesystem;

@@ -8,8 +8,8 @@
 
 #include "core/atomic_file.h"
 #include "core/file.h"
+#include "core/folders.h"
 #include "core/log.h"
-#include "core/user_folders.h"
 
 namespace astrosplat {
 namespace fs = std::filesystem;

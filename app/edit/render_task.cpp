@@ -63,14 +63,14 @@ RenderTask make_render_task(const Document& document, RenderKind kind, double fr
     task.height = output.height;
     const bool movie = kind == RenderKind::movie;
     task.folder = (movie ? pattern.common_folder() : pattern.folder / name.parent_path()).lexically_normal();
-    task.name = movie ? pattern.stem() + ".mp4" : name.filename().string();
+    task.name = movie ? pattern.stem() + endings_of(FileUse::movie).front() : name.filename().string();
     return task;
 }
 
 fs::path render_target(const RenderTask& task) { return task.folder / task.name; }
 
 std::vector<std::string> render_endings(RenderKind kind) {
-    if (kind == RenderKind::movie) return {".mp4", ".mov", ".mkv"};
+    if (kind == RenderKind::movie) return endings_of(FileUse::movie);
     return endings_of({FileKind::picture}, FileUse::written);
 }
 

@@ -8,8 +8,8 @@
 #include "core/atomic_file.h"
 #include "core/error.h"
 #include "core/file.h"
+#include "core/folders.h"
 #include "core/text.h"
-#include "core/user_folders.h"
 #include "scene/load.h"
 #include "scene/save.h"
 

@@ -69,7 +69,7 @@ constexpr FileWish wishes[] = {{"layer.source.meshes.texture", "pictures", all_o
                                {"environment.tile", "pictures", all_of<FileKind::picture>},
                                {"reference.file", "pictures", all_of<FileKind::picture>},
                                {"output.preset", "presets", all_of<FileKind::scene>},
-                               {"camera.file", "cameras", all_camera_endings}};
+                               {"camera.file", "cameras", [] { return endings_of(FileUse::camera_read); }}};
 
 /// That of the file which is there now; empty where none is.
 fs::path folder_of_value(const Value& value, const fs::path& scene_folder) {
@@ -95,10 +95,11 @@ std::optional<FileQuery> query_for(Command::Kind kind, const Document& document)
         case Kind::set_reference:
             return reading("Picture to compare with", "pictures", pictures, document);
         case Kind::import_camera:
-            return reading("Import the camera of another program", "cameras", all_camera_endings(), document);
+            return reading("Import the camera of another program", "cameras",
+                           endings_of(FileUse::camera_read), document);
         case Kind::export_camera:
-            return writing("Write the camera for other programs", "cameras", written_camera_endings(),
-                           document, stem(document) + ".usda");
+            return writing("Write the camera for other programs", "cameras",
+                           endings_of(FileUse::camera_written), document, stem(document) + ".usda");
         case Kind::apply_look:
             return reading("Apply a look to the selected layer", "looks", scenes, document);
         case Kind::save_as:

@@ -9,7 +9,6 @@
 
 #include "core/color.h"
 #include "core/log.h"
-#include "core/primaries.h"
 #include "core/text.h"
 #include "image/resample.h"
 #include "output/encode.h"

@@ -14,11 +14,10 @@
 
 #include "core/atomic_file.h"
 #include "core/error.h"
+#include "core/hash.h"
 #include "core/log.h"
 #include "core/memory.h"
 #include "core/parallel.h"
-#include "core/sha256.h"
-#include "splat_files/checksum.h"
 #include "splat_files/mapped_file.h"
 
 namespace astrosplat {

@@ -8,8 +8,8 @@
 
 #include "core/atomic_file.h"
 #include "core/error.h"
-#include "core/sha256.h"
-#include "core/temporary_folder.h"
+#include "core/folders.h"
+#include "core/hash.h"
 #include "edit/prepare_command.h"
 #include "scene/frames.h"
 

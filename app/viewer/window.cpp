@@ -11,9 +11,9 @@
 #include <iterator>
 #include <utility>
 
+#include "core/hash.h"
 #include "gl/objects.h"
 #include "gui/gui.h"
-#include "splat_files/checksum.h"
 
 // glad before GLFW, which would bring the system's OpenGL header.
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "bodies/depth_kernel.h"
-#include "core/glsl.h"
+#include "core/shared_maths.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace astrosplat {

@@ -11,7 +11,6 @@
 #include "core/parallel.h"
 #include "core/real.h"
 #include "core/shared_maths.h"
-#include "core/shared_noise.h"
 #include "image/channels.h"
 #include "image/resample.h"
 #include "source/textured_mesh.h"

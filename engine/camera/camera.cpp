@@ -12,8 +12,8 @@
 #include "camera/projection.h"
 #include "camera/stereo.h"
 #include "core/error.h"
-#include "core/quaternion.h"
 #include "core/real.h"
+#include "core/rotation.h"
 
 namespace astrosplat {
 namespace {

@@ -3,7 +3,7 @@
 // share them.
 #pragma once
 
-#include "core/glsl.h"
+#include "core/shared_maths.h"
 
 namespace astrosplat::shared_types {
 using Real = float;

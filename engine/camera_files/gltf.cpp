@@ -10,7 +10,6 @@
 #include <glm/mat4x4.hpp>
 #include <optional>
 
-#include "core/base64.h"
 #include "core/error.h"
 #include "core/real.h"
 #include "core/text.h"

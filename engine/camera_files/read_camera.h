@@ -1,17 +1,11 @@
 // Camera files of every kind that is read as samples, told apart by the ending of their name.
 #pragma once
 
-#include <string>
-#include <vector>
-
 #include "camera_files/camera_track.h"
 
 namespace astrosplat {
 
-/// ".chan", ".gltf", ...
-const std::vector<std::string>& camera_file_endings();
-
-/// Whether the name ends as one of these does, in capitals or not.
+/// Whether the name ends as one of such files does, in capitals or not (core/file_format.h).
 bool is_camera_file(const std::filesystem::path& file);
 
 /// A file of one of these endings. Throws InputError, one line with file, line (where the format has lines),

@@ -6,7 +6,6 @@
 
 #include "core/error.h"
 #include "core/file.h"
-#include "core/shown.h"
 #include "core/text.h"
 #include "core/text_table.h"
 

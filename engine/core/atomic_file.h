@@ -1,12 +1,14 @@
 // A file appears complete or not at all: it is written under a temporary name in the same folder, flushed to
 // the disk and renamed. Used by everything that writes a file. What killed programs left of theirs is removed
-// by the next one that writes into the same folder.
+// by the next one that writes into the same folder. And locks that processes share through files.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
+#include <exception>
 #include <filesystem>
 #include <string_view>
+#include <utility>
 
 #include "core/error.h"
 
@@ -18,6 +20,16 @@ enum class Existing { replace, keep };
 /// Something has the target's name, and stays as it is.
 struct AlreadyExists : OutputError {
     using OutputError::OutputError;
+};
+
+/// Where a file goes.
+struct WriteTarget {
+    /// A path alone is a file that may be replaced.
+    WriteTarget(std::filesystem::path path, Existing when_there = Existing::replace)
+        : file(std::move(path)), existing(when_there) {}
+
+    std::filesystem::path file;
+    Existing existing;  // keep: AlreadyExists is thrown, also where it came while we wrote
 };
 
 /// Owns one temporary file. Without commit() the destructor removes it and the old target stays as it was.
@@ -66,5 +78,62 @@ void refuse_existing(const std::filesystem::path& target);
 /// Throws OutputError when something lies at `target` that is no regular file (symbolic links are followed):
 /// no file can be written there.
 void refuse_other_than_file(const std::filesystem::path& target);
+
+/// An AtomicFile behind the code of a library that exceptions must not pass, or that swallows them: a write
+/// that fails is remembered, and thrown where the library has returned.
+class GuardedFile {
+  public:
+    explicit GuardedFile(AtomicFile& file) : file_(file) {}
+
+    /// False where this write or one before it failed.
+    bool write_at(std::int64_t offset, const void* bytes, std::size_t size) noexcept {
+        if (failure_) return false;
+        try {
+            file_.write_at(offset, bytes, size);
+        } catch (...) {
+            failure_ = std::current_exception();
+        }
+        return !failure_;
+    }
+    bool failed() const { return failure_ != nullptr; }
+    /// The write that failed first, an OutputError.
+    void rethrow_failure() const {
+        if (failure_) std::rethrow_exception(failure_);
+    }
+    std::int64_t size() const { return file_.size(); }
+    const std::filesystem::path& target() const { return file_.target(); }
+
+  private:
+    AtomicFile& file_;
+    std::exception_ptr failure_;
+};
+
+/// A lock that processes share through a file: whoever holds it may do what only one should do at a time. The
+/// kernel gives it back when a process ends, however it ends.
+///
+/// Owns the lock once try_lock() said `held`; the destructor gives it back and removes the file. flock(2):
+/// two objects exclude each other in one process, too.
+class FileLock {
+  public:
+    enum class State {
+        held,
+        busy,     // another process has it
+        absent,   // there is no such file, and none was to be made: nobody has it
+        refused,  // the folder cannot be written, or the file system knows no locks
+    };
+    enum class Missing { create, leave };
+
+    explicit FileLock(std::filesystem::path file) : file_(std::move(file)) {}
+    ~FileLock();
+    FileLock(const FileLock&) = delete;
+    FileLock& operator=(const FileLock&) = delete;
+
+    /// Never waits. Not to be called again once it is held.
+    State try_lock(Missing missing = Missing::create);
+
+  private:
+    std::filesystem::path file_;
+    int descriptor_ = -1;  // open while the lock is held
+};
 
 }  // namespace astrosplat

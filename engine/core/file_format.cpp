@@ -14,17 +14,17 @@ using namespace std::string_view_literals;
 
 constexpr std::size_t longest_magic = 16;
 
-// Movies and OpenImageIO's "null" are left out on purpose: they open files that are no pictures.
+// OpenImageIO's own movies and "null" are left out on purpose: they open files that are no pictures.
 const std::vector<FileFormat>& formats() {
     static const std::vector<FileFormat> table = {
-        {"openexr", "OpenEXR", FileKind::picture, {".exr"}, {"\x76\x2f\x31\x01"}, true},
+        {"openexr", "OpenEXR", FileKind::picture, {".exr"}, {"\x76\x2f\x31\x01"}, FileUse::written},
         {"tiff",
          "TIFF",
          FileKind::picture,
          {".tif", ".tiff"},
          {"II*\0"sv, "MM\0*"sv, "II+\0"sv, "MM\0+"sv},
-         true},
-        {"png", "PNG", FileKind::picture, {".png"}, {"\x89PNG\r\n\x1a\n"}, true},
+         FileUse::written},
+        {"png", "PNG", FileKind::picture, {".png"}, {"\x89PNG\r\n\x1a\n"}, FileUse::written},
         {"jpeg", "JPEG", FileKind::picture, {".jpg", ".jpeg"}, {"\xff\xd8\xff"}},
         {"fits",
          "FITS",
@@ -40,13 +40,40 @@ const std::vector<FileFormat>& formats() {
         {"gif", "GIF", FileKind::picture, {".gif"}, {"GIF87a", "GIF89a"}},
         {"targa", "TGA", FileKind::picture, {".tga"}, {}},
         {"pnm", "PNM", FileKind::picture, {".ppm", ".pgm", ".pnm"}, {"P2\n", "P3\n", "P5\n", "P6\n"}},
+        {"chan",
+         "Nuke's chan",
+         FileKind::unknown,
+         {".chan"},
+         {},
+         FileUse::camera_read | FileUse::camera_written},
+        {"gaia_sky", "Gaia Sky", FileKind::unknown, {".gsc"}, {}, FileUse::camera_read},
+        {"openspace", "OpenSpace", FileKind::unknown, {".osrectxt"}, {}, FileUse::camera_read},
+        {"transforms", "transforms.json", FileKind::unknown, {".json"}, {}, FileUse::camera_read},
+        {"table", "CSV", FileKind::unknown, {".csv"}, {}, FileUse::camera_read | FileUse::camera_written},
         {"obj", "OBJ", FileKind::mesh, {".obj"}, {}},
-        {"pda", "PDA", FileKind::splats, {".pda"}, {"ATTRIBUTES"}, true},
-        {"ply", "PLY", FileKind::splats, {".ply"}, {"ply\n", "ply\r"}, true},
-        {"gltf", "glTF", FileKind::splats, {".glb", ".gltf"}, {"glTF"}},
-        {"usda", "USD", FileKind::splats, {".usda", ".usd"}, {"#usda"}},
-        {"splats", "SPLATS", FileKind::splats, {".splats"}, {"\x89SPLAT\r\n"}, true},
-        {"toml", "TOML", FileKind::scene, {".toml"}, {}, true},
+        {"pda", "PDA", FileKind::splats, {".pda"}, {"ATTRIBUTES"}, FileUse::written},
+        {"ply", "PLY", FileKind::splats, {{".ply", FileUse::exported}}, {"ply\n", "ply\r"}, FileUse::written},
+        {"gltf",
+         "glTF",
+         FileKind::splats,
+         {{".glb", FileUse::exported}, {".gltf", FileUse::camera_written}},
+         {"glTF"},
+         FileUse::camera_read},
+        {"usda",
+         "USD",
+         FileKind::splats,
+         {{".usda", FileUse::exported | FileUse::camera_written}, ".usd"},
+         {"#usda"},
+         FileUse::camera_read},
+        {"splats", "SPLATS", FileKind::splats, {".splats"}, {"\x89SPLAT\r\n"}, FileUse::written},
+        {"openvdb", "OpenVDB", FileKind::unknown, {".vdb"}, {}, FileUse::exported},
+        {"movie",
+         "MP4, QuickTime or Matroska",
+         FileKind::unknown,
+         {".mp4", ".mov", ".mkv"},
+         {},
+         FileUse::movie},
+        {"toml", "TOML", FileKind::scene, {".toml"}, {}, FileUse::written},
     };
     return table;
 }
@@ -63,17 +90,29 @@ const FileFormat* find(const Wanted& wanted) {
     return found == formats().end() ? nullptr : &*found;
 }
 
-bool is_used(const FileFormat& format, FileUse use) { return use == FileUse::read || format.written; }
+bool is_used(const FileFormat& format, const FileEnding& ending, FileUse use) {
+    return includes(format.uses | ending.uses, use);
+}
+
+template <class Wanted>
+std::vector<std::string> endings_where(const Wanted& wanted) {
+    std::vector<std::string> endings;
+    for (const FileFormat& format : formats())
+        for (const FileEnding& ending : format.endings)
+            if (wanted(format, ending)) endings.emplace_back(ending.text);
+    return endings;
+}
 
 }  // namespace
 
 std::span<const FileFormat> file_formats() { return formats(); }
 
-const FileFormat* format_by_name(const fs::path& file) {
+const FileFormat* format_by_name(const fs::path& file, FileUse use) {
     const std::string name = lower_case(file.filename().string());
     return find([&](const FileFormat& format) {
-        return std::ranges::any_of(format.endings, [&](std::string_view ending) {
-            return name.size() > ending.size() && name.ends_with(ending);
+        return std::ranges::any_of(format.endings, [&](const FileEnding& ending) {
+            return name.size() > ending.text.size() && name.ends_with(ending.text) &&
+                   is_used(format, ending, use);
         });
     });
 }
@@ -90,17 +129,21 @@ const FileFormat* format_of_file(const fs::path& file) {
 FileKind kind_of(const FileFormat* format) { return format ? format->kind : FileKind::unknown; }
 
 std::vector<std::string> endings_of(std::initializer_list<FileKind> kinds, FileUse use) {
-    std::vector<std::string> endings;
-    for (const FileFormat& format : formats())
-        if (is_used(format, use) && std::ranges::find(kinds, format.kind) != kinds.end())
-            endings.insert(endings.end(), format.endings.begin(), format.endings.end());
-    return endings;
+    return endings_where([&](const FileFormat& format, const FileEnding& ending) {
+        return is_used(format, ending, use) && std::ranges::find(kinds, format.kind) != kinds.end();
+    });
+}
+
+std::vector<std::string> endings_of(FileUse use) {
+    return endings_where(
+        [&](const FileFormat& format, const FileEnding& ending) { return is_used(format, ending, use); });
 }
 
 std::string names_of(FileKind kind, FileUse use) {
     std::vector<std::string> names;
     for (const FileFormat& format : formats())
-        if (format.kind == kind && is_used(format, use)) names.emplace_back(format.name);
+        if (format.kind == kind && is_used(format, format.endings.front(), use))
+            names.emplace_back(format.name);
     return alternatives(names);
 }
 

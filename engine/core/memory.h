@@ -1,8 +1,10 @@
-// Memory is estimated and announced before it is taken.
+// Memory is estimated and announced before it is taken; and what the control groups (cgroup v1 or v2) around
+// this process say, limits that `nproc` and /proc/meminfo do not show.
 #pragma once
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 namespace astrosplat {
 
@@ -42,5 +44,10 @@ void keep_little_freed_memory();
 /// Announces `bytes` for `what` (at detail level), and throws NotEnoughMemory with one line that states both
 /// figures when they exceed available_memory_bytes(), and with a limit of its own what that would have to be.
 void claim_memory(std::int64_t bytes, const std::string& what);
+
+/// The contents of `file` (such as "cpu.max") in this process's group of `controller` ("cpu", "memory") and
+/// in all groups above it, innermost first; groups without the file are left out. v2 and v1 name their files
+/// differently, so a name found tells the version. Empty where there are no control groups.
+std::vector<std::string> cgroup_values(const std::string& controller, const std::string& file);
 
 }  // namespace astrosplat

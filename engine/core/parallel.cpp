@@ -15,7 +15,7 @@
 #include <thread>
 #include <vector>
 
-#include "core/cgroup.h"
+#include "core/memory.h"
 #include "core/text.h"
 
 namespace astrosplat {

@@ -27,13 +27,13 @@ struct OnCircle {
 };
 OnCircle on_circle(float turns);
 
+/// 0 to 1 with an even end on either side, of t in [0, 1]: 3 t^2 - 2 t^3.
+template <class T>
+constexpr T smoothstep(T t) {
+    return t * t * (T(3) - T(2) * t);
+}
+
 inline double radians(double degrees) { return degrees * (pi / 180.0); }
 inline double degrees(double radians) { return radians * (180.0 / pi); }
-
-/// From 0 to 1 without a kink at either end; 0 <= t <= 1.
-template <class Real>
-constexpr Real smoothstep(Real t) {
-    return t * t * (Real(3) - Real(2) * t);
-}
 
 }  // namespace astrosplat::real

@@ -1,10 +1,21 @@
-// Rotations as scenes say them, in degrees, with the engine's own trigonometry.
+// Rotations: quaternions x y z w, matrices of orthonormal columns, and degrees as scenes say them, with the
+// engine's own trigonometry.
 #pragma once
 
 #include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
 
 namespace astrosplat {
+
+/// Of a quaternion of length 1.
+glm::dmat3 matrix_of_quaternion(const glm::dvec4& q);
+
+/// Of a matrix that turns and does not mirror; length 1, w >= 0.
+glm::dvec4 quaternion_of_matrix(const glm::dmat3& m);
+
+/// Turns by b, then by a.
+glm::dvec4 quaternion_product(const glm::dvec4& a, const glm::dvec4& b);
 
 /// Rotation about x, then y, then z.
 glm::dmat3 rotation_from_degrees(const glm::dvec3& degrees);

@@ -1,8 +1,54 @@
-// shaders/shared/maths.glsl as C++: astrosplat::shared::as_exp, as_log, as_pow, as_hash, as_uniform and the
-// purposes. GLSL has no "inline", so each translation unit gets its own copy with internal linkage.
+// shaders/shared as C++: GLSL's names, so that its files compile here as they do in a shader, and of these
+// files maths.glsl and noise.glsl as astrosplat::shared::as_exp, as_log, as_pow, as_hash, as_uniform,
+// as_noise, as_fbm and the purposes. GLSL has no "inline", so each translation unit gets its own copy with
+// internal linkage. Others include the shared files inside a namespace that says `using namespace
+// astrosplat::glsl;`.
 #pragma once
 
-#include "core/glsl.h"
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+
+namespace astrosplat::glsl {
+
+using glm::ivec2;
+using glm::vec2;
+using glm::vec3;
+using glm::vec4;
+using uint = std::uint32_t;
+// What may be a vector of lanes: render/lanes-inl.h.
+using Float = float;
+using Int = int;
+using Bool = bool;
+using Vec3 = vec3;
+
+inline float intBitsToFloat(int bits) {
+    float f;
+    std::memcpy(&f, &bits, sizeof f);
+    return f;
+}
+inline int floatBitsToInt(float f) {
+    int bits;
+    std::memcpy(&bits, &f, sizeof bits);
+    return bits;
+}
+inline float floor(float x) { return std::floor(x); }
+inline float sqrt(float x) { return std::sqrt(x); }
+inline float abs(float x) { return std::fabs(x); }
+inline float min(float a, float b) { return b < a ? b : a; }
+inline float max(float a, float b) { return a < b ? b : a; }
+inline int min(int a, int b) { return b < a ? b : a; }
+inline int max(int a, int b) { return a < b ? b : a; }
+inline float clamp(float x, float lo, float hi) { return min(max(x, lo), hi); }
+inline float mix(float a, float b, float t) { return a * (1.0f - t) + b * t; }
+inline float mix(float a, float b, bool take_b) { return take_b ? b : a; }
+inline vec3 mix(vec3 a, vec3 b, float t) { return a * (1.0f - t) + b * t; }
+inline float dot(vec3 a, vec3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+
+}  // namespace astrosplat::glsl
 
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wunused-function"
@@ -11,7 +57,9 @@ namespace astrosplat::shared {
 using namespace astrosplat::glsl;
 namespace {
 #include "maths.glsl"
-}
+// before what needs it
+#include "noise.glsl"
+}  // namespace
 }  // namespace astrosplat::shared
 
 #pragma GCC diagnostic pop

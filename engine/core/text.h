@@ -1,4 +1,4 @@
-// Numbers and names as text, the same in every locale.
+// Numbers, names and bytes as text, the same in every locale, and what of foreign text messages show.
 #pragma once
 
 #include <cstdint>
@@ -37,5 +37,14 @@ std::optional<std::int64_t> parse_int64(std::string_view text);
 /// The shortest decimal that reads back as the same bits.
 std::string shortest(double value);
 std::string shortest(float value);
+
+/// A word of a file for a message: in quotes, control characters written out, cut after 40 bytes.
+std::string shown(std::string_view word);
+
+/// Bytes as text of 64 letters (RFC 4648).
+std::string base64(std::string_view bytes);
+
+/// The bytes of such a text, with or without the padding at its end; nothing where it is none.
+std::optional<std::string> bytes_of_base64(std::string_view text);
 
 }  // namespace astrosplat

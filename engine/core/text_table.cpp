@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "core/error.h"
-#include "core/shown.h"
 #include "core/text.h"
 
 namespace astrosplat {

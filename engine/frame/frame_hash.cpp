@@ -8,7 +8,7 @@
 #include <string_view>
 
 #include "core/error.h"
-#include "core/sha256.h"
+#include "core/hash.h"
 #include "output/format.h"
 #include "scene/animate.h"
 #include "scene/describe.h"

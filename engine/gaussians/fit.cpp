@@ -8,7 +8,7 @@
 
 #include "core/color.h"
 #include "core/parallel.h"
-#include "core/quaternion.h"
+#include "core/rotation.h"
 #include "render/project.h"
 #include "render/render.h"
 #include "render/shared_render.h"

@@ -2,9 +2,9 @@
 // KHR_gaussian_splatting, and USD. Atomic, and the same bytes for any thread count.
 #pragma once
 
+#include "core/atomic_file.h"
 #include "core/progress.h"
 #include "gaussians/gaussians.h"
-#include "splat_files/write_target.h"
 
 namespace astrosplat {
 

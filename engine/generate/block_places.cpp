@@ -7,7 +7,7 @@
 // after foreach_target.h
 #include <hwy/highway.h>
 
-#include "core/glsl.h"
+#include "core/shared_maths.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace astrosplat {

@@ -8,11 +8,11 @@
 #include <cstdint>
 #include <span>
 
+#include "core/atomic_file.h"
 #include "core/progress.h"
 #include "generate/lattice.h"
 #include "source/source.h"
 #include "source/textured_mesh.h"
-#include "splat_files/write_target.h"
 #include "splats/splat_set.h"
 
 namespace astrosplat {

@@ -6,10 +6,9 @@
 #include <cstring>
 #include <limits>
 
-#include "core/base64.h"
 #include "core/error.h"
 #include "core/file.h"
-#include "core/quaternion.h"
+#include "core/rotation.h"
 #include "core/text.h"
 
 namespace astrosplat {

@@ -14,7 +14,7 @@
 #include "core/color.h"
 #include "core/memory.h"
 #include "core/parallel.h"
-#include "core/quaternion.h"
+#include "core/rotation.h"
 #include "look/kernel.h"
 #include "look/picture_fit.h"
 #include "look/prepare.h"

@@ -2,7 +2,7 @@
 // computes it. Each translation unit gets its own copy with internal linkage.
 #pragma once
 
-#include "core/shared_noise.h"
+#include "core/shared_maths.h"
 #include "look/shared_uniforms.h"
 
 #pragma GCC diagnostic push

@@ -4,7 +4,7 @@
 
 #include <cstddef>
 
-#include "core/glsl.h"
+#include "core/shared_maths.h"
 
 namespace astrosplat::shared_types {
 using namespace astrosplat::glsl;

@@ -11,8 +11,8 @@
 #include <list>
 #include <mutex>
 
+#include "core/color.h"
 #include "core/file.h"
-#include "core/primaries.h"
 #include "core/text.h"
 
 namespace astrosplat {

@@ -6,7 +6,6 @@
 
 #include "core/color.h"
 #include "core/parallel.h"
-#include "core/primaries.h"
 #include "core/real.h"
 
 namespace astrosplat {

@@ -9,7 +9,6 @@
 #include <string_view>
 #include <utility>
 
-#include "core/base64.h"
 #include "core/text.h"
 
 namespace astrosplat {

@@ -13,8 +13,8 @@
 #include <utility>
 #include <vector>
 
+#include "core/atomic_file.h"
 #include "core/error.h"
-#include "core/guarded_file.h"
 #include "output/encode.h"
 #include "output/metadata.h"
 

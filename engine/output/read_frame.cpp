@@ -11,7 +11,7 @@
 
 #include "core/error.h"
 #include "core/file_format.h"
-#include "core/sha256.h"
+#include "core/hash.h"
 #include "core/text.h"
 #include "output/hashed_text.h"
 #include "output/png_frame.h"

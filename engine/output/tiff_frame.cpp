@@ -14,8 +14,8 @@
 #include <new>
 #include <vector>
 
+#include "core/atomic_file.h"
 #include "core/error.h"
-#include "core/guarded_file.h"
 #include "core/parallel.h"
 #include "output/encode.h"
 #include "output/metadata.h"

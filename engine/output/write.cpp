@@ -7,7 +7,7 @@
 #include <stdexcept>
 
 #include "core/error.h"
-#include "core/sha256.h"
+#include "core/hash.h"
 #include "output/format.h"
 #include "output/png_frame.h"
 #include "output/tiff_frame.h"

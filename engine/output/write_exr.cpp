@@ -18,9 +18,9 @@
 #include <limits>
 #include <vector>
 
+#include "core/color.h"
 #include "core/error.h"
 #include "core/parallel.h"
-#include "core/primaries.h"
 #include "output/encode.h"
 #include "output/exr_stream.h"
 #include "output/exr_threads.h"

@@ -11,7 +11,7 @@
 
 #include <type_traits>
 
-#include "core/glsl.h"
+#include "core/shared_maths.h"
 #include "render/fold_batch.h"
 
 HWY_BEFORE_NAMESPACE();

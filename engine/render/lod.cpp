@@ -8,7 +8,7 @@
 
 #include "core/quadrature.h"
 #include "core/real.h"
-#include "core/shared_noise.h"
+#include "core/shared_maths.h"
 #include "render/falloff.h"
 #include "render/shared_render.h"
 

@@ -8,6 +8,7 @@
 #include "camera_files/read_camera.h"
 #include "core/error.h"
 #include "core/file.h"
+#include "core/file_format.h"
 #include "core/log.h"
 #include "core/text.h"
 #include "scene/csv_tracks.h"
@@ -18,9 +19,11 @@ namespace astrosplat {
 namespace {
 
 namespace fs = std::filesystem;
-constexpr const char* table_ending = ".csv";
 
-bool is_table(const fs::path& file) { return lower_case(file.extension().string()) == table_ending; }
+bool is_table(const fs::path& file) {
+    const FileFormat* const format = format_by_name(file);
+    return format && format->id == "table";
+}
 
 /// Where z is up it becomes y: x stays, y goes to -z.
 glm::dvec3 y_up(const glm::dvec3& v) { return {v.x, v.z, -v.y}; }
@@ -131,12 +134,6 @@ ImportedCamera::Source source_of(const Scene& scene) {
 
 }  // namespace
 
-std::vector<std::string> all_camera_endings() {
-    std::vector<std::string> endings = camera_file_endings();
-    endings.push_back(table_ending);
-    return endings;
-}
-
 std::vector<Track> camera_file_tracks(Scene& scene, const fs::path& file) {
     const FrameRate rate{scene.output.fps, scene.camera.file_fps};
     if (is_table(file)) {
@@ -154,9 +151,9 @@ void attach_camera_file(Scene& scene, const std::string& place) {
     const fs::path& file = scene.camera.file;
     if (file.empty()) return;
     if (!is_camera_file(file) && !is_table(file))
-        throw InputError(fmt::format("{}camera.file: expected a name ending in {}, found '{}'",
-                                     place.empty() ? "" : place + ": ", alternatives(all_camera_endings()),
-                                     printable(file.string())));
+        throw InputError(fmt::format(
+            "{}camera.file: expected a name ending in {}, found '{}'", place.empty() ? "" : place + ": ",
+            alternatives(endings_of(FileUse::camera_read)), printable(file.string())));
     try {
         require_readable(file);
     } catch (const InputError& error) {

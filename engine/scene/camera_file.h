@@ -18,7 +18,4 @@ void refresh_camera_file(Scene& scene, const std::string& place);
 /// table names their next element. Throws InputError.
 std::vector<Track> camera_file_tracks(Scene& scene, const std::filesystem::path& file);
 
-/// Names that camera.file may end in.
-std::vector<std::string> all_camera_endings();
-
 }  // namespace astrosplat

@@ -10,6 +10,7 @@
 #include "camera/camera.h"
 #include "camera_files/formats.h"
 #include "core/error.h"
+#include "core/file_format.h"
 #include "core/log.h"
 #include "core/real.h"
 #include "core/text.h"
@@ -85,14 +86,13 @@ CameraTrack camera_track(const Scene& scene, std::span<const std::int64_t> frame
     return track;
 }
 
-std::vector<std::string> written_camera_endings() { return {".chan", ".csv", ".gltf", ".usda"}; }
-
 std::string camera_text(const CameraTrack& track, const Scene& scene, const std::filesystem::path& file) {
-    const std::string ending = lower_case(file.extension().string());
-    if (ending == ".csv") return table_of(track);
+    const FileFormat* const format = format_by_name(file, FileUse::camera_written);
+    const std::string_view id = format ? format->id : "";
+    if (id == "table") return table_of(track);
     const double aspect = static_cast<double>(scene.output.width) / static_cast<double>(scene.output.height);
-    if (ending == ".usda") return usda_text(track, {aspect, scene.camera.near, scene.camera.far});
-    if (ending == ".gltf") {
+    if (id == "usda") return usda_text(track, {aspect, scene.camera.near, scene.camera.far});
+    if (id == "gltf") {
         const auto other_lens = [&](const TrackSample& sample) {
             return sample.fov_deg != track.samples[0].fov_deg || sample.height != track.samples[0].height;
         };
@@ -101,12 +101,12 @@ std::string camera_text(const CameraTrack& track, const Scene& scene, const std:
                                     printable(file.string()), shortest(track.samples[0].frame)));
         return gltf_text(track, aspect, scene.camera.near, scene.camera.far);
     }
-    if (ending == ".chan" && track.orthographic)
+    if (id == "chan" && track.orthographic)
         throw InputError(
             fmt::format("{}: expected a perspective camera, for .chan has no other, found orthographic",
                         printable(file.string())));
-    if (ending == ".chan") return chan_text(track);
-    bad_input(file.string(), "", "a name ending in " + alternatives(written_camera_endings()),
+    if (id == "chan") return chan_text(track);
+    bad_input(file.string(), "", "a name ending in " + alternatives(endings_of(FileUse::camera_written)),
               "'" + printable(file.extension().string()) + "'");
 }
 

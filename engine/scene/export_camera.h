@@ -19,9 +19,6 @@ namespace astrosplat {
 /// of its own but frames its layers.
 CameraTrack camera_track(const Scene& scene, std::span<const std::int64_t> frames);
 
-/// Names that a camera may be written to.
-std::vector<std::string> written_camera_endings();
-
 /// The text of a file whose name ends in .chan, .csv, .gltf or .usda. camera.file reads .chan and .csv
 /// back within 1e-6, .gltf within a float's precision. Throws InputError for other names.
 std::string camera_text(const CameraTrack& track, const Scene& scene, const std::filesystem::path& file);

@@ -8,9 +8,9 @@
 #include <algorithm>
 #include <optional>
 
-#include "core/assets.h"
 #include "core/error.h"
 #include "core/file.h"
+#include "core/folders.h"
 #include "core/log.h"
 #include "core/text.h"
 #include "scene/camera_file.h"

@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "core/assets.h"
 #include "core/error.h"
 #include "core/file.h"
+#include "core/folders.h"
 #include "scene/entries.h"
 
 namespace astrosplat {

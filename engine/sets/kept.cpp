@@ -13,10 +13,10 @@
 
 #include "core/error.h"
 #include "core/file.h"
+#include "core/folders.h"
+#include "core/hash.h"
 #include "core/log.h"
 #include "core/memory.h"
-#include "core/sha256.h"
-#include "core/user_folders.h"
 #include "sets/recipe.h"
 #include "source/picture.h"
 #include "source/prepared_picture.h"

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "core/atomic_file.h"
 #include "core/progress.h"
 #include "generate/generate.h"
 #include "generate/kept_store.h"
@@ -15,7 +16,6 @@
 #include "source/prepared_picture.h"
 #include "source/source.h"
 #include "source/textured_mesh.h"
-#include "splat_files/write_target.h"
 #include "splats/splat_set.h"
 
 namespace astrosplat {

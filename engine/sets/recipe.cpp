@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "core/error.h"
-#include "core/sha256.h"
+#include "core/hash.h"
 #include "generate/lattice.h"
 #include "source/mesh.h"
 #include "source/obj.h"

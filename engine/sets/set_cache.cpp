@@ -12,9 +12,9 @@
 #include <utility>
 #include <vector>
 
+#include "core/atomic_file.h"
 #include "core/error.h"
 #include "core/file.h"
-#include "core/file_lock.h"
 #include "core/log.h"
 #include "core/memory.h"
 #include "generate/kept_store.h"

@@ -12,7 +12,7 @@
 #include "core/error.h"
 #include "core/log.h"
 #include "core/real.h"
-#include "core/shared_noise.h"
+#include "core/shared_maths.h"
 #include "source/obj.h"
 #include "source/shapes.h"
 

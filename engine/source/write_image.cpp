@@ -10,8 +10,8 @@
 #include <memory>
 #include <string>
 
+#include "core/atomic_file.h"
 #include "core/error.h"
-#include "core/guarded_file.h"
 #include "source/open_picture.h"
 
 // fmt first: OpenImageIO brings a copy of it with other settings.

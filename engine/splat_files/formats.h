@@ -9,8 +9,8 @@
 #include <filesystem>
 #include <string_view>
 
+#include "core/atomic_file.h"
 #include "core/progress.h"
-#include "splat_files/write_target.h"
 #include "splats/splat_set.h"
 
 namespace astrosplat {

@@ -15,9 +15,9 @@
 #include <string_view>
 #include <vector>
 
+#include "core/hash.h"
 #include "core/memory.h"
 #include "core/parallel.h"
-#include "splat_files/checksum.h"
 #include "splat_files/mapped_file.h"
 #include "splat_files/native_layout.h"
 #include "splat_files/ordered_writer.h"

@@ -2,7 +2,7 @@
 // some of its rows, for a cache that keeps more than is to be seen. Memory mapped, checked by block, and in
 // an order that keeps neighbours together.
 //
-// Format version 1, all little-endian, checksums XXH64 (checksum.h):
+// Format version 1, all little-endian, checksums XXH64 (core/hash.h):
 //   header   0  8 bytes  89 'S' 'P' 'L' 'A' 'T' 0d 0a
 //            8  u32      version, 1
 //           12  u32      flags: 1 generated, 2 divided, 4 uv, 8 normal, 16 mesh, 32 radius are present,
@@ -30,9 +30,9 @@
 #include <span>
 #include <vector>
 
+#include "core/atomic_file.h"
 #include "core/buffer.h"
 #include "core/progress.h"
-#include "splat_files/write_target.h"
 #include "splats/splat_set.h"
 
 namespace astrosplat {

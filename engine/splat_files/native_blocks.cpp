@@ -19,8 +19,8 @@
 
 #include "core/atomic_file.h"
 #include "core/file.h"
+#include "core/hash.h"
 #include "core/parallel.h"
-#include "splat_files/checksum.h"
 #include "splat_files/mapped_file.h"
 #include "splat_files/native_layout.h"
 #include "splats/row_order.h"

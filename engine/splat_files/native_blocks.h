@@ -10,9 +10,9 @@
 #include <memory>
 #include <span>
 
+#include "core/atomic_file.h"
 #include "core/bounds.h"
 #include "splat_files/native.h"
-#include "splat_files/write_target.h"
 #include "splats/splat_set.h"
 
 namespace astrosplat {

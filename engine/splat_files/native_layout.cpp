@@ -9,7 +9,7 @@
 #include <glm/common.hpp>
 
 #include "core/error.h"
-#include "splat_files/checksum.h"
+#include "core/hash.h"
 
 namespace astrosplat::native {
 

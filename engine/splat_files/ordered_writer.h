@@ -9,8 +9,8 @@
 #include <string>
 #include <string_view>
 
+#include "core/atomic_file.h"
 #include "core/progress.h"
-#include "splat_files/write_target.h"
 
 namespace astrosplat {
 

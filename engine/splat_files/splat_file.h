@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "core/atomic_file.h"
 #include "core/progress.h"
-#include "splat_files/write_target.h"
 #include "splats/splat_set.h"
 
 namespace astrosplat {

@@ -9,7 +9,6 @@
 
 #include "core/error.h"
 #include "core/file.h"
-#include "core/shown.h"
 #include "core/text.h"
 #include "splat_files/gaussian_rows.h"
 #include "splat_files/mapped_file.h"

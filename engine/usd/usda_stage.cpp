@@ -11,7 +11,6 @@
 #include <string_view>
 
 #include "core/error.h"
-#include "core/shown.h"
 #include "core/text.h"
 
 namespace astrosplat {

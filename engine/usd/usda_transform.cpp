@@ -8,8 +8,8 @@
 #include <glm/matrix.hpp>
 
 #include "core/error.h"
-#include "core/quaternion.h"
 #include "core/real.h"
+#include "core/rotation.h"
 #include "core/text.h"
 
 namespace astrosplat {

@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <system_error>
 
-#include "core/sha256.h"
+#include "core/hash.h"
 
 namespace astrosplat {
 namespace {

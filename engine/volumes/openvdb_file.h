@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "core/atomic_file.h"
 #include "core/progress.h"
-#include "splat_files/write_target.h"
 #include "volumes/voxel_grid.h"
 
 namespace astrosplat {

@@ -1,4 +1,4 @@
-// Elementary functions and hashing that C++ and GLSL compile alike (C++: core/glsl.h supplies the GLSL names). No
+// Elementary functions and hashing that C++ and GLSL compile alike (C++: core/shared_maths.h supplies the GLSL names). No
 // fused multiply-add on the C++ side, so the bits are the same on every processor. Literals are 1.0f; no out
 // parameters; loops have constant bounds.
 

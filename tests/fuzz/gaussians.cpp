@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "core/base64.h"
+#include "core/text.h"
 #include "fuzz/targets.h"
 #include "splat_files/formats.h"
 #include "support/capture.h"

@@ -13,6 +13,7 @@
 #include <iterator>
 #include <stdexcept>
 
+#include "core/hash.h"
 #include "fuzz/cameras.h"
 #include "fuzz/catalogues.h"
 #include "fuzz/gaussians.h"
@@ -20,7 +21,6 @@
 #include "source/mesh.h"
 #include "source/obj.h"
 #include "source/texture.h"
-#include "splat_files/checksum.h"
 #include "splat_files/formats.h"
 #include "splat_files/native.h"
 

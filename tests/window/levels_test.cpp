@@ -1,7 +1,7 @@
 // A level is dragged: the picture follows at once, without a new set, which comes once the hand rests.
 #include <algorithm>
 
-#include "core/file_lock.h"
+#include "core/atomic_file.h"
 #include "gui/theme.h"
 #include "sets/recipe.h"
 #include "support/fits_text.h"

@@ -8,7 +8,7 @@
 #include <glm/geometric.hpp>
 
 #include "camera/camera.h"
-#include "core/base64.h"
+#include "core/text.h"
 #include "support/camera_tracks.h"
 
 namespace astrosplat {

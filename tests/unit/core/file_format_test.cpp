@@ -39,7 +39,7 @@ TEST(FileFormat, RowsDoNotContradictEachOther) {
     for (const FileFormat& format : file_formats()) {
         EXPECT_TRUE(ids.insert(format.id).second) << format.id;
         ASSERT_FALSE(format.endings.empty()) << format.id;
-        for (const std::string_view ending : format.endings) {
+        for (const auto& [ending, uses] : format.endings) {
             EXPECT_TRUE(endings.insert(ending).second) << ending;
             EXPECT_EQ(format_by_name("a" + std::string(ending)), &format) << ending;
         }
@@ -53,6 +53,10 @@ TEST(FileFormat, ListsForDialogsAndMessages) {
               (std::vector<std::string>{".pda", ".ply", ".splats"}));
     EXPECT_EQ(endings_of({FileKind::picture}, FileUse::written),
               (std::vector<std::string>{".exr", ".tif", ".tiff", ".png"}));
+    EXPECT_EQ(endings_of(FileUse::camera_written),
+              (std::vector<std::string>{".chan", ".csv", ".gltf", ".usda"}));
+    EXPECT_EQ(endings_of(FileUse::exported), (std::vector<std::string>{".ply", ".glb", ".usda", ".vdb"}));
+    EXPECT_EQ(endings_of(FileUse::movie).front(), ".mp4");
     EXPECT_EQ(names_of(FileKind::splats), "PDA, PLY, glTF, USD or SPLATS");
     EXPECT_EQ(names_of(FileKind::mesh), "OBJ");
 }

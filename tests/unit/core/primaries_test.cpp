@@ -1,5 +1,5 @@
 // Matrices between primaries against published ones and what must hold for any.
-#include "core/primaries.h"
+#include "core/color.h"
 
 #include <gtest/gtest.h>
 

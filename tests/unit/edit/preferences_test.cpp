@@ -5,8 +5,8 @@
 
 #include <cstddef>
 
+#include "core/folders.h"
 #include "core/log.h"
-#include "core/user_folders.h"
 #include "edit/autosave.h"
 #include "scenes.h"
 #include "support/variable.h"

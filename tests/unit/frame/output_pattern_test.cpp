@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "core/error.h"
-#include "core/temporary_folder.h"
+#include "core/folders.h"
 #include "support/errors.h"
 
 namespace astrosplat {

@@ -6,7 +6,6 @@
 #include <glm/geometric.hpp>
 #include <iterator>
 
-#include "core/quaternion.h"
 #include "core/rotation.h"
 #include "gaussians/gaussian_file.h"
 #include "gaussians/gaussians.h"

@@ -8,7 +8,6 @@
 #include <iterator>
 
 #include "core/color.h"
-#include "core/quaternion.h"
 #include "core/real.h"
 #include "core/rotation.h"
 #include "gaussians/gaussian_file.h"

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/base64.h"
+#include "core/text.h"
 
 namespace astrosplat {
 namespace {

@@ -7,6 +7,7 @@
 #include <glm/geometric.hpp>
 
 #include "camera/camera.h"
+#include "core/file_format.h"
 #include "core/text.h"
 #include "scene/animate.h"
 #include "scene/csv_tracks.h"
@@ -168,7 +169,7 @@ TEST_F(CameraFile, TablesTakeOtherSeparatorsQuotesAndMarks) {
 }
 
 TEST_F(CameraFile, EachMessageNamesPlaceExpectationAndFinding) {
-    const std::vector<std::string> all = all_camera_endings();
+    const std::vector<std::string> all = endings_of(FileUse::camera_read);
     EXPECT_EQ(refused("file = \"cam.mov\"\n"), "scene.toml:8: camera.file: expected a name ending in " +
                                                    alternatives(all) + ", found 'cam.mov'");
     EXPECT_EQ(refused("file = \"none.chan\"\n"),

@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 
-#include "splat_files/checksum.h"
+#include "core/hash.h"
 #include "splat_files/splat_file.h"
 #include "splats/row_order.h"
 #include "splats/splat_set.h"

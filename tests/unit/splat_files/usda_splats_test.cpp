@@ -2,7 +2,6 @@
 // test for each error. What glTF's nodes and USD's prims do with them is one test.
 #include <fmt/format.h>
 
-#include "core/quaternion.h"
 #include "core/rotation.h"
 #include "unit/splat_files/gaussian_files.h"
 

@@ -7,7 +7,6 @@
 #include <glm/geometric.hpp>
 #include <numbers>
 
-#include "core/quaternion.h"
 #include "core/rotation.h"
 
 namespace astrosplat {

@@ -12,7 +12,7 @@
 
 #include "core/file.h"
 #include "core/log.h"
-#include "core/shared_noise.h"
+#include "core/shared_maths.h"
 #include "support/temp_folder.h"
 #include "viewer/loaded_layer.h"
 #include "viewer/set_loader.h"

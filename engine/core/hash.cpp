@@ -1,5 +1,5 @@
 // SHA-256 by OpenSSL's EVP interface.
-#include "core/sha256.h"
+#include "core/hash.h"
 
 #include <fmt/format.h>
 #include <openssl/evp.h>
