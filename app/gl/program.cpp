@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <regex>
 #include <stdexcept>
 
 namespace astrosplat {
@@ -107,9 +108,11 @@ std::string readable_log(const std::string& log, const std::vector<FileStart>& f
 }
 
 std::vector<std::string> after_projections(const std::vector<std::string>& more) {
-    std::vector<std::string> files = {"lens.glsl",        "instance.glsl",     "angles.glsl",
-                                      "perspective.glsl", "orthographic.glsl", "fisheye.glsl",
-                                      "panorama.glsl",    "projection.glsl"};
+    std::vector<std::string> files = {"lens.glsl", "angles.glsl"};
+    const std::string list = shader_text("projections.inc");
+    const std::regex include("#include \"([^\"]+)\"");
+    for (std::sregex_iterator it(list.begin(), list.end(), include), none; it != none; ++it)
+        files.push_back((*it)[1]);
     files.insert(files.end(), more.begin(), more.end());
     return files;
 }

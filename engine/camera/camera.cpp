@@ -173,11 +173,9 @@ namespace {
 
 template <class AnyLens>
 AnyLens lens_of(const Camera& camera) {
-    static_assert(static_cast<int>(Projection::perspective) == shared::PROJECTION_PERSPECTIVE &&
-                  static_cast<int>(Projection::orthographic) == shared::PROJECTION_ORTHOGRAPHIC &&
-                  static_cast<int>(Projection::fisheye) == shared::PROJECTION_FISHEYE &&
-                  static_cast<int>(Projection::equirectangular) == shared::PROJECTION_EQUIRECTANGULAR &&
-                  static_cast<int>(Projection::cylindrical) == shared::PROJECTION_CYLINDRICAL);
+    static_assert(numbered_as<Projection>(shared::PROJECTION_PERSPECTIVE, shared::PROJECTION_ORTHOGRAPHIC,
+                                          shared::PROJECTION_FISHEYE, shared::PROJECTION_EQUIRECTANGULAR,
+                                          shared::PROJECTION_CYLINDRICAL));
     using Number = decltype(AnyLens::near);
     return {static_cast<int>(camera.projection),     static_cast<Number>(camera.focal_px),
             static_cast<Number>(camera.center_x_px), static_cast<Number>(camera.center_y_px),

@@ -16,14 +16,13 @@ using namespace astrosplat::shared_types;
 namespace {
 #include "angles.glsl"
 // before what needs it
-#include "camera/projections.inc"
+#include "projections.inc"
 }  // namespace
 }  // namespace astrosplat::shared
 
 namespace astrosplat::exact {
-using exact_types::Lens, exact_types::Real;
-using exact_types::PROJECTION_CYLINDRICAL, exact_types::SPHERE_TURN;
-using exact_types::PROJECTION_ORTHOGRAPHIC, exact_types::PROJECTION_FISHEYE;
+using namespace astrosplat::exact_types;
+using exact_types::Lens, exact_types::Real;  // not those of floats
 using Float = double;
 using Bool = bool;
 using Vec3 = glm::dvec3;
@@ -38,7 +37,7 @@ double angle_of(double y, double x) { return real::atan2(y, x); }
 double sine_of(double angle) { return real::sin(angle); }
 double cosine_of(double angle) { return real::cos(angle); }
 double dot(const glm::dvec3& a, const glm::dvec3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-#include "camera/projections.inc"
+#include "projections.inc"
 }  // namespace
 }  // namespace astrosplat::exact
 

@@ -29,7 +29,7 @@ using Bool = LaneBools<D>;
 using Vec3 = LaneVectors<D>;
 #include "angles.glsl"
 // before what needs it
-#include "camera/projections.inc"
+#include "projections.inc"
 }  // namespace
 }  // namespace sphere_maths
 #pragma GCC diagnostic pop

@@ -30,7 +30,7 @@ using namespace astrosplat::glsl;
 using namespace astrosplat::shared_types;
 #include "angles.glsl"
 // before what needs it
-#include "camera/projections.inc"
+#include "projections.inc"
 }  // namespace
 #pragma GCC diagnostic pop
 

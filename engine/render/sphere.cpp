@@ -7,6 +7,7 @@
 #include "camera/projection.h"
 #include "core/real.h"
 #include "render/shape.h"
+#include "render/sphere_shape.h"
 #include "render/sphere_sums.h"
 
 namespace astrosplat {
@@ -28,8 +29,15 @@ PixelStretch stretch_at(const Lens& lens, double x_px, double y_px) {
         const double squared = 1.0 + y * y;
         return {squared, 0.0, squared * squared};
     }
-    const double cosine = std::fmax(std::fabs(real::cos(y)), 1e-3);
-    return {1.0 / (cosine * cosine), 0.0, 1.0};
+    if (lens.projection == shared::PROJECTION_EQUIRECTANGULAR) {
+        const double cosine = std::fmax(std::fabs(real::cos(y)), 1e-3);
+        return {1.0 / (cosine * cosine), 0.0, 1.0};
+    }
+    const SphereAxes axes = sphere_axes(lens, x_px, y_px);
+    const auto product = [&](int i, int j) {
+        return axes.first_px[i] * axes.first_px[j] + axes.second_px[i] * axes.second_px[j];
+    };
+    return {product(0, 0), product(0, 1), product(1, 1)};
 }
 
 /// The profile's sum over the rows around a pole of an equirectangular frame, each weighted by its pixels'

@@ -244,13 +244,47 @@ class ShapeOnMap {
 
 }  // namespace
 
+SphereAxes sphere_axes_by_differences(const Lens& lens, double x_px, double y_px) {
+    constexpr double angle = 1e-3;  // between neighbours, radians
+    const ExactLens exact = exact_lens(lens);
+    const double step_px = angle * exact.focal_px;
+    SphereAxes axes;
+    axes.toward = glm::normalize(exact::ray_through(exact, x_px, y_px));
+    const glm::dvec3 right = glm::normalize(exact::ray_through(exact, x_px + 0.5, y_px)) - axes.toward;
+    axes.first = glm::normalize(right - glm::dot(right, axes.toward) * axes.toward);
+    axes.second = glm::cross(axes.first, axes.toward);
+    // Along the great circle that begins in the direction of `across`, to both of its sides.
+    const auto neighbours = [&](const glm::dvec3& across) {
+        const auto place = [&](double sine) {
+            const exact::Instance at =
+                exact::instance_of(exact, real::cos(angle) * axes.toward + sine * across);
+            return glm::dvec2(at.x_px, at.y_px);
+        };
+        const glm::dvec2 before = place(-real::sin(angle)), after = place(real::sin(angle));
+        struct Derivatives {
+            glm::dvec2 first, second;
+        };
+        return Derivatives{(after - before) / (2.0 * step_px),
+                           (after + before - 2.0 * glm::dvec2(x_px, y_px)) / (step_px * step_px)};
+    };
+    const auto along = neighbours(axes.first), across = neighbours(axes.second),
+               between = neighbours(glm::normalize(axes.first + axes.second));
+    axes.first_px = along.first;
+    axes.second_px = across.first;
+    const glm::dvec2 mixed = between.second - 0.5 * (along.second + across.second);
+    axes.bend_x = {along.second.x, mixed.x, across.second.x};
+    axes.bend_y = {along.second.y, mixed.y, across.second.y};
+    return axes;
+}
+
 SphereAxes sphere_axes(const Lens& lens, double x_px, double y_px) {
     const double focal = lens.focal_px, period = shared::period_px(lens);
     double x = x_px - double(lens.center_x_px);
     if (period > 0.0) x -= period * std::floor(x / period + 0.5);  // the same at all of its places
     const double y = double(lens.center_y_px) - y_px;
     if (lens.projection == shared::PROJECTION_FISHEYE) return fisheye_axes(focal, x / focal, y / focal);
-    return panorama_axes(lens, x / focal, y / focal);
+    if (shared::is_panorama(lens)) return panorama_axes(lens, x / focal, y / focal);
+    return sphere_axes_by_differences(lens, x_px, y_px);
 }
 
 Shape project_onto_sphere(const SphereAxes& axes, const glm::mat3& ellipsoid, float px_per_unit) {

@@ -26,6 +26,9 @@ struct SphereAxes {
     glm::dvec3 bend_x, bend_y;
 };
 SphereAxes sphere_axes(const Lens& lens, double x_px, double y_px);
+/// The same to about six digits from nothing but where directions appear, with `first` to the right on the
+/// frame: for projections that have no formulas here.
+SphereAxes sphere_axes_by_differences(const Lens& lens, double x_px, double y_px);
 
 /// The outline of an ellipsoid on the map: the unit ball under `ellipsoid` (columns in camera space, scene
 /// units), of which px_per_unit are px of the sphere. Axes are those of its own direction.

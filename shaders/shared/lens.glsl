@@ -5,9 +5,10 @@
 #define Real float
 #endif
 
+// In the order of Projection in engine/camera/camera.h. Those from the fisheye on are onto the sphere.
 const int PROJECTION_PERSPECTIVE = 0;
 const int PROJECTION_ORTHOGRAPHIC = 1;
-const int PROJECTION_FISHEYE = 2;  // from here on: onto the sphere
+const int PROJECTION_FISHEYE = 2;
 const int PROJECTION_EQUIRECTANGULAR = 3;
 const int PROJECTION_CYLINDRICAL = 4;
 

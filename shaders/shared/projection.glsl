@@ -1,7 +1,6 @@
 // Projection: camera space (x right, y up, in front is -z) to the frame. To the renderer and the preview all
-// projections are alike. Each is a file of functions with its name in front, a constant in lens.glsl, lines in the table
-// below, a place in the lists of camera/projections.inc and app/gl/program.cpp, and what make_camera makes of its
-// parameters.
+// projections are alike. Each is a file of functions with its name in front, listed in projections.inc, a number in
+// lens.glsl, lines in the table below, and what make_camera makes of its parameters.
 //
 // Projections onto the sphere draw a splat as a disc there, round in the chord between directions: a pixel's distance is
 // focal_px * |direction of the pixel - direction of the splat|, whatever the frame makes of the sphere, so there are no
@@ -14,13 +13,19 @@ bool has_parallel_rays(Lens lens) { return lens.projection == PROJECTION_ORTHOGR
 // The frame shows directions, all of one length, not points of a plane.
 bool is_onto_sphere(Lens lens) { return lens.projection >= PROJECTION_FISHEYE; }
 
-// The table: what is different from projection to projection.
+// Both panoramas: what leaves the frame to the right comes back on the left where it is wide enough.
+bool is_panorama(Lens lens) {
+    return lens.projection == PROJECTION_EQUIRECTANGULAR || lens.projection == PROJECTION_CYLINDRICAL;
+}
+
+// The table: what is different from projection to projection. A projection without lines here is drawn as perspective,
+// and projection_test.cpp says so.
 
 // Where a splat at p appears.
 Instance instance_of(Lens lens, Vec3 p) {
     if (lens.projection == PROJECTION_ORTHOGRAPHIC) return orthographic_instance(lens, p);
     if (lens.projection == PROJECTION_FISHEYE) return fisheye_instance(lens, p);
-    if (is_onto_sphere(lens)) return panorama_instance(lens, p);
+    if (is_panorama(lens)) return panorama_instance(lens, p);
     return perspective_instance(lens, p);
 }
 
@@ -28,14 +33,14 @@ Instance instance_of(Lens lens, Vec3 p) {
 Vec3 ray_through(Lens lens, Float x_px, Float y_px) {
     if (has_parallel_rays(lens)) return Vec3(0.0f, 0.0f, -1.0f);
     if (lens.projection == PROJECTION_FISHEYE) return fisheye_ray(lens, x_px, y_px);
-    if (is_onto_sphere(lens)) return panorama_ray(lens, x_px, y_px);
+    if (is_panorama(lens)) return panorama_ray(lens, x_px, y_px);
     return perspective_ray(lens, x_px, y_px);
 }
 
 // Whether anything can be seen there.
 Bool shows(Lens lens, Float x_px, Float y_px) {
     if (lens.projection == PROJECTION_FISHEYE) return fisheye_shows(lens, x_px, y_px);
-    if (is_onto_sphere(lens)) return panorama_shows(lens, x_px, y_px);
+    if (is_panorama(lens)) return panorama_shows(lens, x_px, y_px);
     return x_px < 3e38f;
 }
 
@@ -46,8 +51,8 @@ Float frame_reach_px(Lens lens, Float x_px, Float y_px, Float reach_px) {
     Float half_chord = min(0.5f * reach_px / lens.focal_px, 1.0f);
     Float angle = 2.0f * angle_of(half_chord, sqrt(max(1.0f - half_chord * half_chord, 0.0f)));
     // A px more, for places are rounded.
-    if (lens.projection == PROJECTION_FISHEYE) return fisheye_reach_px(lens, x_px, y_px, angle) + 1.0f;
-    return panorama_reach_px(lens, y_px, angle) + 1.0f;
+    if (is_panorama(lens)) return panorama_reach_px(lens, y_px, angle) + 1.0f;
+    return fisheye_reach_px(lens, x_px, y_px, angle) + 1.0f;
 }
 
 // The point that appears there at a depth.
@@ -101,7 +106,7 @@ Float snap_px(Float px) { return floor(px * 256.0f + 0.5f) * (1.0f / 256.0f); }
 // Px after which the frame shows the same again, to the right, on that raster; 0: never.
 Real period_px(Lens lens) {
     Real turn_px = SPHERE_TURN * lens.focal_px;
-    return lens.projection > PROJECTION_FISHEYE ? floor(turn_px * 256.0f + 0.5f) * (1.0f / 256.0f) : 0.0f;
+    return is_panorama(lens) ? floor(turn_px * 256.0f + 0.5f) * (1.0f / 256.0f) : 0.0f;
 }
 
 Bool is_in_range(Lens lens, Float depth) {

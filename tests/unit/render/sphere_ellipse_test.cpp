@@ -12,6 +12,7 @@
 #include "core/rotation.h"
 #include "core/shared_maths.h"
 #include "render/footprint.h"
+#include "render/sphere_shape.h"
 #include "support/printing.h"
 #include "unit/render/sphere_scenes.h"
 
@@ -285,6 +286,37 @@ TEST(SphereEllipse, ANarrowFisheyeIsPerspective) {
     EXPECT_GT(*std::ranges::max_element(flat.pixels), 0.5f);
     for (std::size_t i = 0; i < flat.pixels.size(); ++i)
         ASSERT_NEAR(fisheye.pixels[i], flat.pixels[i], 0.004);
+}
+
+// A projection without formulas of its own has these differences, so they must be right where there are
+// formulas.
+TEST(SphereAxes, DifferencesAreTheFormulas) {
+    for (const Projection projection : projections) {
+        const Lens lens = make_lens(camera_of(projection));
+        for (const glm::dvec2& place : {glm::dvec2(300.0, 128.0), {200.5, 90.0}, {280.0, 180.25}}) {
+            const SphereAxes exact = sphere_axes(lens, place.x, place.y),
+                             differences = sphere_axes_by_differences(lens, place.x, place.y);
+            // Both pairs of axes span one plane; the formulas', turned onto the other pair.
+            const double c = glm::dot(exact.first, differences.first),
+                         s = glm::dot(exact.second, differences.first);
+            EXPECT_NEAR(c * c + s * s, 1.0, 1e-6);
+            const auto expect_near = [&](const glm::dvec2& a, const glm::dvec2& b) {
+                EXPECT_NEAR(a.x, b.x, 1e-5) << name_of(projection) << " at " << place.x << ", " << place.y;
+                EXPECT_NEAR(a.y, b.y, 1e-5) << name_of(projection) << " at " << place.x << ", " << place.y;
+            };
+            expect_near(c * exact.first_px + s * exact.second_px, differences.first_px);
+            expect_near(c * exact.second_px - s * exact.first_px, differences.second_px);
+            const auto along = [&](const glm::dvec3& bend, double x, double y) {
+                return x * x * bend[0] + 2.0 * x * y * bend[1] + y * y * bend[2];
+            };
+            for (const double t : {0.0, 0.7, 2.0}) {
+                const double x = real::cos(t), y = real::sin(t);
+                expect_near({along(exact.bend_x, c * x - s * y, s * x + c * y),
+                             along(exact.bend_y, c * x - s * y, s * x + c * y)},
+                            {along(differences.bend_x, x, y), along(differences.bend_y, x, y)});
+            }
+        }
+    }
 }
 
 }  // namespace
