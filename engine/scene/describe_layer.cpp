@@ -199,7 +199,7 @@ void describe_structure(const Describer& d, StructureParams& s) {
          "How far the disk's plane rises at the rim, and sinks on the other side.", within(-1, 1),
          slider(-0.1, 0.1));
     bodies(s.stars, "stars", "Stars apart", "",
-           "Stars are found and become single dots; auto: unless prepare removes them.");
+           "Stars are found and become single splats; auto: unless prepare removes them.");
     bodies(s.dust, "dust", "Dust", "",
            "Share of the dark details that becomes dust; auto: four fifths in a disk, else none.", or_auto(),
            range(0, 1));

@@ -138,14 +138,14 @@ void describe_look(const Describer& d, Look& look) {
 void describe_render(const Describer& d, LayerRender& r) {
     const Describer dot = d.shown_in("Mixing", "Dot profile"), mixing = d.shown_in("Mixing", "Blend"),
                     detail = d.shown_in("Mixing", "Level of detail");
-    dot(r.falloff.shape, "falloff", "Dot profile", "", "How a dot fades from its centre to its rim.",
+    dot(r.falloff.shape, "falloff", "Dot profile", "", "How a splat fades from its centre to its rim.",
         shown_as("Shape"));
     dot(r.falloff.core, "core", "Core", "of the radius", "Trapezoid: the flat part.", range(0, 1),
         only_with("falloff", {"trapezoid"}));
     dot(r.falloff.sharpness, "sharpness", "Sharpness", "",
-        "Gaussian and exponential: how fast the dot fades.", within(1e-6, 1e6), slider(0.5, 20),
+        "Gaussian and exponential: how fast the splat fades.", within(1e-6, 1e6), slider(0.5, 20),
         only_with("falloff", {"gaussian", "exponential"}));
-    mixing(r.blend, "blend", "Blend", "", "How dots mix with what lies behind.");
+    mixing(r.blend, "blend", "Blend", "", "How splats mix with what lies behind.");
     mixing(r.opacity, "opacity", "Opacity", "", "Of the whole layer.", range(0, 1));
     mixing(r.hybrid_from_deg, "hybrid.from_deg", "Over up to", "degrees",
            "Hybrid: over up to this angle from the axis.", range(0, 90), only_with("blend", {"hybrid"}));
@@ -156,23 +156,23 @@ void describe_render(const Describer& d, LayerRender& r) {
         "Absorb: the layer shines not at all; of each channel it lets (1 - opacity) to this power through.",
         range(0, 10), slider(0, 3), only_with("blend", {"absorb"}));
     detail(r.lod.max_px, "lod.max_px", "Split above", "px at 1080 lines",
-           "Dots that look larger are split; 0: off.", at_least(0), slider(0, 200), zero_is("Off"));
-    detail(r.lod.max_children, "lod.max_children", "Most children", "", "Largest number of parts of one dot.",
-           range(1, 16777216), slider(1, 65536), logarithmic());
+           "Splats that look larger are split; 0: off.", at_least(0), slider(0, 200), zero_is("Off"));
+    detail(r.lod.max_children, "lod.max_children", "Most children", "",
+           "Largest number of parts of one splat.", range(1, 16777216), slider(1, 65536), logarithmic());
     detail(r.lod.noise, "lod.noise", "Noise of parts", "",
-           "How strongly the parts of a dot differ in light, as clouds do; stars of pictures stay whole.",
+           "How strongly the parts of a splat differ in light, as clouds do; stars of pictures stay whole.",
            range(0, 2));
     detail(r.lod.star_distance, "lod.star_distance", "Points within", "scene units",
            "Stars of pictures that are nearer to the camera hardly grow and get brighter instead, as points "
-           "do; 0: they grow as all dots.",
+           "do; 0: they grow as all splats.",
            at_least(0), slider(0, 20), zero_is("Off"), only_with("blend", {"over", "add"}));
     mixing(r.holdout, "holdout", "Holdout", "", "Hides what lies behind and shows nothing itself.");
     mixing(r.isolate, "isolate", "Isolate", "", "Rendered alone, then composited as a whole.");
-    mixing(
-        r.space, "space", "Mixed in", "",
-        "display: dots are mixed as a display shows them (sRGB), as captures are trained, and the picture is "
-        "made linear again; of isolated layers that mix by over.",
-        only_with("isolate", {true}), only_with("blend", {"over"}));
+    mixing(r.space, "space", "Mixed in", "",
+           "display: splats are mixed as a display shows them (sRGB), as captures are trained, and the "
+           "picture is "
+           "made linear again; of isolated layers that mix by over.",
+           only_with("isolate", {true}), only_with("blend", {"over"}));
 }
 
 }  // namespace astrosplat

@@ -16,7 +16,7 @@ namespace {
 const std::vector<std::string> shapes{"plane", "relief", "disk", "sphere"};
 
 constexpr const char* scene_format =
-    R"(# {title}: a picture as a volume of soft dots. 'astrosplat parameters' lists every key.
+    R"(# {title}: a picture as a volume of soft splats. 'astrosplat parameters' lists every key.
 astrosplat = 1
 
 [output]
@@ -33,22 +33,22 @@ name = {name}
 
 [layer.source]
 meshes       = [ {{ mesh = {shape}, texture = {picture}{relief} }} ]
-count        = 5000000            # about how many dots are made; more are finer and take longer
-max_distance = 0.08               # how far dots lie from the surface, on either side; the picture is 10 wide
+count        = 5000000            # about how many splats are made; more are finer and take longer
+max_distance = 0.08               # how far splats lie from the surface, on either side; the picture is 10 wide
 stretch      = "auto"             # from data values to display values: asinh for FITS; or linear, asinh, log
 black        = "auto"             # data value shown as black
 white        = "auto"             # data value shown as white
 
 [layer.look]
-density  = 1.0                                   # share of the dots that is kept
-pdf      = {{ shape = "constant" }}                # how the number of dots falls with their distance: constant, linear, gaussian
+density  = 1.0                                   # share of the splats that is kept
+pdf      = {{ shape = "constant" }}                # how the number of splats falls with their distance: constant, linear, gaussian
 noise    = {{ frequency = 1.0, cull = 0.0, silhouette = 0.0, jitter = {jitter} }}  # cull thins out, silhouette frays the edge, jitter lifts and sinks
 alpha    = {{ power = 1.0, threshold = 0.95 }}     # opacity at soft edges: above 1 they fade, below 1 they fill
 vertical = {{ shape = "linear" }}                  # how their opacity falls with it: none, linear, exponential
 grade    = {{ gain = 1.0, tint = [1.0, 1.0, 1.0], saturation = 1.0, gamma = 1.0 }}
 
 [layer.render]
-falloff = "gaussian"              # profile of a dot: constant, linear, trapezoid, gaussian, exponential
+falloff = "gaussian"              # profile of a splat: constant, linear, trapezoid, gaussian, exponential
 blend   = "over"                  # over hides what lies behind; add, screen, lighten glow; hybrid: over face-on, screen edge-on
 opacity = 1.0                     # of the whole layer
 

@@ -63,12 +63,12 @@ black     = "auto"                # data value shown as black
 white     = "auto"                # data value shown as white
 
 [layer.look]
-density  = 1.0                    # share of the dots that is kept
+density  = 1.0                    # share of the splats that is kept
 grade    = {{ gain = 1.0, tint = [1.0, 1.0, 1.0], saturation = 1.0, gamma = 1.0 }}
 
 [layer.render]
 opacity = 1.0                     # of the whole layer
-lod     = {{ max_px = {split}, noise = 0.75, star_distance = {points} }}  # dots that look larger, close by, become clouds; nearer stars stay points
+lod     = {{ max_px = {split}, noise = 0.75, star_distance = {points} }}  # splats that look larger, close by, become clouds; nearer stars stay points
 )";
 
 constexpr const char* stars_format = R"(
@@ -188,7 +188,7 @@ std::int64_t side_px(std::int64_t side, std::int64_t longest) {
         2, 2 * std::llround(static_cast<double>(longest_px * side) / (2.0 * static_cast<double>(longest))));
 }
 
-// Sigma of the widest dots, of the picture's longest side.
+// Sigma of the widest splats, of the picture's longest side.
 double widest_sigma(StructureKind structure, double margin) {
     if (structure == StructureKind::disk)  // is thicker with its margin
         return (1.0 + margin) * widest_sigma_share * disk_thickness * static_cast<double>(wider_in_bulges[1]);
@@ -197,7 +197,7 @@ double widest_sigma(StructureKind structure, double margin) {
                                              : in_sheet;
 }
 
-// Pixels at 1080 lines that the widest dots have from the front, and a little more: there they stay whole.
+// Pixels at 1080 lines that the widest splats have from the front, and a little more: there they stay whole.
 double split_above_px(StructureKind structure, double longest_over_height, double margin) {
     return 1.1 * 2.0 * static_cast<double>(radius_sigmas) * widest_sigma(structure, margin) *
            longest_over_height * 1080.0;
