@@ -1,4 +1,4 @@
-// What --version prints: which program this is, of which commit, and with what it was built and runs. Out:
+// The text of --version: which program this is, of which commit, and with what it was built and runs. Out:
 // text.
 #pragma once
 

@@ -192,7 +192,7 @@ std::vector<std::string> keys_to_set() {
     return keys;
 }
 
-/// What the words of the whole command line are written into.
+/// Commands that print the words of the whole command line.
 void add_words(CLI::App& app, Invocation& call) {
     CLI::App& manual = add_command(
         app, call, "manual", "Prints a manual page: 1 of the program, 5 of scene files", [&app, &call] {

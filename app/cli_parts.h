@@ -1,4 +1,4 @@
-// What options of several commands are made of. In: CLI11's command. Out: the same with one option more,
+// Options that several commands share. In: CLI11's command. Out: the same with one option more,
 // whose value is written where it belongs.
 #pragma once
 
@@ -23,7 +23,7 @@ void add_assignments(CLI::App& app, std::vector<std::string>& values);  // --set
 void add_progress(CLI::App& app, ProgressMode& mode);
 /// Options that every command takes.
 void add_common(CLI::App& app, CommonOptions& common);
-/// What decides which frames there are, and what they hold.
+/// The options that choose frames and their content.
 void add_frame_choice(CLI::App& app, BatchOptions& batch);
 /// A subcommand whose run is remembered, not done while parsing.
 CLI::App& add_command(CLI::App& app, Invocation& call, const char* name, const char* help,

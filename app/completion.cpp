@@ -47,7 +47,7 @@ Words command_names(const std::vector<CommandWords>& commands) {
     return names;
 }
 
-// What may follow each option that takes a value: one line of a case over "COMMAND OPTION".
+// Completions of each option that takes a value: one line of a case over "COMMAND OPTION".
 std::string bash_values(const CommandWords& command) {
     std::string text;
     for (const OptionWords& option : command.options) {

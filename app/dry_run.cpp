@@ -19,7 +19,7 @@ std::string human_seconds(double seconds) {
     return clock_text(seconds);
 }
 
-/// What is to be made, and what the frames take: told from a hundredth of the splats.
+/// The sets to be made and the cost of the frames, estimated from a hundredth of the splats.
 void print_costs(const BatchPlan& plan, SampledRun& sample) {
     const std::int64_t count = count_to_render(plan);
     if (sample.making_seconds() > 0.0)

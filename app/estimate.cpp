@@ -1,4 +1,5 @@
-// What a batch run will take, before it takes it: from the scene, from file sizes and from a sample.
+// Memory, time and bytes that a batch run will take, before it takes them: from the scene, from file sizes
+// and from a sample.
 #include "estimate.h"
 
 #include <fmt/format.h>
@@ -205,7 +206,7 @@ JobEstimate estimate(const BatchPlan& plan, SampledRun& sample) {
                   fmt::format("at least {:.2f} GiB, which this needs",
                               static_cast<double>(least) / 1073741824.0 + 0.005),
                   fmt::format("{:.4g}", static_cast<double>(limit) / 1073741824.0));
-    // What malloc does not give back, and the last piece of memory of each kind, is a thirtieth.
+    // Memory that malloc does not give back, and the last piece of each kind, is a thirtieth.
     job.renderer_bytes = std::max(
         limit - limit / 32 - working - sets_of(needs, job.streamed).held - skies.held, least_records);
     job.bytes = std::min(job.bytes, std::max(limit, least));

@@ -1,4 +1,4 @@
-// What a batch run will take, before it takes it.
+// Memory, time and bytes that a batch run will take, before it takes them.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// What the program's exit code says, for a person's script.
+// The program's exit codes, for scripts.
 #pragma once
 
 namespace astrosplat {

@@ -22,7 +22,7 @@ struct ExportOptions {
     ProgressMode progress = ProgressMode::automatic;
 };
 
-/// What is approximated, for --help.
+/// The text of --help, with all that is approximated.
 extern const char* const export_help;
 
 /// Throws InputError, OutputError, Cancelled.

@@ -49,7 +49,7 @@ void add_front(std::vector<FidelityRow>& rows, const FrontFidelity& front, const
     rows.push_back({view, "power, fine to coarse", power_text(front.power), "", Verdict::none});
 }
 
-// What a disk is to reach says nothing of sheets and walls.
+// Targets of a disk say nothing of sheets and walls.
 void add_edge(std::vector<FidelityRow>& rows, const EdgeOnProfile& edge, bool disk) {
     const auto add = [&](const char* what, double value, int decimals, const char* target, bool met) {
         rows.push_back({"edge-on", what, fmt::format("{:.{}f}", value, decimals), disk ? target : "",

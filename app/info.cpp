@@ -99,7 +99,7 @@ Report describe_fits_file(const fs::path& file) {
 
 bool is_packed(const std::string& name) { return name == "astrosplat/hashed"; }
 
-/// What nobody can read is counted.
+/// Unreadable values are counted.
 std::string key_count(const std::string& packed) {
     const std::string text = unpack_hashed_text(packed).value_or("");
     return counted(std::count(text.begin(), text.end(), '\n'), "key");

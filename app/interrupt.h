@@ -14,7 +14,7 @@ void install_interrupt_handlers();
 /// be called before the first file is made, by what looks at the flag.
 void defer_interrupts();
 
-/// What a stopped program says last.
+/// The last message of a stopped program.
 inline constexpr const char* stopped_message = "stopped; nothing half-done was left behind";
 
 /// For Progress::cancelled.

@@ -1,4 +1,4 @@
-// What a command line asks for, before anything is done.
+// A command line that was read, before anything is done.
 #pragma once
 
 #include <functional>

@@ -26,7 +26,7 @@ std::string time_now() {
 
 Json event_of(const char* name) { return {{"time", time_now()}, {"event", name}}; }
 
-// What a file's name holds that is no UTF-8 is replaced.
+// Bytes of a file's name that are no UTF-8 are replaced.
 std::string line_of(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
 
 const char* name_of_level(LogLevel level) {

@@ -1,5 +1,5 @@
-// What one layer of a batch run will take: from its source and the sizes of files, and from its sample where
-// there is one.
+// Memory and time that one layer of a batch run will take: from its source and the sizes of files, and from
+// its sample where there is one.
 #pragma once
 
 #include <cstdint>

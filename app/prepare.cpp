@@ -46,7 +46,7 @@ std::vector<fs::path> pictures_of(const PrepareOptions& options, const PreparePa
     return files;
 }
 
-// What the mask shows, and the picture with that part filled from around it.
+// The part that the mask shows, and the picture with that part filled from around it.
 void write_split(const PrepareOptions& options, const Image& picture, const std::string& credit,
                  const Progress& progress) {
     const Image mask = read_mask_like(picture, "--split", *options.split);

@@ -10,7 +10,7 @@
 
 namespace astrosplat {
 
-/// What the command does unless told otherwise: it takes the stars away, and shows three filters with one
+/// The command's defaults: it takes the stars away, and shows three filters with one
 /// asinh.
 TextureSettings default_prepare_settings(bool three_filters);
 

@@ -1,4 +1,4 @@
-// What the program does without --batch and without a command: the window, or a screenshot of it. A build
+// The program without --batch and without a command: the window, or a screenshot of it. A build
 // without the window says so.
 #pragma once
 

@@ -1,4 +1,4 @@
-// One pixel of a dot: its weight from the footprint's profile, and what it adds and hides. KIND is the number of the
+// One pixel of a splat: its weight from the footprint's profile, and what it adds and hides. KIND is the number of the
 // group's FoldKind: 0 over, 1 add, 2 general (dual-source: colour = light + through * behind), 3 lighten. Needs
 // blend.glsl.
 

@@ -1,4 +1,4 @@
-// What is kept of a submission to Slurm, and what has become of its tasks. A submission lies beside the
+// The record of a submission to Slurm, and the state of its tasks. A submission lies beside the
 // frames, in FRAMES_FOLDER/slurm/0001 and so on: sets.sh, frames.sh, submission.json (this record) and a log
 // for each task.
 #pragma once

@@ -115,7 +115,7 @@ glm::vec3 inner_color(const Around& a, float mottle) {
     return blend(glm::vec3(0.62f, 0.90f, 0.95f), far, 1.6f * std::fabs(a.s) + 0.4f * mottle);
 }
 
-// What a sheet shines with, per area.
+// Light of a sheet per area.
 Canvas sheet_light(const Sheet& sheet, glm::vec3 (*color)(const Around&, float)) {
     Canvas canvas = make_canvas(sheet_px, sheet_px);
     paint(canvas, [&](float u, float v) {

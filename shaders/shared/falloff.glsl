@@ -1,4 +1,4 @@
-// Falloffs: the profile of a dot, w(t) with t = distance / radius; w(0) = 1 and zero from t = 1 on. Needs maths.glsl.
+// Falloffs: the profile of a splat, w(t) with t = distance / radius; w(0) = 1 and zero from t = 1 on. Needs maths.glsl.
 
 const int FALLOFF_CONSTANT = 0;
 const int FALLOFF_LINEAR = 1;

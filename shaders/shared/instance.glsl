@@ -1,4 +1,4 @@
-// What projection makes of a splat. Compiled as GLSL and as C++, one by one and by lanes: there Float, Int, Bool and
+// A splat on the frame, as projection places it. Compiled as GLSL and as C++, one by one and by lanes: there Float, Int, Bool and
 // Vec3 are vectors of lanes.
 
 #ifndef __cplusplus

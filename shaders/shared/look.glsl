@@ -2,7 +2,7 @@
 // before it are its steps, which the engine runs over blocks of splats, one step at a time, to the same bits. Needs
 // maths.glsl, noise.glsl and look_uniforms.glsl.
 
-// What loops run to; a program that is made for one look may need less, and software rasterisers run every step.
+// Bounds of loops; a program that is made for one look may need less, and software rasterisers run every step.
 const int LOOK_STOPS = LOOK_MAX_STOPS;
 const int LOOK_NOISES = LOOK_MAX_NOISES;
 const int LOOK_POINTS = LOOK_MAX_POINTS;
@@ -79,7 +79,7 @@ float look_weight(float r, float g, float b, vec3 color) {
     return 1.0f / (d * d);
 }
 
-// What noise value n leaves of a quantity it may take `amount` of.
+// Share of a quantity that noise value n leaves; it takes at most `amount` of it.
 float look_bite(float amount, float n) { return 1.0f - amount * (0.5f + 0.5f * n); }
 
 // x = distance / reach; a splat on the surface has 0 whatever the reach, one off a surface without reach is outside.
@@ -108,7 +108,7 @@ float look_crop_distance(LookCrop crop, float px, float py, float pz) {
     return sqrt(oa * oa + ob * ob + oc * oc) + min(max(a, max(b, c)), 0.0f) - crop.radius;
 }
 
-// What a crop leaves of a splat's alpha there. With a band of no width the surface itself is inside.
+// Share of a splat's alpha that a crop leaves there. With a band of no width the surface itself is inside.
 float look_crop(LookCrop crop, float px, float py, float pz) {
     float d = look_crop_distance(crop, px, py, pz);
     float hard = d <= 0.0f ? 1.0f : 0.0f;
@@ -119,7 +119,7 @@ float look_crop(LookCrop crop, float px, float py, float pz) {
 
 // --- 4: horizontal alpha ---
 
-// What the colour is multiplied by: 1 / alpha where the step applies and there is an alpha to divide by.
+// Factor of the colour: 1 / alpha where the step applies and there is an alpha to divide by.
 float look_unpremultiply(float alpha, LookAlpha step) {
     return alpha < step.threshold && alpha > 0.0f ? 1.0f / alpha : 1.0f;
 }

@@ -23,7 +23,7 @@ const float AS_NOISE_SCALE = 0.9645f;
 // Odd multipliers near 2^32 over powers of the plastic number spread lattice points before mixing.
 const uint AS_NOISE_KEY_X = 0xd1b54a33u, AS_NOISE_KEY_Y = 0xabc98389u, AS_NOISE_KEY_Z = 0x8cb92ba7u;
 
-// What the lattice points of one plane z = const contribute at (dx, dy) in a cell and dz above the plane; keys are
+// Contribution of the lattice points of one plane z = const at (dx, dy) in a cell and dz above the plane; keys are
 // those of the cell's corner. Linear in dz.
 float as_noise_plane(uint key_x, uint key_y, uint key_z, float dx, float dy, float dz) {
     uint next_x = key_x + AS_NOISE_KEY_X;

@@ -85,7 +85,7 @@ Real small_from(Lens lens, Real radius, Real radius_px, Real frame_px) {
     return perspective_small_from(lens, radius, radius_px, frame_px);
 }
 
-// What is the same for all of them.
+// The same for all of them.
 
 // Sorts as the distance from the eye (parallel rays: from the plane through it) does.
 Float sort_depth_of(Lens lens, Float distance) { return has_parallel_rays(lens) ? distance : distance * distance; }

@@ -1,4 +1,4 @@
-// What the end-to-end tests share: textures written texel by texel, scenes given as TOML text, rendered
+// Shared by the end-to-end tests: textures written texel by texel, scenes given as TOML text, rendered
 // frames, and frame files read back channel by channel.
 #pragma once
 

@@ -1,4 +1,4 @@
-// What the benchmarks work on, made on the spot and the same everywhere: sets of splats, meshes of a given
+// Inputs of the benchmarks, made on the spot and the same everywhere: sets of splats, meshes of a given
 // number of triangles, a picture, lattices.
 #pragma once
 
@@ -27,7 +27,7 @@ TexturedMesh dented_ball(int rings, int segments);
 /// The built-in plane, two triangles of side 10, coloured by picture() with alpha 1 everywhere.
 TexturedMesh plane();
 
-/// What generate() takes.
+/// Arguments of generate().
 struct GenerateInput {
     std::vector<TexturedMesh> meshes;
     Lattice lattice;

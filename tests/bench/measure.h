@@ -1,4 +1,4 @@
-// What a benchmark reports besides its time: the process's memory, and how much of the memory bandwidth its
+// Figures of a benchmark besides its time: the process's memory, and how much of the memory bandwidth its
 // arrays make up.
 #pragma once
 

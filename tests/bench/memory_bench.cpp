@@ -1,4 +1,4 @@
-// What the machine can do at best, for comparison: copying memory, writing fresh memory, writing a file.
+// The machine at its best, for comparison: copying memory, writing fresh memory, writing a file.
 #include <benchmark/benchmark.h>
 
 #include <cstring>

@@ -1,4 +1,4 @@
-// What an artist waits for around the frames themselves: the start of --batch on a set that is in the cache,
+// Waiting times around the frames themselves: the start of --batch on a set that is in the cache,
 // and whether the 500th frame of a sequence is as fast as the first ones and takes no more memory.
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>

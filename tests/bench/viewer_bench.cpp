@@ -1,4 +1,4 @@
-// What somebody at the window waits for: frames while orbiting, a slider, the timeline, the final frame,
+// Waiting times at the window: frames while orbiting, a slider, the timeline, the final frame,
 // the start. In: a scene (default: the demo) whose sets are in the cache, or with --opengl a number of
 // synthetic splats and a size. Out: Markdown; wall time beside processor time, because only the latter means
 // anything on a busy machine.

@@ -26,7 +26,7 @@ meshes = [ { mesh = "plane", texture = "picture.ppm" } ]
 voxel_size = 0.2
 )");
     }
-    /// What a run with these options says of its layer, and the sha256 of its frame.
+    /// The message of a run with these options about its layer, and the sha256 of its frame.
     struct Figures {
         bool cached, geometry_cached;
         std::int64_t kept, test_positions;

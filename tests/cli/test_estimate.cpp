@@ -1,4 +1,4 @@
-// What a run will take, told before: of bodies from their pictures as they will be, of columns with the
+// Estimates before a run: of bodies from their pictures as they will be, of columns with the
 // positions that are dropped at the end.
 #include <cmath>
 #include <map>
@@ -42,7 +42,7 @@ meshes = [ { mesh = "plane", texture = "cloud.ppm" } ]
 )" + keys);
     }
 
-    // What a dry run says: splats, and MiB.
+    // Figures of a dry run: splats, and MiB.
     struct Told {
         double splats, mib;
     };

@@ -35,7 +35,7 @@ class Manual : public SceneTest {
         for (std::size_t at; (at = text.find("\\-")) != std::string::npos;) text.erase(at, 1);
         return text;
     }
-    /// What bash offers after these words.
+    /// The words that bash offers after these.
     std::vector<std::string> completed(const std::vector<std::string>& words) const {
         write_text(folder / "completion.bash", printed({"completion", "bash"}));
         std::string script = fmt::format("source completion.bash; COMP_WORDS=('{}'", ASTROSPLAT_PROGRAM);

@@ -1,5 +1,6 @@
-// What `new` makes of a picture, untouched, against the targets of fidelity: pictures painted by formula at
-// reduced size, and at night real ones where they are present. Columns matched to their picture: its light.
+// Scenes that `new` makes of pictures, untouched, against the targets of fidelity: pictures painted by
+// formula at reduced size, and at night real ones where they are present. Columns matched to their picture:
+// its light.
 #include <algorithm>
 #include <cmath>
 #include <utility>

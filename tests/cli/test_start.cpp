@@ -1,4 +1,4 @@
-// What the program loads when it starts.
+// The libraries that the program loads when it starts.
 #include "cli/scene_fixture.h"
 
 namespace astrosplat::test {
@@ -13,7 +13,7 @@ class Start : public SceneTest {
 #endif
     }
 
-    /// What the dynamic linker says it loaded during a run.
+    /// The libraries that the dynamic linker loaded during a run, by its own account.
     std::string libraries_of(const std::vector<std::string>& arguments) const {
         const fs::path report = folder / ("libraries of " + arguments[0]);
         fs::remove_all(report);

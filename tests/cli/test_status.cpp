@@ -49,7 +49,7 @@ TEST_F(Status, NamesFramesDoneMissingDamagedAndForeign) {
                           "missing 6: 2-4,7-11x2\ndamaged 1: 6\nforeign 1: 12\n",
                           folder.string()));
     EXPECT_EQ(everything(), before);
-    // What it says of the others, --resume does.
+    // --resume does with the others as it says.
     ASSERT_EQ(batch({"-q", "-f", "1-12", "--resume", "--overwrite"}).code, 0);
     const RunResult all = status({"-f", "1-12"});
     EXPECT_EQ(all.code, 0);

@@ -71,7 +71,7 @@ TEST_F(Submit, ADryRunPrintsBothScriptsAndDoesNothing) {
           "#SBATCH --partition=long,short\n", "#SBATCH --cpus-per-task=1\n", "#SBATCH --requeue\n",
           " --frames=1-5 --sets-only\n", " --frames=\"${frames[SLURM_ARRAY_TASK_ID]}\" --resume\n"})
         EXPECT_NE(result.out.find(line), std::string::npos) << line << result.out;
-    // What the estimate says, and a half more.
+    // The estimate, and a half more.
     const std::size_t at = result.out.find("#SBATCH --mem=") + 14;
     const int mebibytes = std::stoi(result.out.substr(at));
     EXPECT_GT(mebibytes, 100);

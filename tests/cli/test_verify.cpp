@@ -164,7 +164,7 @@ TEST_F(Verify, PixelsOfAnotherFrameInAPngAreFound) {
     const nlohmann::json verdict = only_verdict("mixed.png");
     EXPECT_EQ(verdict.at("verdict"), "different");
     EXPECT_GT(verdict.at("differing_pixels").get<int>(), 100);
-    // What the file holds is compared, not light: codes of 8 bits.
+    // Codes of 8 bits are compared, as the file holds them, not light.
     const double codes = verdict.at("max_difference").get<double>() * 255.0;
     EXPECT_NEAR(codes, std::round(codes), 1e-3);
 }

@@ -1,4 +1,4 @@
-// What a weekend on a farm brings: a full disk, a folder and a picture that go away, two programs on one
+// A bad weekend on a farm: a full disk, a folder and a picture that go away, two programs on one
 // sequence, Ctrl-C. Afterwards every frame that exists is right, and --resume finishes.
 #include <fmt/format.h>
 

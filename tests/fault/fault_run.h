@@ -24,7 +24,7 @@ struct Fault {
 inline constexpr int take_half = 0, end_process = -1;
 std::string text_of(const Fault& fault);
 
-/// What the program is run on, and how.
+/// The program's input, and how it is run.
 struct FaultScene {
     std::string output;  // pattern
     int threads = 1;

@@ -30,7 +30,7 @@
 #include <cstdlib>
 #include <cstring>
 
-// What stands behind malloc in glibc, whose own names are taken below.
+// glibc's allocator behind malloc, whose own names are taken below.
 extern "C" void* __libc_malloc(size_t);
 extern "C" void* __libc_calloc(size_t, size_t);
 extern "C" void* __libc_realloc(void*, size_t);

@@ -1,4 +1,4 @@
-// What the screen shows against what the writer would put into a file.
+// Pixels on the screen against those that the writer puts into a file.
 #include "gl/display.h"
 
 #include <gtest/gtest.h>

@@ -20,7 +20,7 @@ using test::GlTest;
 
 constexpr std::int64_t count = 20000;
 
-/// What the GPU made of a splat, in the order of ShadedSplats' arrays.
+/// A splat as the GPU shaded it, in the order of ShadedSplats' arrays.
 struct Shaded {
     float values[8];
 };
@@ -70,7 +70,7 @@ LookCase vertical_case(const char* name, VerticalAlpha::Shape shape) {
 
 LookCase match_case(const char* name, VerticalAlpha::Match match, ColumnLaw law) {
     return {name, [match, law](SplatSet& set, Look& look, LookInputs& inputs) {
-                // What is solved for a picture's squares is for the final frame: there are none without u, v.
+                // Squares of a picture are solved for the final frame alone: without u, v there are none.
                 if (match == VerticalAlpha::Match::picture) set.uv.clear();
                 look.vertical.shape = VerticalAlpha::Shape::linear;
                 look.vertical.match = match;

@@ -192,7 +192,7 @@ TEST(PanelLayers, LoadingCanBeCancelledAndStaleSetsMadeAnew) {
     EXPECT_EQ(d.commands[1].index, 1u);
 }
 
-// What belongs to a layer and what belongs to the scene are two panels, each with the tab it had last.
+// A layer's parameters and the scene's are two panels, each with the tab it had last.
 TEST(PanelLayers, TheSceneHasAPanelOfItsOwn) {
     PanelDriver d(layers_scene);
     const glm::vec2 layers{45.0f, 16.0f}, scene{100.0f, 16.0f};

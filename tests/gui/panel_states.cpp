@@ -38,7 +38,7 @@ TEST(PanelStates, SayWhatALookDoes) {
     EXPECT_EQ(state_of("Opacity at soft edges", "[layer.look.alpha]\npower = 2.0\n"), "power 2");
 }
 
-/// What stands in place of this key's 0 for a layer of which the window knows this.
+/// The word in place of this key's 0, for a layer of which the window knows this much.
 std::string zero_of(const std::string& key, const LayerStatus& layer) {
     Document document = Document::untitled(R"(astrosplat = 1
 [[layer]]

@@ -1,4 +1,4 @@
-// What the window looks like, state by state, against committed pictures. A change that is meant to be
+// The window, state by state, against committed pictures. A change that is meant to be
 // seen comes with new references; one that is not fails here.
 #include <gtest/gtest.h>
 

@@ -22,7 +22,7 @@ class Cluster {
     /// One line; empty where the cluster runs.
     const std::string& problem() const { return problem_; }
 
-    /// What tools of Slurm need to find it, NAME=VALUE.
+    /// With these variables Slurm's tools find it, NAME=VALUE.
     std::string environment() const { return "SLURM_CONF=" + (folder_ / "slurm.conf").string(); }
 
     /// One of Slurm's tools, found as daemons are.

@@ -20,7 +20,7 @@ class CameraFileTest : public testing::Test {
     std::filesystem::path put(const std::string& name, const std::string& text) {
         return folder.file(name, text);
     }
-    /// What reading this text ends with, without the folder's name.
+    /// The error that ends the reading of this text, without the folder's name.
     template <class Read>
     std::string refusal(const std::string& name, const std::string& text, const Read& read) {
         const std::filesystem::path file = put(name, text);

@@ -59,7 +59,7 @@ inline std::filesystem::path write_color_config(const std::filesystem::path& fol
     return folder / "colors.ocio";
 }
 
-/// What Film makes of light that is not below 0.
+/// Film's code for light of 0 or more.
 inline std::array<double, 3> film(double r, double g, double b) {
     const auto shown = [](double x) { return std::fmin(std::sqrt(x), 1.0); };
     return {shown(0.75 * r + 0.25 * g), shown(0.125 * r + 0.75 * g + 0.125 * b), shown(b)};

@@ -62,7 +62,7 @@ class OwnTemporaryFolder {
     fs::path folder_;
 };
 
-/// What a process holds for all of its tests, by name.
+/// State of a process that all of its tests share, by name.
 std::map<std::string, std::string> process_state() {
     std::map<std::string, std::string> state;
     for (char** entry = environ; *entry; ++entry) {

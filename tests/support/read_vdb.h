@@ -1,4 +1,4 @@
-// What OpenVDB itself reads from a file. In: a path. Out: its grids' values, places and names.
+// The grids of a file as OpenVDB itself reads them. In: a path. Out: its grids' values, places and names.
 #pragma once
 
 #include <array>

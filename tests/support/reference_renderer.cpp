@@ -59,7 +59,7 @@ struct Disc {
     double gain = 0.0;                             // see corrected()
 };
 
-/// What a pixel whose centre lies (dx, dy) from the disc's sees of it: the profile convolved with a Gaussian
+/// The weight of a pixel whose centre lies (dx, dy) from the disc's: the profile convolved with a Gaussian
 /// that ends after four standard deviations. The integral runs over the smaller of the two.
 double filtered_profile(const Falloff& falloff, double radius_px, double filter_px, double dx, double dy) {
     const double support = 4.0 * filter_px;

@@ -64,7 +64,7 @@ TEST_F(WindowFiles, WhatWasMissingIsShownWhenItComes) {
     settled_frame();
 }
 
-/// What a shortcut cannot do is a line in the window, not only at the terminal it was started from.
+/// A shortcut that fails says so in the window, not only at the terminal it was started from.
 TEST_F(WindowFiles, WhatCannotBeKeyedIsSaidInTheMessageBar) {
     fs::remove(folder / "rings.png");  // so that there is nothing to frame
     std::string text = text_of(scene_file);

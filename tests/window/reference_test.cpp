@@ -120,7 +120,7 @@ TEST_F(WindowReference, IsAlignedToTheView) {
     expect_title("scene.toml - edited");
 }
 
-/// What equals B is grey in the difference, whatever is stored as B; changes are seen about that grey.
+/// Pixels equal to B are grey in the difference, whatever is stored as B; changes lie about that grey.
 TEST_F(WindowReference, TheDifferenceFromBIsNeverBlack) {
     start();
     settled_frame();

@@ -1,4 +1,4 @@
-// What is not saved survives a crash, and a scene edited by hand meanwhile is offered.
+// Unsaved changes survive a crash, and a scene edited by hand meanwhile is offered.
 #include "gui/theme.h"
 #include "window/window_test.h"
 

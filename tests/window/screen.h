@@ -40,7 +40,7 @@ class Screen {
     std::string title() const;
     /// Of the one window, its border not counted; zeros while there is none.
     Area window_area() const;
-    /// What the desktop says of the screen to programs that begin: 96 is scale 1.
+    /// Dots per inch that the desktop names to programs when they start: 96 is scale 1.
     void set_dpi(int dpi) const;
     /// Keys go to the window, as a window manager would have it.
     void focus() const;

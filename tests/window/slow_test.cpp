@@ -1,4 +1,4 @@
-// What is done while the program is busy with one long frame happens afterwards as it was done.
+// Input during one long frame takes effect afterwards, in its order.
 #include "edit/keyframes.h"
 #include "window/window_test.h"
 

@@ -46,7 +46,7 @@ class WindowWaysOut : public WindowTest {
         text.replace(text.find("[320, 180]"), 10, size);
         write_text(scene_file, text);
     }
-    /// What ffprobe tells of a movie: "width,height,frames", and its rate.
+    /// ffprobe's figures of a movie: "width,height,frames", and its rate.
     std::string facts_of(const fs::path& movie) const {
         const std::string show =
             "ffprobe -v error -count_frames -select_streams v -of csv=p=0 -show_entries ";

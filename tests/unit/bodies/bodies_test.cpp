@@ -270,7 +270,7 @@ TEST(UvSurface, ACameraSeesTheNearestFace) {
     EXPECT_GT(found[0].position.z, 4.8f);
 }
 
-// What the camera sees of the set is what the fit saw: every dot where it is in the picture, and as large.
+// The camera sees the set as the fit saw it: every splat where it is in the picture, and as large.
 TEST(Bodies, KeepTheirPlaceInThePictureOfTheirCamera) {
     TexturedMesh front = on_plane(painted::nebula(160, 100));
     const SplatSet plain = make_bodies({front}, of_kind(StructureKind::sheet), 3u, "gas");
@@ -443,7 +443,7 @@ TEST(FrontFit, OfASmallPictureHasTheLightOfItsPoints) {
     EXPECT_NEAR(here / there, 1.0, 0.001);
 }
 
-// What the back wall loses in the glow before it is not given to it many times over.
+// Light that the back wall loses in the glow before it is not given back many times over.
 TEST(FrontFit, WallsHaveTheSameLightFromBehind) {
     Image light = painted::remnant(480, 300);
     for (float& value : light.pixels) value *= 4.0f;

@@ -18,7 +18,7 @@ namespace {
 
 constexpr float sky_light = 0.03f;
 
-// What a camera makes of stars: flat where they are brighter than white.
+// Stars as a camera records them: flat where they are brighter than white.
 Image saturated(Image image) {
     for (float& value : image.pixels) value = std::min(value, 1.0f);
     return image;
@@ -118,7 +118,7 @@ TEST(BrightStars, AreTheSameOnOneThread) {
     for (std::size_t i = 0; i < one.pixels.size(); ++i) ASSERT_EQ(one.pixels[i], several.pixels[i]);
 }
 
-// What no Gaussian shows of a star would be beads one above the other, seen from the side.
+// Light of a star that no Gaussian fits would be beads one above the other, seen from the side.
 TEST(BrightStars, WhatTheyLeaveIsAtTheirDepth) {
     const std::int64_t width = 480, height = 300;
     Image image = painted::galaxy(width, height);

@@ -25,7 +25,8 @@ TEST(ChooseStructure, TellsPaintedObjectsApart) {
     }
 }
 
-// What is known is not looked for; a nebula is a shell where it stands alone, and a sheet where it does not.
+// A kind that is given is not looked for; a nebula is a shell where it stands alone, and a sheet where it
+// does not.
 TEST(ChooseStructure, TakesAPictureForWhatItIsSaidToShow) {
     const Image remnant = painted::remnant(400, 250), even = make_image(400, 250, 3, 0.3f);
     for (const Image& light : {remnant, even}) {

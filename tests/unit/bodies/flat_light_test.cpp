@@ -126,7 +126,7 @@ TEST(FlatLight, AnEvenRatioCorrectsAllThatShines) {
     EXPECT_EQ(plain.back(), glm::vec3(-1.0f));  // dust
 }
 
-// What only fine dots can show is theirs to put right.
+// Detail that only fine splats can show is left to them.
 TEST(FlatLight, FineDotsAreSharpened) {
     Fraction fraction = fraction_of(1.0f);
     fraction.wanted.at(48, 32)[1] = 0.45f;

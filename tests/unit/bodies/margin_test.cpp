@@ -116,7 +116,7 @@ TEST(Margin, CloudsGoOnAllAroundAndHaveRoundCorners) {
     EXPECT_GT(lit(StructureKind::walls, 0, margin_px), 5.0 * disk_corner);
 }
 
-// What is mirrored is brighter again towards the middle.
+// A mirrored margin is brighter again towards the middle.
 TEST(Margin, DoesNotGrowBrighterBeyondADimEdge) {
     Image light = make_image(picture_width, picture_height, 3, 0.0f);
     for (std::int64_t y = 0; y < picture_height; ++y)

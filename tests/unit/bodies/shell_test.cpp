@@ -121,7 +121,7 @@ TEST(Shell, GlowFillsItEvenly) {
     for (const int dots_in : eighths) EXPECT_NEAR(dots_in, 512, 80);
 }
 
-// What is nearly as wide as long is a ball at one place of one wall; a piece of a filament lies along the
+// A piece nearly as wide as long is a ball at one place of one wall; a piece of a filament lies along the
 // wall, or filaments would be strings of beads.
 TEST(Shell, OnlyBallsAreKnots) {
     RemnantPlacement remnant;

@@ -94,7 +94,7 @@ TEST(Stereo, PointsAreFoundAgainAtTheirDepth) {
     EXPECT_LT(glm::length(exact::point_at_depth(lens, at.x_px, at.y_px, at.depth) - p), 1e-12);
 }
 
-// What is culled by the reach of a ball must be nowhere on the frame.
+// A ball that is culled by its reach is nowhere on the frame.
 TEST(Stereo, TheReachOfABallHoldsAllOfIt) {
     const Lens lens =
         make_lens(make_camera(params_of(Projection::equirectangular, Eye::left), width_px, height_px, {}));

@@ -42,7 +42,7 @@ struct HandlesTest : testing::Test {
     HandleDrag drag(Grip grip, const glm::dvec3& from, const glm::dvec3& to) const {
         return {grip, px(from), px(to)};
     }
-    /// What a drag makes of the parameter it changes.
+    /// The value of the parameter that a drag changes.
     std::vector<double> dragged(const std::string& key, const HandleDrag& by) {
         const NewValue value = dragged_value(scene, view, camera, by);
         EXPECT_EQ(value.key, key);

@@ -1,4 +1,4 @@
-// What the window remembers: round trip, damage, folders that cannot be written.
+// The window's settings on disk: round trip, damage, folders that cannot be written.
 #include "edit/preferences.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// What a rendering from the window asks for, as words of --batch and of ffmpeg.
+// Renderings from the window as words of --batch and of ffmpeg.
 #include "edit/render_task.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// What counts as a change of a file in use, and which files a scene uses.
+// Changes of files in use, and which files a scene uses.
 #include "edit/watched_files.h"
 
 #include <gtest/gtest.h>

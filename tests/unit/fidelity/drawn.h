@@ -38,7 +38,7 @@ inline Image waves_and_stars(int scale) {
     });
 }
 
-/// What a renderer might make of it: rippled by 5 % and with a little noise.
+/// As a renderer might show it: rippled by 5 % and with a little noise.
 inline Image rendered_waves_and_stars() {
     return drawn(240, 160, [&](std::int64_t x, std::int64_t y, int c) {
         const auto i = static_cast<double>(x), j = static_cast<double>(y);

@@ -143,7 +143,7 @@ TEST(HarmonicsExport, CapturesComeOutWithTheColoursThatTheyCameWith) {
     }
 }
 
-// What becomes of the light is exact where it is seen from; where both spaces are linear, everywhere.
+// Converted light is exact in the direction of view; where both spaces are linear, in every direction.
 TEST(HarmonicsExport, WhatTheLookDoesIsDoneToAllDirections) {
     SeenCapture linear_one("in.glb", glb_of(test::capture(60, 3), 3, "", "lin_rec709_display"));
     linear_one.factor = {0.5f, 0.25f, 0.8f};

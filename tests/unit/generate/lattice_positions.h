@@ -22,7 +22,7 @@ inline glm::dvec3 lattice_position(const Lattice& lattice, std::uint64_t id) {
             lattice_coordinate(lattice, 2, static_cast<double>(index / nx / ny) + half)};
 }
 
-/// What jitter adds to a position: half_range * uniform[-1, 1) per axis, hashed from (seed, id).
+/// Displacement of a position by jitter: half_range * uniform[-1, 1) per axis, hashed from (seed, id).
 inline glm::dvec3 jitter_offset(std::uint64_t id, std::uint32_t seed, const glm::dvec3& half_range) {
     const auto low = static_cast<std::uint32_t>(id), high = static_cast<std::uint32_t>(id >> 32);
     const auto random = [&](std::uint32_t purpose) {

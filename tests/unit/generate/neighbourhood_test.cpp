@@ -1,4 +1,4 @@
-// What lies near meshes, by Steiner's formula: flat convex meshes of area A and perimeter P have
+// The volume near meshes, by Steiner's formula: flat convex meshes of area A and perimeter P have
 // 2 A d + pi/2 P d^2 + 4/3 pi d^3 within d. And that `count` and `splats` are kept, on any mesh.
 #include "generate/lattice.h"
 

@@ -11,7 +11,7 @@
 namespace astrosplat {
 namespace {
 
-/// What is left of alpha 1 at a place of the layer; 0: dropped.
+/// Alpha 1 after the crops, at a place of the layer; 0: dropped.
 float left_at(const glm::vec3& place, const std::vector<Crop>& crops) {
     SplatSet set = test::one_splat(0.0f, 1.0f, 1.0f);
     set.position[0] = place;

@@ -47,7 +47,8 @@ inline SplatSet one_splat(float distance, float alpha, float grey) {
     return set;
 }
 
-/// What generation leaves of a cubic lattice around the plane y = 0, |x|, |z| <= half, with alpha everywhere.
+/// The positions that generation keeps of a cubic lattice around the plane y = 0, |x|, |z| <= half, with
+/// alpha everywhere.
 inline SplatSet slab(double spacing, double half, double max_distance, float alpha) {
     SplatSet set;
     const auto across = std::int64_t(2.0 * half / spacing + 0.5);

@@ -1,4 +1,4 @@
-// What a pixel becomes in a file: closed forms of view, alpha rule and dither.
+// Pixels as a file holds them: closed forms of view, alpha rule and dither.
 #include "output/encode.h"
 
 #include <gtest/gtest.h>

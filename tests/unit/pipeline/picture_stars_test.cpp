@@ -70,7 +70,7 @@ class PictureStars : public testing::Test {
             "position = [0, 12, 0]\ntarget = [0, 0, 0]\nup = [0, 0, -1]\nfov = 35", stars, layer);
     }
 
-    /// What arrives of the layer of stars.
+    /// The light of the layer of stars in the frame.
     static Image arrived(const Scene& scene, double times = 1.0) {
         Pipeline pipeline(scene);
         RenderSettings settings = settings_of(pipeline, 1.0);

@@ -269,7 +269,7 @@ RenderedFrame light_behind_a_dark_stack(float exposure, const Environment* envir
     return render({&layer, 1}, pixel_camera(size_px, size_px), environment, settings);
 }
 
-// What exposure makes visible is not cut off by the stop rule; below it the pixel is closed exactly.
+// Light that exposure makes visible is not cut off by the stop rule; below it the pixel is closed exactly.
 TEST(StopRule, KnowsOfTheExposure) {
     EXPECT_EQ(middle(light_behind_a_dark_stack(0.0f, nullptr).beauty)[0], 0.0f);
     EXPECT_EQ(middle(light_behind_a_dark_stack(-8.0f, nullptr).beauty)[0], 0.0f);

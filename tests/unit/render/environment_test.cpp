@@ -155,7 +155,7 @@ TEST_F(EnvironmentTest, LatlongHasNoSeamAndNoPole) {
     }
 }
 
-// What a person at the origin sees with the camera turned to a face; +y and -y by tilting from -z.
+// The view from the origin with the camera turned to a face; +y and -y by tilting from -z.
 struct Face {
     glm::dvec3 forward, up;
 };

@@ -19,7 +19,7 @@ using namespace astrosplat::test;
 constexpr std::uint64_t star_number = star_band << 48 | 12;
 constexpr int side_px = 96;
 
-/// What a camera so far away sees of one dot at the origin.
+/// One splat at the origin, seen by a camera so far away.
 struct OneDot {
     std::uint64_t id = star_number;
     float alpha = 0.01f;

@@ -1,5 +1,5 @@
-// What projected splats will take: told by a part of them as by all, whatever tiles the part alone would
-// choose.
+// The memory of projected splats, estimated from a part of them as from all, whatever tiles the part alone
+// would choose.
 #include <gtest/gtest.h>
 
 #include "render/screen_splat.h"

@@ -218,7 +218,7 @@ TEST(Sphere, ANarrowFisheyeIsPerspective) {
         ASSERT_NEAR(fisheye.pixels[i], flat.pixels[i], 0.003);
 }
 
-// What is behind the rim of a fisheye is not shown, nor is the environment; alpha says so.
+// Beyond the rim of a fisheye nothing is shown, not even the environment: alpha is 0.
 TEST(Sphere, AFisheyeIsRound) {
     CameraParams params = params_of(Projection::fisheye);
     params.fisheye_fov = 180.0;

@@ -216,8 +216,8 @@ TEST(Stars, GrowBrighterAsOneFliesPastUnlessAtInfinity) {
     EXPECT_NEAR(total(picture_of({&layer, 1}, faded), 0), 1.0, 0.01) << "what is at infinity has no far side";
 }
 
-// What a slow pan makes visible: twinkling. 120 frames of .1 px over a field of stars, some of them faint, in
-// a frame wide enough that all stay inside.
+// No twinkling, as a slow pan would show it: 120 frames of .1 px over a field of stars, some of them faint,
+// in a frame wide enough that all stay inside.
 TEST(Stars, KeepTheirLightWhileTheCameraPans) {
     constexpr int stars = 64, frames = 120;
     for (const float core_px : {0.6f, 1.0f}) {

@@ -1,4 +1,4 @@
-// What the description says of each parameter beside its key: its place in the window, when it has an effect,
+// The description of each parameter besides its key: its place in the window, when it has an effect,
 // the names of its choices.
 #include <algorithm>
 #include <cmath>

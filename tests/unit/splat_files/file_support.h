@@ -1,4 +1,4 @@
-// What the tests of splat files share: a folder that vanishes, a set with awkward values, comparison bit by
+// Shared by the tests of splat files: a folder that vanishes, a set with awkward values, comparison bit by
 // bit, and the message of an InputError.
 #pragma once
 

@@ -1,4 +1,4 @@
-// What the tests of Gaussians' files share: reading bytes, messages, and the comparison with what was made.
+// Shared by the tests of Gaussians' files: reading bytes, messages, and the comparison with what was made.
 #pragma once
 
 #include <cmath>

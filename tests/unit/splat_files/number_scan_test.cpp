@@ -60,7 +60,7 @@ TEST(NumberScan, WhatIsNoNumber) {
     EXPECT_EQ(scan::scan_float(text.data(), text.data() + text.size(), value), text.data() + 1);
 }
 
-/// What follows a field of a file belongs to the next one.
+/// Text behind a field of a file belongs to the next one.
 TEST(NumberScan, StopsAtTheEndOfItsText) {
     const char* const text = "12.5e3";
     for (const auto& [length, wanted] : {std::pair(1, 1.0f), {2, 12.0f}, {3, 12.0f}, {4, 12.5f}}) {

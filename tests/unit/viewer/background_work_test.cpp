@@ -1,4 +1,4 @@
-// What was found for a request that nobody makes any more is let go, with all that the request held.
+// Results for a superseded request are dropped, with all that the request held.
 #include "viewer/background_work.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// What the controls show of a layer: histograms of its distances and of its picture's values, its mean
+// Figures of a layer in the controls: histograms of its distances and of its picture's values, its mean
 // colour.
 #include "viewer/loaded_layer.h"
 

@@ -1,5 +1,5 @@
-// What a preview draws: all splats where there is room, what is kept between draws never shows, samples first
-// and whole sets once their sums are there.
+// The splats that a preview draws: all where there is room, what is kept between draws never shows, samples
+// first and whole sets once their sums are there.
 #include "viewer/preview_dots.h"
 
 #include <gtest/gtest.h>

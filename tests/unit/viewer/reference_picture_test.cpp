@@ -1,4 +1,4 @@
-// What registration finds, as the placement of a reference over a frame.
+// Results of registration as the placement of a reference over a frame.
 #include "viewer/reference_picture.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// What is done next for which layer, and what becomes of a result.
+// The next task for each layer, and the fate of its result.
 #include "viewer/set_list.h"
 
 #include <gtest/gtest.h>
@@ -16,14 +16,14 @@ class SetListTest : public testing::Test {
         layer.name = name;
         scene.layers.push_back(layer);
     }
-    /// What the list begins next, as "task name"; "": nothing.
+    /// The task that the list begins next, as "task name"; "": nothing.
     std::string begun() {
         if (!list.next_task()) return "";
         job = list.begin_next();
         static constexpr const char* names[] = {"sample ", "load ", "arrange ", "describe "};
         return names[static_cast<int>(job->task)] + job->name;
     }
-    /// What a job would bring.
+    /// The result that a job would bring.
     SetList::Layer result(bool whole) const {
         auto layer = std::make_shared<LoadedLayer>();
         layer->source = job->source;

@@ -117,8 +117,7 @@ struct Seen {
     double hidden = 0.0, light = 0.0;
 };
 
-/// What arrives from a grid of one splat seen along z, the light of each voxel as far as the voxel itself
-/// lets it out.
+/// Light that leaves a grid of one splat along z; each voxel hides a part of its own.
 Seen seen_along_z(const VoxelGrid& grid) {
     std::map<std::pair<double, double>, std::vector<std::size_t>> columns;
     each_voxel(grid, [&](const glm::dvec3& p, std::size_t i) { columns[{p.x, p.y}].push_back(i); });
