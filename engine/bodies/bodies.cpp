@@ -37,7 +37,7 @@ glm::vec2 uv_of(const glm::vec3& texel, const Image& image) {
             texel.y / static_cast<float>(image.height) + 0.5f};
 }
 
-// To nothing, before the first one.
+// The light of the first picture begins the sum.
 void add(const Image& light, Image& sum) {
     if (sum.pixels.empty()) {
         sum = copied(light);

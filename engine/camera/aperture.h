@@ -1,5 +1,5 @@
-// Motion blur and depth of field: cameras as an open shutter and an open aperture see them, one time and
-// place after the other.
+// Motion blur and depth of field: a blurred frame is the mean of several renderings, each with the camera at
+// one moment of the open shutter and one place of the open aperture.
 #pragma once
 
 #include "camera/camera.h"
@@ -15,11 +15,12 @@ struct CameraSample {
     double frames = 0.0;   // after the frame's own time
     glm::dvec2 lens{0.0};  // place on the aperture, in the unit disc
 };
-/// Number i of n: times evenly spread over the shutter's, places along a sunflower's spiral, in an order that
-/// tells the one nothing of the other.
+/// Sample i of n: moments evenly spread over the open shutter, places on a sunflower's (Vogel's) spiral over
+/// the aperture, in an order that does not depend on the moments.
 CameraSample camera_sample(const CameraParams& params, int i, int n);
-/// The camera as seen through a place of the aperture (in its radii): what lies in the plane of focus, across
-/// the view axis, stays where it is on the frame. `params`, which make_camera made it of, say the aperture.
+/// The camera moved to a place of the aperture (unit disc) and shifted so that the plane of focus, which lies
+/// across the view axis, stays where it is on the frame. `params` are those that make_camera made `camera`
+/// of.
 Camera through_lens(const Camera& camera, const CameraParams& params, const glm::dvec2& lens,
                     double width_px);
 
