@@ -1,5 +1,7 @@
 #include "render/falloff.h"
 
+#include <cmath>
+
 #include "core/real.h"
 #include "render/shared_render.h"
 
@@ -20,9 +22,27 @@ double falloff_value(const Falloff& falloff, double t) {
                                   static_cast<float>(t));
 }
 
-std::vector<double> falloff_kinks(const Falloff& falloff) {
-    const double core = falloff.core;
-    if (falloff.shape == Falloff::Shape::trapezoid && core > 0.0 && core < 1.0) return {core};
+FalloffTraits traits_of(const Falloff& falloff) {
+    using Shape = Falloff::Shape;
+    constexpr double exponent = 11.5, steep = 8.0;  // e^-11.5 = 1e-5
+    const double core = falloff.core, sharpness = falloff.sharpness;
+    const double decay = std::min(1.0, exponent / sharpness);  // where exponential carries no more
+    switch (falloff.shape) {
+        case Shape::constant:
+            return {.flat_core = true, .core = 1.0f, .linear_in_distance = false};
+        case Shape::linear:
+            return {};
+        case Shape::trapezoid:
+            return {.flat_core = true,
+                    .core = falloff.core,
+                    .kinks = core > 0.0 && core < 1.0 ? std::vector{core} : std::vector<double>{}};
+        case Shape::gaussian:
+            return {.reach = static_cast<float>(std::sqrt(decay)),
+                    .linear_in_distance = false,
+                    .steep_centre = sharpness > steep};
+        case Shape::exponential:
+            return {.reach = static_cast<float>(decay), .steep_centre = sharpness > steep};
+    }
     return {};
 }
 

@@ -1,7 +1,5 @@
-// The falloffs as C++ sees them: w(t) from shaders/shared/falloff.glsl, and integrals over them.
-//
-// A new falloff: its name and parameters in layer_render.h, w(t) in falloff.glsl, and here the places where
-// it is not smooth.
+// The falloffs as C++ sees them: w(t) from shaders/shared/falloff.glsl, what the renderer has to know of it
+// besides, and integrals over it.
 #pragma once
 
 #include <algorithm>
@@ -16,14 +14,23 @@ namespace astrosplat {
 /// w(t), t >= 0.
 double falloff_value(const Falloff& falloff, double t);
 
-/// The t in (0, 1), ascending, at which w has a kink or a jump: quadrature is not to run across them.
-std::vector<double> falloff_kinks(const Falloff& falloff);
+/// Facts about w(t) that its shape says in falloff.cpp.
+struct FalloffTraits {
+    bool flat_core = false;          // exactly 1 inside, as constant and trapezoid: only the edge is scaled
+    float core = 0.0f;               // share of the radius that is flat
+    float reach = 1.0f;              // share of the radius that carries more than 1e-5 of the peak
+    bool linear_in_distance = true;  // false: w is smooth in t^2, and tables run over that
+    bool steep_centre = false;       // quadrature takes small steps there
+    std::vector<double> kinks =
+        {};  // in (0, 1), ascending: there w has a kink or a jump, and quadrature a break
+};
+FalloffTraits traits_of(const Falloff& falloff);
 
 /// Integral of f(t) from 0 to 1, where f is smooth within the panels `ends` but for the falloff's kinks.
 /// Panels shrink towards where f is sharp: most falloffs have their light in the centre.
 template <class F>
 double integrate_falloff(const Falloff& falloff, std::span<const double> ends, const F& f) {
-    const std::vector<double> kinks = falloff_kinks(falloff);
+    const std::vector<double> kinks = traits_of(falloff).kinks;
     double sum = 0.0;
     for (std::size_t i = 0; i + 1 < ends.size(); ++i) {
         double panel = 0.0, from = ends[i];

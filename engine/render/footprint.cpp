@@ -62,11 +62,9 @@ double bessel_j0(double x) {
 /// Ends of the panels over which a falloff is smooth, as shares of the radius.
 std::vector<double> panel_ends(const Falloff& falloff) {
     std::vector<double> ends = {0.0, 0.25, 0.5, 0.75, 1.0};
-    const std::vector<double> kinks = falloff_kinks(falloff);
-    ends.insert(ends.end(), kinks.begin(), kinks.end());
-    const bool decays =
-        falloff.shape == Falloff::Shape::gaussian || falloff.shape == Falloff::Shape::exponential;
-    if (decays && falloff.sharpness > 8.0f) ends.insert(ends.end(), {0.005, 0.02, 0.06, 0.12});
+    const FalloffTraits traits = traits_of(falloff);
+    ends.insert(ends.end(), traits.kinks.begin(), traits.kinks.end());
+    if (traits.steep_centre) ends.insert(ends.end(), {0.005, 0.02, 0.06, 0.12});
     std::ranges::sort(ends);
     return ends;
 }
@@ -240,22 +238,16 @@ float ripple(const FootprintNodes& nodes, float (FootprintMoments::*spectrum)[3]
 }  // namespace
 
 FootprintTable begin_footprint_table(const Falloff& falloff, float pixel_filter_px) {
-    using Shape = Falloff::Shape;
+    const FalloffTraits traits = traits_of(falloff);
     FootprintTable table;
     table.falloff = falloff;
-    table.linear_in_distance = falloff.shape != Shape::constant && falloff.shape != Shape::gaussian;
-    table.flat_core = falloff.shape == Shape::constant || falloff.shape == Shape::trapezoid;
+    table.linear_in_distance = traits.linear_in_distance;
+    table.flat_core = traits.flat_core;
     table.pixel_filter_px = pixel_filter_px;
-    table.core = falloff.shape == Shape::constant    ? 1.0f
-                 : falloff.shape == Shape::trapezoid ? falloff.core
-                                                     : 0.0f;
+    table.reach = traits.reach;
+    table.core = traits.core;
     table.integral = static_cast<float>(falloff_integral(falloff));
     table.variance = static_cast<float>(falloff_variance(falloff));
-    const double exponent = 11.5;  // e^-11.5 = 1e-5
-    if (falloff.shape == Shape::gaussian && falloff.sharpness > exponent)
-        table.reach = static_cast<float>(std::sqrt(exponent / falloff.sharpness));
-    if (falloff.shape == Shape::exponential && falloff.sharpness > exponent)
-        table.reach = static_cast<float>(exponent / falloff.sharpness);
     table.nodes.resize(shared::NODE_COUNT);
     return table;
 }

@@ -46,13 +46,12 @@ struct FootprintTable {
     std::vector<FootprintNode> nodes;          // 0 until they are made
     std::size_t first_made = 0, end_made = 0;  // the nodes that exist
     Falloff falloff;
-    bool linear_in_distance = false;  // u linear in d, not in d^2
-    bool flat_core = false;           // constant and trapezoid: exactly 1 inside, so only the edge is scaled
+    bool linear_in_distance = false;  // u linear in d, not in d^2; this and the next as in FalloffTraits
+    bool flat_core = false;
     float pixel_filter_px = 0.5f;
-    float reach = 1.0f;      // share of the radius that carries more than 1e-5 of the peak
-    float core = 0.0f;       // share of the radius that is flat
-    float integral = 1.0f;   // of the falloff over the unit disc
-    float variance = 0.25f;  // of the falloff along an axis, square radii
+    float reach = 1.0f, core = 0.0f;  // shares of the radius, as in FalloffTraits
+    float integral = 1.0f;            // of the falloff over the unit disc
+    float variance = 0.25f;           // of the falloff along an axis, square radii
 
     /// Distance from the centre beyond which all weights are 0.
     float support_px(float radius_px) const { return radius_px * reach + 4.0f * pixel_filter_px; }

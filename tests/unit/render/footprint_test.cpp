@@ -94,19 +94,21 @@ TEST_P(FootprintLight, IsConservedAtEverySizeAndOffset) {
     RecordProperty("worst", std::to_string(worst));
 }
 
-INSTANTIATE_TEST_SUITE_P(AllFalloffs, FootprintLight,
-                         ::testing::Values(FootprintCase{{Falloff::Shape::constant, 0.5f, 4.5f}, 0.5f},
-                                           FootprintCase{{Falloff::Shape::linear, 0.5f, 4.5f}, 0.5f},
-                                           FootprintCase{{Falloff::Shape::trapezoid, 0.5f, 4.5f}, 0.5f},
-                                           FootprintCase{{Falloff::Shape::trapezoid, 0.98f, 4.5f}, 0.5f},
-                                           FootprintCase{{Falloff::Shape::gaussian, 0.5f, 4.5f}, 0.5f},
-                                           FootprintCase{{Falloff::Shape::gaussian, 0.5f, 40.0f}, 0.5f},
-                                           FootprintCase{{Falloff::Shape::exponential, 0.5f, 4.5f}, 0.5f},
-                                           FootprintCase{{Falloff::Shape::exponential, 0.5f, 30.0f}, 0.5f},
-                                           FootprintCase{{Falloff::Shape::constant, 0.5f, 4.5f}, 0.3f},
-                                           FootprintCase{{Falloff::Shape::gaussian, 0.5f, 4.5f}, 0.3f},
-                                           FootprintCase{{Falloff::Shape::constant, 0.5f, 4.5f}, 2.0f},
-                                           FootprintCase{{Falloff::Shape::gaussian, 0.5f, 4.5f}, 2.0f}));
+std::vector<FootprintCase> light_cases() {
+    using Shape = Falloff::Shape;
+    std::vector<FootprintCase> cases;
+    for (std::size_t shape = 0; shape < names_of(Shape{}).size(); ++shape)
+        cases.push_back({{Shape(shape), 0.5f, 4.5f}, 0.5f});
+    cases.push_back({{Shape::trapezoid, 0.98f, 4.5f}, 0.5f});
+    cases.push_back({{Shape::gaussian, 0.5f, 40.0f}, 0.5f});
+    cases.push_back({{Shape::exponential, 0.5f, 30.0f}, 0.5f});
+    for (const float filter : {0.3f, 2.0f})
+        for (const Shape shape : {Shape::constant, Shape::gaussian})
+            cases.push_back({{shape, 0.5f, 4.5f}, filter});
+    return cases;
+}
+
+INSTANTIATE_TEST_SUITE_P(AllFalloffs, FootprintLight, ::testing::ValuesIn(light_cases()));
 
 // From four filter deviations inside the edge of a constant disc, the weight is exactly 1.
 TEST(Footprint, ConstantDiscIsExactlyOneInside) {
