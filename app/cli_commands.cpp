@@ -5,6 +5,8 @@
 #include "command_words.h"
 #include "completion.h"
 #include "core/error.h"
+#include "core/file_format.h"
+#include "core/text.h"
 #include "manual.h"
 #include "prepare_settings.h"
 #include "scene/describe.h"
@@ -76,9 +78,12 @@ void add_generate(CLI::App& app, Invocation& call) {
 void add_convert(CLI::App& app, Invocation& call) {
     CLI::App& command = add_command(app, call, "convert", "Converts between splat files",
                                     [&call] { return run_convert(call.convert); });
-    add_value(command, "IN", call.convert.input, "IN", "A .pda, .ply, .splats, .glb, .gltf or .usda file")
+    add_value(command, "IN", call.convert.input, "IN",
+              "A " + alternatives(endings_of({FileKind::splats})) + " file")
         ->required();
-    add_value(command, "OUT", call.convert.output, "OUT", "A .pda, .ply or .splats file")->required();
+    add_value(command, "OUT", call.convert.output, "OUT",
+              "A " + alternatives(endings_of({FileKind::splats}, FileUse::written)) + " file")
+        ->required();
     command.add_flag("--overwrite", call.convert.overwrite, "Replaces the file");
     add_progress(command, call.convert.progress);
 }

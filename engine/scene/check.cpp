@@ -6,6 +6,7 @@
 #include "camera/camera.h"
 #include "core/error.h"
 #include "core/file_format.h"
+#include "core/text.h"
 #include "scene/animate.h"
 #include "scene/frames.h"
 #include "scene/layer_source.h"
@@ -204,7 +205,7 @@ void check_renderable(const Scene& scene, const Places& places) {
         check.require(
             source.kind != SourceKind::splats || kind_of(format_of_file(source.file)) == FileKind::splats,
             {at / "file"},
-            "expected a file ending in .pda, .ply, .splats, .glb, .gltf or .usda, found '" +
+            "expected a file ending in " + alternatives(endings_of({FileKind::splats})) + ", found '" +
                 source.file.string() + "'");
     }
 }

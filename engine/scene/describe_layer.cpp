@@ -2,6 +2,8 @@
 // parameter.
 #include "scene/describe_layer.h"
 
+#include "core/file_format.h"
+#include "core/text.h"
 #include "scene/describe_look.h"
 #include "scene/describe_prepare.h"
 #include "source/mesh.h"
@@ -277,9 +279,9 @@ void describe_source(const Describer& d, SourceParams& s) {
                        s.structure);
     splats(s.seed, "seed", "Layer seed", "", "Random numbers of this layer; 0: from the layer's name.",
            slider(0, 1000), zero_is("Auto"));
-    files(s.file, "file", "Splat file", "",
-          "For kind = \"splats\": .pda, .ply, .splats, or Gaussians in .glb, .gltf or .usda.",
-          only_with("kind", {"splats"}));
+    static const std::string splat_files =
+        "For kind = \"splats\": " + alternatives(endings_of({FileKind::splats})) + ", also of Gaussians.";
+    files(s.file, "file", "Splat file", "", splat_files.c_str(), only_with("kind", {"splats"}));
     describe_stars(files.only_with("kind", {"stars"}), s.stars);
     describe_star_image(d.shown_in("Source", "Star image").only_with("kind", {"stars"}).animated(), s.stars);
 }
