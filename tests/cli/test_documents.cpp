@@ -122,6 +122,18 @@ TEST_F(Documents, LinksLeadSomewhere) {
     EXPECT_GT(checked, 10u);
 }
 
+TEST_F(Documents, FilesNamedExist) {
+    std::size_t checked = 0;
+    for (const fs::path& file : documents())
+        for (const std::string& named :
+             matches(text_of(file),
+                     R"([` ]((?:engine|app|shaders|tests|assets|third_party)/[A-Za-z0-9_./-]*\.[a-z]+)\b)")) {
+            EXPECT_TRUE(fs::exists(root / named)) << file << ": " << named;
+            ++checked;
+        }
+    EXPECT_GT(checked, 15u);
+}
+
 TEST_F(Documents, ReadmesMapNamesEveryFolder) {
     const std::string readme = text_of(root / "README.md");
     const std::string map = readme.substr(readme.find("## Where things are"));
