@@ -14,7 +14,7 @@
 namespace astrosplat {
 namespace {
 
-constexpr float height = 26, inset = 12, padding = 10, dot = 4, gap = 8;
+constexpr float height = 26, inset = 12, padding = 10, dot_radius = 4, gap = 8;
 
 const LayerStatus* loading_layer(const Status& status, std::size_t& index) {
     for (index = 0; index < status.layers.size(); ++index)
@@ -130,7 +130,7 @@ float draw_badge(GuiFrame& frame, const Rect& area) {
     const char* word = button_word(frame.status);
     ImGui::PushFont(small_font());
     const float word_width = word ? ImGui::CalcTextSize(word).x + px(gap) * 2 : 0.0f;
-    const float left = px(padding) + px(dot) * 2 + px(gap);
+    const float left = px(padding) + px(dot_radius) * 2 + px(gap);
     const float room = area.width - 2 * px(inset) - left - word_width - px(padding);
     const std::string whole = badge.text;
     badge.text = fitting(badge.text, room);
@@ -144,7 +144,8 @@ float draw_badge(GuiFrame& frame, const Rect& area) {
     const float width = left + text_width + beside_width + word_width + px(padding);
     list->AddRectFilled({x, y}, {x + width, y + px(height)}, color::with_opacity(color::window, 0.86f),
                         px(3));
-    list->AddCircleFilled({x + px(padding) + px(dot), y + px(height) * 0.5f}, px(dot), badge.color, 16);
+    list->AddCircleFilled({x + px(padding) + px(dot_radius), y + px(height) * 0.5f}, px(dot_radius),
+                          badge.color, 16);
     const float text_y = y + std::floor((px(height) - ImGui::GetFontSize()) * 0.5f);
     list->AddText({x + left, text_y}, color::text, badge.text.c_str());
     if (beside_width > 0)

@@ -21,11 +21,8 @@ struct Target {
 
 // Highway 1.0 has no SSE2 target of its own: its portable fallback, compiled for the baseline of
 // x86-64, is that.
-constexpr std::array<Target, 5> targets = {{{"avx512", HWY_AVX3 | HWY_AVX3_DL},
-                                            {"avx2", HWY_AVX2},
-                                            {"sse4", HWY_SSE4},
-                                            {"ssse3", HWY_SSSE3},
-                                            {"sse2", HWY_EMU128 | HWY_SCALAR}}};
+constexpr std::array<Target, 4> targets = {
+    {{"avx512", HWY_AVX3}, {"avx2", HWY_AVX2}, {"sse4", HWY_SSE4}, {"sse2", HWY_EMU128 | HWY_SCALAR}}};
 
 // What the processor can do, whatever was chosen before.
 std::int64_t detected() {

@@ -15,7 +15,7 @@ void set_vector_target(const std::string& name);
 /// Throws as above.
 void use_vector_target_of_environment();
 
-/// The compiled targets this processor can run, best first, from "avx512" "avx2" "sse4" "ssse3" "sse2".
+/// The compiled targets this processor can run, best first, from "avx512" "avx2" "sse4" "sse2".
 std::vector<std::string> vector_targets();
 
 /// The target in use.

@@ -18,7 +18,7 @@ constexpr int scales = 4;
 constexpr float prominence = 1.5f;        // times the mean contrast around it
 constexpr float least_contrast = 0.006f;  // of the displayed white
 constexpr float reach_sigmas = 3.0f;
-constexpr float rim_share = 0.4f;  // of the reach, over which the weight falls to 0
+constexpr float soft_rim = 0.4f;  // of the reach, over which the weight falls to 0
 
 struct Peak {
     Knot knot;
@@ -79,7 +79,7 @@ void claim(const Knot& knot, std::int32_t index, const Image& image, Knots& out)
             const float dx = static_cast<float>(x) + 0.5f - knot.x,
                         dy = static_cast<float>(y) + 0.5f - knot.y;
             const float inside = 1.0f - std::sqrt(dx * dx + dy * dy) / reach;
-            const float weight = std::clamp(inside / rim_share, 0.0f, 1.0f);
+            const float weight = std::clamp(inside / soft_rim, 0.0f, 1.0f);
             const auto at = static_cast<std::size_t>(y * image.width + x);
             if (weight <= out.weight[at]) continue;
             out.weight[at] = weight;

@@ -34,14 +34,14 @@ glm::dvec4 y_up(const glm::dvec4& q) {
 }
 
 /// Frames, units and axes of a file made into those of a scene.
-struct Placement {
+struct FilePlacement {
     double scale, offset;
     bool z_up;
     glm::dvec3 place(const glm::dvec3& v) const { return (z_up ? y_up(v) : v) * scale; }
     glm::dvec4 turn(const glm::dvec4& q) const { return z_up ? y_up(q) : q; }
 };
 
-Placement placement_of(const CameraParams& camera, FileUp of_file) {
+FilePlacement placement_of(const CameraParams& camera, FileUp of_file) {
     const bool z_up =
         camera.file_up == CameraFileUp::automatic ? of_file == FileUp::z : camera.file_up == CameraFileUp::z;
     return {camera.file_scale, camera.file_offset, z_up};
@@ -64,7 +64,7 @@ void check_sizes(const std::vector<double>& numbers, const char* key, const fs::
 
 std::vector<Track> tracks_of(const CameraTrack& file_track, const CameraParams& camera,
                              const fs::path& file) {
-    const Placement placement = placement_of(camera, file_track.up);
+    const FilePlacement placement = placement_of(camera, file_track.up);
     Track position, rotation, fov, height;
     position.key = "camera.position";
     rotation.key = "camera.rotation";
@@ -105,7 +105,7 @@ std::vector<Track> tracks_of(const CameraTrack& file_track, const CameraParams& 
 
 /// Tables hold places and turns of the camera under their keys.
 void place_table(std::vector<Track>& tracks, const CameraParams& camera, const fs::path& file) {
-    const Placement placement = placement_of(camera, FileUp::y);
+    const FilePlacement placement = placement_of(camera, FileUp::y);
     for (Track& track : tracks) {
         const bool place = track.key == "camera.position" || track.key == "camera.target";
         const bool direction = track.key == "camera.up";

@@ -116,14 +116,10 @@ class Describer {
 
     /// Describes one field, by its words and traits as in spec(). Its type follows from the field, unless a
     /// trait says more (color, position, ...).
-    template <class T, class... Words>
-    void operator()(T& field, const Words&... words) const {
-        ParameterSpec field_spec = spec(words...);
-        Field<T>::describe(field_spec);
-        T* const target = &field;
-        custom(
-            std::move(field_spec), [target](const ParameterSpec& own) { return Field<T>::get(*target, own); },
-            [target](const Value& value, const ParameterSpec& own) { *target = Field<T>::set(value, own); });
+    template <class T, class... Traits>
+    void operator()(T& field, const char* key, const char* label, const char* unit, const char* help,
+                    const Traits&... traits) const {
+        describe_field(field, spec(key, label, unit, help, traits...));
     }
 
     /// A parameter that is not one field: with its own way in and out; the spec names its type.
@@ -142,6 +138,16 @@ class Describer {
     }
 
   private:
+    // Compiled once for a type, not for every set of words and traits.
+    template <class T>
+    void describe_field(T& field, ParameterSpec field_spec) const {
+        Field<T>::describe(field_spec);
+        T* const target = &field;
+        custom(
+            std::move(field_spec), [target](const ParameterSpec& own) { return Field<T>::get(*target, own); },
+            [target](const Value& value, const ParameterSpec& own) { *target = Field<T>::set(value, own); });
+    }
+
     Describer limited(Condition condition) const {
         Describer result = *this;
         result.conditions_.push_back(std::move(condition));

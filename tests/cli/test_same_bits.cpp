@@ -74,7 +74,7 @@ TEST_F(SameBits, AnyInstructionSet) {
         tried.insert(target);
     }
     EXPECT_EQ(tried.size(), vector_targets().size());
-    EXPECT_GE(tried.size(), 2u) << "SSE2 and SSSE3 at least, on any processor of this century";
+    EXPECT_GE(tried.size(), 2u) << "SSE2 and SSE4 at least, on any processor of the last fifteen years";
 }
 
 TEST_F(SameBits, TheInstructionSetInUseIsNamed) {

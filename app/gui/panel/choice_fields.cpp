@@ -86,7 +86,7 @@ bool words_field(Context& context, const Row& row) {
         const std::string label = choice_label(choice);
         const float width = ImGui::CalcTextSize(label.c_str()).x + px(14);
         if (at.x > area.corner.x && at.x + width > area.end().x)
-            at = {area.corner.x, at.y + px(row_height + row_gap)};
+            at = {area.corner.x, at.y + px(row_height + row_space)};
         const Area chip{at, {width, area.size.y}};
         ImGui::SetCursorScreenPos(at);
         const bool clicked = ImGui::InvisibleButton(choice.c_str(), chip.size);

@@ -101,7 +101,7 @@ void tab_content(Context& context) {
 void tab_body(Context& context) {
     const bool scrolls = context.memory.scroll > 0.0f;
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(px(12), px(8)));
-    ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(px(8), px(row_gap)));
+    ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(px(8), px(row_space)));
     ImGui::PushStyleVar(ImGuiStyleVar_ScrollbarSize, px(8));
     if (!scrolls) {
         for (const ImGuiCol c :

@@ -22,6 +22,6 @@ struct Row {
     const ParameterKey& key() const { return parameter.spec.key; }
 };
 
-inline constexpr float row_height = 24.0f, row_gap = 2.0f;  // px at scale 1
+inline constexpr float row_height = 24.0f, row_space = 2.0f;  // px at scale 1
 
 }  // namespace astrosplat::panel

@@ -332,7 +332,7 @@ void source_state(Context& context) {
                   : "Changing these regenerates the splats.");
     }
     // As high whatever it says, or the rows below would move under the mouse that drags one.
-    ImGui::SetCursorPosY(std::max(ImGui::GetCursorPosY(), top + px(row_height + row_gap)));
+    ImGui::SetCursorPosY(std::max(ImGui::GetCursorPosY(), top + px(row_height + row_space)));
     if (!status.error.empty()) note(status.error, color::error);
     ImGui::Dummy({0.0f, px(4)});
 }

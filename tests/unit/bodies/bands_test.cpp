@@ -4,7 +4,6 @@
 
 #include <vector>
 
-#include "core/parallel.h"
 #include "support/painted_picture.h"
 
 namespace astrosplat {
@@ -86,17 +85,6 @@ TEST(Bands, AStarMakesNoDustAroundItButALaneIsDust) {
     const auto filled = [&](std::int64_t x, std::int64_t y) { return sum.at(x, y)[1] / light.at(x, y)[1]; };
     for (std::int64_t x = 60; x < 140; ++x) EXPECT_LT(filled(x, 100), 1.3f) << x;
     EXPECT_GT(filled(223, 60), 2.0f);
-}
-
-TEST(Bands, AreTheSameOnOneThread) {
-    const Image light = painted::nebula(200, 130);
-    const std::vector<Image> several = all_bands(light);
-    set_thread_count(1);
-    const std::vector<Image> one = all_bands(light);
-    set_thread_count(0);
-    for (std::size_t k = 0; k < one.size(); ++k)
-        for (std::size_t i = 0; i < one[k].pixels.size(); ++i)
-            ASSERT_EQ(one[k].pixels[i], several[k].pixels[i]);
 }
 
 }  // namespace

@@ -558,21 +558,6 @@ TEST_P(EveryStructure, MakesAWholeSet) {
     EXPECT_EQ(set.absorbs, GetParam() == StructureKind::disk);
 }
 
-TEST_P(EveryStructure, IsTheSameOnOneThread) {
-    const TexturedMesh mesh = on_plane(painted_for(GetParam(), 160, 100));
-    const SplatSet several = make_bodies({mesh}, of_kind(GetParam()), 3u, "gas");
-    set_thread_count(1);
-    const SplatSet one = make_bodies({mesh}, of_kind(GetParam()), 3u, "gas");
-    set_thread_count(0);
-    ASSERT_EQ(one.size(), several.size());
-    for (std::size_t i = 0; i < one.id.size(); ++i) {
-        ASSERT_EQ(one.id[i], several.id[i]);
-        ASSERT_EQ(one.position[i], several.position[i]);
-        ASSERT_EQ(one.color[i], several.color[i]);
-        ASSERT_EQ(one.alpha[i], several.alpha[i]);
-    }
-}
-
 TEST(Bodies, EveryKeyCounts) {
     const TexturedMesh mesh = on_plane(painted::nebula(160, 100));
     const auto positions = [&](const StructureParams& params) {

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "bodies/bodies.h"
-#include "core/parallel.h"
 #include "splats/splat_set.h"
 #include "support/painted_picture.h"
 
@@ -99,23 +98,6 @@ TEST(BrightStars, NothingElseIsTaken) {
     const Image before = light;
     EXPECT_TRUE(take_bright_stars(light).empty());
     for (std::size_t i = 0; i < light.pixels.size(); ++i) ASSERT_EQ(light.pixels[i], before.pixels[i]);
-}
-
-TEST(BrightStars, AreTheSameOnOneThread) {
-    Image several = painted::galaxy(480, 300);
-    for (std::uint32_t i = 0; i < 12; ++i)
-        painted::add_point(several, 30.0 + 420.0 * painted::random(i, 51),
-                           30.0 + 240.0 * painted::random(i, 52), 1.5 + painted::random(i, 53), 3, 3, 2);
-    several = saturated(std::move(several));
-    Image one = several;
-    const std::vector<Star> a = take_bright_stars(several);
-    set_thread_count(1);
-    const std::vector<Star> b = take_bright_stars(one);
-    set_thread_count(0);
-    ASSERT_GT(a.size(), 10u);
-    ASSERT_EQ(a.size(), b.size());
-    for (std::size_t i = 0; i < a.size(); ++i) ASSERT_EQ(a[i].peak, b[i].peak);
-    for (std::size_t i = 0; i < one.pixels.size(); ++i) ASSERT_EQ(one.pixels[i], several.pixels[i]);
 }
 
 // Light of a star that no Gaussian fits would be beads one above the other, seen from the side.

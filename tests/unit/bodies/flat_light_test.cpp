@@ -8,9 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/parallel.h"
 #include "core/real.h"
-#include "core/vector_target.h"
 #include "support/painted_picture.h"
 
 namespace astrosplat {
@@ -51,20 +49,6 @@ PictureSplats one_dot(float x, float y, float sigma) {
     return dots;
 }
 
-TEST(FlatLight, IsTheSameOnEveryInstructionSet) {
-    PictureSplats dots = some_dots();
-    const FlatLight flat(dots, width, height, filter_px);
-    const Image best = flat.sum();
-    ASSERT_GT(vector_targets().size(), 1u);
-    for (const std::string& target : vector_targets()) {
-        set_vector_target(target);
-        const Image here = flat.sum();
-        for (std::size_t i = 0; i < best.pixels.size(); ++i)
-            ASSERT_EQ(here.pixels[i], best.pixels[i]) << target;
-    }
-    set_vector_target("best");
-}
-
 // Flux, centre and variance along the axes of one dot, on every grid.
 TEST(FlatLight, OneDotIsItsFootprint) {
     for (const double sigma : {0.45, 0.5, 0.6, 0.75, 0.9, 1.3, 3.0, 7.0}) {
@@ -89,15 +73,6 @@ TEST(FlatLight, OneDotIsItsFootprint) {
         EXPECT_NEAR(y_sum / sum, 0.0, 0.02 * sigma) << sigma;
         EXPECT_NEAR(squares / sum / 2.0, variance, 0.05 * variance) << sigma;
     }
-}
-
-TEST(FlatLight, IsTheSameOnOneThread) {
-    PictureSplats dots = some_dots();
-    const Image several = FlatLight(dots, width, height, filter_px).sum();
-    set_thread_count(1);
-    const Image one = FlatLight(dots, width, height, filter_px).sum();
-    set_thread_count(0);
-    EXPECT_EQ(one.pixels, several.pixels);
 }
 
 // Of green; the other channels are right.

@@ -7,7 +7,6 @@
 #include <cmath>
 
 #include "bodies/choose.h"
-#include "core/parallel.h"
 #include "source/textured_mesh.h"
 #include "support/painted_picture.h"
 
@@ -171,15 +170,6 @@ TEST(Margin, OtherMeshesStay) {
     meshes[0].mesh = builtin_mesh("plane", 1.0);
     EXPECT_EQ(add_margins(meshes, 0.0, StructureKind::disk, "a")[0], glm::dvec2(1.0));
     EXPECT_EQ(meshes[0].textures[0].image.width, picture_width);
-}
-
-TEST(Margin, TheSameBitsWithAnyNumberOfThreads) {
-    const Image galaxy = painted::galaxy(picture_width, picture_height);
-    const auto all = continued(galaxy)[0].textures[0].image.pixels;
-    set_thread_count(1);
-    const auto alone = continued(galaxy)[0].textures[0].image.pixels;
-    set_thread_count(0);
-    EXPECT_EQ(alone, all);
 }
 
 TEST(Margin, IsChosenByTheShareOfTheRimThatIsLit) {

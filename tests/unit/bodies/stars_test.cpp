@@ -8,7 +8,6 @@
 
 #include "bodies/picture_light.h"
 #include "bodies/picture_stars.h"
-#include "core/parallel.h"
 #include "detect/knots.h"
 #include "image/channels.h"
 #include "support/painted_picture.h"
@@ -101,18 +100,6 @@ TEST(Stars, OfEnlargedPicturesAreOnlyWhatHasTheLightOfOne) {
     EXPECT_EQ(take_picture_stars(whole, params).all.size(), planted.size() + 1);
     EXPECT_EQ(take_picture_stars(enlarged, params, true).all.size(), planted.size());
     EXPECT_EQ(enlarged.at(120, 30)[0], light.at(120, 30)[0]);
-}
-
-TEST(Stars, AreTheSameOnOneThread) {
-    Image several = painted::galaxy(240, 150), one = several;
-    const std::vector<Star> a = take_stars(several);
-    set_thread_count(1);
-    const std::vector<Star> b = take_stars(one);
-    set_thread_count(0);
-    ASSERT_GT(a.size(), 20u);
-    ASSERT_EQ(a.size(), b.size());
-    for (std::size_t i = 0; i < a.size(); ++i) ASSERT_EQ(a[i].peak, b[i].peak);
-    for (std::size_t i = 0; i < one.pixels.size(); ++i) ASSERT_EQ(one.pixels[i], several.pixels[i]);
 }
 
 TEST(Knots, OwnThePixelsAroundThem) {

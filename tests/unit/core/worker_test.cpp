@@ -78,7 +78,7 @@ TEST(Worker, LooksForWorkBySoMuchTimeAlthoughNothingWakesIt) {
             return {};
         },
         std::chrono::milliseconds(1));
-    while (asked < 3) std::this_thread::yield();
+    EXPECT_TRUE(worker.wait_for(std::chrono::minutes(1), [&] { return asked >= 3; }));
 }
 
 }  // namespace

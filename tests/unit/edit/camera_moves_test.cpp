@@ -274,11 +274,17 @@ TEST_F(CameraMoves, ACameraThatFramesTheBoxBeginsThere) {
 }
 
 TEST_F(CameraMoves, AnEmptyBoxIsTheOrigin) {
-    scene.camera.position = glm::dvec3(0.0, 5.0, 0.0);  // straight above: no arm to turn
-    add_camera_move(scene, CameraMove::orbit, {}, 1.0);
-    add_camera_move(scene, CameraMove::fly_in, {}, 1.0);
-    add_camera_move(scene, CameraMove::face_on_to_edge_on, {}, 1.0);
-    EXPECT_NO_THROW(check_edited_scene(scene, "scene"));
+    const glm::dvec3 above(0.0, 5.0, 0.0);  // no arm to turn
+    for (const CameraMove move : {CameraMove::orbit, CameraMove::fly_in, CameraMove::face_on_to_edge_on}) {
+        scene.camera.position = above;
+        scene.animation.clear();
+        add_camera_move(scene, move, {}, 1.0);
+        for (const double frame : {1.0, 121.0, 241.0}) {
+            EXPECT_EQ(target(frame), glm::dvec3(0.0));
+            EXPECT_LE(glm::length(position(frame)), 5.0 + rounding) << frame;
+        }
+        EXPECT_NO_THROW(check_edited_scene(scene, "scene"));
+    }
 }
 
 TEST_F(CameraMoves, CameraKeyframesHoldWhatIsAnimated) {

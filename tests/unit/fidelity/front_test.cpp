@@ -7,7 +7,6 @@
 #include <cmath>
 
 #include "core/color.h"
-#include "core/parallel.h"
 #include "drawn.h"
 #include "image/resample.h"
 
@@ -56,20 +55,6 @@ TEST(FrontFidelity, IsTheNumbersOfTheMeasuresThatTargetsWereSetWith) {
     EXPECT_NEAR(front.flux.frame, 0.9999702084, 1e-6);
     EXPECT_EQ(front.width_px, 240);
     EXPECT_EQ(front.height_px, 160);
-}
-
-TEST(FrontFidelity, HasTheSameBitsOnAnyThreads) {
-    const Image a = waves_and_stars(1), b = rendered_waves_and_stars();
-    set_thread_count(1);
-    const FrontFidelity one = front_fidelity(b, a);
-    set_thread_count(2);
-    const FrontFidelity two = front_fidelity(b, a);
-    set_thread_count(0);
-    EXPECT_EQ(one.psnr_db, two.psnr_db);
-    EXPECT_EQ(one.ssim, two.ssim);
-    EXPECT_EQ(one.flux.cells, two.flux.cells);
-    EXPECT_EQ(one.ciede2000.median, two.ciede2000.median);
-    for (std::size_t i = 0; i < one.power.size(); ++i) EXPECT_EQ(one.power[i].ratio, two.power[i].ratio);
 }
 
 TEST(FrontFidelity, LeavesTheBorderOut) {

@@ -7,7 +7,6 @@
 #include <numeric>
 #include <vector>
 
-#include "core/parallel.h"
 
 namespace astrosplat {
 namespace {
@@ -126,16 +125,6 @@ TEST(Blur, KeepsConstantsAndTheSum) {
                 << sigma << " " << width;
         }
     }
-}
-
-TEST(Blur, HasTheSameBitsOnAnyThreads) {
-    const Image image = noise(101, 67, 3);
-    set_thread_count(1);
-    const Image one = gaussian_blur(image, 6.0), direct_one = convolved_with_gaussian(image, 3.0);
-    set_thread_count(2);
-    EXPECT_EQ(gaussian_blur(image, 6.0).pixels, one.pixels);
-    EXPECT_EQ(convolved_with_gaussian(image, 3.0).pixels, direct_one.pixels);
-    set_thread_count(0);
 }
 
 TEST(Blur, HalvingAndDoublingKeepARampAwayFromTheEdges) {

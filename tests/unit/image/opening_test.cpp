@@ -4,8 +4,6 @@
 
 #include <algorithm>
 
-#include "core/parallel.h"
-
 namespace astrosplat {
 namespace {
 
@@ -48,14 +46,6 @@ TEST(Opening, CutsPeaksOffAndLeavesSteps) {
         for (std::int64_t x = 20; x < 28; ++x) *image.at(x, y) = 50.0f;
     EXPECT_EQ(opened(image, 4).pixels, step.pixels);
     EXPECT_EQ(opened(image, 3).pixels, image.pixels) << "as wide as the square";
-}
-
-TEST(Opening, IsTheSameOnOneThread) {
-    const Image several = opened(noise(200, 130), 7);
-    set_thread_count(1);
-    const Image one = opened(noise(200, 130), 7);
-    set_thread_count(0);
-    EXPECT_EQ(one.pixels, several.pixels);
 }
 
 }  // namespace

@@ -10,11 +10,11 @@
 #include <vector>
 
 #include "core/error.h"
-#include "core/parallel.h"
 #include "core/shared_maths.h"
 #include "render/falloff.h"
 #include "render/render.h"
 #include "splats/splat_set.h"
+#include "support/bits.h"
 #include "unit/merge/cloud.h"
 
 namespace astrosplat {
@@ -380,24 +380,11 @@ TEST(Merge, ASampleStandsForTheWhole) {
 
 TEST(Merge, TheSameBitsForAnyThreadCount) {
     const Cloud cloud = random_cloud(50000, {1.0f, 0.1f, 1.0f}, 0.01f, 0.5f);
-    const auto bytes = [](const auto& buffer) {
-        return std::string_view(reinterpret_cast<const char*>(buffer.data()),
-                                buffer.size() * sizeof(buffer[0]));
-    };
-    set_thread_count(1);
-    const MergedSplats one = cloud.merged();
-    const ShadedSplats cut_by_one = cut_of(one, 5000);
-    for (const int threads : {2, 5}) {
-        set_thread_count(threads);
-        const MergedSplats many = cloud.merged();
-        EXPECT_EQ(bytes(many.tree->rows), bytes(one.tree->rows));
-        EXPECT_EQ(bytes(many.sums), bytes(one.sums));
-        const ShadedSplats cut = cut_of(many, 5000);
-        EXPECT_EQ(bytes(cut.position), bytes(cut_by_one.position));
-        EXPECT_EQ(bytes(cut.color), bytes(cut_by_one.color));
-        EXPECT_EQ(bytes(cut.alpha), bytes(cut_by_one.alpha));
-    }
-    set_thread_count(0);
+    test::expect_same_bits([&] {
+        const MergedSplats merged = cloud.merged();
+        const ShadedSplats cut = cut_of(merged, 5000);
+        return test::Bits() << merged.tree->rows << merged.sums << cut.position << cut.color << cut.alpha;
+    });
 }
 
 }  // namespace

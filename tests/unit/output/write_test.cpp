@@ -17,7 +17,6 @@
 
 #include "core/color.h"
 #include "core/error.h"
-#include "core/parallel.h"
 #include "output/encode.h"
 #include "output/metadata.h"
 #include "source/write_image.h"
@@ -412,22 +411,6 @@ TEST_F(WriteTest, TruncatedFilesAreNotWhole) {
             EXPECT_FALSE(frame_is_whole(file)) << name << " " << kept;
             write(name, {}, frame);
         }
-    }
-}
-
-TEST_F(WriteTest, SameFrameGivesTheSameBytesOnAnyNumberOfThreads) {
-    OutputParams exr;
-    exr.aovs = {"layers", "depth"};
-    RenderedFrame frame = soft_frame(200, 300);
-    for (const char* name : {"a.exr", "a.tif", "a.png"}) {
-        const OutputParams output = name == std::string("a.exr") ? exr : OutputParams{};
-        set_thread_count(1);
-        const std::string one = bytes_of(write(name, output, frame));
-        set_thread_count(3);
-        const std::string three = bytes_of(write(name, output, frame));
-        set_thread_count(0);
-        EXPECT_FALSE(one.empty());
-        EXPECT_TRUE(one == three) << name;
     }
 }
 

@@ -5,11 +5,10 @@
 #include <cmath>
 
 #include "core/color.h"
-#include "core/parallel.h"
 #include "core/rotation.h"
-#include "core/vector_target.h"
 #include "pipeline.h"
 #include "scene/scene.h"
+#include "support/bits.h"
 #include "support/ewa_reference.h"
 #include "support/frames.h"
 #include "support/temp_folder.h"
@@ -178,17 +177,7 @@ TEST(Capture, DroppedSplatsTakeTheirShapesWithThem) {
 TEST(Capture, HasTheSameBitsOnThreadsTilesAndInstructionSets) {
     const CaptureScene scene(capture(700, 3), 3);
     const Image expected = scene.picture();
-    const int before = thread_count();
-    for (const int threads : {1, 3}) {
-        set_thread_count(threads);
-        EXPECT_EQ(scene.picture().pixels, expected.pixels) << threads << " threads";
-    }
-    set_thread_count(before);
-    for (const std::string& target : vector_targets()) {
-        set_vector_target(target);
-        EXPECT_EQ(scene.picture().pixels, expected.pixels) << target;
-    }
-    set_vector_target("best");
+    test::expect_same_bits([&] { return test::Bits() << scene.picture(); });
     Pipeline pipeline(scene.scene);
     RenderSettings settings = settings_of(pipeline, 1.0);
     settings.tile_px = 16;

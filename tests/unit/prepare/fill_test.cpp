@@ -5,7 +5,6 @@
 
 #include <cmath>
 
-#include "core/parallel.h"
 #include "unit/prepare/painted.h"
 
 namespace astrosplat {
@@ -109,22 +108,6 @@ TEST(Fill, APictureThatIsOneHoleBecomesZero) {
     std::fill(all.pixels.begin(), all.pixels.end(), 1);
     fill(image, all, FillKind::texture);
     for (const float value : image.pixels) EXPECT_EQ(value, 0.0f);
-}
-
-TEST(Fill, HasTheSameBitsOnAnyThreads) {
-    const Image image = add_noise(harmonic(200), 0.05, 5);
-    PixelMask holes = make_mask(200, 200);
-    for (std::int64_t i = 0; i < 40; ++i)
-        for (std::int64_t k = 0; k < 30; ++k) holes.at((i * 37 + k % 6) % 200, (i * 53 + k / 6) % 200) = 1;
-    const auto filled = [&](int threads) {
-        set_thread_count(threads);
-        Image out = image;
-        fill(out, holes, FillKind::texture);
-        set_thread_count(0);
-        return out;
-    };
-    const Image one = filled(1), three = filled(3);
-    EXPECT_EQ(one.pixels, three.pixels);
 }
 
 }  // namespace

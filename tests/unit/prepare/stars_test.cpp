@@ -3,7 +3,6 @@
 
 #include <numeric>
 
-#include "core/parallel.h"
 #include "core/real.h"
 #include "image/channels.h"
 #include "prepare/saturated_stars.h"
@@ -268,17 +267,6 @@ TEST(Stars, OfAPictureWithoutAnyAreNone) {
     }
     EXPECT_TRUE(remove_stars(make_image(1, 1, 3, 0.5f), {}).stars.empty());
     EXPECT_TRUE(remove_stars(make_image(3, 2, 3, 1.0f), {5.0, 0.98}).stars.empty());
-}
-
-TEST(Stars, HaveTheSameBitsOnAnyThreads) {
-    const auto truth = stars_in_clouds({gaussian, moffat}, 10.0, 300.0);
-    set_thread_count(1);
-    const StarRemoval one = search_clouds(truth).removal;
-    set_thread_count(3);
-    const StarRemoval three = search_clouds(truth).removal;
-    set_thread_count(0);
-    EXPECT_EQ(one.starless.pixels, three.starless.pixels);
-    EXPECT_EQ(star_table(one.stars, 720, 480), star_table(three.stars, 720, 480));
 }
 
 TEST(Stars, AreATable) {

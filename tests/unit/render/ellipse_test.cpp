@@ -7,11 +7,9 @@
 #include <glm/matrix.hpp>
 #include <ostream>
 
-#include "core/parallel.h"
 #include "core/real.h"
 #include "core/rotation.h"
 #include "core/shared_maths.h"
-#include "core/vector_target.h"
 #include "render/shape.h"
 #include "support/printing.h"
 #include "unit/render/scenes.h"
@@ -201,29 +199,10 @@ struct EllipseScene {
 
 class EllipseBits : public ::testing::TestWithParam<std::pair<Blend, Falloff::Shape>> {};
 
-TEST_P(EllipseBits, DoNotDependOnThreadsTilesTargetsOrMemory) {
+TEST_P(EllipseBits, AreTheSameHoweverThePictureIsMade) {
     const EllipseScene scene(GetParam().first, GetParam().second);
-    const Image expected = scene.picture();
-    EXPECT_GT(total(expected, 3), 100.0);
-    const int before = thread_count();
-    for (const int threads : {1, 3}) {
-        set_thread_count(threads);
-        EXPECT_EQ(expected.pixels, scene.picture().pixels) << threads << " threads";
-    }
-    set_thread_count(before);
-    RenderSettings settings = settings_of(181, 121);
-    for (const int tile : {16, 48, 128}) {
-        settings.tile_px = tile;
-        EXPECT_EQ(expected.pixels, scene.picture(settings).pixels) << "tiles of " << tile;
-    }
-    settings.tile_px = 0;
-    settings.memory_limit_bytes = 60000;
-    EXPECT_EQ(expected.pixels, scene.picture(settings).pixels) << "in bands";
-    for (const std::string& target : vector_targets()) {
-        set_vector_target(target);
-        EXPECT_EQ(expected.pixels, scene.picture().pixels) << target;
-    }
-    set_vector_target("best");
+    expect_same_picture([&](const RenderSettings& settings) { return scene.picture(settings); },
+                        settings_of(181, 121), 60000, {37, 21, 90, 71});
 }
 
 INSTANTIATE_TEST_SUITE_P(SomeBlends, EllipseBits,

@@ -1,11 +1,14 @@
 // Small hand-made sets of splats and cameras whose pictures can be worked out by hand.
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <glm/vec3.hpp>
 #include <vector>
 
 #include "render/falloff.h"
 #include "render/render.h"
+#include "support/bits.h"
 
 namespace astrosplat::test {
 
@@ -69,6 +72,34 @@ inline double total(const Image& image, int channel) {
          i += static_cast<std::size_t>(image.channels))
         sum += image.pixels[i];
     return sum;
+}
+
+/// `part` is that region of `whole`, bit by bit.
+inline void expect_crop(const Image& part, const Image& whole, const Region& region) {
+    for (std::int64_t y = 0; y < region.height; ++y)
+        for (std::int64_t x = 0; x < 4 * region.width; ++x)
+            ASSERT_EQ(part.at(0, y)[x], whole.at(region.x, region.y + y)[x]) << x / 4 << ", " << y;
+}
+
+/// The picture draw(settings) has the same bits for any threads, instruction set and tiles, in bands when
+/// memory is little, and in a region.
+template <class Draw>
+void expect_same_picture(const Draw& draw, const RenderSettings& usual, std::int64_t little_bytes,
+                         const Region& region) {
+    const Image expected = draw(usual);
+    EXPECT_GT(total(expected, 3), 100.0);
+    expect_same_bits([&] { return Bits() << draw(usual); });
+    RenderSettings settings = usual;
+    for (const int tile : {16, 24, 48, 128}) {
+        settings.tile_px = tile;
+        EXPECT_EQ(expected.pixels, draw(settings).pixels) << "tiles of " << tile;
+    }
+    settings = usual;
+    settings.memory_limit_bytes = little_bytes;
+    EXPECT_EQ(expected.pixels, draw(settings).pixels) << "in bands";
+    settings = usual;
+    settings.region = region;
+    expect_crop(draw(settings), expected, region);
 }
 
 }  // namespace astrosplat::test

