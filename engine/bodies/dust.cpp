@@ -24,9 +24,9 @@ using shared::as_hash, shared::as_log, shared::as_uniform;
 
 // As DEPTH 5 has them, but for the sheet, which is torn, and thinner.
 constexpr float least_transmittance = 0.1f;
-constexpr float dark_sky = 0.004f;  // added to both sides of the ratio: noise of dark dark_sky is no dust
+constexpr float dark_sky = 0.004f;  // added to both sides of the ratio: noise of a dark sky is no dust
 // Of H. Thicker, lanes smear into curtains for a camera that comes close.
-constexpr float sheet_height = 0.2f, sheet_thickness = 0.05f;
+constexpr float lane_height = 0.2f, lane_thickness = 0.05f;
 constexpr double sheet_wave = 26.0;  // texels at a width of 1920, of the clumps in the sheet
 constexpr std::int64_t share_cell_px = 8;
 constexpr double share_blur_cells = 4.0;
@@ -47,7 +47,7 @@ void bend(const Placement& placement, DepthBlock& block) {
     noise_sum(noise, waves);
     for (int i = 0; i < block.count; ++i) {
         const float height = placement.scale_height(block.x[i], block.y[i]);
-        block.z[i] += height * (sheet_height + waves.z[i]);
+        block.z[i] += height * (lane_height + waves.z[i]);
     }
 }
 
@@ -68,7 +68,7 @@ Image light_before(const Placement& placement, const PictureSplats& dots) {
             std::clamp<std::int64_t>(static_cast<std::int64_t>(y) / share_cell_px, 0, cells.height - 1);
         float* const cell = cells.at(column, row);
         cell[1] += light;
-        if (p.z - middle_plane(placement, x, y) > sheet_height * placement.scale_height(x, y))
+        if (p.z - middle_plane(placement, x, y) > lane_height * placement.scale_height(x, y))
             cell[0] += light;
     };
     const std::size_t count = dots.splats.position.size();
@@ -163,7 +163,7 @@ class DustDots {
             const Candidate dot = *candidate_of(cells[i]);
             block.x[i] = dot.x;
             block.y[i] = dot.y;
-            block.height[i] = sheet_thickness * placement_.scale_height(dot.x, dot.y);
+            block.height[i] = lane_thickness * placement_.scale_height(dot.x, dot.y);
             block.clumping[i] = 1.0f;
             block.random[i] = hash_of(dot.id, shared::PURPOSE_DEPTH);
             out.splats.alpha[first + i] = dot.alpha;

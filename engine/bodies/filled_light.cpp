@@ -17,7 +17,7 @@ namespace {
 // Found on M42, the Red Spider and Sh2-106: cores are taken, filaments and rims are not.
 constexpr double line_length = 0.2;  // of the width
 constexpr double share_blur = 0.01;  // of the width; lines leave straight edges
-constexpr int directions = 12;
+constexpr int opening_angles = 12;
 constexpr double share_from = 0.15, share_to = 0.45;  // that the opening takes away
 constexpr double least_light = 0.5;                   // of what is bright, that a core has
 constexpr double rim = 0.015;                         // of the width; a core's steep edges are its own
@@ -46,9 +46,9 @@ Image along_lines(const Image& image, double dx, double dy, int half, bool least
 Image opened_by_lines(const Image& image) {
     const int half =
         std::max(1, static_cast<int>(std::llround(0.5 * line_length * static_cast<double>(image.width))));
-    std::vector<Image> opened(directions);
-    parallel_for(directions, [&](std::int64_t i, int) {
-        const double angle = real::pi * static_cast<double>(i) / directions;
+    std::vector<Image> opened(opening_angles);
+    parallel_for(opening_angles, [&](std::int64_t i, int) {
+        const double angle = real::pi * static_cast<double>(i) / opening_angles;
         const double dx = real::cos(angle), dy = real::sin(angle);
         opened[static_cast<std::size_t>(i)] =
             along_lines(along_lines(image, dx, dy, half, true), dx, dy, half, false);

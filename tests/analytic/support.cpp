@@ -80,7 +80,7 @@ std::filesystem::path write_text(const TempFolder& folder, const std::string& to
     const Scene scene = scene_of(folder, toml);
     Pipeline pipeline(scene);
     const RenderedFrame frame = render_frame(pipeline);
-    const std::filesystem::path file = OutputPattern{folder, scene.output.path}.resolve(1);
+    const std::filesystem::path file = OutputPattern{folder.path(), scene.output.path}.resolve(1);
     const OutputParams& output = scene.output;
     write_frame(
         {file, output, output.width, output.height, {}, pipeline.layer_names(pipeline.frame_scene(1.0))},

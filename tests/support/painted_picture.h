@@ -12,19 +12,9 @@
 namespace astrosplat {
 namespace painted {
 
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wunused-function"
-namespace field {
-using namespace astrosplat::shared;
-namespace {
-#include "noise.glsl"
-}
-}  // namespace field
-#pragma GCC diagnostic pop
-
 inline float fbm(double x, double y, double frequency, std::uint32_t seed) {
-    return field::as_fbm(static_cast<float>(x), static_cast<float>(y), 0.5f, static_cast<float>(frequency), 6,
-                         2.0f, 0.55f, 0.5f, seed);
+    return shared::as_fbm(static_cast<float>(x), static_cast<float>(y), 0.5f, static_cast<float>(frequency),
+                          6, 2.0f, 0.55f, 0.5f, seed);
 }
 
 inline double random(std::uint32_t i, std::uint32_t purpose) {

@@ -78,8 +78,8 @@ TEST(Depths, GatherWhereTheNoiseIsHigh) {
         disk_depths(noise, *block);
         for (int i = 0; i < block->count; ++i, ++count) {
             const auto octave = [&](int k) {
-                return static_cast<double>(painted::field::as_noise_octave(
-                    block->x[i], block->y[i], block->z[i], noise.frequency[k], noise.seed, k));
+                return static_cast<double>(shared::as_noise_octave(block->x[i], block->y[i], block->z[i],
+                                                                   noise.frequency[k], noise.seed, k));
             };
             coarse += octave(0) + octave(1) + octave(2);
             fine += octave(3) + octave(4);
@@ -104,7 +104,7 @@ float drawn_plainly(const NoiseStack& noise, const DepthBlock& block, int i) {
         for (int k = 0; k < noise.count; ++k)
             energy +=
                 static_cast<double>(noise.gain[k]) / 0.26 *
-                static_cast<double>(painted::field::as_noise_octave(
+                static_cast<double>(shared::as_noise_octave(
                     block.x[i], block.y[i], static_cast<float>(place[c]), noise.frequency[k], noise.seed, k));
         weight[c] = std::exp(static_cast<double>(block.clumping[i]) * energy);
         sum += weight[c];

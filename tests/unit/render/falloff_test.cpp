@@ -67,7 +67,7 @@ TEST(Falloffs, HaveTheKinksTheySay) {
             const bool is_kink = jump > 0.5 * slope_jump(t, 0.008) && jump > 0.05;
             const bool said =
                 std::ranges::any_of(kinks, [&](double kink) { return std::fabs(kink - t) < 0.006; });
-            if (is_kink) EXPECT_TRUE(said) << name(falloff) << " at " << t;
+            EXPECT_TRUE(said || !is_kink) << name(falloff) << " at " << t;
         }
     }
 }
@@ -76,7 +76,7 @@ TEST(Falloffs, HaveTheKinksTheySay) {
 TEST(Falloffs, AreTabulatedAsTheirCentreIs) {
     for (const Falloff& falloff : all_falloffs()) {
         const double slope = (1.0 - falloff_value(falloff, 1e-3)) / 1e-3;
-        if (slope > 0.1) EXPECT_TRUE(traits_of(falloff).linear_in_distance) << name(falloff);
+        EXPECT_TRUE(traits_of(falloff).linear_in_distance || slope <= 0.1) << name(falloff);
     }
 }
 

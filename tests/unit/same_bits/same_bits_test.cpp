@@ -33,7 +33,7 @@
 
 namespace astrosplat {
 
-test::Bits& operator<<(test::Bits& bits, const SplatSet& set) {
+test::Bits operator<<(test::Bits bits, const SplatSet& set) {
     return bits << set.position << set.color << set.alpha << set.distance << set.id << set.uv << set.normal
                 << set.mesh << set.radius;
 }
