@@ -63,12 +63,12 @@ std::uint64_t hash_of(const ImDrawData& data) {
 
 constexpr int smallest_width = 1100, smallest_height = 680;  // px at scale 1
 
-struct Size {
+struct WindowSize {
     int width, height;
 };
 
 /// A size at scale 1 on the first monitor, no larger than that has room for.
-Size on_monitor(Size size) {
+WindowSize on_monitor(WindowSize size) {
     GLFWmonitor* const monitor = glfwGetPrimaryMonitor();
     if (!monitor) return size;
     float scale = 1.0f, vertical = 1.0f;
@@ -89,7 +89,8 @@ Window::Window(int width, int height, const std::string& title) {
     glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 1);
     glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
     glfwWindowHint(GLFW_OPENGL_FORWARD_COMPAT, GLFW_TRUE);
-    const Size size = on_monitor({width, height}), least = on_monitor({smallest_width, smallest_height});
+    const WindowSize size = on_monitor({width, height}),
+                     least = on_monitor({smallest_width, smallest_height});
     window_ = glfwCreateWindow(size.width, size.height, title.c_str(), nullptr, nullptr);
     if (!window_) {
         const std::string reason = glfw_reason("no OpenGL 4.1");
