@@ -1,0 +1,393 @@
+// What holds wherever features cross: one property a case, over scenes drawn from seeds (crossing.h). In the
+// lane ci these are the fewest seeds that let every pair of features meet; at night others follow. A scene
+// that fails names its seed and prints its text; alone it runs as
+//   ASTROSPLAT_CROSSING=SEED test_cross --gtest_filter='Seeds/*'  (or 'Runs/*')
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <map>
+#include <numeric>
+#include <set>
+
+#include "core/error.h"
+#include "cross/crossing_case.h"
+#include "cross/rendering.h"
+#include "edit/document.h"
+#include "edit/layers.h"
+#include "edit/render_task.h"
+#include "output/read_frame.h"
+#include "output/write.h"
+#include "scene/animate.h"
+#include "scene/describe.h"
+#include "support/printing.h"
+#include "support/quiet.h"
+#include "support/random_values.h"
+#include "support/temp_folder.h"
+
+namespace astrosplat::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::uint32_t nightly_seeds = 400;
+
+// --- pictures ---
+
+/// The first value of two images that differs by more than `within`, relative above 1; empty: none.
+std::string difference(const Image& found, const Image& expected, double within) {
+    if (found.pixels.size() != expected.pixels.size())
+        return fmt::format("{} values, expected {}", found.pixels.size(), expected.pixels.size());
+    for (std::size_t i = 0; i < expected.pixels.size(); ++i) {
+        const double a = double(found.pixels[i]), b = double(expected.pixels[i]);
+        if (!(std::fabs(a - b) <= within * std::fmax(1.0, std::fabs(b))))
+            return fmt::format("value {} of pixel {}: {}, expected {}", i % std::size_t(expected.channels),
+                               i / std::size_t(expected.channels), a, b);
+    }
+    return "";
+}
+
+void add(Image& sum, const Image& image, double weight = 1.0) {
+    if (sum.pixels.empty()) sum = make_image(image.width, image.height, image.channels);
+    for (std::size_t i = 0; i < image.pixels.size(); ++i)
+        sum.pixels[i] = float(double(sum.pixels[i]) + weight * double(image.pixels[i]));
+}
+
+std::map<std::string, Image> by_name(const Shot& shot) {
+    std::map<std::string, Image> layers;
+    for (std::size_t i = 0; i < shot.frame.layers.size(); ++i)
+        layers[i < shot.layers.size() ? shot.layers[i] : "unnamed"] = shot.frame.layers[i];
+    return layers;
+}
+
+Image colors_of(const Image& rgba) {
+    Image colors = rgba;
+    for (std::size_t i = 3; i < colors.pixels.size(); i += 4) colors.pixels[i] = 0.0f;
+    return colors;
+}
+
+bool has_lighten(const Crossing& c) {
+    return std::ranges::any_of(c.layers, [](const CrossingLayer& l) { return l.blend == Blend::lighten; });
+}
+
+/// The light of the sky as it arrives: it grows with the sky's gain, and nothing else does.
+Image light_of_sky(Window& window, Scene scene, double frame, Eye eye, const Image& beauty) {
+    scene.environment.gain *= 2.0f;
+    Image light = window.shot_of(scene, frame, eye).frame.beauty;
+    add(light, beauty, -1.0);
+    return colors_of(light);
+}
+
+TEST_P(Crossings, LayersAndSkyMakeTheBeauty) {
+    Window window(scene);
+    const Shot shot = window.shot_of(scene, frame(), eye());
+    ASSERT_EQ(shot.layers.size(), shot.frame.layers.size());
+    Image sum = make_image(crossing_width, crossing_height, 4);
+    for (const Image& layer : shot.frame.layers) add(sum, colors_of(layer));
+    const Image beauty = colors_of(shot.frame.beauty);
+    if (crossing.sky == Sky::none || !has_lighten(crossing)) {
+        if (crossing.sky != Sky::none)
+            add(sum, light_of_sky(window, scene, frame(), eye(), shot.frame.beauty));
+        EXPECT_EQ(difference(sum, beauty, 1e-5), "");
+        return;
+    }
+    // The brighter of sky and layer arrives: what the layers leave is the sky's, and never below 0.
+    add(sum, beauty, -1.0);
+    EXPECT_LE(*std::ranges::max_element(sum.pixels), 1e-5f);
+}
+
+TEST_P(Crossings, ABlurredFrameIsTheMeanOfItsSamples) {
+    const Shot shot = shot_of(scene, frame(), eye(), Extra::all, machine_of(crossing));
+    const std::vector<Shot> samples = samples_of(scene, frame(), eye());
+    const double share = 1.0 / double(samples.size());
+    Image beauty, coverage, count;
+    std::map<std::string, Image> layers;
+    for (const Shot& sample : samples) {
+        add(beauty, sample.frame.beauty, share);
+        add(coverage, sample.frame.coverage, share);
+        add(count, sample.frame.count, share);
+        for (const auto& [name, image] : by_name(sample)) add(layers[name], image, share);
+    }
+    EXPECT_EQ(difference(shot.frame.beauty, beauty, 1e-5), "");
+    EXPECT_EQ(difference(shot.frame.coverage, coverage, 1e-5), "");
+    EXPECT_EQ(difference(shot.frame.count, count, 1e-5), "");
+    const std::map<std::string, Image> found = by_name(shot);
+    ASSERT_EQ(found.size(), layers.size()) << "a layer of some sample is one of the frame";
+    for (const auto& [name, image] : layers) {
+        ASSERT_TRUE(found.count(name)) << name;
+        EXPECT_EQ(difference(found.at(name), image, 1e-5), "") << name;
+    }
+}
+
+/// Layers whose opacity is the pixel's alpha.
+bool is_plain(const CrossingLayer& layer) {
+    return layer.holdout == Answer::no && layer.blend == Blend::over;
+}
+
+TEST_P(Crossings, DepthIsTheMeanOfWhatIsSeenWithOrWithoutASky) {
+    const Image depth = shot_of(scene, frame(), eye(), Extra::all, machine_of(crossing)).frame.depth;
+    const std::vector<Shot> samples = samples_of(scene, frame(), eye());
+    const bool plain = std::ranges::all_of(crossing.layers, is_plain);
+    for (std::size_t i = 0; i < depth.pixels.size(); ++i) {
+        double sum = 0.0, weight = 0.0;
+        for (const Shot& sample : samples) {
+            const RenderedFrame& alone = sample.without_sky.front();
+            const double opacity = double(alone.opacity.pixels[i]);
+            if (plain) {
+                ASSERT_NEAR(opacity, double(alone.beauty.pixels[4 * i + 3]), 1e-5) << i;
+            }
+            sum += opacity * double(alone.depth.pixels[i]), weight += opacity;
+        }
+        const double expected = weight > 0.0 ? sum / weight : 0.0;
+        // Behind what the stop rule closes nothing is seen, and that is another place under a bright sky.
+        ASSERT_NEAR(double(depth.pixels[i]), expected, 1e-4 * expected) << i;
+    }
+}
+
+TEST_P(Crossings, AnyMachineAndTheWindowGiveTheSameBits) {
+    const Shot plain = shot_of(scene, frame(), eye(), Extra::of_scene);
+    const Shot other = shot_of(scene, frame(), eye(), Extra::of_scene, machine_of(crossing));
+    EXPECT_EQ(other.layers, plain.layers);
+    EXPECT_EQ(other.frame.beauty.pixels, plain.frame.beauty.pixels);
+    EXPECT_EQ(other.frame.depth.pixels, plain.frame.depth.pixels);
+    EXPECT_EQ(other.frame.coverage.pixels, plain.frame.coverage.pixels);
+    EXPECT_EQ(other.frame.count.pixels, plain.frame.count.pixels);
+    ASSERT_EQ(other.frame.layers.size(), plain.frame.layers.size());
+    for (std::size_t i = 0; i < plain.frame.layers.size(); ++i)
+        EXPECT_EQ(other.frame.layers[i].pixels, plain.frame.layers[i].pixels) << i;
+    const Shot all = shot_of(scene, frame(), eye());
+    EXPECT_EQ(all.frame.beauty.pixels, plain.frame.beauty.pixels) << "extra channels change no pixel";
+    Scene before = scene;
+    before.layers.front().look.grade.gain *= 0.5f;
+    before.layers.back().render.opacity *= 0.5f;
+    before.environment.gain *= 0.5f;
+    Window window(scene);
+    window.shot_of(before, frame() + 1.0, eye(), Extra::of_scene);
+    const Shot shown = window.shot_of(scene, frame(), eye(), Extra::of_scene);
+    EXPECT_EQ(shown.frame.beauty.pixels, plain.frame.beauty.pixels);
+}
+
+// --- values ---
+
+bool is_tried(const ParameterSpec& spec) {
+    using Type = ParameterType;
+    constexpr std::array types = {Type::boolean, Type::number,   Type::choice,
+                                  Type::vector,  Type::position, Type::color};
+    const std::string& key = spec.generic_key.text();
+    return std::ranges::find(types, spec.type) != types.end() && !key.starts_with("layer.source") &&
+           !key.starts_with("reference") && !key.starts_with("provenance") &&
+           !key.starts_with("camera.file") && key != "output.resolution" && key != "output.fps" &&
+           key != "environment.tile_height";
+}
+
+/// Specs of the parameters whose values a scene may change without another set; of a group, or of all.
+std::vector<ParameterSpec> tried_specs(Scene scene, const std::string& group) {
+    std::vector<ParameterSpec> specs;
+    for (const Parameter& parameter : describe(scene).parameters)
+        if (is_tried(parameter.spec) &&
+            (group.empty() || parameter.spec.generic_key.text().starts_with(group)))
+            specs.push_back(parameter.spec);
+    return specs;
+}
+
+Value value_at(Scene scene, const ParameterKey& key) { return find_parameter(describe(scene), key)->get(); }
+
+void set_value(Scene& scene, const ParameterKey& key, const Value& value) {
+    find_parameter(describe(scene), key)->set(value);
+}
+
+/// Another scene that hashes alike has the same pixels.
+TEST_P(Crossings, AnotherPixelHasAnotherHash) {
+    Window window(scene);
+    const Shot shot = window.shot_of(scene, frame(), eye(), Extra::of_scene);
+    const std::string hash = hash_of(scene, crossing_frame, eye());
+    const auto expect_true_of = [&](const Scene& changed, const std::string& what) {
+        if (hash_of(changed, crossing_frame, eye()) != hash) return;
+        const Shot other = window.shot_of(changed, frame(), eye(), Extra::of_scene);
+        EXPECT_EQ(other.frame.beauty.pixels == shot.frame.beauty.pixels, true) << what;
+        EXPECT_EQ(other.frame.depth.pixels == shot.frame.depth.pixels, true) << what;
+        EXPECT_EQ(other.layers, shot.layers) << what;
+    };
+    for (std::size_t i = 0; i < scene.layers.size(); ++i) {
+        Scene changed = scene;
+        changed.layers[i].look.grade.gain *= 0.5f;
+        changed.layers[i].transform.translate.x += 0.4;
+        expect_true_of(changed, "layer " + layer_name(i));
+    }
+    Scene dimmer = scene;
+    dimmer.environment.gain *= 0.5f;
+    expect_true_of(dimmer, "environment.gain");
+    Numbers numbers(crossing.seed + 7);
+    const std::vector<ParameterSpec> specs = tried_specs(scene, "");
+    for (int i = 0; i < 12; ++i) {
+        const ParameterSpec& spec = specs[numbers.below(specs.size())];
+        Scene changed = scene;
+        set_value(changed, spec.key, random_value(spec, numbers));
+        try {
+            expect_true_of(changed, spec.key.text() + " = " + to_toml(value_at(changed, spec.key)));
+        } catch (const InputError&) {
+            // a rule between parameters, which loading would have found
+        }
+    }
+    if (hash_of(scene, crossing_frame + 1, eye()) == hash) {
+        const Shot next = window.shot_of(scene, frame() + 1.0, eye(), Extra::of_scene);
+        EXPECT_EQ(next.frame.beauty.pixels == shot.frame.beauty.pixels, true) << "the next frame";
+    }
+}
+
+struct Chosen {
+    ParameterSpec spec;
+    Value value;
+};
+
+/// A key of the group and a value that the scene takes, another than it has.
+Chosen choose(const Crossing& c, const Scene& scene) {
+    Numbers numbers(c.seed + 3);
+    const std::vector<ParameterSpec> specs = tried_specs(scene, std::string(name_of(c.assigned)));
+    while (true) {
+        const ParameterSpec& spec = specs[numbers.below(specs.size())];
+        const Value value = random_value(spec, numbers);
+        if (value != value_at(scene, spec.key)) return {spec, value};
+    }
+}
+
+/// Whether `scene` sets its blur itself, so that a frame without blur is another question.
+bool is_of_blur(const std::string& key) {
+    return key == "camera.shutter" || key == "camera.f_number" || key == "output.samples";
+}
+
+TEST_P(Crossings, WhatIsSetIsWhatIsRendered) {
+    if (crossing.assigned == Assigned::nothing) return;
+    const Chosen chosen = choose(crossing, scene_at(scene, frame()));
+    const ParameterKey& key = chosen.spec.key;
+    SCOPED_TRACE("--set " + key.text() + "=" + to_toml(chosen.value));
+    const std::vector<Assignment> assignments = {{key, to_toml(chosen.value)}};
+    Scene given;
+    try {
+        given = load_scene(folder / "scene.toml", assignments);
+    } catch (const InputError&) {
+        return;  // a rule between parameters
+    }
+    Scene expected = scene_at(scene, frame());
+    set_value(expected, key, chosen.value);
+    for (const double at : {1.0, frame(), frame() + 0.2, 100.0})
+        EXPECT_EQ(to_toml(value_at(scene_at(given, at), key)), to_toml(value_at(expected, key))) << at;
+    const bool along_the_way = std::ranges::any_of(
+        crossing.layers, [](const CrossingLayer& l) { return l.source == Source::random_stars; });
+    if (along_the_way || is_of_blur(key.text())) return;  // the way is another then
+    stop_animation(expected);
+    for (Scene* each : {&given, &expected}) each->camera.shutter = each->camera.f_number = 0.0;
+    Window window(given);
+    EXPECT_EQ(difference(window.shot_of(given, frame(), eye()).frame.beauty,
+                         window.shot_of(expected, frame(), eye()).frame.beauty, 0.0),
+              "");
+}
+
+// --- names ---
+
+TEST_P(Crossings, FilesLieInTheFolderNamed) {
+    for (const std::int64_t number : frames_of(crossing))
+        for (const Eye each : eyes_of(crossing)) {
+            const fs::path expected = folder / file_of_frame(crossing, number, each);
+            EXPECT_EQ(batch_file(scene, number, each), expected);
+            EXPECT_EQ(file_of_output(folder, output_path(crossing), number, each), expected);
+        }
+    const Shot shot = shot_of(scene, frame(), eye(), Extra::of_scene);
+    const fs::path file = folder / file_of_frame(crossing, crossing_frame, eye());
+    fs::create_directories(file.parent_path());
+    write_shot(scene, shot, crossing_frame, eye(), file);
+    ASSERT_TRUE(fs::exists(file));
+    const FrameHeader header = read_frame_header(file);
+    EXPECT_EQ(header.frame, crossing_frame);
+    if (has_two_eyes(crossing.projection)) {
+        EXPECT_EQ(header.eye, eye());
+    }
+    EXPECT_EQ(header.frame_hash, hash_of(scene, crossing_frame, eye()));
+    EXPECT_EQ(header.pixel_hash, pixel_hash(shot.frame.beauty));
+}
+
+/// What the dialog offers is what the job does: the same names as --batch, and a movie beside them.
+TEST_P(Crossings, TheWindowsJobsHaveTheNamesOfBatch) {
+    const Document document = Document::open(folder / "scene.toml");
+    for (const RenderKind kind : {RenderKind::range, RenderKind::frame}) {
+        const RenderTask task = make_render_task(document, kind, frame());
+        ASSERT_EQ(render_problem(task), "");
+        const std::string output = render_files(task).string();
+        for (const Eye each : eyes_of(crossing))
+            EXPECT_EQ(file_of_output("/nowhere", output, crossing_frame, each),
+                      folder / file_of_frame(crossing, crossing_frame, each));
+    }
+    RenderTask movie = make_render_task(document, RenderKind::movie, frame());
+    ASSERT_EQ(render_problem(movie), "");
+    EXPECT_EQ(render_target(movie), folder / folder_of_movie(crossing) / "shot.mp4");
+    fs::create_directories(movie_folder(render_target(movie)));
+    const fs::path first = file_of_output("/nowhere", render_files(movie).string(), 7, Eye::centre);
+    EXPECT_EQ(first, movie_folder(render_target(movie)) / "frame.000007.png");
+}
+
+// --- edits ---
+
+TEST_P(Crossings, UndoOfEverythingRestoresTheBytes) {
+    Document document = Document::open(folder / "scene.toml");
+    Numbers numbers(crossing.seed + 11);
+    std::vector<Scene> states = {document.scene()};
+    const auto edited = [&] {
+        if (!(document.scene() == states.back())) states.push_back(document.scene());
+    };
+    for (int i = 0; i < 10; ++i) {
+        const std::vector<ParameterSpec> specs = tried_specs(document.scene(), "");
+        const ParameterSpec& spec = specs[numbers.below(specs.size())];
+        try {
+            document.set(spec.key, random_value(spec, numbers), numbers.frame());
+        } catch (const InputError&) {
+            EXPECT_EQ(document.scene(), states.back()) << spec.key;
+        }
+        edited();
+    }
+    document.edit("Duplicate", [](Scene& s) { duplicate_layer(s, 0); });
+    edited();
+    document.edit("Move", [](Scene& s) { move_layer(s, 0, s.layers.size() - 1); });
+    edited();
+    document.edit("Remove", [](Scene& s) { remove_layer(s, 0); });
+    edited();
+    Scene loaded = parse_scene(document.text_for(folder / "scene.toml"), folder / "scene.toml");
+    EXPECT_EQ(loaded, document.scene()) << "what is saved loads as it was";
+    while (document.can_undo()) {
+        ASSERT_FALSE(states.empty());
+        EXPECT_EQ(document.scene(), states.back());
+        states.pop_back();
+        document.undo();
+    }
+    EXPECT_EQ(states.size(), 1u);
+    EXPECT_EQ(document.text_for(folder / "scene.toml"), text);
+    EXPECT_FALSE(document.edited());
+}
+
+// --- seeds ---
+
+std::vector<std::uint32_t> all_seeds() {
+    static const std::vector<std::uint32_t> seeds = covering_seeds(possible_pairs(), pool);
+    return seeds;
+}
+
+INSTANTIATE_TEST_SUITE_P(Seeds, Crossings, testing::ValuesIn(seeds_or_one(all_seeds)), seed_name);
+INSTANTIATE_TEST_SUITE_P(Nightly, Crossings, testing::Range(pool, pool + nightly_seeds), seed_name);
+
+TEST(CrossingSeeds, LetEveryPairOfFeaturesMeet) {
+    std::set<FeaturePair> met;
+    for (const std::uint32_t seed : all_seeds())
+        for (const FeaturePair& pair : pairs_of(crossing_of(seed))) met.insert(pair);
+    const std::vector<FeaturePair> possible = possible_pairs();
+    EXPECT_GT(possible.size(), 3900u);
+    std::string missed;
+    for (const auto& [a, b] : possible)
+        if (!met.count({a, b}))
+            missed += feature_names()[std::size_t(a)] + " x " + feature_names()[std::size_t(b)] + "\n";
+    EXPECT_EQ(missed, "");
+}
+
+}  // namespace
+}  // namespace astrosplat::test
