@@ -5,17 +5,23 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdint>
+#include <filesystem>
 #include <new>
+#include <nlohmann/json.hpp>
 #include <set>
+#include <string>
+#include <vector>
 
 #include "batch_plan.h"
+#include "core/atomic_file.h"
 #include "core/clock.h"
 #include "core/error.h"
 #include "core/log.h"
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "core/text.h"
-#include "dry_run.h"
+#include "core/vector_target.h"
 #include "estimate.h"
 #include "generate/generate.h"
 #include "interrupt.h"
@@ -23,10 +29,155 @@
 #include "pipeline.h"
 #include "places.h"
 #include "progress_report.h"
-#include "stats.h"
+#include "sampled_run.h"
 
 namespace astrosplat {
+
 namespace {
+
+// The figures of a batch run as JSON (--stats): per frame, per layer, and of the whole run.
+
+struct FrameFigures {
+    std::int64_t frame = 0;
+    std::filesystem::path file;
+    double seconds = 0.0;         // look, render and write
+    double write_seconds = 0.0;   // encoding, compressing, until it is on the disk
+    double render_seconds = 0.0;  // from shaded splats to the finished float image in memory
+    std::int64_t splats_in = 0, splats_drawn = 0;
+    std::string sha256;  // of the float pixels' bytes
+};
+
+struct FailedFrame {
+    std::int64_t frame = 0;
+    std::filesystem::path file;
+    std::string error;
+};
+
+struct RunFigures {
+    std::vector<FrameFigures> frames;  // those rendered and written in this run
+    std::vector<FailedFrame> failed;
+    std::vector<LayerStatistics> layers;
+    double seconds = 0.0;
+};
+
+using Json = nlohmann::ordered_json;
+
+/// A number, a text or a truth as JSON. Lists and objects are not made of Json: its destructor takes memory
+/// for them, and ends the program where there is none.
+template <class T>
+std::string json_text(const T& value) {
+    return Json(value).dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+std::string json_text(const std::filesystem::path& file) { return json_text(file.string()); }
+
+using Members = std::vector<std::pair<std::string, std::string>>;  // name and JSON
+
+std::string object_text(const Members& members, const std::string& indent = "      ") {
+    std::string text = "{";
+    for (const auto& [name, value] : members)
+        text += (text.size() > 1 ? ",\n" : "\n") + indent + json_text(name) + ": " + value;
+    return text + "\n" + indent.substr(2) + "}";
+}
+
+std::string object_of(const FrameFigures& frame) {
+    return object_text({{"frame", json_text(frame.frame)},
+                        {"file", json_text(frame.file)},
+                        {"seconds", json_text(frame.seconds)},
+                        {"render_seconds", json_text(frame.render_seconds)},
+                        {"write_seconds", json_text(frame.write_seconds)},
+                        {"splats_in", json_text(frame.splats_in)},
+                        {"splats_drawn", json_text(frame.splats_drawn)},
+                        {"sha256", json_text(frame.sha256)}});
+}
+
+std::string object_of(const LayerStatistics& layer) {
+    return object_text({{"name", json_text(layer.name)},
+                        {"test_positions", json_text(layer.test_positions)},
+                        {"kept", json_text(layer.kept)},
+                        {"zero_alpha", json_text(layer.zero_alpha)},
+                        {"drawn", json_text(layer.drawn)},
+                        {"generate_seconds", json_text(layer.generate_seconds)},
+                        {"look_seconds", json_text(layer.look_seconds)},
+                        {"cached", json_text(layer.cached)},
+                        {"geometry_cached", json_text(layer.geometry_cached)}});
+}
+
+std::string object_of(const FailedFrame& frame) {
+    return object_text({{"frame", json_text(frame.frame)},
+                        {"file", json_text(frame.file)},
+                        {"error", json_text(frame.error)}});
+}
+
+template <class T>
+std::string list_of(const std::vector<T>& items) {
+    std::string text = "[";
+    for (const T& item : items) text += (text.size() > 1 ? ",\n    " : "\n    ") + object_of(item);
+    return text + (items.empty() ? "]" : "\n  ]");
+}
+
+/// Writes the figures whole or not at all. Throws OutputError.
+void write_stats(const std::filesystem::path& file, const RunFigures& figures) {
+    const Members members = {{"frames", list_of(figures.frames)},
+                             {"failed", list_of(figures.failed)},
+                             {"layers", list_of(figures.layers)},
+                             {"seconds", json_text(figures.seconds)},
+                             {"peak_memory_bytes", json_text(peak_memory_bytes())},
+                             {"threads", json_text(thread_count())},
+                             {"vector_target", json_text(vector_target())},
+                             {"version", json_text(ASTROSPLAT_VERSION)}};
+    write_file_atomically(file, object_text(members, "  ") + "\n");
+}
+
+// --batch --dry-run: what would be done, and what it would take. In: a plan. Out: lines on stdout, and
+// nothing else.
+
+std::string human_seconds(double seconds) {
+    if (seconds < 99.5) return fmt::format("{:.{}f} s", seconds, seconds < 0.95 ? 2 : seconds < 9.5 ? 1 : 0);
+    return clock_text(seconds);
+}
+
+/// The sets to be made and the cost of the frames, estimated from a hundredth of the splats.
+void print_costs(const BatchPlan& plan, SampledRun& sample) {
+    const std::int64_t count = count_to_render(plan);
+    if (sample.making_seconds() > 0.0)
+        fmt::print("sets are made in about {}\n", human_seconds(sample.making_seconds()));
+    if (count == 0) return;
+    const FrameCost cost = sample.frame_cost();
+    const auto all = static_cast<double>(count);
+    fmt::print("time about {} a frame, {} in all\n", human_seconds(cost.seconds),
+               human_seconds(sample.making_seconds() + all * cost.seconds));
+    if (!cost.file_bytes) return;
+    const auto bytes = static_cast<double>(*cost.file_bytes);
+    fmt::print("files about {} a frame, {} in all\n", human_bytes(bytes), human_bytes(all * bytes));
+}
+
+/// Frames, layers, memory, time and bytes, then a line a frame. Throws as SampledRun and estimate do.
+void print_plan(const BatchPlan& plan) {
+    const OutputParams& output = plan.scene.output;
+    SampledRun sample(plan, SampledRun::Layers::all);
+    const JobEstimate job = estimate(plan, sample);
+    const auto count = static_cast<std::int64_t>(plan.frames.size());
+    fmt::print("scene {}\n", printable(plan.scene.file.string()));
+    fmt::print("frame {}x{} px", output.width, output.height);
+    if (plan.region.width > 0) {
+        fmt::print(", region {},{},{},{}", plan.region.x, plan.region.y, plan.region.width,
+                   plan.region.height);
+    }
+    fmt::print("\nframes {}: {} to render, {} there already\n", count, count_to_render(plan),
+               count - count_to_render(plan));
+    for (const JobEstimate::Layer& layer : job.layers) {
+        fmt::print("layer {}: about {}\n", layer.name, human_count(layer.splats, "splat"));
+    }
+    if (job.sky_kept)
+        fmt::print("sky: {}\n", *job.sky_kept ? "in the cache" : "is made of its picture first");
+    if (!job.streamed.empty()) fmt::print("read block by block: {}\n", fmt::join(job.streamed, ", "));
+    fmt::print("memory about {}, threads {}\n", human_bytes(static_cast<double>(job.bytes)), thread_count());
+    print_costs(plan, sample);
+    for (const FramePlan& frame : plan.frames) {
+        fmt::print("{} {} {}\n", frame.render ? "render" : "keep", frame.frame,
+                   printable(frame.file.string()));
+    }
+}
 
 /// Throws OutputError where a frame or the figures could not be written.
 void check_writable(const BatchPlan& plan, const BatchOptions& options) {

@@ -17,8 +17,8 @@
 #include "scene/animate.h"
 #include "scene/check.h"
 #include "scene/frames.h"
-#include "scene/input_files.h"
 #include "scene/load.h"
+#include "scene/scene_files.h"
 
 namespace astrosplat {
 namespace fs = std::filesystem;

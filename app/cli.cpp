@@ -7,23 +7,122 @@
 #include <CLI/Formatter.hpp>
 #include <algorithm>
 #include <cstdio>
+#include <string>
 
-#include "build_facts.h"
-#include "cli_commands.h"
-#include "cli_options.h"
+#include "batch.h"
+#include "batch_plan.h"
+#include "cli_parts.h"
 #include "core/error.h"
 #include "core/log.h"
+#include "core/memory.h"
 #include "core/parallel.h"
 #include "core/text.h"
 #include "core/vector_target.h"
 #include "interrupt.h"
 #include "json_log.h"
 #include "places.h"
-#include "sets_only.h"
+#include "progress_report.h"
+#include "scene/animate.h"
+#include "scene/layer_setup.h"
 #include "window.h"
 
 namespace astrosplat {
+
+/// Of the sources, 12 hexadecimal digits, with "-dirty" where files had changed; "unknown" outside a
+/// repository.
+extern const char* const built_commit;  // of commit.cmake
+
 namespace {
+
+// Options of the program without a command. Together with the commands' they are the command line's words,
+// said once: parsing, help, manual page and completion come from them.
+
+void add_batch(CLI::App& app, Invocation& call) {
+    BatchOptions& batch = call.batch_options;
+    app.add_flag("--batch", call.batch, "Renders the scene's frames without a window");
+    app.add_option("SCENE", call.input, "A scene; without --batch also a picture, mesh or splat file");
+    add_frame_choice(app, batch);
+    app.add_flag("--resume", batch.resume, "Skips frames that are there already, renders missing ones");
+    app.add_flag("--overwrite", batch.overwrite, "Replaces files that are there already");
+    app.add_flag("--dry-run", batch.dry_run, "Tells frames, time, memory and bytes, and does nothing");
+    app.add_flag("--sets-only", batch.sets_only, "Generates the sets into the cache, renders nothing");
+    add_value(app, "--stats", batch.stats, "FILE.json", "Writes figures as JSON");
+    add_progress(app, batch.progress);
+}
+
+void add_submit(CLI::App& app, SubmitOptions& submit) {
+    add_value(app, "--submit", submit.system, "slurm",
+              "Renders what is missing of the scene's frames on a farm, by --batch with --resume");
+    add_value(app, "--chunk", submit.chunk, "N", "With --submit: frames of a task (default: 10)");
+    add_value(app, "--partition", submit.partition, "NAME", "With --submit: where the tasks run");
+}
+
+void add_screenshot(CLI::App& app, Invocation& call) {
+    ScreenshotOptions& shot = call.screenshot;
+    add_value(app, "--screenshot", shot.output, "OUT.png|OUT.exr",
+              "Saves what the window would show, without one");
+    add_value(app, "--size", shot.size, "WxH", "With --screenshot: its size in pixels (default: 960x540)");
+    add_value(app, "--frame", shot.frame, "N", "With --screenshot: the frame (default: the first)");
+    app.add_flag("--ui", shot.ui, "With --screenshot: the whole window with its panels");
+    app.add_flag("--settled", shot.settled, "With --screenshot: the final frame, not the preview");
+    app.add_flag("--opengl", shot.opengl, "With --screenshot: a preview drawn by OpenGL on any machine");
+}
+
+/// Of window, --batch, --submit and --screenshot.
+void add_program_options(CLI::App& app, Invocation& call) {
+    add_common(app, call.common);
+    add_batch(app, call);
+    add_submit(app, call.submit);
+    add_screenshot(app, call);
+}
+
+// The text of --version: which program this is, of which commit, and with what it was built and runs. Out:
+// text.
+
+#if defined(__clang__)
+constexpr const char* compiler = "Clang " __clang_version__;
+#else
+constexpr const char* compiler = "GCC " __VERSION__;
+#endif
+
+/// "astrosplat VERSION" on the first line; then one fact a line: "commit ...", "built with ..." (compiler,
+/// kind of build), "libraries ..." (name and version of each, as they were at the build) and "instructions
+/// ..." (the set in use on this machine).
+std::string version_text() {
+    return fmt::format(
+        "astrosplat {}\n"
+        "commit {}\n"
+        "built with {}, {}\n"
+        "libraries {}\n"
+        "instructions {}\n",
+        ASTROSPLAT_VERSION, built_commit, compiler, ASTROSPLAT_BUILD_KIND, ASTROSPLAT_LIBRARIES,
+        vector_target());
+}
+
+// --batch --sets-only: generates the sets that the frames need and keeps them in the cache, one after the
+// other, and renders nothing: what a farm does once before its tasks begin.
+
+/// Reports on stderr; the exit code. Throws InputError (also where an option beside asks for frames or there
+/// is no cache), OutputError (the cache cannot be written), Cancelled.
+int run_sets_only(const BatchOptions& options) {
+    if (options.cache.folder.empty()) bad_input("--sets-only", "", "a cache that keeps them", "none");
+    if (options.dry_run || options.stats)
+        bad_input("--sets-only", "",
+                  fmt::format("no {} beside it", options.dry_run ? "--dry-run" : "--stats"), "both");
+    const BatchPlan plan = plan_frames(options);
+    defer_interrupts();
+    prove_writable(options.cache.folder);
+    ProgressReport report(options.progress);
+    for (const LayerParams& layer : plan.scene.layers) {
+        if (!ever_visible(plan.scene, layer)) continue;
+        const LoadedSet loaded = load_source(plan.cache, source_of(plan.scene, layer), layer.name,
+                                             report.begin_step("preparing " + layer.name));
+        log_info(fmt::format("layer {}: {}{}", layer.name, human_count(loaded.set.size(), "splat"),
+                             loaded.cached ? ", kept already" : ""));
+    }
+    check_unchanged(plan.hasher.files(), Progress{{}, &interrupted()});
+    return exit_done;
+}
 
 void apply_common(const CommonOptions& common) {
     if (common.quiet) set_log_level(LogLevel::warning);

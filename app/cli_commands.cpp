@@ -1,13 +1,11 @@
-#include "cli_commands.h"
+#include "cli_parts.h"
 
 #include <fmt/format.h>
 
 #include "command_words.h"
-#include "completion.h"
 #include "core/error.h"
 #include "core/file_format.h"
 #include "core/text.h"
-#include "manual.h"
 #include "prepare_settings.h"
 #include "scene/describe.h"
 

@@ -29,4 +29,6 @@ void add_frame_choice(CLI::App& app, BatchOptions& batch);
 CLI::App& add_command(CLI::App& app, Invocation& call, const char* name, const char* help,
                       std::function<int()> action);
 
+void add_commands(CLI::App& app, Invocation& call);
+
 }  // namespace astrosplat

@@ -32,4 +32,11 @@ struct CommandWords {
 /// The program's own words first, then those of its commands, as they stand in the help.
 std::vector<CommandWords> command_words(const CLI::App& app);
 
+/// `shell`: bash, zsh or fish. `keys`: what --set completes. Throws InputError for another shell.
+std::string completion_script(const std::string& shell, const std::vector<CommandWords>& commands,
+                              const std::vector<std::string>& keys);
+
+std::string command_manual(const std::vector<CommandWords>& commands);
+std::string scene_manual();
+
 }  // namespace astrosplat

@@ -1,5 +1,5 @@
 // compare: how far two images are apart, in linear premultiplied light.
-#include "compare.h"
+#include "commands.h"
 
 #include <limits>
 #include <nlohmann/json.hpp>

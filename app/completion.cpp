@@ -1,4 +1,4 @@
-#include "completion.h"
+#include "command_words.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

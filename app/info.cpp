@@ -1,5 +1,5 @@
 // info: what any file the program reads holds.
-#include "info.h"
+#include "commands.h"
 
 #include <fmt/format.h>
 
@@ -12,7 +12,7 @@
 #include "core/file.h"
 #include "core/file_format.h"
 #include "core/text.h"
-#include "output/hashed_text.h"
+#include "output/metadata.h"
 #include "output/read_frame.h"
 #include "report.h"
 #include "scene/check.h"

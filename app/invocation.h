@@ -5,18 +5,8 @@
 #include <string>
 
 #include "batch.h"
-#include "camera_command.h"
-#include "compare.h"
-#include "export_command.h"
-#include "fidelity.h"
-#include "info.h"
-#include "new.h"
-#include "parameters.h"
-#include "prepare.h"
-#include "splat_commands.h"
-#include "status_command.h"
+#include "commands.h"
 #include "submit/submit.h"
-#include "verify.h"
 #include "viewer/run_viewer.h"
 
 namespace astrosplat {

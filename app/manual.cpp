@@ -1,4 +1,4 @@
-#include "manual.h"
+#include "command_words.h"
 
 #include <fmt/format.h>
 

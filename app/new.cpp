@@ -1,5 +1,5 @@
 // new: a first scene around a picture.
-#include "new.h"
+#include "commands.h"
 
 #include <fmt/format.h>
 
@@ -15,7 +15,6 @@
 #include "core/text.h"
 #include "places.h"
 #include "scene/new_scene.h"
-#include "scene/picture_scene.h"
 #include "scene/suggest.h"
 #include "source/picture.h"
 

@@ -1,6 +1,6 @@
 // parameters: every key of a scene file with default, range and meaning, from the one description in the
 // engine; of one scene also what they are there.
-#include "parameters.h"
+#include "commands.h"
 
 #include <fmt/format.h>
 

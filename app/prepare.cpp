@@ -1,5 +1,5 @@
 // prepare: asks whether the folder can be written, reads, works, writes, and tells what a scene needs.
-#include "prepare.h"
+#include "commands.h"
 
 #include <fmt/format.h>
 

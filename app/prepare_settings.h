@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "prepare.h"
+#include "commands.h"
 #include "source/source.h"
 
 namespace astrosplat {

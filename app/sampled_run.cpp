@@ -12,7 +12,6 @@
 #include "output/write.h"
 #include "scene/animate.h"
 #include "scene/layer_setup.h"
-#include "scene/layer_source.h"
 #include "sets/kept.h"
 #include "sets/set_sample.h"
 #include "sets/star_source.h"

@@ -1,5 +1,5 @@
 // generate and convert: splats into files, without rendering.
-#include "splat_commands.h"
+#include "commands.h"
 
 #include <fmt/format.h>
 
@@ -15,7 +15,7 @@
 #include "interrupt.h"
 #include "places.h"
 #include "progress_report.h"
-#include "scene/layer_source.h"
+#include "scene/layer_setup.h"
 #include "scene/load.h"
 #include "scene/suggest.h"
 #include "sets/load_source.h"

@@ -1,6 +1,6 @@
 // status: every frame that --batch would render, looked at where it belongs, and counted by what was found;
 // then the tasks that a farm has of them.
-#include "status_command.h"
+#include "commands.h"
 
 #include <fmt/format.h>
 

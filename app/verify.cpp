@@ -1,7 +1,7 @@
 // verify: a frame's header says which frame, size, region and eye it is of. Where the scene gives the same
 // frame hash, the frame is rendered and written beside it, and the two files are compared; so what rounding,
 // views and compression do to both is the same.
-#include "verify.h"
+#include "commands.h"
 
 #include <fmt/format.h>
 
@@ -18,8 +18,8 @@
 #include "core/text.h"
 #include "estimate.h"
 #include "interrupt.h"
-#include "output/compare_stored.h"
-#include "output/hashed_text.h"
+#include "output/compare.h"
+#include "output/metadata.h"
 #include "output/read_frame.h"
 #include "output/write.h"
 #include "pipeline.h"

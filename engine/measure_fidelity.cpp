@@ -13,9 +13,8 @@
 #include "look/apply.h"
 #include "pipeline.h"
 #include "scene/animate.h"
-#include "scene/front_picture.h"
+#include "scene/front_frame.h"
 #include "scene/layer_setup.h"
-#include "scene/layer_source.h"
 #include "sets/kept.h"
 #include "source/texture.h"
 

@@ -14,7 +14,6 @@
 #include "look/apply.h"
 #include "scene/animate.h"
 #include "scene/layer_setup.h"
-#include "scene/layer_source.h"
 #include "sets/kept.h"
 #include "source/texture.h"
 #include "streamed/streamed_set.h"

@@ -20,8 +20,8 @@
 #include "scene/camera_file.h"
 #include "scene/describe.h"
 #include "scene/entries.h"
-#include "scene/path_text.h"
 #include "scene/save.h"
+#include "scene/scene_files.h"
 #include "scene/suggest.h"
 
 namespace astrosplat {

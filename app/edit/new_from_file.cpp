@@ -15,7 +15,6 @@
 #include "core/file_format.h"
 #include "core/real.h"
 #include "scene/new_scene.h"
-#include "scene/picture_scene.h"
 #include "scene/value.h"
 #include "source/mesh.h"
 #include "source/obj.h"

@@ -4,8 +4,8 @@
 
 #include "scene/check.h"
 #include "scene/describe.h"
+#include "scene/entries.h"
 #include "scene/load.h"
-#include "scene/toml_read.h"
 
 namespace astrosplat {
 

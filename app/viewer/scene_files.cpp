@@ -4,8 +4,8 @@
 #include <tuple>
 #include <utility>
 
-#include "scene/input_files.h"
 #include "scene/layer_setup.h"
+#include "scene/scene_files.h"
 #include "source/texture.h"
 
 namespace astrosplat {

@@ -8,7 +8,7 @@
 #include "generate/lattice.h"
 #include "pipeline.h"
 #include "scene/animate.h"
-#include "scene/layer_source.h"
+#include "scene/layer_setup.h"
 
 namespace astrosplat {
 namespace {

@@ -12,9 +12,8 @@
 #include "output/format.h"
 #include "scene/animate.h"
 #include "scene/describe.h"
-#include "scene/input_files.h"
 #include "scene/layer_setup.h"
-#include "scene/layer_source.h"
+#include "scene/scene_files.h"
 #include "source/mesh.h"
 #include "source/obj.h"
 

@@ -1,4 +1,6 @@
 // Differences of two images, in one pass over the rows and one selection for the percentile.
+// Both files are read in bands of rows, as floats: 8 and 16 bits and halves have floats of their own each,
+// and 32-bit counts are stored as floats.
 #include "output/compare.h"
 
 #include <fmt/format.h>
@@ -8,13 +10,18 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <vector>
 
 #include "core/error.h"
 #include "core/real.h"
+#include "source/open_picture.h"
 #include "source/texture.h"
 
+// fmt first: OpenImageIO brings a copy of it with other settings.
+
 namespace astrosplat {
+
 namespace {
 
 bool same_bits(float a, float b) {
@@ -80,6 +87,114 @@ ImageComparison compare_files(const std::filesystem::path& a, const std::filesys
                   fmt::format("{} x {} pixels as in {}", first.width, first.height, a.string()),
                   fmt::format("{} x {}", second.width, second.height));
     return compare_images(first, second);
+}
+
+namespace {
+
+/// Size and channels, which two files must share to be compared.
+std::string form_of(const OIIO::ImageSpec& spec) {
+    std::string text = fmt::format("{}x{} px", spec.width, spec.height);
+    if (spec.x != 0 || spec.y != 0) text += fmt::format(" at {},{}", spec.x, spec.y);
+    for (int c = 0; c < spec.nchannels; ++c)
+        text += fmt::format(", {} {}", spec.channel_name(c), spec.channelformat(c).c_str());
+    return text;
+}
+
+class FrameFileRows {
+  public:
+    explicit FrameFileRows(const std::filesystem::path& file) : in_(open_picture(file)) {}
+    const OIIO::ImageSpec& spec() const { return in_->spec(); }
+    /// False: damaged. Rows begin .. end from the top of what is stored.
+    bool read(int begin, int end, std::vector<float>& values) {
+        const OIIO::ImageSpec& s = spec();
+        values.resize(static_cast<std::size_t>(end - begin) * static_cast<std::size_t>(s.width) *
+                      static_cast<std::size_t>(s.nchannels));
+        return read_rows(*in_, begin, end, OIIO::TypeDesc::FLOAT, values.data());
+    }
+
+  private:
+    std::unique_ptr<OIIO::ImageInput> in_;
+};
+
+/// What rows add up to.
+class StoredSums {
+  public:
+    explicit StoredSums(const OIIO::ImageSpec& spec) : spec_(spec) {}
+
+    void add_rows(int begin, const std::vector<float>& a, const std::vector<float>& b) {
+        const auto channels = static_cast<std::size_t>(spec_.nchannels);
+        const auto width = static_cast<std::size_t>(spec_.width);
+        for (std::size_t pixel = 0; pixel * channels < a.size(); ++pixel) {
+            const int x = static_cast<int>(pixel % width), y = begin + static_cast<int>(pixel / width);
+            bool differs = false;
+            for (std::size_t c = 0; c < channels; ++c)
+                differs = add_value(x, y, c, a[pixel * channels + c], b[pixel * channels + c]) || differs;
+            sums_.differing_pixels += differs;
+        }
+    }
+    StoredComparison result() const {
+        StoredComparison sums = sums_;
+        sums.pixels = std::int64_t{spec_.width} * spec_.height;
+        const double mean = squares_ / std::fmax(1.0, static_cast<double>(colors_));
+        sums.psnr_db =
+            mean == 0.0 ? std::numeric_limits<double>::infinity() : -10.0 * real::log(mean) / real::log(10.0);
+        return sums;
+    }
+
+  private:
+    /// True when the two are not the same.
+    bool add_value(int x, int y, std::size_t channel, float a, float b) {
+        const std::string& name = spec_.channelnames[channel];
+        const bool color = name.size() == 1 && name.find_first_of("RGBA") == 0;
+        colors_ += color;
+        if (std::bit_cast<std::uint32_t>(a) == std::bit_cast<std::uint32_t>(b)) return false;
+        double d = std::fabs(static_cast<double>(a) - static_cast<double>(b));
+        if (std::isnan(d)) d = std::numeric_limits<double>::infinity();
+        if (color) squares_ += d * d;
+        if (sums_.max_channel.empty() || d > sums_.max_difference) {
+            sums_.max_difference = d;
+            sums_.max_x = spec_.x + x;
+            sums_.max_y = spec_.y + y;
+            sums_.max_channel = name;
+        }
+        return true;
+    }
+
+    const OIIO::ImageSpec& spec_;
+    StoredComparison sums_;
+    double squares_ = 0.0;     // of colours' differences
+    std::int64_t colors_ = 0;  // values of colours
+};
+
+std::unique_ptr<FrameFileRows> frame_rows_if_readable(const std::filesystem::path& file) try {
+    return std::make_unique<FrameFileRows>(file);
+} catch (const InputError&) {
+    return nullptr;
+}
+
+}  // namespace
+
+StoredComparison compare_stored(const std::filesystem::path& first, const std::filesystem::path& second) {
+    StoredComparison comparison;
+    comparison.result = StoredComparison::Result::first_damaged;
+    const auto a = frame_rows_if_readable(first);
+    FrameFileRows b(second);
+    if (!a) return comparison;
+    if (form_of(a->spec()) != form_of(b.spec())) {
+        comparison.result = StoredComparison::Result::other_form;
+        comparison.other_form = form_of(a->spec()) + " against " + form_of(b.spec());
+        return comparison;
+    }
+    StoredSums sums(b.spec());
+    std::vector<float> rows_a, rows_b;
+    constexpr int band = 256;  // rows
+    for (int y = 0; y < b.spec().height; y += band) {
+        const int end = std::min(y + band, b.spec().height);
+        if (!a->read(y, end, rows_a)) return comparison;
+        if (!b.read(y, end, rows_b)) fail_picture(second, "it ends early");
+        sums.add_rows(y, rows_a, rows_b);
+    }
+    return sums.result();
 }
 
 }  // namespace astrosplat

@@ -1,16 +1,22 @@
 // Frame metadata as text.
+// Deflate and base64, and a merge of two lists of lines.
 #include "output/metadata.h"
 
 #include <fmt/format.h>
+#include <zlib.h>
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <new>
 #include <numeric>
+#include <string_view>
+#include <utility>
 
 #include "core/text.h"
-#include "output/hashed_text.h"
 
 namespace astrosplat {
+
 namespace {
 
 // The value on one line, so that it cannot be mistaken for the next entry.
@@ -66,6 +72,95 @@ Rational rational_fps(double fps) {
     int thousandths = static_cast<int>(std::round(std::fmin(fps, 1e6) * 1000.0));
     int common = std::gcd(thousandths, 1000);
     return {thousandths / common, 1000 / common};
+}
+
+namespace {
+
+constexpr std::size_t longest_text = std::size_t{64} << 20;  // bytes; of a damaged file's promises
+
+struct HashedLine {
+    std::string_view key, value;
+};
+
+std::vector<HashedLine> hashed_lines(std::string_view text) {
+    std::vector<HashedLine> lines;
+    while (!text.empty()) {
+        const std::string_view line = text.substr(0, text.find('\n'));
+        text.remove_prefix(std::min(line.size() + 1, text.size()));
+        if (const std::size_t equals = line.find(" ="); equals != line.npos)
+            lines.push_back({line.substr(0, equals), trim(line.substr(equals + 2))});
+    }
+    return lines;
+}
+
+/// Keys in their order, with their values.
+class KeyValues {
+  public:
+    explicit KeyValues(const std::string& text) {
+        for (const auto& [key, value] : hashed_lines(text)) {
+            const auto [known, added] = values_.try_emplace(std::string(key), value);
+            if (added)
+                keys_.emplace_back(key);
+            else
+                known->second += "; " + std::string(value);
+        }
+    }
+    const std::vector<std::string>& keys() const { return keys_; }
+    bool has(const std::string& key) const { return values_.count(key) > 0; }
+    std::string value(const std::string& key) const { return has(key) ? values_.at(key) : ""; }
+
+  private:
+    std::vector<std::string> keys_;
+    std::map<std::string, std::string> values_;
+};
+
+}  // namespace
+
+std::string pack_hashed_text(const std::string& text) {
+    uLongf size = compressBound(static_cast<uLong>(text.size()));
+    std::string bytes(size, '\0');
+    if (compress2(reinterpret_cast<Bytef*>(bytes.data()), &size, reinterpret_cast<const Bytef*>(text.data()),
+                  static_cast<uLong>(text.size()), Z_BEST_COMPRESSION) != Z_OK)
+        throw std::bad_alloc();  // the only way it can fail, with room for all of it
+    bytes.resize(size);
+    return base64(bytes);
+}
+
+std::optional<std::string> unpack_hashed_text(const std::string& packed) {
+    const std::optional<std::string> bytes = bytes_of_base64(packed);
+    if (!bytes || bytes->empty()) return std::nullopt;
+    z_stream stream = {};
+    if (inflateInit(&stream) != Z_OK) return std::nullopt;
+    stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes->data()));
+    stream.avail_in = static_cast<uInt>(bytes->size());
+    std::string text;
+    int state = Z_OK;
+    while (state == Z_OK && text.size() < longest_text) {
+        char portion[16384];
+        stream.next_out = reinterpret_cast<Bytef*>(portion);
+        stream.avail_out = sizeof portion;
+        state = inflate(&stream, Z_NO_FLUSH);
+        text.append(portion, sizeof portion - stream.avail_out);
+    }
+    inflateEnd(&stream);
+    return state == Z_STREAM_END ? std::optional(text) : std::nullopt;
+}
+
+std::optional<std::string> hashed_value(const std::string& text, const std::string& key) {
+    for (const HashedLine& line : hashed_lines(text))
+        if (line.key == key) return std::string(line.value);
+    return std::nullopt;
+}
+
+std::vector<KeyDifference> differing_keys(const std::string& first, const std::string& second) {
+    const KeyValues a(first), b(second);
+    std::vector<KeyDifference> differences;
+    for (const std::string& key : a.keys())
+        if (!b.has(key) || a.value(key) != b.value(key))
+            differences.push_back({key, a.value(key), b.value(key)});
+    for (const std::string& key : b.keys())
+        if (!a.has(key)) differences.push_back({key, "", b.value(key)});
+    return differences;
 }
 
 }  // namespace astrosplat

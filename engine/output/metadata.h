@@ -1,12 +1,20 @@
 // The header of a frame file, as text pairs that every format can hold: no host, user or clock.
+// What a frame hash was made of, as the frame's file carries it: the canonical text of frame_hash.h, deflated
+// and in letters. In: that text, of a frame and of a scene. Out: the packed line, and which keys differ.
+// What the readers of the three formats of frames find in a file's header. Each answers nothing where the
+// file is none of its format or damaged.
 #pragma once
 
+#include <cstdint>
+#include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
+#include "core/image.h"
 #include "output/write.h"
 
 namespace astrosplat {
@@ -14,7 +22,7 @@ namespace astrosplat {
 using MetadataEntries = std::vector<std::pair<std::string, std::string>>;
 
 /// "astrosplat/version", "/frameHash", "/pixelHash", "/seed", "/frame", "/fps" and, where not empty,
-/// "/hashed" (hashed_text.h), "/title", "/credit", "/type".
+/// "/hashed" (deflate_text), "/title", "/credit", "/type".
 MetadataEntries metadata_entries(const FrameMetadata& metadata);
 
 /// The entries as lines "name=value" (line breaks in values become spaces): TIFF's ImageDescription.
@@ -27,5 +35,29 @@ struct Rational {
     int numerator, denominator;
 };
 Rational rational_fps(double fps);
+
+/// Lines "key = value" as one line of printable letters.
+std::string pack_hashed_text(const std::string& text);
+/// The text again; nothing where it is no such line, or one of more than 64 MiB.
+std::optional<std::string> unpack_hashed_text(const std::string& packed);
+
+/// The value behind "KEY =" without blanks around it; nothing where no line has the key.
+std::optional<std::string> hashed_value(const std::string& text, const std::string& key);
+
+/// A key with other values in two texts. A value is empty where that text does not have the key: what does
+/// not reach the pixels is not hashed. Of keys with several lines the values are joined with "; ".
+struct KeyDifference {
+    std::string key, first, second;
+    bool operator==(const KeyDifference&) const = default;
+};
+/// In the order of the first text, then of the second.
+std::vector<KeyDifference> differing_keys(const std::string& first, const std::string& second);
+
+struct StoredHeader {
+    std::int64_t whole_width = 0, whole_height = 0;  // px
+    Region region{};                                 // of what is stored in the whole
+    std::map<std::string, std::string> texts;        // "astrosplat/frameHash", ..., "view"
+    bool dwaa = false;                               // compressed with a loss
+};
 
 }  // namespace astrosplat

@@ -13,10 +13,9 @@
 #include "core/file_format.h"
 #include "core/hash.h"
 #include "core/text.h"
-#include "output/hashed_text.h"
+#include "output/exr_frame.h"
+#include "output/metadata.h"
 #include "output/png_frame.h"
-#include "output/read_exr.h"
-#include "output/stored_header.h"
 #include "output/tiff_frame.h"
 
 namespace astrosplat {

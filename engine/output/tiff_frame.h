@@ -2,7 +2,7 @@
 #pragma once
 
 #include "output/format.h"
-#include "output/stored_header.h"
+#include "output/metadata.h"
 #include "output/write.h"
 
 namespace astrosplat {

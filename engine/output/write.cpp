@@ -8,10 +8,10 @@
 
 #include "core/error.h"
 #include "core/hash.h"
+#include "output/exr_frame.h"
 #include "output/format.h"
 #include "output/png_frame.h"
 #include "output/tiff_frame.h"
-#include "output/write_exr.h"
 
 namespace astrosplat {
 namespace {

@@ -9,7 +9,7 @@
 #include "core/text.h"
 #include "scene/animate.h"
 #include "scene/frames.h"
-#include "scene/layer_source.h"
+#include "scene/layer_setup.h"
 #include "source/mesh.h"
 
 namespace astrosplat {

@@ -4,7 +4,6 @@
 #include <algorithm>
 
 #include "scene/describe_layer.h"
-#include "scene/describe_look.h"
 
 namespace astrosplat {
 

@@ -1,4 +1,5 @@
 // The description of one layer.
+// The description of what a layer and a preset share.
 #pragma once
 
 #include "scene/describer.h"
@@ -7,5 +8,9 @@ namespace astrosplat {
 
 /// The keys of one layer; the describer stands at "layer.NAME".
 void describe_layer(const Describer& d, LayerParams& layer);
+
+/// The keys of [layer.look] and [layer.render]; the describer stands there.
+void describe_look(const Describer& d, Look& look);
+void describe_render(const Describer& d, LayerRender& render);
 
 }  // namespace astrosplat

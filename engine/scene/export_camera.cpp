@@ -15,8 +15,8 @@
 #include "core/real.h"
 #include "core/text.h"
 #include "scene/animate.h"
-#include "scene/csv_tracks.h"
-#include "scene/layer_source.h"
+#include "scene/camera_file.h"
+#include "scene/layer_setup.h"
 
 namespace astrosplat {
 namespace {

@@ -1,12 +1,23 @@
 #include "scene/front_frame.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <limits>
+#include <optional>
+#include <vector>
 
 #include "core/error.h"
+#include "core/memory.h"
+#include "core/parallel.h"
+#include "source/sample.h"
 #include "source/textured_mesh.h"
 
 namespace astrosplat {
+
 namespace {
 
 // Sums over all faces, seen along an axis: gradients of u and of v times the area, and the largest that
@@ -125,6 +136,150 @@ CameraParams judging_camera(const FrontFrame& frame, JudgingView view, double as
     camera.up = view == JudgingView::front ? frame.up : frame.toward;
     camera.height = frame.width / aspect;
     return camera;
+}
+
+namespace {
+
+constexpr double widest_px = 65536.0;
+constexpr std::int64_t rows_per_band = 64;
+
+// A face as the frame sees it: x to the right and y down in frame widths from its middle, z toward the
+// viewer.
+struct SeenFace {
+    glm::dvec3 a, ab, ac;
+    glm::dvec2 uv, uv_ab, uv_ac;
+    const Texture* texture;
+
+    double twice_area() const { return ab.x * ac.y - ab.y * ac.x; }
+};
+
+// The same through a camera; faces stay flat where nearness is the inverse of depth.
+glm::dvec3 seen_through(const Camera& camera, const glm::dvec3& point) {
+    const std::optional<PlaceInPicture> place = place_in_picture(camera, point);
+    assert(place);  // the face has texture coordinates
+    const bool parallel = camera.projection == Projection::orthographic;
+    return {place->uv.x - 0.5, (0.5 - place->uv.y) / camera.aspect,
+            parallel ? -place->depth : 1.0 / place->depth};
+}
+
+glm::dvec3 seen_from_front(const FrontFrame& frame, const glm::vec3& position) {
+    if (frame.camera) return seen_through(*frame.camera, glm::dvec3(position));
+    const glm::dvec3 p = (glm::dvec3(position) - frame.center) / frame.width;
+    return {glm::dot(p, frame.right), -glm::dot(p, frame.up), glm::dot(p, frame.toward)};
+}
+
+std::vector<SeenFace> seen_faces(std::span<const TexturedMesh> meshes, const FrontFrame& frame) {
+    std::vector<SeenFace> faces;
+    for (const TexturedMesh& textured : meshes) {
+        const Mesh& mesh = textured.mesh;
+        for (const Mesh::Triangle& face : mesh.triangles) {
+            if (face.uv[0] == Mesh::no_uv) continue;
+            const auto corner = [&](std::size_t k) {
+                return seen_from_front(frame, mesh.positions[face.position[k]]);
+            };
+            const auto uv = [&](std::size_t k) { return glm::dvec2(mesh.uvs[face.uv[k]]); };
+            const std::size_t texture = textured.textures.size() == 1 ? 0 : face.material;
+            faces.push_back({corner(0), corner(1) - corner(0), corner(2) - corner(0), uv(0), uv(1) - uv(0),
+                             uv(2) - uv(0), &textured.textures[texture]});
+        }
+    }
+    return faces;
+}
+
+// Texels of the pictures along a frame's width.
+double texels_across(const std::vector<SeenFace>& faces) {
+    double texels = 0.0, area = 0.0;
+    for (const SeenFace& face : faces) {
+        const double uv_area = face.uv_ab.x * face.uv_ac.y - face.uv_ab.y * face.uv_ac.x;
+        texels +=
+            std::fabs(uv_area) * static_cast<double>(face.texture->image.width * face.texture->image.height);
+        area += std::fabs(face.twice_area());
+    }
+    return area > 0.0 ? std::sqrt(texels / area) : 0.0;
+}
+
+// One band of the picture with the depth of what it shows.
+class FrontBand {
+  public:
+    FrontBand(Image& picture, std::int64_t begin, std::int64_t end)
+        : picture_(picture),
+          begin_(begin),
+          end_(end),
+          scale_(static_cast<double>(picture.width)),
+          depth_(static_cast<std::size_t>((end - begin) * picture.width),
+                 -std::numeric_limits<double>::infinity()) {}
+
+    void draw(const SeenFace& face) {
+        const double area = face.twice_area();
+        if (area == 0.0) return;
+        const auto [left, right] = covered(face.a.x, face.ab.x, face.ac.x, picture_.width, 0, picture_.width);
+        const auto [top, bottom] = covered(face.a.y, face.ab.y, face.ac.y, picture_.height, begin_, end_);
+        for (std::int64_t y = top; y < bottom; ++y)
+            for (std::int64_t x = left; x < right; ++x) {
+                const double px = place(x, picture_.width) - face.a.x,
+                             py = place(y, picture_.height) - face.a.y;
+                const double b = (px * face.ac.y - py * face.ac.x) / area,
+                             c = (py * face.ab.x - px * face.ab.y) / area;
+                constexpr double rounding = 1e-9;  // no pixel falls between two faces
+                if (b < -rounding || c < -rounding || b + c > 1.0 + rounding) continue;
+                show(face, b, c, x, y);
+            }
+    }
+
+  private:
+    // Of a pixel's centre, in frame widths from the middle.
+    double place(std::int64_t i, std::int64_t size) const {
+        return (static_cast<double>(i) + 0.5 - 0.5 * static_cast<double>(size)) / scale_;
+    }
+
+    // Pixels [first, second) of begin .. end that a face with these corners can touch along an axis.
+    std::pair<std::int64_t, std::int64_t> covered(double a, double ab, double ac, std::int64_t size,
+                                                  std::int64_t begin, std::int64_t end) const {
+        const double lo = a + std::min({0.0, ab, ac}), hi = a + std::max({0.0, ab, ac});
+        const auto pixel = [&](double at) {
+            const double p = at * scale_ + 0.5 * static_cast<double>(size);
+            return std::clamp(p, static_cast<double>(begin), static_cast<double>(end));
+        };
+        return {static_cast<std::int64_t>(std::floor(pixel(lo - 1e-9))),
+                static_cast<std::int64_t>(std::ceil(pixel(hi + 1e-9)))};
+    }
+
+    void show(const SeenFace& face, double b, double c, std::int64_t x, std::int64_t y) {
+        const double z = face.a.z + b * face.ab.z + c * face.ac.z;
+        double& depth = depth_[static_cast<std::size_t>((y - begin_) * picture_.width + x)];
+        if (!(z > depth)) return;
+        depth = z;
+        const TextureSample seen =
+            sample(*face.texture, glm::vec2(face.uv + b * face.uv_ab + c * face.uv_ac));
+        for (int i = 0; i < 3; ++i) picture_.at(x, y)[i] = seen.color[i] * seen.alpha;
+    }
+
+    Image& picture_;
+    std::int64_t begin_, end_;
+    double scale_;  // px per frame width
+    std::vector<double> depth_;
+};
+
+}  // namespace
+
+Image front_picture(std::span<const TexturedMesh> meshes, const FrontFrame& frame, const Progress& progress) {
+    const std::vector<SeenFace> faces = seen_faces(meshes, frame);
+    const double across = texels_across(faces);
+    if (!(across > 0.0)) throw InputError("expected a picture on faces seen from the front, found none");
+    const double down = across * frame.height / frame.width;
+    if (std::max(across, down) > widest_px)
+        throw InputError(fmt::format("expected a picture of at most {} px, found {:.0f} x {:.0f}", widest_px,
+                                     across, down));
+    const auto width = std::max<std::int64_t>(1, static_cast<std::int64_t>(across + 0.5));
+    const auto height = std::max<std::int64_t>(1, static_cast<std::int64_t>(down + 0.5));
+    claim_memory(width * height * 3 * static_cast<std::int64_t>(sizeof(float)), "the picture from the front");
+    Image picture = make_image(width, height, 3);
+    parallel_chunks(height, rows_per_band, [&](std::int64_t begin, std::int64_t end, int) {
+        progress.check();
+        FrontBand band(picture, begin, end);
+        for (const SeenFace& face : faces) band.draw(face);
+    });
+    return picture;
 }
 
 }  // namespace astrosplat

@@ -1,11 +1,15 @@
 // Where the picture of a plane-like layer lies in the world, and the cameras that judge it. In: the layer's
 // meshes. Out: a rectangle, and cameras that see it from the front, from 60 degrees and from its edge.
+// What a layer's pictures show from the front: its meshes drawn flat, without light or depth. In: meshes
+// and the frame around them. Out: the picture that a front view of the layer's splats is to look like.
 #pragma once
 
 #include <optional>
 #include <span>
 
 #include "camera/camera.h"
+#include "core/image.h"
+#include "core/progress.h"
 #include "render/frame.h"
 #include "source/textured_mesh.h"
 
@@ -34,5 +38,11 @@ enum class JudgingView { front, side, edge };
 /// exactly, and as much of its height as a picture of this aspect (width / height) shows; `side` stands 60
 /// degrees away from the frame's normal, which is up, `edge` in its plane, and both show its width.
 CameraParams judging_camera(const FrontFrame& frame, JudgingView view, double aspect);
+
+/// Red, green and blue of linear light on black, as many pixels per scene unit as the pictures have on
+/// average, so that one picture on a plane comes out as it is; black where no face is. Of faces behind each
+/// other the nearest is seen. Throws InputError (no texture coordinates, larger than 65536 px), Cancelled.
+Image front_picture(std::span<const TexturedMesh> meshes, const FrontFrame& frame,
+                    const Progress& progress = {});
 
 }  // namespace astrosplat

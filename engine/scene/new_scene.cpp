@@ -1,15 +1,33 @@
 // The text is written to be read and edited: every key a person is likely to touch, each with its one line.
+// The text is written to be read and edited: every key a person is likely to touch, each with its one line.
 #include "scene/new_scene.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/vec3.hpp>
+#include <string_view>
+#include <system_error>
+#include <vector>
 
+#include "bodies/choose.h"
+#include "bodies/picture_light.h"
+#include "bodies/picture_splats.h"
 #include "core/error.h"
+#include "core/file.h"
+#include "core/log.h"
+#include "core/real.h"
+#include "core/text.h"
+#include "prepare/star_removal.h"
 #include "scene/suggest.h"
 #include "scene/value.h"
+#include "source/texture.h"
+#include "stars/picture_table.h"
 
 namespace astrosplat {
+
 namespace fs = std::filesystem;
 namespace {
 
@@ -90,6 +108,288 @@ std::string layer_name_of(const std::string& text, const char* otherwise) {
     }
     while (!name.empty() && name.back() == '_') name.pop_back();
     return name.empty() ? otherwise : name;
+}
+
+namespace {
+
+constexpr double longest_side = 10.0;  // scene units, of the built-in plane
+constexpr std::int64_t longest_px = 1920;
+constexpr double field_of_view = 40.0;  // degrees
+constexpr double points_within = 0.8;   // of the distance to the picture's camera: no star is as near to it
+constexpr double wall_depth = 0.26;     // whole depth of a shell, of the picture's width
+
+constexpr const char* text_format =
+    R"(# {title}: a picture as bodies in depth. 'astrosplat parameters' lists every key.
+astrosplat = 1
+
+[output]
+resolution = [{width}, {height}]         # px, as wide and high as the picture
+frames     = {frames}
+fps        = 24
+path       = {path}  # the ending chooses the format: .exr .tif .png
+exposure   = 0.0                  # stops; acts in .png and .tif, exr holds scene light
+
+[camera]                          # that of the picture, see uv_camera below
+position = [0, {distance}, 0]
+target   = [0, 0, 0]
+up       = [0, 0, -1]
+fov      = {fov}                   # degrees, vertical
+
+[[layer]]
+name = {name}
+
+[layer.source]
+meshes    = [ {{ mesh = "plane", texture = {picture} }} ]  # 10 units along its longer side
+uv        = "camera"              # depth goes along the rays to this camera, so that from there one sees the picture:
+uv_camera = {{ position = [0, {distance}, 0], up = [0, 0, -1], fov = {fov} }}
+structure = {{ kind = {kind}, clumps = 1.0, {extent}, {opacity}, {edges}{stars} }}  # disk, sheet, walls; columns extrudes it
+stretch   = "auto"                # from data values to display values: asinh for FITS; or linear, asinh, log
+black     = "auto"                # data value shown as black
+white     = "auto"                # data value shown as white
+
+[layer.look]
+density  = 1.0                    # share of the splats that is kept
+grade    = {{ gain = 1.0, tint = [1.0, 1.0, 1.0], saturation = 1.0, gamma = 1.0 }}
+
+[layer.render]
+opacity = 1.0                     # of the whole layer
+lod     = {{ max_px = {split}, noise = 0.75, star_distance = {points} }}  # splats that look larger, close by, become clouds; nearer stars stay points
+)";
+
+constexpr const char* stars_format = R"(
+[[layer]]                         # the stars that were taken out of the picture
+name = {name}
+
+[layer.source]
+kind      = "stars"
+catalogue = {table}
+like      = {picture}  # the layer whose picture they are of: they lie in its depth, and look from its camera as there
+depth     = "layer"               # as deep as that layer; "magnitude": the brighter the nearer
+slab      = 0.0                   # scene units within which they lie instead
+psf       = {psf}                  # px, standard deviation of their images
+)";
+
+struct CameraKeyframe {
+    int frame;
+    glm::dvec3 position, target, up;
+    double exposure = 0.0;  // stops
+};
+
+// From where the picture is seen as it is, the camera tilts by 45 degrees and comes a little nearer. Eight
+// frames are between two keyframes.
+void tilt(double distance, double exposure, std::vector<CameraKeyframe>& keyframes) {
+    constexpr int first = 36, last = 100, step = 8;
+    for (int frame = first; frame <= last; frame += step) {
+        const double t = static_cast<double>(frame - first) / (last - first), eased = real::smoothstep(t);
+        const double angle = real::radians(45.0 * eased);
+        keyframes.push_back(
+            {frame,
+             (1.0 - 0.12 * eased) * distance * glm::dvec3(0.06 * eased, real::cos(angle), real::sin(angle)),
+             glm::dvec3(0.0),
+             {0.0, eased, -1.0 + 0.5 * eased},
+             eased * exposure});
+    }
+}
+
+// The close pass of a flight, seen from what it passes by, and what comes after it.
+struct CloseViews {
+    glm::dvec3 close, leaving;
+    glm::dvec3 away;
+    double darker;  // stops, at the most
+};
+
+// Over a disk low along its plane, over a cloud higher, and around a shell, which is thick. A cloud goes on
+// to its picture's edges: the flight ends so near that they stay out of sight. The more aslant a
+// disk or a shell is seen the more of it shines in each pixel: the exposure goes down with the camera, or it
+// would burn out. A shell that is mostly dark would not.
+CloseViews close_views(double distance, StructureKind kind, double mean_light) {
+    constexpr double dark = 0.06, bright = 0.2;  // mean light of pictures
+    if (kind == StructureKind::disk)
+        return {{1.0, 1.0, 2.7}, {-1.2, 0.5, 0.55 * distance}, {-2.4, 0.35, 0.9 * distance}, -1.0};
+    if (kind == StructureKind::walls)
+        return {{1.4, 2.3, 3.1},
+                {-1.2, 2.2, 0.6 * distance},
+                {-2.4, 0.3 * distance, 0.9 * distance},
+                -0.6 * std::clamp((mean_light - dark) / (bright - dark), 0.0, 1.0)};
+    return {{0.9, 1.9, 2.2},
+            {-1.6, 0.3 * distance, 0.34 * distance},
+            {-0.8, 0.62 * distance, 0.44 * distance},
+            0.0};
+}
+
+// Ten seconds at 24 frames/s: the front, a slow tilt, a pass close by the subject, and on: to the edge of a
+// disk, else up and away.
+std::vector<CameraKeyframe> flight(double distance, const PictureScene& scene, const glm::dvec3& subject) {
+    const CloseViews views = close_views(distance, scene.structure, scene.mean_light);
+    const glm::dvec3 middle(0.0), above(0.0, 1.0, 0.0);
+    std::vector<CameraKeyframe> keyframes;
+    tilt(distance, 0.4 * views.darker, keyframes);
+    keyframes.insert(keyframes.begin(), keyframes.front());
+    keyframes.front().frame = 1;
+    keyframes.push_back({160, subject + views.close, subject, above, 1.1 * views.darker});
+    keyframes.push_back({205, 0.5 * subject + views.leaving, 0.5 * subject, above, 0.9 * views.darker});
+    keyframes.push_back({240, views.away, middle, above, 0.5 * views.darker});
+    return keyframes;
+}
+
+// In scene units on the plane, no nearer to the picture's edges than a fifth of its sides.
+glm::dvec3 subject_in_scene(const PictureScene& scene, double height) {
+    const double width = height * static_cast<double>(scene.width_px) / static_cast<double>(scene.height_px);
+    const glm::dvec2 from_middle = glm::clamp(scene.subject - 0.5, glm::dvec2(-0.3), glm::dvec2(0.3));
+    return {from_middle.x * width, 0.0, from_middle.y * height};
+}
+
+std::string text_of(double value) { return fmt::format("{:.3g}", value + 0.0); }  // 0, not -0
+
+std::string text_of(const glm::dvec3& v) { return fmt::format("[{:.6g}, {:.6g}, {:.6g}]", v.x, v.y, v.z); }
+
+// Leaves out keyframes that are like both of their neighbours.
+template <class Value>
+std::string track_text(const char* key, const std::vector<CameraKeyframe>& keyframes,
+                       Value CameraKeyframe::*value) {
+    std::string text;
+    for (std::size_t i = 0; i < keyframes.size(); ++i) {
+        const Value& here = keyframes[i].*value;
+        const bool inside = i > 0 && i + 1 < keyframes.size();
+        if (inside && here == keyframes[i - 1].*value && here == keyframes[i + 1].*value) continue;
+        text += fmt::format("{}    [{}, {}]", text.empty() ? "" : ",\n", keyframes[i].frame, text_of(here));
+    }
+    return fmt::format("\"{}\" = {{ interpolation = \"smooth\", keys = [\n{}\n] }}\n", key, text);
+}
+
+std::string animation_text(const std::vector<CameraKeyframe>& keyframes) {
+    const bool exposed =
+        std::any_of(keyframes.begin(), keyframes.end(), [](const auto& k) { return k.exposure != 0.0; });
+    return "\n[animation]                       # [frame, value]\n" +
+           track_text("camera.position", keyframes, &CameraKeyframe::position) +
+           track_text("camera.target", keyframes, &CameraKeyframe::target) +
+           track_text("camera.up", keyframes, &CameraKeyframe::up) +
+           (exposed ? track_text("output.exposure", keyframes, &CameraKeyframe::exposure) : "");
+}
+
+// Even, as films want it.
+std::int64_t side_px(std::int64_t side, std::int64_t longest) {
+    return std::max<std::int64_t>(
+        2, 2 * std::llround(static_cast<double>(longest_px * side) / (2.0 * static_cast<double>(longest))));
+}
+
+// Sigma of the widest splats, of the picture's longest side.
+double widest_sigma(StructureKind structure, double margin) {
+    if (structure == StructureKind::disk)  // is thicker with its margin
+        return (1.0 + margin) * widest_sigma_share * disk_thickness * static_cast<double>(wider_in_bulges[1]);
+    const double in_sheet = widest_sigma_share * sheet_thickness;
+    return structure == StructureKind::walls ? std::max(in_sheet, widest_glow_share * 0.5 * wall_depth)
+                                             : in_sheet;
+}
+
+// Pixels at 1080 lines that the widest splats have from the front, and a little more: there they stay whole.
+double split_above_px(StructureKind structure, double longest_over_height, double margin) {
+    return 1.1 * 2.0 * static_cast<double>(radius_sigmas) * widest_sigma(structure, margin) *
+           longest_over_height * 1080.0;
+}
+
+// Low powers of brightness and a dense disk: its dim parts are then not as bright as its middle from the
+// edge, and the middle does not burn out from aslant. A shell is thin: one looks through its front wall at
+// the back one.
+std::string_view opacity_of(StructureKind structure) {
+    if (structure == StructureKind::walls) return "opacity = 0.4, density = 0.4";
+    return structure == StructureKind::disk ? "opacity = 0.42, density = 0.8" : "opacity = 0.55";
+}
+
+// How far bodies reach along the line of sight. What lies between the things of a field is a thin, flat
+// sheet: folds of it would be drawn as lines across the sky.
+std::string extent_of(const PictureScene& scene) {
+    if (scene.structure == StructureKind::disk) return "flare = 0.25, warp = 0.01";
+    if (scene.structure == StructureKind::walls) return fmt::format("depth = {}", wall_depth);
+    return scene.object == SkyObject::field ? "height = 0.05, depth = 0.01" : "depth = 0.15";
+}
+
+// What `prepare` writes beside a picture that it took stars from. A table of that name that is not its own
+// says nothing about this picture.
+void find_stars(PictureScene& scene, const Progress& progress) {
+    const std::filesystem::path table = scene.image.parent_path() / "stars.csv";
+    if (read_beginning(table, star_table_mark.size()) == star_table_mark)
+        take_stars(scene, table, progress);
+    else if (std::error_code ignored; std::filesystem::is_regular_file(table, ignored))
+        log_info(fmt::format("{}: not a table of prepare's, and left alone", printable(table.string())));
+}
+
+std::string stars_text(const PictureScene& scene, const std::string& picture, double frame_px_per_px,
+                       const std::filesystem::path& file) {
+    constexpr double least_px = 0.6;
+    return fmt::format(
+        stars_format, fmt::arg("name", picture == "stars" ? "\"more_stars\"" : "\"stars\""),
+        fmt::arg("table", to_toml(picture_path(scene.stars, file))), fmt::arg("picture", to_toml(picture)),
+        fmt::arg("psf", fmt::format("{:.2f}", std::max(least_px, scene.star_px * frame_px_per_px))));
+}
+
+// Of the picture's width: room for a galaxy to end round, and for a cloud to fray. What stands alone on a
+// dark sky needs it where but an arm leaves the picture, or that would be cut off straight. One of many
+// pixels fades within its own edges: a margin would need too much memory.
+double margin_of(const PictureScene& scene) {
+    constexpr std::int64_t most_px = std::int64_t{24} << 20;
+    constexpr double lit = 0.1;
+    if (scene.lit_rim <= lit || scene.width_px * scene.height_px > most_px) return 0.0;
+    return scene.structure == StructureKind::disk ? 0.08 : 0.16;  // a cloud does not grow dim outward
+}
+
+}  // namespace
+
+void take_stars(PictureScene& scene, const std::filesystem::path& table, const Progress& progress) {
+    const PictureTable stars = read_picture_table(table, progress);
+    if (stars.stars.empty()) return;
+    scene.stars = table;
+    scene.star_px = median_sigma_px(stars);
+}
+
+PictureScene picture_scene(const std::filesystem::path& image, std::optional<SkyObject> shown,
+                           StructureChoice& choice, const Progress& progress) {
+    constexpr std::int64_t most_texels = 4096 * 4096;  // more do not change what is seen in it
+    const Texture texture =
+        load_texture({image}, {}, TextureSettings::Wrap::clamp, progress, {make_prepared, {}, most_texels});
+    const bool reduced = texture.file_width > 0;
+    PictureScene scene{image, reduced ? texture.file_width : texture.image.width,
+                       reduced ? texture.file_height : texture.image.height};
+    const Image light = picture_light(texture, 0.0).light;
+    scene.lit_rim = lit_share_of_rim(light);
+    find_stars(scene, progress);
+    scene.mean_light = mean_light(light);
+    scene.subject = subject_of(light);
+    choice = choose_structure(light, shown);
+    scene.structure = choice.kind;
+    scene.object = choice.object;
+    return scene;
+}
+
+std::string picture_scene_text(const PictureScene& scene, const std::filesystem::path& file) {
+    const std::string name = layer_name_of(scene.image.stem().string(), "picture");
+    const std::int64_t longest = std::max(scene.width_px, scene.height_px);
+    const double height = longest_side * static_cast<double>(scene.height_px) / static_cast<double>(longest);
+    const double distance = 0.5 * height / real::tan(real::radians(0.5 * field_of_view));
+    const double margin = margin_of(scene);
+    std::string text = fmt::format(
+        text_format, fmt::arg("title", name), fmt::arg("name", to_toml(name)),
+        fmt::arg("width", side_px(scene.width_px, longest)),
+        fmt::arg("height", side_px(scene.height_px, longest)),
+        fmt::arg("frames", scene.film
+                               ? "\"1-240\""
+                               : "\"1\"                  # such as \"1-240\" or \"1-100,120,200-300x2\""),
+        fmt::arg("path", to_toml("frames/" + name + ".####.exr")),
+        fmt::arg("distance", fmt::format("{:.6g}", distance)),
+        fmt::arg("fov", fmt::format("{:.1f}", field_of_view)),
+        fmt::arg("picture", to_toml(picture_path(scene.image, file))),
+        fmt::arg("kind", to_toml(std::string(name_of(scene.structure)))),
+        fmt::arg("split", std::lround(split_above_px(scene.structure, longest_side / height, margin))),
+        fmt::arg("points", fmt::format("{:.3g}", points_within * distance)),
+        fmt::arg("edges", margin > 0.0 ? fmt::format("margin = {}", margin) : "border = 0.03"),
+        fmt::arg("stars", scene.stars.empty() ? "" : ", stars = false"), fmt::arg("extent", extent_of(scene)),
+        fmt::arg("opacity", opacity_of(scene.structure)));
+    if (!scene.stars.empty()) {
+        const double frame_px = static_cast<double>(side_px(longest, longest));
+        text += stars_text(scene, name, frame_px / static_cast<double>(longest), file);
+    }
+    return scene.film ? text + animation_text(flight(distance, scene, subject_in_scene(scene, height)))
+                      : text;
 }
 
 }  // namespace astrosplat

@@ -1,8 +1,17 @@
 // A first scene around a picture: on a shape of columns: what `astrosplat new --shape` writes.
+// A scene that shows one picture as bodies in depth: what `new` writes and what a dropped picture becomes.
+// In: the picture and what kind of object it shows. Out: the scene file's text.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <glm/vec2.hpp>
+#include <optional>
 #include <string>
+
+#include "bodies/choose.h"
+#include "core/progress.h"
+#include "source/source.h"
 
 namespace astrosplat {
 
@@ -17,5 +26,32 @@ std::string picture_path(const std::filesystem::path& image, const std::filesyst
 /// Letters, digits and _ of a file's or person's name, beginning with a letter; `otherwise` where none is
 /// left.
 std::string layer_name_of(const std::string& text, const char* otherwise = "layer");
+
+struct PictureScene {
+    std::filesystem::path image;
+    std::int64_t width_px = 0, height_px = 0;  // the picture's
+    StructureKind structure = StructureKind::disk;
+    SkyObject object = SkyObject::galaxy;
+    double lit_rim = 0.0;     // share of its rim beyond which what it shows goes on, as far as one can see
+    double mean_light = 0.0;  // 0..1 of the displayed white
+    bool film = false;        // with a camera move of ten seconds
+    glm::dvec2 subject{
+        0.5};  // that it passes close by, from the top left corner in shares of width and height
+    std::filesystem::path stars = {};  // the table of those that `prepare` took away; empty: there is none
+    double star_px = 1.0;              // standard deviation of their images, px of the picture
+};
+
+/// Reads the picture, for its size and to choose a structure for it, or for what it is said to show. The
+/// stars.csv that `prepare` wrote beside the picture (star_table_mark) is taken, too. Throws InputError,
+/// Cancelled.
+PictureScene picture_scene(const std::filesystem::path& image, std::optional<SkyObject> shown,
+                           StructureChoice& choice, const Progress& progress = {});
+
+/// Makes the stars of a table, if it has any, a layer of their own. Throws InputError, Cancelled.
+void take_stars(PictureScene& scene, const std::filesystem::path& table, const Progress& progress = {});
+
+/// The text of a scene in `file`. Its first frame is the picture itself, filled exactly; with a film the
+/// camera holds it, tilts, passes close by and flies on.
+std::string picture_scene_text(const PictureScene& scene, const std::filesystem::path& file);
 
 }  // namespace astrosplat

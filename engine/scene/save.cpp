@@ -9,9 +9,9 @@
 #include <stdexcept>
 
 #include "scene/describe.h"
+#include "scene/entries.h"
 #include "scene/load.h"
-#include "scene/path_text.h"
-#include "scene/toml_read.h"
+#include "scene/scene_files.h"
 #include "scene/toml_text.h"
 #include "scene/tracks.h"
 

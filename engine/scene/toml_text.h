@@ -1,5 +1,5 @@
 // A TOML text that can be edited without losing its comments, order or layout: finds where each key and value
-// stands, and changes, inserts or removes single ones. The text must be valid TOML (toml_read.h has parsed
+// stands, and changes, inserts or removes single ones. The text must be valid TOML (entries.h has parsed
 // it).
 #pragma once
 

@@ -3,9 +3,9 @@
 
 #include <string>
 
+#include "scene/entries.h"
 #include "scene/parameter.h"
 #include "scene/scene.h"
-#include "scene/toml_read.h"
 
 namespace astrosplat {
 

@@ -12,7 +12,6 @@
 #include "pipeline.h"
 #include "scene/animate.h"
 #include "scene/layer_setup.h"
-#include "scene/layer_source.h"
 #include "sets/kept.h"
 
 namespace astrosplat::test {

@@ -10,7 +10,7 @@
 #include "camera_files/formats.h"
 #include "camera_files/read_camera.h"
 #include "fuzz/targets.h"
-#include "scene/csv_tracks.h"
+#include "scene/camera_file.h"
 
 namespace astrosplat::fuzz {
 namespace {

@@ -4,7 +4,7 @@
 #include "gui/icons.h"
 #include "gui/panel/words.h"
 #include "gui/theme.h"
-#include "scene/field.h"
+#include "scene/describer.h"
 
 namespace astrosplat::panel {
 

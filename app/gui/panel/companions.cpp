@@ -4,7 +4,7 @@
 #include "gui/panel/words.h"
 #include "look/prepare.h"
 #include "look/shared_look.h"
-#include "scene/field.h"
+#include "scene/describer.h"
 
 namespace astrosplat::panel {
 namespace {

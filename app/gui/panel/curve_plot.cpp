@@ -9,7 +9,7 @@
 #include "gui/panel/words.h"
 #include "gui/theme.h"
 #include "look/shared_uniforms.h"
-#include "scene/field.h"
+#include "scene/describer.h"
 
 namespace astrosplat::panel {
 namespace {

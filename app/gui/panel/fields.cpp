@@ -13,7 +13,7 @@
 #include "gui/panel/section.h"
 #include "gui/panel/words.h"
 #include "gui/theme.h"
-#include "scene/field.h"
+#include "scene/describer.h"
 
 namespace astrosplat::panel {
 namespace {

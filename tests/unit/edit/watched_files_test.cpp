@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <chrono>
 
-#include "scene/input_files.h"
+#include "scene/scene_files.h"
 #include "support/temp_folder.h"
 
 namespace astrosplat {

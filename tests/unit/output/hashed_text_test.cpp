@@ -1,5 +1,5 @@
 // The canonical text as a frame file carries it: there and back, and what two texts do not share.
-#include "output/hashed_text.h"
+#include "output/metadata.h"
 
 #include <gtest/gtest.h>
 

@@ -9,7 +9,6 @@
 
 #include "pipeline.h"
 #include "scene/layer_setup.h"
-#include "scene/layer_source.h"
 #include "scene/load.h"
 #include "source/write_image.h"
 #include "support/bits.h"

@@ -20,7 +20,7 @@
 #include "output/write.h"
 #include "prepare/fill.h"
 #include "prepare/star_removal.h"
-#include "scene/front_picture.h"
+#include "scene/front_frame.h"
 #include "source/tiled_sky.h"
 #include "splat_files/formats.h"
 #include "splat_files/native.h"

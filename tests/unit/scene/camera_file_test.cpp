@@ -10,7 +10,6 @@
 #include "core/file_format.h"
 #include "core/text.h"
 #include "scene/animate.h"
-#include "scene/csv_tracks.h"
 #include "scene/load.h"
 #include "scene/save.h"
 #include "scene_texts.h"

@@ -8,7 +8,6 @@
 
 #include "core/error.h"
 #include "core/rotation.h"
-#include "scene/front_picture.h"
 #include "source/textured_mesh.h"
 #include "support/errors.h"
 

@@ -6,7 +6,6 @@
 #include "core/error.h"
 #include "scene/animate.h"
 #include "scene/check.h"
-#include "scene/layer_source.h"
 #include "scene/load.h"
 #include "support/errors.h"
 

@@ -1,4 +1,4 @@
-#include "scene/picture_scene.h"
+#include "scene/new_scene.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // The checks behind Field<T>: a Value either fits a parameter or is refused with what was expected and found.
-#include "scene/field.h"
+#include "scene/describer.h"
 
 #include <fmt/format.h>
 
@@ -9,6 +9,7 @@
 #include "scene/suggest.h"
 
 namespace astrosplat {
+
 namespace {
 
 [[noreturn]] void refuse(const std::string& expected, const std::string& found) {
