@@ -15,7 +15,7 @@
 
 #include "core/real.h"
 #include "core/rotation.h"
-#include "edit/film.h"
+#include "edit/edit_rules.h"
 #include "edit/fit_path.h"
 #include "edit/keyframes.h"
 #include "edit/rounding.h"

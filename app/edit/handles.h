@@ -1,16 +1,20 @@
-// Handles by which things of the world are moved, turned and scaled in a view: which one lies under the
-// mouse, and what dragging it means. In: a camera in px of the viewport, what stands in the world, the mouse.
-// Out: movements in the world. Draws nothing.
+// Handles by which the placement of the selected layer, one of its crops or the camera's target is moved,
+// turned and scaled in a view. In: the scene at a frame, what was chosen, a camera in px of the viewport, the
+// mouse. Out: which handle lies under the mouse, and the parameter that dragging it changes. Draws nothing.
 #pragma once
 
 #include <array>
 #include <glm/mat3x3.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "camera/camera.h"
 #include "edit/view_state.h"
+#include "scene/scene.h"
+#include "scene/value.h"
 
 namespace astrosplat {
 
@@ -51,5 +55,22 @@ glm::dmat3 turned_by(const Camera& camera, const Handled& handled, const HandleD
 
 /// By what each axis is multiplied; never 0 or less.
 glm::dvec3 scaled_by(const Camera& camera, const Handled& handled, const HandleDrag& drag);
+
+/// In the world; none where there is nothing that the tool could do: the camera's target has no size, a
+/// sphere no direction.
+std::optional<Handled> handled_in(const Scene& now, const ViewState& view);
+
+struct NewValue {
+    std::string key;  // full: "layer.stars.transform.translate"
+    Value value;
+};
+
+/// The value after a drag that began with `pressed`, the scene at the frame, seen by `camera`. Rounded to
+/// what a pixel can tell. `view` chooses a thing that handled_in() finds.
+NewValue dragged_value(const Scene& pressed, const ViewState& view, const Camera& camera,
+                       const HandleDrag& drag);
+
+/// Boxes and spheres of the crops of a layer, as lines in the world.
+std::vector<std::vector<glm::dvec3>> crop_outline(const LayerParams& layer, std::size_t crop);
 
 }  // namespace astrosplat

@@ -7,28 +7,36 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "scene/animate.h"
 #include "scene/describe.h"
 
 namespace astrosplat {
 namespace {
 
-using TrackKeyframe = Keyframe<std::vector<double>>;
+using Numbers = std::vector<double>;
+using TrackKeyframe = Keyframe<Numbers>;
 
 Track* track_of(Scene& scene, const std::string& key) {
-    const Track* found = find_track(scene, key);
-    return found ? &scene.animation[static_cast<std::size_t>(found - scene.animation.data())] : nullptr;
+    for (Track& track : scene.animation)
+        if (track.key == key) return &track;
+    return nullptr;
 }
 
-std::vector<TrackKeyframe>::iterator keyframe_at(Track& track, double frame) {
-    return std::find_if(track.keyframes.begin(), track.keyframes.end(),
-                        [&](const TrackKeyframe& keyframe) { return keyframe.frame == frame; });
+/// Null: none.
+TrackKeyframe* keyframe_at(Track* track, double frame) {
+    if (!track) return nullptr;
+    const auto found = std::ranges::find(track->keyframes, frame, &TrackKeyframe::frame);
+    return found == track->keyframes.end() ? nullptr : &*found;
+}
+
+TrackKeyframe* keyframe_of(Scene& scene, const std::string& key, double frame) {
+    return keyframe_at(track_of(scene, key), frame);
 }
 
 /// Puts a keyframe in its place, instead of one that is there.
 void insert_keyframe(Track& track, TrackKeyframe keyframe) {
     std::erase_if(track.keyframes, [&](const TrackKeyframe& old) { return old.frame == keyframe.frame; });
-    const auto after = std::find_if(track.keyframes.begin(), track.keyframes.end(),
-                                    [&](const TrackKeyframe& other) { return other.frame > keyframe.frame; });
+    const auto after = std::ranges::upper_bound(track.keyframes, keyframe.frame, {}, &TrackKeyframe::frame);
     track.keyframes.insert(after, std::move(keyframe));
 }
 
@@ -41,10 +49,10 @@ Interpolation way_at(const Track& track, double frame) {
 }
 
 /// The numbers of a value that fits the parameter; sets it in passing.
-std::vector<double> numbers_for(const Parameter& parameter, const Value& value) {
+Numbers numbers_for(const Parameter& parameter, const Value& value) {
     try {
         parameter.set(value);
-        std::vector<double> numbers = to_numbers(parameter.spec, value);
+        Numbers numbers = to_numbers(parameter.spec, value);
         const bool nothing = numbers.empty() || (value.text() && value == parameter.spec.nothing);
         const bool zero = std::all_of(numbers.begin(), numbers.end(), [](double x) { return x == 0.0; });
         if (nothing || (zero && parameter.spec.type == ParameterType::rotation))
@@ -68,17 +76,15 @@ Track new_track(const ParameterSpec& spec) {
 }  // namespace
 
 const Track* find_track(const Scene& scene, const std::string& key) {
-    const auto found = std::find_if(scene.animation.begin(), scene.animation.end(),
-                                    [&](const Track& track) { return track.key == key; });
+    const auto found = std::ranges::find_if(scene.animation, [&](const Track& t) { return t.key == key; });
     return found == scene.animation.end() ? nullptr : &*found;
 }
 
 bool is_animated(const Scene& scene, const std::string& key) { return find_track(scene, key) != nullptr; }
 
 bool has_keyframe_at(const Scene& scene, const std::string& key, double frame) {
-    const Track* track = find_track(scene, key);
-    return track && std::any_of(track->keyframes.begin(), track->keyframes.end(),
-                                [&](const TrackKeyframe& keyframe) { return keyframe.frame == frame; });
+    const Track* const track = find_track(scene, key);
+    return track && std::ranges::count(track->keyframes, frame, &TrackKeyframe::frame) > 0;
 }
 
 void set_keyframe(Scene& scene, const std::string& key, double frame, const Value& value) {
@@ -89,7 +95,7 @@ void set_keyframe(Scene& scene, const std::string& key, double frame, const Valu
     if (!parameter) throw InputError(key + ": expected a parameter of the scene, found none of that name");
     if (parameter->spec.animation == Animation::no)
         throw InputError(parameter->spec.key.text() + ": this parameter cannot be animated");
-    std::vector<double> numbers = numbers_for(*parameter, value);
+    Numbers numbers = numbers_for(*parameter, value);
     Track* track = track_of(scene, parameter->spec.key);
     if (!track) {
         scene.animation.push_back(new_track(parameter->spec));
@@ -100,20 +106,18 @@ void set_keyframe(Scene& scene, const std::string& key, double frame, const Valu
     if (!alone && track->keyframes[0].value.size() != numbers.size())
         throw InputError(parameter->spec.key.text() +
                          ": expected as many points as in the other keyframes, found " + "another number");
-    const auto old = keyframe_at(*track, frame);
-    if (old != track->keyframes.end())
+    if (TrackKeyframe* const old = keyframe_at(track, frame))
         old->value = std::move(numbers);
     else
         insert_keyframe(*track, {frame, numbers, way_at(*track, frame)});
 }
 
 void remove_keyframe(Scene& scene, const std::string& key, double frame) {
-    Track* track = track_of(scene, key);
-    if (!track) return;
-    const auto found = keyframe_at(*track, frame);
-    if (found == track->keyframes.end()) return;
-    if (track->keyframes.size() > 1) {
-        track->keyframes.erase(found);
+    const TrackKeyframe* const found = keyframe_of(scene, key, frame);
+    if (!found) return;
+    Track& track = *track_of(scene, key);
+    if (track.keyframes.size() > 1) {
+        std::erase_if(track.keyframes, [&](const TrackKeyframe& k) { return k.frame == frame; });
         return;
     }
     const Description description = describe(scene);
@@ -127,28 +131,21 @@ void remove_track(Scene& scene, const std::string& key) {
 }
 
 void move_keyframe(Scene& scene, const std::string& key, double from, double to) {
-    Track* track = track_of(scene, key);
-    if (!track || from == to || !std::isfinite(to) || keyframe_at(*track, from) == track->keyframes.end())
-        return;
+    if (from == to || !std::isfinite(to) || !has_keyframe_at(scene, key, from)) return;
     copy_keyframe(scene, key, from, to);
-    track->keyframes.erase(keyframe_at(*track, from));
+    std::erase_if(track_of(scene, key)->keyframes, [&](const TrackKeyframe& k) { return k.frame == from; });
 }
 
 void copy_keyframe(Scene& scene, const std::string& key, double from, double to) {
-    Track* track = track_of(scene, key);
-    if (!track || !std::isfinite(to)) return;
-    const auto found = keyframe_at(*track, from);
-    if (found == track->keyframes.end()) return;
+    const TrackKeyframe* const found = keyframe_of(scene, key, from);
+    if (!found || !std::isfinite(to)) return;
     TrackKeyframe copy = *found;
     copy.frame = to;
-    insert_keyframe(*track, std::move(copy));
+    insert_keyframe(*track_of(scene, key), std::move(copy));
 }
 
 void set_interpolation(Scene& scene, const std::string& key, double frame, Interpolation interpolation) {
-    Track* track = track_of(scene, key);
-    if (!track) return;
-    const auto found = keyframe_at(*track, frame);
-    if (found != track->keyframes.end()) found->interpolation = interpolation;
+    if (TrackKeyframe* const found = keyframe_of(scene, key, frame)) found->interpolation = interpolation;
 }
 
 void set_ends(Scene& scene, const std::string& key, Ends ends) {
@@ -174,6 +171,78 @@ double frame_of_previous_keyframe(const Scene& scene, double frame) {
     const std::vector<double> frames = frames_with_keyframes(scene);
     const auto here = std::lower_bound(frames.begin(), frames.end(), frame);
     return here == frames.begin() ? frame : *(here - 1);
+}
+
+namespace {
+
+constexpr double least_frames = 1e-3;  // of a handle that another one turns with
+
+/// The handle at `side` of a keyframe as it acts; of no segment: with no frames.
+Handle<Numbers> acting(Scene& scene, const std::string& key, double frame, HandleSide side) {
+    const Track& track = *find_track(scene, key);
+    const Description description = describe(scene);
+    const Parameter* parameter = find_parameter(description, key);
+    const TrackKeyframe* const found = keyframe_of(scene, key, frame);
+    if (!parameter || !found) return {};
+    const TrackHandles handles =
+        handles_of(track, parameter->spec)[static_cast<std::size_t>(found - track.keyframes.data())];
+    return side == HandleSide::in ? handles.in : handles.out;
+}
+
+/// Free, where it acts now; of no segment: automatic.
+Handle<Numbers> freed(Scene& scene, const std::string& key, double frame, HandleSide side) {
+    Handle<Numbers> handle = acting(scene, key, frame, side);
+    if (handle.frames == 0.0 && handle.kind != HandleKind::free) return {};
+    handle.kind = HandleKind::free;
+    return handle;
+}
+
+/// Turned to the direction of `leader`, at the frames it has.
+void follow(Handle<Numbers>& handle, const Handle<Numbers>& leader) {
+    if (handle.kind != HandleKind::free || std::fabs(leader.frames) < least_frames) return;
+    handle.value = leader.value;
+    for (double& number : handle.value) number *= handle.frames / leader.frames;
+}
+
+Handle<Numbers>& handle_at(TrackKeyframe& keyframe, HandleSide side) {
+    return side == HandleSide::in ? keyframe.in : keyframe.out;
+}
+
+HandleSide other(HandleSide side) { return side == HandleSide::in ? HandleSide::out : HandleSide::in; }
+
+}  // namespace
+
+bool has_handle(const Track& track, std::size_t i, HandleSide side) {
+    const bool before = side == HandleSide::in;
+    if (before ? i == 0 : i + 1 >= track.keyframes.size()) return false;
+    return track.keyframes[before ? i - 1 : i].interpolation == Interpolation::bezier;
+}
+
+void set_handle_kind(Scene& scene, const std::string& key, double frame, HandleKind kind) {
+    TrackKeyframe* const keyframe = keyframe_of(scene, key, frame);
+    if (!keyframe) return;
+    for (const HandleSide side : {HandleSide::in, HandleSide::out})
+        handle_at(*keyframe, side) =
+            kind == HandleKind::free ? freed(scene, key, frame, side) : Handle<Numbers>{kind, 0.0, {}};
+}
+
+void set_broken(Scene& scene, const std::string& key, double frame, bool broken) {
+    TrackKeyframe* const keyframe = keyframe_of(scene, key, frame);
+    if (!keyframe) return;
+    keyframe->broken = broken;
+    if (!broken) follow(keyframe->in, acting(scene, key, frame, HandleSide::out));
+}
+
+void set_handle(Scene& scene, const std::string& key, double frame, HandleSide side, double frames,
+                const Numbers& value) {
+    TrackKeyframe* const keyframe = keyframe_of(scene, key, frame);
+    if (!keyframe) return;
+    const Handle<Numbers> second = freed(scene, key, frame, other(side));
+    const bool right_side = side == HandleSide::in ? frames < 0.0 : frames > 0.0;
+    handle_at(*keyframe, side) = {HandleKind::free, right_side ? frames : 0.0, value};
+    if (keyframe->broken) return;
+    handle_at(*keyframe, other(side)) = second;
+    follow(handle_at(*keyframe, other(side)), handle_at(*keyframe, side));
 }
 
 }  // namespace astrosplat

@@ -1,10 +1,12 @@
-// Editing the animation of a scene: free functions on its tracks. Frames are whole unless dragged otherwise;
-// a track that loses its last keyframe is removed and the parameter keeps the value it had there.
+// Editing the animation of a scene, free functions on its tracks: keyframes, and the handles of Bezier ones
+// (camera/keyframe.h). Frames are whole unless dragged otherwise; a track that loses its last keyframe is
+// removed and the parameter keeps the value it had there. What has no such track or keyframe is left alone.
 #pragma once
 
 #include <string>
 #include <vector>
 
+#include "camera/keyframe.h"
 #include "scene/parameter.h"
 #include "scene/scene.h"
 
@@ -31,5 +33,22 @@ void set_ends(Scene& scene, const std::string& key, Ends ends);
 std::vector<double> frames_with_keyframes(const Scene& scene);
 double frame_of_next_keyframe(const Scene& scene, double frame);
 double frame_of_previous_keyframe(const Scene& scene, double frame);
+
+enum class HandleSide { in, out };
+
+/// Whether the segment at that side of keyframe i is Bezier.
+bool has_handle(const Track& track, std::size_t i, HandleSide side);
+
+/// Both handles of a keyframe. Free ones begin where they are.
+void set_handle_kind(Scene& scene, const std::string& key, double frame, HandleKind kind);
+
+/// Broken handles are moved one by one; joined again, the one before the keyframe follows the one after it.
+void set_broken(Scene& scene, const std::string& key, double frame, bool broken);
+
+/// Puts a handle at `frames` and `value` from its keyframe; frames on the other side of it count as 0. Both
+/// become free; unless they are broken the other one keeps its frames and turns with this one, so that value
+/// and speed go on evenly through the keyframe.
+void set_handle(Scene& scene, const std::string& key, double frame, HandleSide side, double frames,
+                const std::vector<double>& value);
 
 }  // namespace astrosplat

@@ -1,10 +1,17 @@
-// Where a layer is in the world, and the way back: world = rotation * (scale * p) + translate, as
-// LayerTransform says it in degrees.
+// Where things lie: layers in the world, the world in a frame, and lines of the world that are drawn over it.
+// world = rotation * (scale * p) + translate, as LayerTransform says it in degrees; px of a frame, y down.
 #pragma once
 
+#include <array>
 #include <glm/mat3x3.hpp>
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <optional>
+#include <vector>
 
+#include "camera/camera.h"
+#include "core/bounds.h"
+#include "edit/view_state.h"
 #include "scene/scene.h"
 
 namespace astrosplat {
@@ -24,5 +31,46 @@ glm::dvec3 degrees_of(const glm::dmat3& rotation, const glm::dvec3& near);
 
 /// By the right-hand rule; `axis` of length 1.
 glm::dmat3 rotation_about(const glm::dvec3& axis, double radians);
+
+/// The camera of a frame that is shown `scale` times as large with its upper left at `corner`, px: what it
+/// projects are px of where it is shown.
+Camera camera_on_screen(const Camera& camera, const glm::dvec2& corner, double scale);
+
+/// Along the view axis, scene units; below 0 behind the eye.
+double view_depth(const Camera& camera, const glm::dvec3& point);
+
+/// None where the point does not lie in front of the eye.
+std::optional<glm::vec2> project_point(const Camera& camera, const glm::dvec3& point);
+
+/// A line of several points, cut where it passes behind the eye.
+std::vector<std::vector<glm::vec2>> project_line(const Camera& camera, const std::vector<glm::dvec3>& line);
+
+/// The ray through a pixel: from the eye, or where rays are parallel from the plane through it.
+struct ViewRay {
+    glm::dvec3 origin, direction;  // of length 1
+};
+ViewRay ray_through(const Camera& camera, const glm::dvec2& px);
+
+/// Scene units that a pixel covers at a point.
+double units_per_px(const Camera& camera, const glm::dvec3& point);
+
+struct MarkLine {
+    glm::dvec3 from, to;  // world space
+};
+
+/// The twelve edges of a box of layer space, placed as the layer is.
+std::vector<MarkLine> box_edges(const Bounds& box, const LayerTransform& transform);
+
+/// Lines around the scene's box at whole multiples of `spacing`, which is 1, 2 or 5 times a power of ten: in
+/// the plane that the view faces, for others in the horizontal one. The plane goes through the origin, or
+/// where the box does not reach it along the nearest side of the box.
+struct Grid {
+    double spacing = 1.0;  // scene units
+    std::vector<MarkLine> lines;
+};
+Grid grid_around(const Bounds& box, ViewKind view);
+
+/// From the origin along x, y and z, half as long as the box's longest side.
+std::array<MarkLine, 3> axis_lines(const Bounds& box);
 
 }  // namespace astrosplat

@@ -1,7 +1,18 @@
 // Layers are matched by name, tracks by their key.
 #include "edit/snapshots.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "core/atomic_file.h"
+#include "core/error.h"
+#include "core/file.h"
+#include "core/folders.h"
+#include "core/text.h"
+#include "scene/load.h"
+#include "scene/save.h"
 
 namespace astrosplat {
 namespace {
@@ -60,6 +71,107 @@ Scene with_look_of(const Scene& scene, const Scene& stored) {
 void restore_look(Document& document, const StoredLook& stored) {
     document.edit("Restore " + stored.name,
                   [&](Scene& scene) { scene = with_look_of(scene, *stored.scene); });
+}
+
+namespace fs = std::filesystem;
+namespace {
+
+constexpr std::string_view head_of_facts = "# astrosplat snapshot ";
+
+std::string facts_line(const SnapshotFacts& facts) {
+    const nlohmann::ordered_json json{
+        {"name", facts.name}, {"frame", facts.frame}, {"splats", facts.splats}, {"seconds", facts.seconds}};
+    return std::string(head_of_facts) + json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) +
+           "\n";
+}
+
+/// Throws InputError where the text begins with something else.
+SnapshotFacts facts_of(const std::string& text, const fs::path& file) {
+    const std::string_view line = std::string_view(text).substr(0, text.find('\n'));
+    try {
+        if (line.starts_with(head_of_facts)) {
+            const auto json = nlohmann::json::parse(line.substr(head_of_facts.size()));
+            return {json.at("name").get<std::string>(), json.at("frame").get<double>(),
+                    json.at("splats").get<std::int64_t>(), json.at("seconds").get<double>()};
+        }
+    } catch (const nlohmann::json::exception&) {
+        // told below
+    }
+    bad_input(file.string(), "1", "a snapshot", "another file");
+}
+
+KeptSnapshot read_snapshot(const fs::path& file) {
+    const std::string text = read_file(file);
+    return {file, facts_of(text, file), parse_scene(text, file)};
+}
+
+/// Of "0012.toml" 12; 0 for other names.
+std::int64_t number_of_file(const fs::path& file) {
+    if (file.extension() != ".toml") return 0;
+    return parse_int64(file.stem().string()).value_or(0);
+}
+
+std::vector<fs::path> numbered_files(const fs::path& folder) {
+    std::vector<fs::path> files;
+    for (const fs::path& entry : entries_of(folder))
+        if (number_of_file(entry) > 0) files.push_back(entry);
+    std::ranges::sort(files, {}, number_of_file);
+    return files;
+}
+
+}  // namespace
+
+fs::path snapshot_folder(const fs::path& scene_file) {
+    return fs::path(scene_file).replace_extension(".snapshots");
+}
+
+fs::path snapshot_picture(const fs::path& snapshot) { return fs::path(snapshot).replace_extension(".png"); }
+
+std::vector<KeptSnapshot> read_snapshots(const fs::path& folder, std::vector<std::string>& problems) {
+    std::vector<KeptSnapshot> found;
+    for (const fs::path& file : numbered_files(folder)) {
+        try {
+            found.push_back(read_snapshot(file));
+        } catch (const InputError& error) {
+            problems.push_back(error.what());
+        }
+    }
+    return found;
+}
+
+fs::path write_snapshot(const fs::path& folder, const SnapshotFacts& facts, const Scene& scene,
+                        const std::string& png) {
+    make_folder(folder);
+    const std::vector<fs::path> files = numbered_files(folder);
+    Scene whole = scene;
+    for (LayerParams& layer : whole.layers) layer.preset.clear();
+    for (std::int64_t number = files.empty() ? 1 : number_of_file(files.back()) + 1;; ++number) {
+        const fs::path file = folder / fmt::format("{:04}.toml", number);
+        try {
+            write_file_atomically(file, facts_line(facts) + save_text(whole, "", file), Existing::keep);
+        } catch (const AlreadyExists&) {
+            continue;  // another window took the number
+        }
+        write_file_atomically(snapshot_picture(file), png);
+        return file;
+    }
+}
+
+void rename_snapshot(const fs::path& snapshot, const std::string& name) {
+    const std::string text = read_file(snapshot);
+    SnapshotFacts facts = facts_of(text, snapshot);
+    facts.name = name;
+    write_file_atomically(snapshot,
+                          facts_line(facts) + text.substr(std::min(text.find('\n'), text.size() - 1) + 1));
+}
+
+void remove_snapshot(const fs::path& snapshot) {
+    for (const fs::path& file : {snapshot, snapshot_picture(snapshot)}) {
+        std::error_code error;
+        fs::remove(file, error);
+        if (error)
+            throw OutputError(fmt::format("{}: cannot be removed: {}", file.string(), error.message()));
+    }
 }
 
 }  // namespace astrosplat

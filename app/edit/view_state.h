@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "camera/camera.h"
+#include "edit/command_lines.h"
 #include "edit/listed_picture.h"
-#include "edit/render_task.h"
 #include "edit/settings.h"
 #include "scene/scene.h"
 

@@ -7,7 +7,7 @@
 
 #include "core/error.h"
 #include "core/log.h"
-#include "edit/film.h"
+#include "edit/edit_rules.h"
 #include "gui/theme.h"
 #include "gui/widgets.h"
 #include "scene/frames.h"

@@ -50,7 +50,7 @@ struct FrameRange {
     double first = 1.0, last = 1.0;
 };
 FrameRange frame_range(const Scene& scene);
-/// Those that the timeline shows: of a still as many as it has once something moves (edit/film.h).
+/// Those that the timeline shows: of a still as many as it has once something moves (edit/edit_rules.h).
 FrameRange shown_range(const Scene& scene);
 
 }  // namespace astrosplat

@@ -4,7 +4,7 @@
 
 #include <utility>
 
-#include "edit/project_line.h"
+#include "edit/placement.h"
 #include "gui/key_codes.h"
 #include "gui/theme.h"
 #include "gui/view_marks.h"

@@ -2,7 +2,7 @@
 // In: the mouse over the view. Out: edits of the scene, one undo step a drag; Escape takes the drag back.
 #pragma once
 
-#include "edit/handled.h"
+#include "edit/handles.h"
 #include "gui/gui_frame.h"
 
 namespace astrosplat {

@@ -9,7 +9,7 @@
 
 #include "camera/keyframe.h"
 #include "edit/keyframes.h"
-#include "edit/project_line.h"
+#include "edit/placement.h"
 #include "gui/key_codes.h"
 #include "gui/theme.h"
 #include "gui/widgets.h"

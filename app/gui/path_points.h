@@ -6,7 +6,7 @@
 #include <glm/vec3.hpp>
 #include <optional>
 
-#include "edit/keyframe_handles.h"
+#include "edit/keyframes.h"
 #include "gui/gui_frame.h"
 
 namespace astrosplat {

@@ -9,7 +9,6 @@
 #include <limits>
 #include <utility>
 
-#include "edit/keyframe_handles.h"
 #include "edit/keyframes.h"
 #include "gui/key_codes.h"
 #include "gui/theme.h"

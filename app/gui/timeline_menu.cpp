@@ -8,7 +8,6 @@
 #include <array>
 #include <functional>
 
-#include "edit/keyframe_handles.h"
 #include "edit/keyframes.h"
 #include "gui/theme.h"
 #include "gui/widgets.h"

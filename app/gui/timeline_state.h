@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "edit/keyframe_handles.h"
+#include "edit/keyframes.h"
 #include "gui/gui_frame.h"
 
 namespace astrosplat {

@@ -6,8 +6,7 @@
 #include <algorithm>
 #include <array>
 
-#include "edit/project_line.h"
-#include "edit/scene_marks.h"
+#include "edit/placement.h"
 #include "gui/theme.h"
 #include "scene/animate.h"
 

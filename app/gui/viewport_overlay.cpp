@@ -8,7 +8,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "edit/scene_marks.h"
+#include "edit/placement.h"
 #include "edit/view_camera.h"
 #include "gui/icons.h"
 #include "gui/theme.h"

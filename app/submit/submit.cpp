@@ -16,7 +16,7 @@
 #include "core/log.h"
 #include "core/parallel.h"
 #include "core/text.h"
-#include "edit/batch_command.h"
+#include "edit/command_lines.h"
 #include "estimate.h"
 #include "farm/child_process.h"
 #include "farm/submission.h"

@@ -11,7 +11,6 @@
 #include <string>
 #include <vector>
 
-#include "edit/snapshot_files.h"
 #include "edit/snapshots.h"
 #include "edit/status.h"
 #include "gl/display.h"

@@ -10,7 +10,7 @@
 #include "core/error.h"
 #include "core/folders.h"
 #include "core/hash.h"
-#include "edit/prepare_command.h"
+#include "edit/command_lines.h"
 #include "scene/frames.h"
 
 namespace astrosplat {

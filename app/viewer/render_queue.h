@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "edit/command_lines.h"
 #include "edit/document.h"
-#include "edit/render_task.h"
 #include "edit/settings.h"
 #include "edit/status.h"
 #include "sets/set_cache.h"

@@ -5,7 +5,7 @@
 #include <optional>
 #include <utility>
 
-#include "edit/batch_command.h"
+#include "edit/command_lines.h"
 #include "scene/animate.h"
 #include "viewer/session_parts.h"
 

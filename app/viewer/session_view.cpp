@@ -12,7 +12,7 @@
 
 #include "core/error.h"
 #include "core/parallel.h"
-#include "edit/project_line.h"
+#include "edit/placement.h"
 #include "edit/view_camera.h"
 #include "scene/animate.h"
 #include "scene/layer_setup.h"

@@ -9,8 +9,6 @@
 #include "core/error.h"
 #include "core/real.h"
 #include "edit/keyframes.h"
-#include "edit/navigate.h"
-#include "edit/project_line.h"
 #include "edit/view_camera.h"
 #include "scene/animate.h"
 #include "scene/describe.h"

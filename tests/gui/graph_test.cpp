@@ -1,7 +1,6 @@
 // The graph by mouse: handles of Bezier keyframes, their menu, channels, zoom and pan.
 #include <gtest/gtest.h>
 
-#include "edit/keyframe_handles.h"
 #include "edit/keyframes.h"
 #include "gui/key_codes.h"
 #include "gui/test_window.h"

@@ -1,7 +1,7 @@
 // Handles, boxes, grid and axes over the viewport: switched, dragged, taken back.
 #include <gtest/gtest.h>
 
-#include "edit/project_line.h"
+#include "edit/placement.h"
 #include "gui/key_codes.h"
 #include "gui/test_window.h"
 #include "gui/theme.h"

@@ -3,9 +3,8 @@
 
 #include <cmath>
 
-#include "edit/keyframe_handles.h"
 #include "edit/keyframes.h"
-#include "edit/project_line.h"
+#include "edit/placement.h"
 #include "gui/key_codes.h"
 #include "gui/test_window.h"
 

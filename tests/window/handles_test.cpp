@@ -1,5 +1,5 @@
 // A layer is moved by its handles in the picture, and a crop cuts it.
-#include "edit/project_line.h"
+#include "edit/placement.h"
 #include "window/window_test.h"
 
 namespace astrosplat::test {

@@ -1,7 +1,7 @@
 // Snapshots lie beside the scene as soon as they are taken, and are there again after a crash.
 #include <gtest/gtest.h>
 
-#include "edit/snapshot_files.h"
+#include "edit/snapshots.h"
 #include "gui/theme.h"
 #include "window/window_test.h"
 

@@ -3,7 +3,7 @@
 #include <set>
 #include <utility>
 
-#include "edit/batch_command.h"
+#include "edit/command_lines.h"
 #include "gui/key_codes.h"
 #include "output/read_frame.h"
 #include "source/texture.h"

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <filesystem>
 
-#include "edit/batch_command.h"
+#include "edit/command_lines.h"
 
 namespace astrosplat::panel {
 namespace {

@@ -1,5 +1,5 @@
 // The command line for what is shown: a real shell takes it apart, and the loader makes the scene of it.
-#include "edit/batch_command.h"
+#include "edit/command_lines.h"
 
 #include <gtest/gtest.h>
 

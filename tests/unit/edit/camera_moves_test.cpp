@@ -8,7 +8,7 @@
 
 #include "camera/camera.h"
 #include "core/real.h"
-#include "edit/check_edit.h"
+#include "edit/edit_rules.h"
 #include "edit/keyframes.h"
 #include "edit/rounding.h"
 #include "scene/animate.h"

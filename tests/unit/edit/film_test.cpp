@@ -1,5 +1,5 @@
 // Stills that become films by their first keyframe at a later frame.
-#include "edit/film.h"
+#include "edit/edit_rules.h"
 
 #include <gtest/gtest.h>
 

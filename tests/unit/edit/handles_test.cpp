@@ -9,8 +9,7 @@
 
 #include "core/real.h"
 #include "core/rotation.h"
-#include "edit/handled.h"
-#include "edit/project_line.h"
+#include "edit/placement.h"
 #include "edit/rounding.h"
 #include "unit/edit/scenes.h"
 

@@ -1,9 +1,8 @@
 // Editing handles of Bezier keyframes: kinds, joined and broken ones.
-#include "edit/keyframe_handles.h"
+#include "edit/keyframes.h"
 
 #include <gtest/gtest.h>
 
-#include "edit/keyframes.h"
 #include "scene/animate.h"
 #include "scenes.h"
 

@@ -7,7 +7,6 @@
 
 #include "core/real.h"
 #include "core/rotation.h"
-#include "edit/scene_marks.h"
 
 namespace astrosplat {
 namespace {

@@ -1,5 +1,5 @@
 // The keys of source.prepare as the options of the command: those that do something, and no others.
-#include "edit/prepare_command.h"
+#include "edit/command_lines.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Where points and lines of the world lie in a frame, and back: closed forms of a camera along -z.
-#include "edit/project_line.h"
+#include "edit/placement.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Renderings from the window as words of --batch and of ffmpeg.
-#include "edit/render_task.h"
+#include "edit/command_lines.h"
 
 #include <gtest/gtest.h>
 

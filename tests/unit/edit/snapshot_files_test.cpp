@@ -1,10 +1,9 @@
 // Snapshots in the folder beside their scene: what is written is read again, and nothing is lost where one of
 // them is broken.
-#include "edit/snapshot_files.h"
+#include "edit/snapshots.h"
 
 #include <gtest/gtest.h>
 
-#include "edit/snapshots.h"
 #include "scenes.h"
 #include "support/run_program.h"
 

@@ -9,7 +9,6 @@
 #include "core/real.h"
 #include "edit/camera_moves.h"
 #include "edit/keyframes.h"
-#include "edit/navigate.h"
 #include "scene/animate.h"
 #include "scenes.h"
 

@@ -1,5 +1,5 @@
 // Changes of files in use, and which files a scene uses.
-#include "edit/watched_files.h"
+#include "edit/disk_files.h"
 
 #include <gtest/gtest.h>
 

@@ -1,14 +1,19 @@
-// What a rendering from the window is asked to make: of which frames, how large, where to, and what becomes
-// of files that are there. In: the dialog's values. Out: the words of a --batch or --submit command.
+// What the window does in other processes, as the words of command lines: renderings here and on a farm,
+// movies by ffmpeg, the preparation of a picture, and what a person pastes into a shell. In: the dialog's
+// values and the document. Out: words, or why it cannot be said.
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "camera/camera.h"
+#include "core/image.h"
 #include "edit/document.h"
 #include "edit/settings.h"
+#include "source/source.h"
 
 namespace astrosplat {
 
@@ -70,5 +75,34 @@ std::vector<std::string> submit_arguments(const RenderTask& task);
 /// ffmpeg's command, which writes a movie of the frames in its folder. Sides of odd size get a black line
 /// more, as H.264 wants it.
 std::vector<std::string> movie_command(const std::filesystem::path& movie, double fps);
+
+struct BatchCommandOptions {
+    std::optional<double> frame;         // empty: the frames of [output]
+    std::int64_t width = 0, height = 0;  // px; 0: the resolution of [output]
+    std::optional<Region> region;        // of that frame
+    std::optional<CameraParams> camera;  // a free view instead of the scene's camera
+    std::vector<std::string> arguments;  // more words of --batch
+    std::string mode = "--batch";        // or "--submit slurm"
+    std::string program = "astrosplat";
+};
+
+struct BatchCommand {
+    std::string text;    // for a POSIX shell; empty where it cannot be said
+    std::string reason;  // why not, one line: "save the scene first: ..."
+};
+
+/// Edits that are not saved, and another camera, appear as --set; the command is given only where loading the
+/// file with them gives exactly the scene shown. Frames between two frames are rounded.
+BatchCommand batch_command(const Document& document, const BatchCommandOptions& options);
+
+/// The command line that renders what the dialog asks for, from any folder; a movie by a second command
+/// behind it.
+BatchCommand render_command(const Document& document, const RenderTask& task, const std::string& program);
+
+/// One word for a POSIX shell, in quotes where it needs them.
+std::string shell_word(const std::string& text);
+
+/// "prepare" and what follows it. Throws InputError where the source has no picture of its own.
+std::vector<std::string> prepare_command(const SourceParams& source, const std::filesystem::path& folder);
 
 }  // namespace astrosplat

@@ -1,16 +1,22 @@
 // Values are checked by reading and setting them: the description knows every range.
-#include "edit/check_edit.h"
+#include "edit/edit_rules.h"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <vector>
 
 #include "core/error.h"
 #include "scene/camera_file.h"
 #include "scene/check.h"
 #include "scene/describe.h"
+#include "scene/entries.h"
+#include "scene/frames.h"
+#include "scene/load.h"
 
 namespace astrosplat {
 namespace {
@@ -85,6 +91,57 @@ void check_edited_scene(Scene& scene, const std::string& name) {
     for (const Track& track : scene.animation) check_track(track, *find_parameter(description, track.key));
     check_scene(scene, name, {});
     refresh_camera_file(scene, name);
+}
+
+void apply_output_preset(Scene& scene) {
+    if (scene.output.preset.empty()) return;
+    const std::string head = "astrosplat = 1\n";
+    const std::string text = fmt::format("[output]\npreset = {}\n", to_toml(scene.output.preset.string()));
+    Scene blank = parse_unchecked(head, scene.file), loaded = parse_unchecked(head + text, scene.file);
+    const Description standard = describe(blank), wanted = describe(scene);
+    for (const Parameter& parameter : describe(loaded).parameters) {
+        const ParameterKey& key = parameter.spec.key;
+        const Parameter *before = find_parameter(standard, key), *own = find_parameter(wanted, key);
+        if (before && own && key != "output.preset" && !(before->get() == parameter.get()))
+            own->set(parameter.get());
+    }
+}
+
+void keep_dome_square(Scene& scene, const Scene& before) {
+    OutputParams& output = scene.output;
+    if (!is_dome(output)) return;
+    const bool width_changed = output.width != before.output.width,
+               height_changed = output.height != before.output.height;
+    if (width_changed && !height_changed) output.height = output.width;
+    if (height_changed && !width_changed) output.width = output.height;
+}
+
+namespace {
+
+/// Of all keyframes; `otherwise` where there is none.
+double last_keyframe(const Scene& scene, double otherwise) {
+    double last = otherwise;
+    for (const Track& track : scene.animation)
+        for (const auto& keyframe : track.keyframes) last = std::max(last, keyframe.frame);
+    return last;
+}
+
+}  // namespace
+
+double film_frames(const OutputParams& output) {
+    constexpr double seconds = 10.0;
+    return std::fmax(1.0, std::floor(seconds * output.fps + 0.5));
+}
+
+void film_still(const Scene& before, Scene& after) {
+    if (before.output.frames != after.output.frames) return;
+    const std::vector<std::int64_t> frames = parse_frames(after.output.frames, "output.frames");
+    const auto first = static_cast<double>(frames.front());
+    if (frames.size() != 1 || last_keyframe(before, first) > first) return;
+    const double last = last_keyframe(after, first);
+    if (last > first)
+        after.output.frames = fmt::format(
+            "{}-{}", frames.front(), std::llround(std::max(first + film_frames(after.output) - 1.0, last)));
 }
 
 }  // namespace astrosplat

@@ -1,0 +1,30 @@
+// What an edit leaves behind: the values that go with it, and only scenes that can be saved and read again.
+// In: a scene as an edit made it, and as it was before. Out: the scene, or an error in one line.
+#pragma once
+
+#include <string>
+
+#include "scene/scene.h"
+
+namespace astrosplat {
+
+/// Takes out tracks whose parameter is gone (a noise entry or layer that was removed), then checks everything
+/// that loading the saved scene would check. Throws InputError; `name` begins the messages that have no
+/// better place.
+void check_edited_scene(Scene& scene, const std::string& name);
+
+/// What the scene's output.preset says of [output] and [camera], into the scene; nothing where it names none.
+/// Throws InputError.
+void apply_output_preset(Scene& scene);
+
+/// Makes the frame of a dome master square again where one side of it was changed, by that side.
+void keep_dome_square(Scene& scene, const Scene& before);
+
+/// Frames of ten seconds: how long a film is that nobody chose a length for.
+double film_frames(const OutputParams& output);
+
+/// A still's first keyframe at a later frame makes it a film of film_frames(), or up to that keyframe.
+/// Changes nothing where the edit itself chose frames, or where keyframes lay elsewhere before it.
+void film_still(const Scene& before, Scene& after);
+
+}  // namespace astrosplat
