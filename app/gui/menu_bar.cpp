@@ -1,6 +1,6 @@
 // The menus: a loop over actions(), with recent files and the history added where File > Open
 // and Edit > Redo are.
-#include "gui/menu_bar.h"
+#include "gui/parts.h"
 
 #include <imgui.h>
 

@@ -1,4 +1,4 @@
-#include "gui/settings_dialog.h"
+#include "gui/parts.h"
 
 #include <imgui.h>
 #include <imgui_stdlib.h>

@@ -1,5 +1,5 @@
 // Shortcuts from the table of actions, the mouse from a table here; the log as it is.
-#include "gui/sheets.h"
+#include "gui/parts.h"
 
 #include <imgui.h>
 

@@ -1,5 +1,5 @@
 // A row of cards that scrolls sideways, and the button that takes another.
-#include "gui/snapshots.h"
+#include "gui/parts.h"
 
 #include <fmt/format.h>
 #include <imgui.h>

@@ -1,5 +1,5 @@
 // A splitter is a window 6 px thick without a background, over the edge of two parts.
-#include "gui/splitters.h"
+#include "gui/parts.h"
 
 #include <imgui.h>
 

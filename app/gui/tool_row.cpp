@@ -1,6 +1,6 @@
 // Tools at the left are always there; those at the right move into a menu, the rarest first, where the row is
 // too narrow for them.
-#include "gui/tool_row.h"
+#include "gui/parts.h"
 
 #include <fmt/format.h>
 #include <imgui.h>

@@ -1,0 +1,37 @@
+// The parts of the window that keep nothing from one frame to the next: each draws itself and puts what was
+// asked for into the frame. Those with an area draw into the current ImGui window, over it.
+#pragma once
+
+#include "gui/gui_frame.h"
+
+namespace astrosplat {
+
+/// The bar at the top: menus made of the table of actions, the scene's name in the middle.
+/// Draws into the current ImGui window, over `area`.
+void draw_menu_bar(GuiFrame& frame, const Rect& area);
+
+/// The row of tools over the frame: from where it is seen, at what size, compared with what, and how shown.
+void draw_tool_row(GuiFrame& frame, const Rect& area);
+
+/// The one line under the tools: that the scene's file changed on disk, or the hint of the first start.
+void draw_notice(GuiFrame& frame, const Rect& area);
+
+/// The strip of snapshots under the frame: a thumbnail, its name, splats and time of each; clicked it
+/// becomes B.
+void draw_snapshots(GuiFrame& frame, const Rect& area);
+
+/// The two edges that can be dragged: of the side panel and of the timeline.
+/// Draws the lines between the parts and changes view.panel_width and view.timeline_height. Call it after the
+/// parts, so that it lies over their edges.
+void draw_splitters(GuiFrame& frame, const Layout& layout);
+
+/// Edit > Settings: one row of choices for every setting of the window.
+/// Open while ViewState::settings_open. Every choice acts at once or says when it does; closing asks for them
+/// to be kept (Command::keep_settings).
+void draw_settings_dialog(GuiFrame& frame);
+
+/// The sheet of shortcuts (F1) and the log: two dialogs that only show.
+void draw_shortcut_sheet(GuiFrame& frame);
+void draw_log(GuiFrame& frame);
+
+}  // namespace astrosplat
