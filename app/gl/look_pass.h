@@ -14,7 +14,7 @@
 #include "gl/draw_pass.h"
 #include "gl/objects.h"
 #include "gl/order.h"
-#include "gl/preview.h"
+#include "gl/preview_layer.h"
 #include "gl/program.h"
 #include "gl/splat_buffers.h"
 #include "look/shared_uniforms.h"

@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "gl/preview.h"
+#include "gl/preview_layer.h"
 #include "render/render.h"
 
 namespace astrosplat {

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "gl/preview.h"
+#include "gl/preview_layer.h"
 #include "merge/cut.h"
 #include "viewer/background_work.h"
 #include "viewer/cpu_preview.h"

@@ -13,6 +13,7 @@
 #include "output/write.h"
 #include "scene/check.h"
 #include "source/write_image.h"
+#include "viewer/run_viewer.h"
 #include "viewer/session.h"
 #include "viewer/window.h"
 

@@ -29,10 +29,10 @@
 #include "viewer/layer_picture.h"
 #include "viewer/playback.h"
 #include "viewer/render_queue.h"
-#include "viewer/run_viewer.h"
 #include "viewer/scene_files.h"
 #include "viewer/set_wishes.h"
 #include "viewer/view_frame.h"
+#include "viewer/viewer_options.h"
 #include "viewer/viewport_camera.h"
 
 namespace astrosplat {

@@ -33,33 +33,36 @@ void show_alone(unsigned texture, bool is_display, glm::vec2 size_px, const Rect
     shown.y = place.y + 0.5f * (place.height - shown.height);
 }
 
-/// The file of a frame; empty where the output has one file for all frames, or a pattern that is wrong.
-fs::path file_of_frame(const Session& session, double frame) {
-    const Scene& scene = session.document.scene();
-    try {
-        const OutputPattern pattern = output_pattern(scene.file.parent_path(), scene.output.path);
-        if (!pattern.is_numbered()) return {};
-        return pattern.resolve(std::llround(frame), eyes_of(pattern, scene.camera).front());
-    } catch (const InputError&) {
-        return {};
-    }
+/// The files of the output's frames.
+struct FrameFiles {
+    OutputPattern pattern;
+    Eye eye = Eye::centre;
+    fs::path of(double frame) const { return pattern.resolve(std::llround(frame), eye); }
+};
+
+/// None where the output has one file for all frames, or a pattern that is wrong.
+std::optional<FrameFiles> frame_files(const Scene& scene) try {
+    const OutputPattern pattern = output_pattern(scene.file.parent_path(), scene.output.path);
+    if (!pattern.is_numbered()) return std::nullopt;
+    return FrameFiles{pattern, eyes_of(pattern, scene.camera).front()};
+} catch (const InputError&) {
+    return std::nullopt;
 }
 
 /// From the frame that is looked at on, as they are played.
-std::vector<fs::path> files_ahead(const Session& session) {
+std::vector<fs::path> files_ahead(const Session& session, const FrameFiles& files) {
+    constexpr double most = 24.0;
     const std::vector<std::int64_t> frames =
         parse_frames(session.document.scene().output.frames, "output.frames");
     const double first = session.view.play_first.value_or(static_cast<double>(frames.front())),
                  last = session.view.play_last.value_or(static_cast<double>(frames.back()));
-    constexpr double most = 24.0;
-    std::vector<fs::path> files = {file_of_frame(session, session.view.frame)};
+    std::vector<fs::path> ahead = {files.of(session.view.frame)};
     double frame = std::floor(session.view.frame);
     for (double i = 1.0; i < std::min(most, last - first + 1.0); ++i) {
         frame = frame + 1.0 > last ? first : frame + 1.0;
-        files.push_back(file_of_frame(session, frame));
+        ahead.push_back(files.of(frame));
     }
-    std::erase(files, fs::path());
-    return files;
+    return ahead;
 }
 
 bool wants_rendered(const Session& session) {
@@ -127,11 +130,12 @@ bool show_rendered_frame(Session& session, const Rect& place, DisplaySettings& s
         picture.clear();
         return false;
     }
-    const fs::path file = file_of_frame(session, session.view.frame);
-    session.rendered.want(files_ahead(session));
+    const std::optional<FrameFiles> files = frame_files(session.document.scene());
+    session.rendered.want(files ? files_ahead(session, *files) : std::vector<fs::path>());
+    const fs::path file = files ? files->of(session.view.frame) : "frame";
     std::error_code ignored;
-    if (file.empty() || !fs::exists(file, ignored)) {
-        status.missing_frame = file.empty() ? "frame" : file.filename().string();
+    if (!files || !fs::exists(file, ignored)) {
+        status.missing_frame = file.filename().string();
         picture.clear();
         return false;
     }

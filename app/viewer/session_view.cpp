@@ -168,6 +168,60 @@ std::optional<Camera> camera_in_viewport(const ViewRequest& request, const Rect&
     }
 }
 
+/// How this frame of the window is drawn.
+struct Drawing {
+    double now = 0.0;         // s
+    bool hurry = false;       // the final frame at once
+    bool new_sets = false;    // since the last one
+    bool may_settle = false;  // to the final frame
+    PreviewChoice choice;
+};
+
+bool settles(const Session& session) { return session.view.settle && !session.view.playing; }
+
+/// Asks for the frame as the view sees it, with the lines beside it; returns where all of it lies in the
+/// viewport.
+Rect place_of_frame(Session& session, const Scene& now) {
+    const glm::vec2 port_px(session.viewport_px);
+    session.status.viewport_aspect = static_cast<double>(port_px.x) / static_cast<double>(port_px.y);
+    session.request = make_request(session, now);
+    keep_free_camera(session.view, session.shown());
+    const Rect whole = place_frame(session.view, {0, 0, port_px.x, port_px.y}, session.request.width,
+                                   session.request.height);
+    session.status.viewport_camera = camera_in_viewport(session.request, whole);
+    session.status.overlay_lines.clear();
+    if (session.view.view != ViewKind::camera && session.view.camera_path)
+        session.status.overlay_lines =
+            session.overlay.lines(session.document.scene(), now, session.status.box, session.request, whole);
+    return whole;
+}
+
+/// True: a frame from disk is seen in its place, as `rendered` shows it within `whole`.
+bool draw_a(Session& session, const Rect& whole, const Drawing& how, DisplaySettings& rendered) {
+    const bool from_disk = show_rendered_frame(session, whole, rendered);
+    const double start = thread_seconds();
+    if (!from_disk) session.view_frame.show(session.request, how.choice, how.may_settle, how.now, how.hurry);
+    if (how.new_sets) session.sets.drew_new_sets(thread_seconds() - start);
+    session.sets.loader().hold(settles(session) && !from_disk && session.view_frame.final_is_next(how.now));
+    return from_disk;
+}
+
+/// Puts B or the reference beside A. A's final frame comes first; B's follows it.
+void compare_a(Session& session, const Rect& whole, const Drawing& how, DisplaySettings& shown) {
+    const ViewFrameState reached = session.view_frame.status().state;
+    const bool a_is_done = reached == ViewFrameState::final || reached == ViewFrameState::failed;
+    const auto request_for = [&](const Scene& other) {
+        ViewRequest wanted = make_request(session, evaluated(other, session.view));
+        wanted.region = session.request.region;
+        return wanted;
+    };
+    session.comparison.find_reference(session.document.scene(), session.view, session.status);
+    if (session.status.reference) session.status.reference->aligning = session.alignment.working();
+    session.comparison.show(
+        session.document.scene(), session.view,
+        {request_for, how.choice, how.may_settle && a_is_done, how.now, frame_on_screen(whole)}, shown);
+}
+
 void fill_layers(Session& session, const Scene& now) {
     const std::vector<std::int64_t>&shown = session.view_frame.shown(), &kept = session.view_frame.kept();
     Status& status = session.status;
@@ -210,51 +264,21 @@ OutputParams::View display_view(OutputParams::View chosen, OutputParams::View of
 
 void draw_viewport(Session& session, glm::ivec2 viewport_px, double now, bool hurry) {
     session.viewport_px = glm::max(viewport_px, glm::ivec2(1));
-    const glm::vec2 port_px(session.viewport_px);
-    session.status.viewport_aspect = static_cast<double>(port_px.x) / static_cast<double>(port_px.y);
     const Scene scene = evaluated(session.document.scene(), session.view);
-    const bool new_sets = session.sets.new_sets();
-    session.request = make_request(session, scene);
-    keep_free_camera(session.view, session.shown());
-    const Rect whole = place_frame(session.view, {0, 0, port_px.x, port_px.y}, session.request.width,
-                                   session.request.height);
-    session.status.viewport_camera = camera_in_viewport(session.request, whole);
-    const bool from_outside = session.view.view != ViewKind::camera && session.view.camera_path;
-    session.status.overlay_lines.clear();
-    if (from_outside)
-        session.status.overlay_lines = session.overlay.lines(session.document.scene(), scene,
-                                                             session.status.box, session.request, whole);
+    Drawing how{now, hurry, session.sets.new_sets(), false, {}};
+    const Rect whole = place_of_frame(session, scene);
     const bool one_to_one = session.view.size == SizeMode::one_to_one;
     const Rect place = one_to_one ? crop_to_viewport(session.request, whole, session.viewport_px) : whole;
-
-    const PreviewChoice choice = preview_choice(session);
-    const bool may_settle = session.view.settle && !session.view.playing &&
-                            session.sets.loader().sets_there() &&
-                            session.sets.wanted(session.document.scene());
+    how.choice = preview_choice(session);
+    how.may_settle = settles(session) && session.sets.loader().sets_there() &&
+                     session.sets.wanted(session.document.scene());
     DisplaySettings rendered;
-    const bool from_disk = show_rendered_frame(session, whole, rendered);
-    const double start = thread_seconds();
-    if (!from_disk) session.view_frame.show(session.request, choice, may_settle, now, hurry);
-    if (new_sets) session.sets.drew_new_sets(thread_seconds() - start);
-    const ViewFrameState reached = session.view_frame.status().state;
-    const bool settles = session.view.settle && !session.view.playing;
-    session.sets.loader().hold(settles && !from_disk && session.view_frame.final_is_next(now));
+    const bool from_disk = draw_a(session, whole, how, rendered);
 
     session.color.update(scene.output.ocio, session.view.panels && session.view.tab == PanelTab::output);
     session.status.color = session.color.status();
     DisplaySettings shown = display_settings(session, scene.output, place, whole);
-    // A's final frame comes first; B's follows it.
-    const bool a_is_done = reached == ViewFrameState::final || reached == ViewFrameState::failed;
-    const auto request_for = [&](const Scene& other) {
-        ViewRequest wanted = make_request(session, evaluated(other, session.view));
-        wanted.region = session.request.region;
-        return wanted;
-    };
-    session.comparison.find_reference(session.document.scene(), session.view, session.status);
-    if (session.status.reference) session.status.reference->aligning = session.alignment.working();
-    session.comparison.show(session.document.scene(), session.view,
-                            {request_for, choice, may_settle && a_is_done, now, frame_on_screen(whole)},
-                            shown);
+    compare_a(session, whole, how, shown);
     show_front(session, scene, shown);
     show_preparation(session);
     if (from_disk) {
