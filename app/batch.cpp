@@ -1,5 +1,5 @@
-// --batch: plans, checks that the output can be written, then renders frame after frame. A frame that fails
-// does not stop the others; an interrupt stops between two pixels.
+// --batch: plans, checks that the output can be written, then renders frame after frame; with --dry-run it
+// only prints the plan. A frame that fails does not stop the others; an interrupt stops between two pixels.
 #include "batch.h"
 
 #include <fmt/format.h>
@@ -35,7 +35,7 @@ namespace astrosplat {
 
 namespace {
 
-// The figures of a batch run as JSON (--stats): per frame, per layer, and of the whole run.
+// The figures of a run (--stats), as JSON: of each frame, of each layer, and of the whole.
 
 struct FrameFigures {
     std::int64_t frame = 0;
@@ -128,8 +128,7 @@ void write_stats(const std::filesystem::path& file, const RunFigures& figures) {
     write_file_atomically(file, object_text(members, "  ") + "\n");
 }
 
-// --batch --dry-run: what would be done, and what it would take. In: a plan. Out: lines on stdout, and
-// nothing else.
+// --dry-run: the plan and its cost, as lines on stdout.
 
 std::string human_seconds(double seconds) {
     if (seconds < 99.5) return fmt::format("{:.{}f} s", seconds, seconds < 0.95 ? 2 : seconds < 9.5 ? 1 : 0);

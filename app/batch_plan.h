@@ -1,5 +1,5 @@
-// What a batch run is going to do, decided before anything is touched: the scene with the command line
-// applied, and for every frame its file, its hash and whether it is rendered.
+// The plan of a batch run, made before anything is touched: the scene with the command line applied, and for
+// every frame its file, its hash and whether it is rendered.
 #pragma once
 
 #include <cstdint>
@@ -39,7 +39,7 @@ struct BatchPlan {
 /// How many of the frames are rendered.
 std::int64_t count_to_render(const BatchPlan& plan);
 
-/// What lies at a frame's place: a whole frame of the planned hash, a picture that cannot be read to its end,
+/// The file at a frame's place: a whole frame of the planned hash, a picture that cannot be read to its end,
 /// or anything else.
 enum class Found { nothing, same, damaged, other };
 Found found_at(const FramePlan& frame);

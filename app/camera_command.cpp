@@ -1,3 +1,4 @@
+// camera: the scene's camera at each frame, written in a format of other programs.
 #include "commands.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,5 @@
+// The command line, described once for parsing, help, manual page and completion. In: its words. Out: the
+// command that they ask for, run.
 #include "cli.h"
 
 #include <fmt/format.h>
@@ -34,8 +36,7 @@ extern const char* const built_commit;  // of commit.cmake
 
 namespace {
 
-// Options of the program without a command. Together with the commands' they are the command line's words,
-// said once: parsing, help, manual page and completion come from them.
+// Options of the program without a command; those of the commands are in cli_commands.cpp.
 
 void add_batch(CLI::App& app, Invocation& call) {
     BatchOptions& batch = call.batch_options;
@@ -76,8 +77,7 @@ void add_program_options(CLI::App& app, Invocation& call) {
     add_screenshot(app, call);
 }
 
-// The text of --version: which program this is, of which commit, and with what it was built and runs. Out:
-// text.
+// --version
 
 #if defined(__clang__)
 constexpr const char* compiler = "Clang " __clang_version__;
@@ -99,8 +99,8 @@ std::string version_text() {
         vector_target());
 }
 
-// --batch --sets-only: generates the sets that the frames need and keeps them in the cache, one after the
-// other, and renders nothing: what a farm does once before its tasks begin.
+// --batch --sets-only: generates the sets of the frames into the cache, one after the other, and renders
+// nothing. A farm does so once before its tasks begin.
 
 /// Reports on stderr; the exit code. Throws InputError (also where an option beside asks for frames or there
 /// is no cache), OutputError (the cache cannot be written), Cancelled.

@@ -1,3 +1,4 @@
+// The commands of the command line with their options, one function each.
 #include "cli_parts.h"
 
 #include <fmt/format.h>

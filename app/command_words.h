@@ -1,5 +1,5 @@
-// The command line as words: what the manual page and the shells' completion are written from. In: the one
-// description that also parses (cli.cpp). Out: plain names and texts.
+// The command line as words, for the manual page and the shells' completion. In: the one description that
+// also parses (cli.cpp). Out: plain names and texts.
 #pragma once
 
 #include <string>

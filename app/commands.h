@@ -1,6 +1,6 @@
-// What the subcommands are asked on the command line, and the functions that carry them out: each returns an
-// exit code (exit_code.h), prints results to stdout, and throws what main reports. --batch, --submit and the
-// viewer, which others call too, have headers of their own.
+// The subcommands of the command line. In: options as typed. Out: an exit code (exit_code.h), results on
+// stdout, errors thrown for main to report. --batch, --submit and the viewer, which others call too, have
+// headers of their own.
 #pragma once
 
 #include <filesystem>
@@ -16,8 +16,7 @@
 
 namespace astrosplat {
 
-// new: writes a first scene around a picture, of bodies in depth or of columns on a shape. Prints results to
-
+// new: a first scene around a picture, of bodies in depth or of columns on a shape.
 
 struct NewOptions {
     std::filesystem::path image;
@@ -42,7 +41,7 @@ struct PrepareOptions {
 };
 int run_prepare(const PrepareOptions& options);
 
-// generate and convert: splats into files, without rendering.
+// generate, convert: splats into files, without rendering.
 
 struct GenerateOptions {
     std::filesystem::path scene, output;
@@ -79,7 +78,7 @@ extern const char* const export_help;
 /// Throws InputError, OutputError, Cancelled.
 int run_export(const ExportOptions& options);
 
-// camera: writes the scene's camera into a file for other programs.
+// camera: the scene's camera as a file for other programs.
 
 struct CameraOptions {
     std::filesystem::path scene, output;
@@ -91,7 +90,7 @@ struct CameraOptions {
 /// Throws InputError, OutputError.
 int run_camera(const CameraOptions& options);
 
-// info: what any file the program reads holds.
+// info: the content of any file that the program reads.
 
 struct InfoOptions {
     std::filesystem::path file;
@@ -99,7 +98,7 @@ struct InfoOptions {
 };
 int run_info(const InfoOptions& options);
 
-// compare: how far two images are apart.
+// compare: the difference of two images.
 
 struct CompareOptions {
     std::filesystem::path a, b;
@@ -108,7 +107,7 @@ struct CompareOptions {
 };
 int run_compare(const CompareOptions& options);
 
-// fidelity: how true a scene is to its picture, as a page or as JSON.
+// fidelity: the likeness of a scene to its picture, as a page or as JSON.
 
 struct FidelityOptions {
     std::filesystem::path scene, output;
@@ -120,8 +119,7 @@ struct FidelityOptions {
 };
 int run_fidelity(const FidelityOptions& options);
 
-// verify: renders frames again and says whether their files hold what the scene gives. Prints results to
-
+// verify: frames rendered again and compared with their files.
 
 struct VerifyOptions {
     BatchOptions batch;  // scene, assignments, layers, memory, cache and progress are used
@@ -131,7 +129,7 @@ struct VerifyOptions {
 /// exit_done when all are equal, else exit_some_failed.
 int run_verify(const VerifyOptions& options);
 
-// parameters: every key of a scene file, or of one scene with the values in use.
+// parameters: every key of scene files, or those of one scene with the values in use.
 
 struct ParametersOptions {
     std::string scene;  // a file or a short name; empty: keys as the manual has them
@@ -139,8 +137,7 @@ struct ParametersOptions {
 };
 int run_parameters(const ParametersOptions& options);
 
-// status: which frames of a scene are there and right, which are missing, damaged or of other settings.
-// Renders nothing and touches nothing.
+// status: the frames of a scene that are there and right, missing, damaged or of other settings. Only reads.
 
 struct StatusOptions {
     BatchOptions batch;  // what --batch would be given: the same frames are expected

@@ -1,3 +1,4 @@
+// The completion of the command line for bash, zsh and fish, written from its words.
 #include "command_words.h"
 
 #include <fmt/format.h>

@@ -38,8 +38,7 @@ namespace astrosplat {
 
 namespace {
 
-// Memory and time that one layer of a batch run will take: from its source and the sizes of files, and from
-// its sample where there is one.
+// One layer: from its source and the sizes of its files, and from its sample where there is one.
 
 struct LayerNeed {
     const LayerParams* params;

@@ -1,3 +1,5 @@
+// export: the shaded splats of one frame, baked and written as Gaussians (.ply, .glb, .usda) or as an OpenVDB
+// volume (.vdb). One line about the file goes to stdout.
 #include "commands.h"
 
 #include <fmt/format.h>
@@ -33,7 +35,7 @@ namespace astrosplat {
 
 namespace {
 
-// A scene's shaded splats as an OpenVDB file, for export. Prints one line to stdout.
+// Volumes.
 
 struct VolumeExport {
     double gain = 1.0;        // of light
@@ -89,7 +91,7 @@ void report(const WriteTarget& target, const VoxelGrid& grid, const BakeCounts& 
     fmt::print("{}\n", line);
 }
 
-/// What a volume's file says about itself; `input_credit`: of the scene's files, where it gives none.
+/// The metadata of a volume's file; `input_credit`: of the scene's files, where it gives none.
 VolumeWords words_about(const FrameScene& frame, const std::string& input_credit) {
     const ProvenanceParams& from = frame.scene.provenance;
     VolumeWords words = {{"creator", std::string("astrosplat ") + ASTROSPLAT_VERSION},

@@ -1,4 +1,6 @@
-// fidelity: loads, asks whether the report can be written, measures, writes.
+// fidelity: loads a scene, asks whether the report can be written, measures, writes. The report is one page
+// that asks for nothing from elsewhere: numbers against targets, images side by side, their difference,
+// cells, power by scale and views from the side; or JSON.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -35,12 +37,8 @@ namespace astrosplat {
 
 namespace {
 
-// The page of a fidelity report: numbers against targets, images side by side, difference, cells, power
-// by scale and the views from the side. One file that asks for nothing from elsewhere.
-
-// The drawings of a fidelity report, to be put into a page: images and small vector graphics. In:
-// images of linear light and ratios. Out: HTML text; colours of lines and letters are the page's
-// (fidelity_page.html).
+// The report's drawings, as HTML: images and small vector graphics. The page (fidelity_page.html) chooses the
+// colours of lines and letters.
 
 constexpr double full_colour = 0.1;  // share of light that is shown in full colour
 

@@ -8,7 +8,7 @@
 namespace astrosplat {
 namespace {
 
-/// What a good film needs of a galaxy or a nebula; thin filaments are let off a little by their makers.
+/// Targets for the front view of a good film of a galaxy or a nebula.
 struct FrontTargets {
     double psnr_db, ssim;
 };

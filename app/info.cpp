@@ -130,7 +130,7 @@ Report describe_image(const fs::path& file) {
     return report;
 }
 
-// What is between two of them is told by neither.
+// The smallest and the largest value.
 Report extremes(const std::vector<double>& values) {
     const auto [least, most] = std::ranges::minmax(values);
     return {number(least), number(most)};

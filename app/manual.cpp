@@ -1,3 +1,4 @@
+// The manual pages as troff: texts of app/manual, with tables made from the command line and the parameters.
 #include "command_words.h"
 
 #include <fmt/format.h>

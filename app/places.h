@@ -13,7 +13,7 @@ void prove_writable(const std::filesystem::path& folder);
 /// Folder of a file as an absolute path.
 std::filesystem::path folder_of(const std::filesystem::path& file);
 
-/// What --overwrite says of files that come while we work.
+/// For files that appear while we work.
 inline Existing existing_of(bool overwrite) { return overwrite ? Existing::replace : Existing::keep; }
 
 /// Throws InputError when something lies at `file`, unless `overwrite`.

@@ -21,9 +21,9 @@ struct FrameCost {
 
 class SampledRun {
   public:
-    /// What is sampled: layers whose sets are in the cache or in .splats files, for a quick answer; those of
-    /// meshes too, whose sets are made small where they are missing; or all, for which other inputs are read,
-    /// with the environment.
+    /// The layers that are sampled: those whose sets are in the cache or in .splats files, for a quick
+    /// answer; those of meshes too, whose sets are made small where they are missing; or all, for which other
+    /// inputs are read, with the environment.
     enum class Layers { there, meshes, all };
     /// Layers that no frame shows and stars of a picture, which are few, are left out. Throws as load_source
     /// does, Cancelled.

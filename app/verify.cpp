@@ -40,7 +40,7 @@ struct Verdict {
 
 Verdict damaged(const std::string& why) { return {Verdict::Kind::damaged, why, {}, {}}; }
 
-/// What frames of one size and region share.
+/// State that frames of one size and region share.
 struct VerifyJob {
     std::string resolution, region;
     BatchPlan plan;
@@ -56,7 +56,7 @@ bool fits(const Region& r, std::int64_t width, std::int64_t height) {
     return r.x >= 0 && r.y >= 0 && r.x <= width - r.width && r.y <= height - r.height;
 }
 
-/// What was lost in the file is to be lost in its copy too.
+/// Precision that was lost in the file is to be lost in its copy too.
 void take_compression(OutputParams& output, bool dwaa) {
     if (dwaa)
         output.compression = Compression::dwaa;

@@ -21,7 +21,7 @@
 
 namespace astrosplat {
 
-/// What the front view is compared with.
+/// The picture that the front view is compared with.
 struct FidelityReference {
     std::string layer;           // whose picture it is, or stands for
     std::filesystem::path file;  // empty: the layer's own picture

@@ -56,7 +56,7 @@ void count_set(const SplatSetFacts& facts, std::int64_t splats, LayerStatistics&
     counts.zero_alpha = facts.zero_alpha;
 }
 
-/// What is known of the layer's set, which is there.
+/// Facts about the layer's set, which is there.
 const SplatSetFacts& facts_of(const LayerState& layer) {
     return layer.streamed ? layer.streamed->file().facts() : *layer.set;
 }

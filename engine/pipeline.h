@@ -27,7 +27,7 @@ struct LayerStatistics {
 /// Render settings as [output] has them.
 RenderSettings render_settings(const OutputParams& output);
 
-/// What stays between frames: the sets, the maps, the environment pictures, the last shaded splats
+/// State that stays between frames: the sets, the maps, the environment pictures, the last shaded splats
 /// of each layer.
 class Pipeline {
   public:

@@ -1,6 +1,6 @@
-// What was edited and not saved survives a crash: a copy of the scene in the person's state folder, and the
-// way back from it. In: the document, once a frame. Out: files NAME-PID-HASH.toml that any astrosplat can
-// load, whose first line says what they are of.
+// Unsaved edits survive a crash: a copy of the scene in the person's state folder, and the way back from it.
+// In: the document, once a frame. Out: files NAME-PID-HASH.toml that any astrosplat can load, whose first
+// line says what they are of.
 #pragma once
 
 #include <chrono>

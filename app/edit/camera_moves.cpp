@@ -192,7 +192,7 @@ glm::dvec3 place_of(const CameraParams& camera, const Scene& scene, const Bounds
     return camera.position ? *camera.position : make_camera(camera, aspect_of(scene.output), 1.0, box).eye;
 }
 
-/// What the camera looks at, where that is within the box; else the box's centre.
+/// The point that the camera looks at, where that is within the box; else the box's centre.
 glm::dvec3 middle_of(const CameraParams& camera, const Bounds& box) {
     const bool looks_there = camera.position && !camera.rotation;
     return looks_there && box.contains(camera.target) ? camera.target : box.center();

@@ -1,4 +1,5 @@
-// Assignments are found by comparing parameter by parameter, and then proved by loading them.
+// Edits become --set words by comparing parameter by parameter; loading the file with these words then proves
+// them.
 #include "edit/command_lines.h"
 
 #include <fmt/format.h>
@@ -49,7 +50,7 @@ std::string frame_problem(const RenderTask& task, const CameraParams& camera) {
     return "";
 }
 
-// What ffmpeg's pattern takes for this very text.
+/// The text as a pattern of ffmpeg that matches nothing else.
 std::string literal_in_glob(const std::string& text) {
     std::string literal;
     for (const char c : text) {
@@ -173,6 +174,7 @@ std::vector<std::string> movie_command(const fs::path& movie, double fps) {
             "+faststart",
             movie.string()};
 }
+
 namespace {
 
 /// Frame files are relative to the scene in its file, to the working directory on the command line.

@@ -1,6 +1,6 @@
-// What the window does in other processes, as the words of command lines: renderings here and on a farm,
-// movies by ffmpeg, the preparation of a picture, and what a person pastes into a shell. In: the dialog's
-// values and the document. Out: words, or why it cannot be said.
+// Command lines for work outside of the window: renderings here and on a farm, movies by ffmpeg, the
+// preparation of a picture, and a command to paste into a shell. In: the dialog's values and the document.
+// Out: words, or the reason why there are none.
 #pragma once
 
 #include <cstdint>
@@ -37,7 +37,7 @@ struct RenderTask {
     bool operator==(const RenderTask&) const = default;
 };
 
-/// What [output] says of `kind`; a frame is that of number `frame`, next to the scene's own frames.
+/// [output]'s value for `kind`; a frame is that of number `frame`, next to the scene's own frames.
 RenderTask make_render_task(const Document& document, RenderKind kind, double frame);
 
 /// Of the files: a whole path, with the pattern's `#`.

@@ -1,5 +1,5 @@
-// What a person asked for and the widgets cannot do themselves, in order of asking. The viewer empties the
-// list every frame. Where a path is needed and empty, the window asks for it first (gui.h).
+// Requests of the user that widgets cannot do themselves, in order. The viewer empties the list every frame.
+// Where a path is needed and empty, the window asks for it first (gui.h).
 #pragma once
 
 #include <filesystem>

@@ -22,7 +22,7 @@ class DiskFile {
 
     /// Its bytes differ from those last seen. A file that is gone or unreadable has not changed.
     bool changed();
-    /// What lies there now counts as seen.
+    /// The file as it is now counts as seen.
     void accept();
 
   private:

@@ -131,7 +131,7 @@ struct Document::State {
         try {
             attach_camera_file(read, file.string());
         } catch (const InputError&) {
-            // What lies there cannot be rendered; it can be saved over.
+            // The file there cannot be rendered; it can be saved over.
         }
         saved = std::make_shared<const Scene>(std::move(read));
         text = content;

@@ -32,8 +32,8 @@ class Document {
     /// for a file; until the first edit there is nothing to save. Throws InputError.
     static Document untitled(const std::string& toml, const std::filesystem::path& place,
                              std::span<const Assignment> assignments = {});
-    /// What an autosave held, `toml` at `place`, as edits of `file`: edited(), and save() writes there. Not
-    /// `titled`: an untitled scene that was at `file`. Throws InputError.
+    /// The content of an autosave, `toml` at `place`, as edits of `file`: edited(), and save() writes there.
+    /// Not `titled`: an untitled scene that was at `file`. Throws InputError.
     static Document recovered(const std::string& toml, const std::filesystem::path& place,
                               const std::filesystem::path& file, bool titled);
 
@@ -48,7 +48,7 @@ class Document {
     const std::filesystem::path& file() const;
     std::string name() const;  // "whirlpool.toml", "Untitled"
     bool edited() const;       // differs from what lies on disk; untitled: from what it began as
-    /// What lies on disk (untitled: what it began as), as far as this document knows.
+    /// The text on disk (untitled: the one it began with), as far as this document knows.
     const Scene& saved_scene() const;
 
     /// Applies `change` to a copy and makes it the scene as one undo step called `name` ("Opacity of dust").

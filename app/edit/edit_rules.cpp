@@ -1,4 +1,4 @@
-// Values are checked by reading and setting them: the description knows every range.
+// Every value is checked by setting it to itself: the description knows its range.
 #include "edit/edit_rules.h"
 
 #include <fmt/format.h>

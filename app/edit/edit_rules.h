@@ -1,5 +1,5 @@
-// What an edit leaves behind: the values that go with it, and only scenes that can be saved and read again.
-// In: a scene as an edit made it, and as it was before. Out: the scene, or an error in one line.
+// Rules that every edit keeps: a scene can be saved and read again, and values that depend on the edited ones
+// follow. In: the scene after an edit, and before it. Out: the scene, or an error in one line.
 #pragma once
 
 #include <string>
@@ -13,8 +13,8 @@ namespace astrosplat {
 /// better place.
 void check_edited_scene(Scene& scene, const std::string& name);
 
-/// What the scene's output.preset says of [output] and [camera], into the scene; nothing where it names none.
-/// Throws InputError.
+/// Writes the values of the scene's output.preset, of [output] and [camera], into the scene; nothing where it
+/// names none. Throws InputError.
 void apply_output_preset(Scene& scene);
 
 /// Makes the frame of a dome master square again where one side of it was changed, by that side.

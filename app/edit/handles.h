@@ -18,7 +18,7 @@
 
 namespace astrosplat {
 
-/// What handles act on.
+/// The object that handles act on.
 struct Handled {
     glm::dvec3 origin{0.0};  // world space
     glm::dmat3 axes{1.0};    // unit vectors along which it is moved and scaled, about which it is turned

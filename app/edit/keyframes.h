@@ -1,6 +1,6 @@
-// Editing the animation of a scene, free functions on its tracks: keyframes, and the handles of Bezier ones
-// (camera/keyframe.h). Frames are whole unless dragged otherwise; a track that loses its last keyframe is
-// removed and the parameter keeps the value it had there. What has no such track or keyframe is left alone.
+// Edits of a scene's animation: keyframes, and the handles of Bezier ones (camera/keyframe.h). Frames are
+// whole unless dragged otherwise; a track that loses its last keyframe is removed and the parameter keeps the
+// value it had there. Without such a track or keyframe nothing changes.
 #pragma once
 
 #include <string>

@@ -1,5 +1,5 @@
-// Editing the list of layers: free functions on a scene, and what a person does to a layer as steps of a
-// document. Names stay unique and valid; tracks follow a layer's name.
+// Edits of the list of layers: functions on a scene, and the same as undo steps of a document. Names stay
+// unique and valid; tracks follow a layer's name.
 #pragma once
 
 #include <filesystem>
@@ -11,7 +11,7 @@
 
 namespace astrosplat {
 
-/// A name like `wanted` that no layer has and that SCENE.md allows.
+/// A name like `wanted` that no layer has and that scene files allow.
 std::string free_layer_name(const Scene& scene, const std::string& wanted);
 /// A layer for a picture (on the built-in plane), a mesh (with its own texture) or a splat file, at the end
 /// of the list. Throws InputError for another kind of file. Returns its index.

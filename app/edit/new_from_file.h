@@ -1,5 +1,5 @@
-// What a file that is dropped on the window or named on the command line becomes, and a built-in shape. In: a
-// picture, mesh or splat file, or a name. Out: the text of a first scene that shows it.
+// First scenes for a file that is dropped on the window or named on the command line, and for a built-in
+// shape. In: a picture, mesh or splat file, or a name. Out: the text of a first scene that shows it.
 #pragma once
 
 #include <array>

@@ -1,4 +1,4 @@
-// Where things lie: layers in the world, the world in a frame, and lines of the world that are drawn over it.
+// Places of layers in the world, and of points and lines of the world in a frame.
 // world = rotation * (scale * p) + translate, as LayerTransform says it in degrees; px of a frame, y down.
 #pragma once
 

@@ -1,4 +1,4 @@
-// What a person sets for the window, whatever the scene: size and contrast of text, threads, memory, cache,
+// Settings of the window that do not depend on the scene: size and contrast of text, threads, memory, cache,
 // autosave, how a view begins. One table feeds the dialog and the file of preferences; nothing of it reaches
 // a picture, but for a limit of memory, which acts as a smaller machine does.
 #pragma once
@@ -24,7 +24,7 @@ struct Settings {
     bool operator==(const Settings&) const = default;
 };
 
-/// What the window and each of its jobs may take of the machine.
+/// Limits of the window and of each of its jobs on the machine.
 struct MachineLimits {
     int threads = 0;     // 0: the cores this process may use
     int memory_gib = 0;  // 0: what is free

@@ -15,6 +15,7 @@
 #include "scene/save.h"
 
 namespace astrosplat {
+namespace fs = std::filesystem;
 namespace {
 
 const LayerParams* find_layer(const Scene& scene, const std::string& name) {
@@ -73,7 +74,6 @@ void restore_look(Document& document, const StoredLook& stored) {
                   [&](Scene& scene) { scene = with_look_of(scene, *stored.scene); });
 }
 
-namespace fs = std::filesystem;
 namespace {
 
 constexpr std::string_view head_of_facts = "# astrosplat snapshot ";

@@ -1,6 +1,6 @@
-// Named looks to compare with and to go back to, and their files: for each a scene of its own in the folder
-// SCENE.snapshots, whose first line says its name and facts, and a small picture. In: the document, or the
-// folder. Out: scenes with another look; files that appear complete or not at all, or what they hold.
+// Snapshots: named looks to compare with and to go back to. Each is a scene file in the folder
+// SCENE.snapshots, whose first line holds its name and facts, with a small picture beside it. In: the
+// document, or the folder. Out: scenes with another look, and files that appear complete or not at all.
 #pragma once
 
 #include <cstdint>
@@ -31,7 +31,7 @@ Scene with_look_of(const Scene& scene, const Scene& stored);
 /// with_look_of as one undo step. Throws InputError as Document::edit does.
 void restore_look(Document& document, const StoredLook& stored);
 
-/// What a snapshot says of itself besides its scene.
+/// Data of a snapshot besides its scene.
 struct SnapshotFacts {
     std::string name;
     double frame = 1.0;

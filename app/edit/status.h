@@ -1,4 +1,4 @@
-// What the window has to say: how far the frame is, what layers hold, what jobs run. Filled by the viewer
+// The status shown by the window: how far the frame is, what layers hold, what jobs run. Filled by the viewer
 // every frame, only read by the widgets.
 #pragma once
 

@@ -104,7 +104,7 @@ FreeCamera free_camera(const CameraParams& params, const Bounds& box, double asp
 }
 
 CameraParams moved_camera(const CameraParams& base, const FreeCamera& camera, double aspect) {
-    // What differs only by rounding has not been touched.
+    // Values that differ only by rounding have not been touched.
     const auto keep_or = [](double before, double now) {
         return std::fabs(now - before) > 1e-9 * std::fabs(now) ? now : before;
     };

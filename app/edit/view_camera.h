@@ -1,6 +1,5 @@
-// The window's camera: what a view looks through, the ways between FreeCamera and CameraParams, and
-// navigation as pure functions. Pixels are the viewport's, y down; angles are so that what is under the mouse
-// follows it.
+// The cameras of views: FreeCamera from and to CameraParams, and navigation as pure functions. Pixels are the
+// viewport's, y down; angles are so that the point under the mouse follows it.
 #pragma once
 
 #include <glm/vec2.hpp>
@@ -14,7 +13,7 @@
 
 namespace astrosplat {
 
-/// What a view looks through at a frame. `box`: the visible layers' bounds in world space, which a scene
+/// The camera of a view at a frame. `box`: the visible layers' bounds in world space, which a scene
 /// camera without position and the front, top and side views frame. `aspect` = width / height of the frame.
 /// Front looks along -z, side along -x, top along -y with -z up, all with parallel rays.
 CameraParams view_camera(const Scene& scene, const ViewState& view, const Bounds& box, double aspect);
@@ -22,9 +21,9 @@ CameraParams view_camera(const Scene& scene, const ViewState& view, const Bounds
 /// Width over height of the output's frames.
 double aspect_of(const OutputParams& output);
 
-/// What is seen in the window as the scene's camera would show it, with a place of its own. A view beside the
-/// camera is as high as the viewport, or as the output's shape within it where that is the lower of the two.
-/// Throws InputError where a camera without a position has nothing to frame yet.
+/// The view in the window as a camera of the scene, with a place of its own. A view beside the camera is as
+/// high as the viewport, or as the output's shape within it where that is the lower of the two. Throws
+/// InputError where a camera without a position has nothing to frame yet.
 CameraParams seen_camera(const Scene& scene, const ViewState& view, const Status& status);
 
 /// Nothing becomes smaller with its distance: FreeCamera::height counts instead of the field of view.
@@ -39,7 +38,7 @@ FreeCamera free_camera(const CameraParams& params, const Bounds& box, double asp
 /// else of `base` stays; a focal length above 0 is changed instead of the field of view.
 CameraParams moved_camera(const CameraParams& base, const FreeCamera& camera, double aspect);
 
-/// What it shows grown upwards and downwards, or cut, to `factor` times the height, at the same scale.
+/// Its view grown upwards and downwards, or cut, to `factor` times the height, at the same scale.
 FreeCamera with_height(const FreeCamera& camera, double factor);
 /// The whole box in the frame, seen from the same direction; the pivot is its middle.
 FreeCamera framed(const FreeCamera& camera, const Bounds& box, double aspect);

@@ -1,4 +1,4 @@
-// What the person at the window looks at: view, frame, comparison, panels. Nothing of it is saved in a scene
+// The state of the view at the window: view, frame, comparison, panels. Nothing of it is saved in a scene
 // or reaches a rendered file. Plain values, changed by the widgets and read by the viewer.
 #pragma once
 
@@ -19,7 +19,7 @@
 namespace astrosplat {
 
 enum class CameraMove { orbit, fly_in, face_on_to_edge_on };
-/// What becomes of the camera's keyframes after the one at which a move begins: those later than its end
+/// The fate of the camera's keyframes after the one at which a move begins: those later than its end
 /// stay, all are moved to after it, or all are removed.
 enum class LaterKeys { keep, shift, replace };
 
@@ -53,7 +53,7 @@ struct FreeCamera {
     bool operator==(const FreeCamera&) const = default;
 };
 
-/// What the window remembers of its parts between sessions.
+/// State of the window's parts that is kept between sessions.
 struct PanelSizes {
     float panel_width = 360.0f, timeline_height = 148.0f;  // px at scale 1
     bool timeline_open = true;

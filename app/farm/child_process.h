@@ -1,5 +1,5 @@
-// Other programs, started without a shell: tools of the system, such as sbatch, run to their end, and
-// programs at work beside the window.
+// Other programs, started without a shell: tools of the system, such as sbatch, that run to their end, and
+// programs at work beside the window. In: words of a command. Out: exit code and output.
 #pragma once
 
 #include <sys/types.h>
@@ -29,7 +29,7 @@ struct ToolResult {
 std::optional<ToolResult> run_tool(const std::vector<std::string>& words,
                                    const std::filesystem::path& folder = {});
 
-/// What went wrong, as one line: the first one that the tool wrote, or its exit code.
+/// The failure as one line: the first one that the tool wrote, or its exit code.
 std::string failure_of(const ToolResult& result);
 
 /// Another program at work, its output read as it comes, never waited for.
@@ -42,7 +42,7 @@ class ChildProcess {
     ChildProcess(const ChildProcess&) = delete;
     ChildProcess& operator=(const ChildProcess&) = delete;
 
-    /// What it has written since the last call.
+    /// Its output since the last call.
     std::string output();
     /// Its exit code once it has ended: 128 + signal where a signal ended it. Empty while it runs.
     std::optional<int> exit_code();

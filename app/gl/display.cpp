@@ -89,7 +89,7 @@ void OcioTables::take(std::shared_ptr<const DisplayTransform> transform, int uni
 constexpr int view_none = 3, view_ocio = 4;  // VIEW_NONE, VIEW_OCIO of display_fragment.glsl
 constexpr int ocio_unit = 2;                 // its tables' first texture unit
 
-/// What one program of display_fragment.glsl is made for.
+/// The case that one program of display_fragment.glsl is made for.
 struct DisplayVariant {
     int view_a = 0, view_b = 0;  // VIEW_... of display_fragment.glsl
     int taps_a = 1, taps_b = 1;

@@ -1,5 +1,6 @@
-// Drawing the splats of one blend group into the bound target, blended as the engine folds them, with the
-// engine's footprint tables (render/footprint.h) as textures.
+// Draws the splats of one blend group into the bound target, blended as the engine folds them. In: shaded
+// splats and the engine's footprint tables (render/footprint.h), here as textures. Out: linear premultiplied
+// light.
 #pragma once
 
 #include <map>
@@ -16,7 +17,7 @@
 
 namespace astrosplat {
 
-/// What the vertex shader needs of a table besides its textures.
+/// Values of a table for the vertex shader, besides its textures.
 struct FootprintSlot {
     int table = 0;  // layer of the profiles, pair of rows of the nodes
     float reach = 1.0f;

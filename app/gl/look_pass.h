@@ -1,6 +1,5 @@
-// The look on the GPU: raw splats through look_splat of shaders/shared into shaded buffers, by transform
-// feedback; and the shaded splats of each blend group, kept up to date with the order in which they are
-// drawn.
+// The look on the GPU, and the shaded splats of each blend group with the order in which they are drawn. In:
+// raw splats, looks, projections. Out: shaded buffers, by look_splat of shaders/shared in transform feedback.
 #pragma once
 
 #include <compare>
@@ -21,7 +20,7 @@
 
 namespace astrosplat {
 
-/// What the loops of a shader run to that is made for the look at hand; by default what any look needs.
+/// Bounds of the loops of a shader that is made for the look at hand; by default those of any look.
 struct LookLimits {
     int stops = shared_types::LOOK_MAX_STOPS;
     int noises = shared_types::LOOK_MAX_NOISES;
@@ -107,7 +106,7 @@ class GroupSplats {
         LookUniforms uniforms;
         float largest_radius = 0.0f;
     };
-    /// What an order was made from.
+    /// The inputs of an order.
     struct View {
         std::vector<glm::dmat3> camera_from_layer;
         std::vector<glm::dvec3> origin;
@@ -128,8 +127,8 @@ class GroupSplats {
     std::uint64_t places_version_ = 0;
     View requested_;
     std::uint64_t requested_version_ = 0, order_version_ = 0;
-    std::uint64_t first_version_ =
-        0;  // asked for since the layout last changed; older orders are for other splats
+    /// Asked for since the layout last changed; older orders are for other splats.
+    std::uint64_t first_version_ = 0;
     bool order_valid_ = false;
     std::int64_t ordered_count_ = 0, far_count_ = 0;
 };

@@ -94,7 +94,7 @@ class WholeTarget {
     GlVertexArray nothing_;
 };
 
-/// What a framebuffer shows as 8-bit RGBA, top row first.
+/// The pixels of a framebuffer as 8-bit RGBA, top row first.
 std::vector<unsigned char> read_rgba8(GLuint framebuffer, int width, int height);
 
 /// Binds a texture to a unit.

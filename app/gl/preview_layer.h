@@ -1,4 +1,4 @@
-// What a preview draws: layers, and the frame in which they are seen.
+// The input of previews: layers, and the frame in which they are seen.
 #pragma once
 
 #include <cstdint>

@@ -14,8 +14,7 @@ namespace astrosplat {
 /// like. Asking for one that does not exist is our own mistake (std::logic_error).
 std::string shader_text(const std::string& name);
 
-/// What a program is made of. Each stage is "#version 410 core", the defines and its files one after
-/// the other.
+/// The parts of a program. Each stage is "#version 410 core", the defines and its files one after the other.
 struct ProgramSource {
     std::vector<std::string> defines;   // "QUADS" or "KIND 2"
     std::vector<std::string> vertex;    // names for shader_text()

@@ -1,4 +1,4 @@
-// What the actions of actions.cpp do where it takes more than one line, and when they can be done.
+// The actions of actions.cpp that take more than one line, and when they can be done.
 #pragma once
 
 #include <string>

@@ -35,7 +35,7 @@ bool word_button(GuiFrame& frame, const char* word, float x, float y) {
     return clicked;
 }
 
-/// What keeps a whole frame from being the scene's: a visible layer that could not be loaded, or whose set
+/// The reason why a whole frame is not the scene's: a visible layer that could not be loaded, or whose set
 /// was made before its source was changed. Empty: nothing.
 std::string lacking(const Scene& scene, const Status& status) {
     for (std::size_t i = 0; i < std::min(scene.layers.size(), status.layers.size()); ++i) {

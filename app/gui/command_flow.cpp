@@ -79,7 +79,7 @@ void CommandFlow::take_answer(GuiFrame& frame, Panel& panel, Commands& out) {
     }
 }
 
-// What waited for the save goes on once nothing is unsaved; where saving failed it does not.
+// Commands that waited for the save go on once nothing is unsaved; where saving failed they do not.
 void CommandFlow::finish_save(GuiFrame& frame, Commands& out) {
     if (!after_save_ || needs_file_ || conflict_) return;
     if (!frame.document.edited()) {
@@ -111,7 +111,7 @@ void CommandFlow::draw_question(GuiFrame& frame, Commands& out) {
     }
 }
 
-// What was kept with the notice's button is decided already: then the file counts as seen.
+// A file that was kept with the notice's button is decided already: then the file counts as seen.
 void CommandFlow::draw_conflict(GuiFrame& frame, Commands& out) {
     if (!begin_dialog("conflict", frame.document.name() + " was changed by another program", conflict_, 460,
                       0))

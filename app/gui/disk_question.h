@@ -29,7 +29,7 @@ class DiskQuestion {
     DiskQuestion(const DiskQuestion&) = delete;
     DiskQuestion& operator=(const DiskQuestion&) = delete;
 
-    /// What was asked before is forgotten.
+    /// Earlier questions are dropped.
     void begin(Ask ask) {
         forget();
         job_ = std::make_shared<Job>();

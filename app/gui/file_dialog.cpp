@@ -133,7 +133,7 @@ void FileDialog::draw_path(GuiFrame& frame) {
     }
 }
 
-// What is typed, or begun, comes into sight.
+// The entry that is typed, or begun, comes into sight.
 void FileDialog::scroll_to_typed() {
     if (!std::exchange(typed_anew_, false)) return;
     const std::optional<std::size_t> entry = entry_begun(entries_, typed_);

@@ -1,4 +1,4 @@
-// What a file dialog shows and completes, without widgets: entries of a folder, and the rest of a path whose
+// The content of a file dialog, without widgets: entries of a folder, and the rest of a path whose
 // beginning is typed.
 #pragma once
 
@@ -45,7 +45,7 @@ std::string time_text(std::filesystem::file_time_type time);
 /// `typed` as a path: "~/x" in the home folder, relative ones in `folder`.
 std::filesystem::path typed_path(const std::string& typed, const std::filesystem::path& folder);
 
-/// What a path leads to.
+/// The target of a path.
 struct TypedFile {
     std::filesystem::path file;
     bool is_folder = false;

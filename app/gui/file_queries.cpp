@@ -26,7 +26,7 @@ fs::path folder_of_document(const Document& document) {
     return fs::current_path(ignored);
 }
 
-/// What files of it are called: an untitled scene is called as what it was made of.
+/// The name of its files: an untitled scene is called as what it was made of.
 std::string stem(const Document& document) {
     const fs::path& file = document.file().empty() ? document.scene().file : document.file();
     return file.stem().string();
@@ -41,7 +41,7 @@ FileQuery writing(const char* title, const char* kind, const Extensions& extensi
     return {title, true, kind, extensions, folder_of_document(document), name};
 }
 
-/// What a file of the scene is.
+/// The kind of a file of the scene.
 struct FileWish {
     std::string_view key;  // generic
     const char* kind;

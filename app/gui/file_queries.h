@@ -1,4 +1,4 @@
-// What the file dialog asks for: titles, kinds and folders, by command or by parameter.
+// Requests of the file dialog: titles, kinds and folders, by command or by parameter.
 #pragma once
 
 #include <filesystem>
@@ -23,9 +23,9 @@ struct FileQuery {
     std::filesystem::path otherwise{};    // to begin in where there is no such folder; empty: home
 };
 
-/// What to ask for where `kind` needs a path; nothing where it needs none.
+/// The request where `kind` needs a path; nothing where it needs none.
 std::optional<FileQuery> query_for(Command::Kind kind, const Document& document);
-/// What to ask for as the value of a parameter.
+/// The request for the value of a parameter.
 FileQuery query_for(const ParameterKey& key, const Document& document);
 
 }  // namespace astrosplat

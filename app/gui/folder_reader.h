@@ -23,9 +23,9 @@ class FolderReader {
     /// `extensions` as list_folder has them.
     void begin(const std::filesystem::path& folder, const std::filesystem::path& otherwise,
                const std::vector<std::string>& extensions);
-    /// What begin() asked for is not known yet.
+    /// The answer to begin() is not known yet.
     bool reading() const { return question_.is_open(); }
-    /// What was found, once; waits for it up to this long.
+    /// The result, once; waits for it up to this long.
     std::optional<FolderContents> take(std::chrono::milliseconds at_most = {}) {
         return question_.take(at_most);
     }

@@ -1,6 +1,5 @@
-// The widgets: everything of the window but the frame (VIEWER.md). In: the document, what the person looks
-// at, the viewer's status. Out: edits of the document and the view state, and commands for the viewer. No
-// OpenGL.
+// The widgets: everything of the window but the frame. In: the document, the view state, the viewer's status.
+// Out: edits of the document and the view state, and commands for the viewer. No OpenGL.
 #pragma once
 
 #include <filesystem>
@@ -24,7 +23,7 @@ namespace astrosplat {
 /// set_contrast() has it.
 void apply_theme(float content_scale, int contrast = 0);
 
-/// What mouse and keyboard did over the viewport this frame. px are relative to the viewport's upper left.
+/// Mouse and keyboard over the viewport in this frame. px are relative to the viewport's upper left.
 struct ViewportInput {
     bool hovered = false;
     glm::dvec2 mouse_px{0.0}, delta_px{0.0};

@@ -1,4 +1,4 @@
-// What every part of the window is given for one frame, and the few things all parts do: ask for something,
+// Arguments of every part of the window for one frame, and the few things all parts do: ask for something,
 // edit without letting an error out, say where a control lies.
 #pragma once
 

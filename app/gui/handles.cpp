@@ -7,7 +7,7 @@
 #include "edit/placement.h"
 #include "gui/key_codes.h"
 #include "gui/theme.h"
-#include "gui/view_marks.h"
+#include "gui/viewport_overlay.h"
 #include "scene/animate.h"
 
 namespace astrosplat {

@@ -20,7 +20,7 @@ inline constexpr int pad_enter = 335;
 bool key_pressed(int code, bool repeats = false);
 bool key_down(int code);
 
-/// What is written on the key, for menus and the sheet of shortcuts; "" for 0.
+/// The label of the key, for menus and the sheet of shortcuts; "" for 0.
 std::string key_name(int code);
 
 }  // namespace astrosplat

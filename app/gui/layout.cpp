@@ -1,4 +1,4 @@
-// Where things lie: sizes of VIEWER.md at content scale 1, hidden parts left out, the viewport gets the rest.
+// Places of the window's parts: sizes at content scale 1, hidden parts left out, the rest for the viewport.
 #include "gui/layout.h"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
-// What a file dialog asks a disk about the name that is typed, beside the window (disk_question.h). In: what
-// is typed. Out: the rest of it, and what it leads to, when these are known.
+// Questions of a file dialog to a disk about the name that is typed, outside of the window's thread
+// (disk_question.h). In: the typed text. Out: the rest of it, and its target, when these are known.
 #pragma once
 
 #include <chrono>
@@ -22,7 +22,7 @@ class NameQuestions {
     /// Asks as look_at (file_list.h), and waits a moment for it.
     void look(const std::filesystem::path& typed, const std::string& ending);
     bool looks() const { return file_.is_open() || found_; }
-    /// What look() found, once.
+    /// The result of look(), once.
     std::optional<TypedFile> found();
 
     /// Something else is typed or wanted now.

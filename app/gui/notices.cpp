@@ -1,5 +1,4 @@
-// The notice line.
-// The status bar: right parts first, the message gets what is left.
+// The notice line, and the status bar: its right parts first, the message gets the room that is left.
 #include "gui/notices.h"
 
 #include <fmt/format.h>

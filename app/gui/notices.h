@@ -1,5 +1,5 @@
-// The line at the bottom: the last message, the pixel under the mouse, jobs, memory. Errors stay until they
-// are clicked.
+// The status bar at the bottom: the last message, the pixel under the mouse, jobs, memory. Errors stay until
+// they are clicked.
 #pragma once
 
 #include <cstdint>
@@ -21,7 +21,7 @@ class StatusBar {
     std::string unread_;        // error that waits to be clicked
 };
 
-/// What the probe shows: x, y, linear R G B A ("R", ".214") and the depth Z where there is one.
+/// The probe's text: x, y, linear R G B A ("R", ".214") and the depth Z where there is one.
 struct ProbeCell {
     const char* label;
     std::string number;

@@ -7,7 +7,6 @@
 namespace astrosplat {
 
 /// The bar at the top: menus made of the table of actions, the scene's name in the middle.
-/// Draws into the current ImGui window, over `area`.
 void draw_menu_bar(GuiFrame& frame, const Rect& area);
 
 /// The row of tools over the frame: from where it is seen, at what size, compared with what, and how shown.
@@ -20,14 +19,13 @@ void draw_notice(GuiFrame& frame, const Rect& area);
 /// becomes B.
 void draw_snapshots(GuiFrame& frame, const Rect& area);
 
-/// The two edges that can be dragged: of the side panel and of the timeline.
-/// Draws the lines between the parts and changes view.panel_width and view.timeline_height. Call it after the
-/// parts, so that it lies over their edges.
+/// The two edges that can be dragged, of the side panel and of the timeline: lines between the parts, which
+/// change view.panel_width and view.timeline_height. Call it after the parts, so that it lies over their
+/// edges.
 void draw_splitters(GuiFrame& frame, const Layout& layout);
 
-/// Edit > Settings: one row of choices for every setting of the window.
-/// Open while ViewState::settings_open. Every choice acts at once or says when it does; closing asks for them
-/// to be kept (Command::keep_settings).
+/// Edit > Settings: one row of choices for every setting of the window, while ViewState::settings_open. Every
+/// choice acts at once or says when it does; closing asks for them to be kept (Command::keep_settings).
 void draw_settings_dialog(GuiFrame& frame);
 
 /// The sheet of shortcuts (F1) and the log: two dialogs that only show.

@@ -23,7 +23,7 @@ const std::string path_key = "camera.position";
 
 Value list_of(const glm::dvec3& v) { return Value::List{v.x, v.y, v.z}; }
 
-/// What the mouse's last move is at a point of the world: in the plane of the view, or along its axis.
+/// The mouse's last move at a point of the world: in the plane of the view, or along its axis.
 glm::dvec3 moved_by_mouse(const Camera& camera, const glm::dvec3& point) {
     const ImGuiIO& io = ImGui::GetIO();
     const double unit = units_per_px(camera, point);

@@ -1,4 +1,4 @@
-// What is rendered to files, how large and where to: a dialog that edits ViewState::render.
+// The choice of frames to render to files, their size and place: a dialog that edits ViewState::render.
 #pragma once
 
 #include "gui/gui_frame.h"

@@ -1,3 +1,4 @@
+// The dialog of the settings: a row each from setting_rows(), and the folder of the cache.
 #include "gui/parts.h"
 
 #include <imgui.h>

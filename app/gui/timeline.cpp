@@ -1,4 +1,4 @@
-// Header, ruler and playhead.
+// The timeline as a whole: its first row, ruler and playhead; rows and graph are those of timeline_parts.h.
 #include "gui/timeline.h"
 
 #include <fmt/format.h>
@@ -12,7 +12,7 @@
 #include "gui/icons.h"
 #include "gui/key_codes.h"
 #include "gui/theme.h"
-#include "gui/timeline_rows.h"
+#include "gui/timeline_parts.h"
 #include "gui/timeline_state.h"
 #include "gui/widgets.h"
 #include "scene/describe.h"
@@ -21,7 +21,7 @@ namespace astrosplat {
 
 namespace {
 
-// The timeline's first row: playing, the frames and their rate, the graph.
+// First row: playing, the frames and their rate, the graph.
 
 constexpr float header_control = 24, entry_gap = 8;
 
@@ -218,7 +218,7 @@ void drag_on_ruler(const TimelineState& t, ViewState& view) {
     if (t.drag == TimelineState::Drag::out_point) view.play_last = std::max(at, first_played(t, view));
 }
 
-/// What is not played is dimmed; a tab at either end that was set.
+/// Frames that are not played are dimmed; a tab at either end that was set.
 void draw_in_and_out(const TimelineState& t, GuiFrame& frame, const Rect& area) {
     const ViewState& view = frame.view;
     if (!view.play_first && !view.play_last) return;

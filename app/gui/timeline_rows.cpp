@@ -1,4 +1,4 @@
-#include "gui/timeline_rows.h"
+#include "gui/timeline_parts.h"
 
 #include <fmt/format.h>
 #include <imgui.h>
@@ -14,8 +14,6 @@
 #include "gui/key_codes.h"
 #include "gui/theme.h"
 #include "gui/timeline.h"
-#include "gui/timeline_channels.h"
-#include "gui/timeline_graph.h"
 #include "gui/timeline_state.h"
 #include "gui/widgets.h"
 
@@ -23,7 +21,7 @@ namespace astrosplat {
 
 namespace {
 
-// What is done to the selected keyframes of the timeline at once.
+// The menu of the selected keyframes: changes of all of them at once.
 
 void on_selected(const TimelineState& t, GuiFrame& frame, const char* name,
                  const std::function<void(Scene&, const KeyframePlace&)>& change) {

@@ -1,5 +1,5 @@
-// What the timeline remembers from frame to frame: the frames it shows, the selected keyframes, the drag at
-// hand. Its parts (header and ruler, rows, graph, menu) all work on it.
+// State of the timeline between frames: the frames it shows, the selected keyframes, the drag at hand. Its
+// parts (header and ruler, rows, graph, menu) all work on it.
 #pragma once
 
 #include <map>

@@ -80,7 +80,7 @@ void compare_choice(GuiFrame& frame) {
     if (clicked >= 0) set_compare(frame, static_cast<CompareMode>(clicked));
 }
 
-// What the chosen comparison can be told, beside it; nothing while A is seen alone.
+// The settings of the chosen comparison, next to it; nothing while A is seen alone.
 void compare_settings(GuiFrame& frame) {
     ViewState& view = frame.view;
     if (!compares(view)) return;
@@ -165,7 +165,7 @@ struct Tool {
 constexpr std::array<Tool, 4> right_tools{
     {{84, display_control}, {72, exposure_control}, {158, preview_control}, {96, engine_control}}};
 
-// What had no room: the settings of the comparison where `with_compare`, and the tools from one on.
+// The tools that had no room: the settings of the comparison where `with_compare`, and the tools from one on.
 void rest_of_tools(GuiFrame& frame, bool with_compare, std::size_t from) {
     const bool clicked = icon_button("more", Icon::dots, {px(control_height), px(control_height)}, px(12),
                                      color::dim, nullptr);

@@ -1,4 +1,4 @@
-// Frame and mouse of the viewport.
+// Draws the frame into the viewport and turns the mouse over it into drags and clicks.
 #include "gui/viewport.h"
 
 #include <imgui.h>
@@ -10,7 +10,6 @@
 #include "gui/badge.h"
 #include "gui/key_codes.h"
 #include "gui/theme.h"
-#include "gui/view_marks.h"
 #include "gui/viewport_overlay.h"
 
 namespace astrosplat {
@@ -88,7 +87,7 @@ void Viewport::move_frame(GuiFrame& frame, const Rect& area) {
         zoom *= input_.wheel > 0 ? notch_zoom : 1.0 / notch_zoom;
     zoom = std::clamp(zoom, zoom_least, zoom_most);
     if (std::fabs(zoom - std::round(zoom)) < 0.01) zoom = std::round(zoom);
-    // What lies under the mouse stays there.
+    // The point under the mouse stays there.
     const glm::dvec2 from_middle = input_.mouse_px - glm::dvec2(area.width, area.height) * 0.5;
     view.pan_px = from_middle - (from_middle - view.pan_px) * (zoom / view.zoom);
     view.zoom = zoom;

@@ -30,8 +30,8 @@ namespace {
 
 using Frames = std::vector<std::int64_t>;
 
-// The two batch scripts: one that generates and keeps the sets, one whose tasks render a chunk of frames
-// each. Values go into them as words in quotes, never through #SBATCH lines, which Slurm parses its own way.
+// The scripts: one generates and keeps the sets, one has tasks that render a chunk of frames each. Values go
+// into them as words in quotes, never through #SBATCH lines, which Slurm parses its own way.
 
 struct SlurmJob {
     std::string name;                  // letters, digits, - and _
@@ -68,7 +68,7 @@ bool is_odd_log_folder(const fs::path& folder) {
 
 constexpr std::int64_t mebibyte = 1 << 20;
 
-// What an estimate may be short of, and Slurm ends a task that takes more than it asked for.
+// A margin over the estimate, since Slurm ends a task that takes more than it asked for.
 constexpr double memory_margin = 1.5;
 
 std::int64_t mebibytes(std::int64_t bytes) {
@@ -120,8 +120,8 @@ std::string frames_script(const SlurmJob& job, const std::vector<std::string>& c
     return text + command(job, " --frames=\"${frames[SLURM_ARRAY_TASK_ID]}\" --resume");
 }
 
-// What a submission makes before it is whole. Destructors take it back; keep() is the last thing that is
-// called.
+// Files and jobs of a submission before it is whole. Destructors take it back; keep() is the last thing that
+// is called.
 
 /// A new folder, which goes with all that is in it unless it is kept.
 class DraftFolder {
@@ -249,8 +249,8 @@ std::vector<std::string> chunks_of(const Frames& frames, std::size_t size) {
     return chunks;
 }
 
-/// What decides the frames but for their numbers, as words of --batch. With = so that a value may begin with
-/// -.
+/// The options that decide frames but for their numbers, as words of --batch. With = so that a value may
+/// begin with a minus.
 std::vector<std::string> frame_options(const BatchPlan& plan, const BatchOptions& batch) {
     std::vector<std::string> words = {fs::absolute(batch.scene).string()};
     if (batch.output) words.push_back("--output=" + plan.scene.output.path);

@@ -1,5 +1,5 @@
-// Work in a thread beside the window. In: what is wanted, asked for again and again. Out: what was found: the
-// last thing asked for (LatestWork), or things that are kept for when they are looked at (ReadAhead).
+// Work in a thread beside the window. In: requests, made again and again. Out: the result of the last one
+// (LatestWork), or results that are kept until they are looked at (ReadAhead).
 #pragma once
 
 #include <algorithm>

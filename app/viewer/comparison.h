@@ -1,6 +1,6 @@
-// What the frame, A, is compared with: the look of a snapshot seen by the same camera, or a reference
-// picture. In: the looks to keep, the file to read, requests for B's frame. Out: what the display shows
-// beside A, cards for the widgets, and how much both differ.
+// The comparison of the frame, A, with B: the look of a snapshot seen by the same camera, or a reference
+// picture. In: the looks to keep, the file to read, requests for B's frame. Out: B for the display, cards
+// for the widgets, and the difference in numbers.
 #pragma once
 
 #include <cstdint>
@@ -117,11 +117,11 @@ std::optional<DifferenceStatus> difference_of(const Image& a, const Image& b);
 /// The numbers beside a difference that is shown, measured again a few times a second while it changes.
 class DifferenceMeter {
   public:
-    /// What `display` shows of `shown` on a target of this size; `now` in seconds.
+    /// `shown` as `display` draws it on a target of this size; `now` in seconds.
     void measure(Display& display, const DisplaySettings& shown, glm::ivec2 target_px, double now);
     void clear() { *this = {}; }
     const std::optional<DifferenceStatus>& found() const { return found_; }
-    /// What is shown has not been measured yet.
+    /// The frame that is shown has not been measured yet.
     bool waiting() const { return waiting_; }
 
   private:

@@ -17,7 +17,7 @@ std::vector<RenderLayer> drawn_layers(const std::vector<PreviewLayer>& layers) {
     return drawn;
 }
 
-/// What lies within a pixel of (x, y).
+/// The pixel (x, y) and its neighbours within the view.
 Region around(const PreviewView& view, std::int64_t x, std::int64_t y) {
     Region region{std::max<std::int64_t>(0, x - 1), std::max<std::int64_t>(0, y - 1), 0, 0};
     region.width = std::min(view.width, x + 2) - region.x;

@@ -1,5 +1,5 @@
-// Previews by the engine's own compositor, and what a click finds in them. In: the splats that a preview
-// draws. Out: the frame in motion, or how much of what is seen at a pixel is due to each layer.
+// Previews by the engine's own compositor, and the layers at a pixel of them. In: the splats that a preview
+// draws. Out: the frame in motion, or the light of each layer at a pixel.
 #pragma once
 
 #include <cstdint>

@@ -14,6 +14,7 @@
 #include "scene/frames.h"
 
 namespace astrosplat {
+namespace fs = std::filesystem;
 namespace {
 
 using Json = nlohmann::json;
@@ -84,8 +85,6 @@ std::vector<std::int64_t> submitted_jobs(const std::string& output) {
 }
 
 namespace {
-
-namespace fs = std::filesystem;
 
 constexpr double pause_s = 3.0;  // between questions, and the longer the more frames there are to look at:
 constexpr double pause_share = 5.0;  // times what the last question took

@@ -15,7 +15,7 @@
 
 namespace astrosplat {
 
-/// What a farm has made of the frames it was given.
+/// The state of the frames that a farm was given.
 struct FarmReport {
     bool complete = false;  // every frame is there
     bool active = false;    // a task waits or runs, or nobody knows

@@ -30,7 +30,7 @@ struct SmallPicture {
 /// Values of a FITS plane that are held at once.
 constexpr std::int64_t most_values = std::int64_t{1} << 22;
 
-/// What has no value is black: a gap must not take the light around it.
+/// Pixels without a value are black: a gap must not take the light around it.
 ImageRows without_gaps(ImageRows rows) {
     const std::int64_t row_values = rows.width * rows.channels;
     rows.read = [row_values, read = std::move(rows.read)](std::int64_t begin, std::int64_t end, float* out) {
@@ -119,7 +119,7 @@ PackedPicture size_of(const SmallPicture& small) {
     return {small.image.width, small.image.height, small.width, small.height, {}, {}, {}};
 }
 
-/// What has been read, or why it cannot be. Throws Cancelled.
+/// The picture, or why it cannot be read. Throws Cancelled.
 template <class ReadFile>
 PackedPicture picture_or_error(const ReadFile& read) try {
     return read();

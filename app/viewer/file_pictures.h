@@ -1,6 +1,5 @@
-// Picture files as the window shows them, small: those that a folder lists, frames of the output's files
-// while they are played, and the finished frame of a job. All are read in the background. In: files. Out:
-// images for textures.
+// Small pictures of files, read in the background: thumbnails of a folder, frames of the output while they
+// are played, and the finished frame of a job. In: files. Out: images for textures.
 #pragma once
 
 #include <compare>

@@ -42,7 +42,7 @@ class GrowingSet : public KeptWatcher {
     /// Positions of finished columns, spread evenly over them; without a set where there are none.
     ColumnSample columns() const;
 
-    /// What there is now; a set of none before the first splat. A splat drawn by chance: the same splats come
+    /// The sample so far; a set of none before the first splat. A splat drawn by chance: the same splats come
     /// first in every sample, so that frames of one after the other do not flicker.
     Sample sample() const;
 

@@ -1,5 +1,5 @@
-// What a hand did at mouse and keyboard, in its order, given out in portions that one frame of widgets can
-// take. In: events as they come. Out: those of the next frame. Knows neither window nor widgets.
+// Input of mouse and keyboard in its order, given out in portions that one frame of widgets can take. In:
+// events as they come. Out: those of the next frame. Knows neither window nor widgets.
 #pragma once
 
 #include <deque>
@@ -17,7 +17,7 @@ struct InputEvent {
     bool operator==(const InputEvent&) const = default;
 };
 
-/// What the widgets would do with the keyboard now: nothing yet, act, or write.
+/// The use of the keyboard by the widgets now: nothing yet, act, or write.
 enum class Typing { later, shortcuts, text };
 
 /// Dear ImGui looks at mouse and keyboard once a frame. Where a frame takes long, a click, a drag or a word

@@ -81,7 +81,7 @@ Image displayed(Image image) {
     return image;
 }
 
-/// What changes the size of the picture stays, so that before and after lie on each other.
+/// Settings that change the size of the picture stay, so that before and after lie on each other.
 TextureSettings before_preparation(TextureSettings texture) {
     PrepareParams prepare;
     prepare.align = texture.prepare.align;

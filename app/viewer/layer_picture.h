@@ -1,6 +1,6 @@
-// A layer's own picture, looked into in the background: before and after its preparation, and how true the
-// view from the front is to it. In: a layer's source; a scene as it stands and its sets. Out: pictures for
-// the screen and measures for the badge.
+// Background work on a layer's own picture: its preparation, before and after, and the likeness of the view
+// from the front. In: a layer's source; a scene as it stands and its sets. Out: pictures for the screen and
+// measures for the badge.
 #pragma once
 
 #include <cstdint>
@@ -38,7 +38,7 @@ bool front_changed_by_look(const Scene& now);
 
 struct FrontFound {
     FrontFidelity fidelity;
-    Image difference;   // display values, RGBA (signed_difference.h)
+    Image difference;   // display values, RGBA (fidelity/display.h)
     std::string error;  // one line: there is nothing to compare with
 };
 

@@ -28,7 +28,7 @@ struct LiveFound {
     std::string error;
 };
 
-/// What stays from one drag step to the next: meshes, thinned pictures and the sample's tree.
+/// State that stays from one drag step to the next: meshes, thinned pictures and the sample's tree.
 class LiveMaker {
   public:
     LiveMaker();

@@ -1,4 +1,4 @@
-// What the viewer keeps of one layer, from the first sample of a set that is being generated to the whole set
+// One layer as the viewer keeps it, from the first sample of a set that is being generated to the whole set
 // with its histograms. In: sets, samples and the source they came from. Out: LoadedLayer.
 #pragma once
 

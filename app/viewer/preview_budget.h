@@ -22,8 +22,8 @@ struct PreviewBudget {
     int frames_ = 0;                  // of them
 };
 
-/// What a frame has left for its preview beside the rest of the window, which a software rasteriser draws as
-/// slowly as the frame.
+/// The time that a frame has left for its preview besides the rest of the window, which a software rasteriser
+/// draws as slowly as the frame.
 class FramePace {
   public:
     /// For the preview about to be drawn at `now_s`: what 24 frames a second leave of a frame, in ms, at

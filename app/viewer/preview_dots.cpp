@@ -66,7 +66,8 @@ FinerPreview::Work finer_preview() {
 
 PreviewDots::PreviewDots() : work_(make_sums) {}
 
-/// What is kept of the layer with this set: when a layer before it is hidden, the others stay as they are.
+/// The state that is kept of the layer with this set: when a layer before it is hidden, the others stay as
+/// they are.
 PreviewDots::Layer& PreviewDots::layer_at(std::size_t index, const LoadedLayer& loaded) {
     const auto first = layers_.begin() + static_cast<std::ptrdiff_t>(std::min(index, layers_.size()));
     const auto found =

@@ -19,7 +19,7 @@
 
 namespace astrosplat {
 
-/// What a layer's sums are made of.
+/// Inputs of a layer's sums.
 struct SumsRequest {
     MergeSource source;
     Shading shading;
@@ -30,7 +30,7 @@ struct FoundSums {
     std::string error;
 };
 
-/// What a layer is cut from, or, of stars, all of its splats. Stays as it is.
+/// The source of a layer's cuts, or, of stars, all of its splats. Does not change.
 struct CutSource {
     std::shared_ptr<const MergedSplats> merged;  // null: stars
     std::shared_ptr<const DotSettings> dots;
@@ -56,7 +56,7 @@ class PreviewDots {
     bool refine(double now);
     /// Gives up what is being made, until refine() is called again.
     void rest() { work_.forget(); }
-    /// What the last cut was made of, for another one of more dots.
+    /// Inputs of the last cut, for another one of more dots.
     std::vector<CutSource> sources() const;
     /// Of each layer the share of its splats that the look keeps, 0..1.
     std::vector<double> kept() const;

@@ -55,7 +55,7 @@ class ReferencePicture {
     LatestWork<Request, Found> work_{read};
 };
 
-/// What is aligned: the view's pixels, and the place of the frame among them.
+/// The inputs of an alignment: the view's pixels, and the place of the frame among them.
 struct AlignmentRequest {
     Image view, picture;  // display values, RGBA, top row first
     FrameOnScreen frame;  // px of `view`

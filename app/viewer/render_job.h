@@ -18,7 +18,7 @@ struct ProcessStep {
     std::vector<std::string> arguments;  // [0] is the program
 };
 
-/// What a job does.
+/// The work of one job.
 struct JobPlan {
     std::vector<ProcessStep> steps;  // one after the other
     std::int64_t frames = 0;         // that are saved; 0: none

@@ -32,7 +32,7 @@ void expect_no_movie(const RenderTask& task) {
         throw InputError(movie.string() + ": exists already");
 }
 
-/// What a window submits has a scene file of its own.
+/// A submission of the window has a scene file of its own.
 bool is_same(const FarmCommands& listed, const FarmCommands& found) {
     constexpr std::size_t scene = 2;  // behind the program and "status"
     return listed.status == found.status ||

@@ -1,6 +1,5 @@
 // Jobs that write files for the window: renderings and prepared pictures, one after the other, and renderings
-// that a farm has. In: what the person asked for and the document as it stood then. Out: how far each is, and
-// what has come of it.
+// that a farm has. In: a request and the document as it stood then. Out: each job's progress and its result.
 #pragma once
 
 #include <cstdint>
@@ -33,8 +32,8 @@ class RenderQueue {
     /// Writes a layer's prepared picture, as the command `prepare` does. Throws InputError.
     void add_preparation(const SourceParams& source, const std::filesystem::path& folder);
 
-    /// What was submitted to a farm of the document's frames before comes into the list, once poll() has
-    /// heard of it. In place of another document's.
+    /// Earlier submissions of the document's frames to a farm come into the list, once poll() has heard of
+    /// it. In place of another document's.
     void list_earlier(const Document& document);
 
     /// A job that waits never begins; one that runs, here or on a farm, ends, and its finished files stay.
@@ -54,7 +53,7 @@ class RenderQueue {
     const std::vector<QueuedJob>& jobs() const { return jobs_; }
 
   private:
-    /// What a job needs to begin.
+    /// Arguments of a new job.
     struct Work {
         JobPlan plan;
         std::unique_ptr<FarmJob> farm;  // null: this machine does it

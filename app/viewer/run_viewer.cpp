@@ -30,7 +30,7 @@ constexpr int frames_after_event = 4;
 
 constexpr double screen_frame_s = 1.0 / 60.0;
 
-/// What the engine and the widgets log, from any thread: for the terminal at once, and errors and warnings
+/// Messages of the engine and the widgets, from any thread: for the terminal at once, and errors and warnings
 /// for the message bar in the next frame.
 class LogLines {
   public:

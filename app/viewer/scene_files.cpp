@@ -145,8 +145,6 @@ void ColorManagement::read(const Asked& now) {
     status_ = std::move(status);
 }
 
-namespace fs = std::filesystem;
-
 bool DiskWatch::due(double now) {
     constexpr double every_s = 1.0;
     if (now - checked_at_s_ < every_s) return false;

@@ -1,6 +1,5 @@
-// What the window keeps of the files that a scene names beside its sets: pictures that views share, the
-// configuration of OpenColorIO, and which of all files others have changed. In: the scene. Out: pixels, a
-// display transform, changed files.
+// Files that a scene names besides its sets: pictures that views share, the configuration of OpenColorIO, and
+// a watch for changes on disk. In: the scene. Out: pixels, a display transform, names of changed files.
 #pragma once
 
 #include <cstdint>
@@ -54,7 +53,7 @@ class PictureFiles {
 
     std::map<std::pair<std::filesystem::path, Derived>, std::unique_ptr<Image>> maps_;
     std::vector<std::unique_ptr<Image>> old_maps_;  // so that new ones do not get their addresses
-    /// What is compared may have another one; with the worker's lock.
+    /// The comparison may have another one; with the worker's lock.
     std::map<EnvironmentParams, Sky, ByPictures> skies_;
     std::optional<EnvironmentParams> wanted_;  // asked for last; with the lock
     Worker worker_{[this] { return next_sky(); }};

@@ -37,7 +37,7 @@
 
 namespace astrosplat {
 
-/// What a command of the render dialog was made of.
+/// The inputs of a command of the render dialog.
 struct CommandSource {
     std::uint64_t revision = 0;
     std::filesystem::path file;
@@ -113,7 +113,7 @@ void advance(Session& session, double now);
 /// Draws the viewport's content at its size in px into Status::viewport_texture. `hurry`: the final frame at
 /// once.
 void draw_viewport(Session& session, glm::ivec2 viewport_px, double now, bool hurry = false);
-/// What mouse and keyboard did over the viewport, after the widgets drew.
+/// Mouse and keyboard over the viewport, after the widgets drew.
 void navigate(Session& session, const ViewportInput& input, double now);
 /// Carries them out and empties the list; errors become the message line.
 void carry_out(Session& session, Commands& commands);

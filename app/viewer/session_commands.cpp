@@ -1,4 +1,4 @@
-// What the menus and shortcuts ask of a session: a table from commands to what they do.
+// Commands of menus and shortcuts to a session: a table from commands to functions.
 
 #include <algorithm>
 #include <cmath>
@@ -177,7 +177,7 @@ void open_folder(State& s, const Command& c) {
     s.file_manager.emplace(std::vector<std::string>{"xdg-open", c.path.string()});
 }
 
-/// What the viewport shows of the frame, without what lies around it.
+/// The part of the viewport that shows the frame, without its surroundings.
 void save_view(State& s, const Command& c) {
     const glm::vec2 port(s.viewport_px);
     const Rect whole = place_frame(s.view, {0, 0, port.x, port.y}, s.request.width, s.request.height);

@@ -1,4 +1,4 @@
-// What the window shows of renderings to files: the jobs, the command of the dialog, a finished frame.
+// Renderings to files: the jobs, the command that the dialog shows, and a finished frame.
 
 #include <algorithm>
 #include <memory>

@@ -1,4 +1,5 @@
-// What the parts of a session ask of each other: its life (session.cpp), commands, view, pictures and jobs.
+// Functions of a session that its source files share, by the file that defines them. In: the session. Out:
+// its changed state, above all Status for the widgets.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +12,7 @@
 
 namespace astrosplat {
 
-// Its life.
+// session.cpp
 
 /// Another document in place of the one that is open.
 void take_document(Session& session, Document next);
@@ -26,17 +27,17 @@ void find_recoveries(Status& status);
 /// Says in the message line why the frame or a layer failed; `said` holds what was said of those that still
 /// do.
 void say_new_errors(Status& status, std::set<std::string>& said);
-/// What is no error leaves the message line after a while; it stays in the log. `now` in seconds.
+/// Messages that are no errors leave the message line after a while; they stay in the log. `now` in seconds.
 void forget_old_message(Status& status, MessageAge& age, double now);
 
-// Its commands.
+// session_commands.cpp
 
 /// Throws InputError, OutputError.
 void carry_out(Session& session, const Command& command);
 
-// Its view.
+// session_view.cpp
 
-/// What the viewport shows a scene through: what the person chose, else the scene. Never automatic.
+/// The transform to display values in the viewport: the one chosen, else the scene's. Never automatic.
 OutputParams::View display_view(OutputParams::View chosen, OutputParams::View of_scene);
 /// Fills Status but for what commands, jobs and the disk say.
 void fill_status(Session& session);
@@ -51,7 +52,7 @@ std::optional<PixelProbe> probe_of(const Image& pixels, const Image* depth, cons
 /// is seen the box goes.
 void select_layer_at(Session& session, glm::dvec2 mouse_px, bool behind);
 
-// Pictures in place of the frame, beside it, or that it is aligned to. All with OpenGL's context.
+// session_pictures.cpp: pictures in place of the frame or beside it. All need OpenGL's context.
 
 /// The frames on disk in place of the preview (ViewState::show_rendered), while scrubbing and playing: reads
 /// the one that is looked at and those after it, and fills Status::rendered_frame and missing_frame. True:
@@ -71,7 +72,7 @@ void begin_alignment(Session& session);
 /// Places the reference where that was found, or says that it was not.
 void take_alignment(Session& session);
 
-// Its jobs.
+// session_jobs.cpp
 
 /// Brings the jobs forward and fills their part of the status. `now` in seconds. Throws what a job throws
 /// that cannot begin.

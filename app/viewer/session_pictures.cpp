@@ -1,5 +1,5 @@
-// Pictures that a session shows besides its frame. Each is found in a thread beside the window, and goes to
-// the GPU once.
+// Pictures that a session shows besides its frame: rendered frames, the front check, the preparation,
+// thumbnails, and the reference's alignment. Each is made in a background thread and uploaded once.
 #include <fmt/format.h>
 
 #include <algorithm>

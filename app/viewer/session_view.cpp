@@ -1,5 +1,5 @@
-// What the viewport shows: the view becomes a request for a frame; the frame and what it is compared with are
-// placed in the viewport, with lines of the camera over them; and what the widgets are told of it.
+// The viewport: the view becomes a request for a frame; the frame and its comparison are placed in the
+// viewport, with lines of the camera over them; and the widgets get the state of both.
 
 #include <fmt/format.h>
 
@@ -44,7 +44,8 @@ bool sees_motion(const Scene& scene, const ViewState& view) {
     return scene.camera.shutter > 0.0 && view.solo.empty() && view.view == ViewKind::camera;
 }
 
-/// What a frame does not depend on, at its default, so that editing it does not make the frame again.
+/// The values that a frame does not depend on, at their defaults, so that editing it does not make the frame
+/// again.
 void forget_what_is_not_seen(Scene& scene) {
     const OutputParams standard;
     scene.file.clear();
@@ -159,7 +160,7 @@ void measure_difference(Session& session, const DisplaySettings& shown, double n
     session.status.difference = session.difference.found();
 }
 
-/// What the viewport looks through; none where no camera can be made, as the frame's badge says.
+/// The camera of the viewport; none where no camera can be made, as the frame's badge says.
 std::optional<Camera> camera_in_viewport(const ViewRequest& request, const Rect& place) {
     try {
         return camera_on_screen(camera_of(request), {place.x, place.y}, double(place.width) / request.width);

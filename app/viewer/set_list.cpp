@@ -172,7 +172,7 @@ bool SetList::is_wanted(const SetJob& finished) const {
     return !finished.cancelled && found != entries_.end() && found->second.identity == finished.identity;
 }
 
-/// What a layer that has its set still lacks.
+/// Queues the tasks that a layer with its set still lacks.
 void SetList::queue_rest(const std::string& name, const LoadedLayer& loaded) {
     if (!loaded.arranged) queues_[SetTask::arrange].push_back(name);
     if (!loaded.histograms) queues_[SetTask::describe].push_back(name);

@@ -1,5 +1,5 @@
-// What the layers of a scene want as sets, what they have, and what is to be done next. In: wishes, and what
-// came of each job. Out: the next job, the newest wish first, and each layer's set and status. Knows no
+// The sets that the layers of a scene want, those that they have, and the next job. In: wishes, and the
+// result of each job. Out: the next job, the newest wish first, and each layer's set and status. Knows no
 // threads: SetLoader holds the lock and does the work.
 #pragma once
 
@@ -19,7 +19,7 @@
 
 namespace astrosplat {
 
-/// What is done for a layer, the first for all layers before the second for any.
+/// The tasks for a layer, the first for all layers before the second for any.
 enum class SetTask { sample, load, arrange, describe };
 
 /// One task for one layer. Only the atomics and `growing` change once it has begun.
@@ -56,7 +56,7 @@ class SetList {
     /// False: it was so already.
     bool hold(bool held) { return std::exchange(held_, held) != held; }
 
-    /// What should be done now.
+    /// The job to do now.
     std::optional<SetTask> next_task() const;
     /// Begins it; it lasts until end().
     std::shared_ptr<SetJob> begin_next();

@@ -42,7 +42,7 @@ void SetLoader::work(SetJob& job) {
     }
 }
 
-/// What cannot be sampled cannot be read either: load() says why.
+/// A source that cannot be sampled cannot be read either: load() says why.
 void SetLoader::sample(const SetJob& job) try {
     Progress progress;
     progress.cancelled = &job.cancelled;

@@ -28,10 +28,10 @@ class SetWishes {
     /// Works towards a preview of what a source is edited to, where that needs no set.
     void follow(const Scene& scene);
     bool following() const { return live_.working(); }
-    /// What there is to be seen of a layer: the loader's, or a preview under the levels that it has now.
+    /// The visible state of a layer: the loader's, or a preview under the levels that it has now.
     std::shared_ptr<const LoadedLayer> layer(const LayerParams& layer) const;
 
-    /// What there is of a set that is being generated.
+    /// Shows the part that there is of a set that is being generated.
     void show_growth(double now);
     /// There are other sets than at the last call.
     bool new_sets();

@@ -21,7 +21,7 @@
 
 namespace astrosplat {
 
-/// What is to be seen. Requests that ask for the same and have the same sets show equal frames.
+/// A frame to be shown. Requests that ask for the same and have the same sets show equal frames.
 struct ViewRequest {
     Scene scene;  // as it stands at the frame, with the view's camera; layers that are not to be seen are
                   // invisible
@@ -78,7 +78,7 @@ class ViewFrame {
     /// The same, read back from the GPU where need be.
     Image read() const;
     /// Light of every layer of the scene at a pixel of the whole frame, by the splats of the preview
-    /// (layers_at_pixel.h).
+    /// (cpu_preview.h).
     std::vector<float> layer_light(std::int64_t x, std::int64_t y);
     /// The final frame, when status says so.
     std::shared_ptr<const RenderedFrame> final_frame() const;

@@ -1,4 +1,4 @@
-// What a session begins with, by a window or without one.
+// The options of a session at its start, in a window or without one.
 #pragma once
 
 #include <filesystem>

@@ -57,7 +57,7 @@ void edit_camera(Document& document, const CameraParams& before, const CameraPar
         gesture);
 }
 
-/// What the frame looks through now, as a free camera.
+/// The camera of the frame now, as a free camera.
 FreeCamera camera_of_view(const ViewRequest& request) {
     return free_camera(request.scene.camera, request.box,
                        static_cast<double>(request.width) / request.height);

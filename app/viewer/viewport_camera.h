@@ -1,6 +1,5 @@
-// The camera of the viewport, which mouse and keys over it move; and the scene's camera as views beside it
-// show it. In: what the hand did and what it saw. Out: the view's free camera, an edit of the document, or
-// lines over the frame.
+// The viewport's camera, moved by mouse and keys over it, and lines of the scene's camera for views beside
+// it. In: input, and the view on the screen. Out: the view's free camera, an edit of the document, or lines.
 #pragma once
 
 #include <glm/vec2.hpp>
@@ -15,7 +14,7 @@
 
 namespace astrosplat {
 
-/// What is on the screen when the hand moves.
+/// The picture on the screen when the hand moves.
 struct ShownView {
     const ViewRequest& request;
     glm::dvec2 viewport_px;
@@ -44,7 +43,7 @@ class Navigator {
 /// that the free view begins where the person is.
 void keep_free_camera(ViewState& view, const ShownView& shown);
 
-/// What the person is told where a view left the camera.
+/// The message shown where a view left the camera.
 inline constexpr const char* left_camera_message = "Free view, a copy of the camera; 0 returns to it";
 
 /// The whole box in a free view. True: the view left the scene's camera.

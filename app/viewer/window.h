@@ -1,5 +1,5 @@
-// Where the widgets are drawn: the window, or a frame of their own without one, for screenshots and
-// measurements.
+// Targets of the widgets: the window, or without a display a frame of their own, for screenshots and
+// measurements. In: the widgets of a frame. Out: pixels, and the input of mouse and keyboard.
 #pragma once
 
 #include <cstdint>
@@ -31,7 +31,7 @@ class Window {
     void wait(double seconds);
     /// Ends a wait() from any thread.
     static void wake();
-    /// What the hand did waits for the next frame.
+    /// Input waits for the next frame.
     bool has_input() const { return !input_.empty(); }
     /// Begins a frame of widgets; false while the window is minimised. `opening`: something was opened that
     /// may be about to take what is typed.
@@ -62,7 +62,7 @@ class Window {
     /// Gives the widgets a portion of what the hand did, as if it were now.
     void feed_frame(bool opening);
 
-    /// What a frame looks like.
+    /// The picture of a frame.
     struct FrameMark {
         std::uint64_t widgets = 0, frames = 0;
         int width = 0, height = 0;

@@ -1,7 +1,7 @@
-// Measured on a small copy without its stars, above the darkest tenth: how the light falls off from its
-// brightest place, how red it is there, whether it has the colours of stars, whether it is alike on either
-// side, and how much of it reaches the picture's edges. The limits are from 341 pictures of galaxies,
-// clusters and nebulae.
+// A picture's kind, by measures of a small copy without its stars, above the darkest tenth: how the light
+// falls off from its brightest place, how red it is there, whether it has the colours of stars, whether it is
+// alike on either side, and how much of it reaches the picture's edges. The limits are from pictures of
+// galaxies, clusters and nebulae.
 #include "bodies/choose.h"
 
 #include <algorithm>
@@ -175,7 +175,7 @@ bool of_stars(const glm::dvec3& color) {
 
 bool is_too_small(const Image& light) { return light.width < 16 || light.height < 16; }
 
-// What a picture looks like.
+// Measures of a picture by which its kind is chosen.
 struct Impression {
     bool lit = false;                  // anywhere above its sky
     double peak = 0.0;                 // light in the middle over that at the half-light radius

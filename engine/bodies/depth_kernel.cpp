@@ -50,7 +50,7 @@ ASTROSPLAT_DEPTH_LOOP add_octave(const NoiseStack& noise, int octave, const Dept
         sum[i] = sum[i] + gain * as_noise_octave(block.x[i], block.y[i], z[i], frequency, noise.seed, octave);
 }
 
-// What a plane of a noise's lattice contributes in the columns of a block's dots: on the plane, and how much
+// Contribution of a plane of a noise's lattice in the columns of a block's splats: on the plane, and how much
 // more a unit above it.
 struct NoisePlane {
     Lane value, slope;

@@ -14,9 +14,9 @@ inline constexpr glm::vec3 dust_exponents{0.8f, 1.0f, 1.35f};
 /// filter: nothing of it is redder than anything else.
 glm::vec3 dust_exponents_of(const Image& light);
 
-/// What reaches the viewer of a disk that shines as `emission`, so that at most `brightest` is seen in any
-/// channel: the ratio of the brightest ones, .1 to 1; 1 where both are dark. One channel. The less, the
-/// smaller the picture's `alpha` (one channel, or without pixels): what fades towards an edge is no dust.
+/// The light that reaches the viewer of a disk that shines as `emission`, so that at most `brightest` is seen
+/// in any channel: the ratio of the brightest ones, .1 to 1; 1 where both are dark. One channel. The less,
+/// the smaller the picture's `alpha` (one channel, or without pixels): what fades towards an edge is no dust.
 Image transmittance_of(const Image& brightest, const Image& emission, const Image& alpha = {});
 
 /// Share of its optical depth that a picture's dust has.

@@ -40,7 +40,7 @@ double sampled_sigma(double variance) {
 
 float clamped(float factor) { return std::clamp(factor, 1.0f / largest_factor, largest_factor); }
 
-// What dots take of a ratio: with `overshoot` its square.
+// The factor that splats take of a ratio: with `overshoot` its square.
 Image factor_of(const Fraction& fraction, bool overshoot) {
     Image factor = unfilled_image(fraction.seen.width, fraction.seen.height, 3);
     parallel_each(factor.pixels.size(), 65536, [&](std::size_t i) {

@@ -9,7 +9,7 @@
 
 namespace astrosplat {
 
-/// What is wanted over what is seen: three channels each, of one size, > 0.
+/// The ratio of the wanted light to the visible: three channels each, of one size, > 0.
 struct Fraction {
     Image wanted, seen;
 };

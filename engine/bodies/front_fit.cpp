@@ -41,7 +41,7 @@ glm::dvec3 light_of_cell(const Image& image, std::int64_t column, std::int64_t r
     return sum;
 }
 
-// What is wanted over what is seen, in cells.
+// The ratio of the wanted light to the visible, in cells.
 Image cell_ratio(const Image& wanted, const Image& seen) {
     Image cells = make_image((seen.width + flux_cell_px - 1) / flux_cell_px,
                              (seen.height + flux_cell_px - 1) / flux_cell_px, 3);
@@ -103,11 +103,11 @@ class FittedView {
             std::max(least_projected_bytes, projected_bytes_a_texel * picture.width * picture.height);
     }
 
-    /// What is seen if the light that the picture does not have is hidden.
+    /// The visible light if the light that the picture does not have is hidden.
     Image supposed();
-    /// What is seen, from a rendering.
+    /// The visible light, from a rendering.
     Image rendered(const Progress& progress);
-    /// What is seen if the same share of the light is hidden as then.
+    /// The visible light if the same share of it is hidden as then.
     Image seen() const { return shown(flat_.sum()); }
     /// Takes the colours a step on from what is seen.
     void step_from(Image seen, bool overshoot) { flat_.correct(weighted_ratio(std::move(seen)), overshoot); }

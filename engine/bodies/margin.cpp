@@ -53,7 +53,7 @@ std::int64_t mirrored(std::int64_t i, std::int64_t count) {
     return std::clamp<std::int64_t>(in, 0, count - 1);
 }
 
-// What a texel beyond the picture is made of, besides the picture itself.
+// Inputs of a texel beyond the picture, besides the picture itself.
 struct Surroundings {
     Image local;             // brightness, as fourth roots
     float to_local = 1.0f;   // pixels of `local` in one of the picture

@@ -21,9 +21,8 @@ struct PictureLight {
 PictureLight picture_light(const Texture& texture, double border);
 
 struct Band {
-    int index = 0;  // 0: the finest
-    double blur =
-        0.0;  // px, standard deviation below which it holds what is small; the coarsest: beyond which
+    int index = 0;         // 0: the finest
+    double blur = 0.0;     // px, standard deviation: it holds finer details; the coarsest: coarser ones
     double feature = 0.0;  // px, size of what it shows
 };
 

@@ -1,6 +1,6 @@
-// Dots are told from samples: squares spread evenly over the picture are split into bands, and the shares of
-// dots that are kept are added up pixel by pixel. Coarse bands are not as in the whole picture, but have few
-// dots.
+// Dots are counted on samples: squares spread evenly over the picture are split into bands, and the shares of
+// dots that are kept are added up pixel by pixel. Coarse bands differ there from the whole picture's, but
+// have few dots.
 #include "bodies/picture_size.h"
 
 #include <fmt/format.h>
@@ -168,7 +168,7 @@ std::int64_t bodies_memory_bytes(std::span<const TexturedMesh> meshes, std::int6
 
 namespace {
 
-// What no pictures of their sizes take more than.
+// An upper bound of the memory for pictures of their sizes.
 std::int64_t most_bytes(std::span<const TexturedMesh> meshes, const StructureParams& params) {
     double dots = 0.0;
     for (const PictureOnMesh& picture : pictures_of(meshes))
@@ -200,7 +200,7 @@ ImageSize size_in_file(const Texture& texture) {
     return {texture.image.width / texture.times, texture.image.height / texture.times};
 }
 
-// What reduce_to() makes of a picture.
+// A picture after reduce_to().
 ImageSize size_within(const Texture& texture, std::int64_t most_texels) {
     const bool enlarged_before = texture.times > 1;
     const ImageSize whole =

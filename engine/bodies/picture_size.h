@@ -1,5 +1,5 @@
-// What the bodies of pictures come to, told before they are made: dots and bytes; and pictures made smaller
-// or larger to suit. In: meshes with pictures, and what they are made into. Out: numbers; other pictures.
+// Dots and bytes of the bodies of pictures, told before they are made; and pictures made smaller or larger to
+// suit. In: meshes with pictures, and what they are made into. Out: numbers; other pictures.
 #pragma once
 
 #include <cstdint>

@@ -23,7 +23,7 @@ constexpr float glowing_thickness = 0.7f;  // of H, from which the light of a di
 constexpr float clearest_bulge = 8.0f;     // times; clearer still, it would burn out where it is seen aslant
 constexpr float glow_hiding = 0.5f;        // share of its optical depth that the glow between two walls keeps
 
-// What a dot is before it has a depth.
+// A splat before it has a depth.
 struct Candidate {
     float x, y;           // texels from the top left corner
     glm::vec3 light;      // of its footprint

@@ -32,7 +32,7 @@ struct DepthReach {
     float texels = 0.0f;
 };
 
-/// What depths depend on beside a dot's own place and band.
+/// Values that depths depend on besides a splat's own place and band.
 struct Placement {
     StructureKind kind = StructureKind::disk;
     double scale = 1.0;   // the picture's width over 1920 px, by which wavelengths grow

@@ -1,5 +1,5 @@
-// What hides a star is found the other way round than in rendering: every splat looks for the stars that it
-// may hide, on a grid of the picture.
+// The splats that hide a star are found the other way round than in rendering: every splat looks for the
+// stars that it may hide, on a grid of the picture.
 #include "bodies/star_places.h"
 
 #include <algorithm>

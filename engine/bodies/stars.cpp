@@ -173,7 +173,7 @@ void subtract(Image& light, const StarInSky& found, float least_left, std::int64
     });
 }
 
-// What a Gaussian does not describe, wings and diffraction, is cut to a little above the background.
+// The rest of a star beside its Gaussian, wings and diffraction, is cut to a little above the background.
 void level(Image& light, const Image& before, const StarInSky& found, std::int64_t begin, std::int64_t end) {
     const Star& star = found.star;
     const auto reach = static_cast<std::int64_t>(3.0f * star.sigma + 1.0f);

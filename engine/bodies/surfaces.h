@@ -1,6 +1,7 @@
-// What bodies lie on or between, beside the plane of a disk: a sheet over a relief, and the two walls of a
-// shell. In: the picture's light without its stars; dots with their depths from the surface. Out: half of the
-// distance between the walls, in texels, as a field like those of fields.h; the same dots on the surface.
+// Surfaces that bodies lie on or between, besides the plane of a disk: a sheet over a relief, and the two
+// walls of a shell. In: the picture's light without its stars; dots with their depths from the surface. Out:
+// half of the distance between the walls, in texels, as a field like those of fields.h; the same dots on the
+// surface.
 #pragma once
 
 #include <vector>
@@ -21,7 +22,7 @@ SilhouetteGrid silhouette_grid(const Image& brightest);
 /// 1 where light is above a twelfth of its range, 0 where it is below, with a soft edge.
 Image silhouette_of(Image light);
 
-/// What was found on the grid, at the size of the fields.
+/// The result on the grid, at the size of the fields.
 Image to_field_size(Image coarse, const SilhouetteGrid& grid);
 
 /// h with -laplace(h) = 1 inside of a silhouette (1 there, 0 outside, soft between), a pixel as unit: r^2 / 4

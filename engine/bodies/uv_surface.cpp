@@ -203,7 +203,7 @@ SurfacePlace UvSurface::place_on(const Face& face, const glm::dvec3& weights) co
     return place;
 }
 
-// What is in the middle of two corners in the picture is nearer to the nearer one of them on the face.
+// The middle between two corners in the picture is nearer to the nearer one of them on the face.
 SurfacePlace UvSurface::seen_on(const Face& face, const glm::dvec3& weights) const {
     const bool parallel = camera_->projection == Projection::orthographic;
     const glm::dvec3& back = camera_->world_from_camera[2];

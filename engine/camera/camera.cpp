@@ -10,13 +10,43 @@
 #include <glm/matrix.hpp>
 
 #include "camera/projection.h"
-#include "camera/stereo.h"
 #include "core/error.h"
 #include "core/real.h"
 #include "core/rotation.h"
 
 namespace astrosplat {
+
 namespace {
+
+// Stereo pairs. In: a camera that stands between the eyes. Out: the camera of one of them.
+
+/// Turned about its y axis, to the left.
+glm::dmat3 turned_left(const glm::dmat3& world_from_camera, double angle) {
+    const double c = real::cos(angle), s = real::sin(angle);
+    const glm::dvec3 &right = world_from_camera[0], &back = world_from_camera[2];
+    return {right * c - back * s, world_from_camera[1], back * c + right * s};
+}
+
+/// Moves a camera between the eyes to the one that `params` name. Flat frames are parallel, moved against
+/// each other so that what is at the convergence distance does not move. In panoramas the eyes look out along
+/// a circle around the camera and come together towards the poles, as the cosine of the latitude: then
+/// distance alone says by how much longitudes differ, asin(half the separation / distance), and no footprint
+/// is torn at a pole. After the turn those at the convergence distance do not differ.
+void move_to_eye(Camera& camera, const CameraParams& params) {
+    if (params.eye == Eye::centre || !has_two_eyes(params.projection)) return;
+    const double wanted = params.convergence > 0.0 ? params.convergence : camera.target_distance;
+    const double meeting = std::fmax(wanted, camera.near);
+    const double to_right = 0.5 * params.eye_separation * (params.eye == Eye::right ? 1.0 : -1.0);
+    if (params.projection == Projection::perspective) {
+        camera.eye += to_right * camera.world_from_camera[0];
+        camera.center_x_px += camera.focal_px * to_right / meeting;
+        return;
+    }
+    const double sine = std::fmin(std::fmax(-to_right / meeting, -1.0), 1.0);
+    camera.parallax = -to_right;
+    camera.world_from_camera =
+        turned_left(camera.world_from_camera, -real::atan2(sine, std::sqrt(1.0 - sine * sine)));
+}
 
 constexpr double framing_elevation_deg = 35.0;
 constexpr double framing_fill = 0.9;    // share of the frame's width or height a framed box fills

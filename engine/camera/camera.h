@@ -124,7 +124,7 @@ Framing frame_box(const Bounds& box, double vertical_fov_deg, double aspect);
 /// The same seen along another direction; `world_from_camera` has the columns right, up, back.
 Framing frame_box(const Bounds& box, const glm::dmat3& world_from_camera, double vertical_fov_deg,
                   double aspect);
-/// What frame_box frames: the origin for an empty box, a cube of side 1 around a point.
+/// The box that frame_box frames: the origin for an empty box, a cube of side 1 around a point.
 Bounds box_to_frame(const Bounds& box);
 
 /// 4x4 row-major matrices as OpenEXR defines them (row vectors: p * M): camera space is left-handed with z

@@ -34,7 +34,7 @@ std::string gltf_text(const CameraTrack& track, double aspect, double near, doub
 /// and verticalAperture; without a focalLength there is none. Places stay in the file's units whatever its
 /// metersPerUnit; up is its upAxis. Nothing that the file refers to is opened.
 CameraTrack read_usda(const std::filesystem::path& file, const FrameRate& rate);
-/// What a camera in USD has beside its samples.
+/// Values of a camera in USD besides its samples.
 struct UsdLens {
     double aspect = 1.0;            // width / height
     double near = 0.01, far = 0.0;  // scene units; far 0: none

@@ -1,6 +1,6 @@
-// A file appears complete or not at all: it is written under a temporary name in the same folder, flushed to
-// the disk and renamed. Used by everything that writes a file. What killed programs left of theirs is removed
-// by the next one that writes into the same folder. And locks that processes share through files.
+// Files that appear complete or not at all: written under a temporary name in the same folder, flushed to the
+// disk and renamed; used by everything that writes a file. Files left by killed programs are removed by the
+// next one that writes into the same folder. Also locks that processes share through files.
 #pragma once
 
 #include <cstddef>
@@ -14,7 +14,7 @@
 
 namespace astrosplat {
 
-/// What commit() does where a file has the target's name.
+/// The choice of commit() where a file has the target's name.
 enum class Existing { replace, keep };
 
 /// Something has the target's name, and stays as it is.

@@ -14,7 +14,7 @@ struct InputError : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
-/// What was asked for takes more memory than there is (core/memory).
+/// A request that takes more memory than there is (core/memory).
 struct NotEnoughMemory : InputError {
     using InputError::InputError;
 };

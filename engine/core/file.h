@@ -38,7 +38,7 @@ void require_readable(const std::filesystem::path& file);
 /// memory left; Cancelled.
 std::string read_file(const std::filesystem::path& file, const Progress& progress = {});
 
-/// What lies in a folder, sorted by name; nothing where it cannot be read. (libstdc++'s own iterator ends the
+/// Entries of a folder, sorted by name; nothing where it cannot be read. (libstdc++'s own iterator ends the
 /// program where memory runs out.)
 std::vector<std::filesystem::path> entries_of(const std::filesystem::path& folder);
 

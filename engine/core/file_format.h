@@ -11,10 +11,10 @@
 
 namespace astrosplat {
 
-/// What a file is to a person. A look is a scene file too, until its content says otherwise.
+/// The kind of a file to its user. A look is a scene file too, until its content says otherwise.
 enum class FileKind { unknown, scene, look, picture, mesh, splats };
 
-/// What the program does with files; several are or-ed.
+/// The uses that the program has for files; several are or-ed.
 enum class FileUse : unsigned {
     read = 0,            // as what their kind says: all that have one
     written = 1,         // as a frame, as splats or as a scene

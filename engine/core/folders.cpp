@@ -1,4 +1,5 @@
-// A relative folder in a variable does not count, says the specification.
+// Folders by environment variables, assets by name, temporary folders. A relative folder in a variable does
+// not count, as the XDG specification says.
 #include "core/folders.h"
 
 #include <fmt/format.h>

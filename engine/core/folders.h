@@ -1,5 +1,5 @@
-// Folders: a person's own files of the program, as the XDG base directory specification has it; what comes
-// with the program (demo scenes, looks, pictures); and folders for files that nobody is to see.
+// Folders: of a person's own files of the program, as the XDG base directory specification has it; of the
+// files that come with the program (demo scenes, looks, pictures); and temporary ones.
 #pragma once
 
 #include <filesystem>

@@ -16,7 +16,7 @@ void set_log_level(LogLevel level);
 /// The sink is called by one thread at a time and must not log itself.
 void set_log_sink(std::function<void(LogLevel, const std::string&)> sink);
 
-/// What becomes of a message on stderr in place of "astrosplat: warning: LINE"; nullptr: that. Set before
+/// `format` makes the line on stderr of a message; nullptr: "astrosplat: warning: LINE". Set before
 /// other threads run.
 void set_log_format(std::string (*format)(LogLevel, const std::string&));
 

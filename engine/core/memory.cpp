@@ -1,5 +1,5 @@
-// How much memory there is, and how it is spoken about. This process's control groups are found through
-// /proc/self/cgroup, whose lines are "ID:CONTROLLERS:PATH".
+// How much memory there is, and how it is written in messages. This process's control groups are found
+// through /proc/self/cgroup, whose lines are "ID:CONTROLLERS:PATH".
 #include "core/memory.h"
 
 #include <fcntl.h>

@@ -1,5 +1,5 @@
-// Memory is estimated and announced before it is taken; and what the control groups (cgroup v1 or v2) around
-// this process say, limits that `nproc` and /proc/meminfo do not show.
+// Memory is estimated and announced before it is taken. The limits of the control groups (cgroup v1 or v2)
+// around this process, which `nproc` and /proc/meminfo do not show, count.
 #pragma once
 
 #include <cstdint>

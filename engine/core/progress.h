@@ -1,5 +1,5 @@
-// How long work reports how far it is and learns that it should stop. Copied by value; an empty
-// one does nothing.
+// How long work reports how far it is and learns that it should stop. Copied by value; an empty one does
+// nothing.
 #pragma once
 
 #include <atomic>

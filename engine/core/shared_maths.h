@@ -1,8 +1,7 @@
-// shaders/shared as C++: GLSL's names, so that its files compile here as they do in a shader, and of these
-// files maths.glsl and noise.glsl as astrosplat::shared::as_exp, as_log, as_pow, as_hash, as_uniform,
-// as_noise, as_fbm and the purposes. GLSL has no "inline", so each translation unit gets its own copy with
-// internal linkage. Others include the shared files inside a namespace that says `using namespace
-// astrosplat::glsl;`.
+// shaders/shared as C++: GLSL's names, so that its files compile here as in a shader, and of these files
+// maths.glsl and noise.glsl as astrosplat::shared::as_exp, as_log, as_pow, as_hash, as_noise and so on. GLSL
+// has no "inline": each translation unit gets its own copy. Others include the shared files inside a
+// namespace that says `using namespace astrosplat::glsl;`.
 #pragma once
 
 #include <cmath>
@@ -19,7 +18,7 @@ using glm::vec2;
 using glm::vec3;
 using glm::vec4;
 using uint = std::uint32_t;
-// What may be a vector of lanes: render/lanes-inl.h.
+// These may be vectors of lanes: render/lanes-inl.h.
 using Float = float;
 using Int = int;
 using Bool = bool;

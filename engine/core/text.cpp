@@ -1,4 +1,4 @@
-// Locale-free numbers by <charconv>.
+// Text without a locale: numbers by <charconv>.
 #include "core/text.h"
 
 #include <fmt/format.h>

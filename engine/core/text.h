@@ -1,4 +1,4 @@
-// Numbers, names and bytes as text, the same in every locale, and what of foreign text messages show.
+// Numbers, names and bytes as text, the same in every locale, and foreign text made fit for messages.
 #pragma once
 
 #include <cstdint>

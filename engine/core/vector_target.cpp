@@ -24,7 +24,7 @@ struct Target {
 constexpr std::array<Target, 4> targets = {
     {{"avx512", HWY_AVX3}, {"avx2", HWY_AVX2}, {"sse4", HWY_SSE4}, {"sse2", HWY_EMU128 | HWY_SCALAR}}};
 
-// What the processor can do, whatever was chosen before.
+// The best that the processor can do, whatever was chosen before.
 std::int64_t detected() {
     static const std::int64_t bits = hwy::SupportedTargets() | HWY_STATIC_TARGET;
     return bits;

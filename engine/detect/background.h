@@ -1,4 +1,4 @@
-// What a picture's background is, whatever stars stand on it: level and noise of values, of squares about a
+// The background of a picture, whatever stars stand on it: level and noise of values, of squares about a
 // pixel, or in square cells as two small pictures of a pixel a cell (as SExtractor does; Bertin and Arnouts
 // 1996, A&AS 117, 393).
 #pragma once

@@ -114,7 +114,7 @@ PictureObject object_of(const std::vector<std::int64_t>& part, const Image& brig
     return object;
 }
 
-// What the objects' pixels have above the median of each channel is theirs.
+// The light of the objects' pixels above the median of each channel is theirs.
 void share_light(const Image& picture, PictureObjects& found) {
     found.light = make_image(picture.width, picture.height, 3);
     found.sky = make_image(picture.width, picture.height, 3);

@@ -33,7 +33,7 @@ struct PixelPart {
     std::vector<std::int64_t> pixels;  // y * width + x, from the first one outwards
 };
 
-/// What touches a pixel: by its sides, or by its corners too.
+/// The neighbours that touch a pixel: by its sides, or by its corners too.
 enum class Touching { sides, corners };
 
 /// Takes what is connected with a pixel of the mask out of it.

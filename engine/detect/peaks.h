@@ -20,7 +20,7 @@ enum class EqualPeaks { first, all };
 bool is_peak(const Image& heights, std::int64_t x, std::int64_t y, std::int64_t reach_px,
              EqualPeaks equal = EqualPeaks::first);
 
-/// What find(x, y) finds, an optional, at the pixels `margin_px` or more from the edges: in order of rows,
+/// The results of find(x, y), optionals, at the pixels `margin_px` or more from the edges: in order of rows,
 /// with any number of threads.
 template <class Find>
 auto found_by_rows(const Image& image, std::int64_t margin_px, const Find& find) {
@@ -46,7 +46,7 @@ struct PointLight {
 PointLight light_about(const Image& brightest, std::int64_t x, std::int64_t y, std::int64_t reach_px,
                        float floor);
 
-/// What a star of a given width would be at every pixel: the height of a Gaussian with a constant background
+/// A star of a given width at every pixel: the height of a Gaussian with a constant background
 /// under it, by least squares in a square around the pixel (DAOFIND; Stetson 1987, PASP 99, 191).
 /// `brightness` has one channel, and so has the result.
 Image matched_heights(const Image& brightness, double sigma_px);

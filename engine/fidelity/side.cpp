@@ -155,7 +155,7 @@ std::vector<Peak> strongest_peaks(const Image& image) {
 
 using Square = std::array<float, static_cast<std::size_t>(side_px* side_px)>;
 
-// What stands out of the surroundings of a point, 0 elsewhere.
+// Light above the surroundings of a point, 0 elsewhere.
 Square standing_out(const Image& brightness, const Peak& peak) {
     Square square;
     for (std::int64_t j = 0; j < side_px; ++j)

@@ -29,7 +29,7 @@ struct Needles {
 /// px.
 Needles needles(const Image& side_view);
 
-/// What a flat picture has of them from 60 degrees: the upright rims in it, that no depth can make round.
+/// Needles that a flat picture has from 60 degrees: the upright rims in it, that no depth can make round.
 Needles flat_needles(const Image& picture);
 
 }  // namespace astrosplat

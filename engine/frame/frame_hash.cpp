@@ -132,7 +132,8 @@ std::string FrameHasher::line(const Parameter& parameter) {
     return text + "\n";
 }
 
-/// What no key says: a mesh's own pictures, the camera's path with stars along it, a limit from --memory.
+/// Inputs of a layer that no key says: a mesh's own pictures, the camera's path with stars along it, a limit
+/// from --memory.
 std::string FrameHasher::layer_text(const Scene& scene, const LayerParams& layer) {
     std::string text;
     std::error_code ignored;

@@ -38,7 +38,7 @@ class FrameHasher {
     /// 64 hex digits. Throws InputError when an input file exists but cannot be read.
     std::string frame_hash(const FrameScene& frame);
 
-    /// What is hashed: lines "key = value" of every parameter that reaches the frame, evaluated there, files
+    /// The hashed text: lines "key = value" of every parameter that reaches the frame, evaluated there, files
     /// as their content's hash; under an open shutter again "sample key = value" of all that moves. Left out:
     /// where and how often frames go (path, frames, fps, compression), provenance, presets (their values are
     /// in the scene), layers and environments that do not show at any moment, and the animation's keyframes.

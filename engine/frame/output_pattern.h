@@ -35,7 +35,7 @@ struct OutputPattern {
     std::string text() const { return (folder / name).string(); }
 };
 
-/// What a person wrote, relative to `base`. Folders at its beginning that exist are taken as they are,
+/// A pattern as written, relative to `base`. Folders at its beginning that exist are taken as they are,
 /// whatever their names: "C#1/shot.####.exr". Throws InputError where the rest has several places for the
 /// number.
 OutputPattern output_pattern(const std::filesystem::path& base, const std::string& text);

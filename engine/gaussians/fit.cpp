@@ -1,6 +1,6 @@
-// Our own renderer lays the encoded Gaussians over each other as their readers do, and every
-// Gaussian's light is multiplied by what is wanted over what came out, where its centre is seen; several
-// times, because alphas that were raised hide more of what lies behind.
+// Our own renderer lays the encoded Gaussians over each other as their readers do, and every Gaussian's light
+// is multiplied by the ratio of wanted to rendered light where its centre is seen; several times, because
+// alphas that were raised hide more of what lies behind.
 #include "gaussians/gaussians.h"
 
 #include <algorithm>
@@ -52,7 +52,7 @@ Image encoded(const Image& linear) {
     return display;
 }
 
-/// What a Gaussian's light is multiplied by, per channel, for the pixel its centre is seen in.
+/// Factor of a Gaussian's light, per channel, for the pixel that its centre is seen in.
 glm::vec3 step_at(const Image& wanted, const Image& found, std::int64_t x, std::int64_t y) {
     glm::vec3 step(1.0f);
     for (int k = 0; k < 3; ++k) {

@@ -106,7 +106,7 @@ class Baker {
     }
 
   private:
-    /// What `stretch` makes of a ball, turned as the layer is.
+    /// The ellipsoid that `stretch` makes of a ball, turned as the layer is.
     void add_shape(const glm::mat3& stretch, double sigma, Gaussians& out) const {
         glm::dmat3 axes(stretch);
         glm::dvec3 length(0.0);

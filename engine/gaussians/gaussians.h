@@ -55,7 +55,7 @@ struct GaussianProfile {
 /// whose least value is searched. A constant dot gives k = ln 4; a gaussian one nearly its own sharpness.
 GaussianProfile nearest_gaussian(const Falloff& falloff);
 
-/// What became of the splats.
+/// Splats that are left out or lose something, counted.
 struct BakeCounts {
     std::int64_t unseen = 0;        // left out: no light, and they hide nothing
     std::int64_t bright = 0;        // of colours above 1 that no alpha could hold: light was lost

@@ -76,7 +76,7 @@ Harmonics converted(const Harmonics& from, bool to_display, std::size_t count, c
     return to;
 }
 
-/// What colours are multiplied by where `was` became `became`.
+/// Factor of colours where `was` became `became`.
 glm::vec3 factors_of(const glm::vec3& was, const glm::vec3& became) {
     const float sum = was.x + was.y + was.z;
     const float whole = sum > dark ? (became.x + became.y + became.z) / sum : 0.0f;

@@ -1,6 +1,6 @@
-// A native file's order is that of 64^3 cells along a Morton curve, and of ids within a cell. So cubes of 8^n
-// cells follow each other in the file: each is made by a cull of the part of the lattice that reaches into
-// it.
+// Sets in memory, and sets in files. A native file's order is that of 64^3 cells along a Morton curve, and of
+// ids within a cell, so cubes of 8^n cells follow each other in the file: each is made by a cull of the part
+// of the lattice that reaches into it.
 #include "generate/generate.h"
 
 #include <fmt/format.h>
@@ -104,7 +104,7 @@ void run_cull(const LatticeCull& cull, const Progress& progress, KeptWatcher* wa
     set.zero_alpha += cull.run(blocks, progress, append, watcher);
 }
 
-/// What so many positions take, and a batch of them that exists twice.
+/// Memory of so many positions, and of a batch of them that exists twice.
 double bytes_of_positions(double positions) {
     constexpr double most_in_batch =
         0.5 * LatticeCull::batch_blocks * block_positions;  // a surface keeps half of a block
@@ -112,7 +112,7 @@ double bytes_of_positions(double positions) {
            std::min(0.5 * positions, most_in_batch) * static_cast<double>(sizeof(KeptSplat));
 }
 
-// What is known of columns before any of them is made: zero_alpha is 0.
+// The facts of columns before any of them is made: zero_alpha is 0.
 SplatSetFacts facts_of_columns(std::span<const TexturedMesh> meshes, const Lattice& lattice,
                                double max_distance) {
     SplatSetFacts facts;
@@ -173,7 +173,7 @@ SplatSet generate(std::span<const TexturedMesh> meshes, const Lattice& lattice, 
 
 namespace {
 
-/// What is known of the set before any of it is written.
+/// Facts about the set, known before any of it is written.
 struct Survey {
     std::int64_t lit = 0, dark = 0, unseen = 0;  // positions: alpha above 0, alpha 0, no picture there
     Bounds lit_box;                              // of positions whose alpha is above 0

@@ -1,8 +1,7 @@
 // From meshes and pictures to a SplatSet (DESIGN 4): lattice, cull by closest point, colours at the closest
-// point. In: meshes, a lattice and pictures. Out: a set of columns with every position that the search has
-// found, also where the picture is transparent (its geometry), and the set of what is to be seen of them, in
-// memory or straight into a native file, part of space by part, for sets larger than memory. Other levels of
-// the same pictures, or other pictures, need no search.
+// point. In: meshes, a lattice and pictures. Out: columns with every position that the search has found, also
+// where the picture is transparent (geometry, which other pictures need not search again); and the set of
+// those to be seen, in memory or straight into a native file, part of space by part.
 #pragma once
 
 #include <cstdint>

@@ -116,7 +116,7 @@ std::vector<BlockRange> batches_of(const std::vector<LatticeBlock>& blocks) {
     return batches;
 }
 
-/// What one thread works with and what it finds.
+/// The state of one thread, and its results.
 struct Worker {
     std::vector<BlockAnswers> answers;
     std::vector<std::uint32_t> scratch;

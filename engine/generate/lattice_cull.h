@@ -1,8 +1,7 @@
 // Generation: blocks of a lattice near the meshes, the closest point of each of their positions, its colour.
-// Blocks that can lie near no mesh are dropped from the top of an octree, where the closest point of a
-// block's middle is too far away. In: textured meshes and a lattice. Out: what is kept, batch by batch in
-// order of id, for sets that are made as a whole (generate.h) and for files that are written in parts
-// (write_columns.h).
+// Blocks near no mesh are dropped from the top of an octree, where the closest point of a block's middle is
+// too far away. In: textured meshes and a lattice. Out: what is kept, batch by batch in order of id, for
+// whole sets and for files written in parts (generate.h).
 #pragma once
 
 #include <cstdint>
@@ -23,7 +22,7 @@ namespace astrosplat {
 
 constexpr std::int64_t block_cells = 4;
 
-/// What a cull of a lattice asks for.
+/// Arguments of a cull of a lattice.
 struct CullSettings {
     double max_distance;  // scene units, >= 0
     double jitter;        // 0..1 of half a voxel

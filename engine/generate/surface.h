@@ -1,4 +1,4 @@
-// What a closest point looks like: picture, (u,v), face normal and texels per voxel of every triangle. In:
+// The surface at a closest point: picture, (u,v), face normal and texels per voxel of every triangle. In:
 // textured meshes and the lattice's spacing. Out: colour and alpha at a ClosestPoint.
 #pragma once
 
@@ -28,7 +28,7 @@ struct SurfaceTriangle {
 /// result points into `meshes`.
 Buffer<SurfaceTriangle> surface_triangles(std::span<const TexturedMesh> meshes, const glm::dvec3& spacing);
 
-/// What the pictures say of a set as a whole: SplatSetFacts::divided and credit.
+/// Facts about a set as a whole that follow from its pictures: SplatSetFacts::divided and credit.
 void describe_pictures(std::span<const TexturedMesh> meshes, SplatSetFacts& facts);
 
 /// (u,v) of a position whose closest point is there: that point's, or, where a camera took the picture, the

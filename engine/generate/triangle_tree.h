@@ -1,8 +1,7 @@
-// The triangles of meshes in a tree of boxes (README.md), and the point of one that is closest to another
-// point, by the arithmetic that decides everywhere. In: meshes in scene units. Out: arrays, and the closest
-// point of one position. Discs and boxes that enclose triangles are in float, relative to an origin, and only
-// propose, wide enough for what closest_on_triangle may answer; doubles decide, by (distance squared,
-// triangle number).
+// The triangles of meshes in a tree of boxes (README.md). In: meshes in scene units. Out: arrays, and the
+// closest point to one position. Enclosing discs and boxes are in float, relative to an origin, and only
+// propose, wide enough for what closest_on_triangle may answer; doubles decide, the same everywhere, by
+// (distance squared, triangle number).
 #pragma once
 
 #include <algorithm>

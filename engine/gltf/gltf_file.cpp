@@ -107,7 +107,7 @@ const std::string& GltfFile::buffer(const Json& index) {
             if (!read) fail("base64 in a buffer's data:", "something else");
             bytes = *read;
         } else {
-            // What a stranger's file may name: a file in its own folder.
+            // A foreign file may only name files in its own folder.
             const std::filesystem::path name = std::filesystem::path(uri).lexically_normal();
             if (uri.find(':') != std::string::npos || name.is_absolute() || name.string().starts_with(".."))
                 fail("buffers in or beside the file", "'" + printable(uri) + "'");

@@ -84,7 +84,7 @@ void shade_all(const LookRun& run, std::int64_t count, const Progress& progress)
     close_gaps(run.out, kept);
 }
 
-// What match = "picture" multiplies by; nothing for others. Before the set's arrays are written over.
+// The factors of match = "picture"; none for others. Before the set's arrays are written over.
 PictureFactors factors_of(const LookRun& run, const SplatSet& set, const Look& look,
                           const LookInputs& inputs) {
     const bool wanted = look.vertical.match == VerticalAlpha::Match::picture;
@@ -164,7 +164,7 @@ Buffer<std::uint32_t> rows_of(const SplatSet& set, const ShadedSplats& shaded) {
     return rows;
 }
 
-/// What makes the ball of the radius the ellipsoid of three standard deviations.
+/// The matrix from the ball of the radius to the ellipsoid of three standard deviations.
 glm::mat3 shape_of(const SplatSet& set, std::size_t row) {
     if (!(set.radius[row] > 0.0f)) return glm::mat3(0.0f);
     glm::dmat3 m = matrix_of_quaternion(glm::dvec4(set.rotation[row]));

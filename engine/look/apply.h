@@ -19,7 +19,7 @@ namespace astrosplat {
 /// How a column of splats adds up, so that vertical matching can undo it: the blend, as a plain number.
 enum class ColumnLaw { transmittance, screen, sum, maximum };  // over, hybrid | screen | add | lighten
 
-/// What the look needs from elsewhere, as plain values.
+/// Inputs of the look from elsewhere, as plain values.
 struct LookInputs {
     glm::vec3 axis{0.0f, 1.0f, 0.0f};  // the layer's thin direction, layer space
     std::uint32_t seed = 1;            // of the layer, never 0 (see resolved_seed)
@@ -31,7 +31,7 @@ struct LookInputs {
     bool operator==(const LookInputs&) const = default;
 };
 
-/// What the look reads of a set that can do without some columns.
+/// The columns that the look reads, of those that a set can do without.
 OptionalColumns columns_read(const Look& look);
 
 struct LookStatistics {

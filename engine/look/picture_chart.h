@@ -1,9 +1,7 @@
-// The pictures of a set as grids of cells about as small as the footprints of its splats, one grid for each
-// mesh: what a footprint is there, what the splats of a cell show, and what they should. In: a set, and its
-// look as the preview's own arithmetic has it (look.glsl), for a splat's chances rather than its fate. Out:
-// the grids; sums over the positions of a cell, the cell of every position that became a splat, and values on
-// cells blurred by the footprints there: nothing lies beyond a picture's edges, and pictures of different
-// meshes do not mix.
+// A set's pictures as grids of cells about as small as its splats' footprints, one grid for each mesh. In: a
+// set, and its look by the preview's arithmetic (look.glsl), for a splat's chances rather than its fate. Out:
+// grids, sums over the positions of a cell, the cell of every kept splat, and values blurred by the
+// footprints, neither beyond a picture's edges nor into another mesh's.
 #pragma once
 
 #include <array>
@@ -28,7 +26,7 @@ struct OneSplat {
 /// Under `uniforms`, which need not be the run's own.
 OneSplat look_at(const LookRun& run, const LookUniforms& uniforms, std::int64_t i);
 
-/// What footprints are in one part of a picture.
+/// Footprints in one part of a picture.
 struct ChartBlock {
     double sigma_u = 0.0, sigma_v = 0.0;  // cells; standard deviations of a footprint along u and v
     double cell_area = 0.0;               // square scene units of surface under a cell, > 0

@@ -1,10 +1,7 @@
-// A footprint averages optical depths where a picture averages light, and light is a concave function of
-// depth: so a column that is right over an even picture shows too much about stars, and too little where
-// chance left few splats. Here the chart's cells are drawn as the renderer would draw them, and what is
-// missing goes back to the splats as a factor, a few times over.
-//
-// A splat that adds `a` (alpha times weight) to a cell leaves 1 - a of the light behind, so its depth is
-// -ln(1 - a) = a + a^2/2 + ..; the weight is that of the footprint on these cells.
+// A footprint averages optical depths, a picture averages light, which is concave in depth: a column that is
+// right over an even picture shows too much about stars, and too little where chance left few splats. So the
+// chart's cells are drawn as the renderer would draw them, and missing light goes back to the splats as a
+// factor, a few times over. A splat adding `a` (alpha times weight) has depth -ln(1 - a).
 #include "look/picture_fit.h"
 
 #include <algorithm>

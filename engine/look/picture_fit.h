@@ -13,7 +13,7 @@
 
 namespace astrosplat {
 
-/// What the layer's falloff looks like from afar.
+/// The layer's falloff as seen from afar.
 struct FalloffMoments {
     double integral = 1.0;  // over the unit disc
     double variance = 0.1;  // along an axis, square radii

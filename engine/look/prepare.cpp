@@ -192,7 +192,7 @@ int match_kind(Match match, ColumnLaw law) {
     return law == ColumnLaw::sum ? MATCH_LIGHT : MATCH_TRANSMITTANCE;
 }
 
-// What stands before the integral, per scene unit of reach: splats times their area, or planes per scene
+// The factor of the integral, per scene unit of reach: splats times their area, or planes per scene
 // unit.
 double column_factor(const SplatSet& set, const LookInputs& inputs, const LookUniforms& u) {
     const glm::dvec3 s = set.spacing, a(u.axis);

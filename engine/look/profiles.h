@@ -1,6 +1,6 @@
-// The curves an artist drags: points in, monotone cubic out, evaluated by look_curve in
-// shaders/shared/look.glsl; and what a front view through a layer with such profiles adds up to: the
-// integrals behind `match` (DESIGN 5, step 5), one number per thickness stop.
+// Curves of a look: the points an artist drags in, a monotone cubic out, evaluated by look_curve in
+// shaders/shared/look.glsl; and the light of a front view through a layer with such profiles: the integrals
+// behind `match` (DESIGN 5, step 5), one number per thickness stop.
 #pragma once
 
 #include <glm/vec2.hpp>

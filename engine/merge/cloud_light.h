@@ -1,4 +1,4 @@
-// What lod.noise does to splats close by, for a preview that does not divide them: light is where the
+// The effect of lod.noise on splats close by, for a preview that does not divide them: light is where the
 // children would have it, but for what is finer than the splat. In: a place in a layer. Out: a factor of its
 // light.
 #pragma once

@@ -1,4 +1,5 @@
-// What looks largest is divided, many at once, until there are as many pieces as wanted.
+// Cuts through merged trees: the nodes that look largest are divided, many at once, until there are as many
+// pieces as wanted.
 #include "merge/cut.h"
 
 #include <algorithm>

@@ -33,7 +33,7 @@ class DepthTable {
     std::array<double, steps + 1> alpha_;  // over x, at equal steps of x = depth / (depth + of_faint)
 };
 
-/// What a layer's dots have in common.
+/// Values that all dots of a layer share.
 struct DotSettings {
     /// `lattice`: the set's splats are on one.
     explicit DotSettings(const LayerRender& render, bool lattice = false);

@@ -22,13 +22,13 @@ struct OcioParams {
     bool operator==(const OcioParams&) const = default;
 };
 
-/// What is wrong with one of these parameters; what() begins with the whole key.
+/// A fault of one of these parameters; what() begins with the whole key.
 struct OcioError : InputError {
     OcioError(std::string key, const std::string& message);
     std::string key;  // "output.ocio.display"
 };
 
-/// What a configuration has to choose from.
+/// The choices that a configuration offers.
 struct ColorDisplay {
     std::string name;
     std::vector<std::string> views;

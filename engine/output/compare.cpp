@@ -1,6 +1,6 @@
-// Differences of two images, in one pass over the rows and one selection for the percentile.
-// Both files are read in bands of rows, as floats: 8 and 16 bits and halves have floats of their own each,
-// and 32-bit counts are stored as floats.
+// Differences of two images, in one pass over the rows and one selection for the percentile. Stored frames
+// are read in bands of rows, as floats: 8 and 16 bits and halves have floats of their own each, and 32-bit
+// counts are stored as floats.
 #include "output/compare.h"
 
 #include <fmt/format.h>
@@ -116,7 +116,7 @@ class FrameFileRows {
     std::unique_ptr<OIIO::ImageInput> in_;
 };
 
-/// What rows add up to.
+/// Sums over rows.
 class StoredSums {
   public:
     explicit StoredSums(const OIIO::ImageSpec& spec) : spec_(spec) {}

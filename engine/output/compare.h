@@ -1,6 +1,6 @@
-// How far two images of one size are apart, in linear light.
-// How far the numbers that two frame files store are apart, channel by channel: the codes of a view as 0..1,
-// light and other values as they are. In: two files. Out: where and how much they differ.
+// How far two images are apart: in linear light, or as the numbers that two frame files store, channel by
+// channel (the codes of a view as 0..1, light and other values as they are). In: two images or files of one
+// size. Out: where and how much they differ.
 #pragma once
 
 #include <cstdint>

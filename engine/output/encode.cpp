@@ -38,7 +38,7 @@ void to_view(const FrameFormat& format, float gain, float* rgb, std::int64_t pix
     if (format.ocio) format.ocio->apply(rgb, pixels);
 }
 
-/// What is stored of a straight colour.
+/// The stored value of a straight colour.
 void store(const FrameFormat& format, const float* rgb, float own_alpha, float* stored) {
     const bool view = format.holds_view();
     const float alpha = view ? clamp01(own_alpha) : own_alpha;

@@ -98,9 +98,8 @@ bool exr_is_whole(const std::filesystem::path& file) { return ask(file, read_all
 
 namespace {
 
-// What OpenEXR writes, collected into large pieces: it writes a frame as hundreds of small ones, and comes
-// back to the table in front of them. In: an AtomicFile. Included by the writers of EXR alone.
-
+/// OpenEXR's output to an AtomicFile, collected into large pieces: it writes a frame as hundreds of small
+/// ones, and comes back to the table in front of them.
 class ExrStream : public Imf::OStream {
   public:
     explicit ExrStream(AtomicFile& file);

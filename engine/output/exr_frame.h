@@ -1,7 +1,6 @@
-// EXR frames read back, by OpenEXR.
-// Frames as EXR through OpenEXR itself, which is there in a few milliseconds: one part, each channel in its
-// own format. In: a frame. Out: a file that appears whole or not at all.
-// Threads that OpenEXR may pack and unpack pixels with.
+// EXR frames written and read back through OpenEXR itself, which starts in a few milliseconds: one part, each
+// channel in its own format. In: a frame. Out: a file that appears whole or not at all; of a file its header,
+// and whether it is whole.
 #pragma once
 
 #include <ImfThreading.h>
@@ -25,7 +24,8 @@ bool exr_is_whole(const std::filesystem::path& file);
 void write_exr(const FrameFile& target, const FrameFormat& format, const RenderedFrame& frame,
                const FrameMetadata& metadata);
 
-/// As many as the program's own; none where there are none to be had, and it does without.
+/// The threads that OpenEXR may pack and unpack pixels with: as many as the program's own; none where there
+/// are none to be had, and it does without.
 inline int exr_threads() {
     try {
         if (Imf::globalThreadCount() != thread_count()) Imf::setGlobalThreadCount(thread_count());

@@ -1,4 +1,4 @@
-// What a frame file will be: [output] with every "auto" resolved for the file's ending.
+// The format of a frame file: [output] with every "auto" resolved for the file's ending.
 #pragma once
 
 #include <filesystem>

@@ -1,5 +1,4 @@
-// Frame metadata as text.
-// Deflate and base64, and a merge of two lists of lines.
+// Frame metadata as text; hashed text by deflate and base64, and a merge of two lists of lines.
 #include "output/metadata.h"
 
 #include <fmt/format.h>

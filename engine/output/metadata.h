@@ -1,8 +1,6 @@
-// The header of a frame file, as text pairs that every format can hold: no host, user or clock.
-// What a frame hash was made of, as the frame's file carries it: the canonical text of frame_hash.h, deflated
-// and in letters. In: that text, of a frame and of a scene. Out: the packed line, and which keys differ.
-// What the readers of the three formats of frames find in a file's header. Each answers nothing where the
-// file is none of its format or damaged.
+// The header of a frame file as text pairs that every format can hold: no host, user or clock. In: metadata,
+// and the canonical text of frame_hash.h. Out: entries and lines; that text deflated and in letters; which
+// keys differ between two frames; the header of a stored frame, whatever its format.
 #pragma once
 
 #include <cstdint>
@@ -53,6 +51,8 @@ struct KeyDifference {
 /// In the order of the first text, then of the second.
 std::vector<KeyDifference> differing_keys(const std::string& first, const std::string& second);
 
+/// A frame file's header, as the readers of the three formats answer it; they answer nothing where the file
+/// is none of their format or damaged.
 struct StoredHeader {
     std::int64_t whole_width = 0, whole_height = 0;  // px
     Region region{};                                 // of what is stored in the whole

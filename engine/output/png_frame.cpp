@@ -21,7 +21,7 @@
 namespace astrosplat {
 namespace {
 
-/// What libpng says before it jumps back.
+/// The message of libpng before it jumps back.
 struct PngError {
     std::array<char, 128> text{};
 };
@@ -98,7 +98,7 @@ bool write_all(png_structp png, png_infop info, const PngPicture& picture) {
     png_set_IHDR(png, info, static_cast<png_uint_32>(picture.width), static_cast<png_uint_32>(picture.height),
                  picture.bits, picture.channels == 4 ? PNG_COLOR_TYPE_RGBA : PNG_COLOR_TYPE_RGB,
                  PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
-    // What a display of a configuration is, nothing here knows.
+    // Nothing here knows the display of a configuration.
     if (!picture.format->ocio && picture.format->view == OutputParams::View::linear)
         png_set_gAMA(png, info, 1.0);
     else if (!picture.format->ocio)

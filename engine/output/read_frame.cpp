@@ -55,7 +55,7 @@ void take_hashed_text(FrameHeader& header, const std::string& text) {
     header.eye = eye_of(eye);
 }
 
-/// What reads a format's frames without OpenImageIO, which takes a fifth of a second to load.
+/// Readers of a format's frames without OpenImageIO, which takes a fifth of a second to load.
 struct FrameFileFormat {
     std::string_view id;
     std::optional<StoredHeader> (*read_header)(const fs::path&);

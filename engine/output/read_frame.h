@@ -1,4 +1,4 @@
-// What frame files, and pictures of any kind, tell of themselves.
+// Headers of frame files, and of pictures of any kind.
 #pragma once
 
 #include <cstdint>
@@ -22,11 +22,11 @@ struct ImageInfo {
     std::vector<std::pair<std::string, std::string>> metadata;  // everything else in the header, as text
 };
 
-/// What a picture file says of itself in its header, without reading its pixels. Throws InputError when the
+/// The header of a picture file, without reading its pixels. Throws InputError when the
 /// file cannot be opened as a picture.
 ImageInfo read_image_info(const std::filesystem::path& file);
 
-/// What a frame file says of itself.
+/// The header of a frame file.
 struct FrameHeader {
     std::optional<std::int64_t> frame;
     std::string frame_hash, pixel_hash;  // hex

@@ -33,7 +33,7 @@ constexpr std::int64_t largest_classic = 0xf0000000;  // bytes, beyond which a T
 constexpr std::int64_t largest_strip = std::int64_t{1}
                                        << 28;  // bytes, that is read to see whether it is whole
 
-/// What libtiff says first.
+/// The first message of libtiff.
 struct TiffError {
     std::array<char, 160> text{};
 };

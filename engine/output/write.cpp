@@ -1,4 +1,4 @@
-// What all formats of frames share, before each goes its own way.
+// Steps that all formats of frames share, before each goes its own way.
 #include "output/write.h"
 
 #include <fmt/format.h>

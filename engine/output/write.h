@@ -17,7 +17,7 @@
 
 namespace astrosplat {
 
-/// What goes into a frame's header.
+/// The header of a frame.
 struct FrameMetadata {
     std::int64_t frame = 1;
     Eye eye = Eye::centre;

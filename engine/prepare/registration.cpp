@@ -20,8 +20,7 @@
 namespace astrosplat {
 namespace {
 
-// The discrete Fourier transform of small square grids, by radix 2. In: complex numbers as two arrays. Out:
-// their spectrum in place, with the same bits on every machine.
+// ---- The discrete Fourier transform of small square grids, by radix 2, in place.
 
 /// side x side complex numbers, row by row; side is a power of 2.
 struct ComplexGrid {
@@ -279,7 +278,7 @@ std::vector<Found> searched(const Image& fixed, const Pyramid& moving, const Pic
 
 // ---- Refinement.
 
-/// What a step changes: shift x, shift y, log of the scale, turn (radians), gain less 1, offset.
+/// The unknowns of a step: shift x, shift y, log of the scale, turn (radians), gain less 1, offset.
 constexpr std::size_t unknowns = 6;
 
 /// The normal equations of `fixed` = gain * moving, moved + offset. Every pixel says how the values there

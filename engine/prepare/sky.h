@@ -1,6 +1,5 @@
-// What does not belong to the object of a picture: the sky behind it, a level and a smooth slope, and what is
-// beside it. In: a picture. Out: a surface of second degree a channel; the picture less it, or faded where
-// something else is.
+// The sky behind the object of a picture, a level and a smooth slope, and everything beside the object. In: a
+// picture. Out: a surface of second degree a channel; the picture less it, or faded where something else is.
 #pragma once
 
 #include <array>

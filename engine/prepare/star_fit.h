@@ -54,7 +54,7 @@ struct PictureStar {
     double sigma_px() const { return profile.fwhm_px / fwhm_of_sigma; }
 };
 
-/// What the stars of a picture have in common.
+/// The common profile of the stars of a picture.
 struct StarWidths {
     int shape = 0;
     double fwhm_px = 2.0;     // median

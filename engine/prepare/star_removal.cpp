@@ -50,7 +50,7 @@ struct Search {
     std::vector<unsigned char> lost;  // 1: not a star
 };
 
-// What a star is fitted with: that which its own width is nearer to, as a ratio.
+// The profile for a star: the one whose width is nearer to its own, as a ratio.
 const StarWidths& widths_for(const Search& search, const PictureStar& star) {
     const double width = star.profile.fwhm_px;
     const bool is_wider = search.of_wider && width * width > search.widths.fwhm_px * search.of_wider->fwhm_px;
@@ -116,7 +116,8 @@ std::vector<std::size_t> telling_stars(const Search& search, double least_fwhm_p
     return best;
 }
 
-// What each profile leaves of a star, in squares of what may be left: noise, and an error of the profile.
+// The residual of each profile for a star, in squares of what may be left: noise, and an error of the
+// profile.
 std::vector<double> misfits_of(const Search& search, const PictureStar& star,
                                const std::vector<StarProfile>& profiles) {
     const double trust = model_error * star.signal_to_noise();
@@ -127,8 +128,8 @@ std::vector<double> misfits_of(const Search& search, const PictureStar& star,
     return misfits;
 }
 
-// The profile that describes most of these stars. What is far from the best of a star counts no more than
-// what is clearly worse, so that knots and stars of other widths do not outvote those that agree.
+// The profile that describes most of these stars. A profile far from a star's best counts no more than one
+// that is clearly worse, so that knots and stars of other widths do not outvote those that agree.
 StarProfile elected(const Search& search, const std::vector<std::size_t>& stars,
                     const std::vector<StarProfile>& profiles) {
     std::vector<std::vector<double>> misfits(stars.size());
@@ -167,7 +168,7 @@ StarWidths widths_of(const Search& search, const std::vector<std::size_t>& stars
     return {best.shape, best.fwhm_px, spread_of(search, stars, best.fwhm_px)};
 }
 
-// What the stars have in common, and what those have that are clearly wider: in a galaxy that is resolved
+// The common profile of the stars, and that of those that are clearly wider: in a galaxy that is resolved
 // into points as narrow as a pixel, these are many more than the stars before it. A faint star alone does not
 // tell its shape, and with the points' it would lose its wings.
 void measure_profile(Search& search) {
@@ -263,7 +264,7 @@ Search begin_search(const Image& image, const StarSettings& settings) {
     return search;
 }
 
-// What is not like a star goes back into the picture.
+// Light that is not like a star goes back into the picture.
 void judge(Search& search, double threshold) {
     for (std::size_t i = 0; i < search.stars.size(); ++i) {
         if (search.lost[i] || is_star(search.stars[i], search.widths, threshold)) continue;

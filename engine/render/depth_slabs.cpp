@@ -65,7 +65,7 @@ DepthRange depths_of(const Lens& lens, const BlockPlace& place) {
     return {key_of(near * near * (1.0 - rounding)), key_of(far * far * (1.0 + rounding))};
 }
 
-/// What the corners of the box, grown by the largest radius, say of a lens that shows straight lines
+/// Judged by the corners of the box, grown by the largest radius, for a lens that shows straight lines
 /// straight: all of it lies between them, its footprints within the widest of theirs. True where a corner is
 /// not before the camera.
 bool may_show_between_corners(const LayerProjection& layer, const BlockFacts& block, const ScreenRect& rect) {

@@ -36,7 +36,7 @@ struct DepthShare {
     double records;
 };
 
-/// What a sample of the splats says, by depth.
+/// A sample of the splats by depth.
 struct DepthSample {
     std::vector<DepthShare> shares;  // near to far
 

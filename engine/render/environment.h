@@ -42,7 +42,7 @@ struct Environment {
     float largest = 0.0f;        // the same times gain
 };
 
-/// What load_environment() reads, alone.
+/// The parameters that load_environment() reads, alone.
 EnvironmentParams pictures_of(const EnvironmentParams& params);
 
 /// Loads the pictures and builds their mip levels (box filter). Throws InputError, Cancelled. The picture

@@ -14,7 +14,7 @@ namespace astrosplat {
 /// w(t), t >= 0.
 double falloff_value(const Falloff& falloff, double t);
 
-/// Facts about w(t) that its shape says in falloff.cpp.
+/// Facts about w(t), by its shape.
 struct FalloffTraits {
     bool flat_core = false;          // exactly 1 inside, as constant and trapezoid: only the edge is scaled
     float core = 0.0f;               // share of the radius that is flat

@@ -46,7 +46,7 @@ BlockPart block_part(const TilePlanes& planes, const Cell& cell, int block, int 
                 y_px = edge(cell.y0_px, block / TilePlanes::cell_blocks);
     BlockPart part;
     for (int p = 0; p < parts; ++p) {
-        // Whole rows have the same columns: what is computed of them serves all.
+        // Whole rows have the same columns: these are computed once for all.
         part.x_px[p] = p > 0 && lanes % TilePlanes::block_px == 0
                            ? part.x_px[0]
                            : hn::Add(load(column + first + p * lanes), all(x_px));
@@ -198,7 +198,7 @@ void close_cell(const Cell& cell, float stop, TilePlanes& planes) {
     }
 }
 
-/// What a cell's splats are folded with: the rest is compiled once for all kinds of pixels.
+/// The functions that fold a cell's splats; the rest is compiled once for all kinds of pixels.
 struct CellFold {
     void (*batch)(const FoldJob&, const FoldCommon&, SplatBatch&, Cell&, TilePlanes&);
     void (*close)(const Cell&, float stop, TilePlanes&);  // null: no pixel closes

@@ -29,7 +29,7 @@ enum class FoldKind {
     lighten,  // the brightest splat per channel; alpha as over
 };
 
-/// What the fold needs to know of a layer.
+/// A layer as the fold needs it.
 struct FoldLayer {
     const FootprintTable* footprints = nullptr;
     Blend blend = Blend::over;
@@ -75,7 +75,7 @@ struct TilePlanes {
     }
 };
 
-/// What is to be folded.
+/// The splats and pixels to be folded.
 struct FoldJob {
     std::span<const ScreenSplat* const> splats;  // near to far
     std::span<const FoldLayer> layers;

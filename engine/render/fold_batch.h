@@ -1,4 +1,4 @@
-// What the fold knows of the splats it is about to fold: up to 128 at a time, in total order, value by value.
+// The splats that are about to be folded: up to 128 at a time, in total order, value by value.
 #pragma once
 
 #include <algorithm>
@@ -79,7 +79,7 @@ struct SplatBatch {
     alignas(64) float shows[places];         // 0 for holdouts
     alignas(64) float depth[places];         // scene units along the view axis
 
-    // What the weights are made of, while they are prepared.
+    // Inputs of the weights, while they are prepared.
     alignas(64) float radius_px[places];
     alignas(64) std::int32_t node[places];    // of the footprint table: the one before the radius
     alignas(64) float node_share[places];     // of the next one
@@ -97,7 +97,7 @@ enum class Outline {
 };
 constexpr bool is_onto_sphere(Outline outline) { return outline >= Outline::sphere; }
 
-/// What all layers have in common, if anything.
+/// Values that are the same for all layers, if any are.
 struct FoldCommon {
     const FootprintTable* footprints = nullptr;  // the one table of all layers, or null
     bool screen = false;                         // all are screens

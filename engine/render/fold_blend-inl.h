@@ -175,7 +175,7 @@ HWY_INLINE void end_splats(const SplatBatch& batch, const SplatsUnderway& from, 
     }
 }
 
-/// What a blend is told besides weights: the splat, and where its layer keeps its light at these pixels.
+/// Inputs of a blend besides weights: the splat, and where its layer keeps its light at these pixels.
 struct FoldStep {
     const SplatBatch& batch;
     int i;                  // of the splat in the batch

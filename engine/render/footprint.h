@@ -24,7 +24,7 @@
 
 namespace astrosplat {
 
-/// What normalising a profile needs, in fours: so it is interpolated.
+/// Moments for normalising a profile, in fours: so they are interpolated.
 struct FootprintMoments {
     float mean;       // integral of P du
     float ripple[3];  // spectrum of P at frequencies (1,0), (1,1), (2,0) per px, relative to its integral

@@ -1,5 +1,5 @@
-// What goes into a frame and what comes out of it: layers and settings in, images and statistics out. The
-// vocabulary that scenes, writers and the preview share with the renderer (render.h).
+// A frame's inputs and outputs: layers and settings in, images and statistics out. The vocabulary that
+// scenes, writers and the preview share with the renderer (render.h).
 #pragma once
 
 #include <cstdint>
@@ -62,7 +62,8 @@ struct RenderSettings {
     /// Of a sample: how many splats each stands for, at least 1. Tiles are then as large as those of all.
     /// Changes no bit.
     double splats_each = 1.0;
-    /// For previews: the whole frame's backdrop (backdrop.h), which stands for the environment; null: none.
+    /// For previews: the whole frame's backdrop (draw_backdrop()), which stands for the environment; null:
+    /// none.
     const Image* backdrop = nullptr;
 };
 

@@ -1,7 +1,7 @@
-// What every band, slab and tile of a frame being rendered shares, and how the frame is cut: the size of its
-// tiles, bands of rows of them, and samples of the frame's splats, by which that is decided before they are
-// projected. In: render()'s arguments. Out: projections, blend groups, tables and fold settings; grids of
-// tiles, in the order in which they are rendered, and the depths of records.
+// State that every band, slab and tile of a frame being rendered shares, and how the frame is cut: the size
+// of its tiles, bands of rows of them, and samples of the frame's splats, by which that is decided before
+// they are projected. In: render()'s arguments. Out: projections, blend groups, tables and fold settings;
+// grids of tiles, in the order in which they are rendered, and the depths of records.
 #pragma once
 
 #include <cstdint>
@@ -50,13 +50,13 @@ struct FrameJob {
     FoldSettings fold;
 };
 
-/// What remains to be said of a job after its arguments.
+/// The parts of a job that follow from its arguments.
 void prepare(FrameJob& job, RenderCache::State& cache);
 
 /// Makes the footprints that the splats of a band ask for.
 void make_footprints(const FrameJob& job, const TileBins::Sums& sums, RenderCache::State& cache);
 
-// How a frame is cut changes no pixel.
+// ---- how a frame is cut, which changes no pixel
 
 /// The frame's tiles, and the records they will take, roughly.
 struct Tiles {

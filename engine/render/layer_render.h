@@ -1,5 +1,5 @@
-// What [layer.render] says (dot profile, mixing, level of detail), and what [layer.source] of kind "stars"
-// says of the image of a star. Plain values; the program's own description has the defaults.
+// The values of [layer.render] (profile of a splat, mixing, level of detail), and those of [layer.source] of
+// kind "stars" about the image of a star. Plain values; the program's own description has the defaults.
 #pragma once
 
 #include <glm/vec3.hpp>
@@ -8,7 +8,7 @@
 
 namespace astrosplat {
 
-/// Profile of a dot: w(t), t = distance / radius; w(0) = 1, zero from t = 1 on (DESIGN 7).
+/// Profile of a splat: w(t), t = distance / radius; w(0) = 1, zero from t = 1 on (DESIGN 7).
 struct Falloff {
     enum class Shape { constant, linear, trapezoid, gaussian, exponential };
     friend constexpr auto names_of(Shape) {

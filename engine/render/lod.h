@@ -1,9 +1,7 @@
-// Close-ups. A splat that would be too large on screen becomes N = 4^level smaller ones in its own volume,
-// fixed in layer space, so that one sees a cloud instead of a disc (DESIGN 7): in, projected diameter, alpha,
-// blend; out, which levels to draw, with which alphas, and where the children lie. Their light has structure,
-// e^(strength n) with n octaves of noise in layer space between the splat's size and the child's, so that
-// clouds close by show clouds and not blur (DEPTH 6). A star of a picture has no size that one could see: its
-// dot is the telescope's blur, and would be a blurred disc close by, so its image grows less.
+// Close-ups (DESIGN 7): a splat too large on screen becomes N = 4^level smaller ones in its own volume, fixed
+// in layer space. In: projected diameter, alpha, blend. Out: levels to draw, their alphas, where the children
+// lie, and their light's structure, e^(strength n) with n octaves of noise between the splat's size and
+// theirs (DEPTH 6). A star's dot is only the telescope's blur, so its image grows less.
 #pragma once
 
 #include <algorithm>
@@ -41,7 +39,7 @@ inline float child_radius_scale(int level) {
     return level == 0 ? 1.0f : 2.0f / static_cast<float>(1 << level);
 }
 
-/// What children may touch, parent radii.
+/// The reach of children, parent radii.
 inline constexpr float child_reach = 1.25f;
 
 /// Child alphas and positions for one falloff. Building is lazy and not thread-safe; lookups after
@@ -108,7 +106,7 @@ ChildNoise make_child_noise(float strength, float radius, int level, std::uint32
 float child_light(const ChildNoise& noise, const glm::vec3& p);
 float largest_child_light(float strength);
 
-/// The most that such a star's colour is multiplied by.
+/// The most that the colour of a star close by is multiplied by.
 inline constexpr float brightest_near_star = 16.0f;
 
 /// Radius of the image of a star at a share `nearness`, in (0, 1), of lod.star_distance, over that of a dot

@@ -23,7 +23,7 @@ struct ScreenRect {
     float x0, y0, x1, y1;
 };
 
-/// One of the gaussians that the image of a star is made of (project_stars.h).
+/// One of the gaussians that the image of a star is made of (star_dots()).
 struct StarDot {
     float share = 1.0f;      // of the star's light
     float per_light = 1.0f;  // colour that gives a light of 1 over all pixels
@@ -67,7 +67,7 @@ float structure_of(const LayerProjection& layer, const glm::vec3& position, cons
                    float alpha);
 
 /// Radius of the image of a star at `position` in camera space over that of its dot: less than 1 within
-/// lod.star_distance (render/near_star.h). Its colour is divided by the square.
+/// lod.star_distance (near_star_size() of render/lod.h). Its colour is divided by the square.
 float near_star_size(const LayerProjection& layer, const glm::vec3& position);
 
 /// Half the width of the square around a splat's place on the frame outside of which all its weights are 0.

@@ -97,7 +97,7 @@ std::vector<StarDot> star_dots(const StarPsf& psf, const FootprintTable& footpri
         for (auto& part : parts) part.second /= sum;
         return parts;
     };
-    // What is no wider than the core goes to it: dots of one star that are alike would have no order.
+    // A part no wider than the core is added to it: equal splats of one star would have no order.
     const auto add = [&](double share, double along_px, double across_px, double turn) {
         if (along_px <= core_px)
             dots[0].share += static_cast<float>(share);

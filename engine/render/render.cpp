@@ -72,7 +72,7 @@ class BandRun {
         return job_.projections[block.layer].blocks->blocks()[block.block].splats;
     }
 
-    /// What records may take beside the pixels between slabs.
+    /// Bytes that records may take besides the pixels between slabs.
     void limit_store(std::int64_t pixels_bytes) {
         const std::int64_t limit = job_.settings.memory_limit_bytes;
         // Where all is in memory bands alone do, but for frames of few tiles.

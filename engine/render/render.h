@@ -14,8 +14,8 @@
 
 namespace astrosplat {
 
-/// What may stay between frames: big buffers, footprint and level-of-detail tables. Changes no pixel. Not to
-/// be used by two renders at once.
+/// State that may stay between frames: big buffers, footprint and level-of-detail tables. Changes no pixel.
+/// Not to be used by two renders at once.
 class RenderCache {
   public:
     RenderCache();

@@ -86,7 +86,7 @@ class TileBins {
     /// it), in no meaningful order.
     void collect(std::int64_t tile, int group, std::vector<std::span<const ScreenSplat>>& out) const;
 
-    /// What the bins' blocks may take where they are nearly empty.
+    /// Bytes that the bins' blocks may take where they are nearly empty.
     static std::int64_t least_bytes(const TileGrid& grid, int groups);
 
     /// Of all tiles.

@@ -75,7 +75,7 @@ struct ShapeRadii {
 };
 ShapeRadii shape_radii(const Shape& shape);
 
-/// What the reach of a footprint depends on beside its shape: as in FootprintTable.
+/// Values that the reach of a footprint depends on, besides its shape: as in FootprintTable.
 struct FootprintExtent {
     float reach, margin_px, variance;
 };

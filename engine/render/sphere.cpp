@@ -13,8 +13,7 @@
 namespace astrosplat {
 namespace {
 
-/// What a place's pixels are wide on the sphere goes into the square of: the frame's px per px of the sphere
-/// there, as a matrix times its transpose.
+/// The stretch of the frame at a place: its px per px of the sphere there, as a matrix times its transpose.
 PixelStretch stretch_at(const Lens& lens, double x_px, double y_px) {
     const double x = (x_px - double(lens.center_x_px)) / double(lens.focal_px);
     const double y = (y_px - double(lens.center_y_px)) / double(lens.focal_px);

@@ -141,7 +141,7 @@ inline NearPole near_pole(const Lens& lens, double y_px) {
     return {north ? 1.0 : -1.0, north ? top : bottom, std::fabs(y_px - (north ? top : bottom))};
 }
 
-/// Weights of pixels around a pole as far as `support_px` from `toward`; weight as in rim_sum, smooth over
+/// Weights of pixels around a pole as far as `support_px` from `toward`; weight as in RimPixels, smooth over
 /// step_px.
 template <class Weight>
 class PoleRows {
@@ -166,7 +166,7 @@ class PoleRows {
         return sum;
     }
 
-    /// What the rows close to the pole, each taken for its middle, have in excess of the integral.
+    /// The excess over the integral of the rows close to the pole, each taken for its middle.
     double excess() const {
         constexpr double close_px = 4.0, end_px = 18.0;  // fades out: an end would have an excess of its own
         const auto fade = [](double row) { return real::exp(-0.5 * row * row / (close_px * close_px)); };

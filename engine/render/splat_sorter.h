@@ -17,7 +17,7 @@ class SplatSorter {
     /// Radix sort on depth, ties by in_front_of. The result lives until the next call.
     std::span<const ScreenSplat* const> sort(std::span<const std::span<const ScreenSplat>> runs,
                                              const Progress& progress, const TieIds& ids = {});
-    /// What sort() takes for each record, beside the records.
+    /// Bytes that sort() takes for each record, besides the records.
     static constexpr std::int64_t bytes_per_record = 2 * sizeof(std::uint64_t) + 2 * sizeof(void*);
 
   private:

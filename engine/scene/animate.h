@@ -27,7 +27,7 @@ std::vector<double> track_at(const Track& track, const ParameterSpec& spec, doub
 /// The keyframes of a position's track as places.
 std::vector<Keyframe<glm::dvec3>> position_keyframes(const Track& track);
 
-/// The handles of every keyframe as they act (camera/handles.h), worked out where they are automatic. The
+/// The handles of every keyframe as they act (camera/keyframe.h), worked out where they are automatic. The
 /// track has at least one keyframe.
 struct TrackHandles {
     Handle<std::vector<double>> in, out;

@@ -1,6 +1,6 @@
-// camera.file: another program's camera becomes tracks of the scene, which win over those of [animation].
-// Tracks from a table: a .csv whose header names `frame` and keys of the scene, numbers of a vector as
-// KEY.x, KEY.y, KEY.z (w), colours as KEY.r, KEY.g, KEY.b.
+// The tracks of a scene's camera.file, which win over those of [animation]. In: another program's camera, or
+// a .csv whose header names `frame` and keys of the scene, numbers of a vector as KEY.x, KEY.y, KEY.z (w),
+// colours as KEY.r, KEY.g, KEY.b. Out: tracks; and the text of such a table.
 #pragma once
 
 #include <filesystem>

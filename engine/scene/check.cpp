@@ -169,7 +169,7 @@ void check_layer(const LayerParams& layer, const Checker& check) {
     check.require(layer.axis != glm::dvec3(0.0), {at / "axis"}, "expected a direction, found 0, 0, 0");
 }
 
-/// What a planetarium takes as a dome master.
+/// The sizes that planetariums take as dome masters.
 void check_dome(const OutputParams& output, const Checker& check) {
     constexpr std::int64_t least_px = 1024, largest_px = 8192;
     const bool fits = output.width == output.height && least_px <= output.width && output.width <= largest_px;

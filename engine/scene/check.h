@@ -1,4 +1,4 @@
-// What one parameter's own range cannot say: rules between parameters.
+// Rules between parameters, which one parameter's own range cannot say.
 #pragma once
 
 #include <optional>
@@ -24,7 +24,7 @@ bool is_dome(const OutputParams& output);
 struct KeyProblem {
     std::string key, message;
 };
-/// What a scene and the command `prepare` both refuse.
+/// Rules that a scene and the command `prepare` share.
 std::optional<KeyProblem> problem_of(const PrepareParams& prepare);
 
 /// Throws InputError unless the name is [A-Za-z][A-Za-z0-9_]*.

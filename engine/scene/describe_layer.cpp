@@ -1,7 +1,5 @@
-// The description of one layer: [[layer]], transform, source, and its look. One line per
-// parameter.
-// The description of [layer.look] and [layer.render], which are also what a preset holds. One line per
-// parameter.
+// The description of one layer, one line per parameter: [[layer]], transform and source, then [layer.look]
+// and [layer.render], which are also what a preset holds.
 #include "scene/describe_layer.h"
 
 #include "core/file_format.h"

@@ -1,5 +1,4 @@
-// The description of one layer.
-// The description of what a layer and a preset share.
+// The description of one layer, and of what a layer and a preset share.
 #pragma once
 
 #include "scene/describer.h"

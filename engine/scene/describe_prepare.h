@@ -6,7 +6,7 @@
 
 namespace astrosplat {
 
-/// What of FITS is read, and how its values become light.
+/// The part of FITS that is read, and how its values become light.
 void describe_fits(const Describer& d, TextureSettings& t);
 
 /// The keys of [layer.source.prepare]; the describer stands there.

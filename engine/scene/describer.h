@@ -1,6 +1,6 @@
-// Field<T>: how a C++ field of type T is written as a Value and read back, with the checks of its
-// ParameterSpec. A new kind of field needs one more specialisation here and nothing elsewhere.
-// Builds a Description: a place in the tree of keys plus one call per field.
+// Builds a Description: a place in the tree of keys plus one call per field. Field<T> says how a C++ field of
+// type T is written as a Value and read back, with the checks of its ParameterSpec; a new kind of field needs
+// one more specialisation here and nothing elsewhere.
 #pragma once
 
 #include <fmt/format.h>
@@ -164,7 +164,7 @@ struct Field<std::optional<T>> {
     }
 };
 
-/// What a description says of a parameter beside its words; each writes itself into the spec.
+/// Traits of a parameter besides its words; each writes itself into the spec.
 namespace traits {
 
 template <class T>

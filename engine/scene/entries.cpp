@@ -1,5 +1,5 @@
-// toml++ behind four functions. Its messages become one line in the style of ours.
-// Entries into parameters, with every message a wrong entry can cause.
+// Parsing of TOML, with toml++'s messages as one line in the style of ours; and entries into parameters, with
+// every message that a wrong entry can cause.
 #include "scene/entries.h"
 
 #include <fmt/format.h>

@@ -1,7 +1,6 @@
-// TOML files into tables with line numbers, and TOML nodes into Values. Include in .cpp files only: toml++ is
-// large.
-// From TOML tables to parameters: flattens tables into entries "key = value" with their places, and writes
-// entries into whatever a Description describes. Used for scenes, presets and --set alike.
+// From TOML to parameters, for scenes, presets and --set alike. In: TOML text. Out: tables with line numbers,
+// flattened into entries "key = value" with their places, and written into whatever a Description describes.
+// Include in .cpp files only: toml++ is large.
 #pragma once
 
 #include <toml++/toml.h>

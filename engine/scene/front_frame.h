@@ -1,7 +1,7 @@
-// Where the picture of a plane-like layer lies in the world, and the cameras that judge it. In: the layer's
-// meshes. Out: a rectangle, and cameras that see it from the front, from 60 degrees and from its edge.
-// What a layer's pictures show from the front: its meshes drawn flat, without light or depth. In: meshes
-// and the frame around them. Out: the picture that a front view of the layer's splats is to look like.
+// Pictures of a plane-like layer as seen from the front, and the cameras that judge it. In: the layer's
+// meshes. Out: the rectangle where the picture lies in the world; cameras that see it from the front, from 60
+// degrees and from its edge; the meshes drawn flat, without light or depth, as a front view of the layer's
+// splats is to look.
 #pragma once
 
 #include <optional>

@@ -1,7 +1,6 @@
-// A layer of a scene as the look and the renderer want it: from keys to their plain inputs. Used by the
-// pipeline and by the viewer's preview, so that both mean the same.
-// A layer's source with what it takes from the rest of the scene. In: a scene and one of its layers. Out: all
-// that its set is made of.
+// A layer of a scene as the look and the renderer want it, for the pipeline and the viewer's preview alike.
+// In: a scene and one of its layers. Out: plain inputs of look and renderer, and its source with what that
+// takes from the rest of the scene.
 #pragma once
 
 #include <glm/vec3.hpp>
@@ -24,7 +23,7 @@ RenderLayer render_layer(const Scene& scene, const LayerParams& params);
 /// The look that the layer's splats get: of stars, whose size and opacity are not theirs, only its grade.
 Look look_of(const LayerParams& params);
 
-/// What the look needs beside the set; the thickness map is left null.
+/// Inputs of the look besides the set; the thickness map is left null.
 LookInputs look_inputs(const LayerParams& params);
 
 /// Bounds in world space of a box in layer space: of its eight corners, so that no splat lies outside.

@@ -28,9 +28,7 @@ namespace astrosplat {
 
 namespace {
 
-// Files of keys that hold before a scene's own: looks of layers, and outputs for kinds of screens. In: what a
-// scene calls them, and the parameters they may name. Out: those parameters changed, and where each was set.
-
+/// A file of keys that hold before a scene's own: the look of a layer, or the output for a kind of screen.
 struct PresetFile {
     std::filesystem::path file;
     std::string text;

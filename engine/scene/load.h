@@ -1,6 +1,6 @@
-// Scene files (TOML) to Scene values. Precedence: defaults < preset < scene < animation <
-// camera.file < --set < window. Every error is one line
-// with file, line and the nearest known key; nothing half-loaded is ever returned.
+// Scene files (TOML) to Scene values. Precedence: defaults < preset < scene < animation < camera.file < --set
+// < window. Every error is one line with file, line and the nearest known key; nothing half-loaded is ever
+// returned.
 #pragma once
 
 #include <filesystem>
@@ -21,7 +21,7 @@ struct Assignment {
 };
 Assignment parse_assignment(const std::string& text);
 
-/// What a person typed as a value: TOML where it is TOML, otherwise the text itself, also for dates and
+/// A typed value: TOML where it is TOML, otherwise the text itself, also for dates and
 /// tables, which no parameter takes.
 Value typed_value(const std::string& text);
 

@@ -1,5 +1,5 @@
-// The text is written to be read and edited: every key a person is likely to touch, each with its one line.
-// The text is written to be read and edited: every key a person is likely to touch, each with its one line.
+// Texts of first scenes, written to be read and edited: every key a person is likely to touch, each with its
+// one line.
 #include "scene/new_scene.h"
 
 #include <fmt/format.h>
@@ -304,8 +304,8 @@ std::string extent_of(const PictureScene& scene) {
     return scene.object == SkyObject::field ? "height = 0.05, depth = 0.01" : "depth = 0.15";
 }
 
-// What `prepare` writes beside a picture that it took stars from. A table of that name that is not its own
-// says nothing about this picture.
+// The table that `prepare` writes beside a picture that it took stars from. Another table of that name says
+// nothing about this picture.
 void find_stars(PictureScene& scene, const Progress& progress) {
     const std::filesystem::path table = scene.image.parent_path() / "stars.csv";
     if (read_beginning(table, star_table_mark.size()) == star_table_mark)
@@ -323,7 +323,7 @@ std::string stars_text(const PictureScene& scene, const std::string& picture, do
         fmt::arg("psf", fmt::format("{:.2f}", std::max(least_px, scene.star_px * frame_px_per_px))));
 }
 
-// Of the picture's width: room for a galaxy to end round, and for a cloud to fray. What stands alone on a
+// Of the picture's width: room for a galaxy to end round, and for a cloud to fray. An object alone on a
 // dark sky needs it where but an arm leaves the picture, or that would be cut off straight. One of many
 // pixels fades within its own edges: a margin would need too much memory.
 double margin_of(const PictureScene& scene) {

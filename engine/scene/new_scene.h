@@ -1,6 +1,6 @@
-// A first scene around a picture: on a shape of columns: what `astrosplat new --shape` writes.
-// A scene that shows one picture as bodies in depth: what `new` writes and what a dropped picture becomes.
-// In: the picture and what kind of object it shows. Out: the scene file's text.
+// A first scene around a picture: on a built-in shape, as `new --shape` writes it, or as bodies in depth, as
+// `new` writes it and a dropped picture becomes. In: the picture and what kind of object it shows. Out: the
+// scene file's text.
 #pragma once
 
 #include <cstdint>
@@ -35,8 +35,8 @@ struct PictureScene {
     double lit_rim = 0.0;     // share of its rim beyond which what it shows goes on, as far as one can see
     double mean_light = 0.0;  // 0..1 of the displayed white
     bool film = false;        // with a camera move of ten seconds
-    glm::dvec2 subject{
-        0.5};  // that it passes close by, from the top left corner in shares of width and height
+    /// That it passes close by, from the top left corner in shares of width and height.
+    glm::dvec2 subject{0.5};
     std::filesystem::path stars = {};  // the table of those that `prepare` took away; empty: there is none
     double star_px = 1.0;              // standard deviation of their images, px of the picture
 };

@@ -1,4 +1,4 @@
-// What is known of one parameter: its key, its words for people, its range, whether it may be animated; and a
+// Facts about one parameter: its key, its words for people, its range, whether it may be animated; and a
 // handle that reads and writes it in the struct it lives in. describe.h makes these, everything else only
 // reads them.
 #pragma once

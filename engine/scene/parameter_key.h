@@ -33,7 +33,7 @@ class ParameterKey {
     ParameterKey operator/(std::size_t index) const { return *this / std::to_string(index); }
 
     bool is_below(std::string_view group) const;
-    /// What follows `group`, which this key is below: "noise.0.cull" of "look.noise.0.cull" below "look".
+    /// The rest behind `group`, which this key is below: "noise.0.cull" of "look.noise.0.cull" below "look".
     std::string_view below(std::string_view group) const;
     /// The same key below another group.
     ParameterKey moved(std::string_view from, const ParameterKey& to) const { return to / below(from); }

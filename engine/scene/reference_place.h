@@ -29,7 +29,8 @@ std::optional<std::size_t> find_reference(const Scene& scene, ReferenceParams::V
 /// `aspect`: the picture's width / height.
 PicturePlace place_of(const ReferenceParams& reference, double aspect, const FrameOnScreen& frame);
 
-/// What a press at `px` takes hold of: a corner within `reach` px scales, the inside moves, the rest turns.
+/// The part that a press at `px` takes hold of: a corner within `reach` px scales, the inside moves, the rest
+/// turns.
 enum class PlaceGrip { move, scale, turn };
 PlaceGrip grip_at(const PicturePlace& place, glm::dvec2 px, double reach);
 

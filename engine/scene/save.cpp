@@ -107,7 +107,7 @@ class Saver {
         return "[" + text + "]";
     }
 
-    /// What an element of a list has that is not the default: "luminance = [0.1, 1.0], any = [{ ... }]".
+    /// The values of a list's element that are not the default: "luminance = [0.1, 1.0], any = [{ ... }]".
     std::string element_pairs(const ParameterKey& element, const Description& description) const {
         std::string pairs;
         const auto add = [&](std::string_view name, const std::string& text) {

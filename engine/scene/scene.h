@@ -113,7 +113,7 @@ struct Track {
     bool operator==(const Track&) const = default;
 };
 
-/// What camera.file says, as tracks that win over those of [animation], and what it was read for.
+/// The content of camera.file as tracks that win over those of [animation], and the settings it was read for.
 struct ImportedCamera {
     struct Source {
         std::filesystem::path file;

@@ -1,4 +1,4 @@
-// Purely lexical: no file needs to exist.
+// Which files a scene names, and their paths. Paths are handled as text: no file needs to exist.
 #include "scene/scene_files.h"
 
 #include <fmt/format.h>

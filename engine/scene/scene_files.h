@@ -1,5 +1,5 @@
-// The files that a scene is made of: what is watched while it is open, asked for before a run, and hashed.
-// Paths as scene files write them: relative to the file, with ${NAME} for environment variables.
+// The files that a scene is made of, which are watched while it is open, asked for before a run, and hashed;
+// and paths as scene files write them: relative to the file, with ${NAME} for environment variables.
 #pragma once
 
 #include <filesystem>

@@ -10,10 +10,7 @@
 
 namespace astrosplat {
 
-namespace {
-
-// Finds the keys, values and headers of a valid TOML text.
-
+/// Finds the keys, values and headers of a valid TOML text. A friend of TomlText, whose items it makes.
 class TomlScanner {
   public:
     TomlScanner(const std::string& text, std::vector<TomlText::Header>& headers,
@@ -189,6 +186,8 @@ void TomlScanner::scan() {
             pair(TomlPath(headers_.back().path), false);
     }
 }
+
+namespace {
 
 bool begins_with(const TomlPath& path, const TomlPath& head) {
     return path.size() >= head.size() && std::equal(head.begin(), head.end(), path.begin());

@@ -1,4 +1,4 @@
-// Tracks and their messages.
+// Tracks of keyframes as scenes write them, and their messages.
 #include "scene/tracks.h"
 
 #include <fmt/format.h>

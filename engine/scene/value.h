@@ -33,7 +33,7 @@ bool operator==(const Value& a, const Value& b);
 std::string to_toml(const Value& value);
 std::string to_toml(const std::string& text);
 
-/// What a person wrote, for messages: "a number", "the text 'abc'", "a list of 2".
+/// A value as written, for messages: "a number", "the text 'abc'", "a list of 2".
 std::string kind_of(const Value& value);
 
 /// Shortest text that reads back as `number`; "12" for whole numbers.

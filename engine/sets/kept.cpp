@@ -81,9 +81,9 @@ void warn_unkept(const SetCache& cache, const std::string& why) {
 
 namespace {
 
-/// What read() makes of an entry. Nothing where there is none, or none that can be used: one that is damaged,
-/// or that was made of something else, whatever its name says, for which read() throws. Where the memory left
-/// would not hold it the generator is to say so.
+/// The result of read() for an entry. Nothing where there is none, or none that can be used: one that is
+/// damaged, or that was made of something else, whatever its name says, for which read() throws. Where the
+/// memory left would not hold it the generator is to say so.
 template <class Read>
 auto read_entry(const fs::path& file, const Read& read) -> std::optional<decltype(read(file))> {
     std::error_code error;
@@ -108,7 +108,7 @@ bool is_geometry(const std::string& text, const std::string& name) {
     return Sha256().add(text).hex() == name;
 }
 
-/// What is to be read of columns that are kept: the lit ones, and a sample of all.
+/// The parts of kept columns that are to be read: the lit ones, and a sample of all.
 struct ColumnChoice {
     LitRows lit;
     Buffer<std::int64_t> sample;
@@ -256,8 +256,8 @@ fs::path file_of(const SetCache& cache, const std::string& recipe) {
     return cache.folder / (Sha256().add(recipe).hex() + ".exr");
 }
 
-// What a recipe makes: read where it is kept under the recipe's name, else made, and kept unless an input has
-// changed meanwhile. An empty recipe is that of what is not kept.
+// The result of a recipe: read where it is kept under the recipe's name, else made, and kept unless an input
+// has changed meanwhile. An empty recipe: the result is not kept.
 template <class Recipe, class Read, class Make, class Keep>
 auto kept_or_made(const SetCache& cache, const Recipe& recipe_now, const Read& read, const Make& make,
                   const Keep& keep) {

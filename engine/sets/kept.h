@@ -31,7 +31,7 @@ struct SetCache {
 /// $ASTROSPLAT_CACHE, else $XDG_CACHE_HOME/astrosplat, else ~/.cache/astrosplat; empty without a home.
 std::filesystem::path default_cache_folder();
 
-/// What the limit 0 means for this folder, or the limit.
+/// The limit; for 0 the one that it stands for in this folder.
 std::int64_t limit_bytes(const SetCache& cache);
 
 /// Removes entries (.splats, .texels, .tree, .exr), least recently used first, until they take at most
@@ -65,7 +65,7 @@ std::optional<KeptColumns> read_columns(const SetCache& cache, const Recipe& rec
                                         std::int64_t sample_limit, const OptionalColumns& wanted,
                                         const Progress& progress);
 
-/// What the texels' file has as its recipe: the set's own, and the name of the geometry.
+/// The recipe of the texels' file: the set's own, and the name of the geometry.
 std::string texel_recipe(const Recipe& recipe, const std::string& geometry_name);
 
 /// One file to be written.

@@ -1,4 +1,5 @@
-// The formulas stay where they are used: placement.h for heights, the meshes' box for planar coordinates.
+// A source read or generated, its automatic values, and its flat preview. The formulas stay where they are
+// used: placement.h for heights, the meshes' box for planar coordinates.
 #include "sets/load_source.h"
 
 #include <fmt/format.h>

@@ -1,6 +1,6 @@
-// The front door of a layer's source. In: what [layer.source] says. Out: its SplatSet, generated from meshes
-// and pictures or read from a splat file; of columns also the steps on the way to it, of bodies what can be
-// seen before they are made, and what keys of 0 (automatic) come to.
+// The front door of a layer's source. In: the values of [layer.source]. Out: its SplatSet, generated from
+// meshes and pictures or read from a splat file; of columns also the steps on the way to it, of bodies a flat
+// preview before they are made; and the values that keys of 0 (automatic) stand for.
 #pragma once
 
 #include <cstdint>

@@ -21,7 +21,7 @@ std::string file_line(const char* what, const fs::path& file, const Progress& pr
     return fmt::format("{} {} {}\n", what, sha256_of_file(file, progress), file.extension().string());
 }
 
-// What the shape of that name is made of.
+// The parameters of the shape of that name.
 std::string shape_lines(const fs::path& name, const ShapeParams& shape, const Progress& progress) {
     const auto& [outline, width, waist, thickness, opening, flattening, shells, concentration, tube,
                  depth_map, depth, blur] = shape;

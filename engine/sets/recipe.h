@@ -20,7 +20,7 @@ inline constexpr int set_version = 31;
 /// The same of the preparation of pictures.
 inline constexpr int prepare_version = 3;
 
-/// What is hashed, line by line: versions, the bytes of meshes and pictures (of a mesh without a named
+/// The hashed text, line by line: versions, the bytes of meshes and pictures (of a mesh without a named
 /// picture also its material libraries and their pictures), and the parameters in use, with the seed
 /// resolved. Names of files stay out, except for their endings. Empty where an input cannot be read: then the
 /// loader says why. For kind mesh. Throws Cancelled.

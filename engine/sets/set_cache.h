@@ -2,12 +2,6 @@
 // takes, and the folder. Out: the same SplatSet, to the bit. Many processes may share the folder; an entry
 // that is damaged is generated again, and a folder that cannot be read or written costs a warning, never a
 // run.
-//
-// In the folder: NAME.splats (native.h, rows by id; the name is recipe.h's, whose text is in the file; its
-// file time says when it was last used), NAME.lock while a process generates that set, .NAME.*.part.splats
-// while it is written. Of columns NAME.splats is the geometry, and what is read from pictures lies beside it
-// as NAME.texels, which ends its recipe with the geometry's name: scenes that differ in how pictures are read
-// share their geometry, and only texels are read again.
 #pragma once
 
 #include <cstdint>
@@ -20,6 +14,12 @@
 #include "splats/splat_set.h"
 
 namespace astrosplat {
+
+// In the folder: NAME.splats (native.h, rows by id; the name is recipe.h's, whose text is in the file; its
+// file time says when it was last used), NAME.lock while a process generates that set, .NAME.*.part.splats
+// while it is written. Of columns NAME.splats is the geometry, and what is read from pictures lies beside it
+// as NAME.texels, which ends its recipe with the geometry's name: scenes that differ in how pictures are read
+// share their geometry, and only texels are read again.
 
 class KeptWatcher;
 

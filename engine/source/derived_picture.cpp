@@ -83,7 +83,7 @@ Image dust_map(const Image& light) {
     return dust;
 }
 
-// What a pixel's line would add to, and the continuum beside it.
+// The channel that a pixel's line would add to, and the continuum beside it.
 struct Excess {
     float own, others;
 };

@@ -1,6 +1,6 @@
-// What a picture's own light tells of it: maps of where dust absorbs it and where it is redder or bluer than
-// the rest, and masks of where it is to show, told by brightness and colour, by an ellipse or by another
-// picture. In: linear light. Out: one channel: shares of light, weights.
+// Pictures of one channel made from a picture's own light: maps of where dust absorbs it and where it is
+// redder or bluer than the rest, and masks of where it is to show, told by brightness and colour, by an
+// ellipse or by another picture. In: linear light. Out: shares of light, weights.
 #pragma once
 
 #include <span>

@@ -27,7 +27,7 @@ constexpr std::size_t card_size = 80, block_size = 2880;
 using Cards = std::map<std::string, std::string, std::less<>>;  // keyword -> value as written
 using Stream = std::unique_ptr<gzFile_s, int (*)(gzFile)>;
 
-// What is between "= " and the comment.
+// The text between "= " and the comment.
 std::string value_text(std::string_view card) {
     if (card.substr(8, 2) != "= ") return {};
     const std::string_view text = trim(card.substr(10));
@@ -73,7 +73,7 @@ std::optional<std::int64_t> data_bytes(const Cards& cards) {
     return (count + 2879) / 2880 * 2880;
 }
 
-// What the value of a card has to be; its name may end in a number.
+// The kind of value that a card needs; its name may end in a number.
 struct Rule {
     std::string_view name;
     bool numbered;

@@ -1,5 +1,5 @@
-// Triangle meshes: their measures, planar projections and the built-in shapes; polygons split into triangles.
-// In: a name, a Mesh of obj.h, or corners.
+// Triangle meshes: their measures, planar projections and three built-in shapes; polygons split into
+// triangles. In: a name, a mesh, or corners. Out: a mesh, or numbers.
 #pragma once
 
 #include <array>

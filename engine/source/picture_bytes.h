@@ -1,7 +1,7 @@
-// What OpenImageIO does not tell of a picture file. Whom it names as its maker, from the XMP packet inside it
-// (AVM, the metadata of astronomy outreach, keeps the credit in photoshop:Credit; OpenImageIO's answer is cut
-// to IPTC's 32 characters). Whether a JPEG file is whole: libjpeg fills what is missing of a cut file with
-// grey and says nothing.
+// Facts of a picture file that OpenImageIO does not give. Its maker, from the XMP packet inside it (AVM, the
+// metadata of astronomy outreach, keeps the credit in photoshop:Credit; OpenImageIO cuts it to IPTC's 32
+// characters). Whether a JPEG file is whole: libjpeg fills the missing part of a cut file with grey and says
+// nothing.
 #pragma once
 
 #include <filesystem>

@@ -1,4 +1,5 @@
-// FITS keeps its values until stars are taken away: a stretch would change their profiles and cut them off.
+// The stages of a picture's preparation. FITS keeps its values until stars are taken away: a stretch would
+// change their profiles and cut them off.
 #include "source/prepared_picture.h"
 
 #include <fmt/format.h>

@@ -34,7 +34,7 @@ PreparedPicture prepare_picture(const std::vector<std::filesystem::path>& files,
                                 const TextureSettings& settings, const Progress& progress = {},
                                 std::int64_t most_px = 0);
 
-/// What gives load_texture() its prepared pictures: prepare_picture() or a store of what that gave before.
+/// The source of load_texture()'s prepared pictures: prepare_picture(), or a store of its earlier results.
 /// Without stars and sky.
 using PictureMaker =
     std::function<PreparedPicture(const std::vector<std::filesystem::path>& files,

@@ -197,7 +197,7 @@ Heights sampled(const Texture& texture, std::int64_t columns, std::int64_t rows,
     return heights;
 }
 
-// What the eye sees as brightness: the display value of the luminance.
+// Brightness as the eye sees it: the display value of the luminance.
 Heights brightness(const Texture& texture, std::int64_t columns, std::int64_t rows) {
     return sampled(texture, columns, rows, [](const TextureSample& s) {
         const float light = luminance(s.color.x, s.color.y, s.color.z) * s.alpha;

@@ -1,4 +1,4 @@
-// What [layer.source] of a scene file says, as plain values. SCENE.md's defaults are the defaults here.
+// The values of [layer.source] in a scene file. SCENE.md's defaults are the defaults here.
 #pragma once
 
 #include <cstdint>
@@ -147,7 +147,7 @@ struct MeshInput {
     bool operator==(const MeshInput&) const = default;
 };
 
-/// What a star's image has beside its core, each with its share of the light.
+/// The parts of a star's image besides its core, each with its share of the light.
 struct StarWings {
     double share = 0.0;  // 0..1
     double px = 3.0;

@@ -28,7 +28,7 @@ void for_each_stored(Image& image, const PerPixel& change) {
     });
 }
 
-// What is known of a plane's picture before its pixels are.
+// Facts about a plane's picture, known before its pixels.
 Stored stored_without_pixels(const FitsPlane& plane, const Limits& limits, Settings::Stretch stretch) {
     Stored stored;
     stored.display_values = stretch != Settings::Stretch::linear;

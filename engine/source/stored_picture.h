@@ -24,7 +24,7 @@ struct RawPicture {
 RawPicture read_raw(const std::filesystem::path& file, const std::string& hdu, int plane,
                     const Progress& progress);
 
-/// What gives load_texture() the files: read_raw() or a store of what that gave before.
+/// The source of load_texture()'s files: read_raw(), or a store of its earlier results.
 using RawReader = std::function<RawPicture(const std::filesystem::path& file, const std::string& hdu,
                                            int plane, const Progress& progress)>;
 
@@ -34,7 +34,7 @@ struct Stored {
     bool display_values = false;  // sRGB, when the settings leave the colour space open
 };
 
-/// What automatic means: asinh.
+/// The meaning of automatic: asinh.
 TextureSettings::Stretch stretch_of(const TextureSettings& settings);
 
 /// FITS is stretched between its limits. Throws InputError, which names `file`.

@@ -149,7 +149,7 @@ Image linear_picture(const StoredRows& from, const Settings& settings, Settings:
     return image;
 }
 
-// What a picture has when it is read.
+// A picture after reading.
 ImageSize size_to_read(const ImageRows& rows, std::int64_t most_texels) {
     if (most_texels <= 0 || rows.width * rows.height <= texels_read_whole) return {rows.width, rows.height};
     return size_of_area(rows.width, rows.height, static_cast<double>(most_texels), 1.0);

@@ -1,7 +1,7 @@
-// A mesh together with the pictures that colour it: what generation reads. Its texture coordinates may be
-// projections: planar ones beyond the stretch over a mesh's own box (pictures in scene units, and back walls
-// that differ from the front), and the camera that took a picture, which projects it back onto what stands
-// before it (uv = "camera"). In: a source's keys. Out: meshes; where points are seen in a picture.
+// A mesh together with the pictures that colour it, as generation reads it. Its texture coordinates may be
+// projections: planar ones beyond the stretch over a mesh's own box (pictures in scene units, back walls that
+// differ from the front), or from the camera that took a picture, back onto the mesh before it (uv =
+// "camera"). In: a source's keys. Out: meshes; where points are seen in a picture.
 #pragma once
 
 #include <glm/vec2.hpp>

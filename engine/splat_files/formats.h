@@ -16,8 +16,7 @@
 namespace astrosplat {
 
 // Readers throw InputError with the file and the place in it, and Cancelled; writers OutputError.
-// NAME_columns: what the file's header says that its splats have. NAME_splat_count: how many it says that
-// there are.
+// By the file's header: NAME_columns, the columns of its splats, and NAME_splat_count, their number.
 
 /// Maya's ASCII particle files (.pda): a header (ATTRIBUTES, TYPES, NUMBER_OF_PARTICLES, BEGIN DATA) and one
 /// line of numbers a particle. Attributes used: position (V), rgbPP (V, linear), opacityPP,

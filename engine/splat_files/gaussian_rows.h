@@ -1,5 +1,5 @@
-// Gaussians of all file formats: room for them, where a file's nodes place them, and what makes of their
-// stored numbers those that the program draws.
+// Gaussians of all file formats. In: numbers as a file stores them, and the nodes that place them. Out: room
+// for a set, and rows as the program draws them.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@
 
 namespace astrosplat {
 
-/// What a set of Gaussians has; harmonics where they are `directional`.
+/// Columns of a set of Gaussians; harmonics where they are `directional`.
 SplatColumns gaussian_set_columns(bool directional);
 
 /// Room for `count` Gaussians, with harmonics of 0 where they are `directional`; distance is 0, id the row.

@@ -181,7 +181,7 @@ SplatSet read_parts(GltfFile& file, const Progress& progress) {
     return finish_gaussians(std::move(set), {.trained = false, .display = parts[0].display}, file.path());
 }
 
-/// What `read` makes of the file; its JSON's mistakes of type in our words.
+/// The result of `read` for the file; wrong types in its JSON are reported in our words.
 template <class Read>
 auto read_json(const std::filesystem::path& path, const Read& read) {
     GltfFile file(path);

@@ -36,8 +36,8 @@ class MappedFile {
 /// memory. Elsewhere it does nothing. From any thread.
 void forget_pages(std::string_view bytes);
 
-/// What read(bytes) makes of the file's bytes. Throws InputError, in words about the file's length where that
-/// changed meanwhile, whatever the reader made of it.
+/// The result of read(bytes) for the file's bytes. Throws InputError, in words about the file's length where
+/// that changed meanwhile, whatever the reader made of it.
 template <class Read>
 auto read_mapped(const std::filesystem::path& file, const Read& read) {
     const MappedFile mapped(file);

@@ -1,7 +1,20 @@
 // The program's own splat files (.splats): everything a SplatSet holds, bit for bit. In and out: SplatSet, or
 // some of its rows, for a cache that keeps more than is to be seen. Memory mapped, checked by block, and in
 // an order that keeps neighbours together.
-//
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <vector>
+
+#include "core/atomic_file.h"
+#include "core/buffer.h"
+#include "core/progress.h"
+#include "splats/splat_set.h"
+
+namespace astrosplat {
+
 // Format version 1, all little-endian, checksums XXH64 (core/hash.h):
 //   header   0  8 bytes  89 'S' 'P' 'L' 'A' 'T' 0d 0a
 //            8  u32      version, 1
@@ -23,26 +36,13 @@
 //           rotation 4 f32, harmonics 48 f32 (16 of red, green, blue), every array whole before the next
 //   table   for each block: lowest and highest x y z of its positions (6 f32; 0 without positions),
 //           u64 checksum of its bytes; then u64 checksum of the table
-#pragma once
-
-#include <cstdint>
-#include <filesystem>
-#include <span>
-#include <vector>
-
-#include "core/atomic_file.h"
-#include "core/buffer.h"
-#include "core/progress.h"
-#include "splats/splat_set.h"
-
-namespace astrosplat {
 
 /// space: neighbours share blocks (splats/row_order.h), for files that travel. id: as the set has them, so
 /// that nothing is sorted when it is read again.
 enum class RowOrder { space, id };
 
-/// What of a set a file holds. Sets travel whole; a cache keeps geometry, which is all but colour and alpha,
-/// and these two in files of their own.
+/// The part of a set that a file holds. Sets travel whole; a cache keeps geometry, which is all but colour
+/// and alpha, and these two in files of their own.
 enum class NativePart { whole, geometry, colors };
 
 /// Rows come back in the file's order; sort_by_id brings back that of the ids. Every length is checked before
@@ -62,10 +62,10 @@ void write_native(const WriteTarget& target, const SplatSet& set, const Progress
 /// Length of the file that write_native makes of a set.
 std::int64_t native_file_bytes(const SplatSet& set, NativePart part = NativePart::whole);
 
-/// What of a set a file holds.
+/// The columns that a file holds.
 SplatColumns native_columns(const std::filesystem::path& file);
 
-/// Some rows of a file, ascending, and what of them is wanted.
+/// Some rows of a file, ascending, and the columns of them that are wanted.
 struct NativeRows {
     std::span<const std::int64_t> rows;
     OptionalColumns wanted;

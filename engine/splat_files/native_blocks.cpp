@@ -1,6 +1,6 @@
-// Reading: columns one by one straight into the set's arrays, so that those that nobody wants are not read at
-// all. Writing: one block at a time; every column has its place in the block as if it was full, rows are put
-// there as they come, and a full block goes to the file.
+// Reading: columns one by one straight into the set's arrays, so that unwanted ones are not read at all.
+// Writing: one block at a time; every column has its place in the block as if it was full, rows are put there
+// as they come, and a full block goes to the file.
 #include "splat_files/native_blocks.h"
 
 #include <fmt/format.h>

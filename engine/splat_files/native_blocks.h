@@ -1,7 +1,7 @@
-// Native files (native.h) in parts, for sets that are never in memory as a whole. Reading: what is known of
-// the set, and the rows of the blocks that are asked for. Bytes are read, not mapped, so that they count as
-// this program's memory while it has them and no longer. Writing: rows part by part, in the order of the
-// file; what comes out is the file that write_native makes of the whole.
+// Native files (native.h) in parts, for sets that are never in memory as a whole. Reading: the facts of the
+// set, and the rows of the blocks that are asked for; bytes are read, not mapped, so that they count as this
+// program's memory only while it has them. Writing: rows part by part, in the order of the file; the file is
+// the one that write_native makes of the whole.
 #pragma once
 
 #include <cstddef>
@@ -17,6 +17,7 @@
 
 namespace astrosplat {
 
+/// A file, of which blocks are read.
 class NativeBlocks {
   public:
     /// Checks header and table. Throws InputError as read_native does.
@@ -45,6 +46,7 @@ class NativeBlocks {
     std::unique_ptr<const State> state_;
 };
 
+/// A file while it is written.
 class NativeStream {
   public:
     /// A file of `splats` rows in the order of space, with the columns `held`. Throws OutputError.

@@ -1,6 +1,6 @@
 // The format of native.h as structs and bytes: header, blocks and table. Reading: bytes of a file become a
-// Layout whose lengths and checksums are known to be right. Writing: what is known of a set becomes flags,
-// header and table. For the readers and the writers alone.
+// Layout whose lengths and checksums are known to be right. Writing: the facts of a set become flags, header
+// and table. For the readers and the writers alone.
 #pragma once
 
 #include <array>
@@ -57,7 +57,7 @@ struct BlockEntry {
 };
 static_assert(sizeof(BlockEntry) == 32);
 
-/// What says in the flags that a file has a column, by index_of(); 0: every file has it.
+/// The bits of the flags that say that a file has a column, by index_of(); 0: every file has it.
 inline constexpr std::array<std::uint32_t, splat_column_count> column_flags = {0,
                                                                                0,
                                                                                0,
@@ -107,7 +107,7 @@ Layout read_layout(const Checker& checker, std::string_view bytes);
 /// The same, and that it is this part of a set.
 Layout read_layout(const Checker& checker, std::string_view bytes, NativePart part);
 
-/// What the header says of the set.
+/// The set as the header describes it.
 SplatSetFacts facts_of(const Layout& layout);
 
 /// A block of the file.
@@ -120,7 +120,7 @@ Block block_at(const Layout& layout, std::size_t number);
 /// `held`: the columns that the set has.
 std::uint32_t flags_of(const SplatSetFacts& facts, const SplatColumns& held, RowOrder order, NativePart part);
 
-/// What stands behind the header: the credit, and behind a zero the recipe.
+/// The text behind the header: the credit, and behind a zero the recipe.
 std::string text_of(const SplatSetFacts& facts);
 
 /// Header, texts, padding and their checksum, of a file of so many splats.

@@ -1,8 +1,7 @@
-// The rare cases of reading: long mantissas, extreme exponents, denormals, halves, inf and nan. Writing:
-// floats of 0.001 to 100000 are short in fixed notation and small enough for exact arithmetic in 64 bits,
-// without the tables of powers that the general methods need (Ryu, Schubfach: R. Giulietti, "The Schubfach
-// way to render doubles"; the choice among candidates below is its). Digits are made eight at a time in a
-// register.
+// Rare cases of reading: long mantissas, extreme exponents, denormals, halves, inf, nan. Writing: floats of
+// 0.001 to 100000 are short in fixed notation and small enough for exact 64-bit arithmetic, without the
+// tables of general methods (Ryu, Schubfach: R. Giulietti, "The Schubfach way to render doubles", whose
+// choice among candidates is taken). Digits are made eight at a time in a register.
 #include "splat_files/number_text.h"
 
 #include <array>
@@ -75,7 +74,7 @@ std::uint64_t eight_digits(std::uint64_t number) {
 /// The digits up to the last one that is not zero, of eight that are not all zero.
 int significant_digits(std::uint64_t digits) { return (63 - std::countl_zero(digits)) / 8 + 1; }
 
-/// What the exponent q of a float c 2^q says.
+/// Constants for the exponent q of a float c 2^q.
 struct Scale {
     std::uint64_t power;   // 10^e, where 10^-e <= 2^q < 10^(1-e)
     std::uint64_t filler;  // 10^(decimals - e)

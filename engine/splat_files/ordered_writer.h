@@ -16,7 +16,7 @@ namespace astrosplat {
 
 /// Writes rows [begin, end) to `out` and returns the end of what it wrote.
 using FormatRows = std::function<char*(std::int64_t begin, std::int64_t end, char* out)>;
-/// What follows the rows; asked for once all of them are formatted.
+/// Text behind the rows; asked for once all of them are formatted.
 using Footer = std::function<std::string()>;
 
 /// `header`, then `count` rows in chunks of `chunk`, each row at most `row_bytes` long. Atomic: the file

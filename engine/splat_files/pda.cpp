@@ -1,5 +1,5 @@
-// See pda.h. The header is read word by word, so line breaks and blanks in it do not matter; the data line by
-// line.
+// Maya's particle files (formats.h). The header is read word by word, so line breaks and blanks in it do not
+// matter; the data line by line.
 #include "splat_files/formats.h"
 
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-// The front door: the readers and writers of each format.
+// The readers and writers of each format, and the choice among them by a file's format.
 #include "splat_files/splat_file.h"
 
 #include <fmt/format.h>

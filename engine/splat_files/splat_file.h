@@ -16,7 +16,7 @@ namespace astrosplat {
 /// before rendering). Throws InputError with file and place.
 SplatSet read_splats(const std::filesystem::path& file, const Progress& progress = {});
 
-/// What a file says of its splats, by its header alone: some of position, color, alpha, distance, radius, uv,
+/// The columns of a file's splats, by its header alone: some of position, color, alpha, distance, radius, uv,
 /// normal, mesh, scale, rotation, harmonics, id. Throws InputError.
 std::vector<std::string> splat_attributes(const std::filesystem::path& file);
 

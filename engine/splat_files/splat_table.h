@@ -55,7 +55,7 @@ struct SplatTable {
     bool has(SplatColumn column) const;
 };
 
-/// What of a set these columns hold.
+/// The part of a set that these columns hold.
 SplatColumns columns_held(const std::vector<Column>& columns);
 
 /// Allocates the arrays for `rows` rows (memory is claimed first) and points the columns at them.
@@ -65,7 +65,7 @@ void open_table(SplatTable& table, std::int64_t rows, const std::filesystem::pat
 /// about clamped opacities, and hands out the set.
 SplatSet finish_table(SplatTable& table, const std::filesystem::path& file);
 
-/// What is wrong with `value`, as "expected ..." wants it; called only when `store` failed.
+/// The values allowed in place of `value`, behind "expected"; called only when `store` failed.
 std::string expectation(const Column& column);
 
 /// The rare part of `store`: clamps where that is allowed.

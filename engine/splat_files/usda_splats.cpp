@@ -83,7 +83,7 @@ std::int64_t tuples_in(const UsdText& text, std::string_view list, int component
     return count / components;
 }
 
-/// What the prim says, else what its coefficients are enough for.
+/// The degree that the prim states, else the one its coefficients suffice for.
 int degree_of(const UsdText& text, const GaussianPrim& own, std::string_view list) {
     const auto told = own.prim->attributes.find("radiance:sphericalHarmonicsDegree");
     if (told != own.prim->attributes.end() && told->second.value.numbers.size() == 1) {
@@ -205,7 +205,7 @@ std::int64_t count_of(const std::vector<GaussianPrim>& all) {
     return count;
 }
 
-/// What read(text, all) makes of a file.
+/// The result of read(text, all) for a file.
 template <class Read>
 auto read_prims(const std::filesystem::path& file, const Read& read) {
     return read_mapped(file, [&](std::string_view bytes) {

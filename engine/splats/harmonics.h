@@ -30,7 +30,7 @@ glm::vec3 mean_color(const Harmonics& harmonics);
 /// The coefficient of degree 0 whose colour this is.
 inline glm::vec3 mean_coefficient(const glm::vec3& color) { return (color - 0.5f) / harmonic_0; }
 
-/// What turns coefficients: row k gives the k-th new one.
+/// The matrix that turns coefficients: row k gives the k-th new one.
 using HarmonicsTurn = std::array<std::array<float, Harmonics::count>, Harmonics::count>;
 
 /// Of coefficients whose splat is turned (or mirrored) by `turn`, a matrix of orthonormal columns: colours

@@ -51,7 +51,7 @@ struct BlockFacts {
     std::int64_t first_sample = 0;  // its rows of the sample begin here, and end where the next block's begin
 };
 
-/// What is known of every block, and a sample of all, stay in memory.
+/// Facts about every block, and a sample of all splats, stay in memory.
 class ShadedBlocks {
   public:
     /// Of one block; ties are told from each other with 16 bits.

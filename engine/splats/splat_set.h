@@ -31,7 +31,7 @@ struct StarPixels {
     bool operator==(const StarPixels&) const = default;
 };
 
-/// What is known of a set as a whole.
+/// Facts about a set as a whole.
 struct SplatSetFacts {
     glm::dvec3 spacing{0.0};    // scene units between lattice neighbours per axis; 0: on none, or unknown
     double max_distance = 0.0;  // scene units; x = 1 by default: the source's, or a file's largest distance

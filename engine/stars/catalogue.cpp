@@ -1,5 +1,5 @@
-// A row's fields become a star in the same way whatever the catalogue's format; Hipparcos has its fields
-// between | at fixed places (ESA SP-1200, volume 1, section 2.1), tables name theirs in the first line.
+// Rows of catalogues as stars, in the same way whatever the format: Hipparcos has its fields between | at
+// fixed places (ESA SP-1200, volume 1, section 2.1), tables name theirs in the first line.
 #include "stars/catalogue.h"
 
 #include <fmt/format.h>
@@ -65,7 +65,7 @@ struct StarRow {
 
     /// The first field that is no number, as "expected ..., found ..."; empty where all are.
     std::string read(const StarFields& fields, RowUnits units);
-    /// What keeps the row from being a star, likewise.
+    /// The fault that keeps the row from being a star, likewise.
     std::string to_star(CatalogueStar& star) const;
 };
 

@@ -32,7 +32,7 @@ struct TableColumns {
     int u, v, light[3], sigma;
 };
 
-// What keeps a row from being a star, as "expected ..., found ..."; empty where nothing does.
+// The fault that keeps a row from being a star, as "expected ..., found ..."; empty where nothing does.
 std::string read_star(const TextTable& table, const TableColumns& columns, TableStar& star) {
     std::string problem;
     const auto number = [&](int column, const char* name, double lo, double hi) {

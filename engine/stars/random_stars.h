@@ -14,7 +14,7 @@
 
 namespace astrosplat {
 
-/// What a star is wherever it stands.
+/// The properties of a star that do not depend on its place.
 struct StarKind {
     double absolute_magnitude = 0.0;    // at 10 parsec
     std::optional<double> color_index;  // B-V

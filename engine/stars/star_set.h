@@ -48,7 +48,7 @@ struct StarScale {
     double zero_point = 4.0;  // magnitude of a star of flux 1
 };
 
-/// What became of a catalogue's stars.
+/// Counts of a catalogue's stars by what became of them.
 struct StarCounts {
     std::int64_t kept = 0, too_faint = 0;
     std::int64_t infinite = 0;  // of those kept: at infinity, without a usable distance

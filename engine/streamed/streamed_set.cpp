@@ -1,4 +1,5 @@
-// What a block shows is found out once a look; rendering then makes only the blocks that it needs.
+// Whether a block shows anything is found out once for a look; rendering then makes only the blocks that it
+// needs.
 #include "streamed/streamed_set.h"
 
 #include <algorithm>
@@ -15,7 +16,7 @@ namespace {
 
 constexpr std::int64_t most_samples = 128;  // of a block: 17 MB for 200 million splats
 
-/// What a thread reads a block into.
+/// The arrays that a thread reads a block into.
 SplatSet& block_of_thread() {
     static thread_local SplatSet block;
     return block;

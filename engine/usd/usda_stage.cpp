@@ -48,7 +48,7 @@ class UsdScanner {
     std::string_view numbers();
     /// <...>
     void skip_path();
-    /// What stands between the bracket here and its end, whatever it is.
+    /// The text between the bracket here and its end, of any kind.
     void skip_brackets(int depth = 0);
     /// A string, a word, a bracket with its inside or one other character.
     void skip_one(int depth = 0);

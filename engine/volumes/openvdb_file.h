@@ -20,7 +20,7 @@ using VolumeWords = std::vector<std::pair<std::string, std::string>>;
 void write_openvdb(const WriteTarget& target, const VoxelGrid& grid, const VolumeWords& words,
                    const Progress& progress = {});
 
-/// What write_openvdb expects under this name in the module.
+/// The name under which write_openvdb finds its function in the module.
 inline constexpr const char* openvdb_entry = "astrosplat_openvdb_bytes";
 
 /// Grids `density` (fog volume), `emission` and `Cd`, all with the same transform. Returns false, and what is

@@ -37,7 +37,7 @@ double footprint_area(const Symmetric& covariance, const glm::dvec3& ray);
 /// and a 128th of the longest side of the box around them. There must be one.
 double default_voxel_size(const std::vector<VoxelSplat>& splats);
 
-/// What a voxel collects: density, three channels of light, and what shows.
+/// Sums of a voxel: density, three channels of light, and what shows.
 inline constexpr int voxel_channels = 5;
 
 /// In voxels; voxel (i, j, k) is sampled at the point (i, j, k).
@@ -49,7 +49,7 @@ struct VoxelBody {
     std::array<double, voxel_channels> share{};  // what it brings to a voxel of weight 1
 };
 
-/// What a splat brings in all, square scene units.
+/// The whole of what a splat adds, square scene units.
 struct Brought {
     double density = 0.0;
     glm::dvec3 emission{0.0};

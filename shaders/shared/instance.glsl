@@ -1,13 +1,6 @@
 // A splat on the frame, as projection places it. Compiled as GLSL and as C++, one by one and by lanes: there Float, Int, Bool and
 // Vec3 are vectors of lanes.
 
-#ifndef __cplusplus
-#define Float float
-#define Int int
-#define Bool bool
-#define Vec3 vec3
-#endif
-
 // One appearance of a splat in the frame. A ball's footprint is a circle.
 struct Instance {
     Float x_px;         // centre, y down

@@ -3,6 +3,10 @@
 
 #ifndef __cplusplus
 #define Real float
+#define Float float
+#define Int int
+#define Bool bool
+#define Vec3 vec3
 #endif
 
 // In the order of Projection in engine/camera/camera.h. Those from the fisheye on are onto the sphere.

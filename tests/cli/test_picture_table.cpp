@@ -58,23 +58,29 @@ class TableTest : public SceneTest {
     }
 };
 
-// Which of the brightest stars lie before the disk's half radius from the side is chance: center over half
-// radius is 2.0 to 5.2 with seven seeds. The median of three is what is asked for.
 TEST_F(TableTest, APaintedGalaxyIsADiskThatReachesThem) {
     write_text(folder / "galaxy.ppm", field_of(painted::galaxy(960, 600)));
     expect_targets("galaxy.ppm", of_most);
     EXPECT_NE(text_of(folder / "picture.toml").find("kind = \"disk\""), std::string::npos);
+    const nlohmann::json edge = json("report.json").at("edge");
+    EXPECT_GE(edge.at("fwhm_over_length").get<double>(), 0.06);
+    EXPECT_LE(edge.at("fwhm_over_length").get<double>(), 0.10);
+    EXPECT_GE(edge.at("center_over_half_radius").get<double>(), 2.0) << "the least of seven seeds";
+}
+
+// Which of the brightest stars lie before the disk's half radius from the side is chance: center over half
+// radius is 2.0 to 5.2 with seven seeds. The median of three is what is asked for.
+TEST_F(TableTest, APaintedGalaxysMiddleStandsOutNightly) {
+    write_text(folder / "galaxy.ppm", field_of(painted::galaxy(960, 600)));
+    ASSERT_EQ(run({"new", "galaxy.ppm", "-o", "picture.toml"}).code, 0);
     std::vector<double> widths, centers;
-    const auto take_edge = [&] {
+    for (const char* seed : {"0", "1", "2"}) {
+        const std::string set = std::string("layer.galaxy.source.seed=") + seed;
+        ASSERT_EQ(run({"fidelity", "picture.toml", "--set", set, "-o", "report.json", "--overwrite"}).code,
+                  0);
         const nlohmann::json edge = json("report.json").at("edge");
         widths.push_back(edge.at("fwhm_over_length"));
         centers.push_back(edge.at("center_over_half_radius"));
-    };
-    take_edge();
-    for (const char* seed : {"layer.galaxy.source.seed=1", "layer.galaxy.source.seed=2"}) {
-        ASSERT_EQ(run({"fidelity", "picture.toml", "--set", seed, "-o", "report.json", "--overwrite"}).code,
-                  0);
-        take_edge();
     }
     std::ranges::sort(widths);
     std::ranges::sort(centers);

@@ -314,14 +314,14 @@ TEST_P(Crossings, TheWindowsJobsHaveTheNamesOfBatch) {
     const Document document = Document::open(folder / "scene.toml");
     for (const RenderKind kind : {RenderKind::range, RenderKind::frame}) {
         const RenderTask task = make_render_task(document, kind, frame());
-        ASSERT_EQ(render_problem(task), "");
+        ASSERT_EQ(render_problem(task, scene.camera), "");
         const std::string output = render_files(task).string();
         for (const Eye each : eyes_of(crossing))
             EXPECT_EQ(file_of_output("/nowhere", output, crossing_frame, each),
                       folder / file_of_frame(crossing, crossing_frame, each));
     }
     RenderTask movie = make_render_task(document, RenderKind::movie, frame());
-    ASSERT_EQ(render_problem(movie), "");
+    ASSERT_EQ(render_problem(movie, scene.camera), "");
     EXPECT_EQ(render_target(movie), folder / folder_of_movie(crossing) / "shot.mp4");
     fs::create_directories(movie_folder(render_target(movie)));
     const fs::path first = file_of_output("/nowhere", render_files(movie).string(), 7, Eye::centre);

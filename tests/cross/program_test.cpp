@@ -88,7 +88,7 @@ TEST_P(ProgramCrossings, BatchVerifyAndTheWindowMakeTheSameFiles) {
     const TempFolder job;
     const RenderTask task =
         make_render_task(Document::open(folder / "scene.toml"), RenderKind::range, frame());
-    ASSERT_EQ(render_problem(task), "");
+    ASSERT_EQ(render_problem(task, scene.camera), "");
     const fs::path copy =
         job.file("scene.toml", Document::open(folder / "scene.toml").text_for(job / "scene.toml"));
     words = {"--batch", copy.string()};
@@ -123,7 +123,7 @@ TEST_P(ProgramCrossings, AMovieIsMadeOfTheFramesThatBatchMakes) {
     if (crossing.ending != Ending::movie) return;
     const RenderTask task =
         make_render_task(Document::open(folder / "scene.toml"), RenderKind::movie, frame());
-    ASSERT_EQ(render_problem(task), "");
+    ASSERT_EQ(render_problem(task, scene.camera), "");
     std::vector<std::string> words = {"--batch", (folder / "scene.toml").string()};
     for (const std::string& word : batch_arguments(task)) words.push_back(word);
     const RunResult batch = run(words, "/");

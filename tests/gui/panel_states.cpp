@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "gui/panel/row_sketches.h"
+#include "gui/panel/parts.h"
 #include "gui/panel/tab_sections.h"
 
 namespace astrosplat::panel {

@@ -1,4 +1,4 @@
-#include "gui/panel/color_rows.h"
+#include "gui/panel/parts.h"
 
 #include <algorithm>
 

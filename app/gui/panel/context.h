@@ -1,4 +1,4 @@
-// What every part of the panel gets: the document and its description at the current frame, and what the
+// Arguments of every part of the panel: the document and its description at the current frame, and what the
 // panel remembers from frame to frame. Reading goes through the description, writing through the document,
 // so that a widget never holds a value of its own for longer than a drag.
 #pragma once

@@ -1,5 +1,5 @@
 // The curve a person drags. Its points live in the document; the panel remembers only which one is selected.
-#include "gui/panel/curve_plot.h"
+#include "gui/panel/parts.h"
 
 #include <algorithm>
 #include <cmath>

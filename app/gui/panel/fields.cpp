@@ -1,14 +1,11 @@
 // The value of a row, one function per kind of parameter.
-#include "gui/panel/fields.h"
+#include "gui/panel/parts.h"
 
 #include <cfloat>
 #include <cmath>
 
 #include "core/color.h"
 #include "gui/icons.h"
-#include "gui/panel/color_rows.h"
-#include "gui/panel/row.h"
-#include "gui/panel/row_sketches.h"
 #include "gui/panel/section.h"
 #include "gui/panel/words.h"
 #include "gui/theme.h"
@@ -18,7 +15,7 @@ namespace astrosplat::panel {
 
 namespace {
 
-// Values that are chosen, not dragged or typed: yes or no, one of several words, some of several words.
+// Values that are chosen: yes or no, one of several words, some of several words.
 
 void boolean_field(Context& context, const Row& row) {
     const bool* on = std::get_if<bool>(&row.value.data);
@@ -85,8 +82,7 @@ void name_field(Context& context, const Row& row, const std::vector<std::string>
     list_field(context, row, set ? *text : empty, choices);
 }
 
-/// In as many lines as the words need; leaves the cursor below and returns true.
-// Words of a list as small switches, in as many lines as they need.
+// Words of a list as small switches, in as many lines as they need; leaves the cursor below and returns true.
 bool words_field(Context& context, const Row& row) {
     const Area& area = row.layout.value;
     const Value::List& words = *row.value.list();

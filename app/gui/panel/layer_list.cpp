@@ -1,6 +1,6 @@
 // One row of 28 px a layer, a second one while it has something to say. Layers that are merged by depth hang
 // on one bracket; the others stand on their own, and only for them the order matters.
-#include "gui/panel/layer_list.h"
+#include "gui/panel/parts.h"
 
 #include <fmt/format.h>
 #include <imgui_internal.h>
@@ -14,9 +14,7 @@
 #include "edit/new_from_file.h"
 #include "gui/icons.h"
 #include "gui/key_codes.h"
-#include "gui/panel/row.h"
 #include "gui/panel/section.h"
-#include "gui/panel/whole_look.h"
 #include "gui/panel/words.h"
 #include "gui/theme.h"
 

@@ -4,10 +4,8 @@
 #include <algorithm>
 
 #include "gui/panel/context.h"
-#include "gui/panel/layer_list.h"
-#include "gui/panel/row.h"
+#include "gui/panel/parts.h"
 #include "gui/panel/section.h"
-#include "gui/panel/tab.h"
 #include "gui/panel/tab_sections.h"
 #include "gui/theme.h"
 #include "gui/widgets.h"

@@ -1,7 +1,6 @@
-// The right side panel (VIEWER.md): layers list, tabs, one row per parameter, plots. In: the document, what
-// the person looks at, the viewer's status. Out: edits of the document and the view state, commands for the
-// viewer, and wishes for a parameter's file. Everything about a parameter comes from its description. No
-// OpenGL.
+// The right side panel: layers list, tabs, one row per parameter, plots. In: the document, what the person
+// looks at, the viewer's status. Out: edits of the document and the view state, commands for the viewer, and
+// wishes for a parameter's file. Everything about a parameter comes from its description. No OpenGL.
 #pragma once
 
 #include <filesystem>

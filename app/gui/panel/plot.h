@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "gui/panel/row.h"
+#include "gui/panel/parts.h"
 
 namespace astrosplat::panel {
 

@@ -1,4 +1,4 @@
-#include "gui/panel/row_sketches.h"
+#include "gui/panel/parts.h"
 
 #include <fmt/format.h>
 
@@ -11,7 +11,6 @@
 #include "generate/lattice.h"
 #include "gui/panel/companions.h"
 #include "gui/panel/context.h"
-#include "gui/panel/curve_plot.h"
 #include "gui/panel/plot.h"
 #include "gui/panel/section.h"
 #include "gui/panel/words.h"
@@ -23,7 +22,7 @@ namespace astrosplat::panel {
 
 namespace {
 
-// Black and white point, dragged over the values of the picture.
+// Histogram of the picture's values with black and white point to drag.
 
 using Values = LayerHistograms::Values;
 
@@ -84,7 +83,7 @@ void edit_levels(Context& context) {
     captions(figures(values.lo), figures(values.hi));
 }
 
-// Small sketches of what parameters mean: a dot, the angles of a hybrid, a noise.
+// Sketches: a dot, the angles of a hybrid, a noise.
 
 // Linear light as an opaque grey of the screen.
 ImU32 grey(double light) {
@@ -246,7 +245,7 @@ ImU32 stop_ink(const glm::vec3& color) {
     return IM_COL32(byte(color.x), byte(color.y), byte(color.z), 255);
 }
 
-/// What the thickness stops make of it: each stop's shape in the colour it stands for, over distances.
+/// The shapes of all thickness stops over distances, each in the colour it stands for.
 void all_densities(Context& context, const ParameterSpec&) {
     const std::vector<ThicknessStop>& stops = context.layer().look.thickness.stops;
     if (stops.empty()) return;

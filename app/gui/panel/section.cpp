@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "gui/icons.h"
-#include "gui/panel/row.h"
+#include "gui/panel/parts.h"
 #include "gui/theme.h"
 
 namespace astrosplat::panel {

@@ -1,7 +1,7 @@
 // Loops over the description: a parameter appears in the section that it names, in the order it was described
-// in, where it has an effect. What sections show besides is in tab_sections.h, list_rows.h and
-// row_sketches.h.
-#include "gui/panel/tab.h"
+// in, where it has an effect. Lists of tables come from a table here; other content of sections is in
+// tab_sections.h and parts.h.
+#include "gui/panel/parts.h"
 
 #include <fmt/format.h>
 
@@ -10,8 +10,6 @@
 
 #include "core/text.h"
 #include "gui/panel/context.h"
-#include "gui/panel/row.h"
-#include "gui/panel/row_sketches.h"
 #include "gui/panel/section.h"
 #include "gui/panel/tab_sections.h"
 #include "gui/panel/words.h"
@@ -20,8 +18,8 @@ namespace astrosplat::panel {
 
 namespace {
 
-// Lists of tables within a layer (meshes, noises, thickness stops): where a tab shows their elements, and how
-// elements come and go.
+// Lists of tables within a layer (meshes, noises, thickness stops): their place in a tab, and how elements
+// come and go.
 
 /// A list within each element of a list.
 struct InnerRows {

@@ -10,12 +10,10 @@
 #include "edit/camera_moves.h"
 #include "edit/keyframes.h"
 #include "gui/panel/box.h"
-#include "gui/panel/color_rows.h"
 #include "gui/panel/context.h"
+#include "gui/panel/parts.h"
 #include "gui/panel/plot.h"
-#include "gui/panel/row.h"
 #include "gui/panel/section.h"
-#include "gui/panel/whole_look.h"
 #include "gui/panel/words.h"
 #include "gui/render_dialog.h"
 #include "gui/theme.h"
@@ -24,7 +22,7 @@ namespace astrosplat::panel {
 
 namespace {
 
-// Before and after of a picture's preparation, and the way to its files.
+// The preparation of a picture: before and after, and the way to its files.
 
 constexpr float tallest = 320.0f;  // px at scale 1
 

@@ -1,5 +1,5 @@
-// What a section of a tab shows besides its parameters: the words at its head, which rows come first, what
-// follows the last. A section that is not listed here has its rows alone.
+// The content of a section of a tab besides its parameters: the words at its head, which rows come first,
+// what follows the last. A section that is not listed here has its rows alone.
 #pragma once
 
 #include <span>

@@ -1,5 +1,5 @@
 // A look as a whole: copied and pasted between layers here, exported and applied through the viewer.
-#include "gui/panel/whole_look.h"
+#include "gui/panel/parts.h"
 
 #include "gui/panel/section.h"
 

@@ -17,7 +17,8 @@ TEST(FileFormat, NamesInCapitalsOrNot) {
         EXPECT_NE(format_by_name(name), nullptr) << name;
     EXPECT_EQ(id_of(format_by_name("x.y.FITS.GZ")), "fits");
     EXPECT_EQ(id_of(format_by_name("a b.Exr")), "openexr");
-    for (const char* name : {"a.txt", "a.null", "a.mp4", "a.gz", "a", ".png", "png", ""})
+    EXPECT_EQ(id_of(format_by_name("a.mp4")), "movie") << "which is written, and read by nothing";
+    for (const char* name : {"a.txt", "a.null", "a.avi", "a.gz", "a", ".png", "png", ""})
         EXPECT_EQ(format_by_name(name), nullptr) << name;
 }
 

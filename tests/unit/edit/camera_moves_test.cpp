@@ -281,7 +281,8 @@ TEST_F(CameraMoves, AnEmptyBoxIsTheOrigin) {
         add_camera_move(scene, move, {}, 1.0);
         for (const double frame : {1.0, 121.0, 241.0}) {
             EXPECT_EQ(target(frame), glm::dvec3(0.0));
-            EXPECT_LE(glm::length(position(frame)), 5.0 + rounding) << frame;
+            // An orbit that has no arm gets one as long as the camera is high.
+            EXPECT_LE(glm::length(position(frame)), 5.0 * std::sqrt(2.0) + 1e-3) << frame;
         }
         EXPECT_NO_THROW(check_edited_scene(scene, "scene"));
     }

@@ -88,8 +88,8 @@ TEST(RenderTask, AMovieIsOneFileWhateverItsFramesAreCalled) {
     for (const char* name : {"a.####.mp4", "a.%04d.mp4", "a{frame:04}.mp4", "%V.mp4", "a.%v.mp4"})
         EXPECT_NE(render_problem(task_of(RenderKind::movie, name), {}), "") << name;
     for (const std::string pattern : {"frame.####.exr", "frame.%04d.exr", "{frame:04}.exr", "%V.####.exr"}) {
-        const Document document = Document::untitled(
-            "astrosplat = 1\n[output]\npath = \"" + pattern + "\"\n", "/films/scene.toml");
+        const Document document =
+            Document::untitled("astrosplat = 1\n[output]\npath = \"" + pattern + "\"\n", "/films/scene.toml");
         const RenderTask movie = make_render_task(document, RenderKind::movie, 1.0);
         EXPECT_EQ(movie.name, "frame.mp4") << pattern;
         EXPECT_EQ(render_problem(movie, {}), "") << pattern;

@@ -96,7 +96,7 @@ TEST(Fill, PartsAreConnectedAtCornersToo) {
     mask.at(6, 5) = 1;
     const std::vector<PixelPart> parts = connected_parts(mask);
     ASSERT_EQ(parts.size(), 2u);
-    EXPECT_EQ(parts[0].pixels, (std::vector<std::int64_t>{9, 11, 18}));
+    EXPECT_EQ(parts[0].pixels, (std::vector<std::int64_t>{9, 18, 11})) << "from the first one outwards";
     EXPECT_EQ(parts[0].box.width, 3);
     EXPECT_EQ(parts[0].box.height, 2);
     EXPECT_EQ(parts[1].box.x, 6);

@@ -97,6 +97,7 @@ TEST(Project, TheLimitOfLevelsIsForTheLinesOfThePicture) {
 TEST(Project, StopsAmongTheChildrenOfASplat) {
     const ShadedSplats splats = make_splats({{{0.0f, 0.0f, -2.0f}, 0.5f}});
     RenderLayer layer = layer_of("one", splats);
+    layer.render.falloff.shape = Falloff::Shape::gaussian;
     layer.render.lod.max_px = 0.01f;
     layer.render.lod.max_children = 1 << 20;
     LodTable table(layer.render.falloff);

@@ -90,7 +90,7 @@ void expect_same_picture(const Draw& draw, const RenderSettings& usual, std::int
     EXPECT_GT(total(expected, 3), 100.0);
     expect_same_bits([&] { return Bits() << draw(usual); });
     RenderSettings settings = usual;
-    for (const int tile : {16, 24, 48, 128}) {
+    for (const int tile : {16, 48, 128}) {
         settings.tile_px = tile;
         EXPECT_EQ(expected.pixels, draw(settings).pixels) << "tiles of " << tile;
     }

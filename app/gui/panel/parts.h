@@ -1,0 +1,81 @@
+// The parts of the side panel, each drawn at the cursor of the current ImGui window: the list of layers,
+// tabs, and the row of one parameter with its widget, its plot and its words. All of a row follows from the
+// parameter's description.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "gui/panel/box.h"
+#include "gui/panel/context.h"
+
+namespace astrosplat::panel {
+
+/// Draws the row of a parameter.
+void parameter_row(Context& context, const Parameter& parameter);
+
+/// The places of a row's parts.
+struct RowLayout {
+    Area whole, label, value;
+    ImVec2 diamond;  // its middle
+};
+
+struct Row {
+    const Parameter& parameter;
+    Value value;  // at the current frame
+    RowLayout layout;
+    const ParameterKey& key() const { return parameter.spec.key; }
+};
+
+inline constexpr float row_height = 24.0f, row_space = 2.0f;  // px at scale 1
+
+/// The value's widget by the parameter's type. True where it took more than one row's height, and the cursor
+/// stands below it already.
+bool value_field(Context& context, const Row& row);
+
+/// A drawing above the row of this parameter; none for most.
+void draw_above(Context& context, const ParameterSpec& spec);
+
+/// The word shown in place of 0 where that is no amount, with the value in use where it is known: "Off",
+/// "Auto (0.0165)". Empty: it is an amount.
+std::string zero_in_words(const Context& context, const ParameterSpec& spec);
+
+/// A plot of the curve whose points the parameter `key` holds: click adds, drag moves, right click deletes,
+/// arrows nudge. `samples` is the curve itself, over x in 0..1. The area takes the mouse.
+void edit_curve(Context& context, const ParameterKey& key, const Area& area, std::span<const float> samples);
+
+/// The names that a row of colour management offers besides the empty one; none: it is no such row, or they
+/// are not known.
+std::optional<std::vector<std::string>> names_to_choose(const Context& context, const ParameterSpec& spec);
+
+/// The text of a row whose value is empty: "Screen (first)"; "None" for most.
+std::string empty_in_words(const Context& context, const ParameterSpec& spec);
+
+/// Whether there is anything to choose in a row of colour management; true for all others.
+bool suits_colors(const Context& context, const ParameterSpec& spec);
+
+/// At the head of the folded section of colour management: "Screen, Film".
+std::string colors_state(const Context& context);
+
+/// Below the rows of colour management: why the configuration cannot be used.
+void colors_note(Context& context);
+
+/// Commands on a layer's look as a whole, as buttons or as items of a menu.
+void look_buttons(Context& context);
+void look_menu(Context& context);
+
+/// The tab `name`, as ParameterSpec::tab has it. Layers' tabs show the selected layer; there must be one.
+void draw_tab(Context& context, std::string_view name);
+
+/// Draws the list of layers over the width of the current window, `height` px at most; longer lists scroll.
+void layer_list(Context& context, float height);
+
+/// The plus that adds a layer, with its menu.
+void add_layer_button(Context& context);
+
+/// Height the whole list would take, px.
+float layer_list_height(const Context& context);
+
+}  // namespace astrosplat::panel
