@@ -2,48 +2,17 @@
 // Out: edits of the document and the view state, and commands for the viewer. No OpenGL.
 #pragma once
 
-#include <filesystem>
-#include <functional>
-#include <glm/vec2.hpp>
-#include <glm/vec3.hpp>
 #include <memory>
-#include <optional>
-#include <string>
 #include <vector>
 
 #include "edit/commands.h"
 #include "edit/document.h"
 #include "edit/status.h"
 #include "edit/view_state.h"
+#include "gui/gui_frame.h"
 #include "gui/layout.h"
 
 namespace astrosplat {
-
-/// Fonts, colours, spacing: once after ImGui::CreateContext. `content_scale`: of the monitor; `contrast` as
-/// set_contrast() has it.
-void apply_theme(float content_scale, int contrast = 0);
-
-/// Mouse and keyboard over the viewport in this frame. px are relative to the viewport's upper left.
-struct ViewportInput {
-    bool hovered = false;
-    glm::dvec2 mouse_px{0.0}, delta_px{0.0};
-    float wheel = 0.0f;
-    enum class Drag { none, orbit, pan, dolly, look, wipe, place, handle, path } drag = Drag::none;
-    bool drag_begins = false, drag_ends = false;
-    bool double_click = false;
-    /// The left button was pressed and let go in one place: `behind` with Ctrl, or in the place of the last
-    /// one.
-    enum class Click { none, in_front, behind } click = Click::none;
-    glm::dvec3 fly{0.0};  // -1..1 right, up, forward while looking around
-    double speed = 1.0;   // of flying: Shift 10, Alt 0.1; 1 in other drags
-};
-
-/// A control of the last frame and the middle of it, px of the window: for tests and for a driver that wants
-/// to reach one by its name.
-struct DrawnItem {
-    std::string name;  // "File/Open...", "play", "keyframe camera.position 12"
-    glm::vec2 middle;
-};
 
 class Panel;
 

@@ -10,8 +10,6 @@
 #include <string>
 #include <vector>
 
-#include "gui/gui.h"
-
 namespace astrosplat {
 namespace fs = std::filesystem;
 namespace {

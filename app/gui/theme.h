@@ -31,6 +31,10 @@ inline ImU32 selection = with_opacity(accent, 0.28f);
 inline ImU32 fill = with_opacity(accent, 0.25f);
 }  // namespace color
 
+/// Fonts, colours, spacing: once after ImGui::CreateContext. `content_scale`: of the monitor; `contrast` as
+/// set_contrast() has it.
+void apply_theme(float content_scale, int contrast = 0);
+
 /// For ImGui::PushStyleColor and the like that want floats.
 inline ImVec4 color4(ImU32 c) { return ImGui::ColorConvertU32ToFloat4(c); }
 

@@ -14,6 +14,7 @@
 #include "core/hash.h"
 #include "gl/objects.h"
 #include "gui/gui.h"
+#include "gui/theme.h"
 
 // glad before GLFW, which would bring the system's OpenGL header.
 

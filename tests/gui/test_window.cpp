@@ -7,6 +7,7 @@
 #include <cstdlib>
 
 #include "gui/key_map.h"
+#include "gui/theme.h"
 
 namespace astrosplat {
 namespace {

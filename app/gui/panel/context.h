@@ -6,13 +6,22 @@
 #include <imgui.h>
 
 #include <map>
+#include <memory>
 #include <optional>
 #include <set>
 #include <string>
 #include <unordered_map>
+#include <vector>
 
-#include "gui/panel/panel.h"
+#include "edit/commands.h"
+#include "edit/document.h"
+#include "edit/status.h"
+#include "edit/view_state.h"
 #include "scene/describe.h"
+
+namespace astrosplat {
+struct DrawnRow;  // panel.h
+}
 
 namespace astrosplat::panel {
 

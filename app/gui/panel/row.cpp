@@ -1,10 +1,10 @@
 // The surroundings of a value: where things lie, label with tick, diamond, tooltip, menu, message.
-#include "gui/panel/parts.h"
-
 #include <cmath>
 
 #include "edit/keyframes.h"
 #include "gui/icons.h"
+#include "gui/panel/panel.h"
+#include "gui/panel/parts.h"
 #include "gui/panel/section.h"
 #include "gui/panel/words.h"
 #include "gui/theme.h"

@@ -222,7 +222,7 @@ TEST(Structure, NoTwoTypesHaveOneName) {
 
 // What one file alone needs stands in that file. The number of the others may only fall.
 TEST(Structure, AHeaderHasTwoUsersOrATest) {
-    constexpr std::size_t allowed = 87;
+    constexpr std::size_t allowed = 19;
     std::map<std::string, std::set<std::string>> users;  // of each header, by its path
     for (const char* const folder : {"engine", "app", "tests"})
         for (const Include& include : includes_below(folder))
@@ -258,7 +258,7 @@ std::map<std::string, std::set<std::string>> ideas_below(const std::string& fold
 
 // Who changes one idea of a circle has to know all of them. Their number may only fall; 0 is wanted.
 TEST(Structure, IdeasOfTheWindowPointOneWay) {
-    const std::map<std::string, std::size_t> allowed = {{"app/gui", 56}, {"app/viewer", 3}};
+    const std::map<std::string, std::size_t> allowed = {{"app/gui", 0}, {"app/viewer", 2}};
     for (const auto& [folder, most] : allowed) {
         auto arrows = ideas_below(folder);
         ASSERT_GT(arrows.size(), 15u);
