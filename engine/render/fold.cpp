@@ -178,7 +178,7 @@ void fold_batch(const FoldJob& job, const FoldCommon& common, SplatBatch& batch,
     SplatBits touching;
     for (std::uint64_t rest = cell.open; rest != 0; rest &= rest - 1)
         touching |= batch.touches[std::countr_zero(rest)];
-    if (touching.any()) prepare_splats<Pixels::general, Pixels::aovs>(job, common, touching, batch);
+    if (touching.any()) prepare_splats<Pixels>(job, common, touching, batch);
     for (std::uint64_t rest = cell.open; rest != 0; rest &= rest - 1) {
         const int block = std::countr_zero(rest);
         if (!batch.touches[block].any()) continue;
@@ -187,22 +187,6 @@ void fold_batch(const FoldJob& job, const FoldCommon& common, SplatBatch& batch,
             cell.open &= ~(std::uint64_t{1} << block);
     }
 }
-
-/// Pixels that are closed take their final values.
-template <class Pixels>
-void close_cell(const Cell& cell, float stop, TilePlanes& planes) {
-    for (std::size_t i = cell.first_pixel; i < cell.first_pixel + TilePlanes::cell_pixels; i += lanes) {
-        Pixels pixels(planes, i);
-        pixels.close(all(stop));
-        pixels.store_to(planes, i);
-    }
-}
-
-/// The functions that fold a cell's splats; the rest is compiled once for all kinds of pixels.
-struct CellFold {
-    void (*batch)(const FoldJob&, const FoldCommon&, SplatBatch&, Cell&, TilePlanes&);
-    void (*close)(const Cell&, float stop, TilePlanes&);  // null: no pixel closes
-};
 
 /// Distance from the centre beyond which a splat's weights are 0. Radii below the smallest tabulated one have
 /// its support.
@@ -263,6 +247,16 @@ std::uint64_t used_blocks(const TilePlanes& planes, int column, int row) {
     return used;
 }
 
+/// Pixels that are closed take their final values.
+template <class Pixels>
+void close_cell(const Cell& cell, float stop, TilePlanes& planes) {
+    for (std::size_t i = cell.first_pixel; i < cell.first_pixel + TilePlanes::cell_pixels; i += lanes) {
+        Pixels pixels(planes, i);
+        pixels.close(all(stop));
+        pixels.store_to(planes, i);
+    }
+}
+
 FoldCommon common_of(const FoldJob& job) {
     const std::span<const FoldLayer> layers = job.layers;
     const auto all_like = [&](auto&& test) { return std::ranges::all_of(layers, test); };
@@ -277,9 +271,9 @@ FoldCommon common_of(const FoldJob& job) {
 
 /// Folds the splats found, as far as they make whole batches; the others move to the front. `last`:
 /// also those.
-template <bool kSphere>
-void fold_found(const FoldJob& job, const FoldCommon& common, const CellFold& fold, bool last,
-                CellSplats& found, SplatBatch& batch, Cell& cell, TilePlanes& planes) {
+template <class Pixels, Outline kOutline>
+void fold_found(const FoldJob& job, const FoldCommon& common, bool last, CellSplats& found, SplatBatch& batch,
+                Cell& cell, TilePlanes& planes) {
     constexpr std::size_t size = SplatBatch::size;
     std::size_t begin = 0;
     for (; begin + size <= found.count || (last && begin < found.count); begin += size) {
@@ -289,20 +283,20 @@ void fold_found(const FoldJob& job, const FoldCommon& common, const CellFold& fo
         batch.y_px = &found.discs.y_px[begin];
         batch.reach_px = &found.discs.reach_px[begin];
         batch.index = &found.index[begin];
-        if constexpr (kSphere) {
+        if constexpr (is_onto_sphere(kOutline)) {
             batch.toward[0] = &found.toward.x[begin];
             batch.toward[1] = &found.toward.y[begin];
             batch.toward[2] = &found.toward.z[begin];
         }
         for (std::size_t i = begin + batch.count; i % lanes != 0; ++i) found.discs.set_nowhere(i);
-        fold.batch(job, common, batch, cell, planes);
+        fold_batch<Pixels, kOutline>(job, common, batch, cell, planes);
         if (cell.open == 0) return;
     }
     found.keep_from(std::min(begin, found.count));
 }
 
-template <bool kSphere>
-void fold_all_cells(const FoldJob& job, const CellFold& fold, TilePlanes& planes) {
+template <class Pixels, Outline kOutline>
+void fold_cells(const FoldJob& job, TilePlanes& planes) {
     constexpr std::size_t step = 1024;  // splats looked at before some are folded, while in cache
     static_assert(step % lanes == 0);
     constexpr std::size_t most_kept = 1 << 20;  // discs that a thread keeps for its next tile
@@ -313,7 +307,8 @@ void fold_all_cells(const FoldJob& job, const CellFold& fold, TilePlanes& planes
     find_discs(job, scratch->discs);
     CellSplats& found = scratch->found;
     found.resize(step + SplatBatch::size + lanes);
-    if constexpr (kSphere) {
+    constexpr bool sphere = is_onto_sphere(kOutline);
+    if constexpr (sphere) {
         const float focal_px = job.settings.lens.focal_px;
         scratch->batch.per_square = 1.0f / (4.0f * focal_px * focal_px);
         find_directions(job.settings.lens, scratch->discs, job.splats.size(), scratch->toward);
@@ -330,7 +325,7 @@ void fold_all_cells(const FoldJob& job, const CellFold& fold, TilePlanes& planes
                   caps};
         found.count = 0;
         Cap whole;
-        if constexpr (kSphere) {
+        if constexpr (sphere) {
             whole = cap_of(planes, cell.first_pixel, TilePlanes::cell_pixels);
             for (std::size_t b = 0; b < SplatBatch::blocks; ++b)
                 caps[b] =
@@ -338,25 +333,18 @@ void fold_all_cells(const FoldJob& job, const CellFold& fold, TilePlanes& planes
         }
         for (std::size_t i = 0; i < job.splats.size() && cell.open != 0; i += step) {
             const std::size_t end = std::min(i + step, job.splats.size());
-            if constexpr (kSphere)
+            if constexpr (sphere)
                 find_on_sphere(*scratch, i, end, whole,
                                cell.x0_px + 0.5f * static_cast<float>(TilePlanes::cell_px),
                                shared::period_px(job.settings.lens), found);
             else
                 find_in_cell(scratch->discs, i, end, cell, found);
-            fold_found<kSphere>(job, common, fold, end == job.splats.size(), found, scratch->batch, cell,
-                                planes);
+            fold_found<Pixels, kOutline>(job, common, end == job.splats.size(), found, scratch->batch, cell,
+                                         planes);
         }
-        if (fold.close) fold.close(cell, job.settings.stop, planes);
+        if constexpr (Pixels::closes) close_cell<Pixels>(cell, job.settings.stop, planes);
     }
     if (job.splats.size() > most_kept) scratch->discs = {};
-}
-
-template <class Pixels, Outline kOutline>
-void fold_cells(const FoldJob& job, TilePlanes& planes) {
-    CellFold fold{fold_batch<Pixels, kOutline>, nullptr};
-    if constexpr (Pixels::closes) fold.close = close_cell<Pixels>;
-    fold_all_cells<is_onto_sphere(kOutline)>(job, fold, planes);
 }
 
 template <class Pixels>

@@ -237,7 +237,7 @@ inline float depth_of(const ScreenSplat& splat, const FoldSettings& settings) {
 }
 
 /// Everything about the splats `which` of the batch.
-template <bool kGeneral, bool kAovs>
+template <class Pixels>
 void prepare_splats(const FoldJob& job, const FoldCommon& common, SplatBits which, SplatBatch& batch) {
     for (SplatBits rest = which; rest.any();) {
         const int i = rest.take_first();
@@ -246,9 +246,9 @@ void prepare_splats(const FoldJob& job, const FoldCommon& common, SplatBits whic
         batch.alpha[i] = splat.opacity;
         for (int k = 0; k < 3; ++k) batch.color[k][i] = splat.color[k];
         if (!common.footprints) prepare_weight(job, splat, batch, i);
-        if constexpr (kGeneral)
+        if constexpr (Pixels::general)
             if (!common.screen) prepare_occlusion(splat, job.layers[splat.layer], batch, i);
-        if constexpr (kAovs) {
+        if constexpr (Pixels::aovs) {
             batch.layer[i] = splat.layer;
             batch.depth[i] = depth_of(splat, job.settings);
         }
@@ -264,7 +264,7 @@ void prepare_splats(const FoldJob& job, const FoldCommon& common, SplatBits whic
         const V opacity = hn::Mul(load(batch.alpha + n), load(batch.weight_gain + n));
         store(opacity, batch.opacity + n);
         is_faint = hn::And(is_faint, hn::Lt(opacity, all(faint)));
-        if (kGeneral && common.screen) prepare_screens(batch, n);
+        if (Pixels::general && common.screen) prepare_screens(batch, n);
     }
     batch.is_faint = hn::AllTrue(D(), is_faint);
 }
