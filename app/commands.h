@@ -1,6 +1,6 @@
 // The subcommands of the command line. In: options as typed. Out: an exit code (exit_code.h), results on
-// stdout, errors thrown for main to report. --batch, --submit and the viewer, which others call too, have
-// headers of their own.
+// stdout, errors thrown for main to report. --batch and the viewer, which others call too, have headers of
+// their own.
 #pragma once
 
 #include <filesystem>
@@ -146,5 +146,19 @@ struct StatusOptions {
 
 /// exit_done where every frame is there, exit_some_failed otherwise. Throws InputError.
 int run_status(const StatusOptions& options);
+
+// --submit slurm: the frames that are missing for a farm, as a job that makes the sets and an array of tasks
+// that are plain --batch runs.
+
+struct SubmitOptions {
+    std::string system;                    // "slurm"
+    std::optional<std::string> chunk;      // frames of a task; default 10
+    std::optional<std::string> partition;  // of the cluster; default: its own
+};
+
+/// Submits nothing where nothing is missing, or what is missing is on its way already. Afterwards either both
+/// jobs are in the queue or neither. Throws InputError (bad options, sbatch missing or refusing), OutputError
+/// (no place for scripts beside the frames), Cancelled.
+int run_submit(const SubmitOptions& options, const BatchOptions& batch);
 
 }  // namespace astrosplat

@@ -6,7 +6,6 @@
 
 #include "batch.h"
 #include "commands.h"
-#include "submit/submit.h"
 #include "viewer/run_viewer.h"
 
 namespace astrosplat {

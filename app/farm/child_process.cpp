@@ -108,6 +108,7 @@ std::string without_prefix(const std::string& line) {
 
 std::optional<ToolResult> run_tool(const std::vector<std::string>& words, const fs::path& folder) {
     Pipe out, err;
+    if (out.ends[1] < 0 || err.ends[1] < 0) return std::nullopt;  // no descriptors left
     const Started tool = start(words, folder, out.ends[1], err.ends[1]);
     if (tool.error != 0) return std::nullopt;
     for (Pipe* pipe : {&out, &err}) Pipe::close_end(pipe->ends[1]);

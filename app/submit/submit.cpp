@@ -1,5 +1,5 @@
 // A plan of the frames, chunks of those to be rendered, two scripts, two calls of sbatch.
-#include "submit/submit.h"
+#include "commands.h"
 
 #include <fmt/format.h>
 

@@ -132,16 +132,17 @@ DisplaySettings::Mode mode_of(CompareMode compare, bool blink_shows_other) {
 
 Image thumbnail_of(const std::vector<unsigned char>& rgba, int width, int height, int most) {
     const int factor = std::max(1, (width + most - 1) / most);
+    const int rows = std::min(factor, height);  // of a block, in a view lower than a block is wide
     Image small = make_image(std::max(1, width / factor), std::max(1, height / factor), 4, 0.0f);
     for (std::int64_t y = 0; y < small.height; ++y)
         for (std::int64_t x = 0; x < small.width; ++x)
             for (int c = 0; c < 4; ++c) {
                 int sum = 0;
-                for (int j = 0; j < factor; ++j)
+                for (int j = 0; j < rows; ++j)
                     for (int i = 0; i < factor; ++i)
                         sum += rgba[static_cast<std::size_t>(((y * factor + j) * width + x * factor + i) * 4 +
                                                              c)];
-                small.at(x, y)[c] = static_cast<float>(sum) / (255.0f * static_cast<float>(factor * factor));
+                small.at(x, y)[c] = static_cast<float>(sum) / (255.0f * static_cast<float>(factor * rows));
             }
     return small;
 }

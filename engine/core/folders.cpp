@@ -40,8 +40,6 @@ void make_folder(const fs::path& folder) {
     if (error) throw OutputError(folder.string() + ": cannot create this folder: " + error.message());
 }
 
-namespace fs = std::filesystem;
-
 fs::path assets_folder(const std::string& name) {
     std::error_code ignored;
     const fs::path program = fs::read_symlink("/proc/self/exe", ignored);

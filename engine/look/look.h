@@ -1,5 +1,5 @@
 // The look of a layer: every number an artist tunes between a SplatSet and what is drawn (DESIGN 5). Plain
-// values; SCENE.md's defaults are the defaults here. apply.h turns them into ShadedSplats.
+// values; what a scene file leaves out has the defaults here. apply.h turns them into ShadedSplats.
 #pragma once
 
 #include <cstdint>

@@ -304,9 +304,6 @@ void describe_layer(const Describer& d, LayerParams& layer) {
 
 namespace {
 
-using Type = ParameterType;
-using namespace traits;
-
 void describe_curve(const Describer& d, DensityCurve& curve) {
     d(curve.shape, "shape", "Density with distance", "", "How density falls from the surface to reach.",
       shown_as("Shape"));

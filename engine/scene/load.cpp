@@ -92,11 +92,6 @@ void apply_preset(const PresetFile& preset, const std::function<Description()>& 
     apply_entries(std::move(entries), origin, describe, places);
 }
 
-}  // namespace
-
-namespace fs = std::filesystem;
-namespace {
-
 /// One layer of the file: its table, and what names it in keys.
 struct LayerTable {
     const toml::table* table;

@@ -1,4 +1,4 @@
-// A scene: sources + looks + layers + camera + environment + animation + output, as plain values (SCENE.md).
+// A scene: sources + looks + layers + camera + environment + animation + output, as plain values.
 // load.h reads it from TOML, save.h writes it back, describe.h lists every parameter, animate.h evaluates
 // frame k.
 #pragma once

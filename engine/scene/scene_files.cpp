@@ -59,8 +59,6 @@ std::vector<fs::path> picture_files(const Scene& scene) {
     return files;
 }
 
-namespace fs = std::filesystem;
-
 std::string expand_environment(const std::string& text) {
     std::string expanded;
     std::size_t from = 0;

@@ -215,8 +215,6 @@ void keep(const SetCache& cache, const std::vector<KeptFile>& entries, SplatSet&
 
 namespace {
 
-namespace fs = std::filesystem;
-
 // A picture that is kept, and is now used; nothing where there is no entry, or a damaged one, which is
 // removed with a warning that ends in `remedy`. Throws Cancelled.
 std::optional<PreparedPicture> read_kept_picture(const fs::path& file, const char* remedy,

@@ -1,4 +1,4 @@
-// The values of [layer.source] in a scene file. SCENE.md's defaults are the defaults here.
+// The values of [layer.source] in a scene file; what is left out there has the defaults here.
 #pragma once
 
 #include <cstdint>

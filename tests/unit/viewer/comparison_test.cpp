@@ -67,6 +67,10 @@ TEST(Thumbnail, AveragesBoxes) {
     }
     EXPECT_EQ(small.at(1, 0)[3], 1.0f);
     EXPECT_EQ(thumbnail_of(rgba, 4, 3, 8).width, 4) << "small pictures stay as they are";
+    const Image low = thumbnail_of(std::vector<unsigned char>(8 * 4, 51), 8, 1, 2);  // blocks of 4 x 1 px
+    EXPECT_EQ(low.width, 2);
+    EXPECT_EQ(low.height, 1);
+    EXPECT_FLOAT_EQ(low.at(1, 0)[0], 0.2f);
 }
 
 }  // namespace
