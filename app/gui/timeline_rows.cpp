@@ -143,7 +143,7 @@ void draw_keyframe_menu(TimelineState& t, GuiFrame& frame) {
     ImGui::EndPopup();
 }
 
-constexpr float row_height = 26, keyframe_reach = 7, name_width = 160, value_gutter = 56;
+constexpr float track_height = 26, keyframe_reach = 7, track_name_width = 160, value_gutter = 56;
 
 // Diamond: linear; disc: smooth; square: step; hourglass: Bezier.
 void draw_keyframe_mark(ImDrawList* list, ImVec2 at, Interpolation interpolation, bool selected) {
@@ -175,7 +175,7 @@ std::string value_text(const std::vector<double>& numbers) {
 
 std::optional<KeyframePlace> keyframe_under_mouse(const TimelineState& t, const Scene& scene, float rows_y) {
     const ImVec2 mouse = ImGui::GetIO().MousePos;
-    const int row = static_cast<int>(std::floor((mouse.y - rows_y) / px(row_height)));
+    const int row = static_cast<int>(std::floor((mouse.y - rows_y) / px(track_height)));
     if (row < 0 || row >= static_cast<int>(scene.animation.size())) return std::nullopt;
     const Track& track = scene.animation[static_cast<std::size_t>(row)];
     float nearest = px(keyframe_reach);
@@ -232,7 +232,7 @@ void select_in_box(TimelineState& t, const Scene& scene, float rows_y) {
     const ImVec2 high{std::max(t.box_x, mouse.x), std::max(t.box_y, mouse.y)};
     t.selected.clear();
     for (std::size_t row = 0; row < scene.animation.size(); ++row) {
-        const float y = rows_y + (static_cast<float>(row) + 0.5f) * px(row_height);
+        const float y = rows_y + (static_cast<float>(row) + 0.5f) * px(track_height);
         if (y < low.y || y > high.y) continue;
         for (const auto& keyframe : scene.animation[row].keyframes) {
             const float x = t.scale.x_of(keyframe.frame);
@@ -247,11 +247,11 @@ void select_in_box(TimelineState& t, const Scene& scene, float rows_y) {
 void draw_name(TimelineState& t, GuiFrame& frame, const Track& track, float x, float y, float width) {
     ImGui::PushID(track.key.text().c_str());
     ImGui::SetCursorScreenPos({x, y});
-    if (ImGui::InvisibleButton("name", {width, px(row_height)})) frame.view.graph_parameter = track.key;
+    if (ImGui::InvisibleButton("name", {width, px(track_height)})) frame.view.graph_parameter = track.key;
     ImGui::SetItemAllowOverlap();
     note_item(frame, "track " + track.key.text());
     ImDrawList* list = ImGui::GetWindowDrawList();
-    const ImVec2 low{x, y}, high{x + width, y + px(row_height)};
+    const ImVec2 low{x, y}, high{x + width, y + px(track_height)};
     const bool chosen = frame.view.graph_parameter == track.key;
     if (chosen)
         list->AddRectFilled(low, high, color::selection);
@@ -262,17 +262,17 @@ void draw_name(TimelineState& t, GuiFrame& frame, const Track& track, float x, f
     const bool has_channels = chosen && frame.view.graph_open && track.keyframes[0].value.size() > 1;
     const float room = has_channels ? channels_width(track) : 0.0f;
     const std::string text = fitting(whole, width - px(20) - room);
-    const float text_y = y + std::floor((px(row_height) - ImGui::GetFontSize()) * 0.5f);
+    const float text_y = y + std::floor((px(track_height) - ImGui::GetFontSize()) * 0.5f);
     list->AddText({x + px(12), text_y}, chosen ? color::text : color::dim, text.c_str());
     tooltip((whole + "\n" + track.key.text()).c_str());
     if (has_channels && spec != t.specs.end())
-        draw_channels(frame, track, spec->second, x + width - room, y, px(row_height));
+        draw_channels(frame, track, spec->second, x + width - room, y, px(track_height));
     ImGui::PopID();
 }
 
 void draw_keyframes(TimelineState& t, GuiFrame& frame, const Track& track, float y) {
     ImDrawList* list = ImGui::GetWindowDrawList();
-    const float middle = std::floor(y + px(row_height) * 0.5f) + 0.5f;
+    const float middle = std::floor(y + px(track_height) * 0.5f) + 0.5f;
     if (track.keyframes.size() > 1)
         list->AddLine({t.scale.x_of(track.keyframes.front().frame), middle},
                       {t.scale.x_of(track.keyframes.back().frame), middle},
@@ -328,7 +328,7 @@ void draw_playhead_line(const TimelineState& t, const GuiFrame& frame, const Rec
 }  // namespace
 
 float names_width(const ViewState& view) {
-    return px(name_width) + (view.graph_open ? px(value_gutter) : 0.0f);
+    return px(track_name_width) + (view.graph_open ? px(value_gutter) : 0.0f);
 }
 
 void draw_rows(TimelineState& t, GuiFrame& frame, const Rect& area) {
@@ -337,7 +337,7 @@ void draw_rows(TimelineState& t, GuiFrame& frame, const Rect& area) {
     const float names = names_width(frame.view);
     const ImVec2 origin = ImGui::GetCursorScreenPos();  // moves while scrolled
     const std::vector<Track> tracks = frame.document.scene().animation;
-    const float height = static_cast<float>(tracks.size()) * px(row_height);
+    const float height = static_cast<float>(tracks.size()) * px(track_height);
     ImDrawList* list = ImGui::GetWindowDrawList();
     if (tracks.empty()) {
         ImGui::SetCursorScreenPos({origin.x + px(12), origin.y + px(4)});
@@ -347,7 +347,7 @@ void draw_rows(TimelineState& t, GuiFrame& frame, const Rect& area) {
         row_text(moves +
                      "The diamond beside a value sets a keyframe at this frame; K sets the "
                      "camera's.",
-                 px(row_height), color::dim);
+                 px(track_height), color::dim);
     } else if (frame.view.graph_open) {
         draw_graph(t, frame, {origin.x + names, area.y, area.width - names, area.height});
     } else {
@@ -356,17 +356,17 @@ void draw_rows(TimelineState& t, GuiFrame& frame, const Rect& area) {
     }
     float y = origin.y;
     for (const Track& track : tracks) {
-        draw_name(t, frame, track, origin.x, y, px(name_width));
+        draw_name(t, frame, track, origin.x, y, px(track_name_width));
         if (!frame.view.graph_open) {
-            list->AddLine({origin.x, y + px(row_height) - 0.5f},
-                          {origin.x + area.width, y + px(row_height) - 0.5f},
+            list->AddLine({origin.x, y + px(track_height) - 0.5f},
+                          {origin.x + area.width, y + px(track_height) - 0.5f},
                           color::with_opacity(color::line, 0.6f));
             ImGui::PushClipRect({origin.x + names, area.y}, {area.x + area.width, area.y + area.height},
                                 true);
             draw_keyframes(t, frame, track, y);
             ImGui::PopClipRect();
         }
-        y += px(row_height);
+        y += px(track_height);
     }
     if (!tracks.empty()) draw_playhead_line(t, frame, area);
     const bool here = ImGui::IsWindowHovered(ImGuiHoveredFlags_AllowWhenBlockedByActiveItem);
