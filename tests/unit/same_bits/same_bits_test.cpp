@@ -87,14 +87,23 @@ Bits stars_removed() {
 
 /// What is left of the picture, and what was taken of it.
 template <class Take>
-Bits taken(const Take& take) {
-    Image light = galaxy();
+Bits taken(Image light, const Take& take) {
     const std::vector<Star> stars = take(light);
-    EXPECT_GT(stars.size(), 3u);
+    EXPECT_GT(stars.size(), 10u);
     Bits bits;
     for (const Star& star : stars)
         bits << star.x << star.y << star.sigma << star.peak.x << star.peak.y << star.peak.z;
     return bits << light;
+}
+
+/// With twelve stars more, burnt out at 1.
+Image with_bright_stars() {
+    Image image = painted::galaxy(480, 300);
+    for (std::uint32_t i = 0; i < 12; ++i)
+        painted::add_point(image, 30.0 + 420.0 * painted::random(i, 51),
+                           30.0 + 240.0 * painted::random(i, 52), 1.5 + painted::random(i, 53), 3, 3, 2);
+    for (float& value : image.pixels) value = std::min(value, 1.0f);
+    return image;
 }
 
 Bits bands() {
@@ -208,8 +217,8 @@ const std::map<std::string, std::function<Bits()>> functions = {
     {"front_fidelity", fidelity},
     {"tiled_sky", sky},
     {"generate", [] { return Bits() << generated(); }},
-    {"take_stars", [] { return taken([](Image& light) { return take_stars(light); }); }},
-    {"take_bright_stars", [] { return taken(take_bright_stars); }},
+    {"take_stars", [] { return taken(galaxy(), [](Image& light) { return take_stars(light); }); }},
+    {"take_bright_stars", [] { return taken(with_bright_stars(), take_bright_stars); }},
     {"split_bands", bands},
     {"flat_light", flat_light},
     {"add_margins", margins},
