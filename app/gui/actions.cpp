@@ -1,16 +1,51 @@
-// The table of actions and the loop that finds the one a shortcut means.
+// The table of actions, in the end, and what they do; the loop that finds the one a shortcut means.
 #include "gui/actions.h"
 
-#include <imgui.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
 
 #include "edit/camera_moves.h"
+#include "edit/keyframes.h"
+#include "edit/layers.h"
 #include "edit/new_from_file.h"
-#include "gui/action_functions.h"
-#include "gui/key_codes.h"
-#include "gui/move_dialog.h"
-#include "gui/render_dialog.h"
+#include "edit/view_camera.h"
+#include "gui/parts.h"
+#include "scene/animate.h"
+#include "scene/describe.h"
 
 namespace astrosplat {
+
+void toggle_one_to_one(GuiFrame& f) {
+    f.view.size = f.view.size == SizeMode::one_to_one ? SizeMode::fit : SizeMode::one_to_one;
+    f.view.pan_px = {0.0, 0.0};
+    f.view.zoom = 1.0;
+}
+
+void set_compare(GuiFrame& f, CompareMode mode) {
+    f.view.compare = mode;
+    if (!compares(f.view)) return;
+    if (f.view.compare_with == CompareWith::reference) {
+        if (!has_reference(f)) request(f, Command::Kind::set_reference);
+    } else if (f.status.b_snapshot < 0) {
+        request_text(f, Command::Kind::say, "Nothing is stored as B yet: the key B stores the look as it is");
+    }
+}
+
+void compare_with(GuiFrame& f, CompareWith with) {
+    f.view.compare_with = with;
+    set_compare(f, f.view.compare);
+}
+
+bool compares_with_reference(const GuiFrame& f) { return f.view.compare_with == CompareWith::reference; }
+bool has_reference(const GuiFrame& f) { return f.status.reference.has_value(); }
+
+void toggle_placing(GuiFrame& f) {
+    f.view.placing = !f.view.placing;
+    if (f.view.placing) show_reference(f.view);
+}
+
 namespace {
 
 using Kind = Command::Kind;
@@ -25,6 +60,188 @@ template <Kind kind>
 void ask_for_layer(F f) {
     request(f, kind, f.view.layer);
 }
+
+const std::string& selected_name(C f) { return f.document.scene().layers[f.view.layer].name; }
+
+void edit(F f, const std::string& name, const std::function<void(Scene&)>& change) {
+    try_edit([&] { f.document.edit(name, change); });
+}
+
+void go_to(F f, double frame) {
+    const FrameRange range = shown_range(f.document.scene());
+    f.view.frame = std::clamp(frame, range.first, range.last);
+}
+
+void undo(F f) {
+    request_text(f, Kind::say, "Undone: " + f.document.undo_name());
+    f.document.undo();
+}
+void redo(F f) {
+    request_text(f, Kind::say, "Redone: " + f.document.redo_name());
+    f.document.redo();
+}
+bool can_undo(C f) { return f.document.can_undo(); }
+bool can_redo(C f) { return f.document.can_redo(); }
+std::string undo_label(C f) { return can_undo(f) ? "Undo " + f.document.undo_name() : "Undo"; }
+std::string redo_label(C f) { return can_redo(f) ? "Redo " + f.document.redo_name() : "Redo"; }
+void take_snapshot(F f) {
+    request(f, Kind::take_snapshot);
+    f.view.snapshots_open = true;
+}
+
+bool has_file(C f) { return !f.document.file().empty(); }
+bool has_layer(C f) { return f.view.layer < f.document.scene().layers.size(); }
+bool has_box(C f) { return !f.status.box.empty(); }
+bool has_job(C f) { return running_job(f.status) != nullptr; }
+bool has_ffmpeg(C f) { return f.status.has_ffmpeg; }
+std::string movie_label(C f) { return has_ffmpeg(f) ? "Movie..." : "Movie... (needs ffmpeg)"; }
+
+void three_quarter(F f) {
+    const double aspect =
+        f.status.viewport_aspect > 0.0 ? f.status.viewport_aspect : aspect_of(f.document.scene().output);
+    f.view.free = three_quarter_view(f.view.free, f.status.box, aspect);
+    f.view.view = ViewKind::free;
+}
+bool is_one_to_one(C f) { return f.view.size == SizeMode::one_to_one; }
+void toggle_compare_with_reference(F f) {
+    compare_with(f, compares_with_reference(f) ? CompareWith::b : CompareWith::reference);
+}
+template <CompareMode mode>
+bool compares_by(C f) {
+    return f.view.compare == mode;
+}
+template <CompareMode mode>
+void toggle_compare(F f) {
+    set_compare(f, compares_by<mode>(f) ? CompareMode::a : mode);
+}
+bool is_placing(C f) { return f.view.placing; }
+bool has_front(C f) { return f.status.front.has_value(); }
+
+template <void (*change)(Document&, ViewState&, std::size_t)>
+void edit_selected(F f) {
+    try_edit([&] { change(f.document, f.view, f.view.layer); });
+}
+template <int by>
+void move_selected(F f) {
+    try_edit([&] { move_layer(f.document, f.view, f.view.layer, f.view.layer + by); });
+}
+void hide_layer(F f) {
+    try_edit([&] { toggle_visible(f.document, f.view, f.view.layer); });
+}
+void solo_layer(F f) { toggle_solo(f.view, selected_name(f)); }
+bool layer_visible(C f) { return has_layer(f) && is_visible(f.document.scene(), f.view.layer, f.view.frame); }
+bool layer_solo(C f) { return has_layer(f) && f.view.solo.count(selected_name(f)) > 0; }
+bool can_move_up(C f) { return has_layer(f) && f.view.layer > 0; }
+bool can_move_down(C f) { return f.view.layer + 1 < f.document.scene().layers.size(); }
+bool layer_stale(C f) { return f.view.layer < f.status.layers.size() && f.status.layers[f.view.layer].stale; }
+
+bool in_free_view(C f) { return f.view.view == ViewKind::free; }
+/// A square fisheye of half the sphere: what planetariums project.
+template <std::int64_t side_px>
+void make_dome_master(F f) {
+    edit(f, fmt::format("Dome master of {} px", side_px), [](Scene& scene) {
+        scene.output.width = scene.output.height = side_px;
+        scene.camera.projection = Projection::fisheye;
+        scene.camera.fisheye_fov = 180.0;
+    });
+    f.view.safe_areas = true;  // a master has its zone to keep titles in
+}
+
+/// What is seen, as the panel's button does.
+void set_camera_keyframe_here(F f) {
+    edit(f, "Set camera keyframe",
+         [&](Scene& scene) { set_keyframe_of_seen_camera(scene, f.view, f.status); });
+}
+void camera_from_view(F f) {
+    const auto is_cameras = [](const Track& track) { return track.key.is_below("camera"); };
+    if (std::ranges::any_of(f.document.scene().animation, is_cameras)) return set_camera_keyframe_here(f);
+    edit(f, "Camera from view", [&](Scene& scene) { scene.camera = seen_camera(scene, f.view, f.status); });
+}
+
+void next_frame(F f) { go_to(f, std::floor(f.view.frame) + 1.0); }
+void previous_frame(F f) { go_to(f, std::ceil(f.view.frame) - 1.0); }
+void next_keyframe(F f) { f.view.frame = frame_of_next_keyframe(f.document.scene(), f.view.frame); }
+void previous_keyframe(F f) { f.view.frame = frame_of_previous_keyframe(f.document.scene(), f.view.frame); }
+void first_frame(F f) { f.view.frame = frame_range(f.document.scene()).first; }
+void last_frame(F f) { f.view.frame = frame_range(f.document.scene()).last; }
+
+void set_in_point(F f) {
+    f.view.play_first = f.view.frame;
+    if (f.view.play_last && *f.view.play_last <= f.view.frame) f.view.play_last.reset();
+}
+void set_out_point(F f) {
+    f.view.play_last = f.view.frame;
+    if (f.view.play_first && *f.view.play_first >= f.view.frame) f.view.play_first.reset();
+}
+void clear_in_and_out(F f) {
+    f.view.play_first.reset();
+    f.view.play_last.reset();
+}
+
+void set_keyframe_here(F f) {
+    const std::string key = f.view.hovered_parameter;
+    if (key.empty()) return set_camera_keyframe_here(f);
+    Scene still = scene_at(f.document.scene(), f.view.frame);
+    const Description description = describe(still);
+    const Parameter* parameter = find_parameter(description, key);
+    const Value value = parameter ? parameter->get() : Value();
+    edit(f, "Set keyframe of " + key, [&](Scene& scene) { set_keyframe(scene, key, f.view.frame, value); });
+}
+void remove_keyframe_here(F f) {
+    const std::string key = f.view.hovered_parameter;
+    edit(f, key.empty() ? "Remove camera keyframes" : "Remove keyframe of " + key, [&](Scene& scene) {
+        const std::vector<Track> tracks = scene.animation;  // one that becomes empty goes
+        for (const Track& track : tracks)
+            if (key.empty() ? track.key.is_below("camera") : track.key == key)
+                remove_keyframe(scene, track.key, f.view.frame);
+    });
+}
+
+/// Handles in the view: on for this tool, or off where it is at work.
+void choose_handles(F f, HandleTool tool) {
+    ViewState& view = f.view;
+    const bool of_layer = view.handle_target != HandleTarget::camera_target;
+    view.tool = view.tool == tool && of_layer ? HandleTool::none : tool;
+    if (!of_layer) view.handle_target = HandleTarget::layer;
+}
+
+bool moves_camera_target(C f) {
+    return f.view.tool == HandleTool::move && f.view.handle_target == HandleTarget::camera_target;
+}
+/// Of the scene's camera, which gets a place of its own where it has none.
+void move_camera_target(F f) {
+    const bool was_on = moves_camera_target(f);
+    f.view.tool = was_on ? HandleTool::none : HandleTool::move;
+    f.view.handle_target = was_on ? HandleTarget::layer : HandleTarget::camera_target;
+    const CameraParams& camera = f.document.scene().camera;
+    if (was_on || (camera.position && !camera.rotation)) return;
+    if (camera.rotation)
+        return request_text(f, Kind::say, "This camera looks along camera.rotation, which has no target");
+    ViewState through_camera;
+    through_camera.frame = f.view.frame;
+    edit(f, "Place of the camera",
+         [&](Scene& scene) { scene.camera = seen_camera(scene, through_camera, f.status); });
+}
+
+void cancel(F f) {
+    if (f.view.help_open || f.view.log_open) {
+        f.view.help_open = f.view.log_open = false;
+    } else if (is_placing(f)) {
+        toggle_placing(f);
+    } else if (f.view.tool != HandleTool::none) {
+        f.view.tool = HandleTool::none;
+        f.view.handle_target = HandleTarget::layer;
+    } else if (f.view.selected_box) {
+        f.view.selected_box = false;
+    } else if (has_job(f)) {
+        request(f, Kind::cancel_render);
+    } else {
+        for (std::size_t i = 0; i < f.status.layers.size(); ++i)
+            if (f.status.layers[i].loading) request(f, Kind::cancel_load, i);
+    }
+}
+
+// Rows of the table.
 
 constexpr Shortcut plain(int code) { return {code, false, false}; }
 constexpr Shortcut shift(int code) { return {code, false, true}; }
@@ -71,30 +288,25 @@ Action compare(const char* label) {
     return {.menu = "View",
             .label = label,
             .run = [](F f) { set_compare(f, mode); },
-            .checked = [](C f) { return f.view.compare == mode; }};
+            .checked = compares_by<mode>};
 }
 
 /// A built-in shape, by its place in shape_labels.
 template <Kind kind, std::size_t index>
 Action shape(const char* menu) {
-    return {menu, shape_labels[index], {}, [](F f) {
-                f.requested.push_back({kind, {}, shape_names[index], 0});
-            }};
-}
-
-template <std::int64_t side_px>
-Action dome_master(const char* label) {
-    return {"Camera/Dome master", label, {}, [](F f) { make_dome_master(f, side_px); }};
+    return {menu, shape_labels[index], {}, [](F f) { request_text(f, kind, shape_names[index]); }};
 }
 
 template <HandleTool tool>
 Action handles(const char* label, int code) {
-    return {.menu = "Layer",
-            .label = label,
-            .shortcut = plain(code),
-            .run = toggle_handles<tool>,
-            .enabled = has_layer,
-            .checked = has_handles<tool>};
+    return {
+        .menu = "Layer",
+        .label = label,
+        .shortcut = plain(code),
+        .run = [](F f) { choose_handles(f, tool); },
+        .enabled = has_layer,
+        .checked =
+            [](C f) { return f.view.tool == tool && f.view.handle_target != HandleTarget::camera_target; }};
 }
 
 template <CameraMove move>
@@ -107,7 +319,7 @@ Action add_move() {
 }
 
 const Action table[] = {
-    {"File/New", "Empty scene", {}, new_empty_scene},
+    {"File/New", "Empty scene", {}, ask<Kind::new_scene>},
     shape<Kind::new_scene, 0>("File/New"),
     shape<Kind::new_scene, 1>("File/New"),
     shape<Kind::new_scene, 2>("File/New"),
@@ -146,13 +358,15 @@ const Action table[] = {
     below_line({"View", "Frame layer", plain('F'), ask_for_layer<Kind::frame_layer>, has_layer}),
     {"View", "Frame all", plain(key_code::home), ask<Kind::frame_all>},
     {"View", "Output pixels 1:1", plain('Z'), toggle_one_to_one, nullptr, is_one_to_one},
-    below_line({"View", "Swap A and B", plain(key_code::tab), swap_a_b}),
+    below_line({"View", "Swap A and B", plain(key_code::tab), toggle_compare<CompareMode::other>}),
     compare<CompareMode::wipe>("Wipe A | B"),
-    {"View", "Blink", plain('X'), toggle_blink, nullptr, blinks},
+    {"View", "Blink", plain('X'), toggle_compare<CompareMode::blink>, nullptr,
+     compares_by<CompareMode::blink>},
     compare<CompareMode::difference>("Difference"),
     {"View", "Compare with the reference, not B", shift('B'), toggle_compare_with_reference, nullptr,
      compares_with_reference},
-    {"View", "Front against its picture", plain('D'), toggle_front, has_front, shows_front},
+    {"View", "Front against its picture", plain('D'), toggle_compare<CompareMode::front>, has_front,
+     compares_by<CompareMode::front>},
     below_line({"View", "Load reference...", {}, ask<Kind::set_reference>}),
     {"View", "Place reference", plain('P'), toggle_placing, has_reference, is_placing},
     {"View", "Align reference to this view", {}, ask<Kind::align_reference>, has_reference},
@@ -177,12 +391,12 @@ const Action table[] = {
     shape<Kind::add_shape, 5>("Layer/Add shape"),
     shape<Kind::add_shape, 6>("Layer/Add shape"),
     shape<Kind::add_shape, 7>("Layer/Add shape"),
-    {"Layer", "Duplicate", {}, duplicate_selected_layer, has_layer},
-    {"Layer", "Remove", {}, remove_selected_layer, has_layer},
+    {"Layer", "Duplicate", {}, edit_selected<duplicate_layer>, has_layer},
+    {"Layer", "Remove", {}, edit_selected<remove_layer>, has_layer},
     below_line({"Layer", "Visible", plain('H'), hide_layer, has_layer, layer_visible}),
     {"Layer", "Solo", plain('S'), solo_layer, has_layer, layer_solo},
-    below_line({"Layer", "Move up", {}, move_layer_up, can_move_up}),
-    {"Layer", "Move down", {}, move_layer_down, can_move_down},
+    below_line({"Layer", "Move up", {}, move_selected<-1>, can_move_up}),
+    {"Layer", "Move down", {}, move_selected<1>, can_move_down},
     below_line(handles<HandleTool::move>("Move in the view", 'W')),
     handles<HandleTool::rotate>("Rotate in the view", 'E'),
     handles<HandleTool::scale>("Scale in the view", 'R'),
@@ -194,10 +408,10 @@ const Action table[] = {
     add_move<CameraMove::orbit>(),
     add_move<CameraMove::fly_in>(),
     add_move<CameraMove::face_on_to_edge_on>(),
-    dome_master<1024>("1024 px"),
-    dome_master<2048>("2048 px"),
-    dome_master<4096>("4096 px"),
-    dome_master<8192>("8192 px"),
+    {"Camera/Dome master", "1024 px", {}, make_dome_master<1024>},
+    {"Camera/Dome master", "2048 px", {}, make_dome_master<2048>},
+    {"Camera/Dome master", "4096 px", {}, make_dome_master<4096>},
+    {"Camera/Dome master", "8192 px", {}, make_dome_master<8192>},
     below_line(flip<&ViewState::lock_to_camera>("Camera", "Lock to camera")),
 
     {"Render", "Frame...", ctrl('R'), render<RenderKind::frame>},
@@ -225,23 +439,13 @@ const Action table[] = {
     {"", "Cancel what runs, close what is open", plain(key_code::escape), cancel},
 };
 
-bool pressed(const Shortcut& s, bool repeats) {
-    const ImGuiIO& io = ImGui::GetIO();
-    if (s.code == 0 || io.KeyAlt || io.KeyCtrl != s.ctrl || io.KeyShift != s.shift) return false;
-    return key_pressed(s.code, repeats);
-}
-
 bool pressed(const Action& action) {
-    return pressed(action.shortcut, action.repeats) || pressed(action.also, action.repeats);
+    return shortcut_pressed(action.shortcut, action.repeats) || shortcut_pressed(action.also, action.repeats);
 }
 
 }  // namespace
 
 std::span<const Action> actions() { return table; }
-
-std::string shortcut_text(const Shortcut& s) {
-    return std::string(s.ctrl ? "Ctrl+" : "") + (s.shift ? "Shift+" : "") + key_name(s.code);
-}
 
 void run_shortcuts(GuiFrame& frame) {
     for (const Action& action : actions())

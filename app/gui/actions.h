@@ -1,18 +1,14 @@
 // Everything a menu or a shortcut does, once: the menus, the shortcuts and the sheet of shortcuts are loops
-// over this table.
+// over this table. The row of tools does the same to the view by the functions below it.
 #pragma once
 
 #include <span>
 #include <string>
 
 #include "gui/gui_frame.h"
+#include "gui/key_codes.h"
 
 namespace astrosplat {
-
-struct Shortcut {
-    int code = 0;  // key_codes.h; 0: none
-    bool ctrl = false, shift = false;
-};
 
 struct Action {
     const char* menu;  // "File"; "Camera/Add move" for a submenu; "" where only the shortcut does it
@@ -30,10 +26,14 @@ struct Action {
 /// In the order of the menus.
 std::span<const Action> actions();
 
-/// "Ctrl+Shift+S"; "" for none.
-std::string shortcut_text(const Shortcut& shortcut);
-
 /// Runs the shortcuts pressed this frame. Call it only while no text is typed and nothing is dragged.
 void run_shortcuts(GuiFrame& frame);
+
+void toggle_one_to_one(GuiFrame& f);
+void set_compare(GuiFrame& f, CompareMode mode);   // asks for a reference where there is none yet
+void compare_with(GuiFrame& f, CompareWith with);  // likewise
+bool compares_with_reference(const GuiFrame& f);
+bool has_reference(const GuiFrame& f);
+void toggle_placing(GuiFrame& f);
 
 }  // namespace astrosplat

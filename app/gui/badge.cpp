@@ -1,5 +1,5 @@
 // The badge: a dot in the state's colour, what the state is, and what can be done about it.
-#include "gui/badge.h"
+#include "gui/viewport_overlay.h"
 
 #include <fmt/format.h>
 #include <imgui.h>
@@ -59,7 +59,7 @@ void press_button(GuiFrame& frame) {
     if (loading_layer(frame.status, index))
         request(frame, Command::Kind::cancel_load, index);
     else
-        frame.requested.push_back({Command::Kind::copy_text, {}, frame.status.view_frame.error, 0});
+        request_text(frame, Command::Kind::copy_text, frame.status.view_frame.error);
 }
 
 /// "+0.3 %"; -0 becomes 0.

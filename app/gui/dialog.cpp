@@ -23,6 +23,11 @@ bool pressed(int code) { return !ImGui::IsWindowAppearing() && key_pressed(code)
 
 }  // namespace
 
+void end_dialog(bool closes) {
+    if (closes) ImGui::CloseCurrentPopup();
+    ImGui::EndPopup();
+}
+
 bool begin_dialog(const char* id, const std::string& title, bool open, float width, float height) {
     if (open && !ImGui::IsPopupOpen(id)) ImGui::OpenPopup(id);
     const ImVec2 screen = ImGui::GetIO().DisplaySize;
@@ -38,8 +43,7 @@ bool begin_dialog(const char* id, const std::string& title, bool open, float wid
     ImGui::PopStyleVar();
     if (!shown) return false;
     if (!open) {
-        ImGui::CloseCurrentPopup();
-        ImGui::EndPopup();
+        end_dialog(true);
         return false;
     }
     ImGui::PushFont(medium_font());
@@ -50,8 +54,6 @@ bool begin_dialog(const char* id, const std::string& title, bool open, float wid
     ImGui::Dummy({0, px(6)});
     return true;
 }
-
-void end_dialog() { ImGui::EndPopup(); }
 
 void dialog_note(const char* text, float gap) {
     ImGui::PushTextWrapPos(0.0f);
@@ -64,11 +66,12 @@ bool dialog_escape() {
     return pressed(key_code::escape) && ImGui::IsWindowFocused(ImGuiFocusedFlags_RootAndChildWindows);
 }
 
-int dialog_buttons(GuiFrame& frame, const char* id, std::initializer_list<const char*> labels, bool enter) {
+int dialog_buttons(GuiFrame& frame, const char* id, std::initializer_list<const char*> labels, int escape,
+                   bool enter) {
     float width = -px(8);
     for (const char* label : labels) width += button_width(label) + px(8);
     ImGui::SetCursorPosX(ImGui::GetWindowContentRegionMax().x - width);
-    int chosen = -1, index = 0;
+    int chosen = dialog_escape() ? escape : -1, index = 0;
     for (const char* label : labels) {
         const bool is_default = index + 1 == static_cast<int>(labels.size());
         if (index > 0) ImGui::SameLine(0, px(8));

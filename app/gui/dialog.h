@@ -1,7 +1,6 @@
 // The frame of every dialog: centred, with a title, closed by Escape, its buttons at the lower right.
 #pragma once
 
-#include <functional>
 #include <initializer_list>
 #include <string>
 
@@ -12,7 +11,8 @@ namespace astrosplat {
 /// Begins a modal dialog `width` px wide at scale 1 (`height` 0: as high as its content). `id` is opened when
 /// `open` turns true. True while it is shown; then call end_dialog().
 bool begin_dialog(const char* id, const std::string& title, bool open, float width, float height);
-void end_dialog();
+/// `closes`: it is not to be seen any more, and `open` will be false.
+void end_dialog(bool closes);
 
 /// A quiet line below the title, `gap` px at scale 1 above what follows.
 void dialog_note(const char* text, float gap);
@@ -20,8 +20,9 @@ void dialog_note(const char* text, float gap);
 /// Escape was pressed in the dialog, with no text field to leave first.
 bool dialog_escape();
 
-/// Buttons at the right of the line, from left to right, the last one the default (Enter): index of the one
-/// chosen, else -1.
-int dialog_buttons(GuiFrame& frame, const char* id, std::initializer_list<const char*> labels, bool enter);
+/// Buttons at the right of the line, from left to right: index of the one chosen, else -1. Escape chooses the
+/// one of index `escape` (-1: none); Enter, where it is taken, the last one.
+int dialog_buttons(GuiFrame& frame, const char* id, std::initializer_list<const char*> labels, int escape,
+                   bool enter = true);
 
 }  // namespace astrosplat

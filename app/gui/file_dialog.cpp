@@ -9,10 +9,10 @@
 #include <cmath>
 #include <utility>
 
+#include "core/clock.h"
 #include "core/file_format.h"
 #include "edit/preferences.h"
 #include "gui/dialog.h"
-#include "gui/icons.h"
 #include "gui/key_codes.h"
 #include "gui/theme.h"
 #include "gui/widgets.h"
@@ -39,7 +39,7 @@ void FileDialog::open(const FileQuery& query) {
 }
 
 void FileDialog::go_to(const fs::path& folder, const fs::path& otherwise) {
-    name_.forget();
+    forget_questions();
     folder_ = folder.lexically_normal();
     list_entries(otherwise);
     complaint_.clear();
@@ -48,14 +48,18 @@ void FileDialog::go_to(const fs::path& folder, const fs::path& otherwise) {
 }
 
 void FileDialog::list_entries(const fs::path& otherwise) {
-    reader_.begin(folder_, otherwise, all_files_ ? std::vector<std::string>{} : query_.extensions);
     entries_.clear();
     folders_ = 0;
-    take_entries(disk_moment);
+    contents_.begin(
+        [folder = folder_, otherwise,
+         extensions = all_files_ ? std::vector<std::string>{} : query_.extensions](const auto& forgotten) {
+            return read_folder(folder, otherwise, extensions, forgotten);
+        });
+    take_entries();
 }
 
-void FileDialog::take_entries(std::chrono::milliseconds at_most) {
-    std::optional<FolderContents> found = reader_.take(at_most);
+void FileDialog::take_entries() {
+    std::optional<FolderContents> found = contents_.take();
     if (!found) return;
     folder_ = std::move(found->folder);
     entries_ = std::move(found->entries);
@@ -83,26 +87,39 @@ void FileDialog::draw_places(GuiFrame& frame) {
     }
 }
 
-// In the path: Tab lengthens what is typed, Up and Down go through the list.
-int FileDialog::on_key(ImGuiInputTextCallbackData* data) {
-    auto& dialog = *static_cast<FileDialog*>(data->UserData);
-    std::string typed(data->Buf, data->Buf + data->BufTextLen);
-    if (data->EventFlag == ImGuiInputTextFlags_CallbackHistory) {
-        const int step = data->EventKey == ImGuiKey_UpArrow ? -1 : 1;
-        const auto entry = entry_beside(dialog.entries_, typed, step);
-        if (!entry) return 0;
-        typed = dialog.entries_[*entry].name;
-    } else if (const auto text = std::exchange(dialog.retyped_, {})) {
-        typed = *text;
-    } else {
-        if (data->EventFlag == ImGuiInputTextFlags_CallbackCompletion)
-            dialog.name_.complete(typed, dialog.folder_);
-        const std::optional<std::string> completed = dialog.name_.completed(typed);
-        if (!completed) return 0;
-        typed = *completed;
+void FileDialog::forget_questions() {
+    completion_.forget();
+    target_.forget();
+}
+
+// For a while keys are better kept: where they go depends on an answer that is to come.
+bool FileDialog::keys_wait() const {
+    constexpr double patience_s = 1.0;
+    return (completion_.is_open() || target_.is_open()) && seconds_now() - asked_at_ < patience_s;
+}
+
+// What comes in place of the path: Tab lengthens what is typed, Up and Down go through the list.
+std::optional<std::string> FileDialog::text_for(const ImGuiInputTextCallbackData& data) {
+    const std::string typed(data.Buf, data.Buf + data.BufTextLen);
+    if (data.EventFlag == ImGuiInputTextFlags_CallbackHistory) {
+        const auto entry = entry_beside(entries_, typed, data.EventKey == ImGuiKey_UpArrow ? -1 : 1);
+        return entry ? std::optional(entries_[*entry].name) : std::nullopt;
     }
-    data->DeleteChars(0, data->BufTextLen);
-    data->InsertChars(0, typed.c_str());
+    if (retyped_) return std::exchange(retyped_, {});
+    if (data.EventFlag == ImGuiInputTextFlags_CallbackCompletion) {
+        completed_ = typed;
+        asked_at_ = seconds_now();
+        completion_.begin([typed, folder = folder_](const auto&) { return complete_path(typed, folder); });
+    }
+    if (typed != completed_) completion_.forget();
+    return completion_.take();
+}
+
+int FileDialog::on_key(ImGuiInputTextCallbackData* data) {
+    if (const auto text = static_cast<FileDialog*>(data->UserData)->text_for(*data)) {
+        data->DeleteChars(0, data->BufTextLen);
+        data->InsertChars(0, text->c_str());
+    }
     return 0;
 }
 
@@ -126,7 +143,7 @@ void FileDialog::draw_path(GuiFrame& frame) {
     if (ImGui::IsItemActive()) awaits_typing_ = false;
     note_item(frame, "file/path");
     if (typed_ != before) {
-        name_.forget();
+        forget_questions();
         replaces_ = false;
         complaint_.clear();
         typed_anew_ = true;
@@ -182,7 +199,7 @@ bool FileDialog::draw_entries(GuiFrame& frame) {
                 if (entry.folder && click.once) enter = folder_ / entry.name;
                 if (!entry.folder && click.once) {
                     typed_ = entry.name;
-                    name_.forget();
+                    forget_questions();
                     replaces_ = false;
                 }
                 if (!entry.folder && click.twice) chosen = true;
@@ -192,9 +209,9 @@ bool FileDialog::draw_entries(GuiFrame& frame) {
     draw_rows(folders_, entries_.size(), pictures_ ? picture_row_height : file_row_height);
     if (entries_.empty()) {
         ImGui::SetCursorPosX(px(12));
-        row_text(reader_.reading() ? "Reading the folder..."
-                 : all_files_      ? "This folder is empty."
-                                   : "No " + query_.kind + " here.",
+        row_text(contents_.is_open() ? "Reading the folder..."
+                 : all_files_        ? "This folder is empty."
+                                     : "No " + query_.kind + " here.",
                  px(file_row_height), color::dim);
     }
     if (!enter.empty()) {
@@ -207,7 +224,10 @@ bool FileDialog::draw_entries(GuiFrame& frame) {
 void FileDialog::look() {
     if (typed_.empty()) return;
     const bool adds = query_.saving && !query_.extensions.empty();
-    name_.look(typed_path(typed_, folder_).lexically_normal(), adds ? query_.extensions.front() : "");
+    asked_at_ = seconds_now();
+    target_.begin(
+        [file = typed_path(typed_, folder_).lexically_normal(),
+         ending = adds ? query_.extensions.front() : ""](const auto&) { return look_at(file, ending); });
 }
 
 std::optional<fs::path> FileDialog::accept(const TypedFile& typed) {
@@ -237,7 +257,7 @@ std::optional<fs::path> FileDialog::accept(const TypedFile& typed) {
 FileDialog::Answer FileDialog::draw_bottom(GuiFrame& frame, bool chosen) {
     ImGui::Dummy({0, px(4)});
     const float y = ImGui::GetCursorPosY();
-    if (name_.looks())
+    if (target_.is_open())
         row_text("Waiting for the disk...", px(28), color::dim);
     else if (!complaint_.empty())
         row_text(fitting(complaint_, px(400)), px(28), color::attention);
@@ -250,20 +270,20 @@ FileDialog::Answer FileDialog::draw_bottom(GuiFrame& frame, bool chosen) {
     ImGui::SameLine();
     ImGui::SetCursorPosY(y);
     const char* does = replaces_ ? "Replace" : query_.saving ? "Save" : "Open";
-    const int button = dialog_buttons(frame, "file", {"Cancel", does}, true);
-    if (button == 0 || dialog_escape()) return {true, std::nullopt};
+    const int button = dialog_buttons(frame, "file", {"Cancel", does}, 0);
+    if (button == 0) return {true, std::nullopt};
     if (button == 1 || chosen) {
         look();
-        focus_path_ = name_.looks();  // another name may be meant, should that take long
+        focus_path_ = target_.is_open();  // another name may be meant, should that take long
     }
-    const std::optional<TypedFile> found = name_.found();
+    const std::optional<TypedFile> found = target_.take();
     const std::optional<fs::path> file = found ? accept(*found) : std::nullopt;
     return {file.has_value(), file};
 }
 
 FileDialog::Answer FileDialog::draw(GuiFrame& frame) {
     frame.view.listed_pictures.clear();
-    if (open_) take_entries({});
+    if (open_) take_entries();
     if (!begin_dialog("file dialog", query_.title, open_, dialog_width, dialog_height)) return {};
     draw_path(frame);
     ImGui::Dummy({0, px(4)});
@@ -288,10 +308,9 @@ FileDialog::Answer FileDialog::draw(GuiFrame& frame) {
     if (answer.file) add_recent_folder(frame.view, answer.file->parent_path());
     if (answer.done) {
         open_ = false;
-        name_.forget();
-        ImGui::CloseCurrentPopup();
+        forget_questions();
     }
-    end_dialog();
+    end_dialog(answer.done);
     return answer;
 }
 

@@ -3,29 +3,49 @@
 // look.
 #pragma once
 
-#include <chrono>
 #include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "edit/status.h"
 #include "gui/file_list.h"
 #include "gui/file_queries.h"
-#include "gui/file_rows.h"
-#include "gui/folder_reader.h"
 #include "gui/gui_frame.h"
-#include "gui/name_questions.h"
+#include "gui/icons.h"
 
 struct ImGuiInputTextCallbackData;
 
 namespace astrosplat {
+
+inline constexpr float file_row_height = 26, picture_row_height = 54;  // px at scale 1
+
+struct FileRow {
+    Icon icon = Icon::file;
+    std::string text;
+    bool chosen = false;
+    std::string time{}, size{};                  // in columns of their own, both or none
+    bool high = false;                           // among pictures: there is room for one in place of the icon
+    bool picture = false;                        // it is one, and black until it is seen
+    const ListedThumbnail* thumbnail = nullptr;  // of a picture; null: not read yet
+};
+
+struct FileClick {
+    bool once = false, twice = false;
+};
+/// As wide as there is room.
+FileClick file_row(const char* id, const FileRow& row);
+
+/// The columns' names over rows `room` px wide. True when one was clicked, which changes the order, or the
+/// same one backwards.
+bool draw_file_columns(GuiFrame& frame, float room, FileOrder& order, bool& backwards);
 
 class FileDialog {
   public:
     void open(const FileQuery& query);
     bool is_open() const { return open_; }
     /// The path is about to take what is typed.
-    bool awaits_typing() const { return open_ && (awaits_typing_ || name_.keys_wait()); }
+    bool awaits_typing() const { return open_ && (awaits_typing_ || keys_wait()); }
 
     struct Answer {
         bool done = false;  // the dialog has closed
@@ -39,12 +59,15 @@ class FileDialog {
     void go_to(const std::filesystem::path& folder, const std::filesystem::path& otherwise);
     void go_to(const std::filesystem::path& folder) { go_to(folder, folder); }
     void retype(const std::string& text) { retyped_ = typed_ = text; }
+    void forget_questions();
+    bool keys_wait() const;
     void draw_places(GuiFrame& frame);
     void draw_path(GuiFrame& frame);
     void scroll_to_typed();
     static int on_key(ImGuiInputTextCallbackData* data);
+    std::optional<std::string> text_for(const ImGuiInputTextCallbackData& data);
     void list_entries(const std::filesystem::path& otherwise);
-    void take_entries(std::chrono::milliseconds at_most);
+    void take_entries();
     FileClick draw_entry(GuiFrame& frame, const FileEntry& entry);
     bool draw_entries(GuiFrame& frame);
     Answer draw_bottom(GuiFrame& frame, bool chosen);
@@ -55,8 +78,11 @@ class FileDialog {
     bool open_ = false, all_files_ = false, focus_path_ = false, awaits_typing_ = false;
     bool replaces_ = false;  // the file exists and the person was told
     std::filesystem::path folder_;
-    FolderReader reader_;
-    NameQuestions name_;  // about what is typed
+    DiskQuestion<FolderContents> contents_;
+    DiskQuestion<std::string> completion_;  // of:
+    std::string completed_;
+    DiskQuestion<TypedFile> target_;  // of what is typed
+    double asked_at_ = 0.0;           // for one of these two, s
     std::string typed_, complaint_;
     std::optional<std::string> retyped_;  // for the field, which has its own text while keys go there
     double entered_ = -1e9;               // when the click began that went into the folder, s

@@ -1,11 +1,11 @@
-#include "gui/file_rows.h"
-
+// The rows of the file dialog and the columns above them.
 #include <fmt/format.h>
 #include <imgui.h>
 
 #include <algorithm>
 #include <cmath>
 
+#include "gui/file_dialog.h"
 #include "gui/theme.h"
 #include "gui/widgets.h"
 
@@ -41,18 +41,15 @@ bool draw_column(GuiFrame& frame, const FileColumn& column, const ImVec2& corner
 }
 
 // As large as its frame allows; the sign of a file where it cannot be read.
-void draw_picture(ImDrawList* list, ImVec2 corner, const ListedThumbnail* thumbnail) {
-    const float w = px(thumbnail_width), h = px(thumbnail_height);
-    list->AddRectFilled(corner, {corner.x + w, corner.y + h}, IM_COL32_BLACK, px(2));
-    if (!thumbnail) return;
-    const ImVec2 middle{corner.x + w * 0.5f, corner.y + h * 0.5f};
-    if (!thumbnail->texture) return draw_icon(list, Icon::file, middle, px(13), color::dim);
-    const auto width = static_cast<float>(thumbnail->width), height = static_cast<float>(thumbnail->height);
-    const float scale = std::min(w / width, h / height);
-    const float half_w = std::max(px(0.5f), width * scale * 0.5f),
-                half_h = std::max(px(0.5f), height * scale * 0.5f);
-    list->AddImage(thumbnail->texture, {middle.x - half_w, middle.y - half_h},
-                   {middle.x + half_w, middle.y + half_h});
+void draw_picture(ImVec2 corner, const ListedThumbnail* thumbnail) {
+    const Rect area(corner, {px(thumbnail_width), px(thumbnail_height)});
+    if (!thumbnail || !thumbnail->texture) {
+        picture_box(area, {}, 0.0f, 2);
+        if (thumbnail) draw_icon(ImGui::GetWindowDrawList(), Icon::file, area.middle(), px(13), color::dim);
+        return;
+    }
+    const float aspect = static_cast<float>(thumbnail->width) / static_cast<float>(thumbnail->height);
+    picture_box(area, thumbnail->texture, aspect, 2);
 }
 
 std::string note_of(const FileRow& row) {
@@ -61,14 +58,6 @@ std::string note_of(const FileRow& row) {
 }
 
 }  // namespace
-
-std::string size_text(std::uintmax_t bytes) {
-    const double n = static_cast<double>(bytes);
-    if (n < 1e3) return fmt::format("{} B", bytes);
-    if (n < 1e6) return fmt::format("{:.0f} kB", n / 1e3);
-    if (n < 1e9) return fmt::format("{:.1f} MB", n / 1e6);
-    return fmt::format("{:.1f} GB", n / 1e9);
-}
 
 FileClick file_row(const char* id, const FileRow& row) {
     const ImVec2 corner = ImGui::GetCursorScreenPos();
@@ -82,7 +71,7 @@ FileClick file_row(const char* id, const FileRow& row) {
     list->AddRectFilled(corner, {corner.x + room, corner.y + height}, back, px(3));
     const float middle = corner.y + height * 0.5f;
     if (row.picture)
-        draw_picture(list, {corner.x + px(6), middle - px(0.5f * thumbnail_height)}, row.thumbnail);
+        draw_picture({corner.x + px(6), middle - px(0.5f * thumbnail_height)}, row.thumbnail);
     else
         draw_icon(list, row.icon, {corner.x + px(row.high ? 6 + 0.5f * thumbnail_width : 14), middle}, px(13),
                   color::dim);

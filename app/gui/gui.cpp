@@ -13,12 +13,8 @@
 #include "gui/file_dialog.h"
 #include "gui/file_queries.h"
 #include "gui/gui_frame.h"
-#include "gui/move_dialog.h"
-#include "gui/notices.h"
 #include "gui/panel/panel.h"
 #include "gui/parts.h"
-#include "gui/queue_dialog.h"
-#include "gui/render_dialog.h"
 #include "gui/theme.h"
 #include "gui/timeline.h"
 #include "gui/viewport.h"
@@ -123,7 +119,7 @@ void CommandFlow::take_answer(GuiFrame& frame, Panel& panel, Commands& out) {
         return;
     }
     if (asked_by_panel) {
-        try_edit([&] { panel.answer(*asked_by_panel, *answer.file, frame.document, frame.view); });
+        try_edit([&] { panel.answer(*asked_by_panel, *answer.file, frame); });
     } else if (command) {
         Command complete = *command;
         complete.path = *answer.file;
@@ -148,13 +144,10 @@ void CommandFlow::draw_question(GuiFrame& frame, Commands& out) {
                       question_.has_value(), 460, 0))
         return;
     dialog_note("Changes that are not saved are lost.", 10);
-    const int button = dialog_buttons(frame, "unsaved", {"Don't save", "Cancel", "Save"}, true);
+    const int button = dialog_buttons(frame, "unsaved", {"Don't save", "Cancel", "Save"}, 1);
     const Command command = *question_;
-    if (button >= 0 || dialog_escape()) {
-        question_.reset();
-        ImGui::CloseCurrentPopup();
-    }
-    end_dialog();
+    if (button >= 0) question_.reset();
+    end_dialog(button >= 0);
     if (button == 0) out.push_back(command);
     if (button == 2) {
         after_save_ = command;
@@ -169,15 +162,11 @@ void CommandFlow::draw_conflict(GuiFrame& frame, Commands& out) {
                       0))
         return;
     dialog_note("Saving replaces what is on disk now by the scene as it is here.", 10);
-    const int button = dialog_buttons(frame, "conflict", {"Overwrite", "Cancel", "Save as..."}, true);
-    const bool cancelled = button == 1 || dialog_escape();
-    if (button >= 0 || cancelled) {
-        conflict_ = false;
-        ImGui::CloseCurrentPopup();
-    }
-    end_dialog();
+    const int button = dialog_buttons(frame, "conflict", {"Overwrite", "Cancel", "Save as..."}, 1);
+    if (button >= 0) conflict_ = false;
+    end_dialog(button >= 0);
     frames_since_save_ = 0;
-    if (cancelled) after_save_.reset();
+    if (button == 1) after_save_.reset();
     if (button == 0) out.push_back({Kind::save, {}, {}, 0});
     if (button == 2) take(frame, {Kind::save_as, {}, {}, 0}, out);
 }
@@ -191,15 +180,14 @@ void CommandFlow::draw_recovery(GuiFrame& frame, Commands& out) {
         ImGui::PushID(offer.autosave.c_str());
         row_text(fitting(offer.scene + ", " + offer.time, px(300)), px(28), color::text);
         ImGui::SameLine();
-        const int button = dialog_buttons(frame, "recovery", {"Discard", "Recover"}, offers.size() == 1);
+        const int button = dialog_buttons(frame, "recovery", {"Discard", "Recover"}, -1, offers.size() == 1);
         if (button == 0) out.push_back({Kind::discard_recovery, offer.autosave, {}, 0});
         if (button == 1) take(frame, {Kind::recover, offer.autosave, {}, 0}, out);
         if (button == 1 || (button == 0 && offers.size() == 1)) recovery_answered_ = true;
         ImGui::PopID();
     }
     if (dialog_escape()) recovery_answered_ = true;
-    if (recovery_answered_) ImGui::CloseCurrentPopup();
-    end_dialog();
+    end_dialog(recovery_answered_);
 }
 
 void CommandFlow::run(GuiFrame& frame, Panel& panel, Commands& out) {
@@ -280,7 +268,7 @@ void Gui::State::draw_parts(GuiFrame& frame, const Layout& layout, Commands& com
     draw_snapshots(frame, layout.snapshots);
     timeline.draw(frame, layout.timeline);
     if (begin_part("panel", layout.panel, still)) {
-        panel.draw(frame.document, frame.view, frame.status, frame.requested);
+        panel.draw(frame);
         ImGui::EndChild();
     }
     frame.view.hovered_parameter = parameter_under_mouse(panel, layout.panel);

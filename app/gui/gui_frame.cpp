@@ -1,6 +1,7 @@
 // The few things all parts of the window do.
 #include "gui/gui_frame.h"
 
+#include <fmt/format.h>
 #include <imgui.h>
 
 #include <array>
@@ -8,6 +9,7 @@
 #include "core/error.h"
 #include "core/log.h"
 #include "edit/edit_rules.h"
+#include "gui/key_codes.h"
 #include "gui/theme.h"
 #include "gui/widgets.h"
 #include "scene/frames.h"
@@ -19,6 +21,9 @@ void request(GuiFrame& frame, Command::Kind kind, std::size_t index) {
 }
 void request_path(GuiFrame& frame, Command::Kind kind, const std::filesystem::path& path) {
     frame.requested.push_back({kind, path, {}, 0});
+}
+void request_text(GuiFrame& frame, Command::Kind kind, const std::string& text, std::size_t index) {
+    frame.requested.push_back({kind, {}, text, index});
 }
 
 void try_edit(const std::function<void()>& edit) {
@@ -32,8 +37,22 @@ void try_edit(const std::function<void()>& edit) {
 }
 
 Gesture new_gesture() {
-    static Gesture last = Gesture{1} << 63;
+    static Gesture last = Gesture{1} << 63;  // the viewer counts drags in the view from 1
     return ++last;
+}
+
+void DragEdit::begin(const Document& document) {
+    before_ = document.scene();
+    gesture_ = new_gesture();
+}
+
+bool DragEdit::taken_back(GuiFrame& frame) const {
+    if (!key_pressed(key_code::escape)) return false;
+    try_edit([&] {
+        frame.document.edit(
+            "Drag taken back", [&](Scene& scene) { scene = before_; }, gesture_);
+    });
+    return true;
 }
 
 void note_item(GuiFrame& frame, const std::string& name) {
@@ -42,6 +61,13 @@ void note_item(GuiFrame& frame, const std::string& name) {
 }
 void note_item(GuiFrame& frame, const std::string& name, glm::vec2 middle_px) {
     frame.drawn.push_back({name, middle_px});
+}
+
+bool noted_menu_item(GuiFrame& frame, const std::string& prefix, const char* label, bool checked,
+                     bool enabled) {
+    const bool chosen = ImGui::MenuItem(label, nullptr, checked, enabled);
+    note_item(frame, prefix + "/" + label);
+    return chosen;
 }
 
 int noted_segments(GuiFrame& frame, const char* id, const std::string& prefix,
@@ -54,6 +80,20 @@ int noted_segments(GuiFrame& frame, const char* id, const std::string& prefix,
         ++i;
     }
     return clicked;
+}
+
+std::string short_count(std::int64_t count) {
+    const double n = static_cast<double>(count);
+    if (count < 1000) return fmt::format("{}", count);
+    if (n < 9.95e3) return fmt::format("{:.1f} k", n / 1e3);
+    if (n < 999.5e3) return fmt::format("{:.0f} k", n / 1e3);
+    if (n < 99.95e6) return fmt::format("{:.1f} M", n / 1e6);
+    if (n < 999.5e6) return fmt::format("{:.0f} M", n / 1e6);
+    return fmt::format("{:.1f} G", n / 1e9);
+}
+
+std::string splat_count(std::int64_t count) {
+    return short_count(count) + (count == 1 ? " splat" : " splats");
 }
 
 FrameRange frame_range(const Scene& scene) {

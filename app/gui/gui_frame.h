@@ -1,7 +1,8 @@
 // Arguments of every part of the window for one frame, and the few things all parts do: ask for something,
-// edit without letting an error out, say where a control lies.
+// edit without letting an error out, say where a control lies and how many splats there are.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
@@ -14,7 +15,6 @@
 #include "edit/status.h"
 #include "edit/view_state.h"
 #include "gui/layout.h"
-#include "gui/short_count.h"
 
 namespace astrosplat {
 
@@ -52,21 +52,46 @@ struct GuiFrame {
 
 void request(GuiFrame& frame, Command::Kind kind, std::size_t index = 0);
 void request_path(GuiFrame& frame, Command::Kind kind, const std::filesystem::path& path);
+void request_text(GuiFrame& frame, Command::Kind kind, const std::string& text, std::size_t index = 0);
 
 /// Runs an edit; bad input becomes a line of the message bar and the scene stays as it was.
 void try_edit(const std::function<void()>& edit);
 
-/// A gesture that no other drag has. The side panel's have the highest bit clear.
+/// A gesture that no other drag has.
 Gesture new_gesture();
+
+/// The edits of one drag: one undo step, which Escape takes back.
+class DragEdit {
+  public:
+    void begin(const Document& document);
+    Gesture gesture() const { return gesture_; }
+    /// The scene when it began.
+    const Scene& before() const { return before_; }
+    /// Escape was pressed: the scene is again as it was, and the drag is over.
+    bool taken_back(GuiFrame& frame) const;
+
+  private:
+    Scene before_;
+    Gesture gesture_ = 0;
+};
 
 /// Remembers where ImGui's last item lies, under a name ("File/Open...").
 void note_item(GuiFrame& frame, const std::string& name);
 void note_item(GuiFrame& frame, const std::string& name, glm::vec2 middle_px);
 
+/// An item of an open menu, remembered as "PREFIX/label". True when chosen.
+bool noted_menu_item(GuiFrame& frame, const std::string& prefix, const char* label, bool checked = false,
+                     bool enabled = true);
+
 /// A segmented control `height` px high at scale 1, whose buttons are remembered as "PREFIX/label": the one
 /// clicked, else -1.
 int noted_segments(GuiFrame& frame, const char* id, const std::string& prefix,
                    std::initializer_list<Segment> segments, int chosen, float height);
+
+/// Three digits at most, thousands as k, M, G: "340", "1.2 k", "12.4 M". `count` >= 0.
+std::string short_count(std::int64_t count);
+/// "2.9 M splats", "1 splat".
+std::string splat_count(std::int64_t count);
 
 /// First and last frame of [output] frames; 1, 1 where they cannot be read.
 struct FrameRange {

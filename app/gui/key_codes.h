@@ -20,7 +20,13 @@ inline constexpr int pad_enter = 335;
 bool key_pressed(int code, bool repeats = false);
 bool key_down(int code);
 
-/// The label of the key, for menus and the sheet of shortcuts; "" for 0.
-std::string key_name(int code);
+struct Shortcut {
+    int code = 0;  // 0: none
+    bool ctrl = false, shift = false;
+};
+/// As key_pressed, with these modifiers and no others.
+bool shortcut_pressed(const Shortcut& shortcut, bool repeats);
+/// "Ctrl+Shift+S", for menus and the sheet of shortcuts; "" for none.
+std::string shortcut_text(const Shortcut& shortcut);
 
 }  // namespace astrosplat

@@ -1,6 +1,8 @@
 // Where the parts of the window and the frame in it lie. In: sizes and the view. Out: rectangles.
 #pragma once
 
+#include <imgui.h>
+
 #include <algorithm>
 
 #include "edit/view_state.h"
@@ -11,6 +13,14 @@ namespace astrosplat {
 /// A rectangle of the window, px from its upper left.
 struct Rect {
     float x = 0, y = 0, width = 0, height = 0;
+
+    Rect() = default;
+    Rect(float x_, float y_, float width_, float height_) : x(x_), y(y_), width(width_), height(height_) {}
+    Rect(ImVec2 corner, ImVec2 size) : Rect(corner.x, corner.y, size.x, size.y) {}
+    ImVec2 corner() const { return {x, y}; }
+    ImVec2 size() const { return {width, height}; }
+    ImVec2 end() const { return {x + width, y + height}; }
+    ImVec2 middle() const { return {x + width * 0.5f, y + height * 0.5f}; }
 };
 
 /// Where things lie for a window of this size. What is hidden has no height or width.

@@ -1,16 +1,15 @@
-// The notice line, and the status bar: its right parts first, the message gets the room that is left.
-#include "gui/notices.h"
+// The notice line; and the status bar: its right parts first, the message gets the room that is left.
 
 #include <fmt/format.h>
 #include <imgui.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 
 #include "gui/icons.h"
 #include "gui/parts.h"
-#include "gui/queue_dialog.h"
 #include "gui/theme.h"
 #include "gui/widgets.h"
 
@@ -18,42 +17,42 @@ namespace astrosplat {
 
 namespace {
 
-bool small_button(GuiFrame& frame, const char* label, const char* tooltip) {
-    ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2(px(10), px(3)));
-    const bool clicked = ImGui::Button(label, {0, px(22)});
-    if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", tooltip);
-    ImGui::PopStyleVar();
-    note_item(frame, std::string("notice/") + label);
+// A text and two answers to it: index of the one clicked, else -1.
+int notice_question(GuiFrame& frame, const Rect& area, const std::string& text, ImU32 ink,
+                    const std::array<Segment, 2>& answers) {
+    row_text(text, area.height, ink);
+    int clicked = -1;
+    for (int i = 0; i < 2; ++i) {
+        const auto& [label, hint] = answers[static_cast<std::size_t>(i)];
+        ImGui::SameLine(0, px(i == 0 ? 16 : 8));
+        ImGui::SetCursorScreenPos({ImGui::GetCursorScreenPos().x, area.y + (area.height - px(22)) * 0.5f});
+        ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2(px(10), px(3)));
+        if (ImGui::Button(label, {0, px(22)})) clicked = i;
+        if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", hint);
+        ImGui::PopStyleVar();
+        note_item(frame, std::string("notice/") + label);
+    }
     return clicked;
 }
 
 void draw_disk_notice(GuiFrame& frame, const Rect& area) {
-    row_text(frame.document.name() + " changed on disk", area.height, color::attention);
-    for (const bool reloads : {true, false}) {
-        ImGui::SameLine(0, px(reloads ? 16 : 8));
-        ImGui::SetCursorScreenPos({ImGui::GetCursorScreenPos().x, area.y + (area.height - px(22)) * 0.5f});
-        const char* label = reloads ? "Reload" : "Keep";
-        const char* tooltip = reloads ? "Take what is on disk; undo brings this back"
-                                      : "Keep what is here; saving will replace what is on disk now";
-        if (small_button(frame, label, tooltip))
-            request(frame, reloads ? Command::Kind::reload : Command::Kind::keep);
-    }
+    const int clicked =
+        notice_question(frame, area, frame.document.name() + " changed on disk", color::attention,
+                        {{{"Reload", "Take what is on disk; undo brings this back"},
+                          {"Keep", "Keep what is here; saving will replace what is on disk now"}}});
+    if (clicked >= 0) request(frame, clicked == 0 ? Command::Kind::reload : Command::Kind::keep);
 }
 
 void draw_grey_notice(GuiFrame& frame, const Rect& area) {
     const std::vector<LayerParams>& layers = frame.document.scene().layers;
     const auto layer = std::ranges::find(layers, frame.view.grey_layer, &LayerParams::name);
-    row_text(frame.view.grey_layer + " has no picture and is neutral grey", area.height, color::text);
-    for (const bool chooses : {true, false}) {
-        ImGui::SameLine(0, px(chooses ? 16 : 8));
-        ImGui::SetCursorScreenPos({ImGui::GetCursorScreenPos().x, area.y + (area.height - px(22)) * 0.5f});
-        const bool clicked =
-            chooses ? small_button(frame, "Choose a picture...", "Colours the splats of this mesh")
-                    : small_button(frame, "Keep grey", "A picture can be chosen under Source, too");
-        if (clicked && chooses && layer != layers.end())
-            request(frame, Command::Kind::choose_picture, static_cast<std::size_t>(layer - layers.begin()));
-        if (clicked && !chooses) frame.view.grey_layer.clear();
-    }
+    const int clicked = notice_question(
+        frame, area, frame.view.grey_layer + " has no picture and is neutral grey", color::text,
+        {{{"Choose a picture...", "Colours the splats of this mesh"},
+          {"Keep grey", "A picture can be chosen under Source, too"}}});
+    if (clicked == 0 && layer != layers.end())
+        request(frame, Command::Kind::choose_picture, static_cast<std::size_t>(layer - layers.begin()));
+    if (clicked == 1) frame.view.grey_layer.clear();
 }
 
 void draw_hint(GuiFrame& frame, const Rect& area) {
@@ -121,12 +120,8 @@ float draw_job(GuiFrame& frame, float right, const Rect& area) {
     if (icon_button("cancel job", Icon::cross, {side, side}, px(10), color::dim, "Cancel (Esc)"))
         request(frame, Command::Kind::cancel_render);
     note_item(frame, "cancel job");
-    ImDrawList* list = ImGui::GetWindowDrawList();
     const float x1 = right - side - px(4), x0 = x1 - px(bar_width);
-    const float y0 = std::floor(area.y + area.height * 0.5f - px(2)), y1 = y0 + px(4);
-    const float done = x0 + (x1 - x0) * std::clamp(job->progress, 0.0f, 1.0f);
-    list->AddRectFilled({x0, y0}, {x1, y1}, color::field, px(2));
-    list->AddRectFilled({x0, y0}, {done, y1}, color::accent, px(2));
+    progress_bar({x0, std::floor(area.y + area.height * 0.5f - px(2))}, px(bar_width), job->progress);
     const std::string left = job->seconds_left ? ", " + duration_text(*job->seconds_left) + " left" : "";
     const float x = right_text(job->text + left, x0 - px(8), area, color::text);
     ImGui::SetCursorScreenPos({x, area.y});
@@ -134,6 +129,20 @@ float draw_job(GuiFrame& frame, float right, const Rect& area) {
     note_item(frame, "job");
     tooltip("Click: the queue");
     return x - px(part_gap);
+}
+
+// The probe's text: x, y, linear R G B A ("R", ".214") and the depth Z where there is one.
+struct ProbeCell {
+    const char* label;
+    std::string number;
+};
+
+std::vector<ProbeCell> probe_cells(const PixelProbe& probe) {
+    std::vector<ProbeCell> cells{{"x", fmt::format("{}", probe.x)}, {"y", fmt::format("{}", probe.y)}};
+    constexpr const char* channels[] = {"R", "G", "B", "A"};
+    for (std::size_t i = 0; i < 4; ++i) cells.push_back({channels[i], light_text(probe.rgba[i])});
+    if (probe.depth) cells.push_back({"Z", fmt::format("{:.4g}", *probe.depth)});
+    return cells;
 }
 
 // Label and number at fixed places, so that nothing wanders while the mouse moves.
@@ -152,14 +161,6 @@ float draw_probe(const Status& status, float right, const Rect& area) {
 }
 
 }  // namespace
-
-std::vector<ProbeCell> probe_cells(const PixelProbe& probe) {
-    std::vector<ProbeCell> cells{{"x", fmt::format("{}", probe.x)}, {"y", fmt::format("{}", probe.y)}};
-    constexpr const char* channels[] = {"R", "G", "B", "A"};
-    for (std::size_t i = 0; i < 4; ++i) cells.push_back({channels[i], light_text(probe.rgba[i])});
-    if (probe.depth) cells.push_back({"Z", fmt::format("{:.4g}", *probe.depth)});
-    return cells;
-}
 
 void StatusBar::take_message(const Status& status) {
     const std::string& text = status.message.text;

@@ -1,6 +1,10 @@
-// The parts of the window that keep nothing from one frame to the next: each draws itself and puts what was
-// asked for into the frame. Those with an area draw into the current ImGui window, over it.
+// The parts of the window, each of which draws itself and puts what was asked for into the frame. Those with
+// an area draw into the current ImGui window, over it. Only the status bar keeps something from one frame to
+// the next.
 #pragma once
+
+#include <cstdint>
+#include <string>
 
 #include "gui/gui_frame.h"
 
@@ -19,6 +23,19 @@ void draw_notice(GuiFrame& frame, const Rect& area);
 /// becomes B.
 void draw_snapshots(GuiFrame& frame, const Rect& area);
 
+/// The bar at the bottom: the last message, the pixel under the mouse, jobs, memory. Errors stay until they
+/// are clicked.
+class StatusBar {
+  public:
+    void draw(GuiFrame& frame, const Rect& area);
+
+  private:
+    void take_message(const Status& status);
+    std::string last_;          // message seen before this frame
+    std::uint64_t number_ = 0;  // of the last message
+    std::string unread_;        // error that waits to be clicked
+};
+
 /// The two edges that can be dragged, of the side panel and of the timeline: lines between the parts, which
 /// change view.panel_width and view.timeline_height. Call it after the parts, so that it lies over their
 /// edges.
@@ -31,5 +48,20 @@ void draw_settings_dialog(GuiFrame& frame);
 /// The sheet of shortcuts (F1) and the log: two dialogs that only show.
 void draw_shortcut_sheet(GuiFrame& frame);
 void draw_log(GuiFrame& frame);
+
+/// Asks for the move; where keyframes of the camera come later the dialog asks first what becomes of them.
+void begin_move(GuiFrame& frame, CameraMove move);
+void draw_move_dialog(GuiFrame& frame);
+
+/// The choice of frames to render to files, their size and place: a dialog that edits ViewState::render,
+/// opened with what the scene says.
+void open_render_dialog(const Document& document, ViewState& view, RenderKind kind);
+void draw_render_dialog(GuiFrame& frame);
+
+/// The queue of renderings: a dialog that shows Status::jobs, with the finished frames of one of them.
+void draw_queue(GuiFrame& frame);
+
+/// "2:05", "1:02:05".
+std::string duration_text(double seconds);
 
 }  // namespace astrosplat

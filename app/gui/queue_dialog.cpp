@@ -1,5 +1,5 @@
 // Jobs at the left, the newest last; the finished frames of the chosen one at the right.
-#include "gui/queue_dialog.h"
+#include "gui/parts.h"
 
 #include <fmt/format.h>
 #include <imgui.h>
@@ -57,9 +57,7 @@ void draw_card_text(const QueuedJob& job, ImVec2 corner, float width) {
                   fitting(state_text(job), room - px(64)).c_str());
     ImGui::PopFont();
     if (job.state != JobState::running && job.state != JobState::submitted) return;
-    const float y = corner.y + px(job_height) - px(8), end = x + room * std::clamp(job.progress, 0.0f, 1.0f);
-    list->AddRectFilled({x, y}, {x + room, y + px(4)}, color::field, px(2));
-    list->AddRectFilled({x, y}, {end, y + px(4)}, color::accent, px(2));
+    progress_bar({x, corner.y + px(job_height) - px(8)}, room, job.progress);
 }
 
 void card_button(GuiFrame& frame, const QueuedJob& job, ImVec2 corner, float width) {
@@ -100,18 +98,6 @@ void draw_list(GuiFrame& frame, const QueuedJob* chosen) {
     ImGui::EndChild();
 }
 
-void draw_image(const FinishedFrame& shown, float width, float height) {
-    const ImVec2 corner = ImGui::GetCursorScreenPos();
-    ImDrawList* const list = ImGui::GetWindowDrawList();
-    list->AddRectFilled(corner, {corner.x + width, corner.y + height}, IM_COL32_BLACK, px(3));
-    if (shown.texture && shown.aspect > 0) {
-        const float w = std::min(width, height * shown.aspect), h = w / shown.aspect;
-        const float x = corner.x + (width - w) * 0.5f, y = corner.y + (height - h) * 0.5f;
-        list->AddImage(shown.texture, {x, y}, {x + w, y + h});
-    }
-    ImGui::Dummy({width, height});
-}
-
 // At the rate of the scene, round and round.
 void play(ViewState& view, int count, double fps) {
     if (!view.queue_playing || count < 2) return;
@@ -122,9 +108,11 @@ void draw_frames(GuiFrame& frame, const QueuedJob& job) {
     ViewState& view = frame.view;
     const int count = static_cast<int>(job.files.size());
     const float width = ImGui::GetContentRegionAvail().x;
-    draw_image(frame.status.finished, width, ImGui::GetContentRegionAvail().y - px(76));
-    if (!frame.status.finished.error.empty())
-        ImGui::TextColored(color4(color::error), "%s", frame.status.finished.error.c_str());
+    const FinishedFrame& finished = frame.status.finished;
+    const ImVec2 size{width, ImGui::GetContentRegionAvail().y - px(76)};
+    picture_box({ImGui::GetCursorScreenPos(), size}, finished.texture, finished.aspect, 3);
+    ImGui::Dummy(size);
+    if (!finished.error.empty()) ImGui::TextColored(color4(color::error), "%s", finished.error.c_str());
     if (count == 0) return ImGui::TextColored(color4(color::dim), "%s", "No frame is finished yet.");
     play(view, count, frame.document.scene().output.fps);
     int shown = view.queue_frame < 0 ? count - 1 : std::min(view.queue_frame, count - 1);
@@ -161,14 +149,10 @@ void draw_queue(GuiFrame& frame) {
     if (chosen) draw_frames(frame, *chosen);
     ImGui::EndChild();
     ImGui::SetCursorPosY(ImGui::GetWindowHeight() - px(44));
-    const int button = dialog_buttons(frame, "queue", {"Open folder", "Close"}, true);
+    const int button = dialog_buttons(frame, "queue", {"Open folder", "Close"}, 1);
     if (button == 0 && chosen) request_path(frame, Command::Kind::open_folder, chosen->target.parent_path());
-    if (button == 1 || dialog_escape()) {
-        open = false;
-        frame.view.queue_playing = false;
-        ImGui::CloseCurrentPopup();
-    }
-    end_dialog();
+    if (button == 1) open = frame.view.queue_playing = false;
+    end_dialog(!open);
 }
 
 }  // namespace astrosplat

@@ -1,5 +1,5 @@
 // One row a value, the label at the left; what is wrong is said where the button would be pressed.
-#include "gui/render_dialog.h"
+#include "gui/parts.h"
 
 #include <fmt/format.h>
 #include <imgui.h>
@@ -119,7 +119,6 @@ void folder_row(GuiFrame& frame) {
     if (dialog_button("Choose...", false, button)) {
         frame.view.render_open = false;  // until the file dialog has the answer
         request(frame, Command::Kind::choose_target);
-        ImGui::CloseCurrentPopup();
     }
     note_item(frame, "render/Choose...");
 }
@@ -201,7 +200,7 @@ void command_row(GuiFrame& frame) {
     ImGui::SameLine(ImGui::GetContentRegionMax().x - button);
     ImGui::BeginDisabled(!known);
     if (dialog_button("Copy", false, button))
-        frame.requested.push_back({Command::Kind::copy_text, {}, status.render_command, 0});
+        request_text(frame, Command::Kind::copy_text, status.render_command);
     note_item(frame, "render/Copy");
     ImGui::EndDisabled();
 }
@@ -240,14 +239,11 @@ void draw_render_dialog(GuiFrame& frame) {
     const char* const go = renders_by_slurm(frame.view.render) ? "Submit"
                            : running_job(frame.status)         ? "Add to the queue"
                                                                : "Render";
-    const int button = dialog_buttons(frame, "render", {"Cancel", go}, true);
+    const int button = dialog_buttons(frame, "render", {"Cancel", go}, 0);
     const bool render = button == 1 && wrong.empty();
     if (render) request(frame, Command::Kind::render);
-    if (render || button == 0 || dialog_escape()) {
-        open = false;
-        ImGui::CloseCurrentPopup();
-    }
-    end_dialog();
+    if (render || button == 0) open = false;  // it is already while a folder is chosen
+    end_dialog(!open);
 }
 
 }  // namespace astrosplat

@@ -22,16 +22,6 @@ std::string snapshot_line(const Snapshot& snapshot) {
                                 : splats + ", preview";
 }
 
-// The thumbnail as large as its frame allows.
-void draw_thumbnail(ImDrawList* list, const Snapshot& snapshot, ImVec2 corner) {
-    const float w = px(thumbnail_width), h = px(thumbnail_height);
-    list->AddRectFilled(corner, {corner.x + w, corner.y + h}, IM_COL32_BLACK, px(3));
-    if (!snapshot.thumbnail || snapshot.aspect <= 0) return;
-    const float shown_w = std::min(w, h * snapshot.aspect), shown_h = shown_w / snapshot.aspect;
-    const float x = corner.x + (w - shown_w) * 0.5f, y = corner.y + (h - shown_h) * 0.5f;
-    list->AddImage(snapshot.thumbnail, {x, y}, {x + shown_w, y + shown_h});
-}
-
 void begin_renaming(GuiFrame& frame, std::size_t index) {
     frame.view.renamed_snapshot = static_cast<int>(index);
     frame.view.typed_name = frame.status.snapshots[index].name;
@@ -49,30 +39,21 @@ void name_entry(GuiFrame& frame, std::size_t index, ImVec2 corner) {
         "##name", &view.typed_name, ImGuiInputTextFlags_AutoSelectAll | ImGuiInputTextFlags_EnterReturnsTrue);
     note_item(frame, "snapshot name");
     if (entered && !view.typed_name.empty())
-        frame.requested.push_back({Command::Kind::rename_snapshot, {}, view.typed_name, index});
+        request_text(frame, Command::Kind::rename_snapshot, view.typed_name, index);
     if (ImGui::IsItemDeactivated()) view.renamed_snapshot = -1;
 }
 
 void card_menu(GuiFrame& frame, std::size_t index) {
-    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(px(8), px(8)));
-    const bool open = ImGui::BeginPopupContextItem("card menu");
-    ImGui::PopStyleVar();
-    if (!open) return;
-    ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(px(12), px(8)));
-    const auto entry = [&](const char* label) {
-        const bool chosen = ImGui::MenuItem(label);
-        note_item(frame, std::string("snapshot/") + label);
-        return chosen;
-    };
+    ImGui::OpenPopupOnItemClick("card menu");
+    if (!begin_menu_popup("card menu")) return;
+    const auto entry = [&](const char* label) { return noted_menu_item(frame, "snapshot", label); };
     if (entry("Show")) request(frame, Command::Kind::show_snapshot, index);
     if (entry("Compare as B")) request(frame, Command::Kind::compare_snapshot, index);
     if (entry("Restore")) request(frame, Command::Kind::restore_snapshot, index);
     ImGui::Separator();
     if (entry("Rename")) begin_renaming(frame, index);
     if (entry("Delete")) request(frame, Command::Kind::delete_snapshot, index);
-    close_on_escape();
-    ImGui::PopStyleVar();
-    ImGui::EndPopup();
+    end_menu_popup();
 }
 
 void draw_card(GuiFrame& frame, std::size_t index) {
@@ -87,8 +68,9 @@ void draw_card(GuiFrame& frame, std::size_t index) {
     tooltip("Click: compare as B. Right click: show, restore, rename, delete");
     ImGui::SetItemAllowOverlap();
     ImDrawList* list = ImGui::GetWindowDrawList();
-    draw_thumbnail(list, snapshot, corner);
-    const ImVec2 end{corner.x + px(thumbnail_width), corner.y + px(thumbnail_height)};
+    const Rect area(corner, {px(thumbnail_width), px(thumbnail_height)});
+    picture_box(area, snapshot.thumbnail, snapshot.aspect, 3);
+    const ImVec2 end = area.end();
     if (is_b || hovered) list->AddRect(corner, end, is_b ? color::accent : color::dim, px(3), 0, px(1.5f));
     ImGui::PushFont(small_font());
     const bool is_renamed = frame.view.renamed_snapshot == static_cast<int>(index);

@@ -1,4 +1,4 @@
-// The timeline as a whole: its first row, ruler and playhead; rows and graph are those of timeline_parts.h.
+// The timeline as a whole: its first row, ruler and playhead.
 #include "gui/timeline.h"
 
 #include <fmt/format.h>
@@ -12,8 +12,6 @@
 #include "gui/icons.h"
 #include "gui/key_codes.h"
 #include "gui/theme.h"
-#include "gui/timeline_parts.h"
-#include "gui/timeline_state.h"
 #include "gui/widgets.h"
 #include "scene/describe.h"
 
@@ -285,7 +283,6 @@ void end_drag(TimelineState& t) {
     if (t.drag == TimelineState::Drag::none || ImGui::IsMouseDown(ImGuiMouseButton_Left)) return;
     if (t.drag == TimelineState::Drag::pan) return;  // by another button
     t.drag = TimelineState::Drag::none;
-    t.before.clear();
 }
 
 }  // namespace

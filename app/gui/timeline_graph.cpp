@@ -1,5 +1,4 @@
-#include "gui/timeline_parts.h"
-
+// The graph: curves over the frames, keyframes and handles to drag, channels to hide.
 #include <fmt/format.h>
 #include <imgui.h>
 
@@ -7,11 +6,10 @@
 #include <cmath>
 #include <functional>
 #include <limits>
-#include <utility>
 
 #include "edit/keyframes.h"
-#include "gui/key_codes.h"
 #include "gui/theme.h"
+#include "gui/timeline.h"
 #include "gui/widgets.h"
 #include "scene/animate.h"
 
@@ -75,17 +73,12 @@ void sample_graph(TimelineState& t, const Track& track, const ParameterSpec& spe
     if (!dragged && !t.graph.zoomed) fit_values(t);  // the axis stands still under the mouse
 }
 
-/// One undo step a drag; Escape takes it back.
 void edit_by_drag(TimelineState& t, GuiFrame& frame, const std::string& name,
                   const std::function<void(Scene&)>& change) {
-    if (key_pressed(key_code::escape)) {
-        if (std::exchange(t.graph.edited, false)) frame.document.undo();
+    if (t.edit.taken_back(frame))
         t.drag = TimelineState::Drag::none;
-        return;
-    }
-    const std::uint64_t before = frame.document.revision();
-    try_edit([&] { frame.document.edit(name, change, t.gesture); });
-    t.graph.edited = t.graph.edited || frame.document.revision() != before;
+    else
+        try_edit([&] { frame.document.edit(name, change, t.edit.gesture()); });
 }
 
 void drag_value(TimelineState& t, GuiFrame& frame, const Track& track, const Rect& area) {
@@ -122,10 +115,10 @@ void drag_handle(TimelineState& t, GuiFrame& frame, const Track& track, const Re
     });
 }
 
-void grab(TimelineState& t, TimelineState::Drag drag, double keyframe, std::size_t component) {
+void grab(TimelineState& t, const GuiFrame& frame, TimelineState::Drag drag, double keyframe,
+          std::size_t component) {
     t.drag = drag;
-    t.gesture = new_gesture();
-    t.graph.edited = false;
+    t.edit.begin(frame.document);
     t.graph.grabbed_keyframe = keyframe;
     t.graph.component = component;
 }
@@ -161,7 +154,7 @@ void draw_handles(TimelineState& t, GuiFrame& frame, const Track& track, const R
                           {at.x, at.y});
                 if (near && t.drag == TimelineState::Drag::none &&
                     ImGui::IsMouseClicked(ImGuiMouseButton_Left)) {
-                    grab(t, TimelineState::Drag::handle, keyframe.frame, c);
+                    grab(t, frame, TimelineState::Drag::handle, keyframe.frame, c);
                     t.graph.side = side;
                 }
             }
@@ -216,7 +209,7 @@ void draw_graph_keyframes(TimelineState& t, GuiFrame& frame, const Track& track,
                               t.graph.grabbed_keyframe == keyframe.frame && t.graph.component == c;
             const bool near = hovered && is_near(at);
             if (near && t.drag == TimelineState::Drag::none && ImGui::IsMouseClicked(ImGuiMouseButton_Left)) {
-                grab(t, TimelineState::Drag::value, keyframe.frame, c);
+                grab(t, frame, TimelineState::Drag::value, keyframe.frame, c);
                 select_keyframe(t, place);
             }
             if (near && ImGui::IsMouseClicked(ImGuiMouseButton_Right)) {

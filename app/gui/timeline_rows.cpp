@@ -1,5 +1,4 @@
-#include "gui/timeline_parts.h"
-
+// The rows of keyframes, their menu and their drags.
 #include <fmt/format.h>
 #include <imgui.h>
 
@@ -14,7 +13,6 @@
 #include "gui/key_codes.h"
 #include "gui/theme.h"
 #include "gui/timeline.h"
-#include "gui/timeline_state.h"
 #include "gui/widgets.h"
 
 namespace astrosplat {
@@ -23,13 +21,13 @@ namespace {
 
 // The menu of the selected keyframes: changes of all of them at once.
 
+constexpr const char* menu_name = "keyframe menu";
+
 void on_selected(const TimelineState& t, GuiFrame& frame, const char* name,
                  const std::function<void(Scene&, const KeyframePlace&)>& change) {
-    const std::vector<KeyframePlace> places = t.selected;
     try_edit([&] {
         frame.document.edit(name, [&](Scene& scene) {
-            for (const KeyframePlace& place : places)
-                if (has_keyframe_at(scene, place.key, place.frame)) change(scene, place);
+            for (const KeyframePlace& place : t.selected) change(scene, place);
         });
     });
 }
@@ -62,11 +60,10 @@ void interpolation_items(const TimelineState& t, GuiFrame& frame) {
         const bool set = all_selected(t, frame, [&](const Track& track, std::size_t at) {
             return track.keyframes[at].interpolation == kind;
         });
-        if (ImGui::MenuItem(labels[i], nullptr, set, kind != Interpolation::bezier || bezier))
+        if (noted_menu_item(frame, menu_name, labels[i], set, kind != Interpolation::bezier || bezier))
             on_selected(t, frame, "Interpolation", [&](Scene& scene, const KeyframePlace& place) {
                 set_interpolation(scene, place.key, place.frame, kind);
             });
-        note_item(frame, std::string("keyframe menu/") + labels[i]);
     }
 }
 
@@ -84,43 +81,30 @@ void handle_items(const TimelineState& t, GuiFrame& frame) {
                              const bool out = has_handle(track, at, HandleSide::out);
                              return (!in || keyframe.in.kind == kind) && (!out || keyframe.out.kind == kind);
                          });
-        if (ImGui::MenuItem(labels[i], nullptr, set, enabled))
+        if (noted_menu_item(frame, menu_name, labels[i], set, enabled))
             on_selected(t, frame, "Handles", [&](Scene& scene, const KeyframePlace& place) {
                 set_handle_kind(scene, place.key, place.frame, kind);
             });
-        note_item(frame, std::string("keyframe menu/") + labels[i]);
     }
     const bool broken = enabled && all_selected(t, frame, [](const Track& track, std::size_t at) {
                             return track.keyframes[at].broken;
                         });
-    if (ImGui::MenuItem("Break handles", nullptr, broken, enabled))
+    if (noted_menu_item(frame, menu_name, "Break handles", broken, enabled))
         on_selected(t, frame, "Break handles", [&](Scene& scene, const KeyframePlace& place) {
             set_broken(scene, place.key, place.frame, !broken);
         });
-    note_item(frame, "keyframe menu/Break handles");
 }
 
 void remove_selected(TimelineState& t, GuiFrame& frame) {
-    const std::vector<KeyframePlace> places = std::move(t.selected);
+    on_selected(
+        t, frame, t.selected.size() == 1 ? "Remove keyframe" : "Remove keyframes",
+        [](Scene& scene, const KeyframePlace& place) { remove_keyframe(scene, place.key, place.frame); });
     t.selected.clear();
-    if (places.empty()) return;
-    try_edit([&] {
-        frame.document.edit(places.size() == 1 ? "Remove keyframe" : "Remove keyframes", [&](Scene& scene) {
-            for (const KeyframePlace& place : places)
-                if (has_keyframe_at(scene, place.key, place.frame))
-                    remove_keyframe(scene, place.key, place.frame);
-        });
-    });
 }
 
 /// The popup "keyframe menu": interpolation, the ends of tracks, removal.
 void draw_keyframe_menu(TimelineState& t, GuiFrame& frame) {
-    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(px(8), px(8)));
-    ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(px(12), px(8)));
-    const bool open = ImGui::BeginPopup("keyframe menu");
-    ImGui::PopStyleVar(2);
-    if (!open) return;
-    ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(px(12), px(8)));
+    if (!begin_menu_popup(menu_name)) return;
     interpolation_items(t, frame);
     ImGui::Separator();
     handle_items(t, frame);
@@ -138,9 +122,7 @@ void draw_keyframe_menu(TimelineState& t, GuiFrame& frame) {
     if (ImGui::MenuItem("Delete all keyframes of the row"))
         on_selected(t, frame, "Remove animation",
                     [](Scene& scene, const KeyframePlace& place) { remove_track(scene, place.key); });
-    close_on_escape();
-    ImGui::PopStyleVar();
-    ImGui::EndPopup();
+    end_menu_popup();
 }
 
 constexpr float track_height = 26, keyframe_reach = 7, track_name_width = 160, value_gutter = 56;
@@ -193,8 +175,7 @@ void press_keyframe(TimelineState& t, GuiFrame& frame, const KeyframePlace& plac
     select_keyframe(t, place);
     frame.view.graph_parameter = place.key;
     t.drag = TimelineState::Drag::keyframes;
-    t.gesture = new_gesture();
-    t.before = frame.document.scene().animation;
+    t.edit.begin(frame.document);
     t.picked = t.selected;
     t.grabbed_frame = t.scale.frame_at(ImGui::GetIO().MousePos.x);
     t.moved = 0.0;
@@ -214,13 +195,13 @@ void drag_keyframes(TimelineState& t, GuiFrame& frame) {
         frame.document.edit(
             copies ? "Copy keyframes" : "Move keyframes",
             [&](Scene& scene) {
-                scene.animation = t.before;
+                scene.animation = t.edit.before().animation;
                 if (delta == 0.0) return;
                 for (const KeyframePlace& place : order)
                     (copies ? copy_keyframe : move_keyframe)(scene, place.key, place.frame,
                                                              place.frame + delta);
             },
-            t.gesture);
+            t.edit.gesture());
     });
     t.selected = t.picked;
     for (KeyframePlace& place : t.selected) place.frame += delta;
@@ -304,7 +285,7 @@ void handle_rows_mouse(TimelineState& t, GuiFrame& frame, const Rect& area) {
     }
     if (hovered && under && ImGui::IsMouseClicked(ImGuiMouseButton_Right)) {
         if (!is_selected(t, *under)) t.selected = {*under};
-        ImGui::OpenPopup("keyframe menu");
+        ImGui::OpenPopup(menu_name);
     }
     if (t.drag == TimelineState::Drag::keyframes) drag_keyframes(t, frame);
     if (t.drag == TimelineState::Drag::box) select_in_box(t, scene, area.y);

@@ -10,7 +10,7 @@
 #include <cmath>
 #include <vector>
 
-#include "gui/action_functions.h"
+#include "gui/actions.h"
 #include "gui/icons.h"
 #include "gui/theme.h"
 #include "gui/widgets.h"

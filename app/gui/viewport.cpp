@@ -7,7 +7,6 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
-#include "gui/badge.h"
 #include "gui/key_codes.h"
 #include "gui/theme.h"
 #include "gui/viewport_overlay.h"

@@ -1,13 +1,90 @@
-// The frame and what belongs to it: gate, badge, wipe handle, and the mouse over it. In: the frame's
-// texture and how far it is. Out: ViewportInput for the viewer's camera.
+// The frame and what belongs to it: gate, badge, wipe handle, and the mouse over it, which moves the camera
+// or what else can be dragged there. In: the frame's texture and how far it is. Out: ViewportInput for the
+// viewer's camera; edits of the scene, one undo step a drag, which Escape takes back.
 #pragma once
 
+#include <glm/vec3.hpp>
+#include <optional>
+#include <vector>
+
+#include "edit/handles.h"
+#include "edit/keyframes.h"
 #include "gui/gui_frame.h"
-#include "gui/handles.h"
-#include "gui/path_points.h"
-#include "gui/reference_placing.h"
+#include "scene/reference_place.h"
 
 namespace astrosplat {
+
+/// The reference picture placed by hand: the inside moves it, a corner scales it, the outside (or Shift)
+/// turns it, the wheel scales it about the mouse.
+class ReferencePlacing {
+  public:
+    /// The left button went down over the view; `frame_px` in px of the window.
+    void press(const GuiFrame& frame, const FrameOnScreen& frame_px, bool turn);
+    /// A frame of the mouse. Takes the wheel out of `input`.
+    void read(GuiFrame& frame, const FrameOnScreen& frame_px, ViewportInput& input);
+
+  private:
+    PlaceGrip grip_ = PlaceGrip::move;
+    ReferenceParams pressed_;  // as it was
+    glm::dvec2 pressed_px_{0.0};
+    Gesture gesture_ = 0, wheel_gesture_ = 0;
+    double wheeled_at_ = -1.0;  // seconds
+};
+/// The view's reference is seen and being placed.
+bool places_reference(const GuiFrame& frame);
+/// Its outline and corners, in px of the window.
+void draw_placing(const GuiFrame& frame, const FrameOnScreen& frame_px);
+
+/// Handles that move, turn and scale the selected layer, one of its crops or the camera's target.
+class Handles {
+  public:
+    /// The left button went down at a place of the viewport, px: true where that is on a handle.
+    bool press(const GuiFrame& frame, const glm::dvec2& mouse_px);
+    /// A frame of the mouse; `dragged`: the button that was pressed on a handle is still down.
+    void read(GuiFrame& frame, const glm::dvec2& mouse_px, bool dragged);
+    void draw(const GuiFrame& frame, const Rect& area, const glm::dvec2& mouse_px) const;
+
+  private:
+    HandleDrag drag_;
+    Scene pressed_at_frame_;  // as it stood at the frame
+    Camera camera_;           // through which it was pressed
+    DragEdit edit_;
+};
+
+/// A keyframe of the camera's position, or one of its handles.
+struct PathGrip {
+    double frame = 0.0;
+    std::optional<HandleSide> side;  // none: the keyframe itself
+    bool operator==(const PathGrip&) const = default;
+};
+
+/// The keyframes of the camera's position as points on its path, in views beside the camera, with the handles
+/// of Bezier ones: dragged in the plane of the view, with Shift along its axis.
+class PathPoints {
+  public:
+    /// Takes the point or handle under the mouse, if there is one. `area` is the viewport's.
+    bool press(GuiFrame& frame, const Rect& area);
+    /// While the button is held.
+    void drag(GuiFrame& frame);
+    /// A point that was not moved shows its frame.
+    void release(GuiFrame& frame);
+    void draw(GuiFrame& frame, const Rect& area) const;
+
+  private:
+    struct Place {
+        PathGrip grip;
+        glm::dvec3 point;    // world
+        double frames;       // of a handle
+        glm::vec2 px, from;  // on the screen, with its keyframe's
+    };
+    static std::vector<Place> places(const GuiFrame& frame, const Rect& area);
+    static const Place* nearest(const std::vector<Place>& places);
+
+    std::optional<PathGrip> held_;
+    glm::dvec3 pressed_at_{0.0}, moved_{0.0};  // world
+    double frames_ = 0.0;                      // of the held handle
+    DragEdit edit_;
+};
 
 class Viewport {
   public:

@@ -1,6 +1,7 @@
-// Drawings over the frame: gate and safe areas, the camera's path, the wipe's edge, a line on the view; and
-// the marks of the View menu: boxes of layers, grid and axes. In: the frame's place and the status. Out: thin
-// lines in ImGui's draw list, those in depth the fainter the farther away.
+// Drawings over the frame: gate and safe areas, the camera's path, the wipe's edge, a line on the view; the
+// marks of the View menu: boxes of layers, grid and axes; and the badge in the corner, which says how final
+// the frame is. In: the frame's place and the status. Out: thin lines in ImGui's draw list, those in depth
+// the fainter the farther away, and words.
 #pragma once
 
 #include <imgui.h>
@@ -26,5 +27,25 @@ void draw_deep_line(const GuiFrame& frame, const Rect& area, const glm::dvec3& f
 
 /// Boxes of layers, grid and axes, as far as the View menu asks for them.
 void draw_view_marks(const GuiFrame& frame, const Rect& area);
+
+// The badge (badge.cpp).
+
+/// Also the buttons in it (Copy, Cancel). Returns where it ends, px.
+float draw_badge(GuiFrame& frame, const Rect& area);
+
+/// Beside it, from `left` on, how large the difference is that is shown, else how true the front is to its
+/// picture; nothing where there is no room.
+void draw_side_badge(GuiFrame& frame, const Rect& area, float left);
+
+/// The words of the badge, for tests and drawings: "Refining 41 %" and what stands dimmed beside it.
+struct BadgeText {
+    std::string text, beside;
+    unsigned color;  // ImU32
+};
+BadgeText badge_text(const Scene& scene, const Status& status);
+/// "Front 39.6 dB, SSIM 0.976, light +0.3 %".
+std::string front_text(const FrontStatus& front);
+/// "Mean +0.4 %, 31.2 dB, light -3.0 %".
+std::string difference_text(const DifferenceStatus& difference);
 
 }  // namespace astrosplat

@@ -107,6 +107,37 @@ void row_text(const std::string& text, float row_height, ImU32 text_color) {
     ImGui::Dummy({size.x, row_height});
 }
 
+void progress_bar(ImVec2 corner, float width, float share) {
+    ImDrawList* const list = ImGui::GetWindowDrawList();
+    const float done = corner.x + width * std::clamp(share, 0.0f, 1.0f), bottom = corner.y + px(4);
+    list->AddRectFilled(corner, {corner.x + width, bottom}, color::field, px(2));
+    list->AddRectFilled(corner, {done, bottom}, color::accent, px(2));
+}
+
+void picture_box(const Rect& area, ImTextureID texture, float aspect, float radius) {
+    ImDrawList* const list = ImGui::GetWindowDrawList();
+    list->AddRectFilled(area.corner(), area.end(), IM_COL32_BLACK, px(radius));
+    if (!texture || aspect <= 0) return;
+    const float w = std::max(px(1), std::min(area.width, area.height * aspect));
+    const float h = std::max(px(1), std::min(area.height, area.width / aspect));
+    const float x = area.x + (area.width - w) * 0.5f, y = area.y + (area.height - h) * 0.5f;
+    list->AddImage(texture, {x, y}, {x + w, y + h});
+}
+
+bool begin_menu_popup(const char* id) {
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(px(8), px(8)));
+    const bool open = ImGui::BeginPopup(id);
+    ImGui::PopStyleVar();
+    if (open) ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(px(12), px(8)));
+    return open;
+}
+
+void end_menu_popup() {
+    close_on_escape();
+    ImGui::PopStyleVar();
+    ImGui::EndPopup();
+}
+
 bool dialog_button(const char* label, bool is_default, float least) {
     const float width = std::max(px(least), ImGui::CalcTextSize(label).x + px(24));
     if (is_default) {

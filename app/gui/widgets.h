@@ -37,6 +37,17 @@ void close_on_escape();
 /// Text in the vertical middle of a row of this height, at the cursor.
 void row_text(const std::string& text, float row_height, ImU32 text_color);
 
+/// A share 0..1 of `width` px that is done; 4 px high at scale 1.
+void progress_bar(ImVec2 corner, float width, float share);
+
+/// A texture of this aspect (width / height) on black, as large as `area` allows; with none of either black
+/// alone. `radius`: of the corners of the black, px at scale 1.
+void picture_box(const Rect& area, ImTextureID texture, float aspect, float radius);
+
+/// ImGui's popup as a menu, which Escape closes; end_menu_popup only after true.
+bool begin_menu_popup(const char* id);
+void end_menu_popup();
+
 /// A button as wide as its text and at least `least` px; the accent for what Enter would do.
 bool dialog_button(const char* label, bool is_default, float least);
 

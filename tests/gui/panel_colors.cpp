@@ -63,7 +63,7 @@ TEST_F(PanelColors, DisplayAndViewAreChosenUndoneAndSaved) {
 TEST_F(PanelColors, TheProgramsOwnViewHidesMeanwhile) {
     EXPECT_FALSE(d.has_row("output.view"));
     EXPECT_TRUE(d.has_row("output.exposure"));
-    d.panel.answer(ocio + "config", "", d.document, d.view);
+    d.panel.answer(ocio + "config", "", d.frame());
     d.show(PanelTab::output);
     EXPECT_TRUE(d.has_row("output.view"));
     EXPECT_FALSE(d.has_row(ocio + "view"));

@@ -64,7 +64,7 @@ TEST(PanelCompanions, ChoosingCurveInTheListWorks) {
 
 TEST(PanelCompanions, AThicknessMapBringsItsFirstStops) {
     PanelDriver d(companions_scene);
-    d.panel.answer(look + "thickness.map", "/nowhere/map.png", d.document, d.view);
+    d.panel.answer(look + "thickness.map", "/nowhere/map.png", d.frame());
     const Thickness& thickness = d.document.scene().layers[0].look.thickness;
     EXPECT_EQ(thickness.map, "/nowhere/map.png");
     ASSERT_EQ(thickness.stops.size(), 3u);
@@ -83,7 +83,7 @@ TEST(PanelCompanions, SplatsAskForTheirFileFirst) {
     const std::optional<ParameterKey> request = d.panel.take_request();
     ASSERT_TRUE(request);
     EXPECT_EQ(request->text(), "layer.dust.source.file");
-    d.panel.answer(*request, "/nowhere/set.ply", d.document, d.view);
+    d.panel.answer(*request, "/nowhere/set.ply", d.frame());
     EXPECT_EQ(d.value("layer.dust.source.kind"), Value("splats"));
     d.document.undo();
     EXPECT_EQ(d.value("layer.dust.source.kind"), Value("mesh"));

@@ -51,7 +51,7 @@ void PanelDriver::frames(int count) {
         ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(0, 0));
         ImGui::Begin("window", nullptr, ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove);
         ImGui::PopStyleVar();
-        panel.draw(document, view, status, commands);
+        panel.draw(frame());
         ImGui::End();
         ImGui::Render();
     }

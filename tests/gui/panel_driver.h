@@ -5,6 +5,7 @@
 #include <imgui.h>
 
 #include <string>
+#include <vector>
 
 #include "gui/panel/panel.h"
 
@@ -36,6 +37,8 @@ class PanelDriver {
     bool has_row(const std::string& key) const;
     /// Opens every section of the tab and draws it whole.
     void show(PanelTab tab);
+    /// What the window gives the panel.
+    GuiFrame frame() { return {document, view, status, commands, drawn_}; }
     /// The value of a key in the scene as it is.
     Value value(const std::string& key) const;
 
@@ -47,6 +50,7 @@ class PanelDriver {
     std::string clipboard;
 
   private:
+    std::vector<DrawnItem> drawn_;
     glm::vec2 size_;
     ImGuiContext* context_;
 };

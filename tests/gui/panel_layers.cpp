@@ -172,7 +172,7 @@ TEST(PanelLayers, TheLastLayerCanBeDeleted) {
 TEST(PanelLayers, AFileParametersAnswerIsAnEdit) {
     PanelDriver d(layers_scene);
     const std::string key = "environment.image";
-    d.panel.answer(key, "/nowhere/sky.png", d.document, d.view);
+    d.panel.answer(key, "/nowhere/sky.png", d.frame());
     EXPECT_EQ(to_toml(d.value(key)), "\"/nowhere/sky.png\"");
     EXPECT_TRUE(d.commands.empty());
 }

@@ -1,10 +1,9 @@
 // The dialog that renders to files, and the queue.
-#include "gui/render_dialog.h"
+#include "gui/parts.h"
 
 #include <gtest/gtest.h>
 
 #include "gui/key_codes.h"
-#include "gui/queue_dialog.h"
 #include "gui/test_window.h"
 
 namespace astrosplat {

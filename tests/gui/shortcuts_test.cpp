@@ -20,7 +20,7 @@ using Kind = Command::Kind;
 TEST(Shortcuts, CodesOfLettersAndDigitsAreTheirCharacters) {
     const auto expect_named = [](int code, char character) {
         EXPECT_EQ(code, character);
-        EXPECT_EQ(key_name(code), std::string(1, character));
+        EXPECT_EQ(shortcut_text({.code = code}), std::string(1, character));
     };
     expect_named(key_code::n0, '0');
     expect_named(key_code::n1, '1');
@@ -29,8 +29,8 @@ TEST(Shortcuts, CodesOfLettersAndDigitsAreTheirCharacters) {
     expect_named(key_code::n9, '9');
     expect_named('Z', 'Z');
     EXPECT_EQ(key_code::space, ' ');
-    EXPECT_EQ(key_name(0), "");
-    EXPECT_EQ(key_name(128), "");
+    EXPECT_EQ(shortcut_text({}), "");
+    EXPECT_EQ(shortcut_text({.code = 128}), "");
 }
 
 TEST(Shortcuts, UndoAndRedoNameTheirStep) {

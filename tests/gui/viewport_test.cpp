@@ -3,7 +3,6 @@
 
 #include <limits>
 
-#include "gui/badge.h"
 #include "gui/gui_frame.h"
 #include "gui/key_codes.h"
 #include "gui/test_window.h"

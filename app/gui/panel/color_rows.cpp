@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "gui/panel/section.h"
+#include "gui/panel/controls.h"
 #include "gui/theme.h"
 
 namespace astrosplat::panel {

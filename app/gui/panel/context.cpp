@@ -9,9 +9,9 @@
 
 namespace astrosplat::panel {
 
-const LayerStatus& Context::layer_status() const {
+const LayerStatus& Context::layer_status(std::size_t i) const {
     static const LayerStatus unknown;
-    return view.layer < status.layers.size() ? status.layers[view.layer] : unknown;
+    return i < status.layers.size() ? status.layers[i] : unknown;
 }
 
 void describe_current(Memory& memory, const Document& document, double frame) {
@@ -43,12 +43,7 @@ const Value& default_of(Context& context, const ParameterSpec& spec) {
     return context.memory.defaults.emplace(spec.generic_key, Document::default_value(spec)).first->second;
 }
 
-Gesture begin_gesture(Context& context) {
-    // The upper half keeps these ids apart from those of other widgets, which count from 1.
-    static constexpr Gesture first = Gesture{1} << 32;
-    context.memory.gesture = std::max(context.memory.gesture + 1, first);
-    return context.memory.gesture;
-}
+Gesture begin_gesture(Context& context) { return context.memory.gesture = new_gesture(); }
 
 void attempt(Context& context, const ParameterKey& key, const std::function<void()>& change) {
     Memory& memory = context.memory;

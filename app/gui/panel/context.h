@@ -1,6 +1,6 @@
-// Arguments of every part of the panel: the document and its description at the current frame, and what the
-// panel remembers from frame to frame. Reading goes through the description, writing through the document,
-// so that a widget never holds a value of its own for longer than a drag.
+// Arguments of every part of the panel: those of the window's parts, the scene's description at the current
+// frame, and what the panel remembers from frame to frame. Reading goes through the description, writing
+// through the document, so that a widget never holds a value of its own for longer than a drag.
 #pragma once
 
 #include <imgui.h>
@@ -13,10 +13,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "edit/commands.h"
-#include "edit/document.h"
-#include "edit/status.h"
-#include "edit/view_state.h"
+#include "gui/gui_frame.h"
 #include "scene/describe.h"
 
 namespace astrosplat {
@@ -88,11 +85,7 @@ struct Memory {
     std::optional<ParameterKey> request;  // whose file is asked for
 };
 
-struct Context {
-    Document& document;
-    ViewState& view;
-    const Status& status;
-    Commands& commands;
+struct Context : GuiFrame {
     Memory& memory;
     std::vector<DrawnRow>& rows;
     const Scene& scene() const { return *memory.described.scene; }
@@ -100,8 +93,9 @@ struct Context {
     const LayerParams& layer() const { return scene().layers[view.layer]; }
     /// "layer.dust"; empty without layers.
     ParameterKey layer_key() const;
-    /// Its status; an empty one while the viewer has not heard of the layer.
-    const LayerStatus& layer_status() const;
+    /// Its status, or that of layer i; an empty one while the viewer has not heard of the layer.
+    const LayerStatus& layer_status() const { return layer_status(view.layer); }
+    const LayerStatus& layer_status(std::size_t i) const;
 };
 
 /// Brings memory.described up to date.

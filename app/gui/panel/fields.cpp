@@ -6,7 +6,7 @@
 
 #include "core/color.h"
 #include "gui/icons.h"
-#include "gui/panel/section.h"
+#include "gui/panel/controls.h"
 #include "gui/panel/words.h"
 #include "gui/theme.h"
 #include "scene/describer.h"
@@ -20,13 +20,13 @@ namespace {
 void boolean_field(Context& context, const Row& row) {
     const bool* on = std::get_if<bool>(&row.value.data);
     const float size = px(16);
-    const Area& area = row.layout.value;
-    const Area box{{area.corner.x, area.middle().y - size * 0.5f}, {size, size}};
-    ImGui::SetCursorScreenPos(area.corner);
-    const bool clicked = ImGui::InvisibleButton("check", area.size);
+    const Rect& area = row.layout.value;
+    const Rect box{{area.x, area.middle().y - size * 0.5f}, {size, size}};
+    ImGui::SetCursorScreenPos(area.corner());
+    const bool clicked = ImGui::InvisibleButton("check", area.size());
     ImDrawList* list = ImGui::GetWindowDrawList();
     const ImU32 back = *on ? color::accent : ImGui::IsItemHovered() ? color::hover : color::field;
-    list->AddRectFilled(box.corner, box.end(), back, px(3));
+    list->AddRectFilled(box.corner(), box.end(), back, px(3));
     if (*on) {
         const ImVec2 m = box.middle();
         const ImVec2 points[3] = {{m.x - px(4), m.y}, {m.x - px(1), m.y + px(3)}, {m.x + px(4), m.y - px(3)}};
@@ -42,11 +42,11 @@ struct Choice {
 
 void list_field(Context& context, const Row& row, const std::string& shown,
                 const std::vector<Choice>& choices) {
-    const Area& area = row.layout.value;
-    ImGui::SetCursorScreenPos(area.corner);
-    ImGui::SetNextItemWidth(area.size.x);
+    const Rect& area = row.layout.value;
+    ImGui::SetCursorScreenPos(area.corner());
+    ImGui::SetNextItemWidth(area.width);
     ImGui::PushStyleVar(ImGuiStyleVar_FramePadding,
-                        ImVec2(px(8), (area.size.y - ImGui::GetFontSize()) * 0.5f));
+                        ImVec2(px(8), (area.height - ImGui::GetFontSize()) * 0.5f));
     const bool open = ImGui::BeginCombo("##choice", shown.c_str(),
                                         ImGuiComboFlags_NoArrowButton | ImGuiComboFlags_HeightLargest);
     if (!open)
@@ -84,23 +84,22 @@ void name_field(Context& context, const Row& row, const std::vector<std::string>
 
 // Words of a list as small switches, in as many lines as they need; leaves the cursor below and returns true.
 bool words_field(Context& context, const Row& row) {
-    const Area& area = row.layout.value;
+    const Rect& area = row.layout.value;
     const Value::List& words = *row.value.list();
-    ImVec2 at = area.corner;
+    ImVec2 at = area.corner();
     ImDrawList* list = ImGui::GetWindowDrawList();
     for (const std::string& choice : row.parameter.spec.choices) {
         const std::string label = choice_label(choice);
         const float width = ImGui::CalcTextSize(label.c_str()).x + px(14);
-        if (at.x > area.corner.x && at.x + width > area.end().x)
-            at = {area.corner.x, at.y + px(row_height + row_space)};
-        const Area chip{at, {width, area.size.y}};
+        if (at.x > area.x && at.x + width > area.end().x) at = {area.x, at.y + px(row_height + row_space)};
+        const Rect chip{at, {width, area.height}};
         ImGui::SetCursorScreenPos(at);
-        const bool clicked = ImGui::InvisibleButton(choice.c_str(), chip.size);
+        const bool clicked = ImGui::InvisibleButton(choice.c_str(), chip.size());
         Value::List others;
         for (const Value& word : words)
             if (!(word == Value(choice))) others.push_back(word);
         const bool on = others.size() < words.size();
-        list->AddRectFilled(chip.corner, chip.end(), on ? color::selection : color::field, px(3));
+        list->AddRectFilled(chip.corner(), chip.end(), on ? color::selection : color::field, px(3));
         clipped_text(list, chip, px(7), on ? color::text : color::dim, label);
         if (clicked) {
             if (!on) others.emplace_back(choice);
@@ -108,8 +107,8 @@ bool words_field(Context& context, const Row& row) {
         }
         at.x += width + px(3);
     }
-    ImGui::SetCursorScreenPos(row.layout.whole.corner);
-    ImGui::Dummy({row.layout.whole.size.x, at.y - area.corner.y + px(row_height)});
+    ImGui::SetCursorScreenPos(row.layout.whole.corner());
+    ImGui::Dummy({row.layout.whole.width, at.y - area.y + px(row_height)});
     return true;
 }
 
@@ -162,7 +161,7 @@ Value as_number(const ParameterSpec& spec, double value) {
 }
 
 // A field that takes any text the parameter can be made of.
-void text_field(Context& context, const Row& row, const Area& area) {
+void text_field(Context& context, const Row& row, const Rect& area) {
     const ParameterSpec& spec = row.parameter.spec;
     BoxContent content;
     content.shown = in_words(spec, row.value);
@@ -200,13 +199,13 @@ void number_field(Context& context, const Row& row) {
         set_value(context, row.key(), value_from_text(event.text, spec));
 }
 
-Area part(const Area& area, int index, int count) {
+Rect part(const Rect& area, int index, int count) {
     const float gap = px(3);
-    const float width = (area.size.x - gap * static_cast<float>(count - 1)) / static_cast<float>(count);
-    return {{area.corner.x + (width + gap) * static_cast<float>(index), area.corner.y}, {width, area.size.y}};
+    const float width = (area.width - gap * static_cast<float>(count - 1)) / static_cast<float>(count);
+    return {{area.x + (width + gap) * static_cast<float>(index), area.y}, {width, area.height}};
 }
 
-void component_field(Context& context, const Row& row, const Area& area, std::size_t index) {
+void component_field(Context& context, const Row& row, const Rect& area, std::size_t index) {
     const ParameterSpec& spec = row.parameter.spec;
     Value::List values = *row.value.list();
     ImGui::PushID(static_cast<int>(index));
@@ -230,7 +229,7 @@ void component_field(Context& context, const Row& row, const Area& area, std::si
     set_value(context, row.key(), values, dragged ? context.memory.gesture : 0);
 }
 
-void vector_field(Context& context, const Row& row, const Area& area) {
+void vector_field(Context& context, const Row& row, const Rect& area) {
     const Value::List* values = row.value.list();
     if (row.value.is_number()) return number_field(context, row);
     if (!values || values->empty()) return text_field(context, row, area);
@@ -249,12 +248,12 @@ void shape_popup(Context& context, const Row& row) {
 }
 
 void file_field(Context& context, const Row& row) {
-    const Area& area = row.layout.value;
+    const Rect& area = row.layout.value;
     const float button = px(24);
-    text_field(context, row, {area.corner, {area.size.x - button - px(2), area.size.y}});
-    ImGui::SetCursorScreenPos({area.end().x - button, area.corner.y});
+    text_field(context, row, {area.corner(), {area.width - button - px(2), area.height}});
+    ImGui::SetCursorScreenPos({area.end().x - button, area.y});
     const bool shapes = !row.parameter.spec.choices.empty();
-    if (icon_button("browse", Icon::folder, {button, area.size.y}, px(12), color::dim, "Choose a file")) {
+    if (icon_button("browse", Icon::folder, {button, area.height}, px(12), color::dim, "Choose a file")) {
         if (shapes)
             ImGui::OpenPopup("shapes");
         else
@@ -288,16 +287,16 @@ void color_picker(Context& context, const Row& row) {
 }
 
 void color_field(Context& context, const Row& row) {
-    const Area& area = row.layout.value;
-    const float size = area.size.y;
-    ImGui::SetCursorScreenPos(area.corner);
+    const Rect& area = row.layout.value;
+    const float size = area.height;
+    ImGui::SetCursorScreenPos(area.corner());
     if (ImGui::InvisibleButton("swatch", {size, size})) ImGui::OpenPopup("picker");
-    ImGui::GetWindowDrawList()->AddRectFilled(area.corner, {area.corner.x + size, area.end().y},
+    ImGui::GetWindowDrawList()->AddRectFilled(area.corner(), {area.x + size, area.end().y},
                                               ImGui::ColorConvertFloat4ToU32(displayed(*row.value.list())),
                                               px(3));
     color_picker(context, row);
     const float used = size + px(3);
-    vector_field(context, row, {{area.corner.x + used, area.corner.y}, {area.size.x - used, area.size.y}});
+    vector_field(context, row, {{area.x + used, area.y}, {area.width - used, area.height}});
 }
 
 }  // namespace

@@ -14,7 +14,7 @@
 #include "edit/new_from_file.h"
 #include "gui/icons.h"
 #include "gui/key_codes.h"
-#include "gui/panel/section.h"
+#include "gui/panel/controls.h"
 #include "gui/panel/words.h"
 #include "gui/theme.h"
 
@@ -86,14 +86,14 @@ void toggle(Context& context, std::size_t i, const char* name, bool on) {
     set_value(context, key_of(context, i, name), !on);
 }
 
-void switches(Context& context, std::size_t i, const Area& row) {
+void switches(Context& context, std::size_t i, const Rect& row) {
     const LayerParams& layer = context.scene().layers[i];
     float x = row.end().x - px(margin) - px(20) + px(6);
-    if (letter("isolate", "I", {x, row.corner.y}, layer.render.isolate,
+    if (letter("isolate", "I", {x, row.y}, layer.render.isolate,
                "Isolate: rendered alone, then composited as a whole"))
         toggle(context, i, "render.isolate", layer.render.isolate);
     x -= px(20);
-    ImGui::SetCursorScreenPos({x, row.corner.y});
+    ImGui::SetCursorScreenPos({x, row.y});
     const ImU32 quiet = color::with_opacity(color::dim, 0.45f);
     if (icon_button("holdout", layer.render.holdout ? Icon::ring_cut : Icon::ring, {px(20), px(line_height)},
                     px(11), layer.render.holdout ? color::accent : quiet,
@@ -101,7 +101,7 @@ void switches(Context& context, std::size_t i, const Area& row) {
         toggle(context, i, "render.holdout", layer.render.holdout);
     x -= px(20);
     const bool solo = context.view.solo.count(layer.name) > 0;
-    if (letter("solo", "S", {x, row.corner.y}, solo, "Solo: only layers with S are shown"))
+    if (letter("solo", "S", {x, row.y}, solo, "Solo: only layers with S are shown"))
         toggle_solo(context.view, layer.name);
 }
 
@@ -114,14 +114,14 @@ void finish_renaming(Context& context, std::size_t i, bool take, const std::stri
         context.view.solo.insert(name);
 }
 
-void name_entry(Context& context, std::size_t i, const Area& area) {
+void name_entry(Context& context, std::size_t i, const Rect& area) {
     Touch& touch = context.memory.touch;
     if (touch.entry_frames < 0) {
         ++touch.entry_frames;
         return;
     }
-    ImGui::SetCursorScreenPos({area.corner.x - px(4), area.corner.y + px(2)});
-    ImGui::SetNextItemWidth(area.size.x);
+    ImGui::SetCursorScreenPos({area.x - px(4), area.y + px(2)});
+    ImGui::SetNextItemWidth(area.width);
     if (touch.entry_frames == 0) ImGui::SetKeyboardFocusHere();
     ImGui::InputText("##name", &touch.text, ImGuiInputTextFlags_AutoSelectAll);
     ++touch.entry_frames;
@@ -147,27 +147,27 @@ void layer_menu(Context& context, std::size_t i) {
     if (ImGui::MenuItem("Delete"))
         attempt(context, "", [&] { remove_layer(context.document, context.view, i); });
     ImGui::Separator();
-    if (ImGui::MenuItem("Frame", "F")) context.commands.push_back({Command::Kind::frame_layer, {}, "", i});
-    if (ImGui::MenuItem("Regenerate")) context.commands.push_back({Command::Kind::regenerate, {}, "", i});
+    if (ImGui::MenuItem("Frame", "F")) request(context, Command::Kind::frame_layer, i);
+    if (ImGui::MenuItem("Regenerate")) request(context, Command::Kind::regenerate, i);
     ImGui::Separator();
     look_menu(context);
     end_popup();
 }
 
 // Layer into whose place the mouse would drop: rows may be 28 or 56 px high.
-int row_under(const std::vector<Area>& rows, float y) {
+int row_under(const std::vector<Rect>& rows, float y) {
     for (std::size_t i = 0; i < rows.size(); ++i)
         if (y < rows[i].end().y) return static_cast<int>(i);
     return static_cast<int>(rows.size()) - 1;
 }
 
-void reorder(Context& context, const std::vector<Area>& rows) {
+void reorder(Context& context, const std::vector<Rect>& rows) {
     Memory& memory = context.memory;
     if (memory.dragged_layer < 0 || memory.dragged_layer >= static_cast<int>(rows.size())) return;
     const int to = row_under(rows, ImGui::GetIO().MousePos.y);
     const auto place = static_cast<std::size_t>(to);
-    const float y = to > memory.dragged_layer ? rows[place].end().y : rows[place].corner.y;
-    ImGui::GetWindowDrawList()->AddLine({rows[place].corner.x + px(margin), y},
+    const float y = to > memory.dragged_layer ? rows[place].end().y : rows[place].y;
+    ImGui::GetWindowDrawList()->AddLine({rows[place].x + px(margin), y},
                                         {rows[place].end().x - px(margin), y}, color::accent, px(2));
     if (ImGui::IsMouseDown(ImGuiMouseButton_Left)) return;
     const auto from = static_cast<std::size_t>(memory.dragged_layer);
@@ -177,10 +177,10 @@ void reorder(Context& context, const std::vector<Area>& rows) {
 }
 
 // Selecting, dragging, renaming and the menu: all of the row that is not a switch.
-void row_body(Context& context, std::size_t i, const Area& row) {
+void row_body(Context& context, std::size_t i, const Rect& row) {
     if (context.memory.renaming == context.scene().layers[i].name) return;
-    ImGui::SetCursorScreenPos({row.corner.x + px(38), row.corner.y});
-    ImGui::InvisibleButton("row", {row.size.x - px(38 + 72), px(line_height)});
+    ImGui::SetCursorScreenPos({row.x + px(38), row.y});
+    ImGui::InvisibleButton("row", {row.width - px(38 + 72), px(line_height)});
     const bool hovered = ImGui::IsItemHovered();
     if (ImGui::IsItemActivated()) context.view.layer = i;
     if (hovered && ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left)) begin_renaming(context, i);
@@ -192,58 +192,58 @@ void row_body(Context& context, std::size_t i, const Area& row) {
         ImGui::OpenPopup("layer");
     }
     if (hovered && context.view.layer != i)
-        ImGui::GetWindowDrawList()->AddRectFilled(row.corner, row.end(), IM_COL32(255, 255, 255, 8));
+        ImGui::GetWindowDrawList()->AddRectFilled(row.corner(), row.end(), IM_COL32(255, 255, 255, 8));
     layer_menu(context, i);
 }
 
-void count_text(const Context& context, std::size_t i, const Area& row, float& right) {
+void count_text(const Context& context, std::size_t i, const Rect& row, float& right) {
     const LayerStatus* status = status_of(context, i);
     if (!status || (status->splats == 0 && !status->loading)) return;
     const std::string text = short_count(status->loading ? status->found : status->splats);
     ImGui::PushFont(small_font());
     const float width = ImGui::CalcTextSize(text.c_str()).x;
     right -= width;
-    ImGui::GetWindowDrawList()->AddText(
-        {right, row.corner.y + (px(line_height) - ImGui::GetFontSize()) * 0.5f}, color::dim, text.c_str());
+    ImGui::GetWindowDrawList()->AddText({right, row.y + (px(line_height) - ImGui::GetFontSize()) * 0.5f},
+                                        color::dim, text.c_str());
     ImGui::PopFont();
 }
 
-void second_line(Context& context, std::size_t i, const Area& row) {
+void second_line(Context& context, std::size_t i, const Rect& row) {
     const LayerStatus& status = *status_of(context, i);
-    const float width = row.size.x - px(42 + margin);
-    ImGui::SetCursorScreenPos({row.corner.x + px(42), row.corner.y + px(line_height)});
+    const float width = row.width - px(42 + margin);
+    ImGui::SetCursorScreenPos({row.x + px(42), row.y + px(line_height)});
     if (!status.error.empty()) {
-        const Area line{{row.corner.x + px(42), row.corner.y + px(line_height)},
-                        {row.size.x - px(42 + margin), px(row_height)}};
+        const Rect line{{row.x + px(42), row.y + px(line_height)},
+                        {row.width - px(42 + margin), px(row_height)}};
         clipped_text(ImGui::GetWindowDrawList(), line, 0.0f, color::error, status.error);
-        ImGui::Dummy(line.size);
+        ImGui::Dummy(line.size());
         if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", status.error.c_str());
     } else if (status.loading) {
         const std::string text = fmt::format("{} %", static_cast<int>(status.progress * 100.0f));
         if (progress_line(width, std::max(status.progress, 0.001f), text, "Cancel"))
-            context.commands.push_back({Command::Kind::cancel_load, {}, "", i});
+            request(context, Command::Kind::cancel_load, i);
     } else if (progress_line(width, 0.0f, "Needs regeneration", "Regenerate")) {
-        context.commands.push_back({Command::Kind::regenerate, {}, "", i});
+        request(context, Command::Kind::regenerate, i);
     }
 }
 
-void draw_layer(Context& context, std::size_t i, const Area& row) {
+void draw_layer(Context& context, std::size_t i, const Rect& row) {
     const LayerParams& layer = context.scene().layers[i];
     ImDrawList* list = ImGui::GetWindowDrawList();
-    if (context.view.layer == i) list->AddRectFilled(row.corner, row.end(), color::selection);
+    if (context.view.layer == i) list->AddRectFilled(row.corner(), row.end(), color::selection);
     row_body(context, i, row);
-    ImGui::SetCursorScreenPos({row.corner.x + px(margin), row.corner.y});
+    ImGui::SetCursorScreenPos({row.x + px(margin), row.y});
     const bool shown = context.view.solo.empty() ? layer.visible : context.view.solo.count(layer.name) > 0;
     if (icon_button("eye", layer.visible ? Icon::eye : Icon::eye_closed, {px(24), px(line_height)}, px(14),
                     shown ? color::text : color::dim, nullptr))
         attempt(context, key_of(context, i, "visible"),
                 [&] { toggle_visible(context.document, context.view, i); });
-    const float chip = px(10), middle = row.corner.y + px(line_height) * 0.5f;
-    const ImVec2 at{row.corner.x + px(42), middle - chip * 0.5f};
+    const float chip = px(10), middle = row.y + px(line_height) * 0.5f;
+    const ImVec2 at{row.x + px(42), middle - chip * 0.5f};
     list->AddRectFilled(at, {at.x + chip, at.y + chip}, chip_color(context, i), px(2));
     float right = row.end().x - px(76);
     count_text(context, i, row, right);
-    const Area name{{row.corner.x + px(60), row.corner.y}, {right - row.corner.x - px(64), px(line_height)}};
+    const Rect name{{row.x + px(60), row.y}, {right - row.x - px(64), px(line_height)}};
     if (context.memory.renaming == layer.name)
         name_entry(context, i, name);
     else
@@ -253,39 +253,37 @@ void draw_layer(Context& context, std::size_t i, const Area& row) {
 }
 
 // The bracket reaches from the first merged layer to the last; isolated ones between have no tick.
-void draw_merge_bracket(const Context& context, const std::vector<Area>& rows) {
+void draw_merge_bracket(const Context& context, const std::vector<Rect>& rows) {
     std::vector<float> ticks;
     for (std::size_t i = 0; i < rows.size(); ++i)
-        if (merged(context.scene().layers[i])) ticks.push_back(rows[i].corner.y + px(line_height) * 0.5f);
+        if (merged(context.scene().layers[i])) ticks.push_back(rows[i].y + px(line_height) * 0.5f);
     if (ticks.size() < 2) return;
     ImDrawList* list = ImGui::GetWindowDrawList();
-    const float x = rows.front().corner.x + px(6);
+    const float x = rows.front().x + px(6);
     const ImU32 ink = color::with_opacity(color::dim, 0.7f);
     draw_bracket(list, x, ticks.front(), ticks.back(), ink);
     for (const float y : ticks) list->AddLine({x, y}, {x + px(4), y}, ink, px(1));
-    const Area zone{{x - px(6), ticks.front()}, {px(12), ticks.back() - ticks.front()}};
-    if (ImGui::IsWindowHovered() && ImGui::IsMouseHoveringRect(zone.corner, zone.end()))
+    const Rect zone{{x - px(6), ticks.front()}, {px(12), ticks.back() - ticks.front()}};
+    if (ImGui::IsWindowHovered() && ImGui::IsMouseHoveringRect(zone.corner(), zone.end()))
         ImGui::SetTooltip("Merged by depth: the order of these does not matter");
 }
 
 // A layer that was selected in the picture comes into sight.
-void scroll_to_selected(Context& context, const std::vector<Area>& rows) {
+void scroll_to_selected(Context& context, const std::vector<Rect>& rows) {
     Memory& memory = context.memory;
     if (memory.layer_in_sight == context.view.layer || context.view.layer >= rows.size()) return;
     memory.layer_in_sight = context.view.layer;
-    const Area& row = rows[context.view.layer];
+    const Rect& row = rows[context.view.layer];
     const float top = ImGui::GetWindowPos().y;
-    if (row.corner.y < top || row.end().y > top + ImGui::GetWindowHeight())
-        ImGui::SetScrollFromPosY(row.corner.y - top);
+    if (row.y < top || row.end().y > top + ImGui::GetWindowHeight()) ImGui::SetScrollFromPosY(row.y - top);
 }
 
 void add_menu(Context& context) {
     if (!begin_popup("add layer")) return;
-    if (ImGui::MenuItem("File...")) context.commands.push_back({Command::Kind::import_file, {}, "", 0});
+    if (ImGui::MenuItem("File...")) request(context, Command::Kind::import_file);
     ImGui::Separator();
     for (std::size_t i = 0; i < shape_names.size(); ++i)
-        if (ImGui::MenuItem(shape_labels[i]))
-            context.commands.push_back({Command::Kind::add_shape, {}, shape_names[i], 0});
+        if (ImGui::MenuItem(shape_labels[i])) request_text(context, Command::Kind::add_shape, shape_names[i]);
     end_popup();
 }
 
@@ -310,7 +308,7 @@ void layer_list(Context& context, float height) {
     const float width = ImGui::GetContentRegionAvail().x;
     ImGui::BeginChild("layers", {width, height}, false, ImGuiWindowFlags_NoBackground);
     ImVec2 at = ImGui::GetCursorScreenPos();
-    std::vector<Area> rows;
+    std::vector<Rect> rows;
     if (context.scene().layers.empty()) {
         ImGui::SetCursorScreenPos({at.x + px(margin), at.y});
         note("Drop a picture, mesh or splat file here.");

@@ -4,8 +4,8 @@
 #include <algorithm>
 
 #include "gui/panel/context.h"
+#include "gui/panel/controls.h"
 #include "gui/panel/parts.h"
-#include "gui/panel/section.h"
 #include "gui/panel/tab_sections.h"
 #include "gui/theme.h"
 #include "gui/widgets.h"
@@ -126,16 +126,17 @@ void forget_untouched(Touch& touch) {
 Panel::Panel() : state_(std::make_unique<State>()) {}
 Panel::~Panel() = default;
 
-void Panel::draw(Document& document, ViewState& view, const Status& status, Commands& commands) {
+void Panel::draw(const GuiFrame& frame) {
     Memory& memory = state_->memory;
-    describe_current(memory, document, view.frame);
+    ViewState& view = frame.view;
+    describe_current(memory, frame.document, view.frame);
     state_->rows.clear();
     memory.plots.clear();
     memory.touch.seen = false;
     view.preparation_open = false;
     const std::size_t layers = memory.described.scene->layers.size();
     view.layer = layers > 0 ? std::min(view.layer, layers - 1) : 0;
-    Context context{document, view, status, commands, memory, state_->rows};
+    Context context{frame, memory, state_->rows};
     const ImVec2 room = ImGui::GetContentRegionAvail();
     ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(0.0f, 0.0f));
     head(context);
@@ -152,14 +153,9 @@ std::optional<ParameterKey> Panel::take_request() {
     return std::exchange(state_->memory.request, std::nullopt);
 }
 
-void Panel::answer(const ParameterKey& key, const std::filesystem::path& file, Document& document,
-                   const ViewState& view) {
-    Memory& memory = state_->memory;
-    describe_current(memory, document, view.frame);
-    ViewState unchanged = view;
-    const Status unknown;
-    Commands none;
-    Context context{document, unchanged, unknown, none, memory, state_->rows};
+void Panel::answer(const ParameterKey& key, const std::filesystem::path& file, const GuiFrame& frame) {
+    describe_current(state_->memory, frame.document, frame.view.frame);
+    Context context{frame, state_->memory, state_->rows};
     set_value(context, key, file.string());
 }
 

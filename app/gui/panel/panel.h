@@ -4,17 +4,13 @@
 #pragma once
 
 #include <filesystem>
-#include <glm/vec2.hpp>
 #include <glm/vec4.hpp>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "edit/commands.h"
-#include "edit/document.h"
-#include "edit/status.h"
-#include "edit/view_state.h"
+#include "gui/gui_frame.h"
 
 namespace astrosplat {
 
@@ -31,13 +27,12 @@ class Panel {
     Panel();
     ~Panel();
     /// Draws over the content region of the current ImGui window, between NewFrame and Render.
-    void draw(Document& document, ViewState& view, const Status& status, Commands& commands);
+    void draw(const GuiFrame& frame);
 
     /// The parameter that a file was asked for since the last call.
     std::optional<ParameterKey> take_request();
     /// The dialog's answer: an edit of the document.
-    void answer(const ParameterKey& key, const std::filesystem::path& file, Document& document,
-                const ViewState& view);
+    void answer(const ParameterKey& key, const std::filesystem::path& file, const GuiFrame& frame);
 
     /// Unfolds every section, as a person could one by one.
     void open_all();

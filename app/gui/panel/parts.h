@@ -4,12 +4,11 @@
 #pragma once
 
 #include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
-#include "gui/panel/box.h"
 #include "gui/panel/context.h"
+#include "gui/panel/controls.h"
 
 namespace astrosplat::panel {
 
@@ -18,7 +17,7 @@ void parameter_row(Context& context, const Parameter& parameter);
 
 /// The places of a row's parts.
 struct RowLayout {
-    Area whole, label, value;
+    Rect whole, label, value;
     ImVec2 diamond;  // its middle
 };
 
@@ -28,8 +27,6 @@ struct Row {
     RowLayout layout;
     const ParameterKey& key() const { return parameter.spec.key; }
 };
-
-inline constexpr float row_height = 24.0f, row_space = 2.0f;  // px at scale 1
 
 /// The value's widget by the parameter's type. True where it took more than one row's height, and the cursor
 /// stands below it already.
@@ -41,10 +38,6 @@ void draw_above(Context& context, const ParameterSpec& spec);
 /// The word shown in place of 0 where that is no amount, with the value in use where it is known: "Off",
 /// "Auto (0.0165)". Empty: it is an amount.
 std::string zero_in_words(const Context& context, const ParameterSpec& spec);
-
-/// A plot of the curve whose points the parameter `key` holds: click adds, drag moves, right click deletes,
-/// arrows nudge. `samples` is the curve itself, over x in 0..1. The area takes the mouse.
-void edit_curve(Context& context, const ParameterKey& key, const Area& area, std::span<const float> samples);
 
 /// The names that a row of colour management offers besides the empty one; none: it is no such row, or they
 /// are not known.

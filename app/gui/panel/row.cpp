@@ -3,9 +3,9 @@
 
 #include "edit/keyframes.h"
 #include "gui/icons.h"
+#include "gui/panel/controls.h"
 #include "gui/panel/panel.h"
 #include "gui/panel/parts.h"
-#include "gui/panel/section.h"
 #include "gui/panel/words.h"
 #include "gui/theme.h"
 #include "scene/load.h"
@@ -15,8 +15,8 @@ namespace {
 
 constexpr double tooltip_delay_s = 0.45;
 
-bool mouse_over(const Area& area) {
-    return ImGui::IsWindowHovered() && ImGui::IsMouseHoveringRect(area.corner, area.end());
+bool mouse_over(const Rect& area) {
+    return ImGui::IsWindowHovered() && ImGui::IsMouseHoveringRect(area.corner(), area.end());
 }
 
 void draw_label(Context& context, const Row& row) {
@@ -24,7 +24,7 @@ void draw_label(Context& context, const Row& row) {
     const ParameterSpec& spec = row.parameter.spec;
     const bool by_command = context.document.set_by_command_line(spec.key);
     if (by_command || !(row.value == default_of(context, spec))) {
-        const ImVec2 corner{row.layout.label.corner.x - px(6), row.layout.label.corner.y + px(5)};
+        const ImVec2 corner{row.layout.label.x - px(6), row.layout.label.y + px(5)};
         list->AddRectFilled(corner, {corner.x + px(2), corner.y + px(14)},
                             by_command ? color::attention : color::accent);
     }
@@ -173,8 +173,8 @@ void parameter_row(Context& context, const Parameter& parameter) {
     draw_label(context, row);
     draw_diamond(context, row);
     if (!value_field(context, row)) {
-        ImGui::SetCursorScreenPos(row.layout.whole.corner);
-        ImGui::Dummy({row.layout.whole.size.x, px(row_height)});
+        ImGui::SetCursorScreenPos(row.layout.whole.corner());
+        ImGui::Dummy({row.layout.whole.width, px(row_height)});
     }
     show_tooltip(context, row);
     row_menu(context, row);

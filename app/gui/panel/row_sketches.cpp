@@ -11,8 +11,8 @@
 #include "generate/lattice.h"
 #include "gui/panel/companions.h"
 #include "gui/panel/context.h"
+#include "gui/panel/controls.h"
 #include "gui/panel/plot.h"
-#include "gui/panel/section.h"
 #include "gui/panel/words.h"
 #include "gui/theme.h"
 #include "look/shared_look.h"
@@ -32,27 +32,26 @@ double value_or(Context& context, const ParameterKey& key, double automatic) {
     return value.is_number() ? value.number() : automatic;
 }
 
-float place(const Area& area, const Values& values, double value) {
+float place(const Rect& area, const Values& values, double value) {
     const double share = (value - values.lo) / std::max(values.hi - values.lo, 1e-30);
-    return area.corner.x + area.size.x * static_cast<float>(std::clamp(share, 0.0, 1.0));
+    return area.x + area.width * static_cast<float>(std::clamp(share, 0.0, 1.0));
 }
 
 // One handle: a line with a foot; returns true while it is dragged, with the value under the mouse.
-bool handle(Context& context, const Area& area, const Values& values, const char* id, double& value) {
+bool handle(Context& context, const Rect& area, const Values& values, const char* id, double& value) {
     const float x = place(area, values, value), reach = px(6);
-    ImGui::SetCursorScreenPos({x - reach, area.corner.y});
-    ImGui::InvisibleButton(id, {reach * 2.0f, area.size.y});
+    ImGui::SetCursorScreenPos({x - reach, area.y});
+    ImGui::InvisibleButton(id, {reach * 2.0f, area.height});
     if (ImGui::IsItemActivated()) begin_gesture(context);
     const bool active = ImGui::IsItemActive(), near = active || ImGui::IsItemHovered();
     if (near) ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
     ImDrawList* list = ImGui::GetWindowDrawList();
     const ImU32 ink = near ? color::accent : color::text;
-    list->AddLine({x, area.corner.y}, {x, area.end().y}, ink, px(1.5f));
+    list->AddLine({x, area.y}, {x, area.end().y}, ink, px(1.5f));
     const float foot = area.end().y;
     list->AddTriangleFilled({x, foot - px(8)}, {x + px(5), foot}, {x - px(5), foot}, ink);
     if (!active || ImGui::GetIO().MouseDelta.x == 0.0f) return false;
-    const double share =
-        double(std::clamp((ImGui::GetIO().MousePos.x - area.corner.x) / area.size.x, 0.0f, 1.0f));
+    const double share = double(std::clamp((ImGui::GetIO().MousePos.x - area.x) / area.width, 0.0f, 1.0f));
     const double range = values.hi - values.lo;
     value = rounded_to_step(values.lo + share * range, range * 1e-3);
     return true;
@@ -66,14 +65,14 @@ void edit_levels(Context& context) {
     const ParameterKey source = context.layer_key() / "source";
     double black = value_or(context, source / "black", values.black);
     double white = value_or(context, source / "white", values.white);
-    const Area area = begin_plot();
+    const Rect area = begin_plot();
     const ImVec2 below = ImGui::GetCursorScreenPos();
-    context.memory.plots[source / "black"] = {area.corner.x, area.corner.y, area.size.x, area.size.y};
+    context.memory.plots[source / "black"] = {area.x, area.y, area.width, area.height};
     draw_bars(area, values.share);
     const ImU32 shade = color::with_opacity(color::window, 0.6f);
     ImDrawList* list = ImGui::GetWindowDrawList();
-    list->AddRectFilled(area.corner, {place(area, values, black), area.end().y}, shade);
-    list->AddRectFilled({place(area, values, white), area.corner.y}, area.end(), shade);
+    list->AddRectFilled(area.corner(), {place(area, values, black), area.end().y}, shade);
+    list->AddRectFilled({place(area, values, white), area.y}, area.end(), shade);
     const double least = (values.hi - values.lo) * 2e-3;
     if (handle(context, area, values, "black", black))
         set_value(context, source / "black", std::min(black, white - least), context.memory.gesture);
@@ -92,10 +91,10 @@ ImU32 grey(double light) {
     return IM_COL32(byte, byte, byte, 255);
 }
 
-void draw_dot(const Area& area, const Falloff& falloff) {
+void draw_dot(const Rect& area, const Falloff& falloff) {
     ImDrawList* list = ImGui::GetWindowDrawList();
-    list->AddRectFilled(area.corner, area.end(), IM_COL32_BLACK, px(3));
-    const float radius = area.size.y * 0.5f - px(4);
+    list->AddRectFilled(area.corner(), area.end(), IM_COL32_BLACK, px(3));
+    const float radius = area.height * 0.5f - px(4);
     const int rings = static_cast<int>(radius);
     for (int i = 0; i < rings; ++i) {
         const double t = 1.0 - (double(i) + 0.5) / double(rings);
@@ -147,18 +146,18 @@ bool same_field(const Noise& a, const Noise& b) {
 
 /// The dot of a falloff and, beside it, its profile.
 void draw_falloff(const Falloff& falloff) {
-    const Area area = begin_plot();
-    const Area dot{area.corner, {area.size.y, area.size.y}};
+    const Rect area = begin_plot();
+    const Rect dot{area.corner(), {area.height, area.height}};
     draw_dot(dot, falloff);
-    const Area curve{{dot.end().x + px(4), area.corner.y}, {area.size.x - dot.size.x - px(4), area.size.y}};
+    const Rect curve{{dot.end().x + px(4), area.y}, {area.width - dot.width - px(4), area.height}};
     draw_curve(curve, falloff_samples(falloff), 1.05f, color::accent);
     captions("", "rim");
 }
 
 /// The angles at which a hybrid changes from over to screen, as sectors between face-on and edge-on.
 void draw_hybrid(float from_deg, float to_deg) {
-    const Area area = begin_plot(72.0f);
-    const float radius = area.size.y - px(16);
+    const Rect area = begin_plot(72.0f);
+    const float radius = area.height - px(16);
     const ImVec2 origin{area.middle().x - radius * 0.5f, area.end().y - px(8)};
     const double from = std::clamp(double(from_deg), 0.0, 90.0), to = std::clamp(double(to_deg), from, 90.0);
     sector(origin, radius, 0.0, from, color::with_opacity(color::dim, 0.35f));
@@ -175,18 +174,18 @@ void draw_hybrid(float from_deg, float to_deg) {
 
 /// The field of a noise over `span` scene units of the plane across y; computed when it changes.
 void draw_noise(Context& context, std::size_t entry, const Noise& noise, double span) {
-    const Area area = begin_plot(56.0f);
-    const int columns = std::max(1, static_cast<int>(area.size.x / px(cell)));
-    const int rows = static_cast<int>(area.size.y / px(cell));
+    const Rect area = begin_plot(56.0f);
+    const int columns = std::max(1, static_cast<int>(area.width / px(cell)));
+    const int rows = static_cast<int>(area.height / px(cell));
     context.memory.noises.resize(std::max(context.memory.noises.size(), entry + 1));
     NoiseSketch& sketch = context.memory.noises[entry];
     if (sketch.columns != columns || sketch.span != span || !same_field(sketch.noise, noise))
         sketch = {noise, span, columns, noise_greys(noise, columns, rows, span)};
     ImDrawList* list = ImGui::GetWindowDrawList();
-    const ImVec2 size{area.size.x / float(columns), area.size.y / float(rows)};
+    const ImVec2 size{area.width / float(columns), area.height / float(rows)};
     for (int y = 0; y < rows; ++y)
         for (int x = 0; x < columns; ++x) {
-            const ImVec2 corner{area.corner.x + size.x * float(x), area.corner.y + size.y * float(y)};
+            const ImVec2 corner{area.x + size.x * float(x), area.y + size.y * float(y)};
             const auto at = static_cast<std::size_t>(y * (columns + 1) + x);
             const auto below = at + static_cast<std::size_t>(columns + 1);
             list->AddRectFilledMultiColor(corner, {corner.x + size.x, corner.y + size.y}, sketch.greys[at],
@@ -206,14 +205,14 @@ double reach_of(const Context& context) {
 
 std::string reach_caption(double reach) { return reach > 0.0 ? "reach " + figures(reach) : "reach"; }
 
-void draw_distances(const Context& context, const Area& area, double reach) {
+void draw_distances(const Context& context, const Rect& area, double reach) {
     const auto& histograms = context.layer_status().histograms;
     if (histograms && histograms->max_distance > 0.0 && reach > 0.0)
         draw_bars(area, histograms->distance, histograms->max_distance / reach);
 }
 
 /// The profile whose shape `spec` chooses, and its points to be dragged where it is a curve.
-void draw_profile(Context& context, const Area& area, const ParameterSpec& spec,
+void draw_profile(Context& context, const Rect& area, const ParameterSpec& spec,
                   const std::vector<float>& samples, double reach) {
     const ImVec2 below = ImGui::GetCursorScreenPos();
     if (find(context, spec.key)->get() == Value("curve"))
@@ -225,7 +224,7 @@ void draw_profile(Context& context, const Area& area, const ParameterSpec& spec,
 }
 
 void density_plot(Context& context, const ParameterSpec& spec, const DensityCurve& pdf, double reach) {
-    const Area area = begin_plot();
+    const Rect area = begin_plot();
     draw_distances(context, area, reach);
     draw_profile(context, area, spec, density_samples(pdf), reach);
 }
@@ -249,7 +248,7 @@ ImU32 stop_ink(const glm::vec3& color) {
 void all_densities(Context& context, const ParameterSpec&) {
     const std::vector<ThicknessStop>& stops = context.layer().look.thickness.stops;
     if (stops.empty()) return;
-    const Area area = begin_plot();
+    const Rect area = begin_plot();
     const double reach = reach_of(context);
     draw_distances(context, area, reach);
     for (const ThicknessStop& stop : stops)

@@ -10,7 +10,7 @@
 
 #include "core/text.h"
 #include "gui/panel/context.h"
-#include "gui/panel/section.h"
+#include "gui/panel/controls.h"
 #include "gui/panel/tab_sections.h"
 #include "gui/panel/words.h"
 

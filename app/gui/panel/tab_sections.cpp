@@ -9,13 +9,12 @@
 #include "core/text.h"
 #include "edit/camera_moves.h"
 #include "edit/keyframes.h"
-#include "gui/panel/box.h"
 #include "gui/panel/context.h"
+#include "gui/panel/controls.h"
 #include "gui/panel/parts.h"
 #include "gui/panel/plot.h"
-#include "gui/panel/section.h"
 #include "gui/panel/words.h"
-#include "gui/render_dialog.h"
+#include "gui/parts.h"
 #include "gui/theme.h"
 
 namespace astrosplat::panel {
@@ -27,7 +26,7 @@ namespace {
 constexpr float tallest = 320.0f;  // px at scale 1
 
 // As wide as the panel, or as tall as there is room for.
-Area picture_area(float aspect) {
+Rect picture_area(float aspect) {
     const float room = ImGui::GetContentRegionAvail().x;
     const float height = std::floor(std::min(room / std::max(aspect, 0.01f), px(tallest)));
     const float width = std::floor(std::min(room, height * aspect));
@@ -35,28 +34,27 @@ Area picture_area(float aspect) {
     return {{corner.x + std::floor((room - width) * 0.5f), corner.y}, {width, height}};
 }
 
-void drag_line(Context& context, const Area& area) {
-    ImGui::SetCursorScreenPos(area.corner);
-    ImGui::InvisibleButton("before and after", area.size);
+void drag_line(Context& context, const Rect& area) {
+    ImGui::SetCursorScreenPos(area.corner());
+    ImGui::InvisibleButton("before and after", area.size());
     const bool active = ImGui::IsItemActive();
     if (active || ImGui::IsItemHovered()) ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
     if (active)
         context.memory.preparation_line =
-            std::clamp((ImGui::GetIO().MousePos.x - area.corner.x) / area.size.x, 0.0f, 1.0f);
+            std::clamp((ImGui::GetIO().MousePos.x - area.x) / area.width, 0.0f, 1.0f);
 }
 
 void draw_both(Context& context, const PrepareStatus& status) {
-    const Area area = picture_area(status.aspect);
-    context.memory.plots[context.layer_key() / "source.prepare"] = {area.corner.x, area.corner.y, area.size.x,
-                                                                    area.size.y};
+    const Rect area = picture_area(status.aspect);
+    context.memory.plots[context.layer_key() / "source.prepare"] = {area.x, area.y, area.width, area.height};
     drag_line(context, area);
     const float share = context.memory.preparation_line;
-    const float x = std::round(area.corner.x + area.size.x * share);
+    const float x = std::round(area.x + area.width * share);
     ImDrawList* list = ImGui::GetWindowDrawList();
-    list->AddRectFilled(area.corner, area.end(), IM_COL32_BLACK);
-    if (status.before) list->AddImage(status.before, area.corner, {x, area.end().y}, {0, 0}, {share, 1});
-    if (status.after) list->AddImage(status.after, {x, area.corner.y}, area.end(), {share, 0}, {1, 1});
-    list->AddLine({x, area.corner.y}, {x, area.end().y}, color::text, px(1));
+    list->AddRectFilled(area.corner(), area.end(), IM_COL32_BLACK);
+    if (status.before) list->AddImage(status.before, area.corner(), {x, area.end().y}, {0, 0}, {share, 1});
+    if (status.after) list->AddImage(status.after, {x, area.y}, area.end(), {share, 0}, {1, 1});
+    list->AddLine({x, area.y}, {x, area.end().y}, color::text, px(1));
     captions("before", "after");
 }
 
@@ -81,7 +79,7 @@ void draw_preparation(Context& context) {
     else
         note(status->error, color::error);
     if (button_line({"Write to folder..."}) == 0)
-        context.commands.push_back({Command::Kind::prepare_picture, {}, "", context.view.layer});
+        request(context, Command::Kind::prepare_picture, context.view.layer);
     ImGui::Dummy({0.0f, px(4)});
 }
 
@@ -258,8 +256,7 @@ void reference_buttons(Context& context) {
     const ReferenceParams* reference = seen_reference(context.scene(), context.status);
     if (!reference) {
         note("No picture to compare this view with.");
-        if (button_line({"Load a reference..."}) == 0)
-            context.commands.push_back({Command::Kind::set_reference, {}, "", 0});
+        if (button_line({"Load a reference..."}) == 0) request(context, Command::Kind::set_reference);
         return;
     }
     if (!context.status.reference->error.empty()) note(context.status.reference->error, color::error);
@@ -269,12 +266,11 @@ void reference_buttons(Context& context) {
         context.view.placing = true;
         show_reference(context.view);
     }
-    if (placed == 1 && !context.status.reference->aligning)
-        context.commands.push_back({Command::Kind::align_reference, {}, "", 0});
+    if (placed == 1 && !context.status.reference->aligning) request(context, Command::Kind::align_reference);
     const auto index = static_cast<std::ptrdiff_t>(context.status.reference->index);
     const ReferenceParams::View view = reference_view(context.view.view);
     const int clicked = button_line({"Replace...", "Another for this view", "Remove"});
-    if (clicked == 0) context.commands.push_back({Command::Kind::set_reference, {}, "", 0});
+    if (clicked == 0) request(context, Command::Kind::set_reference);
     if (clicked == 1)
         change_references(context, "Another reference", [&](std::vector<ReferenceParams>& references) {
             ReferenceParams another = references[static_cast<std::size_t>(index)];
@@ -387,10 +383,10 @@ void source_state(Context& context) {
         const std::string text =
             status.found > 0 ? "Generating, " + splat_count(status.found) : std::string("Generating");
         if (progress_line(width, std::max(status.progress, 0.001f), text, "Cancel"))
-            context.commands.push_back({Command::Kind::cancel_load, {}, "", context.view.layer});
+            request(context, Command::Kind::cancel_load, context.view.layer);
     } else if (status.stale) {
         if (progress_line(width, 0.0f, "Source changed", "Regenerate"))
-            context.commands.push_back({Command::Kind::regenerate, {}, "", context.view.layer});
+            request(context, Command::Kind::regenerate, context.view.layer);
     } else {
         const SourceParams& source = context.layer().source;
         const bool live = source.kind == SourceKind::mesh && !prepares(source.texture.prepare);
@@ -411,8 +407,7 @@ void camera_buttons(Context& context) {
     if (clicked == 1) ImGui::OpenPopup("moves");
     if (begin_popup("moves")) {
         for (std::size_t i = 0; i < camera_move_names.size(); ++i)
-            if (ImGui::MenuItem(camera_move_names[i]))
-                context.commands.push_back({Command::Kind::add_move, {}, "", i});
+            if (ImGui::MenuItem(camera_move_names[i])) request(context, Command::Kind::add_move, i);
         end_popup();
     }
     ImGui::Dummy({0.0f, px(4)});
@@ -421,7 +416,7 @@ void camera_buttons(Context& context) {
 void output_buttons(Context& context) {
     const int clicked = button_line({"Render frames...", "Copy batch command"});
     if (clicked == 0) open_render_dialog(context.document, context.view, RenderKind::range);
-    if (clicked == 1) context.commands.push_back({Command::Kind::copy_batch_command, {}, "", 0});
+    if (clicked == 1) request(context, Command::Kind::copy_batch_command);
     ImGui::Dummy({0.0f, px(4)});
 }
 

@@ -1,7 +1,7 @@
 // A look as a whole: copied and pasted between layers here, exported and applied through the viewer.
 #include "gui/panel/parts.h"
 
-#include "gui/panel/section.h"
+#include "gui/panel/controls.h"
 
 namespace astrosplat::panel {
 namespace {
@@ -27,9 +27,7 @@ void paste_look(Context& context) {
 }
 
 /// The window asks for it, as it does where a menu sent the command.
-void ask_for_file(Context& context, Command::Kind kind) {
-    context.commands.push_back({kind, {}, "", context.view.layer});
-}
+void ask_for_file(Context& context, Command::Kind kind) { request(context, kind, context.view.layer); }
 
 void look_to_all(Context& context) {
     const CopiedLook copied{context.layer().look, context.layer().render};

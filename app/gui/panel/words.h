@@ -6,7 +6,6 @@
 #include <string>
 
 #include "edit/rounding.h"
-#include "gui/short_count.h"
 #include "scene/parameter.h"
 
 namespace astrosplat::panel {
