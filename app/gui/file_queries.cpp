@@ -2,7 +2,6 @@
 #include "gui/file_queries.h"
 
 #include <algorithm>
-#include <iterator>
 #include <string_view>
 
 #include "core/file_format.h"
@@ -15,10 +14,75 @@ namespace fs = std::filesystem;
 namespace {
 
 using Extensions = std::vector<std::string>;
-const Extensions pictures = endings_of({FileKind::picture});
-const Extensions sources = endings_of({FileKind::picture, FileKind::mesh, FileKind::splats});
-const Extensions scenes = endings_of({FileKind::scene});
-const Extensions frames = endings_of({FileKind::picture}, FileUse::written);
+
+/// The file of a command.
+struct CommandFile {
+    Command::Kind command;
+    const char *title, *kind;
+    Extensions extensions;    // empty: any
+    const char* name = "";    // suggested, when saving; "": it is read
+    bool after_scene = true;  // the scene's name comes before it
+};
+
+const std::vector<CommandFile>& command_files() {
+    using Kind = Command::Kind;
+    static const Extensions pictures = endings_of({FileKind::picture}),
+                            scenes = endings_of({FileKind::scene}),
+                            sources = endings_of({FileKind::picture, FileKind::mesh, FileKind::splats});
+    static const std::vector<CommandFile> files{
+        {Kind::new_from_file, "New scene from a picture, mesh or splat file", "pictures", sources},
+        {Kind::open, "Open a scene", "scenes", scenes},
+        {Kind::import_file, "Import as a layer", "pictures, meshes or splats", sources},
+        {Kind::choose_picture, "Picture on the mesh", "pictures", pictures},
+        {Kind::set_reference, "Picture to compare with", "pictures", pictures},
+        {Kind::import_camera, "Import the camera of another program", "cameras",
+         endings_of(FileUse::camera_read)},
+        {Kind::apply_look, "Apply a look to the selected layer", "looks", scenes},
+        {Kind::export_camera, "Write the camera for other programs", "cameras",
+         endings_of(FileUse::camera_written), ".usda"},
+        {Kind::save_as, "Save the scene as", "scenes", scenes, ".toml"},
+        {Kind::save_look, "Export the selected layer's look", "looks", scenes, "look.toml", false},
+        {Kind::choose_target, "Where the files go", "pictures and movies", {}, ".####.exr"},
+        {Kind::prepare_picture,
+         "Write the prepared picture and its stars to a new folder",
+         "files",
+         {},
+         "-prepared"},
+        {Kind::save_view, "Save the frame as it is seen", "pictures", {".png"}, ".png"},
+        {Kind::screenshot, "Save what the window shows", "pictures", {".png", ".exr"}, ".png"}};
+    return files;
+}
+
+/// The kind of a file of the scene.
+struct ParameterFile {
+    std::string_view key;  // generic
+    const char* kind;
+    Extensions extensions;
+};
+
+const std::vector<ParameterFile>& parameter_files() {
+    static const Extensions pictures = endings_of({FileKind::picture}),
+                            scenes = endings_of({FileKind::scene});
+    static const std::vector<ParameterFile> files{
+        {"layer.source.meshes.texture", "pictures", pictures},
+        {"layer.source.meshes.depth_map", "pictures", pictures},
+        {"layer.source.meshes.mesh", "meshes", endings_of({FileKind::mesh})},
+        {"layer.source.prepare.align", "pictures", pictures},
+        {"layer.source.prepare.fill", "pictures", pictures},
+        {"layer.source.prepare.mask", "pictures", pictures},
+        {"layer.source.mask.image", "pictures", pictures},
+        {"layer.source.mask.any.image", "pictures", pictures},
+        {"layer.source.file", "splats", endings_of({FileKind::splats})},
+        {"layer.look.thickness.map", "pictures", pictures},
+        {"layer.preset", "looks", scenes},
+        {"environment.image", "pictures", pictures},
+        {"environment.cube", "pictures", pictures},
+        {"environment.tile", "pictures", pictures},
+        {"reference.file", "pictures", pictures},
+        {"output.preset", "presets", scenes},
+        {"camera.file", "cameras", endings_of(FileUse::camera_read)}};
+    return files;
+}
 
 fs::path folder_of_document(const Document& document) {
     if (!document.file().empty()) return document.file().parent_path();
@@ -32,45 +96,6 @@ std::string stem(const Document& document) {
     return file.stem().string();
 }
 
-FileQuery reading(const char* title, const char* kind, const Extensions& extensions,
-                  const Document& document) {
-    return {title, false, kind, extensions, folder_of_document(document), ""};
-}
-FileQuery writing(const char* title, const char* kind, const Extensions& extensions, const Document& document,
-                  const std::string& name) {
-    return {title, true, kind, extensions, folder_of_document(document), name};
-}
-
-/// The kind of a file of the scene.
-struct FileWish {
-    std::string_view key;  // generic
-    const char* kind;
-    Extensions (*extensions)();
-};
-
-template <FileKind kind>
-Extensions all_of() {
-    return endings_of({kind});
-}
-
-constexpr FileWish wishes[] = {{"layer.source.meshes.texture", "pictures", all_of<FileKind::picture>},
-                               {"layer.source.meshes.depth_map", "pictures", all_of<FileKind::picture>},
-                               {"layer.source.meshes.mesh", "meshes", all_of<FileKind::mesh>},
-                               {"layer.source.prepare.align", "pictures", all_of<FileKind::picture>},
-                               {"layer.source.prepare.fill", "pictures", all_of<FileKind::picture>},
-                               {"layer.source.prepare.mask", "pictures", all_of<FileKind::picture>},
-                               {"layer.source.mask.image", "pictures", all_of<FileKind::picture>},
-                               {"layer.source.mask.any.image", "pictures", all_of<FileKind::picture>},
-                               {"layer.source.file", "splats", all_of<FileKind::splats>},
-                               {"layer.look.thickness.map", "pictures", all_of<FileKind::picture>},
-                               {"layer.preset", "looks", all_of<FileKind::scene>},
-                               {"environment.image", "pictures", all_of<FileKind::picture>},
-                               {"environment.cube", "pictures", all_of<FileKind::picture>},
-                               {"environment.tile", "pictures", all_of<FileKind::picture>},
-                               {"reference.file", "pictures", all_of<FileKind::picture>},
-                               {"output.preset", "presets", all_of<FileKind::scene>},
-                               {"camera.file", "cameras", [] { return endings_of(FileUse::camera_read); }}};
-
 /// That of the file which is there now; empty where none is.
 fs::path folder_of_value(const Value& value, const fs::path& scene_folder) {
     const bool listed = value.list() && !value.list()->empty();
@@ -82,45 +107,15 @@ fs::path folder_of_value(const Value& value, const fs::path& scene_folder) {
 }  // namespace
 
 std::optional<FileQuery> query_for(Command::Kind kind, const Document& document) {
-    using Kind = Command::Kind;
-    switch (kind) {
-        case Kind::new_from_file:
-            return reading("New scene from a picture, mesh or splat file", "pictures", sources, document);
-        case Kind::open:
-            return reading("Open a scene", "scenes", scenes, document);
-        case Kind::import_file:
-            return reading("Import as a layer", "pictures, meshes or splats", sources, document);
-        case Kind::choose_picture:
-            return reading("Picture on the mesh", "pictures", pictures, document);
-        case Kind::set_reference:
-            return reading("Picture to compare with", "pictures", pictures, document);
-        case Kind::import_camera:
-            return reading("Import the camera of another program", "cameras",
-                           endings_of(FileUse::camera_read), document);
-        case Kind::export_camera:
-            return writing("Write the camera for other programs", "cameras",
-                           endings_of(FileUse::camera_written), document, stem(document) + ".usda");
-        case Kind::apply_look:
-            return reading("Apply a look to the selected layer", "looks", scenes, document);
-        case Kind::save_as:
-            return writing("Save the scene as", "scenes", scenes, document, stem(document) + ".toml");
-        case Kind::save_look:
-            return writing("Export the selected layer's look", "looks", scenes, document, "look.toml");
-        case Kind::choose_target:
-            return writing("Where the files go", "pictures and movies", {}, document,
-                           stem(document) + ".####.exr");
-        case Kind::prepare_picture:
-            return writing("Write the prepared picture and its stars to a new folder", "files", {}, document,
-                           stem(document) + "-prepared");
-        case Kind::save_view:
-            return writing("Save the frame as it is seen", "pictures", {".png"}, document,
-                           stem(document) + ".png");
-        case Kind::screenshot:
-            return writing("Save what the window shows", "pictures", {".png", ".exr"}, document,
-                           stem(document) + ".png");
-        default:
-            return std::nullopt;
-    }
+    const auto file = std::ranges::find(command_files(), kind, &CommandFile::command);
+    if (file == command_files().end()) return std::nullopt;
+    const std::string name = file->name;
+    return FileQuery{file->title,
+                     !name.empty(),
+                     file->kind,
+                     file->extensions,
+                     folder_of_document(document),
+                     (name.empty() || !file->after_scene ? "" : stem(document)) + name};
 }
 
 FileQuery query_for(const ParameterKey& key, const Document& document) {
@@ -130,11 +125,12 @@ FileQuery query_for(const ParameterKey& key, const Document& document) {
     const std::string label = parameter ? parameter->spec.label : key.text(), layer = key.layer();
     FileQuery query{layer.empty() ? label : label + " of " + layer, false, "files", {}, {}, ""};
     const ParameterKey generic = key.generic();
-    const auto wish = std::ranges::find_if(
-        wishes, [&](const FileWish& w) { return w.key == generic.text() || generic.is_below(w.key); });
-    if (wish != std::end(wishes)) {
-        query.kind = wish->kind;
-        query.extensions = wish->extensions();
+    const auto file = std::ranges::find_if(parameter_files(), [&](const ParameterFile& f) {
+        return f.key == generic.text() || generic.is_below(f.key);
+    });
+    if (file != parameter_files().end()) {
+        query.kind = file->kind;
+        query.extensions = file->extensions;
     }
     query.folder = parameter ? folder_of_value(parameter->get(), scene.file.parent_path()) : fs::path();
     query.otherwise = folder_of_document(document);

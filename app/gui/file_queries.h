@@ -8,7 +8,7 @@
 
 #include "edit/commands.h"
 #include "edit/document.h"
-#include "gui/panel/panel.h"
+#include "scene/parameter_key.h"
 
 namespace astrosplat {
 

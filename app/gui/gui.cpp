@@ -4,6 +4,7 @@
 #include <imgui.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <optional>
@@ -138,16 +139,22 @@ void CommandFlow::finish_save(GuiFrame& frame, Commands& out) {
     }
 }
 
-void CommandFlow::draw_question(GuiFrame& frame, Commands& out) {
-    const Kind kind = question_ ? question_->kind : Kind::quit;
-    if (!begin_dialog("unsaved", "Save the changes to " + frame.document.name() + before_what(kind),
-                      question_.has_value(), 460, 0))
-        return;
-    dialog_note("Changes that are not saved are lost.", 10);
-    const int button = dialog_buttons(frame, "unsaved", {"Don't save", "Cancel", "Save"}, 1);
-    const Command command = *question_;
-    if (button >= 0) question_.reset();
+// Index of the answer, the one in the middle is Cancel; -1: none yet.
+int answer_to(GuiFrame& frame, bool open, const char* id, const std::string& title, const char* note,
+              std::initializer_list<const char*> answers) {
+    if (!begin_dialog(id, title, open, 460, 0)) return -1;
+    dialog_note(note, 10);
+    const int button = dialog_buttons(frame, id, answers, 1);
     end_dialog(button >= 0);
+    return button;
+}
+
+void CommandFlow::draw_question(GuiFrame& frame, Commands& out) {
+    const Command command = question_.value_or(Command{Kind::quit, {}, {}, 0});
+    const int button = answer_to(frame, question_.has_value(), "unsaved",
+                                 "Save the changes to " + frame.document.name() + before_what(command.kind),
+                                 "Changes that are not saved are lost.", {"Don't save", "Cancel", "Save"});
+    if (button >= 0) question_.reset();
     if (button == 0) out.push_back(command);
     if (button == 2) {
         after_save_ = command;
@@ -158,13 +165,12 @@ void CommandFlow::draw_question(GuiFrame& frame, Commands& out) {
 
 // A file that was kept with the notice's button is decided already: then the file counts as seen.
 void CommandFlow::draw_conflict(GuiFrame& frame, Commands& out) {
-    if (!begin_dialog("conflict", frame.document.name() + " was changed by another program", conflict_, 460,
-                      0))
-        return;
-    dialog_note("Saving replaces what is on disk now by the scene as it is here.", 10);
-    const int button = dialog_buttons(frame, "conflict", {"Overwrite", "Cancel", "Save as..."}, 1);
+    if (!conflict_) return;
+    const int button =
+        answer_to(frame, true, "conflict", frame.document.name() + " was changed by another program",
+                  "Saving replaces what is on disk now by the scene as it is here.",
+                  {"Overwrite", "Cancel", "Save as..."});
     if (button >= 0) conflict_ = false;
-    end_dialog(button >= 0);
     frames_since_save_ = 0;
     if (button == 1) after_save_.reset();
     if (button == 0) out.push_back({Kind::save, {}, {}, 0});
@@ -208,6 +214,65 @@ void CommandFlow::run(GuiFrame& frame, Panel& panel, Commands& out) {
     draw_conflict(frame, out);
     const FileDialog::Answer answer = dialog_.draw(frame);
     if (answer.done) answer_ = answer;
+}
+
+// The two edges that can be dragged, of the side panel and of the timeline: windows without a background,
+// which change view.panel_width and view.timeline_height.
+
+constexpr float thickness = 6;
+constexpr float panel_least = 300, panel_most = 520;
+constexpr float timeline_least = 96, timeline_most = 480;
+
+struct Edge {
+    const char* name;
+    Rect zone;
+    bool vertical;  // the line; it is dragged sideways
+    float least, most, standard;
+};
+
+// The edge follows the mouse: `size` grows as the mouse goes left or up.
+void draw_splitter(GuiFrame& frame, const Edge& edge, float& size) {
+    if (!begin_part(edge.name, edge.zone, ImGuiWindowFlags_NoBackground | ImGuiWindowFlags_NoScrollbar))
+        return;
+    ImGui::InvisibleButton("edge", edge.zone.size());
+    note_item(frame, edge.name);
+    const bool active = ImGui::IsItemActive();
+    if (active || ImGui::IsItemHovered())
+        ImGui::SetMouseCursor(edge.vertical ? ImGuiMouseCursor_ResizeEW : ImGuiMouseCursor_ResizeNS);
+    if (active) {
+        const ImGuiIO& io = ImGui::GetIO();
+        const float far_side = edge.vertical ? io.DisplaySize.x : io.DisplaySize.y;
+        const float mouse = edge.vertical ? io.MousePos.x : io.MousePos.y;
+        const float beyond = edge.vertical ? 0.0f : px(24);  // the status bar lies under the timeline
+        size = std::clamp((far_side - beyond - mouse) / px(1), edge.least, edge.most);
+    }
+    if (ImGui::IsItemHovered() && ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left)) size = edge.standard;
+    ImVec2 low = edge.zone.corner(), high = edge.zone.end();
+    const ImVec2 middle = edge.zone.middle();
+    if (edge.vertical)
+        low.x = middle.x - px(1), high.x = middle.x;
+    else
+        low.y = middle.y - px(1), high.y = middle.y;
+    ImGui::GetWindowDrawList()->AddRectFilled(low, high, active ? color::accent : color::line);
+    ImGui::EndChild();
+}
+
+// After the parts, so that they lie over their edges.
+void draw_splitters(GuiFrame& frame, const Layout& layout) {
+    const ViewState standard;
+    const float half = px(thickness) * 0.5f;
+    if (layout.panel.width > 0) {
+        const Rect zone{layout.panel.x - half, layout.panel.y, 2 * half, layout.panel.height};
+        draw_splitter(frame, {"panel splitter", zone, true, panel_least, panel_most, standard.panel_width},
+                      frame.view.panel_width);
+    }
+    if (layout.timeline.height > 0 && frame.view.timeline_open) {
+        const Rect zone{layout.timeline.x, layout.timeline.y - half, layout.timeline.width, 2 * half};
+        draw_splitter(
+            frame,
+            {"timeline splitter", zone, false, timeline_least, timeline_most, standard.timeline_height},
+            frame.view.timeline_height);
+    }
 }
 
 // The one window everything but dialogs is in.

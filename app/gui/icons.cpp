@@ -29,28 +29,19 @@ struct Pen {
         for (const ImVec2& p : points) list->PathLineTo(at(p.x, p.y));
         list->PathStroke(color, closed ? ImDrawFlags_Closed : ImDrawFlags_None, width);
     }
-    void circle(float x, float y, float radius) const {
-        list->AddCircle(at(x, y), radius * half, color, 0, width);
+    void circle(float radius) const { list->AddCircle(center, radius * half, color, 0, width); }
+    void arc(ImVec2 from, ImVec2 control, ImVec2 to) const {
+        list->PathLineTo(at(from.x, from.y));
+        list->PathBezierQuadraticCurveTo(at(control.x, control.y), at(to.x, to.y));
+        list->PathStroke(color, ImDrawFlags_None, width);
     }
 };
 
-void lids(const Pen& pen, float lower) {
-    pen.list->PathLineTo(pen.at(-1.0f, 0.0f));
-    pen.list->PathBezierQuadraticCurveTo(pen.at(0.0f, -1.15f), pen.at(1.0f, 0.0f));
-    pen.list->PathStroke(pen.color, ImDrawFlags_None, pen.width);
-    pen.list->PathLineTo(pen.at(-1.0f, 0.0f));
-    pen.list->PathBezierQuadraticCurveTo(pen.at(0.0f, lower), pen.at(1.0f, 0.0f));
-    pen.list->PathStroke(pen.color, ImDrawFlags_None, pen.width);
-}
 void eye(const Pen& pen) {
-    lids(pen, 1.15f);
+    for (const float lid : {-1.15f, 1.15f}) pen.arc({-1, 0}, {0, lid}, {1, 0});
     pen.list->AddCircleFilled(pen.center, 0.3f * pen.half, pen.color);
 }
-void eye_closed(const Pen& pen) {
-    pen.list->PathLineTo(pen.at(-1.0f, -0.1f));
-    pen.list->PathBezierQuadraticCurveTo(pen.at(0.0f, 0.95f), pen.at(1.0f, -0.1f));
-    pen.list->PathStroke(pen.color, ImDrawFlags_None, pen.width);
-}
+void eye_closed(const Pen& pen) { pen.arc({-1, -0.1f}, {0, 0.95f}, {1, -0.1f}); }
 void diamond(const Pen& pen) {
     pen.list->AddQuadFilled(pen.at(0, -0.85f), pen.at(0.85f, 0), pen.at(0, 0.85f), pen.at(-0.85f, 0),
                             pen.color);
@@ -72,9 +63,9 @@ void cross(const Pen& pen) {
     pen.line(-0.6f, -0.6f, 0.6f, 0.6f);
     pen.line(-0.6f, 0.6f, 0.6f, -0.6f);
 }
-void ring(const Pen& pen) { pen.circle(0, 0, 0.7f); }
+void ring(const Pen& pen) { pen.circle(0.7f); }
 void ring_cut(const Pen& pen) {
-    pen.circle(0, 0, 0.7f);
+    ring(pen);
     pen.list->PathArcTo(pen.center, 0.7f * pen.half, -0.785f, 2.356f);
     pen.list->PathFillConvex(pen.color);
 }
@@ -116,11 +107,9 @@ void draw_icon(ImDrawList* list, Icon icon, ImVec2 center, float size, ImU32 col
 }
 
 void draw_bracket(ImDrawList* list, float x, float y0, float y1, ImU32 color) {
-    const float tip = px(4.0f);
-    list->PathLineTo({x + tip, y0});
-    list->PathLineTo({x, y0});
-    list->PathLineTo({x, y1});
-    list->PathLineTo({x + tip, y1});
+    const float tip = x + px(4.0f);
+    for (const ImVec2 corner : {ImVec2(tip, y0), ImVec2(x, y0), ImVec2(x, y1), ImVec2(tip, y1)})
+        list->PathLineTo(corner);
     list->PathStroke(color, ImDrawFlags_None, px(1.0f));
 }
 

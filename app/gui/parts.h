@@ -36,11 +36,6 @@ class StatusBar {
     std::string unread_;        // error that waits to be clicked
 };
 
-/// The two edges that can be dragged, of the side panel and of the timeline: lines between the parts, which
-/// change view.panel_width and view.timeline_height. Call it after the parts, so that it lies over their
-/// edges.
-void draw_splitters(GuiFrame& frame, const Layout& layout);
-
 /// Edit > Settings: one row of choices for every setting of the window, while ViewState::settings_open. Every
 /// choice acts at once or says when it does; closing asks for them to be kept (Command::keep_settings).
 void draw_settings_dialog(GuiFrame& frame);

@@ -35,10 +35,13 @@ std::vector<fs::path> data_folders() {
     return folders;
 }
 
-std::optional<fs::path> find_font(const std::vector<std::string>& names) {
-    const std::vector<fs::path> folders = data_folders();
-    for (const std::string& name : names)
-        for (const fs::path& folder : folders) {
+// Roboto of this weight, where distributions and people put it, else DejaVu.
+std::optional<fs::path> find_font(const std::string& weight, const std::string& dejavu) {
+    const std::string roboto = "Roboto-" + weight + ".ttf";
+    for (const std::string& name :
+         {"truetype/roboto/unhinted/RobotoTTF/" + roboto, "truetype/roboto/" + roboto, "Roboto/" + roboto,
+          roboto, "truetype/dejavu/" + dejavu})
+        for (const fs::path& folder : data_folders()) {
             std::error_code ignored;
             const fs::path file = folder / "fonts" / name;
             if (fs::is_regular_file(file, ignored)) return file;
@@ -67,18 +70,11 @@ ImFont* add_font(const std::optional<fs::path>& file, float size_px) {
 }
 
 void add_fonts(float content_scale) {
-    const std::string roboto = "truetype/roboto/unhinted/RobotoTTF/", flat = "truetype/roboto/",
-                      dejavu = "truetype/dejavu/", local = "Roboto/";
-    const auto regular =
-        find_font({roboto + "Roboto-Regular.ttf", flat + "Roboto-Regular.ttf", local + "Roboto-Regular.ttf",
-                   "Roboto-Regular.ttf", dejavu + "DejaVuSans.ttf"});
-    const auto medium =
-        find_font({roboto + "Roboto-Medium.ttf", flat + "Roboto-Medium.ttf", local + "Roboto-Medium.ttf",
-                   "Roboto-Medium.ttf", dejavu + "DejaVuSans-Bold.ttf"});
+    const auto regular = find_font("Regular", "DejaVuSans.ttf");
     ImGui::GetIO().Fonts->Clear();
     const float size = std::round(regular_px * content_scale);
     add_font(regular, size);
-    add_font(medium, size);
+    add_font(find_font("Medium", "DejaVuSans-Bold.ttf"), size);
     add_font(regular, std::round(small_px * content_scale));
 }
 

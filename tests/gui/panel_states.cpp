@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "gui/panel/panel.h"
 #include "gui/panel/parts.h"
 #include "gui/panel/tab_sections.h"
 
@@ -23,9 +24,10 @@ meshes = [ { mesh = "plane", texture = "dust.png" } ]
     Commands commands;
     Memory memory;
     std::vector<DrawnRow> rows;
+    std::vector<DrawnItem> drawn;
     describe_current(memory, document, 1.0);
     const auto section = std::ranges::find(tab_sections(), title, &TabSection::title);
-    return section->state({document, view, status, commands, memory, rows});
+    return section->state({{document, view, status, commands, drawn}, memory, rows});
 }
 
 TEST(PanelStates, SayWhatALookDoes) {
@@ -53,8 +55,9 @@ meshes = [ { mesh = "plane", texture = "dust.png" } ]
     Commands commands;
     Memory memory;
     std::vector<DrawnRow> rows;
+    std::vector<DrawnItem> drawn;
     describe_current(memory, document, 1.0);
-    Context context{document, view, status, commands, memory, rows};
+    Context context{{document, view, status, commands, drawn}, memory, rows};
     return zero_in_words(context, find(context, key)->spec);
 }
 

@@ -9,7 +9,7 @@
 #include <chrono>
 #include <thread>
 
-#include "gui/folder_reader.h"
+#include "gui/file_list.h"
 #include "gui/key_codes.h"
 #include "gui/test_window.h"
 #include "support/temp_folder.h"
@@ -98,24 +98,31 @@ TEST_F(SlowFolder, DoesNotStopTheWindow) {
     EXPECT_EQ(commands[0].path, folder / "scenes/old.toml");
 }
 
-TEST_F(SlowFolder, IsLeftToItselfByItsReader) {
+TEST_F(SlowFolder, IsLeftToItselfByWhoAsks) {
+    const auto read = [&](const std::string& name) {
+        return [path = folder / name, otherwise = folder / "scenes"](const std::atomic<bool>& forgotten) {
+            return read_folder(path, otherwise, {".toml"}, forgotten);
+        };
+    };
     folders_stand_still = true;
     {
-        FolderReader reader;
-        EXPECT_FALSE(reader.reading());
-        reader.begin(folder.path(), "/", {});
-        EXPECT_FALSE(reader.take());
-        EXPECT_TRUE(reader.reading());
+        DiskQuestion<FolderContents> question;
+        EXPECT_FALSE(question.is_open());
+        question.begin(read("more"));
+        EXPECT_FALSE(question.take());
+        EXPECT_TRUE(question.is_open());
     }
     folders_stand_still = false;
-    FolderReader reader;
-    reader.begin(folder / "none", folder / "scenes", {".toml"});
-    const auto found = reader.take(std::chrono::seconds(60));
+    DiskQuestion<FolderContents> question;
+    question.begin(read("none"));
+    std::optional<FolderContents> found;
+    for (int i = 0; i < 12000 && !(found = question.take()); ++i)
+        std::this_thread::sleep_for(std::chrono::milliseconds(5));
     ASSERT_TRUE(found);
     EXPECT_EQ(found->folder, folder / "scenes");
     EXPECT_EQ(found->entries.size(), 1U);
-    EXPECT_FALSE(reader.reading());
-    EXPECT_FALSE(reader.take());
+    EXPECT_FALSE(question.is_open());
+    EXPECT_FALSE(question.take());
 }
 
 }  // namespace

@@ -150,6 +150,10 @@ bool fits_box(const Rect& area, const std::string& text) {
     return ImGui::CalcTextSize(text.c_str()).x <= area.width - padding - std::min(padding, px(4));
 }
 
+float share_at_mouse(const Rect& area) {
+    return std::clamp((ImGui::GetIO().MousePos.x - area.x) / area.width, 0.0f, 1.0f);
+}
+
 float clipped_text(ImDrawList* list, const Rect& area, float padding, ImU32 color, const std::string& text) {
     const float y = area.y + (area.height - ImGui::GetFontSize()) * 0.5f;
     const ImVec2 from{area.x + padding, y};

@@ -35,6 +35,9 @@ BoxEvent value_box(Context& context, const char* id, const Rect& area, const Box
 /// Whether a box of this size shows all of the text, without a unit.
 bool fits_box(const Rect& area, const std::string& text);
 
+/// Where the mouse is from left to right, 0..1.
+float share_at_mouse(const Rect& area);
+
 /// Text at the left, ended by "..." where it is too long; returns its width.
 float clipped_text(ImDrawList* list, const Rect& area, float padding, ImU32 color, const std::string& text);
 

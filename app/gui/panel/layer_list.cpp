@@ -24,12 +24,8 @@ namespace {
 constexpr float line_height = 28.0f;
 constexpr float margin = 12.0f;  // left and right of a row
 
-const LayerStatus* status_of(const Context& context, std::size_t i) {
-    return i < context.status.layers.size() ? &context.status.layers[i] : nullptr;
-}
-
-bool wants_second_line(const LayerStatus* status) {
-    return status && (status->loading || status->stale || !status->error.empty());
+bool wants_second_line(const LayerStatus& status) {
+    return status.loading || status.stale || !status.error.empty();
 }
 
 // Lines come and go only while no button is held: what is dragged stays under the mouse.
@@ -38,11 +34,16 @@ void choose_second_lines(const Context& context) {
     std::set<std::string>& names = context.memory.second_lines;
     names.clear();
     for (std::size_t i = 0; i < context.scene().layers.size(); ++i)
-        if (wants_second_line(status_of(context, i))) names.insert(context.scene().layers[i].name);
+        if (wants_second_line(context.layer_status(i))) names.insert(context.scene().layers[i].name);
 }
 
 bool has_second_line(const Context& context, std::size_t i) {
     return context.memory.second_lines.count(context.scene().layers[i].name) > 0;
+}
+
+/// Of the row of layer i, px.
+float height_of(const Context& context, std::size_t i) {
+    return px(has_second_line(context, i) ? line_height + row_height + 4.0f : line_height);
 }
 
 bool merged(const LayerParams& layer) {
@@ -54,10 +55,8 @@ ParameterKey key_of(const Context& context, std::size_t i, const char* name) {
 }
 
 ImU32 chip_color(const Context& context, std::size_t i) {
-    const LayerStatus* status = status_of(context, i);
-    const Grade& grade = context.scene().layers[i].look.grade;
-    const glm::vec3 own = status && status->color ? *status->color : glm::vec3(1.0f);
-    const glm::vec3 tinted = own * grade.tint;
+    const glm::vec3 own = context.layer_status(i).color.value_or(glm::vec3(1.0f));
+    const glm::vec3 tinted = own * context.scene().layers[i].look.grade.tint;
     const float largest = std::max({tinted.x, tinted.y, tinted.z, 1e-6f});
     const auto byte = [&](float c) {
         return static_cast<int>(255.0 * real::linear_to_srgb(double(c / largest)) + 0.5);
@@ -197,33 +196,27 @@ void row_body(Context& context, std::size_t i, const Rect& row) {
 }
 
 void count_text(const Context& context, std::size_t i, const Rect& row, float& right) {
-    const LayerStatus* status = status_of(context, i);
-    if (!status || (status->splats == 0 && !status->loading)) return;
-    const std::string text = short_count(status->loading ? status->found : status->splats);
+    const LayerStatus& status = context.layer_status(i);
+    if (status.splats == 0 && !status.loading) return;
+    const std::string text = short_count(status.loading ? status.found : status.splats);
     ImGui::PushFont(small_font());
-    const float width = ImGui::CalcTextSize(text.c_str()).x;
-    right -= width;
+    right -= ImGui::CalcTextSize(text.c_str()).x;
     ImGui::GetWindowDrawList()->AddText({right, row.y + (px(line_height) - ImGui::GetFontSize()) * 0.5f},
                                         color::dim, text.c_str());
     ImGui::PopFont();
 }
 
 void second_line(Context& context, std::size_t i, const Rect& row) {
-    const LayerStatus& status = *status_of(context, i);
-    const float width = row.width - px(42 + margin);
-    ImGui::SetCursorScreenPos({row.x + px(42), row.y + px(line_height)});
+    const LayerStatus& status = context.layer_status(i);
+    const Rect line{row.x + px(42), row.y + px(line_height), row.width - px(42 + margin), px(row_height)};
+    ImGui::SetCursorScreenPos(line.corner());
     if (!status.error.empty()) {
-        const Rect line{{row.x + px(42), row.y + px(line_height)},
-                        {row.width - px(42 + margin), px(row_height)}};
         clipped_text(ImGui::GetWindowDrawList(), line, 0.0f, color::error, status.error);
         ImGui::Dummy(line.size());
         if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", status.error.c_str());
-    } else if (status.loading) {
-        const std::string text = fmt::format("{} %", static_cast<int>(status.progress * 100.0f));
-        if (progress_line(width, std::max(status.progress, 0.001f), text, "Cancel"))
-            request(context, Command::Kind::cancel_load, i);
-    } else if (progress_line(width, 0.0f, "Needs regeneration", "Regenerate")) {
-        request(context, Command::Kind::regenerate, i);
+    } else {
+        load_line(context, i, line.width, fmt::format("{} %", static_cast<int>(status.progress * 100.0f)),
+                  "Needs regeneration");
     }
 }
 
@@ -249,7 +242,8 @@ void draw_layer(Context& context, std::size_t i, const Rect& row) {
     else
         clipped_text(list, name, 0.0f, shown ? color::text : color::dim, layer.name);
     switches(context, i, row);
-    if (has_second_line(context, i) && wants_second_line(status_of(context, i))) second_line(context, i, row);
+    if (has_second_line(context, i) && wants_second_line(context.layer_status(i)))
+        second_line(context, i, row);
 }
 
 // The bracket reaches from the first merged layer to the last; isolated ones between have no tick.
@@ -289,6 +283,15 @@ void add_menu(Context& context) {
 
 }  // namespace
 
+void load_line(Context& context, std::size_t i, float width, const std::string& loading,
+               const std::string& stale) {
+    const LayerStatus& status = context.layer_status(i);
+    const bool clicked = status.loading
+                             ? progress_line(width, std::max(status.progress, 0.001f), loading, "Cancel")
+                             : progress_line(width, 0.0f, stale, "Regenerate");
+    if (clicked) request(context, status.loading ? Command::Kind::cancel_load : Command::Kind::regenerate, i);
+}
+
 void add_layer_button(Context& context) {
     if (icon_button("add", Icon::plus, {px(26), px(24)}, px(11), color::text,
                     "Add a picture, mesh or splat file, or a shape"))
@@ -299,8 +302,7 @@ void add_layer_button(Context& context) {
 float layer_list_height(const Context& context) {
     choose_second_lines(context);
     float height = 0.0f;
-    for (std::size_t i = 0; i < context.scene().layers.size(); ++i)
-        height += px(has_second_line(context, i) ? line_height + row_height + 4.0f : line_height);
+    for (std::size_t i = 0; i < context.scene().layers.size(); ++i) height += height_of(context, i);
     return height + px(context.scene().layers.empty() ? 28.0f : 6.0f);
 }
 
@@ -314,9 +316,8 @@ void layer_list(Context& context, float height) {
         note("Drop a picture, mesh or splat file here.");
     }
     for (std::size_t i = 0; i < context.scene().layers.size(); ++i) {
-        const float tall = px(has_second_line(context, i) ? line_height + row_height + 4.0f : line_height);
-        rows.push_back({at, {width, tall}});
-        at.y += tall;
+        rows.push_back({at, {width, height_of(context, i)}});
+        at.y = rows.back().end().y;
     }
     for (std::size_t i = 0; i < rows.size(); ++i) {
         ImGui::PushID(context.scene().layers[i].name.c_str());

@@ -10,15 +10,8 @@
 #include "gui/theme.h"
 #include "gui/widgets.h"
 
-namespace astrosplat {
-
-struct Panel::State {
-    panel::Memory memory;
-    std::vector<DrawnRow> rows;
-};
-
+namespace astrosplat::panel {
 namespace {
-using namespace panel;
 
 struct Tab {
     const char* label;  // as ParameterSpec::tab
@@ -123,20 +116,11 @@ void forget_untouched(Touch& touch) {
 
 }  // namespace
 
-Panel::Panel() : state_(std::make_unique<State>()) {}
-Panel::~Panel() = default;
-
-void Panel::draw(const GuiFrame& frame) {
-    Memory& memory = state_->memory;
-    ViewState& view = frame.view;
-    describe_current(memory, frame.document, view.frame);
-    state_->rows.clear();
-    memory.plots.clear();
-    memory.touch.seen = false;
-    view.preparation_open = false;
-    const std::size_t layers = memory.described.scene->layers.size();
+/// The whole panel.
+void draw_all(Context& context) {
+    ViewState& view = context.view;
+    const std::size_t layers = context.scene().layers.size();
     view.layer = layers > 0 ? std::min(view.layer, layers - 1) : 0;
-    Context context{frame, memory, state_->rows};
     const ImVec2 room = ImGui::GetContentRegionAvail();
     ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(0.0f, 0.0f));
     head(context);
@@ -145,8 +129,31 @@ void Panel::draw(const GuiFrame& frame) {
     ImGui::PopStyleVar();
     view.layer = layers > 0 ? std::min(view.layer, layers - 1) : 0;  // a layer was added or taken away
     tab_body(context);
-    memory.all_open = false;
-    forget_untouched(memory.touch);
+    context.memory.all_open = false;
+    forget_untouched(context.memory.touch);
+}
+
+}  // namespace astrosplat::panel
+
+namespace astrosplat {
+
+struct Panel::State {
+    panel::Memory memory;
+    std::vector<DrawnRow> rows;
+};
+
+Panel::Panel() : state_(std::make_unique<State>()) {}
+Panel::~Panel() = default;
+
+void Panel::draw(const GuiFrame& frame) {
+    panel::Memory& memory = state_->memory;
+    panel::describe_current(memory, frame.document, frame.view.frame);
+    state_->rows.clear();
+    memory.plots.clear();
+    memory.touch.seen = false;
+    frame.view.preparation_open = false;
+    panel::Context context{frame, memory, state_->rows};
+    panel::draw_all(context);
 }
 
 std::optional<ParameterKey> Panel::take_request() {
@@ -154,9 +161,9 @@ std::optional<ParameterKey> Panel::take_request() {
 }
 
 void Panel::answer(const ParameterKey& key, const std::filesystem::path& file, const GuiFrame& frame) {
-    describe_current(state_->memory, frame.document, frame.view.frame);
-    Context context{frame, state_->memory, state_->rows};
-    set_value(context, key, file.string());
+    panel::describe_current(state_->memory, frame.document, frame.view.frame);
+    panel::Context context{frame, state_->memory, state_->rows};
+    panel::set_value(context, key, file.string());
 }
 
 void Panel::open_all() { state_->memory.all_open = true; }

@@ -68,6 +68,10 @@ void layer_list(Context& context, float height);
 /// The plus that adds a layer, with its menu.
 void add_layer_button(Context& context);
 
+/// How far layer i is generated, or that it has to be, with the button that stops or begins it.
+void load_line(Context& context, std::size_t i, float width, const std::string& loading,
+               const std::string& stale);
+
 /// Height the whole list would take, px.
 float layer_list_height(const Context& context);
 

@@ -1,3 +1,4 @@
+// The drawings above rows: levels, profiles, a dot, sectors, a noise; and what 0 stands for.
 #include "gui/panel/parts.h"
 
 #include <fmt/format.h>
@@ -10,7 +11,6 @@
 #include "core/real.h"
 #include "generate/lattice.h"
 #include "gui/panel/companions.h"
-#include "gui/panel/context.h"
 #include "gui/panel/controls.h"
 #include "gui/panel/plot.h"
 #include "gui/panel/words.h"
@@ -51,14 +51,13 @@ bool handle(Context& context, const Rect& area, const Values& values, const char
     const float foot = area.end().y;
     list->AddTriangleFilled({x, foot - px(8)}, {x + px(5), foot}, {x - px(5), foot}, ink);
     if (!active || ImGui::GetIO().MouseDelta.x == 0.0f) return false;
-    const double share = double(std::clamp((ImGui::GetIO().MousePos.x - area.x) / area.width, 0.0f, 1.0f));
     const double range = values.hi - values.lo;
-    value = rounded_to_step(values.lo + share * range, range * 1e-3);
+    value = rounded_to_step(values.lo + double(share_at_mouse(area)) * range, range * 1e-3);
     return true;
 }
 
 /// Spread of the picture's values; black and white are dragged on it.
-void edit_levels(Context& context) {
+void edit_levels(Context& context, const ParameterSpec&) {
     const auto& histograms = context.layer_status().histograms;
     if (!histograms || histograms->values.share.empty()) return;
     const Values& values = histograms->values;
@@ -139,13 +138,9 @@ std::vector<ImU32> noise_greys(const Noise& noise, int columns, int rows, double
     return greys;
 }
 
-bool same_field(const Noise& a, const Noise& b) {
-    return a.frequency == b.frequency && a.octaves == b.octaves && a.lacunarity == b.lacunarity &&
-           a.gain == b.gain && a.seed == b.seed;
-}
-
 /// The dot of a falloff and, beside it, its profile.
-void draw_falloff(const Falloff& falloff) {
+void draw_falloff(Context& context, const ParameterSpec&) {
+    const Falloff& falloff = context.layer().render.falloff;
     const Rect area = begin_plot();
     const Rect dot{area.corner(), {area.height, area.height}};
     draw_dot(dot, falloff);
@@ -155,11 +150,13 @@ void draw_falloff(const Falloff& falloff) {
 }
 
 /// The angles at which a hybrid changes from over to screen, as sectors between face-on and edge-on.
-void draw_hybrid(float from_deg, float to_deg) {
+void draw_hybrid(Context& context, const ParameterSpec&) {
+    const LayerRender& render = context.layer().render;
     const Rect area = begin_plot(72.0f);
     const float radius = area.height - px(16);
     const ImVec2 origin{area.middle().x - radius * 0.5f, area.end().y - px(8)};
-    const double from = std::clamp(double(from_deg), 0.0, 90.0), to = std::clamp(double(to_deg), from, 90.0);
+    const double from = std::clamp(double(render.hybrid_from_deg), 0.0, 90.0);
+    const double to = std::clamp(double(render.hybrid_to_deg), from, 90.0);
     sector(origin, radius, 0.0, from, color::with_opacity(color::dim, 0.35f));
     constexpr int steps = 12;
     for (int i = 0; i < steps; ++i) {
@@ -172,14 +169,19 @@ void draw_hybrid(float from_deg, float to_deg) {
     captions("over seen face-on", "screen seen edge-on");
 }
 
-/// The field of a noise over `span` scene units of the plane across y; computed when it changes.
-void draw_noise(Context& context, std::size_t entry, const Noise& noise, double span) {
+/// The field of a noise over as much of the plane across y as the scene is large; computed when it changes.
+void draw_noise(Context& context, const ParameterSpec& spec) {
+    const std::size_t entry = place_in_list(spec.key);
+    const Noise& noise = context.layer().look.noise[entry];
+    const Bounds& box = context.status.box;
+    const glm::dvec3 extent = box.empty() ? glm::dvec3(10.0) : glm::dvec3(box.hi - box.lo);
+    const double span = std::max({extent.x, extent.y, extent.z});
     const Rect area = begin_plot(56.0f);
     const int columns = std::max(1, static_cast<int>(area.width / px(cell)));
     const int rows = static_cast<int>(area.height / px(cell));
     context.memory.noises.resize(std::max(context.memory.noises.size(), entry + 1));
     NoiseSketch& sketch = context.memory.noises[entry];
-    if (sketch.columns != columns || sketch.span != span || !same_field(sketch.noise, noise))
+    if (sketch.columns != columns || sketch.span != span || sketch.noise != noise)
         sketch = {noise, span, columns, noise_greys(noise, columns, rows, span)};
     ImDrawList* list = ImGui::GetWindowDrawList();
     const ImVec2 size{area.width / float(columns), area.height / float(rows)};
@@ -269,67 +271,42 @@ void vertical_sketch(Context& context, const ParameterSpec& spec) {
     draw_profile(context, begin_plot(), spec, vertical_samples(vertical), reach);
 }
 
-void noise_sketch(Context& context, const ParameterSpec& spec) {
-    const Bounds& box = context.status.box;
-    const glm::dvec3 size = box.empty() ? glm::dvec3(10.0) : glm::dvec3(box.hi - box.lo);
-    const std::size_t place = place_in_list(spec.key);
-    draw_noise(context, place, context.layer().look.noise[place], std::max({size.x, size.y, size.z}));
-}
-
-void falloff_sketch(Context& context, const ParameterSpec&) { draw_falloff(context.layer().render.falloff); }
-
-void hybrid_sketch(Context& context, const ParameterSpec&) {
-    const LayerRender& render = context.layer().render;
-    draw_hybrid(render.hybrid_from_deg, render.hybrid_to_deg);
-}
-
-void levels_sketch(Context& context, const ParameterSpec&) { edit_levels(context); }
-
-using Draw = void (*)(Context&, const ParameterSpec&);
-using Sketches = std::map<std::string_view, Draw>;  // by generic key
-
-void draw_of(const Sketches& sketches, Context& context, const ParameterSpec& spec) {
-    const auto found = sketches.find(spec.generic_key);
-    if (found != sketches.end()) found->second(context, spec);
-}
-
 }  // namespace
 
 void draw_above(Context& context, const ParameterSpec& spec) {
-    static const Sketches sketches{{"layer.source.black", levels_sketch},
-                                   {"layer.look.pdf.shape", density_sketch},
-                                   {"layer.look.density", all_densities},
-                                   {"layer.look.alpha.power", alpha_sketch},
-                                   {"layer.look.vertical.shape", vertical_sketch},
-                                   {"layer.look.noise.frequency", noise_sketch},
-                                   {"layer.look.thickness.keys.shape", stop_density_sketch},
-                                   {"layer.render.falloff", falloff_sketch},
-                                   {"layer.render.hybrid.from_deg", hybrid_sketch}};
-    draw_of(sketches, context, spec);
+    using Draw = void (*)(Context&, const ParameterSpec&);
+    static const std::map<std::string_view, Draw> sketches{
+        {"layer.source.black", edit_levels},
+        {"layer.look.pdf.shape", density_sketch},
+        {"layer.look.density", all_densities},
+        {"layer.look.alpha.power", alpha_sketch},
+        {"layer.look.vertical.shape", vertical_sketch},
+        {"layer.look.noise.frequency", draw_noise},
+        {"layer.look.thickness.keys.shape", stop_density_sketch},
+        {"layer.render.falloff", draw_falloff},
+        {"layer.render.hybrid.from_deg", draw_hybrid}};
+    if (const auto found = sketches.find(spec.generic_key); found != sketches.end())
+        found->second(context, spec);
 }
 
 std::string zero_in_words(const Context& context, const ParameterSpec& spec) {
+    const ParameterKey& key = spec.generic_key;
+    const LayerStatus& status = context.layer_status();
     double used = 0.0;
-    if (spec.generic_key.is_below("layer.look.radius")) {
+    if (key.is_below("layer.look.radius")) {
         const Radius& radius = context.layer().look.radius;
         if (radius.min != 0.0f || radius.max != 0.0f) return "";  // then 0 is a size
-        const LayerStatus& status = context.layer_status();
-        used = spec.generic_key == "layer.look.radius.min" ? status.radius_min : status.radius_max;
-    } else if (spec.generic_key == "layer.look.reach" || spec.generic_key == "layer.look.vertical.reach") {
+        used = key == "layer.look.radius.min" ? status.radius_min : status.radius_max;
+    } else if (key == "layer.look.reach" || key == "layer.look.vertical.reach") {
         used = reach_of(context);
-    } else if (spec.generic_key == "layer.source.max_distance") {
-        const LayerStatus& status = context.layer_status();
-        if (status.histograms && !status.stale) used = status.histograms->max_distance;
-    } else if (spec.generic_key == "layer.source.structure.height") {
-        if (!context.layer_status().stale) used = context.layer_status().body_height;
-    } else if (spec.generic_key == "layer.source.uv_width") {
-        if (!context.layer_status().stale) used = context.layer_status().uv_width;
-    } else if (spec.generic_key == "layer.source.seed") {
-        const std::uint32_t seed = resolved_seed(0, context.layer().name);
-        return fmt::format("{} ({})", spec.zero, seed);
+    } else if (key == "layer.source.seed") {
+        return fmt::format("{} ({})", spec.zero, resolved_seed(0, context.layer().name));
+    } else if (!status.stale) {
+        if (key == "layer.source.max_distance" && status.histograms) used = status.histograms->max_distance;
+        if (key == "layer.source.structure.height") used = status.body_height;
+        if (key == "layer.source.uv_width") used = status.uv_width;
     }
-    const std::string words(spec.zero);
-    return used > 0.0 ? fmt::format("{} ({})", words, figures(used)) : words;
+    return used > 0.0 ? fmt::format("{} ({})", spec.zero, figures(used)) : std::string(spec.zero);
 }
 
 }  // namespace astrosplat::panel

@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <span>
+#include <functional>
 
 #include "core/text.h"
 #include "gui/panel/context.h"
@@ -32,25 +32,35 @@ struct InnerRows {
 };
 
 struct ListRows {
-    ParameterKey key;     // generic: "layer.look.noise"
-    std::string section;  // that shows it
-    ParameterKey after;   // generic key of the row before it; "": it comes first
-    const char* title;    // of an element, before its number
-    const char* element;  // in the names of edits
-    std::size_t least;    // so many stay, and have no head while there are no more
-    std::size_t (*size)(const LayerParams&);
+    ParameterKey key;       // generic: "layer.look.noise"
+    std::string section;    // that shows it
+    ParameterKey after;     // generic key of the row before it; "": it comes first
+    const char* title;      // of an element, before its number
+    const char* element;    // in the names of edits
+    std::size_t least = 0;  // so many stay, and have no head while there are no more
     void (*add)(LayerParams&, const LayerStatus&);
-    void (*remove)(LayerParams&, std::size_t index);
     void (*added)(ViewState&, const LayerParams&) = nullptr;  // what the view does then
     bool (*can_grow)(const LayerParams&) = nullptr;           // nullptr: always
     bool (*is_shown)(const LayerParams&) = nullptr;           // likewise
     const InnerRows* inner = nullptr;                         // nullptr: none
+    std::size_t (*size)(const LayerParams&) = nullptr;        // these two by list_of_tables()
+    void (*remove)(LayerParams&, std::size_t index) = nullptr;
 };
 
 template <class T>
 void erase_at(std::vector<T>& list, std::size_t index) {
     list.erase(list.begin() + static_cast<std::ptrdiff_t>(index));
 }
+
+/// `list` finds it in a layer.
+template <auto list>
+ListRows list_of_tables(ListRows rows) {
+    rows.size = [](const LayerParams& layer) { return list(layer).size(); };
+    rows.remove = [](LayerParams& layer, std::size_t index) { erase_at(list(layer), index); };
+    return rows;
+}
+
+bool is_mesh(const LayerParams& layer) { return layer.source.kind == SourceKind::mesh; }
 
 /// The first stop changes nothing.
 void add_thickness_stop(LayerParams& layer, const LayerStatus&) {
@@ -85,126 +95,100 @@ void handle_last_crop(ViewState& view, const LayerParams& layer) {
     view.handle_crop = layer.look.crop.size() - 1;
 }
 
-std::vector<MaskParams>& masks_of(LayerParams& layer) { return layer.source.texture.mask; }
+constexpr auto masks_of = [](auto& layer) -> auto& { return layer.source.texture.mask; };
 
 const InnerRows mask_alternatives = {
     .key = "any",
     .title = "Or",
     .element = "alternative",
-    .size = [](const LayerParams& layer, std::size_t i) { return layer.source.texture.mask[i].any.size(); },
+    .size = [](const LayerParams& layer, std::size_t i) { return masks_of(layer)[i].any.size(); },
     .add = [](LayerParams& layer, std::size_t i) { masks_of(layer)[i].any.emplace_back(); },
     .remove = [](LayerParams& layer, std::size_t i, std::size_t k) { erase_at(masks_of(layer)[i].any, k); }};
 
-const ListRows lists[] = {
-    {.key = "layer.source.meshes",
-     .section = "Files",
-     .after = "layer.source.kind",
-     .title = "Mesh",
-     .element = "mesh",
-     .least = 1,
-     .size = [](const LayerParams& layer) { return layer.source.meshes.size(); },
-     .add =
-         [](LayerParams& layer, const LayerStatus&) {
-             layer.source.meshes.push_back({"plane", {}, 0.15});
-         },
-     .remove = [](LayerParams& layer, std::size_t i) { erase_at(layer.source.meshes, i); },
-     .is_shown = [](const LayerParams& layer) { return layer.source.kind == SourceKind::mesh; }},
-    {.key = "layer.source.mask",
-     .section = "Masks",
-     .after = "layer.source.detail",
-     .title = "Mask",
-     .element = "mask",
-     .least = 0,
-     .size = [](const LayerParams& layer) { return layer.source.texture.mask.size(); },
-     .add = [](LayerParams& layer, const LayerStatus&) { masks_of(layer).emplace_back(); },
-     .remove = [](LayerParams& layer, std::size_t i) { erase_at(masks_of(layer), i); },
-     .is_shown = [](const LayerParams& layer) { return layer.source.kind == SourceKind::mesh; },
-     .inner = &mask_alternatives},
-    {.key = "layer.look.noise",
-     .section = "Noise",
-     .after = "",
-     .title = "Noise",
-     .element = "noise",
-     .least = 0,
-     .size = [](const LayerParams& layer) { return layer.look.noise.size(); },
-     .add = [](LayerParams& layer, const LayerStatus&) { layer.look.noise.emplace_back(); },
-     .remove = [](LayerParams& layer, std::size_t i) { erase_at(layer.look.noise, i); },
-     .can_grow = [](const LayerParams& layer) { return layer.look.noise.size() < 4; }},
-    {.key = "layer.look.crop",
-     .section = "Crop",
-     .after = "",
-     .title = "Crop",
-     .element = "crop",
-     .least = 0,
-     .size = [](const LayerParams& layer) { return layer.look.crop.size(); },
-     .add = add_crop,
-     .remove = [](LayerParams& layer, std::size_t i) { erase_at(layer.look.crop, i); },
-     .added = handle_last_crop,
-     .can_grow = [](const LayerParams& layer) { return layer.look.crop.size() < 8; }},
-    {.key = "layer.look.thickness.keys",
-     .section = "Thickness map",
-     .after = "layer.look.thickness.map",
-     .title = "Stop",
-     .element = "thickness stop",
-     .least = 0,
-     .size = [](const LayerParams& layer) { return layer.look.thickness.stops.size(); },
-     .add = add_thickness_stop,
-     .remove = [](LayerParams& layer, std::size_t i) { erase_at(layer.look.thickness.stops, i); },
-     .can_grow = can_take_thickness_stop}};
-
-std::span<const ListRows> list_rows() { return lists; }
+const ListRows lists[] = {list_of_tables < [](auto& layer) -> auto& {return layer.source.meshes;
+}  // namespace
+> ({.key = "layer.source.meshes",
+    .section = "Files",
+    .after = "layer.source.kind",
+    .title = "Mesh",
+    .element = "mesh",
+    .least = 1,
+    .add =
+        [](LayerParams& layer, const LayerStatus&) {
+            layer.source.meshes.push_back({"plane", {}, 0.15});
+        },
+    .is_shown = is_mesh}),
+    list_of_tables<masks_of>({.key = "layer.source.mask",
+                              .section = "Masks",
+                              .after = "layer.source.detail",
+                              .title = "Mask",
+                              .element = "mask",
+                              .add = [](LayerParams& layer,
+                                        const LayerStatus&) { masks_of(layer).emplace_back(); },
+                              .is_shown = is_mesh,
+                              .inner = &mask_alternatives}),
+    list_of_tables < [](auto& layer) -> auto& {
+    return layer.look.noise;
+}
+> ({.key = "layer.look.noise",
+    .section = "Noise",
+    .after = "",
+    .title = "Noise",
+    .element = "noise",
+    .add = [](LayerParams& layer, const LayerStatus&) { layer.look.noise.emplace_back(); },
+    .can_grow = [](const LayerParams& layer) { return layer.look.noise.size() < 4; }}),
+    list_of_tables < [](auto& layer) -> auto& {
+    return layer.look.crop;
+}
+> ({.key = "layer.look.crop",
+    .section = "Crop",
+    .after = "",
+    .title = "Crop",
+    .element = "crop",
+    .add = add_crop,
+    .added = handle_last_crop,
+    .can_grow = [](const LayerParams& layer) { return layer.look.crop.size() < 8; }}),
+    list_of_tables < [](auto& layer) -> auto& {
+    return layer.look.thickness.stops;
+}
+> ({.key = "layer.look.thickness.keys",
+    .section = "Thickness map",
+    .after = "layer.look.thickness.map",
+    .title = "Stop",
+    .element = "thickness stop",
+    .add = add_thickness_stop,
+    .can_grow = can_take_thickness_stop})
+};  // namespace astrosplat::panel
 
 /// Whether a section shows a list.
 bool has_list(std::string_view section) {
     return std::ranges::any_of(lists, [&](const ListRows& list) { return list.section == section; });
 }
 
-/// The list whose element a parameter belongs to; nullptr: none.
-const ListRows* list_of(const ParameterSpec& spec) {
-    const auto holds = [&](const ListRows& list) { return spec.generic_key.is_below(list.key); };
-    const auto found = std::ranges::find_if(lists, holds);
-    return found == std::end(lists) ? nullptr : found;
+bool is_in_list(const ParameterSpec& spec) {
+    return std::ranges::any_of(lists,
+                               [&](const ListRows& list) { return spec.generic_key.is_below(list.key); });
 }
 
 /// The line above an element; true when its cross was clicked.
-bool list_element_head(Context& context, const ListRows& list, std::size_t index) {
-    if (list.size(context.layer()) <= list.least) return false;
-    return element_head(fmt::format("{} {}", list.title, index).c_str());
+bool numbered_head(const char* title, std::size_t index) {
+    return element_head(fmt::format("{} {}", title, index).c_str());
 }
 
-/// The same for an inner list, in the element `outer`.
-bool inner_element_head(const InnerRows& list, std::size_t index) {
-    return element_head(fmt::format("{} {}", list.title, index).c_str());
-}
-
-void remove_inner_element(Context& context, const InnerRows& list, std::size_t outer, std::size_t index) {
-    const std::size_t layer = context.view.layer;
-    edit(context, context.layer_key(), std::string("Remove ") + list.element,
-         [&](Scene& scene) { list.remove(scene.layers[layer], outer, index); });
-}
-
-void inner_add_line(Context& context, const InnerRows& list, std::size_t outer) {
-    if (!add_line((std::string("Add ") + list.element).c_str())) return;
-    const std::size_t layer = context.view.layer;
-    edit(context, context.layer_key(), std::string("Add ") + list.element,
-         [&](Scene& scene) { list.add(scene.layers[layer], outer); });
-}
-
-void remove_element(Context& context, const ListRows& list, std::size_t index) {
-    const std::size_t layer = context.view.layer;
-    edit(context, context.layer_key(), std::string("Remove ") + list.element,
-         [&](Scene& scene) { list.remove(scene.layers[layer], index); });
+/// "Add mesh", of the selected layer.
+void edit_list(Context& context, const char* verb, const char* element,
+               const std::function<void(LayerParams&)>& change) {
+    edit(context, context.layer_key(), fmt::format("{} {}", verb, element),
+         [&](Scene& scene) { change(scene.layers[context.view.layer]); });
 }
 
 /// The line below the last element that adds another.
 void list_add_line(Context& context, const ListRows& list) {
-    const std::string label = std::string("Add ") + lower_case(list.title);
     const bool full = list.can_grow && !list.can_grow(context.layer());
-    if (full || !add_line(label.c_str())) return;
-    const std::size_t layer = context.view.layer;
-    edit(context, context.layer_key(), std::string("Add ") + list.element,
-         [&](Scene& scene) { list.add(scene.layers[layer], context.layer_status()); });
-    if (list.added) list.added(context.view, context.document.scene().layers[layer]);
+    if (full || !add_line(("Add " + lower_case(list.title)).c_str())) return;
+    edit_list(context, "Add", list.element,
+              [&](LayerParams& layer) { list.add(layer, context.layer_status()); });
+    if (list.added) list.added(context.view, context.document.scene().layers[context.view.layer]);
 }
 
 using Rows = std::vector<const Parameter*>;
@@ -242,30 +226,34 @@ void draw_inner_list(Context& context, const InnerRows& list, const ParameterKey
                      const Rows& tab_rows) {
     for (std::size_t i = 0; i < list.size(context.layer(), outer); ++i) {
         ImGui::PushID(static_cast<int>(i));
-        const bool removed = inner_element_head(list, i);
+        const bool removed = numbered_head(list.title, i);
         draw_rows_below(context, element / list.key / i, tab_rows, {});
         ImGui::PopID();
-        if (removed) remove_inner_element(context, list, outer, i);
+        if (removed)
+            edit_list(context, "Remove", list.element,
+                      [&](LayerParams& layer) { list.remove(layer, outer, i); });
     }
-    inner_add_line(context, list, outer);
+    if (add_line(fmt::format("Add {}", list.element).c_str()))
+        edit_list(context, "Add", list.element, [&](LayerParams& layer) { list.add(layer, outer); });
 }
 
 void draw_list(Context& context, const ListRows& list, const Rows& tab_rows) {
     for (std::size_t i = 0; i < list.size(context.layer()); ++i) {
         ImGui::PushID(static_cast<int>(i));
-        const bool removed = list_element_head(context, list, i);
+        const bool removed = list.size(context.layer()) > list.least && numbered_head(list.title, i);
         const ParameterKey element = list.key.moved("layer", context.layer_key()) / i;
         draw_rows_below(context, element, tab_rows, list.inner ? element / list.inner->key : ParameterKey());
         if (list.inner) draw_inner_list(context, *list.inner, element, i, tab_rows);
         ImGui::PopID();
-        if (removed) remove_element(context, list, i);
+        if (removed)
+            edit_list(context, "Remove", list.element, [&](LayerParams& layer) { list.remove(layer, i); });
     }
     list_add_line(context, list);
 }
 
 /// Those that belong after the row of a generic key, or with "" at the section's beginning.
 void draw_lists(Context& context, const TabSection& about, const ParameterKey& after, const Rows& tab_rows) {
-    for (const ListRows& list : list_rows())
+    for (const ListRows& list : lists)
         if (list.section == about.title && list.after == after &&
             (!list.is_shown || list.is_shown(context.layer())))
             draw_list(context, list, tab_rows);
@@ -290,7 +278,7 @@ void draw_section(Context& context, const TabSection& about, const Rows& tab_row
     if (about.is_there && !about.is_there(context)) return;
     Rows rows;
     for (const Parameter* row : tab_rows)
-        if (row->spec.section == about.title && !list_of(row->spec) && is_shown(context, row->spec))
+        if (row->spec.section == about.title && !is_in_list(row->spec) && is_shown(context, row->spec))
             rows.push_back(row);
     if (!rows.empty() || has_list(about.title) || about.last)
         draw_section(context, about, std::move(rows), tab_rows);

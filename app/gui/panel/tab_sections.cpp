@@ -39,9 +39,7 @@ void drag_line(Context& context, const Rect& area) {
     ImGui::InvisibleButton("before and after", area.size());
     const bool active = ImGui::IsItemActive();
     if (active || ImGui::IsItemHovered()) ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
-    if (active)
-        context.memory.preparation_line =
-            std::clamp((ImGui::GetIO().MousePos.x - area.x) / area.width, 0.0f, 1.0f);
+    if (active) context.memory.preparation_line = share_at_mouse(area);
 }
 
 void draw_both(Context& context, const PrepareStatus& status) {
@@ -125,8 +123,7 @@ std::string preparation_state(const Context& context) {
 
 std::string masks_state(const Context& context) {
     const TextureSettings& texture = context.layer().source.texture;
-    const std::size_t masks = texture.mask.size();
-    if (masks > 0) return fmt::format("{} mask{}", masks, masks == 1 ? "" : "s");
+    if (!texture.mask.empty()) return counted(std::ssize(texture.mask), "mask");
     const bool changed = texture.derive != Derived::none || texture.smooth > 0.0 || texture.detail > 0.0;
     return changed ? "changed" : "none";
 }
@@ -172,14 +169,10 @@ std::string size_state(const Context& context) {
     return short_number(widen(radius.min)) + " to " + short_number(widen(radius.max));
 }
 
-std::string noise_state(const Context& context) {
-    const std::vector<Noise>& noise = context.layer().look.noise;
-    return noise.empty() ? "off" : fmt::format("{}", noise.size());
-}
-
-std::string crop_state(const Context& context) {
-    const std::size_t count = context.layer().look.crop.size();
-    return count == 0 ? "off" : fmt::format("{}", count);
+template <auto list>
+std::string length_of(const Context& context) {
+    const std::size_t length = (context.layer().look.*list).size();
+    return length == 0 ? "off" : std::to_string(length);
 }
 
 /// Move, Rotate and Scale in one line: handles in the view that act on `target`.
@@ -207,9 +200,8 @@ void crop_buttons(Context& context) {
 
 std::string thickness_state(const Context& context) {
     const Thickness& thickness = context.layer().look.thickness;
-    const std::size_t count = thickness.stops.size();
-    return thickness.map.empty() && count == 0 ? "off"
-                                               : fmt::format("{} stop{}", count, count == 1 ? "" : "s");
+    return thickness.map.empty() && thickness.stops.empty() ? "off"
+                                                            : counted(std::ssize(thickness.stops), "stop");
 }
 
 std::string color_state(const Context& context) {
@@ -326,9 +318,9 @@ const TabSection sections[] = {
      {"layer.look.alpha.power", "layer.look.alpha.threshold", "layer.look.alpha.gain"}},
     {"Look", "Opacity with distance", nullptr, vertical_state},
     {"Look", "Size", unfolded, size_state},
-    {"Look", "Noise", nullptr, noise_state},
+    {"Look", "Noise", nullptr, length_of<&Look::noise>},
     {"Look", "Thickness map", nullptr, thickness_state},
-    {"Look", "Crop", nullptr, crop_state, {}, crop_buttons},
+    {"Look", "Crop", nullptr, length_of<&Look::crop>, {}, crop_buttons},
     {"Look", "Colour", nullptr, color_state},
     {"Look", "Whole look", nullptr, whole_look_state, {}, look_buttons},
     {"Mixing", "Dot profile", unfolded, value_of<falloff>},
@@ -379,14 +371,9 @@ bool suits_layer(const Context& context, const ParameterSpec& spec) {
 void source_state(Context& context) {
     const LayerStatus& status = context.layer_status();
     const float width = ImGui::GetContentRegionAvail().x, top = ImGui::GetCursorPosY();
-    if (status.loading) {
-        const std::string text =
-            status.found > 0 ? "Generating, " + splat_count(status.found) : std::string("Generating");
-        if (progress_line(width, std::max(status.progress, 0.001f), text, "Cancel"))
-            request(context, Command::Kind::cancel_load, context.view.layer);
-    } else if (status.stale) {
-        if (progress_line(width, 0.0f, "Source changed", "Regenerate"))
-            request(context, Command::Kind::regenerate, context.view.layer);
+    if (status.loading || status.stale) {
+        const std::string found = status.found > 0 ? ", " + splat_count(status.found) : "";
+        load_line(context, context.view.layer, width, "Generating" + found, "Source changed");
     } else {
         const SourceParams& source = context.layer().source;
         const bool live = source.kind == SourceKind::mesh && !prepares(source.texture.prepare);
@@ -407,7 +394,7 @@ void camera_buttons(Context& context) {
     if (clicked == 1) ImGui::OpenPopup("moves");
     if (begin_popup("moves")) {
         for (std::size_t i = 0; i < camera_move_names.size(); ++i)
-            if (ImGui::MenuItem(camera_move_names[i])) request(context, Command::Kind::add_move, i);
+            if (ImGui::MenuItem(camera_move_names[i])) begin_move(context, static_cast<CameraMove>(i));
         end_popup();
     }
     ImGui::Dummy({0.0f, px(4)});
