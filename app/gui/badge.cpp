@@ -30,8 +30,7 @@ bool word_button(GuiFrame& frame, const char* word, float x, float y) {
     note_item(frame, std::string("badge/") + word);
     const bool hovered = ImGui::IsItemHovered();
     if (hovered) ImGui::SetMouseCursor(ImGuiMouseCursor_Hand);
-    ImGui::GetWindowDrawList()->AddText({x, y + std::floor((px(height) - size.y) * 0.5f)},
-                                        hovered ? color::text : color::accent, word);
+    draw_text({x, y + std::floor((px(height) - size.y) * 0.5f)}, hovered ? color::text : color::accent, word);
     return clicked;
 }
 
@@ -142,14 +141,13 @@ float draw_badge(GuiFrame& frame, const Rect& area) {
     ImDrawList* list = ImGui::GetWindowDrawList();
     const float x = area.x + px(inset), y = area.y + area.height - px(inset) - px(height);
     const float width = left + text_width + beside_width + word_width + px(padding);
-    list->AddRectFilled({x, y}, {x + width, y + px(height)}, color::with_opacity(color::window, 0.86f),
-                        px(3));
+    fill_rect({x, y}, {x + width, y + px(height)}, color::with_opacity(color::window, 0.86f), px(3));
     list->AddCircleFilled({x + px(padding) + px(dot_radius), y + px(height) * 0.5f}, px(dot_radius),
                           badge.color, 16);
     const float text_y = y + std::floor((px(height) - ImGui::GetFontSize()) * 0.5f);
-    list->AddText({x + left, text_y}, color::text, badge.text.c_str());
+    draw_text({x + left, text_y}, color::text, badge.text);
     if (beside_width > 0)
-        list->AddText({x + left + text_width + px(gap) * 1.5f, text_y}, color::dim, badge.beside.c_str());
+        draw_text({x + left + text_width + px(gap) * 1.5f, text_y}, color::dim, badge.beside);
     if (word && word_button(frame, word, x + width - px(padding) - word_width + px(gap) * 2, y))
         press_button(frame);
     if (badge.text != whole && ImGui::IsMouseHoveringRect({x, y}, {x + width, y + px(height)}))
@@ -184,11 +182,9 @@ void draw_side_badge(GuiFrame& frame, const Rect& area, float left) {
     const float width = ImGui::CalcTextSize(text.c_str()).x + 2 * px(padding);
     if (width <= room + 2 * px(padding)) {
         const float y = area.y + area.height - px(inset) - px(height);
-        ImDrawList* list = ImGui::GetWindowDrawList();
-        list->AddRectFilled({x, y}, {x + width, y + px(height)}, color::with_opacity(color::window, 0.86f),
-                            px(3));
-        list->AddText({x + px(padding), y + std::floor((px(height) - ImGui::GetFontSize()) * 0.5f)},
-                      badge->color, text.c_str());
+        fill_rect({x, y}, {x + width, y + px(height)}, color::with_opacity(color::window, 0.86f), px(3));
+        draw_text({x + px(padding), y + std::floor((px(height) - ImGui::GetFontSize()) * 0.5f)}, badge->color,
+                  text);
         if (ImGui::IsMouseHoveringRect({x, y}, {x + width, y + px(height)}))
             ImGui::SetTooltip("%s\n%s", badge->text.c_str(), badge->tooltip);
     }

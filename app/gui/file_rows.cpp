@@ -33,7 +33,7 @@ bool draw_column(GuiFrame& frame, const FileColumn& column, const ImVec2& corner
     const float text_width = ImGui::CalcTextSize(column.label).x;
     const float text_x = corner.x + column.x + (column.at_right ? column.width - px(8) - text_width : 0.0f);
     ImDrawList* list = ImGui::GetWindowDrawList();
-    list->AddText({text_x, middle - std::floor(ImGui::GetFontSize() * 0.5f)}, text_color, column.label);
+    draw_text({text_x, middle - std::floor(ImGui::GetFontSize() * 0.5f)}, text_color, column.label);
     const float arrow_x = column.at_right ? text_x - px(12) : text_x + text_width + px(12);
     const Icon arrow = backwards ? Icon::chevron_up : Icon::chevron_down;
     if (chosen) draw_icon(list, arrow, {arrow_x, middle}, px(9), color::dim);
@@ -68,7 +68,7 @@ FileClick file_row(const char* id, const FileRow& row) {
     click.twice = ImGui::IsItemHovered() && ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left);
     ImDrawList* list = ImGui::GetWindowDrawList();
     const ImU32 back = row.chosen ? color::selection : ImGui::IsItemHovered() ? color::hover : color::none;
-    list->AddRectFilled(corner, {corner.x + room, corner.y + height}, back, px(3));
+    fill_rect(corner, {corner.x + room, corner.y + height}, back, px(3));
     const float middle = corner.y + height * 0.5f;
     if (row.picture)
         draw_picture({corner.x + px(6), middle - px(0.5f * thumbnail_height)}, row.thumbnail);
@@ -81,11 +81,11 @@ FileClick file_row(const char* id, const FileRow& row) {
     const float line = std::floor(ImGui::GetFontSize()), y = std::floor(middle - line * 0.5f);
     const std::string note = note_of(row);
     const float name_y = note.empty() ? y : y - std::floor(line * 0.6f);
-    list->AddText({text_x, name_y}, color::text, fitting(row.text, text_room).c_str());
-    list->AddText({text_x, name_y + std::floor(line * 1.2f)}, color::dim, note.c_str());
-    list->AddText({corner.x + room - beside, y}, color::dim, row.time.c_str());
+    draw_text({text_x, name_y}, color::text, fitting(row.text, text_room));
+    draw_text({text_x, name_y + std::floor(line * 1.2f)}, color::dim, note);
+    draw_text({corner.x + room - beside, y}, color::dim, row.time);
     const float size_x = corner.x + room - px(8) - ImGui::CalcTextSize(row.size.c_str()).x;
-    list->AddText({size_x, y}, color::dim, row.size.c_str());
+    draw_text({size_x, y}, color::dim, row.size);
     return click;
 }
 

@@ -253,7 +253,7 @@ void draw_splitter(GuiFrame& frame, const Edge& edge, float& size) {
         low.x = middle.x - px(1), high.x = middle.x;
     else
         low.y = middle.y - px(1), high.y = middle.y;
-    ImGui::GetWindowDrawList()->AddRectFilled(low, high, active ? color::accent : color::line);
+    fill_rect(low, high, active ? color::accent : color::line);
     ImGui::EndChild();
 }
 

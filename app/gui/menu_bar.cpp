@@ -98,8 +98,8 @@ void draw_title(const GuiFrame& frame, const Rect& area) {
     const std::string text = frame.document.edited() ? name + " - edited" : name;
     const ImVec2 size = ImGui::CalcTextSize(text.c_str());
     const float x = std::max(area.x + (area.width - size.x) * 0.5f, ImGui::GetCursorScreenPos().x + px(12));
-    ImGui::GetWindowDrawList()->AddText({std::floor(x), area.y + std::floor((area.height - size.y) * 0.5f)},
-                                        frame.document.edited() ? color::text : color::dim, text.c_str());
+    draw_text({std::floor(x), area.y + std::floor((area.height - size.y) * 0.5f)},
+              frame.document.edited() ? color::text : color::dim, text);
 }
 
 }  // namespace

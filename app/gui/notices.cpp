@@ -107,8 +107,7 @@ std::string machine_text(const Status& status) {
 float right_text(const std::string& text, float right, const Rect& area, ImU32 c) {
     const ImVec2 size = ImGui::CalcTextSize(text.c_str());
     const float x = std::floor(right - size.x);
-    ImGui::GetWindowDrawList()->AddText({x, area.y + std::floor((area.height - size.y) * 0.5f)}, c,
-                                        text.c_str());
+    draw_text({x, area.y + std::floor((area.height - size.y) * 0.5f)}, c, text);
     return x;
 }
 
@@ -151,11 +150,10 @@ float draw_probe(const Status& status, float right, const Rect& area) {
     const std::vector<ProbeCell> cells = probe_cells(*status.probe);
     const float x = std::floor(right - px(std::end(probe_columns)[-1]));
     const float y = area.y + std::floor((area.height - ImGui::GetFontSize()) * 0.5f);
-    ImDrawList* list = ImGui::GetWindowDrawList();
     for (std::size_t i = 0; i < cells.size(); ++i) {
         const float at = x + px(probe_columns[i]);
-        list->AddText({at, y}, color::dim, cells[i].label);
-        list->AddText({at + px(13), y}, color::text, cells[i].number.c_str());
+        draw_text({at, y}, color::dim, cells[i].label);
+        draw_text({at + px(13), y}, color::text, cells[i].number);
     }
     return x - px(part_gap);
 }

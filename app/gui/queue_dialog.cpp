@@ -48,13 +48,11 @@ ImU32 state_color(JobState state) {
 }
 
 void draw_card_text(const QueuedJob& job, ImVec2 corner, float width) {
-    ImDrawList* const list = ImGui::GetWindowDrawList();
     const float x = corner.x + px(card_gap), room = width - 2 * px(card_gap);
-    list->AddText({x, corner.y + px(6)}, color::text, fitting(job.title, room).c_str());
+    draw_text({x, corner.y + px(6)}, color::text, fitting(job.title, room));
     ImGui::PushFont(small_font());
-    list->AddText({x, corner.y + px(28)}, color::dim, fitting(job.target.string(), room).c_str());
-    list->AddText({x, corner.y + px(46)}, state_color(job.state),
-                  fitting(state_text(job), room - px(64)).c_str());
+    draw_text({x, corner.y + px(28)}, color::dim, fitting(job.target.string(), room));
+    draw_text({x, corner.y + px(46)}, state_color(job.state), fitting(state_text(job), room - px(64)));
     ImGui::PopFont();
     if (job.state != JobState::running && job.state != JobState::submitted) return;
     progress_bar({x, corner.y + px(job_height) - px(8)}, room, job.progress);
@@ -82,8 +80,8 @@ void draw_job_card(GuiFrame& frame, const QueuedJob& job, bool chosen) {
     ImGui::SetItemAllowOverlap();
     note_item(frame, fmt::format("queue/job {}", job.number));
     const ImVec2 below = ImGui::GetCursorScreenPos();
-    ImGui::GetWindowDrawList()->AddRectFilled(corner, {corner.x + width, corner.y + px(job_height)},
-                                              chosen ? color::selection : color::field, px(4));
+    fill_rect(corner, {corner.x + width, corner.y + px(job_height)}, chosen ? color::selection : color::field,
+              px(4));
     draw_card_text(job, corner, width);
     card_button(frame, job, corner, width);
     ImGui::SetCursorScreenPos(below);

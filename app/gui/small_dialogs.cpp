@@ -120,10 +120,9 @@ void draw_group(const Group& group) {
     const float room = ImGui::GetContentRegionAvail().x;
     for (const SheetRow& row : group.rows) {
         const ImVec2 at = ImGui::GetCursorScreenPos();
-        ImDrawList* list = ImGui::GetWindowDrawList();
         const float shortcut_width = ImGui::CalcTextSize(row.shortcut.c_str()).x;
-        list->AddText(at, color::dim, fitting(row.does, room - shortcut_width - px(12)).c_str());
-        list->AddText({at.x + room - shortcut_width, at.y}, color::text, row.shortcut.c_str());
+        draw_text(at, color::dim, fitting(row.does, room - shortcut_width - px(12)));
+        draw_text({at.x + room - shortcut_width, at.y}, color::text, row.shortcut);
         ImGui::Dummy({room, px(sheet_row)});
     }
     ImGui::Dummy({0, px(8)});

@@ -76,9 +76,9 @@ void draw_card(GuiFrame& frame, std::size_t index) {
     const bool is_renamed = frame.view.renamed_snapshot == static_cast<int>(index);
     const std::string name = (is_b ? "B  " : "") + snapshot.name;
     if (!is_renamed)
-        list->AddText({corner.x, end.y + px(3)}, is_b ? color::accent : color::text,
-                      fitting(name, px(thumbnail_width)).c_str());
-    list->AddText({corner.x, end.y + px(18)}, color::dim, snapshot_line(snapshot).c_str());
+        draw_text({corner.x, end.y + px(3)}, is_b ? color::accent : color::text,
+                  fitting(name, px(thumbnail_width)));
+    draw_text({corner.x, end.y + px(18)}, color::dim, snapshot_line(snapshot));
     ImGui::PopFont();
     card_menu(frame, index);
     if (is_renamed) name_entry(frame, index, {corner.x, end.y + px(2)});

@@ -93,12 +93,10 @@ bool word_toggle(GuiFrame& frame, const char* word, bool on, const char* says) {
     const ImVec2 at = ImGui::GetCursorScreenPos();
     const bool clicked = ImGui::InvisibleButton(word, {width, px(header_control)});
     note_item(frame, std::string("playing/") + word);
-    ImDrawList* const list = ImGui::GetWindowDrawList();
     if (on || ImGui::IsItemHovered())
-        list->AddRectFilled(at, {at.x + width, at.y + px(header_control)},
-                            on ? color::selection : color::hover, px(3));
-    list->AddText({at.x + px(6), at.y + std::floor(0.5f * (px(header_control) - ImGui::GetFontSize()))},
-                  on ? color::text : color::dim, word);
+        fill_rect(at, {at.x + width, at.y + px(header_control)}, on ? color::selection : color::hover, px(3));
+    draw_text({at.x + px(6), at.y + std::floor(0.5f * (px(header_control) - ImGui::GetFontSize()))},
+              on ? color::text : color::dim, word);
     tooltip(says);
     return clicked;
 }
@@ -220,13 +218,12 @@ void drag_on_ruler(const TimelineState& t, ViewState& view) {
 void draw_in_and_out(const TimelineState& t, GuiFrame& frame, const Rect& area) {
     const ViewState& view = frame.view;
     if (!view.play_first && !view.play_last) return;
-    ImDrawList* const list = ImGui::GetWindowDrawList();
     const float bottom = area.y + area.height;
     const float first = t.scale.x_of(first_played(t, view)), last = t.scale.x_of(last_played(t, view));
-    list->AddRectFilled({first, bottom - px(3)}, {last, bottom}, color::with_opacity(color::good, 0.8f));
+    fill_rect({first, bottom - px(3)}, {last, bottom}, color::with_opacity(color::good, 0.8f));
     const auto tab = [&](const char* name, float x, float side) {
-        list->AddRectFilled({std::min(x, x + side), area.y + px(3)}, {std::max(x, x + side), bottom},
-                            color::good, px(2));
+        fill_rect({std::min(x, x + side), area.y + px(3)}, {std::max(x, x + side), bottom}, color::good,
+                  px(2));
         note_item(frame, name, {x + 0.5f * side, area.y + 0.5f * area.height});
     };
     if (view.play_first) tab("in point", first, -px(2 * point_half));
@@ -245,20 +242,19 @@ void draw_ruler(TimelineState& t, GuiFrame& frame, const Rect& area) {
     if (ImGui::IsItemHovered() && ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left)) t.zoomed = false;
     zoom_with_wheel(t, {t.scale.x0, area.y, t.scale.x1 - t.scale.x0, area.height});
 
-    ImDrawList* list = ImGui::GetWindowDrawList();
-    list->AddRectFilled({area.x, area.y}, {area.x + area.width, area.y + area.height}, color::window);
+    fill_rect(area, color::window);
     ImGui::PushFont(small_font());
     const double step = ruler_step(t.scale, px(56)), small = ruler_step(t.scale, px(8));
     for (double f = std::ceil(t.scale.first / small) * small; f <= t.scale.last; f += small) {
         const float x = std::floor(t.scale.x_of(f)) + 0.5f;
-        list->AddLine({x, area.y + area.height - px(4)}, {x, area.y + area.height}, color::hover);
+        draw_line({x, area.y + area.height - px(4)}, {x, area.y + area.height}, color::hover);
     }
     for (double f = std::ceil(t.scale.first / step) * step; f <= t.scale.last; f += step) {
         const float x = std::floor(t.scale.x_of(f)) + 0.5f;
         const std::string text = fmt::format("{:.0f}", f);
-        list->AddLine({x, area.y + area.height - px(7)}, {x, area.y + area.height}, color::dim);
-        list->AddText({x - std::floor(ImGui::CalcTextSize(text.c_str()).x * 0.5f), area.y + px(1)},
-                      color::dim, text.c_str());
+        draw_line({x, area.y + area.height - px(7)}, {x, area.y + area.height}, color::dim);
+        draw_text({x - std::floor(ImGui::CalcTextSize(text.c_str()).x * 0.5f), area.y + px(1)}, color::dim,
+                  text);
     }
     ImGui::PopFont();
     draw_in_and_out(t, frame, area);
@@ -267,15 +263,12 @@ void draw_ruler(TimelineState& t, GuiFrame& frame, const Rect& area) {
 void draw_playhead(const TimelineState& t, const GuiFrame& frame, const Rect& ruler) {
     const float x = std::floor(t.scale.x_of(frame.view.frame)) + 0.5f;
     if (x < t.scale.x0 - px(timeline_margin) || x > t.scale.x1 + px(timeline_margin)) return;
-    ImDrawList* list = ImGui::GetWindowDrawList();
     ImGui::PushFont(small_font());
     const std::string text = fmt::format("{:g}", std::round(frame.view.frame * 100.0) / 100.0);
     const ImVec2 size = ImGui::CalcTextSize(text.c_str());
     const float half = std::floor(size.x * 0.5f + px(6));
-    list->AddRectFilled({x - half, ruler.y + px(1)}, {x + half, ruler.y + ruler.height - px(2)},
-                        color::accent, px(3));
-    list->AddText({std::floor(x - size.x * 0.5f), ruler.y + px(2)}, IM_COL32(0x10, 0x14, 0x1A, 255),
-                  text.c_str());
+    fill_rect({x - half, ruler.y + px(1)}, {x + half, ruler.y + ruler.height - px(2)}, color::accent, px(3));
+    draw_text({std::floor(x - size.x * 0.5f), ruler.y + px(2)}, IM_COL32(0x10, 0x14, 0x1A, 255), text);
     ImGui::PopFont();
 }
 

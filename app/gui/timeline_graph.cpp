@@ -131,7 +131,6 @@ bool is_near(ImVec2 at) {
 /// Of the selected keyframes, where they have a Bezier segment.
 void draw_handles(TimelineState& t, GuiFrame& frame, const Track& track, const Rect& area) {
     const bool hovered = ImGui::IsItemHovered();
-    ImDrawList* const list = ImGui::GetWindowDrawList();
     const std::vector<TrackHandles> handles = handles_of(track, t.specs.at(track.key));
     for (std::size_t i = 0; i < handles.size(); ++i) {
         const auto& keyframe = track.keyframes[i];
@@ -145,9 +144,9 @@ void draw_handles(TimelineState& t, GuiFrame& frame, const Track& track, const R
                 const ImVec2 at{t.scale.x_of(keyframe.frame + h.frames),
                                 y_of(t, keyframe.value[c] + h.value[c], area)};
                 const bool near = hovered && is_near(at);
-                list->AddLine(from, at, color::with_opacity(color::text, 0.55f), px(1));
-                list->AddRectFilled({at.x - px(3), at.y - px(3)}, {at.x + px(3), at.y + px(3)},
-                                    near ? color::attention : color::text);
+                draw_line(from, at, color::with_opacity(color::text, 0.55f), px(1));
+                fill_rect({at.x - px(3), at.y - px(3)}, {at.x + px(3), at.y + px(3)},
+                          near ? color::attention : color::text);
                 note_item(frame,
                           fmt::format("handle {} {:g} {} {}", track.key, keyframe.frame, c,
                                       side == HandleSide::in ? "in" : "out"),
@@ -238,14 +237,14 @@ void draw_graph(TimelineState& t, GuiFrame& frame, const Rect& area) {
     sample_graph(t, track, spec->second, frame.view, frame.document.revision());
     ImDrawList* list = ImGui::GetWindowDrawList();
     const ImVec2 low{area.x, area.y}, high{area.x + area.width, area.y + area.height};
-    list->AddRectFilled(low, high, color::window);
+    fill_rect(low, high, color::window);
     ImGui::PushFont(small_font());
     for (const double value : {t.graph.low, 0.5 * (t.graph.low + t.graph.high), t.graph.high}) {
         const float y = std::floor(y_of(t, value, area)) + 0.5f;
         const std::string text = axis_text(value, t.graph.high - t.graph.low);
         const ImVec2 size = ImGui::CalcTextSize(text.c_str());
-        list->AddLine({area.x, y}, {high.x, y}, color::with_opacity(color::field, 0.8f));
-        list->AddText({area.x - px(8) - size.x, std::floor(y - size.y * 0.5f)}, color::dim, text.c_str());
+        draw_line({area.x, y}, {high.x, y}, color::with_opacity(color::field, 0.8f));
+        draw_text({area.x - px(8) - size.x, std::floor(y - size.y * 0.5f)}, color::dim, text);
     }
     ImGui::PopFont();
     ImGui::SetCursorScreenPos(low);
@@ -333,11 +332,10 @@ void draw_channels(GuiFrame& frame, const Track& track, const ParameterSpec& spe
         const ImVec2 at{std::floor(left + 0.5f * (px(letter_width) - size.x)),
                         y + std::floor(0.5f * (height - size.y))};
         const ImU32 shade = channel_color(c, count);
-        ImDrawList* const list = ImGui::GetWindowDrawList();
-        list->AddText(at, hidden ? color::with_opacity(shade, 0.35f) : shade, name.c_str());
+        draw_text(at, hidden ? color::with_opacity(shade, 0.35f) : shade, name);
         if (hidden)
-            list->AddLine({at.x - px(2), at.y + 0.5f * size.y}, {at.x + size.x + px(2), at.y + 0.5f * size.y},
-                          color::dim);
+            draw_line({at.x - px(2), at.y + 0.5f * size.y}, {at.x + size.x + px(2), at.y + 0.5f * size.y},
+                      color::dim);
     }
 }
 

@@ -128,7 +128,8 @@ void draw_keyframe_menu(TimelineState& t, GuiFrame& frame) {
 constexpr float track_height = 26, keyframe_reach = 7, track_name_width = 160, value_gutter = 56;
 
 // Diamond: linear; disc: smooth; square: step; hourglass: Bezier.
-void draw_keyframe_mark(ImDrawList* list, ImVec2 at, Interpolation interpolation, bool selected) {
+void draw_keyframe_mark(ImVec2 at, Interpolation interpolation, bool selected) {
+    ImDrawList* const list = ImGui::GetWindowDrawList();
     const float half = px(5);
     const auto mark = [&](float size, ImU32 c) {
         if (interpolation == Interpolation::smooth)
@@ -138,8 +139,7 @@ void draw_keyframe_mark(ImDrawList* list, ImVec2 at, Interpolation interpolation
                 list->AddTriangleFilled({at.x - side * 0.2f, at.y}, {at.x + side * size, at.y - size},
                                         {at.x + side * size, at.y + size}, c);
         else if (interpolation == Interpolation::step)
-            list->AddRectFilled({at.x - size * 0.8f, at.y - size * 0.8f},
-                                {at.x + size * 0.8f, at.y + size * 0.8f}, c);
+            fill_rect({at.x - size * 0.8f, at.y - size * 0.8f}, {at.x + size * 0.8f, at.y + size * 0.8f}, c);
         else
             list->AddQuadFilled({at.x, at.y - size * 1.1f}, {at.x + size * 1.1f, at.y},
                                 {at.x, at.y + size * 1.1f}, {at.x - size * 1.1f, at.y}, c);
@@ -221,7 +221,7 @@ void select_in_box(TimelineState& t, const Scene& scene, float rows_y) {
         }
     }
     ImDrawList* list = ImGui::GetWindowDrawList();
-    list->AddRectFilled(low, high, color::with_opacity(color::accent, 0.12f));
+    fill_rect(low, high, color::with_opacity(color::accent, 0.12f));
     list->AddRect(low, high, color::with_opacity(color::accent, 0.6f));
 }
 
@@ -231,20 +231,19 @@ void draw_name(TimelineState& t, GuiFrame& frame, const Track& track, float x, f
     if (ImGui::InvisibleButton("name", {width, px(track_height)})) frame.view.graph_parameter = track.key;
     ImGui::SetItemAllowOverlap();
     note_item(frame, "track " + track.key.text());
-    ImDrawList* list = ImGui::GetWindowDrawList();
     const ImVec2 low{x, y}, high{x + width, y + px(track_height)};
     const bool chosen = frame.view.graph_parameter == track.key;
     if (chosen)
-        list->AddRectFilled(low, high, color::selection);
+        fill_rect(low, high, color::selection);
     else if (ImGui::IsItemHovered())
-        list->AddRectFilled(low, high, color::hover);
+        fill_rect(low, high, color::hover);
     const auto spec = t.specs.find(track.key);
     const std::string whole = spec == t.specs.end() ? track.key.text() : track_label(track.key, spec->second);
     const bool has_channels = chosen && frame.view.graph_open && track.keyframes[0].value.size() > 1;
     const float room = has_channels ? channels_width(track) : 0.0f;
     const std::string text = fitting(whole, width - px(20) - room);
     const float text_y = y + std::floor((px(track_height) - ImGui::GetFontSize()) * 0.5f);
-    list->AddText({x + px(12), text_y}, chosen ? color::text : color::dim, text.c_str());
+    draw_text({x + px(12), text_y}, chosen ? color::text : color::dim, text);
     tooltip((whole + "\n" + track.key.text()).c_str());
     if (has_channels && spec != t.specs.end())
         draw_channels(frame, track, spec->second, x + width - room, y, px(track_height));
@@ -252,15 +251,14 @@ void draw_name(TimelineState& t, GuiFrame& frame, const Track& track, float x, f
 }
 
 void draw_keyframes(TimelineState& t, GuiFrame& frame, const Track& track, float y) {
-    ImDrawList* list = ImGui::GetWindowDrawList();
     const float middle = std::floor(y + px(track_height) * 0.5f) + 0.5f;
     if (track.keyframes.size() > 1)
-        list->AddLine({t.scale.x_of(track.keyframes.front().frame), middle},
-                      {t.scale.x_of(track.keyframes.back().frame), middle},
-                      color::with_opacity(color::attention, 0.35f), px(2));
+        draw_line({t.scale.x_of(track.keyframes.front().frame), middle},
+                  {t.scale.x_of(track.keyframes.back().frame), middle},
+                  color::with_opacity(color::attention, 0.35f), px(2));
     for (const auto& keyframe : track.keyframes) {
         const ImVec2 at{t.scale.x_of(keyframe.frame), middle};
-        draw_keyframe_mark(list, at, keyframe.interpolation, is_selected(t, {track.key, keyframe.frame}));
+        draw_keyframe_mark(at, keyframe.interpolation, is_selected(t, {track.key, keyframe.frame}));
         note_item(frame, fmt::format("keyframe {} {:g}", track.key, keyframe.frame), {at.x, at.y});
     }
 }
@@ -303,7 +301,7 @@ void handle_rows_mouse(TimelineState& t, GuiFrame& frame, const Rect& area) {
 void draw_playhead_line(const TimelineState& t, const GuiFrame& frame, const Rect& area) {
     const float x = std::floor(t.scale.x_of(frame.view.frame)) + 0.5f;
     if (x >= t.scale.x0 - px(timeline_margin) && x <= t.scale.x1 + px(timeline_margin))
-        ImGui::GetWindowDrawList()->AddLine({x, area.y}, {x, area.y + area.height}, color::accent);
+        draw_line({x, area.y}, {x, area.y + area.height}, color::accent);
 }
 
 }  // namespace
@@ -319,7 +317,6 @@ void draw_rows(TimelineState& t, GuiFrame& frame, const Rect& area) {
     const ImVec2 origin = ImGui::GetCursorScreenPos();  // moves while scrolled
     const std::vector<Track> tracks = frame.document.scene().animation;
     const float height = static_cast<float>(tracks.size()) * px(track_height);
-    ImDrawList* list = ImGui::GetWindowDrawList();
     if (tracks.empty()) {
         ImGui::SetCursorScreenPos({origin.x + px(12), origin.y + px(4)});
         const std::string file = frame.document.scene().camera.file.filename().string();
@@ -339,9 +336,9 @@ void draw_rows(TimelineState& t, GuiFrame& frame, const Rect& area) {
     for (const Track& track : tracks) {
         draw_name(t, frame, track, origin.x, y, px(track_name_width));
         if (!frame.view.graph_open) {
-            list->AddLine({origin.x, y + px(track_height) - 0.5f},
-                          {origin.x + area.width, y + px(track_height) - 0.5f},
-                          color::with_opacity(color::line, 0.6f));
+            draw_line({origin.x, y + px(track_height) - 0.5f},
+                      {origin.x + area.width, y + px(track_height) - 0.5f},
+                      color::with_opacity(color::line, 0.6f));
             ImGui::PushClipRect({origin.x + names, area.y}, {area.x + area.width, area.y + area.height},
                                 true);
             draw_keyframes(t, frame, track, y);

@@ -10,6 +10,7 @@
 #include "gui/key_codes.h"
 #include "gui/theme.h"
 #include "gui/viewport_overlay.h"
+#include "gui/widgets.h"
 
 namespace astrosplat {
 namespace {
@@ -28,7 +29,7 @@ bool near_wipe(const GuiFrame& frame, const Rect& frame_area) {
 void draw_frame_in_view(const GuiFrame& frame, const Rect& area) {
     ImDrawList* list = ImGui::GetWindowDrawList();
     if (!frame.status.viewport_texture) {
-        list->AddRectFilled({area.x, area.y}, {area.x + area.width, area.y + area.height}, IM_COL32_BLACK);
+        fill_rect(area, IM_COL32_BLACK);
         return;
     }
     // The texture's first row is the lowest.

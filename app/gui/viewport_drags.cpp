@@ -82,7 +82,7 @@ void draw_placing(const GuiFrame& frame, const FrameOnScreen& frame_px) {
     list->PathStroke(color::attention, ImDrawFlags_Closed, px(1.5f));
     for (const glm::dvec2& c : corners) {
         const auto x = static_cast<float>(c.x), y = static_cast<float>(c.y), half = px(corner_half);
-        list->AddRectFilled({x - half, y - half}, {x + half, y + half}, color::attention);
+        fill_rect({x - half, y - half}, {x + half, y + half}, color::attention);
     }
 }
 
@@ -115,7 +115,7 @@ void draw_handle(const Camera& camera, const Rect& area, const std::vector<glm::
             list->PathStroke(own, ImDrawFlags_None, width);
         }
     const float half = px(4);
-    if (square) list->AddRectFilled({end.x - half, end.y - half}, {end.x + half, end.y + half}, ink);
+    if (square) fill_rect({end.x - half, end.y - half}, {end.x + half, end.y + half}, ink);
 }
 
 void draw_crop(const GuiFrame& frame, const Rect& area, const Scene& now) {
@@ -295,15 +295,15 @@ void PathPoints::draw(GuiFrame& frame, const Rect& area) const {
                                                                       : "out";
         note_item(frame, fmt::format("path {} {:g}", side, place.grip.frame), place.px);
         if (place.grip.side) {
-            list->AddLine({place.from.x, place.from.y}, at, color::with_opacity(color::text, 0.6f), px(1));
+            draw_line({place.from.x, place.from.y}, at, color::with_opacity(color::text, 0.6f), px(1));
             list->AddCircleFilled(at, px(lit ? 5 : 3.5f), color::text, 16);
             continue;
         }
         const bool now = place.grip.frame == frame.view.frame;
         const float half = px(lit ? 6 : 4.5f), edge = half + px(1);
-        list->AddRectFilled({at.x - edge, at.y - edge}, {at.x + edge, at.y + edge}, color::line);
-        list->AddRectFilled({at.x - half, at.y - half}, {at.x + half, at.y + half},
-                            now || lit ? color::text : color::attention);
+        fill_rect({at.x - edge, at.y - edge}, {at.x + edge, at.y + edge}, color::line);
+        fill_rect({at.x - half, at.y - half}, {at.x + half, at.y + half},
+                  now || lit ? color::text : color::attention);
     }
     if (under && !ImGui::IsAnyItemActive() && !under->grip.side)
         tooltip(fmt::format("Frame {:g}. Drag moves it in the plane of the view, Shift along its axis",

@@ -13,6 +13,7 @@
 #include "edit/view_camera.h"
 #include "gui/icons.h"
 #include "gui/theme.h"
+#include "gui/widgets.h"
 #include "scene/animate.h"
 
 namespace astrosplat {
@@ -40,17 +41,16 @@ Rect gate_of(const Scene& scene, const Rect& frame_area) {
 }
 
 // Dims the frame at the left and right of the gate.
-void dim_outside(ImDrawList* list, const Rect& area, const Rect& gate) {
+void dim_outside(const Rect& area, const Rect& gate) {
     const ImU32 shade = color::with_opacity(IM_COL32_BLACK, 0.55f);
-    if (gate.x > area.x) list->AddRectFilled(lo(area), {gate.x, area.y + area.height}, shade);
-    if (gate.x + gate.width < area.x + area.width)
-        list->AddRectFilled({gate.x + gate.width, area.y}, hi(area), shade);
+    if (gate.x > area.x) fill_rect(lo(area), {gate.x, area.y + area.height}, shade);
+    if (gate.x + gate.width < area.x + area.width) fill_rect({gate.x + gate.width, area.y}, hi(area), shade);
 }
 
 // Text that can be read over black and over white.
-void shadowed(ImDrawList* list, ImVec2 at, ImU32 c, const std::string& text) {
-    list->AddText({at.x + 1, at.y + 1}, color::with_opacity(IM_COL32_BLACK, 0.8f), text.c_str());
-    list->AddText(at, c, text.c_str());
+void shadowed(ImVec2 at, ImU32 c, const std::string& text) {
+    draw_text({at.x + 1, at.y + 1}, color::with_opacity(IM_COL32_BLACK, 0.8f), text);
+    draw_text(at, c, text);
 }
 
 std::string name_of_other(const GuiFrame& frame) {
@@ -89,7 +89,7 @@ void draw_gate(const GuiFrame& frame, const Rect& area, const Rect& frame_area) 
     const Rect gate = gate_of(frame.document.scene(), frame_area);
     const ImU32 grey = color::with_opacity(color::dim, 0.7f);
     if (view.gate) {
-        dim_outside(list, area, gate);
+        dim_outside(area, gate);
         list->AddRect(lo(gate), hi(gate), grey);
     }
     const CameraParams camera = scene_at(frame.document.scene(), view.frame).camera;
@@ -121,17 +121,15 @@ void draw_overlay_lines(const GuiFrame& frame, const Rect& area) {
 
 void draw_wipe(const GuiFrame& frame, const Rect& area, const Rect& frame_area) {
     if (frame.view.compare != CompareMode::wipe) return;
-    ImDrawList* list = ImGui::GetWindowDrawList();
     const float x = std::round(frame_area.x + frame_area.width * frame.view.wipe) + 0.5f;
-    list->AddLine({x, area.y}, {x, area.y + area.height}, color::with_opacity(color::text, 0.8f));
+    draw_line({x, area.y}, {x, area.y + area.height}, color::with_opacity(color::text, 0.8f));
     const ImVec2 grip{x, area.y + area.height * 0.5f};
-    list->AddRectFilled({grip.x - px(3), grip.y - px(18)}, {grip.x + px(3), grip.y + px(18)}, color::text,
-                        px(3));
+    fill_rect({grip.x - px(3), grip.y - px(18)}, {grip.x + px(3), grip.y + px(18)}, color::text, px(3));
     ImGui::PushFont(small_font());
     const std::string b = name_of_other(frame);
     const float y = area.y + px(inset);
-    shadowed(list, {x - px(inset) - ImGui::CalcTextSize("A").x, y}, color::text, "A");
-    shadowed(list, {x + px(inset), y}, color::text, b);
+    shadowed({x - px(inset) - ImGui::CalcTextSize("A").x, y}, color::text, "A");
+    shadowed({x + px(inset), y}, color::text, b);
     ImGui::PopFont();
 }
 
@@ -158,7 +156,7 @@ void draw_view_line(const GuiFrame& frame, const Rect& area, const Rect& frame_a
     const bool gated = frame.view.view == ViewKind::camera && frame.view.gate && !difference;
     const Rect gate = gated ? gate_of(frame.document.scene(), frame_area) : area;
     const float left = std::max(area.x, gate.x), top = std::max(area.y, gate.y);
-    shadowed(ImGui::GetWindowDrawList(), {left + px(inset), top + px(inset)}, color::dim, text);
+    shadowed({left + px(inset), top + px(inset)}, color::dim, text);
     ImGui::PopFont();
 }
 
@@ -211,8 +209,7 @@ void draw_axes(const GuiFrame& frame, const Rect& area) {
     for (std::size_t i = 0; i < 3; ++i) {
         draw_deep_line(frame, area, axes[i].from, axes[i].to, color::axes[i], axis_width);
         if (const auto end = project_point(*frame.status.viewport_camera, axes[i].to))
-            ImGui::GetWindowDrawList()->AddText({area.x + end->x + px(4), area.y + end->y - px(8)},
-                                                color::axes[i], names[i]);
+            draw_text({area.x + end->x + px(4), area.y + end->y - px(8)}, color::axes[i], names[i]);
     }
 }
 
@@ -229,8 +226,8 @@ void draw_deep_line(const GuiFrame& frame, const Rect& area, const glm::dvec3& f
         const ImU32 faded =
             color::with_opacity(ink, own * opacity_at(range, view_depth(camera, (at(i) + at(i + 1)) * 0.5)));
         for (const auto& part : project_line(camera, {at(i), at(i + 1)}))
-            ImGui::GetWindowDrawList()->AddLine({area.x + part[0].x, area.y + part[0].y},
-                                                {area.x + part[1].x, area.y + part[1].y}, faded, px(width));
+            draw_line({area.x + part[0].x, area.y + part[0].y}, {area.x + part[1].x, area.y + part[1].y},
+                      faded, px(width));
     }
 }
 

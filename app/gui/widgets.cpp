@@ -99,6 +99,19 @@ void close_on_escape() {
     if (key_pressed(key_code::escape)) ImGui::CloseCurrentPopup();
 }
 
+void fill_rect(ImVec2 low, ImVec2 high, ImU32 ink, float radius) {
+    ImGui::GetWindowDrawList()->AddRectFilled(low, high, ink, radius);
+}
+void fill_rect(const Rect& area, ImU32 ink, float radius) {
+    fill_rect(area.corner(), area.end(), ink, radius);
+}
+void draw_line(ImVec2 from, ImVec2 to, ImU32 ink, float width) {
+    ImGui::GetWindowDrawList()->AddLine(from, to, ink, width);
+}
+void draw_text(ImVec2 at, ImU32 ink, const std::string& text) {
+    ImGui::GetWindowDrawList()->AddText(at, ink, text.c_str());
+}
+
 void row_text(const std::string& text, float row_height, ImU32 text_color) {
     const ImVec2 at = ImGui::GetCursorScreenPos();
     const ImVec2 size = ImGui::CalcTextSize(text.c_str());

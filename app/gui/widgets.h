@@ -34,6 +34,12 @@ bool drag_field(const char* id, float& value, float speed, float lo, float hi, c
 /// forbid).
 void close_on_escape();
 
+// Drawn into the current window, px.
+void fill_rect(ImVec2 low, ImVec2 high, ImU32 ink, float radius = 0.0f);
+void fill_rect(const Rect& area, ImU32 ink, float radius = 0.0f);
+void draw_line(ImVec2 from, ImVec2 to, ImU32 ink, float width = 1.0f);
+void draw_text(ImVec2 at, ImU32 ink, const std::string& text);
+
 /// Text in the vertical middle of a row of this height, at the cursor.
 void row_text(const std::string& text, float row_height, ImU32 text_color);
 

@@ -56,7 +56,7 @@ float padding_of(const Rect& area) { return area.width < px(80) ? px(5) : px(8);
 void draw_box(const Rect& area, const BoxContent& content, bool hovered, bool active) {
     ImDrawList* list = ImGui::GetWindowDrawList();
     const float radius = px(3);
-    list->AddRectFilled(area.corner(), area.end(), hovered || active ? color::hover : color::field, radius);
+    fill_rect(area, hovered || active ? color::hover : color::field, radius);
     if (content.fill > 0.0f) {
         const float width = std::max(area.width * std::min(content.fill, 1.0f), radius);
         list->AddRectFilled(
@@ -66,9 +66,9 @@ void draw_box(const Rect& area, const BoxContent& content, bool hovered, bool ac
     if (active) list->AddRect(area.corner(), area.end(), color::accent, radius);
     const float padding = padding_of(area);
     const float needed = ImGui::CalcTextSize(content.shown.c_str()).x + 2.0f * padding;
-    const float unit = unit_text(list, area, content.unit, needed);
+    const float unit = unit_text(area, content.unit, needed);
     const Rect rest{area.corner(), {area.width - unit, area.height}};
-    clipped_text(list, rest, padding, content.dimmed ? color::dim : color::text, content.shown);
+    clipped_text(rest, padding, content.dimmed ? color::dim : color::text, content.shown);
 }
 
 BoxEvent drag_value(Context& context, const BoxContent& content) {
@@ -96,15 +96,14 @@ BoxEvent drag_value(Context& context, const BoxContent& content) {
 constexpr float head_height = 28.0f;
 
 void head_text(const Rect& area, float left, const char* title, const std::string& state) {
-    ImDrawList* list = ImGui::GetWindowDrawList();
     ImGui::PushFont(medium_font());
-    const float used = clipped_text(list, area, left, color::text, title) + left + px(8);
+    const float used = clipped_text(area, left, color::text, title) + left + px(8);
     ImGui::PopFont();
     if (state.empty()) return;
     ImGui::PushFont(small_font());
     const float width = std::min(ImGui::CalcTextSize(state.c_str()).x + px(8), area.width - used);
     const Rect rest{{area.end().x - width, area.y}, {width, area.height}};
-    clipped_text(list, rest, px(4), color::dim, state);
+    clipped_text(rest, px(4), color::dim, state);
     ImGui::PopFont();
 }
 
@@ -112,7 +111,7 @@ void head_text(const Rect& area, float left, const char* title, const std::strin
 void edge_line(float y) {
     const ImVec2 corner = ImGui::GetWindowPos(), size = ImGui::GetWindowSize();
     ImGui::PushClipRect(corner, {corner.x + size.x, corner.y + size.y}, false);
-    ImGui::GetWindowDrawList()->AddLine({corner.x, y}, {corner.x + size.x, y}, color::line);
+    draw_line({corner.x, y}, {corner.x + size.x, y}, color::line);
     ImGui::PopClipRect();
 }
 
@@ -154,26 +153,26 @@ float share_at_mouse(const Rect& area) {
     return std::clamp((ImGui::GetIO().MousePos.x - area.x) / area.width, 0.0f, 1.0f);
 }
 
-float clipped_text(ImDrawList* list, const Rect& area, float padding, ImU32 color, const std::string& text) {
+float clipped_text(const Rect& area, float padding, ImU32 color, const std::string& text) {
     const float y = area.y + (area.height - ImGui::GetFontSize()) * 0.5f;
     const ImVec2 from{area.x + padding, y};
     const float right = area.end().x - std::min(padding, px(4));
     const ImVec2 size = ImGui::CalcTextSize(text.c_str());
     ImGui::PushStyleColor(ImGuiCol_Text, color);
-    ImGui::RenderTextEllipsis(list, from, {right, area.end().y}, right, right, text.c_str(),
-                              text.c_str() + text.size(), &size);
+    ImGui::RenderTextEllipsis(ImGui::GetWindowDrawList(), from, {right, area.end().y}, right, right,
+                              text.c_str(), text.c_str() + text.size(), &size);
     ImGui::PopStyleColor();
     return std::min(size.x, right - from.x);
 }
 
-float unit_text(ImDrawList* list, const Rect& area, const std::string& unit, float needed) {
+float unit_text(const Rect& area, const std::string& unit, float needed) {
     if (unit.empty()) return 0.0f;
     ImGui::PushFont(small_font());
     const float width = ImGui::CalcTextSize(unit.c_str()).x + px(8);
     const bool fits = needed + width <= area.width;
     if (fits)
-        list->AddText({area.end().x - width, area.y + (area.height - ImGui::GetFontSize()) * 0.5f},
-                      color::dim, unit.c_str());
+        draw_text({area.end().x - width, area.y + (area.height - ImGui::GetFontSize()) * 0.5f}, color::dim,
+                  unit);
     ImGui::PopFont();
     return fits ? width : 0.0f;
 }
@@ -198,7 +197,7 @@ bool section(Context& context, const char* title, const std::string& state, bool
 bool element_head(const char* title) {
     const ImVec2 corner = ImGui::GetCursorScreenPos();
     const Rect area{corner, {ImGui::GetContentRegionAvail().x, px(row_height)}};
-    clipped_text(ImGui::GetWindowDrawList(), area, 0.0f, color::dim, title);
+    clipped_text(area, 0.0f, color::dim, title);
     ImGui::SetCursorScreenPos({area.end().x - px(20), corner.y});
     const bool removed =
         icon_button("remove", Icon::cross, {px(22), px(row_height)}, px(9), color::dim, "Remove");
@@ -257,7 +256,7 @@ bool add_line(const char* label) {
     const bool clicked = ImGui::InvisibleButton(label, area.size());
     const ImU32 ink = ImGui::IsItemHovered() ? color::text : color::dim;
     draw_icon(ImGui::GetWindowDrawList(), Icon::plus, {corner.x + px(5), area.middle().y}, px(9), ink);
-    clipped_text(ImGui::GetWindowDrawList(), area, px(16), ink, label);
+    clipped_text(area, px(16), ink, label);
     return clicked;
 }
 
@@ -265,12 +264,11 @@ bool progress_line(float width, float share, const std::string& text, const char
     const ImVec2 corner = ImGui::GetCursorScreenPos();
     const float button_width = ImGui::CalcTextSize(button).x + px(16);
     const Rect bar{corner, {width - button_width - px(4), px(row_height)}};
-    ImDrawList* list = ImGui::GetWindowDrawList();
-    list->AddRectFilled(bar.corner(), bar.end(), color::window, px(3));
+    fill_rect(bar, color::window, px(3));
     if (share > 0.0f)
-        list->AddRectFilled(bar.corner(), {corner.x + bar.width * std::min(share, 1.0f), bar.end().y},
-                            color::fill, px(3));
-    clipped_text(list, bar, px(8), share > 0.0f ? color::text : color::attention, text);
+        fill_rect(bar.corner(), {corner.x + bar.width * std::min(share, 1.0f), bar.end().y}, color::fill,
+                  px(3));
+    clipped_text(bar, px(8), share > 0.0f ? color::text : color::attention, text);
     ImGui::SetCursorScreenPos({bar.end().x + px(4), corner.y});
     return text_button(button, button_width);
 }

@@ -9,6 +9,7 @@
 #include "gui/panel/controls.h"
 #include "gui/panel/words.h"
 #include "gui/theme.h"
+#include "gui/widgets.h"
 #include "scene/describer.h"
 
 namespace astrosplat::panel {
@@ -26,7 +27,7 @@ void boolean_field(Context& context, const Row& row) {
     const bool clicked = ImGui::InvisibleButton("check", area.size());
     ImDrawList* list = ImGui::GetWindowDrawList();
     const ImU32 back = *on ? color::accent : ImGui::IsItemHovered() ? color::hover : color::field;
-    list->AddRectFilled(box.corner(), box.end(), back, px(3));
+    fill_rect(box, back, px(3));
     if (*on) {
         const ImVec2 m = box.middle();
         const ImVec2 points[3] = {{m.x - px(4), m.y}, {m.x - px(1), m.y + px(3)}, {m.x + px(4), m.y - px(3)}};
@@ -87,7 +88,6 @@ bool words_field(Context& context, const Row& row) {
     const Rect& area = row.layout.value;
     const Value::List& words = *row.value.list();
     ImVec2 at = area.corner();
-    ImDrawList* list = ImGui::GetWindowDrawList();
     for (const std::string& choice : row.parameter.spec.choices) {
         const std::string label = choice_label(choice);
         const float width = ImGui::CalcTextSize(label.c_str()).x + px(14);
@@ -99,8 +99,8 @@ bool words_field(Context& context, const Row& row) {
         for (const Value& word : words)
             if (!(word == Value(choice))) others.push_back(word);
         const bool on = others.size() < words.size();
-        list->AddRectFilled(chip.corner(), chip.end(), on ? color::selection : color::field, px(3));
-        clipped_text(list, chip, px(7), on ? color::text : color::dim, label);
+        fill_rect(chip, on ? color::selection : color::field, px(3));
+        clipped_text(chip, px(7), on ? color::text : color::dim, label);
         if (clicked) {
             if (!on) others.emplace_back(choice);
             set_value(context, row.key(), others);
@@ -291,9 +291,8 @@ void color_field(Context& context, const Row& row) {
     const float size = area.height;
     ImGui::SetCursorScreenPos(area.corner());
     if (ImGui::InvisibleButton("swatch", {size, size})) ImGui::OpenPopup("picker");
-    ImGui::GetWindowDrawList()->AddRectFilled(area.corner(), {area.x + size, area.end().y},
-                                              ImGui::ColorConvertFloat4ToU32(displayed(*row.value.list())),
-                                              px(3));
+    fill_rect(area.corner(), {area.x + size, area.end().y},
+              ImGui::ColorConvertFloat4ToU32(displayed(*row.value.list())), px(3));
     color_picker(context, row);
     const float used = size + px(3);
     vector_field(context, row, {{area.x + used, area.y}, {area.width - used, area.height}});

@@ -17,6 +17,7 @@
 #include "gui/panel/controls.h"
 #include "gui/panel/words.h"
 #include "gui/theme.h"
+#include "gui/widgets.h"
 
 namespace astrosplat::panel {
 namespace {
@@ -74,9 +75,8 @@ bool letter(const char* id, const char* text, ImVec2 corner, bool on, const char
     ImGui::PushFont(medium_font());
     const ImVec2 extent = ImGui::CalcTextSize(text);
     const ImU32 quiet = hovered ? color::text : color::with_opacity(color::dim, 0.45f);
-    ImGui::GetWindowDrawList()->AddText(
-        {corner.x + (size.x - extent.x) * 0.5f, corner.y + (size.y - extent.y) * 0.5f},
-        on ? color::accent : quiet, text);
+    draw_text({corner.x + (size.x - extent.x) * 0.5f, corner.y + (size.y - extent.y) * 0.5f},
+              on ? color::accent : quiet, text);
     ImGui::PopFont();
     return clicked;
 }
@@ -166,8 +166,7 @@ void reorder(Context& context, const std::vector<Rect>& rows) {
     const int to = row_under(rows, ImGui::GetIO().MousePos.y);
     const auto place = static_cast<std::size_t>(to);
     const float y = to > memory.dragged_layer ? rows[place].end().y : rows[place].y;
-    ImGui::GetWindowDrawList()->AddLine({rows[place].x + px(margin), y},
-                                        {rows[place].end().x - px(margin), y}, color::accent, px(2));
+    draw_line({rows[place].x + px(margin), y}, {rows[place].end().x - px(margin), y}, color::accent, px(2));
     if (ImGui::IsMouseDown(ImGuiMouseButton_Left)) return;
     const auto from = static_cast<std::size_t>(memory.dragged_layer);
     memory.dragged_layer = -1;
@@ -190,8 +189,7 @@ void row_body(Context& context, std::size_t i, const Rect& row) {
         context.view.layer = i;
         ImGui::OpenPopup("layer");
     }
-    if (hovered && context.view.layer != i)
-        ImGui::GetWindowDrawList()->AddRectFilled(row.corner(), row.end(), IM_COL32(255, 255, 255, 8));
+    if (hovered && context.view.layer != i) fill_rect(row, IM_COL32(255, 255, 255, 8));
     layer_menu(context, i);
 }
 
@@ -201,8 +199,7 @@ void count_text(const Context& context, std::size_t i, const Rect& row, float& r
     const std::string text = short_count(status.loading ? status.found : status.splats);
     ImGui::PushFont(small_font());
     right -= ImGui::CalcTextSize(text.c_str()).x;
-    ImGui::GetWindowDrawList()->AddText({right, row.y + (px(line_height) - ImGui::GetFontSize()) * 0.5f},
-                                        color::dim, text.c_str());
+    draw_text({right, row.y + (px(line_height) - ImGui::GetFontSize()) * 0.5f}, color::dim, text);
     ImGui::PopFont();
 }
 
@@ -211,7 +208,7 @@ void second_line(Context& context, std::size_t i, const Rect& row) {
     const Rect line{row.x + px(42), row.y + px(line_height), row.width - px(42 + margin), px(row_height)};
     ImGui::SetCursorScreenPos(line.corner());
     if (!status.error.empty()) {
-        clipped_text(ImGui::GetWindowDrawList(), line, 0.0f, color::error, status.error);
+        clipped_text(line, 0.0f, color::error, status.error);
         ImGui::Dummy(line.size());
         if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", status.error.c_str());
     } else {
@@ -222,8 +219,7 @@ void second_line(Context& context, std::size_t i, const Rect& row) {
 
 void draw_layer(Context& context, std::size_t i, const Rect& row) {
     const LayerParams& layer = context.scene().layers[i];
-    ImDrawList* list = ImGui::GetWindowDrawList();
-    if (context.view.layer == i) list->AddRectFilled(row.corner(), row.end(), color::selection);
+    if (context.view.layer == i) fill_rect(row, color::selection);
     row_body(context, i, row);
     ImGui::SetCursorScreenPos({row.x + px(margin), row.y});
     const bool shown = context.view.solo.empty() ? layer.visible : context.view.solo.count(layer.name) > 0;
@@ -233,14 +229,14 @@ void draw_layer(Context& context, std::size_t i, const Rect& row) {
                 [&] { toggle_visible(context.document, context.view, i); });
     const float chip = px(10), middle = row.y + px(line_height) * 0.5f;
     const ImVec2 at{row.x + px(42), middle - chip * 0.5f};
-    list->AddRectFilled(at, {at.x + chip, at.y + chip}, chip_color(context, i), px(2));
+    fill_rect(at, {at.x + chip, at.y + chip}, chip_color(context, i), px(2));
     float right = row.end().x - px(76);
     count_text(context, i, row, right);
     const Rect name{{row.x + px(60), row.y}, {right - row.x - px(64), px(line_height)}};
     if (context.memory.renaming == layer.name)
         name_entry(context, i, name);
     else
-        clipped_text(list, name, 0.0f, shown ? color::text : color::dim, layer.name);
+        clipped_text(name, 0.0f, shown ? color::text : color::dim, layer.name);
     switches(context, i, row);
     if (has_second_line(context, i) && wants_second_line(context.layer_status(i)))
         second_line(context, i, row);
@@ -256,7 +252,7 @@ void draw_merge_bracket(const Context& context, const std::vector<Rect>& rows) {
     const float x = rows.front().x + px(6);
     const ImU32 ink = color::with_opacity(color::dim, 0.7f);
     draw_bracket(list, x, ticks.front(), ticks.back(), ink);
-    for (const float y : ticks) list->AddLine({x, y}, {x + px(4), y}, ink, px(1));
+    for (const float y : ticks) draw_line({x, y}, {x + px(4), y}, ink, px(1));
     const Rect zone{{x - px(6), ticks.front()}, {px(12), ticks.back() - ticks.front()}};
     if (ImGui::IsWindowHovered() && ImGui::IsMouseHoveringRect(zone.corner(), zone.end()))
         ImGui::SetTooltip("Merged by depth: the order of these does not matter");

@@ -46,8 +46,7 @@ void head(Context& context) {
 void tab_row(ViewState& view) {
     const ImVec2 corner = ImGui::GetCursorScreenPos();
     const float width = ImGui::GetContentRegionAvail().x, height = px(32);
-    ImDrawList* list = ImGui::GetWindowDrawList();
-    list->AddLine(corner, {corner.x + width, corner.y}, color::line);
+    draw_line(corner, {corner.x + width, corner.y}, color::line);
     const float padding = px(12);
     float x = corner.x;
     PanelTab chosen = view.tab;
@@ -59,10 +58,10 @@ void tab_row(ViewState& view) {
         if (ImGui::InvisibleButton(tab.label, {tab_width, height})) chosen = tab.tab;
         const bool seen = view.tab == tab.tab;
         const ImU32 ink = seen || ImGui::IsItemHovered() ? color::text : color::dim;
-        list->AddText({x + padding, corner.y + (height - text.y) * 0.5f}, ink, tab.label);
+        draw_text({x + padding, corner.y + (height - text.y) * 0.5f}, ink, tab.label);
         if (seen)
-            list->AddRectFilled({x + padding, corner.y + height - px(2)},
-                                {x + padding + text.x, corner.y + height}, color::accent);
+            fill_rect({x + padding, corner.y + height - px(2)}, {x + padding + text.x, corner.y + height},
+                      color::accent);
         x += tab_width;
     }
     view.tab = chosen;

@@ -8,6 +8,7 @@
 #include "edit/rounding.h"
 #include "gui/key_codes.h"
 #include "gui/theme.h"
+#include "gui/widgets.h"
 #include "look/prepare.h"
 #include "look/shared_look.h"
 #include "look/shared_uniforms.h"
@@ -31,13 +32,12 @@ std::vector<float> sampled(Function function) {
 
 Rect begin_plot(float height) {
     const Rect area{ImGui::GetCursorScreenPos(), {ImGui::GetContentRegionAvail().x, px(height)}};
-    ImGui::GetWindowDrawList()->AddRectFilled(area.corner(), area.end(), color::window, px(3));
+    fill_rect(area, color::window, px(3));
     ImGui::Dummy(area.size());
     return area;
 }
 
 void draw_bars(const Rect& area, std::span<const float> shares, double stretch) {
-    ImDrawList* list = ImGui::GetWindowDrawList();
     const float width = area.width * static_cast<float>(stretch) / static_cast<float>(shares.size());
     for (std::size_t i = 0; i < shares.size(); ++i) {
         const float left = area.x + width * static_cast<float>(i);
@@ -45,7 +45,7 @@ void draw_bars(const Rect& area, std::span<const float> shares, double stretch) 
         const float gap = width >= px(4) ? 1.0f : 0.0f;
         const float right = std::min(left + width - gap, area.end().x);
         const float top = area.end().y - (area.height - px(4)) * std::clamp(shares[i], 0.0f, 1.0f);
-        if (shares[i] > 0.0f) list->AddRectFilled({left, top}, {right, area.end().y}, color::hover);
+        if (shares[i] > 0.0f) fill_rect({left, top}, {right, area.end().y}, color::hover);
     }
 }
 
@@ -66,10 +66,8 @@ void captions(const std::string& left, const std::string& right) {
     ImGui::PushFont(small_font());
     const ImVec2 corner = ImGui::GetCursorScreenPos();
     const float width = ImGui::GetContentRegionAvail().x;
-    ImDrawList* list = ImGui::GetWindowDrawList();
-    list->AddText(corner, color::dim, left.c_str());
-    list->AddText({corner.x + width - ImGui::CalcTextSize(right.c_str()).x, corner.y}, color::dim,
-                  right.c_str());
+    draw_text(corner, color::dim, left);
+    draw_text({corner.x + width - ImGui::CalcTextSize(right.c_str()).x, corner.y}, color::dim, right);
     ImGui::Dummy({width, ImGui::GetFontSize() + px(4)});
     ImGui::PopFont();
 }

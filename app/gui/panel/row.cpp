@@ -8,6 +8,7 @@
 #include "gui/panel/parts.h"
 #include "gui/panel/words.h"
 #include "gui/theme.h"
+#include "gui/widgets.h"
 #include "scene/load.h"
 
 namespace astrosplat::panel {
@@ -20,15 +21,14 @@ bool mouse_over(const Rect& area) {
 }
 
 void draw_label(Context& context, const Row& row) {
-    ImDrawList* list = ImGui::GetWindowDrawList();
     const ParameterSpec& spec = row.parameter.spec;
     const bool by_command = context.document.set_by_command_line(spec.key);
     if (by_command || !(row.value == default_of(context, spec))) {
         const ImVec2 corner{row.layout.label.x - px(6), row.layout.label.y + px(5)};
-        list->AddRectFilled(corner, {corner.x + px(2), corner.y + px(14)},
-                            by_command ? color::attention : color::accent);
+        fill_rect(corner, {corner.x + px(2), corner.y + px(14)},
+                  by_command ? color::attention : color::accent);
     }
-    clipped_text(list, row.layout.label, 0.0f, color::text, spec.row_label);
+    clipped_text(row.layout.label, 0.0f, color::text, spec.row_label);
 }
 
 void show_tooltip(Context& context, const Row& row) {

@@ -15,6 +15,7 @@
 #include "gui/panel/plot.h"
 #include "gui/panel/words.h"
 #include "gui/theme.h"
+#include "gui/widgets.h"
 #include "look/shared_look.h"
 #include "render/falloff.h"
 
@@ -47,7 +48,7 @@ bool handle(Context& context, const Rect& area, const Values& values, const char
     if (near) ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
     ImDrawList* list = ImGui::GetWindowDrawList();
     const ImU32 ink = near ? color::accent : color::text;
-    list->AddLine({x, area.y}, {x, area.end().y}, ink, px(1.5f));
+    draw_line({x, area.y}, {x, area.end().y}, ink, px(1.5f));
     const float foot = area.end().y;
     list->AddTriangleFilled({x, foot - px(8)}, {x + px(5), foot}, {x - px(5), foot}, ink);
     if (!active || ImGui::GetIO().MouseDelta.x == 0.0f) return false;
@@ -69,9 +70,8 @@ void edit_levels(Context& context, const ParameterSpec&) {
     context.memory.plots[source / "black"] = {area.x, area.y, area.width, area.height};
     draw_bars(area, values.share);
     const ImU32 shade = color::with_opacity(color::window, 0.6f);
-    ImDrawList* list = ImGui::GetWindowDrawList();
-    list->AddRectFilled(area.corner(), {place(area, values, black), area.end().y}, shade);
-    list->AddRectFilled({place(area, values, white), area.y}, area.end(), shade);
+    fill_rect(area.corner(), {place(area, values, black), area.end().y}, shade);
+    fill_rect({place(area, values, white), area.y}, area.end(), shade);
     const double least = (values.hi - values.lo) * 2e-3;
     if (handle(context, area, values, "black", black))
         set_value(context, source / "black", std::min(black, white - least), context.memory.gesture);
@@ -92,7 +92,7 @@ ImU32 grey(double light) {
 
 void draw_dot(const Rect& area, const Falloff& falloff) {
     ImDrawList* list = ImGui::GetWindowDrawList();
-    list->AddRectFilled(area.corner(), area.end(), IM_COL32_BLACK, px(3));
+    fill_rect(area, IM_COL32_BLACK, px(3));
     const float radius = area.height * 0.5f - px(4);
     const int rings = static_cast<int>(radius);
     for (int i = 0; i < rings; ++i) {
@@ -164,8 +164,8 @@ void draw_hybrid(Context& context, const ParameterSpec&) {
         sector(origin, radius, a, b, color::with_opacity(color::accent, 0.1f + 0.5f * float(i) / steps));
     }
     sector(origin, radius, to, 90.0, color::with_opacity(color::accent, 0.65f));
-    ImGui::GetWindowDrawList()->AddLine({origin.x - radius, origin.y + px(3)},
-                                        {origin.x + radius, origin.y + px(3)}, color::text, px(2));
+    draw_line({origin.x - radius, origin.y + px(3)}, {origin.x + radius, origin.y + px(3)}, color::text,
+              px(2));
     captions("over seen face-on", "screen seen edge-on");
 }
 

@@ -16,6 +16,7 @@
 #include "gui/panel/words.h"
 #include "gui/parts.h"
 #include "gui/theme.h"
+#include "gui/widgets.h"
 
 namespace astrosplat::panel {
 
@@ -49,10 +50,10 @@ void draw_both(Context& context, const PrepareStatus& status) {
     const float share = context.memory.preparation_line;
     const float x = std::round(area.x + area.width * share);
     ImDrawList* list = ImGui::GetWindowDrawList();
-    list->AddRectFilled(area.corner(), area.end(), IM_COL32_BLACK);
+    fill_rect(area, IM_COL32_BLACK);
     if (status.before) list->AddImage(status.before, area.corner(), {x, area.end().y}, {0, 0}, {share, 1});
     if (status.after) list->AddImage(status.after, {x, area.y}, area.end(), {share, 0}, {1, 1});
-    list->AddLine({x, area.y}, {x, area.end().y}, color::text, px(1));
+    draw_line({x, area.y}, {x, area.end().y}, color::text, px(1));
     captions("before", "after");
 }
 
