@@ -19,7 +19,6 @@
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "core/text.h"
-#include "core/vector_target.h"
 #include "interrupt.h"
 #include "json_log.h"
 #include "places.h"

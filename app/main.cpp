@@ -7,7 +7,7 @@
 #include "cli.h"
 #include "core/error.h"
 #include "core/log.h"
-#include "core/vector_target.h"
+#include "core/parallel.h"
 #include "exit_code.h"
 #include "interrupt.h"
 

@@ -10,7 +10,6 @@
 #include <variant>
 
 #include "core/file.h"
-#include "core/folders.h"
 #include "report.h"
 #include "scene/describe.h"
 #include "scene/load.h"

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "core/clock.h"
 #include "core/log.h"
+#include "core/progress.h"
 #include "core/text.h"
 #include "interrupt.h"
 #include "json_log.h"

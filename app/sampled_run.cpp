@@ -5,9 +5,9 @@
 #include <limits>
 #include <utility>
 
-#include "core/clock.h"
 #include "core/error.h"
-#include "core/folders.h"
+#include "core/file.h"
+#include "core/progress.h"
 #include "interrupt.h"
 #include "output/write.h"
 #include "scene/animate.h"

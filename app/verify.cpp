@@ -13,7 +13,7 @@
 
 #include "batch_plan.h"
 #include "core/error.h"
-#include "core/folders.h"
+#include "core/file.h"
 #include "core/log.h"
 #include "core/text.h"
 #include "estimate.h"

@@ -2,7 +2,7 @@
 
 #include "core/error.h"
 #ifdef ASTROSPLAT_WINDOW
-#include "core/folders.h"
+#include "core/file.h"
 #include "farm/child_process.h"
 #include "interrupt.h"
 #include "places.h"

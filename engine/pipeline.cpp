@@ -8,7 +8,7 @@
 
 #include "camera/aperture.h"
 #include "core/buffer.h"
-#include "core/clock.h"
+#include "core/progress.h"
 #include "core/text.h"
 #include "frame/mean_frame.h"
 #include "look/apply.h"

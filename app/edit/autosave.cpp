@@ -20,7 +20,6 @@
 #include "core/atomic_file.h"
 #include "core/error.h"
 #include "core/file.h"
-#include "core/folders.h"
 #include "core/hash.h"
 #include "core/log.h"
 #include "core/text.h"

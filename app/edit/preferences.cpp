@@ -8,7 +8,6 @@
 
 #include "core/atomic_file.h"
 #include "core/file.h"
-#include "core/folders.h"
 #include "core/log.h"
 
 namespace astrosplat {

@@ -9,7 +9,6 @@
 #include "core/atomic_file.h"
 #include "core/error.h"
 #include "core/file.h"
-#include "core/folders.h"
 #include "core/text.h"
 #include "scene/load.h"
 #include "scene/save.h"

@@ -12,8 +12,8 @@
 #include <new>
 #include <utility>
 
-#include "core/clock.h"
 #include "core/error.h"
+#include "core/progress.h"
 #include "pipeline.h"
 
 namespace astrosplat {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "core/clock.h"
+#include "core/progress.h"
 #include "look/apply.h"
 
 namespace astrosplat {

@@ -9,7 +9,7 @@
 
 #include "core/atomic_file.h"
 #include "core/error.h"
-#include "core/folders.h"
+#include "core/file.h"
 #include "core/hash.h"
 #include "core/text.h"
 #include "edit/command_lines.h"

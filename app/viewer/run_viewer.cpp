@@ -11,11 +11,11 @@
 #include <utility>
 #include <vector>
 
-#include "core/clock.h"
 #include "core/error.h"
 #include "core/log.h"
 #include "core/memory.h"
 #include "core/parallel.h"
+#include "core/progress.h"
 #include "edit/preferences.h"
 #include "exit_code.h"
 #include "gui/theme.h"

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <thread>
 
-#include "core/clock.h"
 #include "core/error.h"
 #include "core/file_format.h"
 #include "core/log.h"
+#include "core/progress.h"
 #include "core/text.h"
 #include "exit_code.h"
 #include "output/write.h"

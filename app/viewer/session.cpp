@@ -8,7 +8,6 @@
 #include "camera_files/read_camera.h"
 #include "core/error.h"
 #include "core/file.h"
-#include "core/folders.h"
 #include "core/memory.h"
 #include "core/text.h"
 #include "edit/new_from_file.h"

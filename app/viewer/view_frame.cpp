@@ -4,8 +4,8 @@
 #include <cassert>
 #include <cmath>
 
-#include "core/clock.h"
 #include "core/error.h"
+#include "core/progress.h"
 #include "look/apply.h"
 #include "scene/layer_setup.h"
 

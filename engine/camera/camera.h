@@ -11,7 +11,7 @@
 
 #include "camera/lens.h"
 #include "core/bounds.h"
-#include "core/enum_names.h"
+#include "core/text.h"
 
 namespace astrosplat {
 

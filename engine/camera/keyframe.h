@@ -8,7 +8,7 @@
 #include <span>
 #include <type_traits>
 
-#include "core/enum_names.h"
+#include "core/text.h"
 
 namespace astrosplat {
 

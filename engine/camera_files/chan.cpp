@@ -9,7 +9,6 @@
 #include "core/file.h"
 #include "core/real.h"
 #include "core/text.h"
-#include "core/text_table.h"
 
 namespace astrosplat {
 namespace {

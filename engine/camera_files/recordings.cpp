@@ -7,7 +7,6 @@
 #include "core/error.h"
 #include "core/file.h"
 #include "core/text.h"
-#include "core/text_table.h"
 
 namespace astrosplat {
 namespace {

@@ -7,76 +7,54 @@
 #include "core/text.h"
 
 namespace astrosplat {
-namespace {
 
 namespace fs = std::filesystem;
 using namespace std::string_view_literals;
 
-constexpr std::size_t longest_magic = 16;
-
 // OpenImageIO's own movies and "null" are left out on purpose: they open files that are no pictures.
-const std::vector<FileFormat>& formats() {
+std::span<const FileFormat> file_formats() {
+    using enum FileKind;
+    using enum FileUse;
     static const std::vector<FileFormat> table = {
-        {"openexr", "OpenEXR", FileKind::picture, {".exr"}, {"\x76\x2f\x31\x01"}, FileUse::written},
-        {"tiff",
-         "TIFF",
-         FileKind::picture,
-         {".tif", ".tiff"},
-         {"II*\0"sv, "MM\0*"sv, "II+\0"sv, "MM\0+"sv},
-         FileUse::written},
-        {"png", "PNG", FileKind::picture, {".png"}, {"\x89PNG\r\n\x1a\n"}, FileUse::written},
-        {"jpeg", "JPEG", FileKind::picture, {".jpg", ".jpeg"}, {"\xff\xd8\xff"}},
+        {"openexr", "OpenEXR", picture, {".exr"}, {"\x76\x2f\x31\x01"}, written},
+        {"tiff", "TIFF", picture, {".tif", ".tiff"}, {"II*\0"sv, "MM\0*"sv, "II+\0"sv, "MM\0+"sv}, written},
+        {"png", "PNG", picture, {".png"}, {"\x89PNG\r\n\x1a\n"}, written},
+        {"jpeg", "JPEG", picture, {".jpg", ".jpeg"}, {"\xff\xd8\xff"}},
         {"fits",
          "FITS",
-         FileKind::picture,
+         picture,
          {".fits", ".fit", ".fts", ".fits.gz", ".fit.gz", ".fts.gz", ".fits.fz"},
          {"SIMPLE  ="}},
-        {"hdr", "Radiance HDR", FileKind::picture, {".hdr"}, {"#?RADIANCE", "#?RGBE"}},
-        {"dpx", "DPX", FileKind::picture, {".dpx"}, {"SDPX", "XPDS"}},
-        {"webp", "WebP", FileKind::picture, {".webp"}, {"RIFF????WEBP"}},
-        {"jpeg2000", "JPEG 2000", FileKind::picture, {".jp2"}, {"\0\0\0\x0cjP  "sv, "\xff\x4f\xff\x51"}},
-        {"psd", "Photoshop", FileKind::picture, {".psd"}, {"8BPS"}},
-        {"bmp", "BMP", FileKind::picture, {".bmp"}, {}},
-        {"gif", "GIF", FileKind::picture, {".gif"}, {"GIF87a", "GIF89a"}},
-        {"targa", "TGA", FileKind::picture, {".tga"}, {}},
-        {"pnm", "PNM", FileKind::picture, {".ppm", ".pgm", ".pnm"}, {"P2\n", "P3\n", "P5\n", "P6\n"}},
-        {"chan",
-         "Nuke's chan",
-         FileKind::unknown,
-         {".chan"},
-         {},
-         FileUse::camera_read | FileUse::camera_written},
-        {"gaia_sky", "Gaia Sky", FileKind::unknown, {".gsc"}, {}, FileUse::camera_read},
-        {"openspace", "OpenSpace", FileKind::unknown, {".osrectxt"}, {}, FileUse::camera_read},
-        {"transforms", "transforms.json", FileKind::unknown, {".json"}, {}, FileUse::camera_read},
-        {"table", "CSV", FileKind::unknown, {".csv"}, {}, FileUse::camera_read | FileUse::camera_written},
-        {"obj", "OBJ", FileKind::mesh, {".obj"}, {}},
-        {"pda", "PDA", FileKind::splats, {".pda"}, {"ATTRIBUTES"}, FileUse::written},
-        {"ply", "PLY", FileKind::splats, {{".ply", FileUse::exported}}, {"ply\n", "ply\r"}, FileUse::written},
-        {"gltf",
-         "glTF",
-         FileKind::splats,
-         {{".glb", FileUse::exported}, {".gltf", FileUse::camera_written}},
-         {"glTF"},
-         FileUse::camera_read},
-        {"usda",
-         "USD",
-         FileKind::splats,
-         {{".usda", FileUse::exported | FileUse::camera_written}, ".usd"},
-         {"#usda"},
-         FileUse::camera_read},
-        {"splats", "SPLATS", FileKind::splats, {".splats"}, {"\x89SPLAT\r\n"}, FileUse::written},
-        {"openvdb", "OpenVDB", FileKind::unknown, {".vdb"}, {}, FileUse::exported},
-        {"movie",
-         "MP4, QuickTime or Matroska",
-         FileKind::unknown,
-         {".mp4", ".mov", ".mkv"},
-         {},
-         FileUse::movie},
-        {"toml", "TOML", FileKind::scene, {".toml"}, {}, FileUse::written},
+        {"hdr", "Radiance HDR", picture, {".hdr"}, {"#?RADIANCE", "#?RGBE"}},
+        {"dpx", "DPX", picture, {".dpx"}, {"SDPX", "XPDS"}},
+        {"webp", "WebP", picture, {".webp"}, {"RIFF????WEBP"}},
+        {"jpeg2000", "JPEG 2000", picture, {".jp2"}, {"\0\0\0\x0cjP  "sv, "\xff\x4f\xff\x51"}},
+        {"psd", "Photoshop", picture, {".psd"}, {"8BPS"}},
+        {"bmp", "BMP", picture, {".bmp"}, {}},
+        {"gif", "GIF", picture, {".gif"}, {"GIF87a", "GIF89a"}},
+        {"targa", "TGA", picture, {".tga"}, {}},
+        {"pnm", "PNM", picture, {".ppm", ".pgm", ".pnm"}, {"P2\n", "P3\n", "P5\n", "P6\n"}},
+        {"chan", "Nuke's chan", unknown, {".chan"}, {}, camera_read | camera_written},
+        {"gaia_sky", "Gaia Sky", unknown, {".gsc"}, {}, camera_read},
+        {"openspace", "OpenSpace", unknown, {".osrectxt"}, {}, camera_read},
+        {"transforms", "transforms.json", unknown, {".json"}, {}, camera_read},
+        {"table", "CSV", unknown, {".csv"}, {}, camera_read | camera_written},
+        {"obj", "OBJ", mesh, {".obj"}, {}},
+        {"pda", "PDA", splats, {".pda"}, {"ATTRIBUTES"}, written},
+        {"ply", "PLY", splats, {{".ply", exported}}, {"ply\n", "ply\r"}, written},
+        {"gltf", "glTF", splats, {{".glb", exported}, {".gltf", camera_written}}, {"glTF"}, camera_read},
+        {"usda", "USD", splats, {{".usda", exported | camera_written}, ".usd"}, {"#usda"}, camera_read},
+        {"splats", "SPLATS", splats, {".splats"}, {"\x89SPLAT\r\n"}, written},
+        {"openvdb", "OpenVDB", unknown, {".vdb"}, {}, exported},
+        {"movie", "MP4, QuickTime or Matroska", unknown, {".mp4", ".mov", ".mkv"}, {}, movie},
+        {"toml", "TOML", scene, {".toml"}, {}, written},
     };
     return table;
 }
+
+namespace {
+
+constexpr std::size_t longest_magic = 16;
 
 bool begins_with(std::string_view bytes, std::string_view magic) {
     return bytes.size() >= magic.size() &&
@@ -86,8 +64,8 @@ bool begins_with(std::string_view bytes, std::string_view magic) {
 
 template <class Wanted>
 const FileFormat* find(const Wanted& wanted) {
-    const auto found = std::ranges::find_if(formats(), wanted);
-    return found == formats().end() ? nullptr : &*found;
+    const auto found = std::ranges::find_if(file_formats(), wanted);
+    return found == file_formats().end() ? nullptr : &*found;
 }
 
 bool is_used(const FileFormat& format, const FileEnding& ending, FileUse use) {
@@ -97,15 +75,13 @@ bool is_used(const FileFormat& format, const FileEnding& ending, FileUse use) {
 template <class Wanted>
 std::vector<std::string> endings_where(const Wanted& wanted) {
     std::vector<std::string> endings;
-    for (const FileFormat& format : formats())
+    for (const FileFormat& format : file_formats())
         for (const FileEnding& ending : format.endings)
             if (wanted(format, ending)) endings.emplace_back(ending.text);
     return endings;
 }
 
 }  // namespace
-
-std::span<const FileFormat> file_formats() { return formats(); }
 
 const FileFormat* format_by_name(const fs::path& file, FileUse use) {
     const std::string name = lower_case(file.filename().string());
@@ -141,7 +117,7 @@ std::vector<std::string> endings_of(FileUse use) {
 
 std::string names_of(FileKind kind, FileUse use) {
     std::vector<std::string> names;
-    for (const FileFormat& format : formats())
+    for (const FileFormat& format : file_formats())
         if (format.kind == kind && is_used(format, format.endings.front(), use))
             names.emplace_back(format.name);
     return alternatives(names);

@@ -14,8 +14,8 @@
 #include <filesystem>
 #include <fstream>
 #include <limits>
-#include <sstream>
 #include <string_view>
+#include <utility>
 
 #include "core/error.h"
 #include "core/log.h"
@@ -66,7 +66,8 @@ std::int64_t field(std::string_view text, std::string_view name) {
     return parse_int64(text.substr(at, end == text.npos ? end : end - at)).value_or(-1);
 }
 
-std::string text_of(const char* file) {
+// Empty where there is none.
+std::string text_of(const std::filesystem::path& file) {
     std::ifstream in(file);
     return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
 }
@@ -176,10 +177,7 @@ namespace {
 namespace fs = std::filesystem;
 
 bool lists(const std::string& controllers, const std::string& wanted) {
-    std::stringstream names(controllers);
-    for (std::string name; std::getline(names, name, ',');)
-        if (name == wanted) return true;
-    return false;
+    return ("," + controllers + ",").find("," + wanted + ",") != std::string::npos;
 }
 
 struct Group {
@@ -210,9 +208,8 @@ std::vector<std::string> cgroup_values(const std::string& controller, const std:
     std::vector<std::string> values;
     for (const Group& group : groups_of(controller)) {
         for (fs::path path = group.path;; path = path.parent_path()) {
-            std::ifstream in(group.root / path / file);
-            std::stringstream text;
-            if (in && text << in.rdbuf()) values.push_back(text.str());
+            std::string text = text_of(group.root / path / file);
+            if (!text.empty()) values.push_back(std::move(text));
             if (path.empty() || path == path.parent_path()) break;
         }
     }

@@ -1,13 +1,20 @@
 // The thread pool: jobs in a list, chunks handed out by an atomic counter. Every thread that calls a loop
 // works on its own job as worker 0, and the pool's threads (worker 1, 2, ...) help whoever has chunks left,
 // so that loops called from several threads at once share the pool and none waits for another.
+// Names for Highway's run-time targets. A choice enables that target and all lesser ones, so that a kernel
+// compiled without it falls to the next below.
 #include "core/parallel.h"
 
+#include <fmt/format.h>
+#include <hwy/targets.h>
 #include <sched.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <condition_variable>
+#include <cstdint>
+#include <cstdlib>
 #include <exception>
 #include <mutex>
 #include <string>
@@ -15,10 +22,12 @@
 #include <thread>
 #include <vector>
 
+#include "core/error.h"
 #include "core/memory.h"
 #include "core/text.h"
 
 namespace astrosplat {
+
 namespace {
 
 using Body = std::function<void(std::int64_t, std::int64_t, int)>;
@@ -217,6 +226,71 @@ void parallel_parts(std::size_t count, const Progress& progress,
     });
     for (const std::string& error : errors)
         if (!error.empty()) throw InputError(error);
+}
+
+namespace {
+
+struct Target {
+    const char* name;
+    std::int64_t bits;  // Highway's; a lower bit is a better target
+};
+
+// Highway 1.0 has no SSE2 target of its own: its portable fallback, compiled for the baseline of
+// x86-64, is that.
+constexpr std::array<Target, 4> targets = {
+    {{"avx512", HWY_AVX3}, {"avx2", HWY_AVX2}, {"sse4", HWY_SSE4}, {"sse2", HWY_EMU128 | HWY_SCALAR}}};
+
+// The best that the processor can do, whatever was chosen before.
+std::int64_t detected() {
+    static const std::int64_t bits = hwy::SupportedTargets() | HWY_STATIC_TARGET;
+    return bits;
+}
+
+bool compiled_and_supported(const Target& target) { return (target.bits & HWY_TARGETS & detected()) != 0; }
+
+void enable(std::int64_t bits) {
+    hwy::SetSupportedTargetsForTest(bits);
+    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+}
+
+}  // namespace
+
+void set_vector_target(const std::string& name) {
+    const std::int64_t supported = detected();
+    if (name == "best") return enable(supported);
+    std::int64_t not_above = 0;
+    for (auto target = targets.rbegin(); target != targets.rend(); ++target) {
+        not_above |= target->bits & supported;
+        if (name == target->name && compiled_and_supported(*target)) return enable(not_above);
+    }
+    bad_input("vector target", "",
+              fmt::format("one that this processor has (best, {})", fmt::join(vector_targets(), ", ")),
+              "'" + name + "'");
+}
+
+void use_vector_target_of_environment() {
+    const char* name = std::getenv("ASTROSPLAT_VECTOR_TARGET");
+    if (!name || !*name) return;
+    try {
+        set_vector_target(name);
+    } catch (const InputError& error) {
+        throw InputError(fmt::format("ASTROSPLAT_VECTOR_TARGET: {}", error.what()));
+    }
+}
+
+std::vector<std::string> vector_targets() {
+    std::vector<std::string> names;
+    for (const Target& target : targets)
+        if (compiled_and_supported(target)) names.emplace_back(target.name);
+    return names;
+}
+
+std::string vector_target() {
+    detected();
+    const std::int64_t enabled = hwy::SupportedTargets();
+    for (const Target& target : targets)
+        if (target.bits & HWY_TARGETS & enabled) return target.name;
+    return targets.back().name;
 }
 
 }  // namespace astrosplat

@@ -1,10 +1,14 @@
-// One small thread pool and the loops that run on it. Work is handed out dynamically, so results must not
-// depend on which thread does what: every loop body writes only what its own index names.
+// What computes: one small thread pool with the loops that run on it, and the instruction set of the vector
+// kernels. Work is handed out dynamically, so results must not depend on which thread does what: every loop
+// body writes only what its own index names. Every instruction set gives the same bits; the switch exists to
+// prove that.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <string>
+#include <vector>
 
 #include "core/progress.h"
 
@@ -39,5 +43,19 @@ void parallel_each(Index count, std::int64_t chunk, const Body& body) {
 /// whatever the threads do; Cancelled.
 void parallel_parts(std::size_t count, const Progress& progress,
                     const std::function<void(std::size_t part)>& body);
+
+/// "best" (what the processor offers), or one of vector_targets(). Throws InputError for another name or one
+/// this processor lacks. Not while a loop runs.
+void set_vector_target(const std::string& name);
+
+/// Chooses what the environment variable ASTROSPLAT_VECTOR_TARGET names, if set; main calls this first.
+/// Throws as above.
+void use_vector_target_of_environment();
+
+/// The compiled targets this processor can run, best first, from "avx512" "avx2" "sse4" "sse2".
+std::vector<std::string> vector_targets();
+
+/// The target in use.
+std::string vector_target();
 
 }  // namespace astrosplat

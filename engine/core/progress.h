@@ -1,14 +1,15 @@
-// How long work reports how far it is and learns that it should stop. Copied by value; an empty one does
-// nothing.
+// How long work reports how far it is and learns that it should stop, and the clock that its times are of.
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <functional>
 
 #include "core/error.h"
 
 namespace astrosplat {
 
+/// Copied by value; an empty one does nothing.
 struct Progress {
     std::function<void(double fraction)> report;   // fraction of the work done, 0..1; called from any thread
     const std::atomic<bool>* cancelled = nullptr;  // set by another thread or a signal handler
@@ -28,5 +29,14 @@ struct Progress {
         if (stop()) throw Cancelled();
     }
 };
+
+using Clock = std::chrono::steady_clock;
+
+inline double seconds_since(Clock::time_point start) {
+    return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+/// Seconds from a start that does not change while the program runs.
+inline double seconds_now() { return std::chrono::duration<double>(Clock::now().time_since_epoch()).count(); }
 
 }  // namespace astrosplat

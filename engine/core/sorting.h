@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <iterator>
@@ -52,6 +53,13 @@ auto median(Values&& values) {
 
 /// The value below which the given share (0..1) of the numbers lies, linear between neighbours: 0 gives the
 /// least, 1 the greatest, 1/2 the mean of the two in the middle. 0 for an empty list; NaN must not occur.
-double percentile(std::vector<double> values, double share);
+inline double percentile(std::vector<double> values, double share) {
+    if (values.empty()) return 0.0;
+    const double rank = share * static_cast<double>(values.size() - 1), below = std::floor(rank);
+    const auto at = values.begin() + static_cast<std::ptrdiff_t>(below);
+    std::nth_element(values.begin(), at, values.end());
+    if (rank == below) return *at;
+    return *at + (*std::min_element(at + 1, values.end()) - *at) * (rank - below);
+}
 
 }  // namespace astrosplat

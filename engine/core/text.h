@@ -1,10 +1,16 @@
-// Numbers, names and bytes as text, the same in every locale, and foreign text made fit for messages.
+// Numbers, names and bytes as text, the same in every locale, foreign text made fit for messages, rows of
+// text files and the names of enums.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
+#include <initializer_list>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 namespace astrosplat {
@@ -46,5 +52,103 @@ std::string base64(std::string_view bytes);
 
 /// The bytes of such a text, with or without the padding at its end; nothing where it is none.
 std::optional<std::string> bytes_of_base64(std::string_view text);
+
+// Enums carry their names: beside each enum whose values people write or read stands one function with the
+// names in order, found by argument lookup (in a struct it is a friend):
+//
+//     enum class Shape { constant, linear };
+//     friend constexpr auto names_of(Shape) { return names_up_to<Shape::linear>("constant", "linear"); }
+//
+// Scene files, the manual, the window and messages all read these.
+
+/// The names of all values up to `last`, which are numbered from 0 without gaps.
+template <auto last, class... Names>
+constexpr std::array<std::string_view, sizeof...(Names)> names_up_to(Names... names) {
+    static_assert(sizeof...(Names) == static_cast<std::size_t>(last) + 1, "one name for every value");
+    return {std::string_view(names)...};
+}
+
+template <class E>
+concept NamedEnum = std::is_enum_v<E> && requires(E value) {
+    names_of(value);
+};
+
+template <NamedEnum E>
+constexpr std::string_view name_of(E value) {
+    return names_of(value)[static_cast<std::size_t>(value)];
+}
+
+/// Whether the values are numbered as the constants of a shader, all of them.
+template <NamedEnum E, class... Numbers>
+constexpr bool numbered_as(Numbers... numbers) {
+    int value = 0;
+    return ((numbers == value++) && ...) && sizeof...(Numbers) == names_of(E{}).size();
+}
+
+/// All names, in order.
+template <NamedEnum E>
+std::vector<std::string> all_names() {
+    constexpr auto names = names_of(E{});
+    return {names.begin(), names.end()};
+}
+
+// Rows of text: lines that hold anything, their fields, and tables whose first row names the columns. In: a
+// file's text. Out: one row after the other, which knows its line for every message. Rows are not kept.
+
+/// Of comma, semicolon and tab the one that a line holds most of; ' ' where it has none of them.
+char separator_of(std::string_view line);
+
+/// Whether a field is a finite number, or says that there is none: nothing, "-", "~", "null", "nan".
+bool read_number(std::string_view field, std::optional<double>& number);
+
+/// Goes from line to line; skips empty ones, comments (a '#' at the beginning) and a byte order mark.
+class TextRows {
+  public:
+    /// `text` outlives this; `file` begins messages.
+    explicit TextRows(std::string_view text, std::string file = "") : file_(std::move(file)), rest_(text) {}
+
+    /// To the next row, the first at first; false at the end.
+    bool next();
+    std::int64_t line() const { return line_; }     // from 1, of all lines
+    std::string_view text() const { return row_; }  // without blanks at its ends
+    /// Fields between separators, without blanks and quotes around them. A separator inside quotes separates
+    /// nothing. ' ' is any number of blanks of any kind, so that no field is empty.
+    const std::vector<std::string_view>& fields(char separator = ' ');
+
+    /// A finite number. Throws InputError "FILE:LINE: expected a number for WHAT, found 'x'".
+    double number(std::string_view field, std::string_view what) const;
+    /// Throws InputError with the file and this line.
+    [[noreturn]] void fail(const std::string& expected, const std::string& found) const;
+
+  private:
+    std::string file_;
+    std::string_view rest_, whole_row_, row_;
+    std::int64_t line_ = 0;
+    std::vector<std::string_view> fields_;
+};
+
+class TextTable {
+  public:
+    static constexpr int none = -1;
+
+    /// Reads the row of names. `text` outlives the table.
+    explicit TextTable(std::string_view text);
+    /// The names as they stand, for messages.
+    std::string_view header() const { return header_; }
+    /// The first column with one of these names, in lower case; capitals do not matter.
+    int column(std::initializer_list<std::string_view> names) const;
+    /// To the next row, the first at first; false at the end.
+    bool next();
+    std::int64_t line() const { return rows_.line(); }
+    /// Of this row; empty for `none` and where the row is too short.
+    std::string_view field(int column) const;
+
+  private:
+    TextRows rows_;
+    std::string_view header_;
+    char separator_ = ',';
+    std::vector<std::string> names_;
+    std::vector<std::string_view> fields_;  // of this row
+};
 
 }  // namespace astrosplat

@@ -8,7 +8,7 @@
 #include <glm/vec3.hpp>
 #include <vector>
 
-#include "core/enum_names.h"
+#include "core/text.h"
 #include "source/source.h"
 
 namespace astrosplat {

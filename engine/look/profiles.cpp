@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "core/error.h"
-#include "core/quadrature.h"
+#include "core/real.h"
 #include "look/shared_look.h"
 
 namespace astrosplat {

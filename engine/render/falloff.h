@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "core/quadrature.h"
+#include "core/real.h"
 #include "render/layer_render.h"
 
 namespace astrosplat {

@@ -7,7 +7,6 @@
 #include <limits>
 
 #include "core/parallel.h"
-#include "core/quadrature.h"
 #include "core/real.h"
 #include "render/falloff.h"
 

@@ -6,7 +6,6 @@
 #include <glm/common.hpp>
 #include <iterator>
 
-#include "core/quadrature.h"
 #include "core/real.h"
 #include "core/shared_maths.h"
 #include "render/falloff.h"

@@ -8,10 +8,10 @@
 #include <cstdint>
 #include <optional>
 
-#include "core/clock.h"
 #include "core/error.h"
 #include "core/memory.h"
 #include "core/parallel.h"
+#include "core/progress.h"
 #include "render/frame.h"
 #include "render/frame_job.h"
 #include "render/scatter.h"

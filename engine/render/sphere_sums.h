@@ -17,7 +17,6 @@
 #include <vector>
 
 #include "camera/projection.h"
-#include "core/quadrature.h"
 #include "core/real.h"
 #include "core/shared_maths.h"
 #include "render/footprint.h"

@@ -13,7 +13,6 @@
 #include "core/file_format.h"
 #include "core/log.h"
 #include "core/text.h"
-#include "core/text_table.h"
 #include "scene/describe.h"
 #include "scene/entries.h"
 #include "scene/load.h"

@@ -12,7 +12,7 @@
 #include <glm/vec4.hpp>
 #include <optional>
 
-#include "core/enum_names.h"
+#include "core/text.h"
 #include "scene/parameter.h"
 #include "scene/scene.h"
 

@@ -13,7 +13,6 @@
 
 #include "core/error.h"
 #include "core/file.h"
-#include "core/folders.h"
 #include "core/log.h"
 #include "core/text.h"
 #include "scene/camera_file.h"

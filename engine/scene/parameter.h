@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "core/enum_names.h"
 #include "core/error.h"
+#include "core/text.h"
 #include "scene/parameter_key.h"
 #include "scene/value.h"
 

@@ -14,7 +14,7 @@
 
 #include "camera/camera.h"
 #include "camera/path.h"
-#include "core/enum_names.h"
+#include "core/text.h"
 #include "look/look.h"
 #include "ocio/display_transform.h"
 #include "render/environment.h"

@@ -13,7 +13,6 @@
 
 #include "core/error.h"
 #include "core/file.h"
-#include "core/folders.h"
 #include "core/hash.h"
 #include "core/log.h"
 #include "core/memory.h"

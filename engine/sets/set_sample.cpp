@@ -9,9 +9,9 @@
 
 #include "bodies/bodies.h"
 #include "bodies/picture_size.h"
-#include "core/clock.h"
 #include "core/error.h"
 #include "core/file_format.h"
+#include "core/progress.h"
 #include "generate/generate.h"
 #include "sets/kept.h"
 #include "sets/load_source.h"

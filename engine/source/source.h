@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "core/enum_names.h"
+#include "core/text.h"
 
 namespace astrosplat {
 

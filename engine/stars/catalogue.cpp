@@ -8,7 +8,6 @@
 
 #include "core/error.h"
 #include "core/text.h"
-#include "core/text_table.h"
 #include "stars/catalogue_text.h"
 
 namespace astrosplat {

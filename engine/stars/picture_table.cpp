@@ -8,7 +8,6 @@
 #include "core/file.h"
 #include "core/sorting.h"
 #include "core/text.h"
-#include "core/text_table.h"
 #include "stars/catalogue_text.h"
 
 namespace astrosplat {

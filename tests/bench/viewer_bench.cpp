@@ -18,10 +18,10 @@
 #include <thread>
 #include <vector>
 
-#include "core/clock.h"
 #include "core/color.h"
 #include "core/memory.h"
 #include "core/parallel.h"
+#include "core/progress.h"
 #include "core/shared_maths.h"
 #include "gl/preview.h"
 #include "scene/scene.h"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
-#include "core/vector_target.h"
+#include "core/parallel.h"
 #include "scene_fixture.h"
 #include "source/texture.h"
 

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "camera/camera.h"
-#include "core/enum_names.h"
+#include "core/text.h"
 #include "render/layer_render.h"
 
 namespace astrosplat::test {

@@ -4,7 +4,6 @@
 
 #include "camera/aperture.h"
 #include "core/parallel.h"
-#include "core/vector_target.h"
 #include "cross/inputs.h"
 #include "frame/frame_hash.h"
 #include "frame/output_pattern.h"

@@ -13,7 +13,6 @@
 
 #include "core/image.h"
 #include "core/parallel.h"
-#include "core/vector_target.h"
 
 namespace astrosplat::test {
 

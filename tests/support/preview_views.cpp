@@ -8,8 +8,8 @@
 #include <thread>
 #include <vector>
 
-#include "core/clock.h"
 #include "core/error.h"
+#include "core/progress.h"
 #include "support/temp_folder.h"
 #include "viewer/session.h"
 

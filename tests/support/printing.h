@@ -4,7 +4,7 @@
 #include <glm/vec3.hpp>
 #include <ostream>
 
-#include "core/enum_names.h"
+#include "core/text.h"
 
 namespace glm {
 

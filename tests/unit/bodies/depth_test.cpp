@@ -10,8 +10,8 @@
 #include "bodies/fields.h"
 #include "bodies/picture_light.h"
 #include "bodies/placement.h"
+#include "core/parallel.h"
 #include "core/shared_maths.h"
-#include "core/vector_target.h"
 #include "image/channels.h"
 #include "support/painted_picture.h"
 

@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "bodies/bodies.h"
-#include "core/enum_names.h"
+#include "core/text.h"
 #include "support/printing.h"
 
 namespace astrosplat {

@@ -23,9 +23,9 @@
 #include "core/hash.h"
 #include "core/log.h"
 #include "core/memory.h"
+#include "core/parallel.h"
 #include "core/progress.h"
 #include "core/text.h"
-#include "core/vector_target.h"
 #include "support/errors.h"
 #include "support/temp_folder.h"
 

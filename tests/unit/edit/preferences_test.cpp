@@ -5,7 +5,7 @@
 
 #include <cstddef>
 
-#include "core/folders.h"
+#include "core/file.h"
 #include "core/log.h"
 #include "edit/autosave.h"
 #include "scenes.h"

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "core/error.h"
-#include "core/folders.h"
+#include "core/file.h"
 #include "support/errors.h"
 
 namespace astrosplat {

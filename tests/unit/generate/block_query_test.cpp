@@ -6,8 +6,8 @@
 
 #include <vector>
 
+#include "core/parallel.h"
 #include "core/shared_maths.h"
-#include "core/vector_target.h"
 #include "generate/lattice.h"
 #include "unit/generate/generate_support.h"
 #include "unit/generate/lattice_positions.h"

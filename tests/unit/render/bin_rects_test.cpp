@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "core/vector_target.h"
+#include "core/parallel.h"
 #include "render/bin_rects.h"
 
 namespace astrosplat {

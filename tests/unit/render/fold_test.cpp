@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "core/error.h"
-#include "core/vector_target.h"
+#include "core/parallel.h"
 #include "render/splat_sorter.h"
 #include "support/printing.h"
 

@@ -10,7 +10,6 @@
 #include "catalogues.h"
 #include "core/error.h"
 #include "core/text.h"
-#include "core/text_table.h"
 #include "support/comma_locale.h"
 #include "support/errors.h"
 #include "support/temp_folder.h"

@@ -9,8 +9,8 @@
 #include <thread>
 #include <vector>
 
-#include "core/clock.h"
 #include "core/error.h"
+#include "core/progress.h"
 #include "output/write.h"
 #include "render/render.h"
 #include "scene/layer_setup.h"
