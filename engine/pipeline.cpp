@@ -203,7 +203,7 @@ void Pipeline::State::shade(std::size_t index, const LayerParams& params, const 
     }
     if (layer.streamed) {
         const auto start = Clock::now();
-        layer.streamed->set_look(shading.look, inputs, {{}, progress.cancelled});
+        layer.streamed->set_look(shading.look, inputs, progress.silent());
         counts = {layer.streamed->splats(), seconds_since(start)};
     } else if (layer.to_use_up) {
         layer.shaded = apply_look_in_place(*layer.to_use_up, shading.look, inputs, progress, &counts);
@@ -258,25 +258,19 @@ Pipeline::Pipeline() : state_(std::make_unique<State>()) {}
 Pipeline::Pipeline(const Scene& scene, const Progress& progress, const SetCache& cache,
                    const std::vector<std::string>& streamed)
     : state_(std::make_unique<State>()) {
-    const Progress cancel_only{{}, progress.cancelled};  // pictures are no share of the work reported
     if (has_environment(scene.environment))
-        state_->environment = load_environment(scene.environment, cancel_only, kept_skies(cache));
+        state_->environment = load_environment(scene.environment, progress.silent(), kept_skies(cache));
     state_->scene = scene;
     state_->layers.resize(scene.layers.size());
     state_->statistics.resize(scene.layers.size());
     const double count = static_cast<double>(std::max<std::size_t>(1, scene.layers.size()));
     for (std::size_t i = 0; i < scene.layers.size(); ++i) {
-        Progress part = progress;
-        if (progress.report) {
-            part.report = [&progress, i, count](double f) {
-                progress.report((static_cast<double>(i) + f) / count);
-            };
-        }
         const LayerParams& layer = scene.layers[i];
         if (std::ranges::find(streamed, layer.name) != streamed.end() && ever_visible(scene, layer))
             state_->open_layer(i);
         else
-            state_->load_layer(i, cache, part);
+            state_->load_layer(
+                i, cache, progress.part(static_cast<double>(i) / count, static_cast<double>(i + 1) / count));
     }
 }
 
@@ -290,7 +284,7 @@ void Pipeline::set_scene(const Scene& scene, std::vector<std::shared_ptr<const S
     std::optional<Environment> environment;
     const bool has_other_pictures = !same_pictures(scene.environment, state.scene.environment);
     if (has_other_pictures && has_environment(scene.environment))
-        environment = loaded ? *loaded : load_environment(scene.environment, {{}, progress.cancelled});
+        environment = loaded ? *loaded : load_environment(scene.environment, progress.silent());
     const std::vector<std::size_t> old = state.find_layers(scene, sets);
     std::vector<LayerState> layers(sets.size());
     std::vector<LayerStatistics> statistics(sets.size());
@@ -334,9 +328,8 @@ RenderedFrame Pipeline::frame(const FrameScene& frame, const RenderSettings& set
     of_sample.opacity = settings.aov_depth;
     RenderedFrame sum;
     for (int i = 0; i < samples; ++i) {
-        Progress part = progress;
-        if (progress.report)
-            part.report = [&](double fraction) { progress.report((i + fraction) / samples); };
+        const Progress part =
+            progress.part(static_cast<double>(i) / samples, static_cast<double>(i + 1) / samples);
         const Scene& then = frame.at_sample(static_cast<std::size_t>(i));
         std::vector<std::size_t> shown;  // at this moment, as indices of `drawn`
         for (std::size_t l = 0; l < drawn.size(); ++l)

@@ -20,7 +20,10 @@ namespace astrosplat {
 float display_srgb(float linear);
 
 /// Luminance of linear Rec. 709 colour (ITU-R BT.709-6, item 3.2).
-constexpr float luminance(float r, float g, float b) { return 0.2126f * r + 0.7152f * g + 0.0722f * b; }
+template <class T>
+constexpr T luminance(T r, T g, T b) {
+    return T(0.2126) * r + T(0.7152) * g + T(0.0722) * b;
+}
 
 /// CIE 1931 x, y of a set's red, green and blue and of its white (1, 1, 1).
 struct Chromaticities {

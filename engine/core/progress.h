@@ -23,6 +23,8 @@ struct Progress {
         return {[whole = report, begin, end](double fraction) { whole(begin + fraction * (end - begin)); },
                 cancelled};
     }
+    /// One that is asked to stop as this one is, and reports nothing: of work that is no share of this one's.
+    Progress silent() const { return {{}, cancelled}; }
     bool stop() const { return cancelled && cancelled->load(std::memory_order_relaxed); }
     /// Throws Cancelled after a request to stop.
     void check() const {

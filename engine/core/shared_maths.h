@@ -18,7 +18,7 @@ using glm::vec2;
 using glm::vec3;
 using glm::vec4;
 using uint = std::uint32_t;
-// These may be vectors of lanes: render/lanes-inl.h.
+// These may be vectors of lanes: core/lanes-inl.h.
 using Float = float;
 using Int = int;
 using Bool = bool;
@@ -58,6 +58,10 @@ namespace {
 #include "maths.glsl"
 // before what needs it
 #include "noise.glsl"
+// Of a splat's id, which has 64 bits.
+uint as_hash_of_id(uint seed, std::uint64_t id, uint purpose) {
+    return as_hash(seed, static_cast<uint>(id), static_cast<uint>(id >> 32), purpose);
+}
 }  // namespace
 }  // namespace astrosplat::shared
 

@@ -78,9 +78,8 @@ void fit_to_view(Gaussians& gaussians, const Image& wanted, const Camera& camera
     for (int round = 0; round < rounds; ++round) {
         const Image found = render({&layer, 1}, camera, nullptr, settings, {}, &cache).beauty;
         parallel_each(splats.position.size(), 1 << 12, [&](std::size_t i) {
-            const glm::vec3 p(projection.camera_from_layer * glm::dvec3(splats.position[i]) +
-                              projection.origin_in_camera);
-            const shared::Instance at = shared::instance_of(projection.lens, p);
+            const shared::Instance at =
+                shared::instance_of(projection.lens, to_camera(projection, splats.position[i]));
             if (!(at.depth > projection.lens.near)) return;
             if (!(at.x_px >= 0.0f && at.y_px >= 0.0f && at.x_px < float(settings.width) &&
                   at.y_px < float(settings.height)))

@@ -15,7 +15,7 @@
 #include <glm/geometric.hpp>
 #include <limits>
 
-#include "core/append-inl.h"
+#include "core/lanes-inl.h"
 #include "generate/closest_lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();

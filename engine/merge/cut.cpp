@@ -41,10 +41,7 @@ class SeenLayer {
 
     const MergedSplats& merged() const { return *layer_.merged; }
     bool is_lattice() const { return layer_.dots->lattice; }
-    glm::vec3 to_camera(const glm::vec3& p) const {
-        return glm::vec3(layer_.projection.camera_from_layer * glm::dvec3(p) +
-                         layer_.projection.origin_in_camera);
-    }
+    glm::vec3 to_camera(const glm::vec3& p) const { return astrosplat::to_camera(layer_.projection, p); }
 
     /// Whether the frame may show anything of the node, whose centre is p in camera space.
     bool shows(const NodeSums& sums, const glm::vec3& p) const {

@@ -17,7 +17,7 @@
 #include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
-#include "core/append-inl.h"
+#include "core/lanes-inl.h"
 #include "render/fold_blend-inl.h"
 #include "render/fold_prepare-inl.h"
 #include "render/fold_sphere-inl.h"

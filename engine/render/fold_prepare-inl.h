@@ -12,7 +12,7 @@
 #include <bit>
 
 #include "render/fold_blend-inl.h"
-#include "render/lanes-inl.h"
+#include "core/lanes-inl.h"
 #include "render/shape.h"
 #include "render/shared_render.h"
 #include "render/sphere.h"

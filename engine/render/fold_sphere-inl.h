@@ -10,7 +10,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/append-inl.h"
+#include "core/lanes-inl.h"
 #include "render/fold_blend-inl.h"
 #include "render/fold_prepare-inl.h"
 

@@ -34,10 +34,6 @@ struct CameraSplat {
     glm::vec3 color;
 };
 
-glm::vec3 to_camera(const LayerProjection& layer, const glm::vec3& p) {
-    return glm::vec3(layer.camera_from_layer * glm::dvec3(p) + layer.origin_in_camera);
-}
-
 CameraSplat splat_in_camera(const LayerProjection& layer, std::int64_t i) {
     const ShadedSplats& splats = *layer.splats;
     return {to_camera(layer, splats.position[i]), splats.radius[i] * layer.radius_scale, splats.alpha[i],

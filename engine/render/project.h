@@ -61,6 +61,11 @@ struct LayerProjection {
 LayerProjection make_projection(const RenderLayer& layer, std::uint16_t number, const Camera& camera,
                                 const RenderSettings& settings);
 
+/// A place in layer space, camera space; rounded to float last.
+inline glm::vec3 to_camera(const LayerProjection& layer, const glm::vec3& p) {
+    return glm::vec3(layer.camera_from_layer * glm::dvec3(p) + layer.origin_in_camera);
+}
+
 /// How much structure (lod.noise) the children of a splat get: those of dust half of it. Light that screen
 /// saturates has no room for it, and would be lost. `position` in camera space.
 float structure_of(const LayerProjection& layer, const glm::vec3& position, const glm::vec3& color,

@@ -67,11 +67,6 @@ StarLight star_light(const LayerProjection& layer, const glm::vec3& p, std::int6
     return star;
 }
 
-glm::vec3 in_camera(const LayerProjection& layer, std::int64_t index) {
-    return glm::vec3(layer.camera_from_layer * glm::dvec3(layer.splats->position[index]) +
-                     layer.origin_in_camera);
-}
-
 float brightest(const glm::vec3& light) { return std::max({light.x, light.y, light.z}); }
 
 /// Which share of a dot of a wing or a spike is drawn.
@@ -130,7 +125,7 @@ void project_stars(const LayerProjection& layer, std::int64_t begin, std::int64_
     const bool sphere = shared::is_onto_sphere(lens);
     const float period = shared::period_px(lens);
     for (std::int64_t i = begin; i < end; ++i) {
-        const glm::vec3 p = in_camera(layer, i);
+        const glm::vec3 p = to_camera(layer, layer.splats->position[i]);
         const StarLight star = star_light(layer, p, i);
         const shared::Instance at = shared::instance_of(lens, p);
         if (!(at.depth > lens.near) || !(star.infinite || shared::is_in_range(lens, at.depth))) continue;
@@ -183,7 +178,8 @@ void project_stars(const LayerProjection& layer, std::int64_t begin, std::int64_
 float largest_star_light(const LayerProjection& layer) {
     float largest = 0.0f;
     for (std::int64_t i = 0; i < layer.splats->size(); ++i)
-        largest = std::max(largest, brightest(star_light(layer, in_camera(layer, i), i).light));
+        largest = std::max(
+            largest, brightest(star_light(layer, to_camera(layer, layer.splats->position[i]), i).light));
     return largest * layer.star_dots[0].per_light * layer.opacity;
 }
 

@@ -8,7 +8,7 @@
 // foreach_target.h has to come before highway.h.
 #include <hwy/highway.h>
 
-#include "render/lanes-inl.h"
+#include "core/lanes-inl.h"
 #include "splats/splat_set.h"
 
 HWY_BEFORE_NAMESPACE();

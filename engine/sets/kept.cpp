@@ -203,7 +203,7 @@ void keep(const SetCache& cache, const std::vector<KeptFile>& entries, SplatSet&
         try {
             for (const KeptFile& entry : entries) {
                 set.recipe = entry.recipe;
-                write_native(entry.file, set, Progress{{}, progress.cancelled}, RowOrder::id, entry.part);
+                write_native(entry.file, set, progress.silent(), RowOrder::id, entry.part);
             }
         } catch (const OutputError& error) {
             warn_unkept(cache, error.what());

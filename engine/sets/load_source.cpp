@@ -41,17 +41,14 @@ std::string describe_lattice(const Lattice& lattice, double max_distance, std::i
                        max_distance, human_bytes(static_cast<double>(bytes)));
 }
 
-// Reading inputs is heard by a request to stop, but is no share of the work reported.
-Progress cancel_only(const Progress& progress) { return {{}, progress.cancelled}; }
-
 [[noreturn]] void fail(const std::string& layer_name, const InputError& error) {
     throw InputError(fmt::format("layer '{}': {}", layer_name, error.what()));
 }
 
 std::vector<TexturedMesh> load_meshes(const SourceParams& source, const std::string& layer_name,
                                       const Progress& progress, const PictureMaker& prepared) {
-    std::vector<TexturedMesh> meshes = load_meshes(
-        source, cancel_only(progress), {prepared, {}, most_texels_read(source, room_for_bodies())});
+    std::vector<TexturedMesh> meshes =
+        load_meshes(source, progress.silent(), {prepared, {}, most_texels_read(source, room_for_bodies())});
     for (const TexturedMesh& m : meshes)
         for (const Texture& texture : m.textures)
             if (!texture.summary.empty())
@@ -213,7 +210,7 @@ AutomaticValues automatic_values(const SourceParams& source, const Progress& pro
     SourceParams unprepared = source;  // which changes no picture's shape
     unprepared.texture.prepare = {};
     const std::vector<TexturedMesh> meshes =
-        load_meshes(unprepared, {{}, progress.cancelled}, {make_prepared, {}, enough_texels});
+        load_meshes(unprepared, progress.silent(), {make_prepared, {}, enough_texels});
     if (meshes.empty()) return values;
     if (has_automatic_height(source)) values.body_height = body_height(source, meshes.front());
     if (has_automatic_width(source))

@@ -89,10 +89,8 @@ std::vector<SeenStar> seen_stars(const std::vector<TableStar>& table, const Sour
                                  std::uint32_t seed, const glm::dvec2& times) {
     std::vector<SeenStar> seen;
     for (const TableStar& star : table) {
-        const auto id = static_cast<std::uint64_t>(star.row);
         const std::uint32_t hash =
-            shared::as_hash(seed, static_cast<std::uint32_t>(id), static_cast<std::uint32_t>(id >> 32),
-                            shared::PURPOSE_DEPTH);
+            shared::as_hash_of_id(seed, static_cast<std::uint64_t>(star.row), shared::PURPOSE_DEPTH);
         seen.push_back({glm::vec2((star.uv - 0.5) / times + 0.5), shared::as_uniform(hash)});
     }
     if (source.stars.depth != StarsParams::Depth::magnitude) return seen;
@@ -115,9 +113,8 @@ struct PictureOfStars {
 PictureOfStars picture_of(const SourceParams& source, const std::string& layer_name, const Progress& progress,
                           const PictureMaker& prepared) {
     const SourceParams picture = picture_source(source);
-    const Progress cancel_only{{}, progress.cancelled};
     std::vector<TexturedMesh> meshes =
-        load_meshes(picture, cancel_only, {prepared, {}, most_texels_read(picture, room_for_bodies())});
+        load_meshes(picture, progress.silent(), {prepared, {}, most_texels_read(picture, room_for_bodies())});
     const double slab = source.stars.slab;
     if (meshes.empty() || !shown_picture(meshes.front()))
         throw InputError(

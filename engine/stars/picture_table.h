@@ -11,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/color.h"
 #include "core/progress.h"
 #include "stars/catalogue.h"
 
@@ -21,7 +22,7 @@ struct TableStar {
     glm::dvec2 uv{0.0};     // on the picture; v = 0 is its lower edge
     glm::dvec3 light{0.0};  // linear, >= 0, over all pixels of the picture
     double sigma_px = 0.0;  // of the picture's pixels; 0: not known
-    double luminance() const { return 0.2126 * light.x + 0.7152 * light.y + 0.0722 * light.z; }
+    double luminance() const { return astrosplat::luminance(light.x, light.y, light.z); }
 };
 
 struct PictureTable {

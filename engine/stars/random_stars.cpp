@@ -34,8 +34,7 @@ StarKind main_sequence_star(double mass) {
 class Draws {
   public:
     Draws(std::uint32_t seed, std::uint64_t id)
-        : seed_(shared::as_hash(seed, static_cast<std::uint32_t>(id), static_cast<std::uint32_t>(id >> 32),
-                                shared::PURPOSE_STAR_PLACE)) {}
+        : seed_(shared::as_hash_of_id(seed, id, shared::PURPOSE_STAR_PLACE)) {}
 
     double uniform() {  // [0, 1)
         return double(shared::as_uniform(shared::as_hash(seed_, count_++, 0, shared::PURPOSE_STAR_PLACE)));
@@ -158,9 +157,7 @@ SplatSet random_stars(const StarTube& tube, std::span<const StarKind> kinds, std
         progress.check();
         for (std::int64_t i = begin; i < end; ++i) {
             const auto id = static_cast<std::uint64_t>(i);
-            const std::uint64_t hash =
-                shared::as_hash(seed, static_cast<std::uint32_t>(id), static_cast<std::uint32_t>(id >> 32),
-                                shared::PURPOSE_STAR_KIND);
+            const std::uint64_t hash = shared::as_hash_of_id(seed, id, shared::PURPOSE_STAR_KIND);
             const StarKind& kind = kinds[(hash * kinds.size()) >> 32];
             const glm::vec3 position(tube.radius * place_in(capsules, Draws(seed, id)));
             set.position[i] = position;

@@ -6,6 +6,7 @@
 #include <glm/common.hpp>
 #include <vector>
 
+#include "core/color.h"
 #include "core/memory.h"
 #include "core/real.h"
 
@@ -66,7 +67,7 @@ glm::dvec3 black_body_color(double kelvin) {
     for (std::size_t i = 0; i < wavelengths; ++i)
         xyz += planck(first_nm + nm * static_cast<double>(i), kelvin) * matching[i];
     const glm::dvec3 light = glm::max(rec709(xyz / xyz.y), glm::dvec3(0.0));
-    return light / (0.2126 * light.x + 0.7152 * light.y + 0.0722 * light.z);
+    return light / luminance(light.x, light.y, light.z);
 }
 
 StarColors::StarColors() {
