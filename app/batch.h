@@ -9,7 +9,7 @@
 
 #include "exit_code.h"
 #include "progress_report.h"
-#include "sets/set_cache.h"
+#include "sets/kept.h"
 
 namespace astrosplat {
 

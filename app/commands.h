@@ -12,7 +12,7 @@
 #include "batch.h"
 #include "exit_code.h"
 #include "progress_report.h"
-#include "sets/set_cache.h"
+#include "sets/kept.h"
 
 namespace astrosplat {
 

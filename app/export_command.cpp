@@ -19,7 +19,6 @@
 #include "core/text.h"
 #include "gaussians/gaussian_file.h"
 #include "gaussians/gaussians.h"
-#include "gaussians/harmonics_export.h"
 #include "interrupt.h"
 #include "pipeline.h"
 #include "places.h"

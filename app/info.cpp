@@ -23,7 +23,6 @@
 #include "source/obj.h"
 #include "splat_files/splat_file.h"
 #include "stars/catalogue.h"
-#include "stars/picture_table.h"
 
 namespace astrosplat {
 namespace fs = std::filesystem;

@@ -13,8 +13,8 @@
 #include "scene/animate.h"
 #include "scene/layer_setup.h"
 #include "sets/kept.h"
+#include "sets/load_source.h"
 #include "sets/set_sample.h"
-#include "sets/star_source.h"
 #include "splats/splat_set.h"
 
 namespace astrosplat {

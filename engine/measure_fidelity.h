@@ -16,7 +16,7 @@
 #include "fidelity/side.h"
 #include "scene/front_frame.h"
 #include "scene/scene.h"
-#include "sets/set_cache.h"
+#include "sets/kept.h"
 #include "splats/splat_set.h"
 
 namespace astrosplat {

@@ -61,10 +61,6 @@ const SplatSetFacts& facts_of(const LayerState& layer) {
     return layer.streamed ? layer.streamed->file().facts() : *layer.set;
 }
 
-bool same_pictures(const EnvironmentParams& a, const EnvironmentParams& b) {
-    return pictures_of(a) == pictures_of(b);
-}
-
 /// Where the layer is seen from.
 SeenFrom seen_from(const Camera& camera, const RenderLayer& layer) {
     const glm::dmat3 layer_from_world = glm::transpose(layer.world_from_layer);
@@ -224,16 +220,16 @@ std::vector<RenderLayer> Pipeline::State::visible_layers(const Scene& now) const
     std::vector<RenderLayer> visible;
     for (std::size_t i = 0; i < now.layers.size(); ++i) {
         if (!drawn(now, i)) continue;
-        visible.push_back(render_layer(now, now.layers[i]));
-        if (layers[i].streamed)
-            visible.back().blocks = layers[i].streamed.get();
+        const LayerState& state = layers[i];
+        RenderLayer& layer = visible.emplace_back(render_layer(now, now.layers[i]));
+        if (state.streamed)
+            layer.blocks = state.streamed.get();
         else
-            visible.back().splats = &layers[i].shaded;
-        visible.back().absorbs = facts_of(layers[i]).absorbs;
-        visible.back().gaussians = layers[i].set && holds_gaussians(*layers[i].set);
-        if (layers[i].set && !layers[i].set->harmonics.empty())
-            visible.back().directional = layers[i].set.get();
-        visible.back().star_pixels = facts_of(layers[i]).star_pixels;
+            layer.splats = &state.shaded;
+        layer.absorbs = facts_of(state).absorbs;
+        layer.gaussians = state.set && holds_gaussians(*state.set);
+        if (state.set && !state.set->harmonics.empty()) layer.directional = state.set.get();
+        layer.star_pixels = facts_of(state).star_pixels;
     }
     return visible;
 }
@@ -282,7 +278,7 @@ void Pipeline::set_scene(const Scene& scene, std::vector<std::shared_ptr<const S
     State& state = *state_;
     // All that may throw comes first: what is moved out of the old scene below is lost to it.
     std::optional<Environment> environment;
-    const bool has_other_pictures = !same_pictures(scene.environment, state.scene.environment);
+    const bool has_other_pictures = pictures_of(scene.environment) != pictures_of(state.scene.environment);
     if (has_other_pictures && has_environment(scene.environment))
         environment = loaded ? *loaded : load_environment(scene.environment, progress.silent());
     const std::vector<std::size_t> old = state.find_layers(scene, sets);

@@ -10,7 +10,7 @@
 #include "frame/frame_scene.h"
 #include "render/render.h"
 #include "scene/scene.h"
-#include "sets/set_cache.h"
+#include "sets/kept.h"
 #include "splats/splat_set.h"
 
 namespace astrosplat {

@@ -21,7 +21,7 @@
 #include "source/picture.h"
 #include "splat_files/splat_file.h"
 #include "splats/splat_set.h"
-#include "stars/picture_table.h"
+#include "stars/catalogue.h"
 
 namespace astrosplat {
 namespace fs = std::filesystem;

@@ -9,8 +9,8 @@
 #include <cmath>
 #include <utility>
 
-#include "core/clock.h"
 #include "core/file_format.h"
+#include "core/progress.h"
 #include "edit/preferences.h"
 #include "gui/dialog.h"
 #include "gui/key_codes.h"

@@ -17,7 +17,7 @@
 #include "edit/settings.h"
 #include "edit/status.h"
 #include "farm/child_process.h"
-#include "sets/set_cache.h"
+#include "sets/kept.h"
 #include "viewer/farm_job.h"
 
 namespace astrosplat {

@@ -14,7 +14,7 @@
 #include "core/worker.h"
 #include "edit/status.h"
 #include "scene/scene.h"
-#include "sets/set_cache.h"
+#include "sets/kept.h"
 #include "sets/set_sample.h"
 #include "viewer/loaded_layer.h"
 #include "viewer/set_list.h"

@@ -7,7 +7,7 @@
 
 #include "edit/settings.h"
 #include "scene/load.h"
-#include "sets/set_cache.h"
+#include "sets/kept.h"
 
 namespace astrosplat {
 

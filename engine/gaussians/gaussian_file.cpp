@@ -1,31 +1,38 @@
-// One row of floats a Gaussian in both formats; glTF calls that interleaved.
+// PLY and glTF: one row of floats a Gaussian, which glTF calls interleaved. USD: each array is as many rows
+// of text as there are Gaussians, or as their harmonics; they follow each other as rows of one long table.
 #include "gaussians/gaussian_file.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <bit>
+#include <cassert>
 #include <cstring>
+#include <glm/common.hpp>
+#include <initializer_list>
 #include <limits>
 #include <string>
+#include <string_view>
 
 #include "core/color.h"
 #include "core/error.h"
 #include "core/real.h"
+#include "splat_files/number_text.h"
 #include "splat_files/ordered_writer.h"
 #include "splats/harmonics.h"
 
 namespace astrosplat {
+
 namespace {
 
 static_assert(std::endian::native == std::endian::little);
 
-constexpr std::int64_t gaussians_written_at_once = 1 << 14;
+constexpr std::int64_t rows_written_at_once = 1 << 14;
 constexpr double least_scale = 1e-30;            // scene units, of a Gaussian that is flat
 constexpr int ply_floats = 17, glb_floats = 18;  // without harmonics beyond degree 0
 
 /// Harmonics beyond degree 0, each of three numbers.
-int rest_of(const Gaussians& g) { return (g.degree + 1) * (g.degree + 1) - 1; }
+int rest_of(const Gaussians& g) { return static_cast<int>(g.harmonics_each()) - 1; }
 
 glm::vec3 first_harmonic(const Gaussians& g, std::size_t i) {
     return g.degree > 0 ? g.harmonics[i].c[0] : mean_coefficient(g.color[i]);
@@ -69,7 +76,7 @@ char* put_glb_row(char* out, const Gaussians& g, bool encoded, std::size_t i) {
 template <class PutRow>
 void write_rows(const WriteTarget& target, const std::string& header, const Gaussians& g, int floats,
                 const Progress& progress, const PutRow& put_row) {
-    write_ordered(target, header, g.size(), gaussians_written_at_once,
+    write_ordered(target, header, g.size(), rows_written_at_once,
                   static_cast<std::size_t>(floats) * sizeof(float), progress,
                   [&](std::int64_t begin, std::int64_t end, char* out) {
                       for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i)
@@ -103,9 +110,9 @@ std::vector<GlbAttribute> glb_attributes(int degree) {
     attributes.push_back({"COLOR_0", 4});
     return attributes;
 }
-int glb_floats_of(const Gaussians& g) {
-    return glb_floats + 3 * rest_of(g);
-}  // 63 are the most that glTF allows
+
+// 63 are the most that glTF allows.
+int glb_floats_of(const Gaussians& g) { return glb_floats + 3 * rest_of(g); }
 
 std::string glb_json(const Gaussians& g, bool encoded, std::int64_t bytes) {
     std::string names, accessors;
@@ -162,6 +169,96 @@ void write_gaussian_glb(const WriteTarget& target, const Gaussians& gaussians, b
                                number_bytes(static_cast<std::uint32_t>(bytes)) + std::string("BIN\0", 4);
     write_rows(target, header, gaussians, floats, progress,
                [&](char* out, std::size_t i) { return put_glb_row(out, gaussians, encoded, i); });
+}
+
+namespace {
+
+enum Array { positions, orientations, scales, opacities, radiance, arrays };
+constexpr std::string_view beginnings[arrays] = {
+    "    point3f[] positions = [",
+    "    quatf[] orientations = [",
+    "    float3[] scales = [",
+    "    float[] opacities = [",
+    "    float3[] radiance:sphericalHarmonicsCoefficients = [",
+};
+constexpr std::size_t longest_row = 4 * (float_text_room + 2) + 256;  // with what begins or ends an array
+
+char* put_text(char* out, std::string_view text) {
+    std::memcpy(out, text.data(), text.size());
+    return out + text.size();
+}
+
+char* put_numbers(char* out, std::initializer_list<float> numbers) {
+    *out++ = '(';
+    for (const float& number : numbers) {
+        if (&number != numbers.begin()) out = put_text(out, ", ");
+        out = put_float(out, number);
+    }
+    *out++ = ')';
+    return out;
+}
+
+char* put_value(char* out, const Gaussians& g, int array, std::size_t i) {
+    if (array == radiance && !g.harmonics.empty()) {
+        const glm::vec3 c = g.harmonics[i / g.harmonics_each()].c[i % g.harmonics_each()];
+        return put_numbers(out, {c.x, c.y, c.z});
+    }
+    const glm::vec3 p = g.position[i], s = g.scale[i], c = mean_coefficient(g.color[i]);
+    const glm::vec4 q = g.rotation[i];
+    if (array == positions) return put_numbers(out, {p.x, p.y, p.z});
+    if (array == orientations) return put_numbers(out, {q.w, q.x, q.y, q.z});
+    if (array == scales) return put_numbers(out, {s.x, s.y, s.z});
+    if (array == opacities) return put_float(out, g.alpha[i]);
+    return put_numbers(out, {c.x, c.y, c.z});
+}
+
+std::string array_end(const Gaussians& g, int array) {
+    if (array != radiance) return "]\n";
+    return fmt::format("] (\n        elementSize = {}\n        interpolation = \"vertex\"\n    )\n",
+                       g.harmonics_each());
+}
+
+char* put_row(char* out, const Gaussians& g, std::int64_t row) {
+    const auto array = static_cast<int>(std::min<std::int64_t>(row / g.size(), radiance));
+    const std::int64_t i = row - array * g.size(),
+                       count = g.size() * (array == radiance ? rest_of(g) + 1 : 1);
+    out = put_text(out, i == 0 ? beginnings[array] : ", ");
+    if (i > 0 && i % 8 == 0) out = put_text(out, "\n        ");
+    out = put_value(out, g, array, static_cast<std::size_t>(i));
+    return i + 1 < count ? out : put_text(out, array_end(g, array));
+}
+
+/// Three standard deviations around all centres.
+std::string extent_text(const Gaussians& g) {
+    glm::vec3 lo(std::numeric_limits<float>::max()), hi(-lo);
+    for (std::size_t i = 0; i < g.position.size(); ++i) {
+        const glm::vec3& s = g.scale[i];
+        const glm::vec3 reach(3.0f * glm::max(s.x, glm::max(s.y, s.z)));
+        lo = glm::min(lo, g.position[i] - reach);
+        hi = glm::max(hi, g.position[i] + reach);
+    }
+    return fmt::format("[({}, {}, {}), ({}, {}, {})]", lo.x, lo.y, lo.z, hi.x, hi.y, hi.z);
+}
+
+}  // namespace
+
+void write_gaussian_usda(const WriteTarget& target, const Gaussians& gaussians, const Progress& progress) {
+    assert(gaussians.size() > 0);
+    const std::string header =
+        "#usda 1.0\n(\n    defaultPrim = \"Splats\"\n    metersPerUnit = 1\n    upAxis = \"Y\"\n)\n\n"
+        "def ParticleField3DGaussianSplat \"Splats\"\n{\n    float3[] extent = " +
+        extent_text(gaussians) +
+        "\n    uniform token projectionModeHint = \"perspective\"\n"
+        "    uniform token sortingModeHint = \"cameraDistance\"\n" +
+        fmt::format("    uniform int radiance:sphericalHarmonicsDegree = {}\n", gaussians.degree);
+    write_ordered(
+        target, header, (radiance + 1 + rest_of(gaussians)) * gaussians.size(), rows_written_at_once,
+        longest_row, progress,
+        [&](std::int64_t begin, std::int64_t end, char* out) {
+            for (std::int64_t row = begin; row < end; ++row) out = put_row(out, gaussians, row);
+            return out;
+        },
+        [] { return std::string("}\n"); });
 }
 
 }  // namespace astrosplat

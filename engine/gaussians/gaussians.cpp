@@ -1,20 +1,167 @@
+// Fewer splats in the place of many; how each looks on a frame; the Gaussians that are made of them.
 #include "gaussians/gaussians.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
+#include <memory>
 
+#include "core/bounds.h"
 #include "core/color.h"
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "core/real.h"
 #include "core/rotation.h"
-#include "gaussians/appearance.h"
-#include "gaussians/harmonics_export.h"
-#include "render/falloff.h"
+#include "merge/cut.h"
+#include "merge/tree.h"
+#include "render/footprint.h"
+#include "render/shared_render.h"
 
 namespace astrosplat {
+
+namespace {
+
+constexpr double frame_px = 65536.0;  // of the frame that shows the whole model: every splat has some size
+
+/// A set of what the look left, because the tree is of a set.
+std::shared_ptr<const SplatSet> set_of(const RenderLayer& layer) {
+    const ShadedSplats& splats = *layer.splats;
+    auto set = std::make_shared<SplatSet>();
+    set->absorbs = layer.absorbs;
+    set->position = splats.position;
+    set->color = splats.color;
+    set->alpha = splats.alpha;
+    set->radius = splats.radius;
+    set->id = splats.id;
+    set->distance.assign(splats.position.size(), 0.0f);
+    return set;
+}
+
+/// A camera with parallel rays that shows all positions.
+Camera camera_around(std::span<const RenderLayer> layers, const glm::dmat3& world_from_camera) {
+    Bounds box;
+    for (const RenderLayer& layer : layers)
+        for (const glm::vec3& p : layer.splats->position) box.add(layer.to_world(glm::dvec3(p)));
+    const double size = std::max(glm::length(box.extent()), 1e-6);
+    Camera camera;
+    camera.projection = Projection::orthographic;
+    camera.world_from_camera = world_from_camera;
+    camera.eye = box.center() + 2.0 * size * world_from_camera[2];
+    camera.focal_px = frame_px / (1.1 * size);
+    camera.center_x_px = camera.center_y_px = 0.5 * frame_px;
+    camera.near = 1e-3 * size;
+    return camera;
+}
+
+ShadedSplats with_opacity(const RenderLayer& layer) {
+    ShadedSplats splats = *layer.splats;
+    for (float& alpha : splats.alpha) alpha *= layer.render.opacity;
+    return splats;
+}
+
+}  // namespace
+
+std::vector<ShadedSplats> reduce_splats(std::span<const RenderLayer> layers,
+                                        const glm::dmat3& world_from_camera, std::int64_t count,
+                                        const Progress& progress) {
+    std::vector<ShadedSplats> reduced;
+    std::int64_t all = 0;
+    for (const RenderLayer& layer : layers) all += layer.splats->size();
+    if (all <= count) {
+        for (const RenderLayer& layer : layers) reduced.push_back(with_opacity(layer));
+        return reduced;
+    }
+    RenderSettings frame;
+    frame.width = frame.height = static_cast<std::int64_t>(frame_px);
+    const Camera camera = camera_around(layers, world_from_camera);
+    std::vector<MergedSplats> merged(layers.size());
+    std::vector<DotSettings> dots;
+    for (const RenderLayer& layer : layers) dots.emplace_back(layer.render);
+    std::vector<CutLayer> cuts;
+    for (std::size_t i = 0; i < layers.size(); ++i) {
+        const std::shared_ptr<const SplatSet> set = set_of(layers[i]);
+        const auto tree = std::make_shared<const MergeTree>(build_merge_tree(*set, progress));
+        merged[i] = merge_splats({set, tree}, *layers[i].splats, progress);
+        RenderLayer plain = layers[i];
+        plain.render.lod = {};  // nobody looks from there, however near
+        cuts.push_back(
+            {&merged[i], &dots[i], make_projection(plain, static_cast<std::uint16_t>(i), camera, frame)});
+    }
+    CutSettings settings;
+    settings.budget = count;
+    settings.least_px = 0.0f;
+    settings.width = settings.height = frame.width;
+    return cut_splats(cuts, settings);
+}
+
+namespace {
+
+/// A Gaussian is its own nearest one.
+GaussianProfile profile_of(const RenderLayer& layer) {
+    const Falloff& falloff = layer.render.falloff;
+    if (layer.gaussians && falloff.shape == Falloff::Shape::gaussian)
+        return {1.0, std::sqrt(0.5 / double(falloff.sharpness))};
+    return nearest_gaussian(falloff);
+}
+
+}  // namespace
+
+LayerAppearance::LayerAppearance(const RenderLayer& layer, const Camera& camera, double gain)
+    : layer_(layer),
+      camera_(camera),
+      gain_(static_cast<float>(gain)),
+      profile_(profile_of(layer)),
+      axis_(glm::normalize(layer.world_from_layer * layer.axis)) {
+    assert(layer.splats && !layer.stars);
+}
+
+SplatAppearance LayerAppearance::of(std::size_t i, BakeCounts& counts) const {
+    const ShadedSplats& splats = *layer_.splats;
+    SplatAppearance seen;
+    seen.place = layer_.to_world(glm::dvec3(splats.position[i]));
+    seen.sigma = profile_.sigma * splats.radius[i] * layer_.scale;
+    const float s = std::min(1.0f, splats.alpha[i] * layer_.render.opacity);
+    glm::vec3 color = splats.color[i];
+    if (splats.encoded)
+        for (int k = 0; k < 3; ++k) color[k] = static_cast<float>(real::srgb_to_linear(color[k]));
+    const Blended blend = blended(color, s, seen.place, counts);
+    seen.shows = profile_.peak * s;
+    seen.hides = profile_.peak * blend.hides;
+    seen.light = profile_.peak * glm::dvec3(blend.light);
+    return seen;
+}
+
+glm::dmat3 LayerAppearance::axes_of(std::size_t i) const {
+    const ShadedSplats& splats = *layer_.splats;
+    return splats.stretch.empty() ? layer_.world_from_layer
+                                  : layer_.world_from_layer * glm::dmat3(splats.stretch[i]);
+}
+
+LayerAppearance::Blended LayerAppearance::blended(const glm::vec3& color, float s, const glm::dvec3& place,
+                                                  BakeCounts& counts) const {
+    const LayerRender& r = layer_.render;
+    const int blend = static_cast<int>(r.blend);
+    if (r.holdout) return {s, glm::vec3(0.0f)};
+    if (shared::blend_absorbs(blend, color.x)) {
+        ++counts.dust;
+        double let_through = 0.0;
+        for (int k = 0; k < 3; ++k)
+            let_through += real::pow(1.0 - s, shared::blend_exponent(blend, color[k], r.absorb[k])) / 3.0;
+        return {static_cast<float>(1.0 - let_through), glm::vec3(0.0f)};
+    }
+    const glm::vec3 light = s * gain_ * color;
+    const float bright = std::min(1.0f, std::max({color.x, color.y, color.z}) * gain_);
+    return {s * shared::blend_occlusion(blend, bright, hybrid(place)), light};
+}
+
+float LayerAppearance::hybrid(const glm::dvec3& place) const {
+    if (layer_.render.blend != Blend::hybrid) return 0.0f;
+    return shared::hybrid_amount(static_cast<float>(std::abs(glm::dot(axis_, direction_to(camera_, place)))),
+                                 layer_.render.hybrid_from_deg, layer_.render.hybrid_to_deg);
+}
+
 namespace {
 
 /// Integral of w(t) e^(-k t^2) over the unit disc.
@@ -122,6 +269,47 @@ class Baker {
     const RenderLayer& layer_;
     LayerAppearance appearance_;
     glm::dvec4 turn_;
+};
+
+/// The largest with a coefficient that is not 0.
+int degree_of(const Buffer<Harmonics>& harmonics) {
+    int degree = 0;
+    for (const Harmonics& h : harmonics) {
+        for (std::size_t k = harmonics_up_to(degree); k < Harmonics::count; ++k)
+            if (h.c[k] != glm::vec3(0.0f))
+                degree = k < harmonics_up_to(1) ? 1 : k < harmonics_up_to(2) ? 2 : 3;
+        if (degree == 3) break;
+    }
+    return degree;
+}
+
+/// Takes the source's harmonics of a layer along while its splats are baked one after the other.
+class HarmonicsTaker {
+  public:
+    HarmonicsTaker(const RenderLayer& layer, Gaussians& out) : layer_(layer), taken_(out.position.size()) {
+        if (!layer.directional) return;
+        const std::size_t all = out.position.size() + layer.splats->position.size();
+        claim_memory(static_cast<std::int64_t>(all * sizeof(Harmonics)), "harmonics");
+        out.harmonics.reserve(all);
+        out.harmonics.resize(out.position.size());
+        out.degree = std::max(out.degree, degree_of(layer.directional->harmonics));
+        out.sources.push_back({out.position.size(), out.position.size(), layer.directional->display_harmonics,
+                               layer.world_from_layer});
+    }
+
+    /// Of splat i, if it became the last Gaussian of `out`.
+    void take(std::size_t i, Gaussians& out) {
+        if (!layer_.directional || out.position.size() == taken_) return;
+        taken_ = out.position.size();
+        // Both are in ascending order of id, and no row is there twice.
+        while (layer_.directional->id[row_] != layer_.splats->id[i]) ++row_;
+        out.harmonics.push_back(layer_.directional->harmonics[row_]);
+        out.sources.back().end = out.harmonics.size();
+    }
+
+  private:
+    const RenderLayer& layer_;
+    std::size_t row_ = 0, taken_ = 0;
 };
 
 }  // namespace

@@ -1,8 +1,10 @@
 // A scene's splats as the Gaussians that other programs draw (3D Gaussian Splatting). In: shaded layers, a
 // camera and an exposure. Out: Gaussians in world space, which are laid over each other; fewer splats in the
 // place of many before, and colours that look right where readers blend display values after.
+// Also how each splat looks on a frame, as a Gaussian, for whatever is written for other programs.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
@@ -26,6 +28,11 @@ struct HarmonicsSource {
     glm::dmat3 turn{1.0};  // of their axes to the world's
 };
 
+/// How many there are of degree 0 to `degree`.
+constexpr std::size_t harmonics_up_to(int degree) {
+    return static_cast<std::size_t>((degree + 1) * (degree + 1));
+}
+
 /// A Gaussian's weight is alpha e^(-d^2 / 2), d the distance from its centre on the frame in its own standard
 /// deviations there.
 struct Gaussians {
@@ -41,6 +48,7 @@ struct Gaussians {
     std::vector<HarmonicsSource> sources;  // in ascending order; Gaussians of none have no directions
 
     std::int64_t size() const { return static_cast<std::int64_t>(position.size()); }
+    std::size_t harmonics_each() const { return harmonics_up_to(degree); }
 };
 
 /// The Gaussian that stands for a dot of alpha 1 and radius 1.
@@ -66,17 +74,65 @@ struct BakeCounts {
     double share_lost() const { return flux > 0.0 ? lost / flux : 0.0; }
 };
 
+/// How a splat looks on a frame, blend and exposure applied. Values hold at the centre; elsewhere on the
+/// frame they fall as e^(-d^2 / 2), d in standard deviations. Above 1 where a dot has a flat middle, whose
+/// integral the Gaussian has.
+struct SplatAppearance {
+    glm::dvec3 place{0.0};  // scene units, world space
+    double sigma = 0.0;     // standard deviation of the ball, scene units
+    double shows = 0.0;     // its own opacity
+    double hides = 0.0;     // of what lies behind it, by its layer's blend
+    glm::dvec3 light{0.0};  // linear, exposed
+};
+
+/// What each splat of a shaded layer shows, hides and shines.
+class LayerAppearance {
+  public:
+    /// `gain` multiplies light. The layer and the camera must outlive this. Stars have no size in the scene:
+    /// none may be given.
+    LayerAppearance(const RenderLayer& layer, const Camera& camera, double gain);
+
+    /// Of the layer's splat i; dust that absorbs by channels is counted.
+    SplatAppearance of(std::size_t i, BakeCounts& counts) const;
+    /// World axes that the ball of standard deviation 1 becomes, as columns: a turn where splats are balls.
+    glm::dmat3 axes_of(std::size_t i) const;
+
+  private:
+    struct Blended {
+        float hides = 1.0f;
+        glm::vec3 light{0.0f};
+    };
+    Blended blended(const glm::vec3& color, float s, const glm::dvec3& place, BakeCounts& counts) const;
+    float hybrid(const glm::dvec3& place) const;
+
+    const RenderLayer& layer_;
+    const Camera& camera_;
+    float gain_;
+    GaussianProfile profile_;
+    glm::dvec3 axis_;
+};
+
 /// Appends a layer's splats; `gain` multiplies their light. The Gaussian of a splat has its integral: where
 /// the peak of what it hides would exceed 1, it is 1 and the Gaussian is wider. Readers know one blend, over:
 /// its alpha is what the splat hides under the layer's blend (add nothing, screen its colour, hybrid as seen
 /// from the camera), but never less than its light needs with colours of at most 1. Stars have no size in
 /// the scene: none may be given. Gaussians keep their shape, and their colour also beyond 1; it is the one
-/// seen from the camera, and their harmonics are kept beside it (harmonics_export.h).
+/// seen from the camera, and the harmonics of their set are kept beside it, for finish_harmonics().
 void bake_layer(const RenderLayer& layer, const Camera& camera, double gain, Gaussians& out,
                 BakeCounts& counts);
 
 /// Colours as a display shows them, for readers that blend those.
 void encode_for_display(Gaussians& gaussians);
+
+/// Brings harmonics to what their Gaussians' colours became, as a camera sees them. A look is no operator on
+/// harmonics: what it did to a Gaussian is known in the one direction that the frame sees it from, and there
+/// the result is exact. To all others the factors of that direction are applied, channel by channel: exact
+/// for a look that scales linear light where harmonics are linear, and for none at all. `encoded`: these are
+/// display values. Harmonics of the other space are evaluated all around, converted, and fitted again in the
+/// same degree: nearest in the mean over all directions, and exact in the camera's by the least change over
+/// all. A factor ends at four times that of the three channels together, which also stands for those where
+/// the source is dark: nothing else says what the look does there.
+void finish_harmonics(Gaussians& gaussians, const Camera& camera, bool encoded);
 
 /// Changes colours, and alphas where colours would exceed 1, until the encoded Gaussians laid over each other
 /// as they are look from the camera like `wanted` on black, encoded: piles of faint splats would be too dark.

@@ -14,7 +14,6 @@
 #include <utility>
 
 #include "core/parallel.h"
-#include "merge/cloud_light.h"
 #include "render/shared_render.h"
 #include "splats/splat_set.h"
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "merge/tree.h"
-#include "render/layer_render.h"
+#include "render/frame.h"
 #include "render/project.h"
 
 namespace astrosplat {
@@ -61,6 +61,20 @@ struct Across {
 /// n of them spread over the dot's disc at random let through what the dot does: its depth is n times that of
 /// one splat thinned to the disc.
 Dot make_dot(const DotSettings& settings, const NodeSums& sums, const Across& across, float hybrid);
+
+/// A splat, or a dot in place of many.
+struct CloudPlace {
+    glm::vec3 centre{0.0f}, spread{0.0f};  // and standard deviations of its light along the axes; layer space
+    glm::vec3 in_camera{0.0f};             // the centre
+    float radius = 0.0f;                   // of the splat, or of those that the dot stands for; layer space
+    float alpha = 0.0f;
+    glm::vec3 color{0.0f};
+};
+
+/// Factor of the light of such a place that lod.noise gives it close by, for a preview that does not divide
+/// splats: light is where the children would have it, but for what is finer than the splat. > 0; 1 where the
+/// splats would not become children, or the layer has no such noise.
+float cloud_light(const LayerProjection& layer, const CloudPlace& place);
 
 struct CutLayer {
     const MergedSplats* merged = nullptr;

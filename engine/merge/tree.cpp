@@ -164,19 +164,7 @@ NodeSums sums_of_leaf(const MergedSplats& merged, const MergeNode& node) {
     return sums;
 }
 
-/// Of each row of the set its place in `splats`, which are some of its rows in the same order.
-Buffer<std::int64_t> places_of_rows(const SplatSet& set, const ShadedSplats& splats) {
-    Buffer<std::int64_t> place(set.id.size());
-    std::int64_t i = 0;
-    for (std::int64_t row = 0; row < set.size(); ++row) {
-        const bool kept = i < splats.size() && splats.id[i] == set.id[row];
-        place[row] = kept ? i++ : -1;
-    }
-    return place;
-}
-
-}  // namespace
-
+/// The sums of a + b.
 NodeSums add_sums(const NodeSums& a, const NodeSums& b) {
     if (!(a.cover > 0.0f)) return b;
     if (!(b.cover > 0.0f)) return a;
@@ -191,6 +179,19 @@ NodeSums add_sums(const NodeSums& a, const NodeSums& b) {
     adder.finish(cover, sums);
     return sums;
 }
+
+/// Of each row of the set its place in `splats`, which are some of its rows in the same order.
+Buffer<std::int64_t> places_of_rows(const SplatSet& set, const ShadedSplats& splats) {
+    Buffer<std::int64_t> place(set.id.size());
+    std::int64_t i = 0;
+    for (std::int64_t row = 0; row < set.size(); ++row) {
+        const bool kept = i < splats.size() && splats.id[i] == set.id[row];
+        place[row] = kept ? i++ : -1;
+    }
+    return place;
+}
+
+}  // namespace
 
 MergedSplats merge_splats(const MergeSource& source, ShadedSplats splats, const Progress& progress) {
     const SplatSet& set = *source.set;

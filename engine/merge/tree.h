@@ -60,9 +60,6 @@ struct NodeSums {
 };
 static_assert(sizeof(NodeSums) == 64);
 
-/// The sums of a + b.
-NodeSums add_sums(const NodeSums& a, const NodeSums& b);
-
 /// A set, or a sample of one, with its tree.
 struct MergeSource {
     std::shared_ptr<const SplatSet> set;

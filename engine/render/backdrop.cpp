@@ -14,6 +14,8 @@ namespace astrosplat {
 namespace {
 
 constexpr std::int64_t block_px = 8;
+constexpr float pole_share =
+    0.04f;  // of the picture's height, above and below: rows that count as round a pole
 
 void draw_exactly(const Environment& environment, const Camera& camera, const Region& part, Image& image) {
     for (std::int64_t y = part.y; y < part.y + part.height; ++y) {
@@ -61,7 +63,7 @@ class Places {
             if (turn > 0.5f * size_.x) corner[i].x -= size_.x;
             if (turn < -0.5f * size_.x) corner[i].x += size_.x;
             const float latitude = corner[i].y / size_.y;
-            if (latitude < 0.04f || latitude > 0.96f) return false;
+            if (latitude < pole_share || latitude > 1.0f - pole_share) return false;
         }
         return true;
     }

@@ -8,7 +8,7 @@
 
 #include "render/fold_batch.h"
 #include "render/shape.h"
-#include "render/sphere.h"
+#include "render/sphere_shape.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "render/fold.cpp"
@@ -20,7 +20,6 @@
 #include "core/lanes-inl.h"
 #include "render/fold_blend-inl.h"
 #include "render/fold_prepare-inl.h"
-#include "render/fold_sphere-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace astrosplat::HWY_NAMESPACE {

@@ -15,7 +15,7 @@
 #include "core/image.h"
 #include "core/progress.h"
 #include "render/footprint.h"
-#include "render/layer_render.h"
+#include "render/frame.h"
 #include "render/screen_splat.h"
 
 namespace astrosplat {

@@ -190,6 +190,67 @@ std::vector<std::int64_t> watched_rows(const FrameJob& job, const Tiles& tiles) 
     return heights;
 }
 
+/// Calls visit(layer, splats, shapes, how many splats each of these stands for) for a sample of all layers.
+template <class Visit>
+void sample_layers(std::span<const LayerProjection> layers, const TileGrid& grid, const Progress& progress,
+                   const Visit& visit) {
+    constexpr std::int64_t block = 16, stride = 64 * block;
+    const ScreenRect rect = rect_of(grid);
+    Buffer<ScreenSplat> splats;
+    Buffer<Shape> shapes;
+    const auto sample = [&](const LayerProjection& layer, std::int64_t begin, std::int64_t end, double each) {
+        progress.check();
+        splats.clear();
+        shapes.clear();
+        project(layer, begin, end, rect, splats, shapes);
+        visit(layer, splats, shapes, each);
+    };
+    for (const LayerProjection& layer : layers) {
+        if (layer.blocks) {
+            LayerProjection here = layer;
+            here.splats = &layer.blocks->sample();
+            const std::vector<BlockFacts>& blocks = layer.blocks->blocks();
+            for (std::size_t b = 0; b + 1 < blocks.size(); ++b) {
+                const std::int64_t begin = blocks[b].first_sample, end = blocks[b + 1].first_sample;
+                const double each = static_cast<double>(blocks[b].splats) /
+                                    static_cast<double>(std::max<std::int64_t>(1, end - begin));
+                for (std::int64_t i = begin; i < end; i += block)
+                    sample(here, i, std::min(i + block, end), each);
+            }
+            continue;
+        }
+        const std::int64_t count = layer.splats->size(), rest = count % stride;
+        const std::int64_t sampled = count / stride * block + std::min(rest, block);
+        const double each =
+            static_cast<double>(count) / static_cast<double>(std::max<std::int64_t>(1, sampled));
+        for (std::int64_t begin = 0; begin < count; begin += stride)
+            sample(layer, begin, std::min(begin + block, count), each);
+    }
+}
+
+/// Records that a splat leaves in tiles of a size, about.
+float records_of(const LayerProjection& layer, const ScreenSplat& splat, const Buffer<Shape>& shapes,
+                 int tile_px) {
+    const float tiles = 1.0f + 2.0f * support_px(layer, splat, shapes) / static_cast<float>(tile_px);
+    return std::min(9.0f, tiles * tiles);
+}
+
+/// Records that the layers will take in tiles of each of the sizes, estimated from every 64th block
+/// of splats, and from the sample of those that come by the block.
+std::vector<std::int64_t> estimate_records(std::span<const LayerProjection> layers, const TileGrid& grid,
+                                           std::span<const int> tile_sizes_px, const Progress& progress) {
+    std::vector<double> sums(tile_sizes_px.size(), 0.0);
+    sample_layers(layers, grid, progress,
+                  [&](const LayerProjection& layer, const auto& splats, const auto& shapes, double each) {
+                      for (const ScreenSplat& splat : splats)
+                          for (std::size_t t = 0; t < sums.size(); ++t)
+                              sums[t] += each * records_of(layer, splat, shapes, tile_sizes_px[t]);
+                  });
+    std::vector<std::int64_t> records;
+    for (const double sum : sums) records.push_back(static_cast<std::int64_t>(sum));
+    return records;
+}
+
 }  // namespace
 
 /// Large tiles cut fewer splats into several records; small ones keep a tile's records in a core's cache.
@@ -247,69 +308,6 @@ Bands make_bands(const FrameJob& job) {
     return bands;
 }
 
-namespace {
-
-/// Calls visit(layer, splats, shapes, how many splats each of these stands for) for a sample of all layers.
-template <class Visit>
-void sample_layers(std::span<const LayerProjection> layers, const TileGrid& grid, const Progress& progress,
-                   const Visit& visit) {
-    constexpr std::int64_t block = 16, stride = 64 * block;
-    const ScreenRect rect = rect_of(grid);
-    Buffer<ScreenSplat> splats;
-    Buffer<Shape> shapes;
-    const auto sample = [&](const LayerProjection& layer, std::int64_t begin, std::int64_t end, double each) {
-        progress.check();
-        splats.clear();
-        shapes.clear();
-        project(layer, begin, end, rect, splats, shapes);
-        visit(layer, splats, shapes, each);
-    };
-    for (const LayerProjection& layer : layers) {
-        if (layer.blocks) {
-            LayerProjection here = layer;
-            here.splats = &layer.blocks->sample();
-            const std::vector<BlockFacts>& blocks = layer.blocks->blocks();
-            for (std::size_t b = 0; b + 1 < blocks.size(); ++b) {
-                const std::int64_t begin = blocks[b].first_sample, end = blocks[b + 1].first_sample;
-                const double each = static_cast<double>(blocks[b].splats) /
-                                    static_cast<double>(std::max<std::int64_t>(1, end - begin));
-                for (std::int64_t i = begin; i < end; i += block)
-                    sample(here, i, std::min(i + block, end), each);
-            }
-            continue;
-        }
-        const std::int64_t count = layer.splats->size(), rest = count % stride;
-        const std::int64_t sampled = count / stride * block + std::min(rest, block);
-        const double each =
-            static_cast<double>(count) / static_cast<double>(std::max<std::int64_t>(1, sampled));
-        for (std::int64_t begin = 0; begin < count; begin += stride)
-            sample(layer, begin, std::min(begin + block, count), each);
-    }
-}
-
-/// Records that a splat leaves in tiles of a size, about.
-float records_of(const LayerProjection& layer, const ScreenSplat& splat, const Buffer<Shape>& shapes,
-                 int tile_px) {
-    const float tiles = 1.0f + 2.0f * support_px(layer, splat, shapes) / static_cast<float>(tile_px);
-    return std::min(9.0f, tiles * tiles);
-}
-
-}  // namespace
-
-std::vector<std::int64_t> estimate_records(std::span<const LayerProjection> layers, const TileGrid& grid,
-                                           std::span<const int> tile_sizes_px, const Progress& progress) {
-    std::vector<double> sums(tile_sizes_px.size(), 0.0);
-    sample_layers(layers, grid, progress,
-                  [&](const LayerProjection& layer, const auto& splats, const auto& shapes, double each) {
-                      for (const ScreenSplat& splat : splats)
-                          for (std::size_t t = 0; t < sums.size(); ++t)
-                              sums[t] += each * records_of(layer, splat, shapes, tile_sizes_px[t]);
-                  });
-    std::vector<std::int64_t> records;
-    for (const double sum : sums) records.push_back(static_cast<std::int64_t>(sum));
-    return records;
-}
-
 DepthSample sample_depths(std::span<const LayerProjection> layers, const TileGrid& grid,
                           const Progress& progress) {
     DepthSample sample;
@@ -321,6 +319,42 @@ DepthSample sample_depths(std::span<const LayerProjection> layers, const TileGri
         });
     std::ranges::sort(sample.shares, {}, &DepthShare::depth);
     return sample;
+}
+
+double DepthSample::records() const {
+    double all = 0.0;
+    for (const DepthShare& share : shares) all += share.records;
+    return all;
+}
+
+std::vector<DepthRange> DepthSample::cut(double most_records, std::uint32_t first) const {
+    std::vector<DepthRange> ranges = {{first, 0xffffffffu}};
+    double records = 0.0;
+    for (std::size_t i = 0; i < shares.size(); ++i) {
+        if (shares[i].depth < first) continue;
+        records += shares[i].records;
+        const bool may_cut = i > 0 && shares[i].depth > std::max(shares[i - 1].depth, ranges.back().first);
+        if (!may_cut || records <= most_records) continue;
+        ranges.back().last = shares[i].depth - 1;
+        ranges.push_back({shares[i].depth, 0xffffffffu});
+        records = shares[i].records;
+    }
+    return ranges;
+}
+
+std::pair<DepthRange, DepthRange> DepthSample::halve(const DepthRange& range) const {
+    double all = 0.0, near = 0.0;
+    for (const DepthShare& share : shares) all += range.holds(share.depth) ? share.records : 0.0;
+    std::uint32_t last = range.first + (range.last - range.first) / 2;
+    for (const DepthShare& share : shares) {
+        if (!range.holds(share.depth)) continue;
+        near += share.records;
+        if (2.0 * near < all) continue;
+        // Beyond the sample's ends there may be many; no range is to be tried twice.
+        if (share.depth > range.first && share.depth < range.last) last = share.depth;
+        break;
+    }
+    return {{range.first, last}, {last + 1, range.last}};
 }
 
 }  // namespace astrosplat

@@ -8,7 +8,7 @@
 
 #include "core/real.h"
 #include "core/shared_maths.h"
-#include "render/falloff.h"
+#include "render/footprint.h"
 #include "render/shared_render.h"
 
 namespace astrosplat {

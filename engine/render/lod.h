@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "core/progress.h"
-#include "render/layer_render.h"
+#include "render/frame.h"
 
 namespace astrosplat {
 

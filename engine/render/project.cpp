@@ -110,8 +110,7 @@ void project_stretched(const LayerProjection& layer, CameraSplat splat, std::int
     const shared::Instance at = shared::instance_of(layer.lens, splat.position);
     if (!shared::is_in_range(layer.lens, at.depth)) return;
     const Shape shape = outline_of(layer, splat, at, index);
-    const ShapeRadii radii = shape_radii(shape);
-    splat.radius = radii.larger / at.px_per_unit;
+    splat.radius = static_cast<float>(ellipse_of(shape).larger) / at.px_per_unit;
     if (layer.gaussians) splat.radius *= layer.deviation;
     ScreenSplat screen;
     const float support =

@@ -15,8 +15,7 @@
 #include "render/frame.h"
 #include "render/frame_job.h"
 #include "render/scatter.h"
-#include "render/splat_sorter.h"
-#include "render/tiles.h"
+#include "render/screen_splat.h"
 
 namespace astrosplat {
 
@@ -34,6 +33,7 @@ constexpr double record_bytes = 1.125 * sizeof(ScreenSplat), id_bytes = sizeof(s
 /// would take more memory than there may be come in slabs of depth, near to far.
 class BandRun {
   public:
+    /// `before` of the frame's share is done already.
     BandRun(const FrameJob& job, const TileGrid& grid, std::int64_t records, double before,
             RenderCache::State& cache, RenderedFrame& frame)
         : job_(job),
@@ -44,13 +44,11 @@ class BandRun {
           frame_(frame),
           workers_(make_tile_workers(job)),
           order_(tile_order(job, grid)) {
-        const ScreenRect rect{static_cast<float>(grid.x0), static_cast<float>(grid.y0),
-                              static_cast<float>(grid.x0 + grid.width),
-                              static_cast<float>(grid.y0 + grid.height)};
-        blocks_ = visible_blocks(job.projections, rect);
+        blocks_ = visible_blocks(job.projections, rect_of(grid));
         for (const VisibleBlock& block : blocks_) visible_splats_ += splats_of(block);
     }
 
+    /// Throws InputError where what lies at one distance takes more than the limit.
     void run() {
         std::vector<DepthRange> slabs = plan();
         if (slabs.size() == 1 && try_whole()) return;
@@ -63,11 +61,17 @@ class BandRun {
             else
                 slabs = refined(slabs.front());
         }
-        for_each_tile(0.95, 0.05,
+        for_each_tile(slabs_share, 1.0 - slabs_share,
                       [&](std::int64_t tile, TileWorker& worker) { carried.finish(tile, worker, frame_); });
     }
 
   private:
+    // Of a band's progress: all slabs, before their tiles are resolved; of one slab, what comes before
+    // folding.
+    static constexpr double slabs_share = 0.95, scatter_share = 0.4, fold_share = 0.6;
+    static constexpr double filled = 0.9;  // of the limit by what is planned: estimates miss some
+    static constexpr double finer = 0.7;   // records of a slab over those of one that did not fit
+
     std::int64_t splats_of(const VisibleBlock& block) const {
         return job_.projections[block.layer].blocks->blocks()[block.block].splats;
     }
@@ -88,11 +92,11 @@ class BandRun {
         limit_store(0);
         const double bytes = record_bytes + (blocks_.empty() ? 0.0 : id_bytes);
         if (limit_ == 0 || blocks_.empty() ||
-            static_cast<double>(records_) * bytes <= 0.9 * static_cast<double>(limit_))
+            static_cast<double>(records_) * bytes <= filled * static_cast<double>(limit_))
             return std::vector<DepthRange>(1);
         limit_store(carried_bytes(job_, grid_));
         sample_ = sample_depths(job_.projections, grid_, job_.progress);
-        most_records_ = 0.9 * static_cast<double>(limit_) / bytes;
+        most_records_ = filled * static_cast<double>(limit_) / bytes;
         return sample_->cut(most_records_, 0);
     }
 
@@ -105,7 +109,7 @@ class BandRun {
                             human_bytes(static_cast<double>(limit_))));
         if (!sample_) sample_ = sample_depths(job_.projections, grid_, job_.progress);
         if (most_records_ == 0.0) most_records_ = sample_->records();
-        most_records_ *= 0.7;
+        most_records_ *= finer;
         std::vector<DepthRange> slabs = sample_->cut(most_records_, range.first);
         if (slabs[0].last < range.last) return slabs;
         const auto [near, far] = sample_->halve(range);
@@ -142,8 +146,7 @@ class BandRun {
     bool try_whole() {
         const std::optional<TileBins> bins = scatter({});
         if (!bins) return false;
-        progress_at(0.4);
-        for_each_tile(0.4, 0.6, [&](std::int64_t tile, TileWorker& worker) {
+        for_each_tile(scatter_share, fold_share, [&](std::int64_t tile, TileWorker& worker) {
             render_tile(job_, *bins, tile, worker, frame_);
         });
         return true;
@@ -153,10 +156,10 @@ class BandRun {
         const std::optional<TileBins> bins = scatter(slab);
         if (!bins) return false;
         const double share =
-            0.95 * std::min(1.0 - done_, visible_splats_ > 0 ? share_of(slab) : 0.5 * (1.0 - done_));
-        for_each_tile(0.95 * done_ + 0.4 * share, 0.6 * share,
+            std::min(1.0 - done_, visible_splats_ > 0 ? share_of(slab) : 0.5 * (1.0 - done_));
+        for_each_tile(slabs_share * (done_ + scatter_share * share), slabs_share * fold_share * share,
                       [&](std::int64_t tile, TileWorker& worker) { carried.fold_slab(*bins, tile, worker); });
-        done_ += share / 0.95;
+        done_ += share;
         return true;
     }
 
@@ -203,13 +206,6 @@ class BandRun {
     double most_records_ = 0.0;        // of a slab, as planned; 0: all
     std::optional<DepthSample> sample_;
 };
-
-/// `before` of the frame's share is done already. Throws InputError where what lies at one distance takes
-/// more than the limit.
-void render_band(const FrameJob& job, const TileGrid& grid, std::int64_t records, double before,
-                 RenderCache::State& cache, RenderedFrame& frame) {
-    BandRun(job, grid, records, before, cache, frame).run();
-}
 
 /// Bytes of all records of the frame with what folding them takes, without the memory that no record uses.
 std::int64_t scattered_bytes(const FrameJob& job, RenderCache::State& cache) {
@@ -340,7 +336,7 @@ RenderedFrame render(std::span<const RenderLayer> layers, const Camera& camera,
     RenderedFrame frame = make_frame(layers, settings, job.region);
     double done = 0.0;
     for (const TileGrid& band : bands.grids) {
-        render_band(job, band, bands.records, done, state, frame);
+        BandRun(job, band, bands.records, done, state, frame).run();
         done += static_cast<double>(band.height) / static_cast<double>(job.region.height);
     }
     if (settings.memory_limit_bytes > 0) state.store.shrink(settings.memory_limit_bytes);

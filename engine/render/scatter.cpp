@@ -117,12 +117,12 @@ void TileBins::sum_up(const Writer& writer, Sums& sums) const {
 /// The same for one that is not round.
 void TileBins::add_shape(const Shape& shape, float y_px, Sums& sum) const {
     const NodeRange nodes = node_range(shape);
-    const ShapeRadii radii = shape_radii(shape);
+    const Ellipse e = ellipse_of(shape);
     sum.least_px = std::min(sum.least_px, nodes.least_px);
     sum.largest_px = std::max(sum.largest_px, nodes.largest_px);
     if (!counts_here(grid_, y_px)) return;
     ++sum.instances;
-    sum.footprint_px += real::pi * radii.larger * radii.smaller;
+    sum.footprint_px += real::pi * static_cast<float>(e.larger) * static_cast<float>(e.smaller);
 }
 
 /// The bins of the splats just projected.

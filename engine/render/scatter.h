@@ -17,11 +17,28 @@
 #include "core/buffer.h"
 #include "core/progress.h"
 #include "render/bin_rects.h"
-#include "render/depth_slabs.h"
 #include "render/project.h"
 #include "render/screen_splat.h"
 
 namespace astrosplat {
+
+/// Splats by ScreenSplat::depth, from first to last, both included.
+struct DepthRange {
+    std::uint32_t first = 0, last = 0xffffffffu;
+
+    bool is_all() const { return first == 0 && last == 0xffffffffu; }
+    bool holds(std::uint32_t depth) const { return depth >= first && depth <= last; }
+    bool meets(const DepthRange& other) const { return first <= other.last && other.first <= last; }
+};
+
+/// A block of a layer that may show, and the depths at which its splats and their children lie.
+struct VisibleBlock {
+    std::size_t layer, block;
+    DepthRange depths;
+};
+
+/// Of all layers that come by the block, in the files' order. None that leaves a record in `rect` is missing.
+std::vector<VisibleBlock> visible_blocks(std::span<const LayerProjection> layers, const ScreenRect& rect);
 
 /// Thrown where records would take more than they may.
 struct StoreFull {};

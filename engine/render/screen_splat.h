@@ -1,10 +1,14 @@
 // A splat on the frame: what projection makes of a shaded splat and what the fold consumes, and the total
-// order of such splats.
+// order of such splats, into which a tile's are sorted.
 #pragma once
 
 #include <bit>
 #include <cstdint>
+#include <span>
 #include <vector>
+
+#include "core/buffer.h"
+#include "core/progress.h"
 
 namespace astrosplat {
 
@@ -69,5 +73,24 @@ inline bool in_front_of(const ScreenSplat& a, const ScreenSplat& b, const TieIds
     const std::uint64_t id_a = ids.id(a), id_b = ids.id(b);
     return id_a != id_b ? id_a < id_b : a.index < b.index;
 }
+
+/// Sorts a tile's splats into that order. In: where they lie. Out: where each lies, near to far; the splats
+/// themselves are not moved. Keeps its memory from tile to tile.
+class SplatSorter {
+  public:
+    /// Radix sort on depth, ties by in_front_of. The result lives until the next call.
+    std::span<const ScreenSplat* const> sort(std::span<const std::span<const ScreenSplat>> runs,
+                                             const Progress& progress, const TieIds& ids = {});
+    /// Bytes that sort() takes for each record, besides the records.
+    static constexpr std::int64_t bytes_per_record = 2 * sizeof(std::uint64_t) + 2 * sizeof(void*);
+
+  private:
+    int read(std::span<const std::span<const ScreenSplat>> runs, const Progress& progress);
+    template <class Before>
+    void put_in_order(int open_bits, const Before& before, const Progress& progress);
+
+    Buffer<std::uint64_t> codes_, other_;  // depth less the least one above, place of arrival below
+    Buffer<const ScreenSplat*> splats_, order_;
+};
 
 }  // namespace astrosplat

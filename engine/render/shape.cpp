@@ -9,6 +9,9 @@
 
 namespace astrosplat {
 
+/// Beyond this radius a table has no spectrum: footprint.cpp's ripple_limit_px and a node more.
+static constexpr double spectrum_end_px = 33.0;
+
 Spectrum::Spectrum(const FootprintTable& table, double radius_px, const PixelStretch& stretch)
     : table_(table),
       radius_(radius_px),
@@ -95,11 +98,6 @@ Shape project_ellipsoid(const Lens& lens, const glm::vec3& p, const glm::mat3& e
     }
     const glm::dmat3 m(ellipsoid);
     return outline_of(double(px_per_unit) * (x * m), -double(px_per_unit) * (y * m));
-}
-
-ShapeRadii shape_radii(const Shape& shape) {
-    const Ellipse e = ellipse_of(shape);
-    return {static_cast<float>(e.larger), static_cast<float>(e.smaller)};
 }
 
 float shape_support_px(const Shape& shape, const FootprintExtent& extent) {

@@ -19,8 +19,6 @@
 
 namespace astrosplat {
 
-/// Beyond this radius a table has no spectrum: footprint.cpp's ripple_limit_px and a node more.
-constexpr double spectrum_end_px = 33.0;
 /// Footprints on the sphere are normalised up to this radius, with the nodes up to it.
 constexpr float sphere_spectrum_px = 33.0f;
 
@@ -68,12 +66,6 @@ Ellipse ellipse_of(const Shape& shape);
 /// How much longer the profile of the smaller radius is made along the larger one; `variance` as in
 /// FootprintTable.
 double stretch_of(const Ellipse& e, double variance, double filter_px);
-
-/// The two radii of a shape, px.
-struct ShapeRadii {
-    float larger, smaller;
-};
-ShapeRadii shape_radii(const Shape& shape);
 
 /// Values that the reach of a footprint depends on, besides its shape: as in FootprintTable.
 struct FootprintExtent {

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "camera/projection.h"
-#include "render/layer_render.h"
+#include "render/frame.h"
 
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wunused-function"

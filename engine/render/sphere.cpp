@@ -1,4 +1,4 @@
-#include "render/sphere.h"
+#include "render/sphere_shape.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,6 @@
 #include "camera/projection.h"
 #include "core/real.h"
 #include "render/shape.h"
-#include "render/sphere_shape.h"
 #include "render/sphere_sums.h"
 
 namespace astrosplat {
@@ -39,57 +38,33 @@ PixelStretch stretch_at(const Lens& lens, double x_px, double y_px) {
     return {product(0, 0), product(0, 1), product(1, 1)};
 }
 
-/// The profile's sum over the rows around a pole of an equirectangular frame, each weighted by its pixels'
-/// solid angle: there rows are few and unlike each other, and no spectrum tells their sum.
-class PoleSum {
-  public:
-    PoleSum(const Lens& lens, double y_px) : focal_(lens.focal_px) {
-        const double quarter = 0.5 * real::pi * focal_;
-        const double top = double(lens.center_y_px) - quarter, bottom = double(lens.center_y_px) + quarter;
-        north_ = y_px - top < bottom - y_px;
-        pole_ = north_ ? top : bottom;
-        colatitude_px_ = std::fabs(y_px - pole_);
+/// Of weight(squared distance, px) over the pixels of a row around a pole, `own`: the latitude of the middle,
+/// both from the pole.
+template <class Weight>
+double mean_along_row(double focal, double own, double colatitude, const Weight& weight) {
+    constexpr int longitudes = 64;
+    const double along = real::cos(own) * real::cos(colatitude),
+                 across = real::sin(own) * real::sin(colatitude);
+    double sum = 0.0;
+    for (int i = 0; i < longitudes; ++i) {
+        const double cosine = along + across * real::cos(2.0 * real::pi * (i + 0.5) / longitudes);
+        sum += weight(2.0 * focal * focal * std::fmax(0.0, 1.0 - cosine));
     }
+    return sum / longitudes;
+}
 
-    /// How far a place is from the pole, px.
-    double colatitude_px() const { return colatitude_px_; }
-
-    /// Sum over all pixels of weight(squared distance, px) and their solid angles, px of the sphere.
-    template <class Weight>
-    double operator()(double support_px, const Weight& weight) const {
-        // Rows are those of the frame, whose pixels' middles are at halves.
-        const double first =
-            north_ ? std::ceil(pole_ - 0.5) + 0.5 - pole_ : pole_ - (std::floor(pole_ - 0.5) + 0.5);
-        double sum = 0.0;
-        for (double row = first; row < colatitude_px_ + support_px + 1.0; row += 1.0) {
-            if (row < colatitude_px_ - support_px - 1.0) continue;
-            const double area =
-                2.0 * real::pi * focal_ * focal_ *
-                (real::cos(std::fmax(0.0, row - 0.5) / focal_) - real::cos((row + 0.5) / focal_));
-            sum += area * mean_weight(row / focal_, weight);
-        }
-        return sum;
-    }
-
-  private:
-    /// Over all longitudes.
-    template <class Weight>
-    double mean_weight(double colatitude, const Weight& weight) const {
-        constexpr int longitudes = 64;
-        const double own = colatitude_px_ / focal_;
-        const double along = real::cos(own) * real::cos(colatitude),
-                     across = real::sin(own) * real::sin(colatitude);
-        double sum = 0.0;
-        for (int i = 0; i < longitudes; ++i) {
-            const double cosine = along + across * real::cos(2.0 * real::pi * (i + 0.5) / longitudes);
-            sum += weight(2.0 * focal_ * focal_ * std::fmax(0.0, 1.0 - cosine));
-        }
-        return sum / longitudes;
-    }
-
-    double focal_, pole_, colatitude_px_;
-    bool north_;
-};
+/// The sum of weights over the rows around a pole of an equirectangular frame, each times its pixels' solid
+/// angle, px of the sphere: there rows are few and unlike each other, and no spectrum tells their sum.
+template <class Weight>
+double sum_at_pole(const Lens& lens, const NearPole& pole, double support_px, const Weight& weight) {
+    const double focal = lens.focal_px;
+    double sum = 0.0;
+    for (double row = first_row_px(pole); row < pole.from_pole_px + support_px + 1.0; row += 1.0)
+        if (row >= pole.from_pole_px - support_px - 1.0)
+            sum +=
+                row_area(focal, row) * mean_along_row(focal, pole.from_pole_px / focal, row / focal, weight);
+    return sum;
+}
 
 void normalise(const FootprintTable& table, float radius_px, double found, double edge_found, Footprint& f) {
     const double wanted = double(table.integral) * radius_px * radius_px;
@@ -153,9 +128,10 @@ Footprint sphere_footprint_at(const FootprintTable& table, const Lens& lens, flo
             });
     }
     if (lens.projection == shared::PROJECTION_EQUIRECTANGULAR) {
-        const PoleSum pole(lens, y_px);
-        if (pole.colatitude_px() < double(f.support_px) + near_pole_px)
-            return set_counted([&](const auto& weight) { return pole(f.support_px, weight); });
+        const NearPole pole = near_pole(lens, y_px);
+        if (pole.from_pole_px < double(f.support_px) + near_pole_px)
+            return set_counted(
+                [&](const auto& weight) { return sum_at_pole(lens, pole, f.support_px, weight); });
     }
     const FootprintMass mass = footprint_mass(table, drawn_px);
     const Spectrum spectrum(table, drawn_px, stretch_at(lens, x_px, y_px));

@@ -1,10 +1,12 @@
-// Footprints on the sphere that are not round there. In: an ellipsoid or an ellipse of the frame, and the
-// place where it appears. Out: its outline on Lambert's equal-area map around its direction, and the round
-// footprint with the way from that map to the footprint's plane.
+// Footprints on the sphere, for projections onto it. In: the lens, places on the frame, and for those that
+// are not round an ellipsoid or an ellipse of the frame. Out: directions, outlines, and footprints with the
+// right light whatever the projection makes of their pixels.
 //
-// On the map an ellipse is one of the plane, and light that is right there is right as solid angle; a circle
-// of the map is a circle of chords, so round shapes are drawn as round splats are. Footprints are small
-// against what they are seen from, as for EWA (Zwicker et al. 2001); poles and seams are places as others.
+// Round ones are round on the sphere, in px of the middle of the frame along the chords between directions.
+// The others are ellipses on Lambert's equal-area map around their direction, and light that is right there
+// is right as solid angle; a circle of the map is a circle of chords, so round shapes are drawn as round
+// splats are. Footprints are small against what they are seen from, as for EWA (Zwicker et al. 2001); poles
+// and seams are places as others.
 #pragma once
 
 #include <glm/mat3x3.hpp>
@@ -12,9 +14,21 @@
 #include <glm/vec3.hpp>
 
 #include "camera/lens.h"
+#include "render/fold.h"
+#include "render/footprint.h"
 #include "render/shape.h"
 
 namespace astrosplat {
+
+/// Sets planes.toward: of each pixel the direction through its middle, camera space, of length focal_px; far
+/// away from everything where the frame shows nothing.
+void set_directions(const Lens& lens, TilePlanes& planes);
+
+/// The footprint of a splat whose place on the frame is (x_px, y_px), snapped to 1/256 px; its radius is in
+/// px of the middle of the frame. The sum of its weights times the solid angles of their pixels, in the same
+/// unit, is the falloff's integral * radius_px^2. The table needs the nodes up to sphere_spectrum_px.
+Footprint sphere_footprint_at(const FootprintTable& table, const Lens& lens, float radius_px, float x_px,
+                              float y_px);
 
 /// The map's axes at a place of the frame, unit vectors in camera space across `toward`, which is seen there;
 /// and what the frame makes of a px of the sphere along each, px, y down. Along a fisheye's radius and around

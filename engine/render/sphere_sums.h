@@ -140,6 +140,18 @@ inline NearPole near_pole(const Lens& lens, double y_px) {
     return {north ? 1.0 : -1.0, north ? top : bottom, std::fabs(y_px - (north ? top : bottom))};
 }
 
+/// How far from the pole its first row is: rows are those of the frame, whose pixels' middles are at halves.
+inline double first_row_px(const NearPole& pole) {
+    return pole.side > 0.0 ? std::ceil(pole.row_px - 0.5) + 0.5 - pole.row_px
+                           : pole.row_px - (std::floor(pole.row_px - 0.5) + 0.5);
+}
+
+/// Of a row so far from the pole, px of the sphere.
+inline double row_area(double focal, double row_px) {
+    return 2.0 * real::pi * focal * focal *
+           (real::cos(std::fmax(0.0, row_px - 0.5) / focal) - real::cos((row_px + 0.5) / focal));
+}
+
 /// Weights of pixels around a pole as far as `support_px` from `toward`; weight as in RimPixels, smooth over
 /// step_px.
 template <class Weight>
@@ -153,15 +165,13 @@ class PoleRows {
           support_px_(support_px),
           step_px_(step_px),
           weight_(weight),
-          // Rows are those of the frame, whose pixels' middles are at halves.
-          first_(pole.side > 0.0 ? std::ceil(pole.row_px - 0.5) + 0.5 - pole.row_px
-                                 : pole.row_px - (std::floor(pole.row_px - 0.5) + 0.5)) {}
+          first_(first_row_px(pole)) {}
 
     /// Over all pixels.
     double sum() const {
         double sum = 0.0;
         for (double row = first_; row < pole_.from_pole_px + support_px_ + 1.0; row += 1.0)
-            if (row > pole_.from_pole_px - support_px_ - 1.0) sum += area(row) * mean(row);
+            if (row > pole_.from_pole_px - support_px_ - 1.0) sum += row_area(focal_, row) * mean(row);
         return sum;
     }
 
@@ -170,7 +180,8 @@ class PoleRows {
         constexpr double close_px = 4.0, end_px = 18.0;  // fades out: an end would have an excess of its own
         const auto fade = [](double row) { return real::exp(-0.5 * row * row / (close_px * close_px)); };
         double sum = 0.0;
-        for (double row = first_; row < end_px; row += 1.0) sum += area(row) * fade(row) * mean(row);
+        for (double row = first_; row < end_px; row += 1.0)
+            sum += row_area(focal_, row) * fade(row) * mean(row);
         for (double from = 0.0; from < end_px; from += 2.0)
             sum -= integrate_panel(from, from + 2.0, [&](double row) {
                 return 2.0 * real::pi * focal_ * real::sin(row / focal_) * fade(row) * mean(row);
@@ -179,12 +190,6 @@ class PoleRows {
     }
 
   private:
-    /// Of a row so far from the pole, px of the sphere.
-    double area(double row_px) const {
-        return 2.0 * real::pi * focal_ * focal_ *
-               (real::cos(std::fmax(0.0, row_px - 0.5) / focal_) - real::cos((row_px + 0.5) / focal_));
-    }
-
     /// Over all longitudes, of which as many are looked at as the weight asks for.
     double mean(double row_px) const {
         const double own = pole_.from_pole_px / focal_;
@@ -225,21 +230,13 @@ class CountedGains {
     using Key = std::array<float, 15>;
     /// `splat`: what the gains depend on beside the table and the lens.
     static Key key_of(const FootprintTable& table, const Lens& lens, const std::array<float, 6>& splat) {
-        return {splat[0],
-                splat[1],
-                splat[2],
-                splat[3],
-                splat[4],
-                splat[5],
-                lens.focal_px,
-                lens.center_x_px,
-                lens.center_y_px,
-                lens.edge,
-                static_cast<float>(lens.projection),
-                static_cast<float>(static_cast<int>(table.falloff.shape)),
-                table.falloff.core,
-                table.falloff.sharpness,
-                table.pixel_filter_px};
+        const auto projection = static_cast<float>(lens.projection),
+                   shape = static_cast<float>(static_cast<int>(table.falloff.shape));
+        Key key{
+            lens.focal_px,      lens.center_x_px,        lens.center_y_px,     lens.edge, projection, shape,
+            table.falloff.core, table.falloff.sharpness, table.pixel_filter_px};
+        std::ranges::copy(splat, key.end() - splat.size());
+        return key;
     }
     /// Sets a footprint's gains to those known of the key, or by find(), which is a function of the key: a
     /// thread may find what another is about to know.

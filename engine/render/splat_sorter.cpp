@@ -1,4 +1,4 @@
-#include "render/splat_sorter.h"
+#include "render/screen_splat.h"
 
 #include <algorithm>
 #include <bit>

@@ -1,4 +1,4 @@
-#include "render/tiles.h"
+#include "render/frame_job.h"
 
 #include <algorithm>
 #include <numeric>

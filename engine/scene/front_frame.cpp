@@ -108,14 +108,14 @@ FrontFrame front_frame(std::span<const TexturedMesh> meshes) {
 
 FrontFrame in_world(const FrontFrame& frame, const RenderLayer& layer) {
     FrontFrame world = frame;
-    world.center = layer.world_from_layer * (layer.scale * frame.center) + layer.translate;
+    world.center = layer.to_world(frame.center);
     world.right = layer.world_from_layer * frame.right;
     world.up = layer.world_from_layer * frame.up;
     world.toward = layer.world_from_layer * frame.toward;
     world.width = layer.scale * frame.width;
     world.height = layer.scale * frame.height;
     if (!frame.camera) return world;
-    world.camera->eye = layer.world_from_layer * (layer.scale * frame.camera->eye) + layer.translate;
+    world.camera->eye = layer.to_world(frame.camera->eye);
     world.camera->world_from_camera = layer.world_from_layer * frame.camera->world_from_camera;
     world.camera->near *= layer.scale;
     if (frame.camera->projection == Projection::orthographic) world.camera->focal_px /= layer.scale;

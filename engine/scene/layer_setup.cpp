@@ -9,9 +9,9 @@
 #include "core/error.h"
 #include "core/rotation.h"
 #include "generate/lattice.h"
-#include "render/falloff.h"
+#include "render/footprint.h"
 #include "scene/animate.h"
-#include "stars/random_stars.h"
+#include "stars/star_set.h"
 
 namespace astrosplat {
 
@@ -66,7 +66,7 @@ RenderLayer render_layer(const Scene& scene, const LayerParams& params) {
     const LayerParams* const like = like_layer(scene, params);
     if (!like) return layer;
     const RenderLayer under = render_layer(*like);
-    layer.translate = under.world_from_layer * (under.scale * layer.translate) + under.translate;
+    layer.translate = under.to_world(layer.translate);
     layer.world_from_layer = under.world_from_layer * layer.world_from_layer;
     layer.scale *= under.scale;
     return layer;
@@ -92,8 +92,7 @@ LookInputs look_inputs(const LayerParams& params) {
 Bounds world_bounds(const Bounds& box, const RenderLayer& layer) {
     Bounds result;
     if (box.empty()) return result;
-    for (int corner = 0; corner < 8; ++corner)
-        result.add(layer.world_from_layer * (layer.scale * box.corner(corner)) + layer.translate);
+    for (int corner = 0; corner < 8; ++corner) result.add(layer.to_world(box.corner(corner)));
     return result;
 }
 

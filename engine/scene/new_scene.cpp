@@ -24,7 +24,7 @@
 #include "scene/suggest.h"
 #include "scene/value.h"
 #include "source/texture.h"
-#include "stars/picture_table.h"
+#include "stars/catalogue.h"
 
 namespace astrosplat {
 

@@ -18,7 +18,7 @@
 #include "look/look.h"
 #include "ocio/display_transform.h"
 #include "render/environment.h"
-#include "render/layer_render.h"
+#include "render/frame.h"
 #include "scene/parameter_key.h"
 #include "source/source.h"
 

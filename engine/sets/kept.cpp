@@ -16,7 +16,6 @@
 #include "core/hash.h"
 #include "core/log.h"
 #include "core/memory.h"
-#include "sets/recipe.h"
 #include "source/picture.h"
 #include "source/prepared_picture.h"
 #include "source/stored_picture.h"
@@ -81,10 +80,12 @@ void warn_unkept(const SetCache& cache, const std::string& why) {
 namespace {
 
 /// The result of read() for an entry. Nothing where there is none, or none that can be used: one that is
-/// damaged, or that was made of something else, whatever its name says, for which read() throws. Where the
-/// memory left would not hold it the generator is to say so.
+/// damaged, or that was made of something else, whatever its name says, for which read() throws; it is
+/// removed with a warning that ends in `remedy`. Where the memory left would not hold it the generator is to
+/// say so.
 template <class Read>
-auto read_entry(const fs::path& file, const Read& read) -> std::optional<decltype(read(file))> {
+auto read_entry(const fs::path& file, const char* remedy, const Read& read)
+    -> std::optional<decltype(read(file))> {
     std::error_code error;
     const std::uintmax_t bytes = fs::file_size(file, error);
     if (error || bytes > static_cast<std::uintmax_t>(available_memory_bytes())) return std::nullopt;
@@ -93,10 +94,27 @@ auto read_entry(const fs::path& file, const Read& read) -> std::optional<decltyp
         fs::last_write_time(file, fs::file_time_type::clock::now(), error);  // refused: it seems older
         return result;
     } catch (const InputError& damage) {
-        log_warning(fmt::format("{}; the set is generated again", damage.what()));
+        log_warning(fmt::format("{}; {}", damage.what(), remedy));
         fs::remove(file, error);
     }
     return std::nullopt;
+}
+
+constexpr const char* generated_again = "the set is generated again";
+
+/// Calls write() for an entry of so many bytes where the cache has room, which is made; what cannot be
+/// written costs a warning. False: the cache may not hold so much.
+template <class Write>
+bool write_entry(const SetCache& cache, std::int64_t bytes, const Write& write) {
+    const std::int64_t limit = limit_bytes(cache);
+    if (bytes > limit) return false;
+    shrink_cache(cache, limit - bytes);
+    try {
+        write();
+    } catch (const OutputError& error) {
+        warn_unkept(cache, error.what());
+    }
+    return true;
 }
 
 void require_own(const fs::path& file, bool is_own) {
@@ -142,7 +160,7 @@ std::string texel_recipe(const Recipe& recipe, const std::string& geometry_name)
 
 std::optional<SplatSet> read_whole(const SetCache& cache, const Recipe& recipe, const Progress& progress,
                                    const OptionalColumns& wanted) {
-    return read_entry(set_file(cache, recipe.name), [&](const fs::path& file) {
+    return read_entry(set_file(cache, recipe.name), generated_again, [&](const fs::path& file) {
         SplatSet set = read_native(file, progress, wanted);
         require_own(file, std::exchange(set.recipe, "") == recipe.text);
         return set;
@@ -151,7 +169,7 @@ std::optional<SplatSet> read_whole(const SetCache& cache, const Recipe& recipe, 
 
 std::optional<Columns> read_geometry(const SetCache& cache, const std::string& name,
                                      const Progress& progress) {
-    return read_entry(set_file(cache, name), [&](const fs::path& file) {
+    return read_entry(set_file(cache, name), generated_again, [&](const fs::path& file) {
         SplatSet set = read_native(file, progress, {true, true, true, true}, NativePart::geometry);
         require_own(file, is_geometry(std::exchange(set.recipe, ""), name));
         return Columns{std::move(set)};
@@ -165,7 +183,7 @@ std::optional<KeptColumns> read_columns(const SetCache& cache, const Recipe& rec
     ColumnChoice choice;
     choice.wanted = wanted;
     const std::string beginning = texel_recipe(recipe, "");
-    auto colors = read_entry(texel_file(cache, recipe.name), [&](const fs::path& file) {
+    auto colors = read_entry(texel_file(cache, recipe.name), generated_again, [&](const fs::path& file) {
         choice.lit = native_lit_rows(file, progress);
         choice.sample = sampled_rows(choice.lit.of, sample_limit);
         auto sets = read_native_rows(file, NativePart::colors, choice.rows(), progress);
@@ -174,7 +192,7 @@ std::optional<KeptColumns> read_columns(const SetCache& cache, const Recipe& rec
     });
     if (!colors) return std::nullopt;
     const std::string name = colors->front().recipe.substr(beginning.size());
-    auto sets = read_entry(set_file(cache, name), [&](const fs::path& file) {
+    auto sets = read_entry(set_file(cache, name), generated_again, [&](const fs::path& file) {
         auto found = read_native_rows(file, NativePart::geometry, choice.rows(), progress);
         require_own(file, is_geometry(found[0].recipe, name) && native_splat_count(file) == choice.lit.of);
         return found;
@@ -193,60 +211,40 @@ void keep(const SetCache& cache, const std::vector<KeptFile>& entries, SplatSet&
         set.recipe = entry.recipe;
         bytes += native_file_bytes(set, entry.part);
     }
-    const std::int64_t limit = limit_bytes(cache);
-    if (bytes > limit) {
+    const bool has_room = write_entry(cache, bytes, [&] {
+        for (const KeptFile& entry : entries) {
+            set.recipe = entry.recipe;
+            write_native(entry.file, set, progress.silent(), RowOrder::id, entry.part);
+        }
+    });
+    if (!has_room)
         log_info(fmt::format("a set of {} is not kept: the cache may hold {}",
                              human_bytes(static_cast<double>(bytes)),
-                             human_bytes(static_cast<double>(limit))));
-    } else {
-        shrink_cache(cache, limit - bytes);
-        try {
-            for (const KeptFile& entry : entries) {
-                set.recipe = entry.recipe;
-                write_native(entry.file, set, progress.silent(), RowOrder::id, entry.part);
-            }
-        } catch (const OutputError& error) {
-            warn_unkept(cache, error.what());
-        }
-    }
+                             human_bytes(static_cast<double>(limit_bytes(cache)))));
     set.recipe.clear();
 }
 
 namespace {
 
-// A picture that is kept, and is now used; nothing where there is no entry, or a damaged one, which is
-// removed with a warning that ends in `remedy`. Throws Cancelled.
 std::optional<PreparedPicture> read_kept_picture(const fs::path& file, const char* remedy,
                                                  const Progress& progress) {
-    std::error_code error;
-    if (!fs::is_regular_file(file, error)) return {};
-    try {
+    return read_entry(file, remedy, [&](const fs::path&) {
         Stored stored = read_stored(file, {}, progress);
         PreparedPicture picture;
         picture.credit = stored.picture.credit;
         picture.image = linear_image(std::move(stored), TextureSettings::Colorspace::linear);
-        fs::last_write_time(file, fs::file_time_type::clock::now(), error);  // refused: it seems older
         return picture;
-    } catch (const InputError& damage) {
-        log_warning(fmt::format("{}; {}", damage.what(), remedy));
-        fs::remove(file, error);
-    }
-    return {};
+    });
 }
 
-// Keeps it where the cache has room; what cannot be written costs a warning.
 void keep_picture(const SetCache& cache, const fs::path& file, const Image& image,
                   const std::string& credit) {
     const auto bytes = static_cast<std::int64_t>(image.pixels.size() * sizeof(float));
-    if (bytes > limit_bytes(cache)) return;
-    shrink_cache(cache, limit_bytes(cache) - bytes);
-    std::error_code error;
-    fs::create_directories(cache.folder, error);
-    try {
+    write_entry(cache, bytes, [&] {
+        std::error_code ignored;
+        fs::create_directories(cache.folder, ignored);
         write_linear_image(file, image, credit, Existing::replace);
-    } catch (const OutputError& failure) {
-        warn_unkept(cache, failure.what());
-    }
+    });
 }
 
 fs::path file_of(const SetCache& cache, const std::string& recipe) {

@@ -1,7 +1,9 @@
-// The folder in which sets and pictures are kept from run to run: whole sets, geometry and texels of columns,
-// prepared pictures (removing stars takes seconds, and a set is made again for every change of its
-// structure), and skies made of one picture, whose cut-outs take some 16 s. In: the folder's name and limit,
-// and recipes of what is wanted. Out: the same as if made, to the bit; room for more.
+// The folder in which sets and pictures are kept from run to run, so that the second run of a scene starts at
+// once: whole sets, geometry and texels of columns, prepared pictures (removing stars takes seconds, and a
+// set is made again for every change of its structure), and skies made of one picture, whose cut-outs take
+// some 16 s. In: the folder's name and limit, and what is wanted. Out: the same as if made, to the bit. Many
+// processes may share the folder; an entry that is damaged is made again, and a folder that cannot be read or
+// written costs a warning, never a run.
 #pragma once
 
 #include <cstdint>
@@ -12,14 +14,58 @@
 
 #include "core/progress.h"
 #include "generate/generate.h"
-#include "sets/recipe.h"
+#include "sets/load_source.h"
 #include "source/prepared_picture.h"
+#include "source/source.h"
 #include "source/textured_mesh.h"
 #include "source/tiled_sky.h"
 #include "splat_files/native.h"
 #include "splats/splat_set.h"
 
 namespace astrosplat {
+
+// ---- the names under which things are kept: hashes of everything that reaches a bit of them, and of nothing
+// else
+
+/// Raised whenever generation, or the reading of meshes and pictures, gives other bits than before.
+inline constexpr int set_version = 31;
+
+/// The same of the preparation of pictures.
+inline constexpr int prepare_version = 3;
+
+/// The hashed text, line by line: versions, the bytes of meshes and pictures (of a mesh without a named
+/// picture also its material libraries and their pictures), and the parameters in use, with the seed
+/// resolved. Names of files stay out, except for their endings. Empty where an input cannot be read: then the
+/// loader says why. For kind mesh. Throws Cancelled.
+std::string recipe_text(const SourceParams& source, const std::string& layer_name,
+                        const Progress& progress = {});
+
+/// The same of skies of cut-outs (source/tiled_sky.h).
+inline constexpr int sky_version = 1;
+std::string sky_recipe_text(const std::filesystem::path& file, const SkyTiling& tiling,
+                            const Progress& progress = {});
+
+/// The same of one prepared picture: its files, how they are read and settings.prepare.
+std::string prepared_recipe_text(const std::vector<std::filesystem::path>& files,
+                                 const TextureSettings& settings, const Progress& progress = {});
+
+/// That text, and its hash, which names the entry; both empty where an input cannot be read.
+struct Recipe {
+    std::string text, name;
+};
+Recipe recipe_of(const SourceParams& source, const std::string& layer_name, const Progress& progress = {});
+
+/// The same for what columns are before any picture is looked at: the shapes of the meshes and how pictures
+/// lie on them, the lattice, jitter and seed. A picture reaches it where a shape or `splats` is made by it.
+Recipe geometry_recipe(const ColumnPlan& plan);
+
+// ---- the folder
+
+// In it: NAME.splats (native.h, rows by id; the name is its recipe's, whose text is in the file; its file
+// time says when it was last used), NAME.lock while a process generates that set, .NAME.*.part.splats while
+// it is written. Of columns NAME.splats is the geometry, and what is read from pictures lies beside it as
+// NAME.texels, which ends its recipe with the geometry's name: scenes that differ in how pictures are read
+// share their geometry, and only texels are read again.
 
 struct SetCache {
     std::filesystem::path folder;  // made when something is kept; empty: no cache
@@ -33,6 +79,26 @@ std::filesystem::path default_cache_folder();
 
 /// The limit; for 0 the one that it stands for in this folder.
 std::int64_t limit_bytes(const SetCache& cache);
+
+struct LoadedSet {
+    SplatSet set;
+    bool cached = false;           // read from the cache
+    bool geometry_cached = false;  // at least that: no closest points were searched for
+};
+
+/// load_source through a cache: reads a mesh source's set where it is kept, else generates and keeps it;
+/// other kinds pass by, but stars of a picture ask for their layer's set in this way. Of several processes
+/// that need the same set one generates it and the others wait. Columns that are not wanted are empty. Throws
+/// as load_source does.
+LoadedSet load_source(const SetCache& cache, const SourceParams& source, const std::string& layer_name,
+                      const Progress& progress = {}, KeptWatcher* watcher = nullptr,
+                      const OptionalColumns& wanted = {});
+
+/// load_source of stars of a picture (is_like_a_layer) whose layer's set is there already.
+SplatSet load_picture_stars(const SetCache& cache, const SourceParams& source, const std::string& layer_name,
+                            const SplatSet& of_picture, const Progress& progress = {});
+
+// ---- entries
 
 /// Removes entries (.splats, .texels, .tree, .exr), least recently used first, until they take at most
 /// `bytes` together.

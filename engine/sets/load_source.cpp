@@ -21,7 +21,6 @@
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "generate/generate.h"
-#include "sets/star_source.h"
 #include "source/textured_mesh.h"
 #include "splat_files/splat_file.h"
 

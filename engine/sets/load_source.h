@@ -1,9 +1,11 @@
 // The front door of a layer's source. In: the values of [layer.source]. Out: its SplatSet, generated from
 // meshes and pictures or read from a splat file; of columns also the steps on the way to it, of bodies a flat
-// preview before they are made; and the values that keys of 0 (automatic) stand for.
+// preview before they are made; stars of a catalogue, random ones around the camera's path, or those of a
+// picture that another layer shows; and the values that keys of 0 (automatic) stand for.
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <string>
 #include <vector>
@@ -32,6 +34,8 @@ SplatSet load_source(const SourceParams& source, const std::string& layer_name, 
 inline bool makes_columns(const SourceParams& source) {
     return source.kind == SourceKind::mesh && source.structure.kind == StructureKind::columns;
 }
+
+// ---- the steps on the way
 
 /// All that bodies are made of.
 struct BodiesPlan {
@@ -88,5 +92,26 @@ AutomaticValues automatic_values(const SourceParams& source, const Progress& pro
 /// Shows the watcher about as many splats as it can hold in any case, spread evenly over all pictures, each
 /// with the mean colour of its part.
 void show_flat(std::span<const TexturedMesh> meshes, KeptWatcher& watcher);
+
+// ---- stars
+
+/// Whether a source of stars takes their places from another layer's picture.
+inline bool is_like_a_layer(const SourceParams& source) {
+    return source.kind == SourceKind::stars && !source.stars.like.empty();
+}
+
+/// The source of that layer, which the rest of `source` is.
+SourceParams picture_source(const SourceParams& source);
+
+/// Kind stars. `of_picture` gives the set of picture_source(): bodies are looked through for what they take
+/// of each star's light on its way to the picture's camera, so that the light is the table's there. Says in a
+/// line what there is. Throws InputError, Cancelled.
+SplatSet load_stars(const SourceParams& source, const std::string& layer_name, const Progress& progress,
+                    const PictureMaker& prepared, const std::function<SplatSet()>& of_picture);
+
+/// The same of a picture whose layer's set is there already.
+SplatSet load_picture_stars(const SourceParams& source, const std::string& layer_name,
+                            const Progress& progress, const PictureMaker& prepared,
+                            const std::function<const SplatSet&()>& of_picture);
 
 }  // namespace astrosplat

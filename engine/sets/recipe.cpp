@@ -1,9 +1,11 @@
 // One line for each thing that a generated set depends on.
-#include "sets/recipe.h"
+#include "sets/kept.h"
 
 #include <fmt/format.h>
 
 #include <cassert>
+#include <string_view>
+#include <type_traits>
 #include <utility>
 
 #include "core/error.h"
@@ -17,8 +19,27 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string file_line(const char* what, const fs::path& file, const Progress& progress) {
-    return fmt::format("{} {} {}\n", what, sha256_of_file(file, progress), file.extension().string());
+// A value, the numbers of a vector, an enum as its number, "auto" where there is none.
+template <class T>
+std::string text_of(const T& value) {
+    if constexpr (std::is_enum_v<T>)
+        return fmt::format("{}", static_cast<int>(value));
+    else
+        return fmt::format("{}", value);
+}
+std::string text_of(const glm::dvec2& v) { return fmt::format("{} {}", v.x, v.y); }
+std::string text_of(const glm::dvec3& v) { return fmt::format("{} {} {}", v.x, v.y, v.z); }
+std::string text_of(const glm::dvec4& v) { return fmt::format("{} {} {} {}", v.x, v.y, v.z, v.w); }
+std::string text_of(const std::optional<double>& v) { return v ? fmt::format("{}", *v) : "auto"; }
+
+// "NAME VALUE VALUE ..." and the line's end.
+template <class... Values>
+std::string line(std::string_view name, const Values&... values) {
+    return std::string(name) + ((" " + text_of(values)) + ... + "\n");
+}
+
+std::string file_line(std::string_view what, const fs::path& file, const Progress& progress) {
+    return line(what, sha256_of_file(file, progress), file.extension().string());
 }
 
 // The parameters of the shape of that name.
@@ -27,15 +48,15 @@ std::string shape_lines(const fs::path& name, const ShapeParams& shape, const Pr
                  depth_map, depth, blur] = shape;
     std::string text;
     if (name == "revolution")
-        for (const glm::vec2& p : outline) text += fmt::format("outline {} {}\n", p.x, p.y);
-    if (name == "hourglass") text = fmt::format("width {} waist {}\n", width, waist);
-    if (name == "shell") text = fmt::format("thickness {}\n", thickness);
-    if (name == "bubble") text = fmt::format("opening {}\n", opening);
+        for (const glm::vec2& p : outline) text += line("outline", p.x, p.y);
+    if (name == "hourglass") text = line("width", width, "waist", waist);
+    if (name == "shell") text = line("thickness", thickness);
+    if (name == "bubble") text = line("opening", opening);
     if (name == "spheroid")
-        text = fmt::format("flattening {} shells {} concentration {}\n", flattening, shells, concentration);
-    if (name == "ring") text = fmt::format("tube {}\n", tube);
+        text = line("flattening", flattening, "shells", shells, "concentration", concentration);
+    if (name == "ring") text = line("tube", tube);
     if (name != "sheet") return text;
-    text = fmt::format("depth {} blur {}\n", depth, blur);
+    text = line("depth", depth, "blur", blur);
     return text + (depth_map.empty() ? "" : file_line("depth map", depth_map, progress));
 }
 
@@ -43,8 +64,8 @@ std::string mesh_lines(const MeshInput& input, const Progress& progress) {
     const auto& [mesh, texture, relief, shape] = input;
     std::string text;
     if (is_builtin_mesh(mesh)) {
-        text = fmt::format("built-in {}\n", mesh.string());
-        if (mesh == "relief") text += fmt::format("relief {}\n", relief);
+        text = line("built-in", mesh.string());
+        if (mesh == "relief") text += line("relief", relief);
         text += shape_lines(mesh, shape, progress);
     } else {
         text = file_line("mesh", mesh, progress);
@@ -56,27 +77,23 @@ std::string mesh_lines(const MeshInput& input, const Progress& progress) {
     return text;
 }
 
-std::string range_text(const std::optional<glm::dvec2>& range) {
-    return range ? fmt::format("{} {}", range->x, range->y) : "-";
-}
+std::string range_text(const std::optional<glm::dvec2>& range) { return range ? text_of(*range) : "-"; }
 
-std::string mask_line(const char* what, const MaskTerms& terms, const Progress& progress) {
+std::string mask_line(std::string_view what, const MaskTerms& terms, const Progress& progress) {
     const auto& [luminance, hue, saturation, ellipse, turn, image, derive, feather, invert] = terms;
-    std::string text = fmt::format("{} luminance {} hue {} saturation {} derive {} feather {} invert {}",
-                                   what, range_text(luminance), range_text(hue), range_text(saturation),
-                                   static_cast<int>(derive), feather, invert);
-    if (ellipse)
-        text += fmt::format(" ellipse {} {} {} {} {}", ellipse->x, ellipse->y, ellipse->z, ellipse->w, turn);
-    return text + "\n" + (image.empty() ? "" : file_line("mask picture", image, progress));
+    const std::string round = ellipse ? " ellipse " + text_of(*ellipse) + " " + text_of(turn) : "";
+    return line(what, "luminance", range_text(luminance), "hue", range_text(hue), "saturation",
+                range_text(saturation), "derive", derive, "feather", feather, "invert",
+                text_of(invert) + round) +
+           (image.empty() ? "" : file_line("mask picture", image, progress));
 }
 
 // Nothing where nothing is used, so that sets made before there was a choice keep their names.
 std::string rework_lines(const TextureSettings& settings, const Progress& progress) {
     std::string text;
-    if (settings.derive != Derived::none)
-        text += fmt::format("derive {}\n", static_cast<int>(settings.derive));
-    if (settings.smooth > 0.0) text += fmt::format("smooth {}\n", settings.smooth);
-    if (settings.detail > 0.0) text += fmt::format("detail {}\n", settings.detail);
+    if (settings.derive != Derived::none) text += line("derive", settings.derive);
+    if (settings.smooth > 0.0) text += line("smooth", settings.smooth);
+    if (settings.detail > 0.0) text += line("detail", settings.detail);
     for (const MaskParams& mask : settings.mask) {
         text += mask_line("mask", mask, progress);
         for (const MaskTerms& terms : mask.any) text += mask_line("or", terms, progress);
@@ -89,42 +106,32 @@ std::string prepare_lines(const PrepareParams& params, const Progress& progress)
     const auto& [align, fill, stars, threshold, saturation, background, lupton, q, lupton_stretch, ellipse,
                  turn, feather, mask, alpha] = params;
     if (!prepares(params)) return "";
-    std::string text = fmt::format("prepare {}\n", prepare_version);
+    std::string text = line("prepare", prepare_version);
     if (!align.empty()) text += file_line("align", align, progress);
     if (!fill.empty()) text += file_line("fill", fill, progress);
-    if (stars == PrepareParams::Stars::remove)
-        text += fmt::format("stars removed {} {}\n", threshold,
-                            saturation ? fmt::format("{}", *saturation) : "auto");
-    text += fmt::format("background {}\n", static_cast<int>(background));
-    if (lupton) text += fmt::format("lupton {} {}\n", q, lupton_stretch);
-    if (ellipse)
-        text += fmt::format("ellipse {} {} {} {} {} {}\n", ellipse->x, ellipse->y, ellipse->z, ellipse->w,
-                            turn, feather);
+    if (stars == PrepareParams::Stars::remove) text += line("stars removed", threshold, saturation);
+    text += line("background", background);
+    if (lupton) text += line("lupton", q, lupton_stretch);
+    if (ellipse) text += line("ellipse", *ellipse, turn, feather);
     if (!mask.empty()) text += file_line("cut", mask, progress);
-    return text + fmt::format("alpha from {}\n", range_text(alpha));
+    return text + line("alpha from", range_text(alpha));
 }
 
 std::string texture_lines(const TextureSettings& settings) {
     [[maybe_unused]] const auto& [colorspace, alpha, unpremultiply, hdu, plane, stretch, black, white,
                                   softening, filter, wrap, derive, smooth, detail, mask, prepare] = settings;
-    const auto limit = [](const std::optional<double>& v) { return v ? fmt::format("{}", *v) : "auto"; };
-    return fmt::format("colorspace {}\nalpha {}\nunpremultiply {}\nhdu {}\nplane {}\nstretch {}\n",
-                       static_cast<int>(colorspace), static_cast<int>(alpha), static_cast<int>(unpremultiply),
-                       hdu, plane, static_cast<int>(stretch)) +
-           fmt::format("black {}\nwhite {}\nsoftening {}\nfilter {}\nwrap {}\n", limit(black), limit(white),
-                       softening, static_cast<int>(filter), static_cast<int>(wrap));
+    return line("colorspace", colorspace) + line("alpha", alpha) + line("unpremultiply", unpremultiply) +
+           line("hdu", hdu) + line("plane", plane) + line("stretch", stretch) + line("black", black) +
+           line("white", white) + line("softening", softening) + line("filter", filter) + line("wrap", wrap);
 }
 
 std::string lattice_lines(const SourceParams& source) {
-    const std::string size =
-        source.voxels ? fmt::format("voxels {} {} {}", source.voxels->x, source.voxels->y, source.voxels->z)
-        : source.voxel_size != 0 ? fmt::format("voxel_size {}", source.voxel_size)
-        : source.splats > 0      ? fmt::format("splats {}", source.splats)
-                                 : fmt::format("count {}", source.count);
-    const std::string buffer =
-        source.buffer ? fmt::format("{} {} {}", source.buffer->x, source.buffer->y, source.buffer->z)
-                      : "auto";
-    return fmt::format("{}\nbuffer {}\n", size, buffer);
+    const std::string size = source.voxels
+                                 ? line("voxels", source.voxels->x, source.voxels->y, source.voxels->z)
+                             : source.voxel_size != 0 ? line("voxel_size", source.voxel_size)
+                             : source.splats > 0      ? line("splats", source.splats)
+                                                      : line("count", source.count);
+    return size + line("buffer", source.buffer ? text_of(*source.buffer) : "auto");
 }
 
 // Nothing for columns, so that sets made before there was a choice keep their names.
@@ -132,32 +139,27 @@ std::string structure_lines(const SourceParams& source) {
     const auto& [kind, height, depth, clumps, flare, warp, stars, dust, opacity, density, border, margin,
                  most_texels] = source.structure;
     if (kind == StructureKind::columns) return "";
-    return fmt::format("structure {}\nheight {}\ndepth {}\nclumps {}\nstars {}\n", static_cast<int>(kind),
-                       height, depth, clumps, finds_stars(source)) +
-           (flare != 0.0 || warp != 0.0 ? fmt::format("flare {}\nwarp {}\n", flare, warp) : "") +
-           fmt::format("dust {}\n", dust ? fmt::format("{}", *dust) : "auto") +
-           fmt::format("opacity {}\ndensity {}\nborder {}\n", opacity, density, border) +
-           (margin > 0.0 ? fmt::format("margin {}\n", margin) : "") +
-           (most_texels > 0 ? fmt::format("most texels {}\n", most_texels) : "");
+    return line("structure", kind) + line("height", height) + line("depth", depth) + line("clumps", clumps) +
+           line("stars", finds_stars(source)) +
+           (flare != 0.0 || warp != 0.0 ? line("flare", flare) + line("warp", warp) : "") +
+           line("dust", dust) + line("opacity", opacity) + line("density", density) + line("border", border) +
+           (margin > 0.0 ? line("margin", margin) : "") +
+           (most_texels > 0 ? line("most texels", most_texels) : "");
 }
 
 std::string camera_line(const UvCamera& camera) {
     const auto& [position, target, up, fov, height] = camera;
-    const auto text = [](const glm::dvec3& v) { return fmt::format("{} {} {}", v.x, v.y, v.z); };
-    return fmt::format("uv camera {} target {} up {} ", position ? text(*position) : "-", text(target),
-                       text(up)) +
-           (height > 0.0 ? fmt::format("height {}\n", height) : fmt::format("fov {}\n", fov));
+    return line("uv camera", position ? text_of(*position) : "-", "target", target, "up", up,
+                height > 0.0 ? "height" : "fov", height > 0.0 ? height : fov);
 }
 
 // Nothing for a picture that is stretched over the meshes and the same in front and behind.
 std::string projection_lines(const SourceParams& source) {
     if (source.uv == UvMode::mesh) return "";
     if (source.uv == UvMode::camera) return camera_line(source.uv_camera);
-    const glm::dvec3& center = source.uv_center;
     std::string text;
-    if (source.uv_width > 0.0)
-        text = fmt::format("uv width {} center {} {} {}\n", source.uv_width, center.x, center.y, center.z);
-    if (source.back != BackWall::same) text += fmt::format("back {}\n", static_cast<int>(source.back));
+    if (source.uv_width > 0.0) text = line("uv width", source.uv_width, "center", source.uv_center);
+    if (source.back != BackWall::same) text += line("back", source.back);
     return text;
 }
 
@@ -168,18 +170,14 @@ std::string mesh_line(const Mesh& mesh) {
         hash.add(fmt::format(" {}\n", list.size()));
     };
     add(mesh.positions), add(mesh.uvs), add(mesh.triangles);
-    return fmt::format("mesh {}\n", hash.hex());
+    return line("mesh", hash.hex());
 }
 
 std::string camera_line(const Camera& camera) {
-    std::string text =
-        fmt::format("camera {} {} {} {} {} {}\n", static_cast<int>(camera.projection), camera.focal_px,
-                    camera.center_x_px, camera.center_y_px, camera.near, camera.aspect);
-    text += fmt::format("at {} {} {}\n", camera.eye.x, camera.eye.y, camera.eye.z);
-    for (int i = 0; i < 3; ++i) {
-        const glm::dvec3& axis = camera.world_from_camera[i];
-        text += fmt::format("axis {} {} {}\n", axis.x, axis.y, axis.z);
-    }
+    std::string text = line("camera", camera.projection, camera.focal_px, camera.center_x_px,
+                            camera.center_y_px, camera.near, camera.aspect);
+    text += line("at", camera.eye);
+    for (int i = 0; i < 3; ++i) text += line("axis", camera.world_from_camera[i]);
     return text;
 }
 
@@ -192,20 +190,20 @@ std::string recipe_text(const SourceParams& source, const std::string& layer_nam
     [[maybe_unused]] const auto& [kind, meshes, texture, buffer, voxels, voxel_size, count, splats, jitter,
                                   max_distance, uv, uv_width, uv_center, back, uv_camera, structure, seed,
                                   file, stars] = source;
-    std::string text = fmt::format("set {} of astrosplat {}\n", set_version, ASTROSPLAT_VERSION);
+    std::string text = line("set", set_version, "of astrosplat", ASTROSPLAT_VERSION);
     for (const MeshInput& input : meshes) text += mesh_lines(input, progress);
     text += texture_lines(texture) + rework_lines(texture, progress) +
             prepare_lines(texture.prepare, progress) + lattice_lines(source);
     text += structure_lines(source) + projection_lines(source);
-    return text + fmt::format("jitter {}\nmax_distance {}\nuv {}\nseed {}\n", jitter, max_distance,
-                              static_cast<int>(uv), resolved_seed(seed, layer_name));
+    return text + line("jitter", jitter) + line("max_distance", max_distance) + line("uv", uv) +
+           line("seed", resolved_seed(seed, layer_name));
 } catch (const InputError&) {
     return {};
 }
 
 std::string prepared_recipe_text(const std::vector<fs::path>& files, const TextureSettings& settings,
                                  const Progress& progress) try {
-    std::string text = fmt::format("picture of astrosplat {}\n", ASTROSPLAT_VERSION);
+    std::string text = line("picture of astrosplat", ASTROSPLAT_VERSION);
     for (const fs::path& file : files) text += file_line("texture", file, progress);
     return text + texture_lines(settings) + prepare_lines(settings.prepare, progress);
 } catch (const InputError&) {
@@ -214,8 +212,8 @@ std::string prepared_recipe_text(const std::vector<fs::path>& files, const Textu
 
 std::string sky_recipe_text(const fs::path& file, const SkyTiling& tiling, const Progress& progress) try {
     const auto& [height_deg, seed, face_px] = tiling;
-    return fmt::format("sky {} of astrosplat {}\n{}height {} seed {} px {}\n", sky_version,
-                       ASTROSPLAT_VERSION, file_line("tile", file, progress), height_deg, seed, face_px);
+    return line("sky", sky_version, "of astrosplat", ASTROSPLAT_VERSION) + file_line("tile", file, progress) +
+           line("height", height_deg, "seed", seed, "px", face_px);
 } catch (const InputError&) {
     return {};
 }
@@ -228,13 +226,11 @@ Recipe recipe_of(const SourceParams& source, const std::string& layer_name, cons
 
 Recipe geometry_recipe(const ColumnPlan& plan) {
     const auto& [meshes, lattice, max_distance, jitter, seed] = plan;
-    const Bounds& box = lattice.box;
-    std::string text = fmt::format("geometry {} of astrosplat {}\n", set_version, ASTROSPLAT_VERSION);
+    std::string text = line("geometry", set_version, "of astrosplat", ASTROSPLAT_VERSION);
     for (const TexturedMesh& m : meshes) text += mesh_line(m.mesh) + (m.camera ? camera_line(*m.camera) : "");
-    text += fmt::format("lattice {} {} {}\n", lattice.n.x, lattice.n.y, lattice.n.z);
-    text += fmt::format("from {} {} {} to {} {} {}\n", box.lo.x, box.lo.y, box.lo.z, box.hi.x, box.hi.y,
-                        box.hi.z);
-    text += fmt::format("jitter {}\nmax_distance {}\nseed {}\n", jitter, max_distance, seed);
+    text += line("lattice", lattice.n.x, lattice.n.y, lattice.n.z) +
+            line("from", lattice.box.lo, "to", lattice.box.hi) + line("jitter", jitter) +
+            line("max_distance", max_distance) + line("seed", seed);
     return {text, Sha256().add(text).hex()};
 }
 

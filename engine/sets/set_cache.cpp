@@ -1,7 +1,7 @@
 // An entry is read without a lock, for it appears whole or not at all. The lock of its name is held from
 // before generation until the file is in place; what is found unlocked was left by a process that ended
 // early.
-#include "sets/set_cache.h"
+#include "sets/kept.h"
 
 #include <fmt/format.h>
 
@@ -18,10 +18,7 @@
 #include "core/log.h"
 #include "core/memory.h"
 #include "generate/kept_store.h"
-#include "sets/kept.h"
 #include "sets/load_source.h"
-#include "sets/recipe.h"
-#include "sets/star_source.h"
 
 namespace astrosplat {
 namespace {

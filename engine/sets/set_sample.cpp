@@ -15,8 +15,6 @@
 #include "generate/generate.h"
 #include "sets/kept.h"
 #include "sets/load_source.h"
-#include "sets/recipe.h"
-#include "sets/set_cache.h"
 #include "splat_files/native_blocks.h"
 #include "splats/splat_set.h"
 

@@ -1,4 +1,4 @@
-#include "sets/star_source.h"
+#include "sets/load_source.h"
 
 #include <fmt/format.h>
 
@@ -14,31 +14,32 @@
 #include "core/shared_maths.h"
 #include "core/text.h"
 #include "generate/lattice.h"
-#include "sets/load_source.h"
-#include "stars/picture_table.h"
-#include "stars/random_stars.h"
+#include "stars/catalogue.h"
 #include "stars/star_set.h"
 
 namespace astrosplat {
 namespace {
 
-std::string star_summary(const StarCounts& counts, const StarsParams& stars) {
-    std::string text = human_count(counts.kept, "star");
-    if (counts.too_faint > 0)
-        text += fmt::format(", {} fainter than magnitude {} left out",
-                            human_count(static_cast<double>(counts.too_faint)), stars.limit);
-    if (counts.infinite > 0)
-        text += fmt::format(", {} without a distance at infinity",
-                            human_count(static_cast<double>(counts.infinite)));
-    return text;
+// ", 12 k WHAT" of a summary; nothing where there are none.
+std::string also(std::int64_t count, const std::string& what) {
+    return count > 0 ? ", " + human_count(static_cast<double>(count)) + " " + what : "";
+}
+
+std::string too_faint_text(std::int64_t count, const StarsParams& stars) {
+    return also(count, fmt::format("fainter than magnitude {} left out", stars.limit));
+}
+
+template <class Star>
+void warn_of_bad_rows(const StarRows<Star>& table, const StarsParams& stars, const std::string& layer_name) {
+    if (table.bad.count > 0)
+        log_warning(fmt::format("layer '{}': {}: {}", layer_name, stars.catalogue.string(),
+                                table.bad.text(table.rows)));
 }
 
 StarCatalogue read_catalogue_of(const StarsParams& stars, const std::string& layer_name,
                                 const Progress& progress) {
     StarCatalogue catalogue = read_catalogue(stars.catalogue, progress);
-    if (catalogue.bad.count > 0)
-        log_warning(fmt::format("layer '{}': {}: {}", layer_name, stars.catalogue.string(),
-                                catalogue.bad.text(catalogue.rows)));
+    warn_of_bad_rows(catalogue, stars, layer_name);
     return catalogue;
 }
 
@@ -67,7 +68,9 @@ SplatSet read_stars(const StarsParams& stars, const std::string& layer_name, con
     const StarCatalogue catalogue = read_catalogue_of(stars, layer_name, progress);
     StarCounts counts;
     SplatSet set = star_set(catalogue, scale_of(stars), &counts);
-    log_info(fmt::format("layer '{}': {}", layer_name, star_summary(counts, stars)));
+    log_info(fmt::format("layer '{}': {}{}{}", layer_name, human_count(counts.kept, "star"),
+                         too_faint_text(counts.too_faint, stars),
+                         also(counts.infinite, "without a distance at infinity")));
     return set;
 }
 
@@ -75,9 +78,7 @@ SplatSet read_stars(const StarsParams& stars, const std::string& layer_name, con
 PictureTable bright_stars(const StarsParams& stars, const std::string& layer_name, const Progress& progress,
                           std::int64_t& too_faint) {
     PictureTable table = read_picture_table(stars.catalogue, progress);
-    if (table.bad.count > 0)
-        log_warning(fmt::format("layer '{}': {}: {}", layer_name, stars.catalogue.string(),
-                                table.bad.text(table.rows)));
+    warn_of_bad_rows(table, stars, layer_name);
     const double least = star_flux(stars.limit, stars.zero_point);
     too_faint = static_cast<std::int64_t>(
         std::erase_if(table.stars, [&](const TableStar& star) { return star.luminance() < least; }));
@@ -190,13 +191,9 @@ SplatSet load_picture_stars(const SourceParams& source, const std::string& layer
     SplatSet set = set_of(placed, table.stars, passing);
     set.star_pixels = pixels_of(placed, picture.texels_per_px);
     const auto outside = static_cast<std::int64_t>(table.stars.size() - placed.star.size());
-    std::string text = human_count(set.size(), "star") + " of the picture of '" + source.stars.like + "'";
-    if (too_faint > 0)
-        text += fmt::format(", {} fainter than magnitude {} left out",
-                            human_count(static_cast<double>(too_faint)), source.stars.limit);
-    if (outside > 0)
-        text += fmt::format(", {} outside of it left out", human_count(static_cast<double>(outside)));
-    log_info(fmt::format("layer '{}': {}", layer_name, text));
+    log_info(fmt::format("layer '{}': {} of the picture of '{}'{}{}", layer_name,
+                         human_count(set.size(), "star"), source.stars.like,
+                         too_faint_text(too_faint, source.stars), also(outside, "outside of it left out")));
     return set;
 }
 

@@ -21,16 +21,16 @@ namespace {
 
 constexpr std::int64_t splats_per_chunk = 1 << 16;
 
+/// These rows of a column, in their order; a column that is not there stays so.
 template <class T, class Row>
-void permute(Buffer<T>& values, const Buffer<Row>& from) {
-    if (values.empty()) return;
-    Buffer<T> sorted(values.size());
-    parallel_chunks(static_cast<std::int64_t>(from.size()), splats_per_chunk,
+Buffer<T> taken_rows(const Buffer<T>& from, const Buffer<Row>& rows) {
+    Buffer<T> taken(from.empty() ? 0 : rows.size());
+    parallel_chunks(static_cast<std::int64_t>(taken.size()), splats_per_chunk,
                     [&](std::int64_t begin, std::int64_t end, int) {
-                        gather(values.data(), std::span<const Row>(from.data() + begin, from.data() + end),
-                               reinterpret_cast<char*>(sorted.data() + begin));
+                        gather(from.data(), std::span<const Row>(rows.data() + begin, rows.data() + end),
+                               reinterpret_cast<char*>(taken.data() + begin));
                     });
-    values = std::move(sorted);
+    return taken;
 }
 
 /// Ids in some tens of thousands of equal steps from the lowest to the highest.
@@ -60,7 +60,7 @@ void sort_rows(SplatSet& set) {
         bins[i] = static_cast<std::uint32_t>((set.id[i] - steps.lowest) >> steps.shift);
     });
     const Buffer<Row> order = rows_by_bin<Row>(bins, steps.count, set.id);
-    for_each_column([&](auto column, SplatColumn) { permute(set.*column, order); });
+    for_each_column([&](auto column, SplatColumn) { set.*column = taken_rows(set.*column, order); });
 }
 
 }  // namespace
@@ -119,22 +119,10 @@ void check_consistent([[maybe_unused]] const SplatSet& set) {
     });
 }
 
-namespace {
-
-template <class T>
-void copy_array(const Buffer<T>& from, const Buffer<std::int64_t>& rows, Buffer<T>& to) {
-    constexpr std::int64_t rows_at_once = 1 << 16;
-    if (from.empty()) return;
-    to.resize(rows.size());
-    parallel_each(rows.size(), rows_at_once, [&](std::size_t i) { to[i] = from[rows[i]]; });
-}
-
-}  // namespace
-
 SplatSet take_rows(const SplatSet& set, const Buffer<std::int64_t>& rows) {
     SplatSet taken;
     static_cast<SplatSetFacts&>(taken) = set;
-    for_each_column([&](auto column, SplatColumn) { copy_array(set.*column, rows, taken.*column); });
+    for_each_column([&](auto column, SplatColumn) { taken.*column = taken_rows(set.*column, rows); });
     return taken;
 }
 

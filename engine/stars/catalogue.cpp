@@ -3,12 +3,18 @@
 #include "stars/catalogue.h"
 
 #include <fmt/format.h>
+#include <zlib.h>
 
+#include <algorithm>
 #include <cmath>
+#include <memory>
+#include <string_view>
+#include <utility>
 
 #include "core/error.h"
+#include "core/file.h"
+#include "core/memory.h"
 #include "core/text.h"
-#include "stars/catalogue_text.h"
 
 namespace astrosplat {
 
@@ -67,19 +73,6 @@ struct StarRow {
     /// The fault that keeps the row from being a star, likewise.
     std::string to_star(CatalogueStar& star) const;
 };
-
-/// Counts a row and adds its star where `read_row(star)` finds no problem.
-template <class ReadRow>
-void add_row(StarCatalogue& catalogue, std::int64_t line, const Progress& progress, const ReadRow& read_row) {
-    if (catalogue.rows % 65536 == 0) progress.check();
-    CatalogueStar star;
-    star.row = catalogue.rows++;
-    const std::string problem = read_row(star);
-    if (problem.empty())
-        catalogue.stars.push_back(star);
-    else
-        catalogue.bad.add(line, problem);
-}
 
 std::string StarRow::read(const StarFields& fields, RowUnits units) {
     if (!read_number(fields.ra, ra_deg)) return no_number("right ascension", fields.ra);
@@ -159,8 +152,8 @@ std::string read_row(const std::vector<std::string_view>& field, CatalogueStar& 
 StarCatalogue parse_hipparcos(std::string_view text, const Progress& progress) {
     StarCatalogue catalogue;
     for (TextRows rows(text); rows.next();)
-        add_row(catalogue, rows.line(), progress,
-                [&](CatalogueStar& star) { return read_row(rows.fields('|'), star); });
+        catalogue.add(rows.line(), progress,
+                      [&](CatalogueStar& star) { return read_row(rows.fields('|'), star); });
     return catalogue;
 }
 
@@ -182,6 +175,8 @@ struct Columns {
             hyg = hyg && table.column({name}) != TextTable::none;
     }
 
+    bool complete() const { return std::ranges::min({ra, dec, magnitude}) != TextTable::none; }
+
     int ra, dec, magnitude, distance, parallax, color_index;
     bool hyg;
 };
@@ -200,15 +195,14 @@ std::string read_table_row(const TextTable& table, const Columns& columns, Catal
 StarCatalogue parse_columns(std::string_view text, const std::string& name, const Progress& progress) {
     TextTable table(text);
     const Columns columns(table);
-    for (const int needed : {columns.ra, columns.dec, columns.magnitude})
-        if (needed == TextTable::none)
-            bad_input(name, fmt::format("line {}", table.line()),
-                      "a Hipparcos catalogue, or names of columns with ra, dec and mag among them",
-                      fmt::format("'{}'", printable(table.header().substr(0, most_shown))));
+    if (!columns.complete())
+        bad_input(name, fmt::format("line {}", table.line()),
+                  "a Hipparcos catalogue, or names of columns with ra, dec and mag among them",
+                  fmt::format("'{}'", printable(table.header().substr(0, most_shown))));
     StarCatalogue catalogue;
     while (table.next())
-        add_row(catalogue, table.line(), progress,
-                [&](CatalogueStar& star) { return read_table_row(table, columns, star); });
+        catalogue.add(table.line(), progress,
+                      [&](CatalogueStar& star) { return read_table_row(table, columns, star); });
     return catalogue;
 }
 
@@ -217,13 +211,68 @@ bool is_hipparcos(std::string_view first_line) {
     return line.starts_with('H') && trim(line.substr(1)).starts_with('|');
 }
 
+// ---- text that may be packed
+
+constexpr std::size_t block_bytes = std::size_t{1} << 22;
+constexpr int any_gzip = 15 + 16;  // zlib: the largest window, and gzip's own header
+
+// A gzip file may be several of them one after the other.
+class Inflater {
+  public:
+    Inflater(std::string_view packed, std::string name) : name_(std::move(name)) {
+        stream_.next_in =
+            reinterpret_cast<Bytef*>(const_cast<char*>(packed.data()));  // which zlib only reads
+        left_ = packed.size();
+    }
+
+    /// Adds the next block to `text`; false at the end. Throws InputError.
+    bool add_block(std::string& text) {
+        if (done_) return false;
+        feed();
+        const std::size_t have = text.size();
+        text.resize(have + block_bytes);
+        stream_.next_out = reinterpret_cast<Bytef*>(text.data() + have);
+        stream_.avail_out = static_cast<uInt>(block_bytes);
+        while (!done_ && stream_.avail_out > 0) step();
+        text.resize(text.size() - stream_.avail_out);
+        return true;
+    }
+
+  private:
+    void feed() {
+        if (stream_.avail_in > 0) return;
+        stream_.avail_in = static_cast<uInt>(std::min<std::size_t>(left_, 1u << 30));
+        left_ -= stream_.avail_in;
+    }
+
+    void step() {
+        if (!open_) {
+            if (inflateInit2(&stream_, any_gzip) != Z_OK) throw std::bad_alloc();
+            open_.reset(&stream_);
+        }
+        feed();
+        const int result = inflate(&stream_, Z_NO_FLUSH);
+        if (result == Z_STREAM_END) {
+            open_.reset();
+            feed();
+            const bool more = stream_.avail_in >= 2 && stream_.next_in[0] == 0x1f;
+            done_ = !more;
+        } else if (result != Z_OK) {
+            bad_input(name_, "", "a whole gzip file", "damaged data");
+        }
+    }
+
+    std::string name_;
+    z_stream stream_{};
+    std::unique_ptr<z_stream, int (*)(z_stream*)> open_{nullptr, inflateEnd};
+    std::size_t left_ = 0;
+    bool done_ = false;
+};
+
 }  // namespace
 
 bool is_catalogue(std::string_view first_line) {
-    const TextTable table(first_line);
-    return is_hipparcos(first_line) ||
-           (table.column({"ra"}) != TextTable::none && table.column({"dec"}) != TextTable::none &&
-            table.column({"mag", "vmag"}) != TextTable::none);
+    return is_hipparcos(first_line) || Columns(TextTable(first_line)).complete();
 }
 
 StarCatalogue parse_catalogue(std::string_view text, const std::string& name, const Progress& progress) {
@@ -235,6 +284,17 @@ StarCatalogue parse_catalogue(std::string_view text, const std::string& name, co
         bad_input(name, "", "at least one star",
                   catalogue.rows == 0 ? "none" : "none: " + catalogue.bad.text(catalogue.rows));
     return catalogue;
+}
+
+std::string read_catalogue_text(const std::filesystem::path& file, const Progress& progress) {
+    const std::string bytes = read_file(file, progress);
+    if (!bytes.starts_with("\x1f\x8b")) return bytes;
+    std::string text;
+    for (Inflater inflater(bytes, file.string()); inflater.add_block(text);) {
+        progress.check();
+        claim_memory(static_cast<std::int64_t>(text.size()), fmt::format("reading {}", file.string()));
+    }
+    return text;
 }
 
 StarCatalogue read_catalogue(const std::filesystem::path& file, const Progress& progress) {

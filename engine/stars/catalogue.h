@@ -1,15 +1,19 @@
 // Star catalogues. In: the Hipparcos main catalogue (ESA SP-1200, hip_main.dat) or a table with a line of
-// names, HYG's among them; both may be gzip-compressed. Out: a list of stars as they stand there, with the
-// rows that cannot be used counted and named.
+// names, HYG's among them; or the stars of a picture as `prepare` lists them (prepare/star_removal.h). All
+// may be gzip-compressed. Out: a list of stars as they stand there, with the rows that cannot be used counted
+// and named. Also which files hold stars at all.
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "core/color.h"
 #include "core/progress.h"
 
 namespace astrosplat {
@@ -34,11 +38,27 @@ struct BadRows {
     std::string text(std::int64_t rows) const;
 };
 
-struct StarCatalogue {
-    std::vector<CatalogueStar> stars;  // in the order of their rows
-    std::int64_t rows = 0;             // with the bad ones
+/// The stars of a file's rows.
+template <class Star>
+struct StarRows {
+    std::vector<Star> stars;  // in the order of their rows
+    std::int64_t rows = 0;    // with the bad ones
     BadRows bad;
+
+    /// Counts a row and adds its star where read(star) finds no problem. Throws Cancelled.
+    template <class Read>
+    void add(std::int64_t line, const Progress& progress, const Read& read) {
+        if (rows % 65536 == 0) progress.check();
+        Star star;
+        star.row = rows++;
+        const std::string problem = read(star);
+        if (problem.empty())
+            stars.push_back(star);
+        else
+            bad.add(line, problem);
+    }
 };
+using StarCatalogue = StarRows<CatalogueStar>;
 
 /// Tables name their columns, in capitals or not, in any order: ra and dec (degrees; HYG's ra, known by its
 /// columns hip, hd, hr, gl and proper, in hours), mag or vmag, and where there are such dist or distance
@@ -53,5 +73,43 @@ StarCatalogue parse_catalogue(std::string_view text, const std::string& name, co
 
 /// Whether a first line is that of a catalogue which read_catalogue() takes.
 bool is_catalogue(std::string_view first_line);
+
+/// The text of a file, gzip-compressed or not, whatever its name. Throws InputError for files that cannot be
+/// read, damaged gzip data and text larger than the memory left; Cancelled.
+std::string read_catalogue_text(const std::filesystem::path& file, const Progress& progress = {});
+
+// ---- the stars of a picture
+
+struct TableStar {
+    std::int64_t row = 0;   // of the table's rows, bad ones too, from 0
+    glm::dvec2 uv{0.0};     // on the picture; v = 0 is its lower edge
+    glm::dvec3 light{0.0};  // linear, >= 0, over all pixels of the picture
+    double sigma_px = 0.0;  // of the picture's pixels; 0: not known
+    double luminance() const { return astrosplat::luminance(light.x, light.y, light.z); }
+};
+
+using PictureTable = StarRows<TableStar>;
+
+/// Columns u, v and flux_r, flux_g, flux_b, in any order, and sigma_px where there is one; .gz too. Rows
+/// without light are bad ones. Throws InputError where a column is missing or no row of many can be used;
+/// Cancelled.
+PictureTable read_picture_table(const std::filesystem::path& file, const Progress& progress = {});
+
+/// The same of its text; `name` begins messages.
+PictureTable parse_picture_table(std::string_view text, const std::string& name,
+                                 const Progress& progress = {});
+
+/// The middle one of the stars' widths, px of the picture; 0 where none is known.
+double median_sigma_px(const PictureTable& table);
+
+enum class CatalogueKind {
+    none,
+    sky,     // read_catalogue() takes it
+    picture  // read_picture_table() does
+};
+
+/// By its first line, whatever its name. Of gzip data only where it begins as such; none for what cannot be
+/// read. Throws InputError for damaged gzip data.
+CatalogueKind kind_of_catalogue(const std::filesystem::path& file);
 
 }  // namespace astrosplat

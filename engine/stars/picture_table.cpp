@@ -1,4 +1,4 @@
-#include "stars/picture_table.h"
+#include "stars/catalogue.h"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,6 @@
 #include "core/file.h"
 #include "core/sorting.h"
 #include "core/text.h"
-#include "stars/catalogue_text.h"
 
 namespace astrosplat {
 namespace {
@@ -72,16 +71,8 @@ PictureTable parse_picture_table(std::string_view text, const std::string& name,
                   "the stars of a picture: names of columns with u, v, flux_r, flux_g and flux_b among them",
                   fmt::format("'{}'", printable(table.header().substr(0, most_header_shown))));
     PictureTable result;
-    while (table.next()) {
-        if (result.rows % 65536 == 0) progress.check();
-        TableStar star;
-        star.row = result.rows++;
-        const std::string problem = read_star(table, columns, star);
-        if (problem.empty())
-            result.stars.push_back(star);
-        else
-            result.bad.add(table.line(), problem);
-    }
+    while (table.next())
+        result.add(table.line(), progress, [&](TableStar& star) { return read_star(table, columns, star); });
     if (result.stars.empty() && result.rows > 0) bad_input(name, "", "stars", result.bad.text(result.rows));
     return result;
 }

@@ -1,6 +1,6 @@
 // A capsule, the ball swept along one straight part, is drawn by its volume, then a point in it; the point
 // counts unless an earlier capsule holds it too. So each place of the union is as likely as any other.
-#include "stars/random_stars.h"
+#include "stars/star_set.h"
 
 #include <algorithm>
 #include <cassert>
@@ -10,7 +10,6 @@
 #include "core/parallel.h"
 #include "core/real.h"
 #include "core/shared_maths.h"
-#include "stars/star_set.h"
 
 namespace astrosplat {
 namespace {

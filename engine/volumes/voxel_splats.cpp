@@ -7,7 +7,7 @@
 #include "core/memory.h"
 #include "core/real.h"
 #include "core/sorting.h"
-#include "gaussians/appearance.h"
+#include "gaussians/gaussians.h"
 
 namespace astrosplat {
 

@@ -8,7 +8,7 @@
 
 #include "analytic/support.h"
 #include "core/real.h"
-#include "render/falloff.h"
+#include "render/footprint.h"
 
 namespace astrosplat {
 namespace {

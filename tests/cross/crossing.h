@@ -11,7 +11,7 @@
 
 #include "camera/camera.h"
 #include "core/text.h"
-#include "render/layer_render.h"
+#include "render/frame.h"
 
 namespace astrosplat::test {
 

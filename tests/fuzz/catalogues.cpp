@@ -8,7 +8,7 @@
 #include <fstream>
 
 #include "fuzz/targets.h"
-#include "stars/picture_table.h"
+#include "stars/catalogue.h"
 #include "stars/star_set.h"
 #include "unit/stars/catalogues.h"
 

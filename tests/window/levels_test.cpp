@@ -3,7 +3,7 @@
 
 #include "core/atomic_file.h"
 #include "gui/theme.h"
-#include "sets/recipe.h"
+#include "sets/kept.h"
 #include "support/fits_text.h"
 #include "window/window_test.h"
 

@@ -12,7 +12,7 @@
 #include "look/prepare.h"
 #include "look/shared_look.h"
 #include "look/shared_uniforms.h"
-#include "render/falloff.h"
+#include "render/footprint.h"
 #include "scene/describer.h"
 
 namespace astrosplat::panel {

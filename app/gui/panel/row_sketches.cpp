@@ -17,7 +17,7 @@
 #include "gui/theme.h"
 #include "gui/widgets.h"
 #include "look/shared_look.h"
-#include "render/falloff.h"
+#include "render/footprint.h"
 
 namespace astrosplat::panel {
 

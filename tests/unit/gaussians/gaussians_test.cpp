@@ -8,7 +8,7 @@
 #include <numbers>
 
 #include "core/color.h"
-#include "render/falloff.h"
+#include "render/footprint.h"
 #include "render/render.h"
 
 namespace astrosplat::test {

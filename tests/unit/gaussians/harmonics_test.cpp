@@ -11,7 +11,7 @@
 #include "core/real.h"
 #include "core/rotation.h"
 #include "gaussians/gaussian_file.h"
-#include "gaussians/harmonics_export.h"
+#include "gaussians/gaussians.h"
 #include "splat_files/splat_file.h"
 #include "splats/harmonics.h"
 #include "support/capture.h"

@@ -1,6 +1,6 @@
 // Structure close by (lod.noise) in a preview's dots: as bright as the children of the final frame are on
 // average, and 1 where there are none.
-#include "merge/cloud_light.h"
+#include "merge/cut.h"
 
 #include <gtest/gtest.h>
 

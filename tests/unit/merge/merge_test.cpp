@@ -11,7 +11,7 @@
 
 #include "core/error.h"
 #include "core/shared_maths.h"
-#include "render/falloff.h"
+#include "render/footprint.h"
 #include "render/render.h"
 #include "splats/splat_set.h"
 #include "support/bits.h"

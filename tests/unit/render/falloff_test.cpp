@@ -1,6 +1,6 @@
 // Each falloff's traits against its formula: a shape that says too little of itself is noticed as soon as it
 // has a name.
-#include "render/falloff.h"
+#include "render/footprint.h"
 
 #include <gtest/gtest.h>
 

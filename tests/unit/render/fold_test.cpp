@@ -12,7 +12,7 @@
 
 #include "core/error.h"
 #include "core/parallel.h"
-#include "render/splat_sorter.h"
+#include "render/screen_splat.h"
 #include "support/printing.h"
 
 namespace astrosplat {

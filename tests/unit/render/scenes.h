@@ -6,7 +6,7 @@
 #include <glm/vec3.hpp>
 #include <vector>
 
-#include "render/falloff.h"
+#include "render/footprint.h"
 #include "render/render.h"
 #include "support/bits.h"
 

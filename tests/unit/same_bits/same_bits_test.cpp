@@ -25,7 +25,7 @@
 #include "splat_files/formats.h"
 #include "splat_files/native.h"
 #include "splats/row_order.h"
-#include "stars/random_stars.h"
+#include "stars/star_set.h"
 #include "support/bits.h"
 #include "support/painted_picture.h"
 #include "support/temp_folder.h"

@@ -13,8 +13,6 @@
 #include "core/file.h"
 #include "core/log.h"
 #include "sets/load_source.h"
-#include "sets/recipe.h"
-#include "sets/set_cache.h"
 #include "source/prepared_picture.h"
 #include "source/write_image.h"
 #include "support/errors.h"

@@ -1,6 +1,6 @@
 // The cache of generated sets: the same bits as generated, a recipe that follows every input, a size limit,
 // processes that share a folder, and folders and entries that cannot be used.
-#include "sets/set_cache.h"
+#include "sets/kept.h"
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
@@ -18,7 +18,6 @@
 
 #include "core/log.h"
 #include "sets/load_source.h"
-#include "sets/recipe.h"
 #include "sets/set_sample.h"
 #include "splat_files/native.h"
 #include "support/temp_folder.h"

@@ -6,9 +6,8 @@
 #include <cmath>
 #include <fstream>
 
+#include "sets/kept.h"
 #include "sets/load_source.h"
-#include "sets/recipe.h"
-#include "sets/set_cache.h"
 #include "splat_files/native.h"
 #include "support/quiet.h"
 #include "support/temp_folder.h"

@@ -6,7 +6,6 @@
 
 #include "core/file.h"
 #include "core/log.h"
-#include "sets/recipe.h"
 #include "support/starry_picture.h"
 #include "support/temp_folder.h"
 

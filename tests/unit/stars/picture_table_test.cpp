@@ -1,5 +1,5 @@
 // The table of a picture's stars: what prepare writes, and tables that are not quite that.
-#include "stars/picture_table.h"
+#include "stars/catalogue.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Random stars fill their tube evenly, and are of the kinds they are drawn from.
-#include "stars/random_stars.h"
+#include "stars/star_set.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,6 @@
 #include <glm/geometric.hpp>
 
 #include "catalogues.h"
-#include "stars/star_set.h"
 
 namespace astrosplat {
 namespace {

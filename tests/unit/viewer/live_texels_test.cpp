@@ -9,8 +9,8 @@
 #include <thread>
 
 #include "edit/document.h"
+#include "sets/kept.h"
 #include "sets/load_source.h"
-#include "sets/set_cache.h"
 #include "support/fits_text.h"
 #include "support/small_scene.h"
 #include "unit/splats/same_bits.h"

@@ -13,7 +13,7 @@
 #include "core/shared_maths.h"
 #include "gl/gl_fixture.h"
 #include "merge/cut.h"
-#include "render/falloff.h"
+#include "render/footprint.h"
 #include "support/preview_views.h"
 #include "support/quiet.h"
 #include "support/temp_folder.h"

@@ -1,6 +1,6 @@
 // A block is as near as the nearest point of its box, and as far as the farthest of its corners; both with a
 // margin for the largest radius, within which children lie, and for what floats round away.
-#include "render/depth_slabs.h"
+#include "render/scatter.h"
 
 #include <algorithm>
 #include <bit>
@@ -120,42 +120,6 @@ std::vector<VisibleBlock> visible_blocks(std::span<const LayerProjection> layers
         }
     }
     return visible;
-}
-
-double DepthSample::records() const {
-    double all = 0.0;
-    for (const DepthShare& share : shares) all += share.records;
-    return all;
-}
-
-std::vector<DepthRange> DepthSample::cut(double most_records, std::uint32_t first) const {
-    std::vector<DepthRange> ranges = {{first, 0xffffffffu}};
-    double records = 0.0;
-    for (std::size_t i = 0; i < shares.size(); ++i) {
-        if (shares[i].depth < first) continue;
-        records += shares[i].records;
-        const bool may_cut = i > 0 && shares[i].depth > std::max(shares[i - 1].depth, ranges.back().first);
-        if (!may_cut || records <= most_records) continue;
-        ranges.back().last = shares[i].depth - 1;
-        ranges.push_back({shares[i].depth, 0xffffffffu});
-        records = shares[i].records;
-    }
-    return ranges;
-}
-
-std::pair<DepthRange, DepthRange> DepthSample::halve(const DepthRange& range) const {
-    double all = 0.0, near = 0.0;
-    for (const DepthShare& share : shares) all += range.holds(share.depth) ? share.records : 0.0;
-    std::uint32_t last = range.first + (range.last - range.first) / 2;
-    for (const DepthShare& share : shares) {
-        if (!range.holds(share.depth)) continue;
-        near += share.records;
-        if (2.0 * near < all) continue;
-        // Beyond the sample's ends there may be many; no range is to be tried twice.
-        if (share.depth > range.first && share.depth < range.last) last = share.depth;
-        break;
-    }
-    return {{range.first, last}, {last + 1, range.last}};
 }
 
 }  // namespace astrosplat
