@@ -11,14 +11,14 @@
 #include "core/text.h"
 #include "estimate.h"
 #include "output/format.h"
-#include "output/read_frame.h"
+#include "output/metadata.h"
 #include "output/write.h"
 #include "pipeline.h"
 #include "scene/animate.h"
 #include "scene/check.h"
 #include "scene/frames.h"
+#include "scene/layer_setup.h"
 #include "scene/load.h"
-#include "scene/scene_files.h"
 
 namespace astrosplat {
 namespace fs = std::filesystem;

@@ -6,7 +6,7 @@
 #include "core/text.h"
 #include "exit_code.h"
 #include "places.h"
-#include "scene/export_camera.h"
+#include "scene/camera_file.h"
 #include "scene/frames.h"
 #include "scene/load.h"
 

@@ -13,7 +13,7 @@
 
 #include "batch_plan.h"
 #include "bodies/picture_size.h"
-#include "camera/aperture.h"
+#include "camera/camera.h"
 #include "core/error.h"
 #include "core/file_format.h"
 #include "core/memory.h"
@@ -30,7 +30,7 @@
 #include "sets/kept.h"
 #include "sets/load_source.h"
 #include "source/picture.h"
-#include "splat_files/native_blocks.h"
+#include "splat_files/native.h"
 #include "splat_files/splat_file.h"
 #include "streamed/streamed_set.h"
 

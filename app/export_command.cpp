@@ -26,7 +26,7 @@
 #include "scene/animate.h"
 #include "scene/frames.h"
 #include "scene/load.h"
-#include "scene/suggest.h"
+#include "scene/parameter_key.h"
 #include "volumes/openvdb_file.h"
 #include "volumes/voxel_grid.h"
 

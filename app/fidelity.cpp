@@ -25,7 +25,7 @@
 #include "fidelity_table.h"
 #include "interrupt.h"
 #include "measure_fidelity.h"
-#include "output/encode.h"
+#include "output/format.h"
 #include "places.h"
 #include "scene/animate.h"
 #include "scene/check.h"

@@ -13,7 +13,6 @@
 #include "core/file_format.h"
 #include "core/text.h"
 #include "output/metadata.h"
-#include "output/read_frame.h"
 #include "report.h"
 #include "scene/check.h"
 #include "scene/frames.h"

@@ -11,7 +11,7 @@
 
 #include "exit_code.h"
 #include "scene/describe.h"
-#include "scene/value.h"
+#include "scene/parameter.h"
 
 namespace astrosplat {
 

@@ -15,7 +15,7 @@
 #include "core/text.h"
 #include "places.h"
 #include "scene/new_scene.h"
-#include "scene/suggest.h"
+#include "scene/parameter_key.h"
 #include "source/picture.h"
 
 namespace astrosplat {

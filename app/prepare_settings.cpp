@@ -8,7 +8,7 @@
 #include "core/error.h"
 #include "scene/check.h"
 #include "scene/describe.h"
-#include "scene/describe_prepare.h"
+#include "scene/describe_layer.h"
 #include "scene/load.h"
 #include "source/fits.h"
 

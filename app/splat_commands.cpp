@@ -17,7 +17,7 @@
 #include "progress_report.h"
 #include "scene/layer_setup.h"
 #include "scene/load.h"
-#include "scene/suggest.h"
+#include "scene/parameter_key.h"
 #include "sets/load_source.h"
 #include "splat_files/splat_file.h"
 

@@ -20,7 +20,6 @@
 #include "interrupt.h"
 #include "output/compare.h"
 #include "output/metadata.h"
-#include "output/read_frame.h"
 #include "output/write.h"
 #include "pipeline.h"
 #include "report.h"

@@ -6,11 +6,11 @@
 #include <optional>
 #include <utility>
 
-#include "camera/aperture.h"
+#include "camera/camera.h"
 #include "core/buffer.h"
 #include "core/progress.h"
 #include "core/text.h"
-#include "frame/mean_frame.h"
+#include "frame/frame_scene.h"
 #include "look/apply.h"
 #include "scene/animate.h"
 #include "scene/layer_setup.h"

@@ -1,5 +1,5 @@
 // A pixel of an image on the screen: through exposure and view transform, alone, under another one or less another one.
-// The transform is that of engine/output/encode.cpp for frames without alpha. What is chosen per image comes as defines
+// The transform is that of engine/output/format.cpp for frames without alpha. What is chosen per image comes as defines
 // (a software rasteriser runs both sides of a branch): VIEW and VIEW_B of the images, TAPS_A and TAPS_B reads per axis,
 // DITHER; OVER lays B over A, DIFFERENCE takes it from A; MASKED: alpha is 1 where B lies, else 0.
 
@@ -56,7 +56,7 @@ vec3 apply_view(int view, vec3 light) {
     return view == VIEW_LINEAR ? x : srgb_curve(x);
 }
 
-// As dither() in engine/output/encode.cpp, in levels of 8 bits.
+// As dither() in engine/output/format.cpp, in levels of 8 bits.
 vec3 dither(uvec2 px) {
     uvec3 lattice = uvec3(px.x * 0xC13FA9A9u + px.y * 0x91E10DA5u) + uvec3(0u, 0x9E3779B9u, 0x3C6EF372u);
     uvec3 whole = (lattice >> 8) + uvec3(notEqual(lattice & 255u, uvec3(0u)));

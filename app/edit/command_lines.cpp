@@ -16,10 +16,10 @@
 #include "edit/keyframes.h"
 #include "frame/output_pattern.h"
 #include "scene/describe.h"
-#include "scene/describe_prepare.h"
+#include "scene/describe_layer.h"
+#include "scene/entries.h"
 #include "scene/frames.h"
 #include "scene/load.h"
-#include "scene/tracks.h"
 #include "source/fits.h"
 
 namespace astrosplat {

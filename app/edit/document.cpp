@@ -18,9 +18,9 @@
 #include "scene/camera_file.h"
 #include "scene/describe.h"
 #include "scene/entries.h"
+#include "scene/layer_setup.h"
+#include "scene/parameter_key.h"
 #include "scene/save.h"
-#include "scene/scene_files.h"
-#include "scene/suggest.h"
 
 namespace astrosplat {
 namespace fs = std::filesystem;

@@ -13,8 +13,8 @@
 
 #include "camera/camera.h"
 #include "edit/view_state.h"
+#include "scene/parameter.h"
 #include "scene/scene.h"
-#include "scene/value.h"
 
 namespace astrosplat {
 

@@ -12,7 +12,7 @@
 #include "scene/check.h"
 #include "scene/load.h"
 #include "scene/new_scene.h"
-#include "scene/value.h"
+#include "scene/parameter.h"
 
 namespace astrosplat {
 namespace fs = std::filesystem;

@@ -15,7 +15,7 @@
 #include "core/file_format.h"
 #include "core/real.h"
 #include "scene/new_scene.h"
-#include "scene/value.h"
+#include "scene/parameter.h"
 #include "source/mesh.h"
 #include "source/obj.h"
 #include "source/picture.h"

@@ -7,7 +7,6 @@
 #include "core/file_format.h"
 #include "scene/camera_file.h"
 #include "scene/describe.h"
-#include "scene/export_camera.h"
 
 namespace astrosplat {
 namespace fs = std::filesystem;

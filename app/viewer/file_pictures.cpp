@@ -11,8 +11,8 @@
 #include "core/log.h"
 #include "core/text.h"
 #include "image/resample.h"
-#include "output/encode.h"
-#include "output/read_frame.h"
+#include "output/format.h"
+#include "output/metadata.h"
 #include "source/stored_picture.h"
 
 namespace astrosplat {

@@ -18,7 +18,7 @@
 #include "core/log.h"
 #include "core/memory.h"
 #include "core/parallel.h"
-#include "splat_files/mapped_file.h"
+#include "splat_files/file_bytes.h"
 
 namespace astrosplat {
 namespace {

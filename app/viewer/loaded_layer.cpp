@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/error.h"
-#include "scene/scene_files.h"
+#include "scene/layer_setup.h"
 #include "source/fits.h"
 #include "source/mesh.h"
 #include "source/obj.h"

@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "scene/layer_setup.h"
-#include "scene/scene_files.h"
 #include "source/texture.h"
 
 namespace astrosplat {

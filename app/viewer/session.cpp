@@ -5,7 +5,7 @@
 #include <new>
 #include <utility>
 
-#include "camera_files/read_camera.h"
+#include "camera_files/camera_track.h"
 #include "core/error.h"
 #include "core/file.h"
 #include "core/memory.h"

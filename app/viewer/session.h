@@ -23,7 +23,7 @@
 #include "gl/display.h"
 #include "gl/image_texture.h"
 #include "gui/gui.h"
-#include "output/read_frame.h"
+#include "output/metadata.h"
 #include "viewer/comparison.h"
 #include "viewer/file_pictures.h"
 #include "viewer/layer_picture.h"

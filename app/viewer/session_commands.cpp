@@ -13,7 +13,7 @@
 #include "edit/layers.h"
 #include "edit/new_from_file.h"
 #include "scene/animate.h"
-#include "scene/export_camera.h"
+#include "scene/camera_file.h"
 #include "scene/frames.h"
 #include "scene/layer_setup.h"
 #include "scene/reference_place.h"

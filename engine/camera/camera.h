@@ -1,5 +1,5 @@
-// The camera: what [camera] says (CameraParams) and the resolved double-precision camera made of it.
-// Camera space: x right, y up, looking along -z.
+// The camera: what [camera] says (CameraParams) and the resolved double-precision camera made of it; and its
+// samples for motion blur and depth of field. Camera space: x right, y up, looking along -z.
 #pragma once
 
 #include <filesystem>
@@ -138,5 +138,23 @@ ExrMatrices exr_matrices(const Camera& camera, double width_px, double height_px
 
 /// Rotation matrix from a quaternion x y z w of any length (0: InputError).
 glm::dmat3 rotation_from_quaternion(const glm::dvec4& q);
+
+/// Whether a frame is more than one rendering: motion blur or depth of field.
+inline bool is_blurred(const CameraParams& params) {
+    return params.shutter > 0.0 || (params.f_number > 0.0 && params.projection == Projection::perspective);
+}
+/// One of the renderings that a blurred frame is the mean of.
+struct CameraSample {
+    double frames = 0.0;   // after the frame's own time
+    glm::dvec2 lens{0.0};  // place on the aperture, in the unit disc
+};
+/// Sample i of n: moments evenly spread over the open shutter, places on a sunflower's (Vogel's) spiral over
+/// the aperture, in an order that does not depend on the moments.
+CameraSample camera_sample(const CameraParams& params, int i, int n);
+/// The camera moved to a place of the aperture (unit disc) and shifted so that the plane of focus, which lies
+/// across the view axis, stays where it is on the frame. `params` are those that make_camera made `camera`
+/// of.
+Camera through_lens(const Camera& camera, const CameraParams& params, const glm::dvec2& lens,
+                    double width_px);
 
 }  // namespace astrosplat

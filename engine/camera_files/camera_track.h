@@ -48,4 +48,11 @@ bool quaternion_from_axes(const glm::dmat3& world_from_camera, glm::dvec4& quate
 /// Looking along `direction` with `up` up. Returns false where the two are parallel or zero.
 bool quaternion_from_view(const glm::dvec3& direction, const glm::dvec3& up, glm::dvec4& quaternion);
 
+/// Whether the name ends as one of such files does, in capitals or not (core/file_format.h).
+bool is_camera_file(const std::filesystem::path& file);
+
+/// A file of one of these endings. Throws InputError, one line with file, line (where the format has lines),
+/// expectation and finding.
+CameraTrack read_camera(const std::filesystem::path& file, const FrameRate& rate);
+
 }  // namespace astrosplat

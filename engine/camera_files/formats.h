@@ -1,7 +1,7 @@
 // Cameras of other programs, one reader (and the text of a file, where we write one) each. In and out:
 // CameraTrack. Readers throw InputError with the file and, where the format has lines, the line.
 //
-// A new format: its functions here and in a file of their own, a row in read_camera.cpp, and its ending in
+// A new format: its functions here and in a file of their own, a row in camera_track.cpp, and its ending in
 // core/file_format.cpp.
 #pragma once
 

@@ -14,7 +14,6 @@
 #include "core/real.h"
 #include "core/text.h"
 #include "usd/usda_stage.h"
-#include "usd/usda_transform.h"
 
 namespace astrosplat {
 namespace {

@@ -13,7 +13,6 @@
 #include "scene/animate.h"
 #include "scene/describe.h"
 #include "scene/layer_setup.h"
-#include "scene/scene_files.h"
 #include "source/mesh.h"
 #include "source/obj.h"
 

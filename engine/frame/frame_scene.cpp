@@ -1,7 +1,9 @@
 #include "frame/frame_scene.h"
 
 #include <algorithm>
+#include <utility>
 
+#include "core/parallel.h"
 #include "scene/animate.h"
 
 namespace astrosplat {
@@ -27,6 +29,79 @@ std::vector<std::size_t> shown_layers(const FrameScene& frame) {
         if (std::ranges::any_of(frame.moments(), [&](const Scene& s) { return s.layers[i].visible; }))
             shown.push_back(i);
     return shown;
+}
+
+namespace {
+
+constexpr std::int64_t chunk_values = 1 << 16;
+
+void add(Image& sum, const Image& image) {
+    parallel_chunks(std::ssize(sum.pixels), chunk_values, [&](std::int64_t begin, std::int64_t end, int) {
+        for (std::int64_t i = begin; i < end; ++i) sum.pixels[i] += image.pixels[i];
+    });
+}
+
+void scale(Image& image, float factor) {
+    parallel_chunks(std::ssize(image.pixels), chunk_values, [&](std::int64_t begin, std::int64_t end, int) {
+        for (std::int64_t i = begin; i < end; ++i) image.pixels[i] *= factor;
+    });
+}
+
+void multiply(Image& depth, const Image& opacity) {
+    for (std::size_t i = 0; i < depth.pixels.size(); ++i) depth.pixels[i] *= opacity.pixels[i];
+}
+
+void divide(Image& depth, const Image& opacity) {
+    for (std::size_t i = 0; i < depth.pixels.size(); ++i)
+        depth.pixels[i] = opacity.pixels[i] > 0.0f ? depth.pixels[i] / opacity.pixels[i] : 0.0f;
+}
+
+void add_layers(std::vector<Image>& sum, std::vector<Image>&& rendered, std::span<const std::size_t> layers) {
+    for (std::size_t i = 0; i < rendered.size(); ++i) {
+        if (sum.size() <= layers[i]) sum.resize(layers[i] + 1);
+        Image& layer = sum[layers[i]];
+        if (layer.pixels.empty())
+            layer = std::move(rendered[i]);
+        else
+            add(layer, rendered[i]);
+    }
+}
+
+}  // namespace
+
+void add_rendering(RenderedFrame& sum, RenderedFrame&& rendering, std::span<const std::size_t> layers) {
+    multiply(rendering.depth, rendering.opacity);
+    add_layers(sum.layers, std::exchange(rendering.layers, {}), layers);
+    if (sum.beauty.pixels.empty()) {
+        std::vector<Image> summed = std::move(sum.layers);
+        sum = std::move(rendering);
+        sum.layers = std::move(summed);
+        return;
+    }
+    add(sum.beauty, rendering.beauty);
+    add(sum.depth, rendering.depth);
+    add(sum.opacity, rendering.opacity);
+    add(sum.coverage, rendering.coverage);
+    add(sum.count, rendering.count);
+    RenderStatistics& statistics = sum.statistics;
+    statistics.splats_in += rendering.statistics.splats_in;
+    statistics.splats_drawn += rendering.statistics.splats_drawn;
+    statistics.mean_overlap += rendering.statistics.mean_overlap;
+    statistics.seconds += rendering.statistics.seconds;
+}
+
+void divide_sum(RenderedFrame& sum, int n, std::size_t layer_count) {
+    divide(sum.depth, sum.opacity);
+    const float share = 1.0f / static_cast<float>(n);
+    for (Image* image : {&sum.beauty, &sum.coverage, &sum.count}) scale(*image, share);
+    sum.layers.resize(layer_count);
+    for (Image& layer : sum.layers) {
+        if (layer.pixels.empty()) layer = make_image(sum.beauty.width, sum.beauty.height, 4);
+        scale(layer, share);
+    }
+    sum.statistics.splats_in /= n;
+    sum.statistics.splats_drawn /= n;
+    sum.statistics.mean_overlap /= n;
 }
 
 }  // namespace astrosplat

@@ -1,12 +1,15 @@
-// A frame as one value: the scene at every moment that its shutter sees. Renderer, frame hash and writers all
-// ask it, so that none of them knows more or less of the frame than the others.
+// A frame as one value: the scene at every moment that its shutter sees, and the mean of its renderings.
+// Renderer, frame hash and writers all ask it, so that none of them knows more or less of the frame than the
+// others.
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <span>
 #include <vector>
 
-#include "camera/aperture.h"
+#include "camera/camera.h"
+#include "render/frame.h"
 #include "scene/scene.h"
 
 namespace astrosplat {
@@ -34,5 +37,14 @@ FrameScene frame_scene(const Scene& scene, double number, std::optional<Eye> eye
 
 /// Indices of the layers that are visible at some moment, in file order.
 std::vector<std::size_t> shown_layers(const FrameScene& frame);
+
+/// Adds a rendering to the sum of those before it; an empty sum becomes the rendering. `layers`: which of the
+/// frame's layers each of the rendering's is; the sum has images of those that came so far, empty ones of the
+/// others. Depths are weighted by RenderedFrame::opacity, which has to be there with them.
+void add_rendering(RenderedFrame& sum, RenderedFrame&& rendering, std::span<const std::size_t> layers);
+
+/// Makes the sum of n renderings their mean, with an image for each of `layer_count` layers (0: none). Of the
+/// statistics, counts and overlap are means and seconds a sum.
+void divide_sum(RenderedFrame& sum, int n, std::size_t layer_count);
 
 }  // namespace astrosplat

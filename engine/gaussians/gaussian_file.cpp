@@ -17,8 +17,8 @@
 #include "core/color.h"
 #include "core/error.h"
 #include "core/real.h"
+#include "splat_files/file_bytes.h"
 #include "splat_files/number_text.h"
-#include "splat_files/ordered_writer.h"
 #include "splats/harmonics.h"
 
 namespace astrosplat {

@@ -20,7 +20,7 @@
 #include "generate/surface.h"
 #include "generate/triangle_tree.h"
 #include "source/sample.h"
-#include "splat_files/native_blocks.h"
+#include "splat_files/native.h"
 #include "splats/row_order.h"
 #include "splats/splat_set.h"
 

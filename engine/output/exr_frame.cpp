@@ -1,4 +1,4 @@
-#include "output/exr_frame.h"
+#include "output/frame_formats.h"
 
 #include <ImfChannelList.h>
 #include <ImfFloatAttribute.h>
@@ -11,6 +11,7 @@
 #include <ImfRationalAttribute.h>
 #include <ImfStandardAttributes.h>
 #include <ImfStringAttribute.h>
+#include <ImfThreading.h>
 #include <fmt/format.h>
 #include <half.h>
 
@@ -27,12 +28,21 @@
 #include "core/color.h"
 #include "core/error.h"
 #include "core/parallel.h"
-#include "output/encode.h"
-#include "output/metadata.h"
 
 namespace astrosplat {
 
 namespace {
+
+/// The threads that OpenEXR may pack and unpack pixels with: as many as the program's own; none where there
+/// are none to be had, and it does without.
+int exr_threads() {
+    try {
+        if (Imf::globalThreadCount() != thread_count()) Imf::setGlobalThreadCount(thread_count());
+        return Imf::globalThreadCount();
+    } catch (const std::exception&) {
+        return 0;
+    }
+}
 
 constexpr int rows_at_once = 256;                             // the most that a compression takes together
 constexpr std::int64_t largest_band = std::int64_t{1} << 30;  // bytes; no frame has rows that wide

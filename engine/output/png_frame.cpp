@@ -1,4 +1,4 @@
-#include "output/png_frame.h"
+#include "output/frame_formats.h"
 
 #include <fmt/format.h>
 #include <png.h>
@@ -15,8 +15,6 @@
 
 #include "core/atomic_file.h"
 #include "core/error.h"
-#include "output/encode.h"
-#include "output/metadata.h"
 
 namespace astrosplat {
 namespace {
@@ -144,20 +142,20 @@ std::unique_ptr<OpenPng> open_png(const std::filesystem::path& path) {
 
 }  // namespace
 
-void write_png(const FrameFile& target, const FrameFormat& format, const Image& beauty,
+void write_png(const FrameFile& target, const FrameFormat& format, const RenderedFrame& frame,
                const FrameMetadata& metadata) {
     MetadataEntries entries = metadata_entries(metadata);
     if (!metadata.provenance.credit.empty()) entries.emplace_back("Copyright", metadata.provenance.credit);
     std::vector<png_text> texts;
     for (const auto& [name, value] : entries) texts.push_back(text_of(name, value));
-    PngPicture picture{beauty.width, beauty.height, stored_channels(format), 8, nullptr, &format, &texts};
+    PngPicture picture{frame.beauty.width, frame.beauty.height, stored_channels(format), 8, nullptr, &format, &texts};
     std::vector<std::uint8_t> bytes;
     std::vector<std::uint16_t> words;
     if (format.depth == OutputParams::Depth::uint8) {
-        bytes = encode_8bit(format, beauty, target.region.x, target.region.y);
+        bytes = encode_8bit(format, frame.beauty, target.region.x, target.region.y);
         picture.rows = bytes.data();
     } else {
-        words = encode_16bit(format, beauty);
+        words = encode_16bit(format, frame.beauty);
         picture.bits = 16;
         picture.rows = reinterpret_cast<const unsigned char*>(words.data());
     }

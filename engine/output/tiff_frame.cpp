@@ -1,4 +1,4 @@
-#include "output/tiff_frame.h"
+#include "output/frame_formats.h"
 
 #include <fmt/format.h>
 #include <tiffio.h>
@@ -17,8 +17,6 @@
 #include "core/atomic_file.h"
 #include "core/error.h"
 #include "core/parallel.h"
-#include "output/encode.h"
-#include "output/metadata.h"
 
 namespace astrosplat {
 namespace {
@@ -224,21 +222,21 @@ OpenTiff open_tiff(const std::filesystem::path& file, TiffError& error) {
 
 }  // namespace
 
-void write_tiff(const FrameFile& target, const FrameFormat& format, const Image& beauty,
+void write_tiff(const FrameFile& target, const FrameFormat& format, const RenderedFrame& frame,
                 const FrameMetadata& metadata) {
     const int channels = stored_channels(format);
     const auto write = [&](int bytes_each, const void* rows) {
         write_samples(
             target, format,
-            {beauty.width, beauty.height, channels, bytes_each, static_cast<const unsigned char*>(rows)},
+            {frame.beauty.width, frame.beauty.height, channels, bytes_each, static_cast<const unsigned char*>(rows)},
             metadata);
     };
     if (format.depth == Depth::uint8)
-        write(1, encode_8bit(format, beauty, target.region.x, target.region.y).data());
+        write(1, encode_8bit(format, frame.beauty, target.region.x, target.region.y).data());
     else if (format.depth == Depth::uint16)
-        write(2, encode_16bit(format, beauty).data());
+        write(2, encode_16bit(format, frame.beauty).data());
     else
-        write(4, encode_float(format, beauty).pixels.data());
+        write(4, encode_float(format, frame.beauty).pixels.data());
 }
 
 std::optional<StoredHeader> read_tiff_header(const std::filesystem::path& file) {

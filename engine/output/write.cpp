@@ -8,10 +8,7 @@
 
 #include "core/error.h"
 #include "core/hash.h"
-#include "output/exr_frame.h"
-#include "output/format.h"
-#include "output/png_frame.h"
-#include "output/tiff_frame.h"
+#include "output/frame_formats.h"
 
 namespace astrosplat {
 namespace {
@@ -46,14 +43,7 @@ void write_frame(const FrameFile& target, const RenderedFrame& frame, const Fram
     const FrameFormat format = resolve_format(target.output, target.file);
     check_frame(frame, target.output);
     make_folder(target.file);
-    switch (format.kind) {
-        case FrameKind::exr:
-            return write_exr(target, format, frame, metadata);
-        case FrameKind::tif:
-            return write_tiff(target, format, frame.beauty, metadata);
-        case FrameKind::png:
-            return write_png(target, format, frame.beauty, metadata);
-    }
+    frame_file_formats[static_cast<std::size_t>(format.kind)].write(target, format, frame, metadata);
 }
 
 std::string pixel_hash(const Image& image) {

@@ -3,21 +3,19 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <optional>
+#include <glm/geometric.hpp>
 
-#include "camera_files/read_camera.h"
+#include "camera/camera.h"
+#include "camera_files/formats.h"
 #include "core/error.h"
 #include "core/file.h"
 #include "core/file_format.h"
 #include "core/log.h"
+#include "core/real.h"
 #include "core/text.h"
-#include "scene/describe.h"
-#include "scene/entries.h"
-#include "scene/load.h"
-#include "scene/parameter.h"
-#include "scene/value.h"
+#include "scene/animate.h"
+#include "scene/layer_setup.h"
 
 namespace astrosplat {
 
@@ -40,8 +38,8 @@ glm::dvec4 y_up(const glm::dvec4& q) {
 
 /// Frames, units and axes of a file made into those of a scene.
 struct FilePlacement {
-    double scale, offset;
-    bool z_up;
+    double scale = 1.0, offset = 0.0;
+    bool z_up = false;
     glm::dvec3 place(const glm::dvec3& v) const { return (z_up ? y_up(v) : v) * scale; }
     glm::dvec4 turn(const glm::dvec4& q) const { return z_up ? y_up(q) : q; }
 };
@@ -52,11 +50,8 @@ FilePlacement placement_of(const CameraParams& camera, FileUp of_file) {
     return {camera.file_scale, camera.file_offset, z_up};
 }
 
-Track track_of(const char* key, double first_frame, std::vector<double> value) {
-    Track track;
-    track.key = key;
-    track.keyframes.push_back({first_frame, std::move(value), Interpolation::linear, {}, {}});
-    return track;
+void add_keyframe(Track& track, double frame, std::vector<double> value) {
+    track.keyframes.push_back({frame, std::move(value), Interpolation::linear, {}, {}});
 }
 
 void check_sizes(const std::vector<double>& numbers, const char* key, const fs::path& file, double frame) {
@@ -67,44 +62,41 @@ void check_sizes(const std::vector<double>& numbers, const char* key, const fs::
                       fmt::format("{:.4g}", x) + " (camera.file_scale makes it smaller)");
 }
 
-std::vector<Track> tracks_of(const CameraTrack& file_track, const CameraParams& camera,
-                             const fs::path& file) {
-    const FilePlacement placement = placement_of(camera, file_track.up);
-    Track position, rotation, fov, height;
+/// camera.position, camera.rotation and, where the samples have one, the lens, with a keyframe at each
+/// sample.
+std::vector<Track> sampled_tracks(const CameraTrack& from, const FilePlacement& placement,
+                                  const fs::path& file) {
+    Track position, rotation, lens;
     position.key = "camera.position";
     rotation.key = "camera.rotation";
-    fov.key = "camera.fov";
-    height.key = "camera.height";
-    const auto add = [](Track& track, double frame, std::vector<double> value) {
-        track.keyframes.push_back({frame, std::move(value), Interpolation::linear, {}, {}});
-    };
-    for (const TrackSample& sample : file_track.samples) {
+    lens.key = from.orthographic ? "camera.height" : "camera.fov";
+    for (const TrackSample& sample : from.samples) {
         const double frame = sample.frame + placement.offset;
         const glm::dvec3 p = placement.place(sample.eye);
         const glm::dvec4 q = placement.turn(sample.rotation);
+        const double height = sample.height * placement.scale;
         check_sizes({p.x, p.y, p.z}, "camera.position", file, frame);
-        add(position, frame, {p.x, p.y, p.z});
-        add(rotation, frame, {q.x, q.y, q.z, q.w});
-        if (file_track.has_fov) add(fov, frame, {sample.fov_deg});
-        if (file_track.orthographic) {
-            check_sizes({sample.height * placement.scale}, "camera.height", file, frame);
-            add(height, frame, {sample.height * placement.scale});
-        }
+        if (from.orthographic) check_sizes({height}, "camera.height", file, frame);
+        add_keyframe(position, frame, {p.x, p.y, p.z});
+        add_keyframe(rotation, frame, {q.x, q.y, q.z, q.w});
+        add_keyframe(lens, frame, {from.orthographic ? height : sample.fov_deg});
     }
-    const double first = position.keyframes.front().frame;
     std::vector<Track> tracks{std::move(position), std::move(rotation)};
-    if (file_track.has_fov) {
-        tracks.push_back(std::move(fov));
-        tracks.push_back(
-            track_of("camera.focal_length", first, {0.0}));  // or it would replace the file's fov
-    }
-    if (file_track.orthographic) {
-        tracks.push_back(std::move(height));
-        // A scene that asks for a dome or a panorama gets one along this path too.
-        if (camera.projection == Projection::perspective)
-            tracks.push_back(
-                track_of("camera.projection", first, {static_cast<double>(Projection::orthographic)}));
-    }
+    if (from.has_fov || from.orthographic) tracks.push_back(std::move(lens));
+    return tracks;
+}
+
+std::vector<Track> tracks_of(const CameraTrack& from, const CameraParams& camera, const fs::path& file) {
+    std::vector<Track> tracks = sampled_tracks(from, placement_of(camera, from.up), file);
+    const auto hold = [&](const char* key, double value) {
+        const double first = tracks.front().keyframes.front().frame;
+        tracks.emplace_back().key = key;
+        add_keyframe(tracks.back(), first, {value});
+    };
+    if (from.has_fov) hold("camera.focal_length", 0.0);  // or it would replace the file's fov
+    // A scene that asks for a dome or a panorama gets one along this path too.
+    if (from.orthographic && camera.projection == Projection::perspective)
+        hold("camera.projection", static_cast<double>(Projection::orthographic));
     return tracks;
 }
 
@@ -137,8 +129,7 @@ ImportedCamera::Source source_of(const Scene& scene) {
     return {c.file, c.file_scale, c.file_offset, c.file_fps, c.file_up, scene.output.fps, c.projection};
 }
 
-}  // namespace
-
+/// For a scene that has its keys camera.file_*; its lists grow where a table names their next element.
 std::vector<Track> camera_file_tracks(Scene& scene, const fs::path& file) {
     const FrameRate rate{scene.output.fps, scene.camera.file_fps};
     if (is_table(file)) {
@@ -151,18 +142,21 @@ std::vector<Track> camera_file_tracks(Scene& scene, const fs::path& file) {
     return tracks_of(track, scene.camera, file);
 }
 
+}  // namespace
+
 void attach_camera_file(Scene& scene, const std::string& place) {
     scene.imported.camera.reset();
     const fs::path& file = scene.camera.file;
     if (file.empty()) return;
+    const std::string key = (place.empty() ? "" : place + ": ") + "camera.file: ";
     if (!is_camera_file(file) && !is_table(file))
-        throw InputError(fmt::format(
-            "{}camera.file: expected a name ending in {}, found '{}'", place.empty() ? "" : place + ": ",
-            alternatives(endings_of(FileUse::camera_read)), printable(file.string())));
+        throw InputError(fmt::format("{}expected a name ending in {}, found '{}'", key,
+                                     alternatives(endings_of(FileUse::camera_read)),
+                                     printable(file.string())));
     try {
         require_readable(file);
     } catch (const InputError& error) {
-        throw InputError(fmt::format("{}camera.file: {}", place.empty() ? "" : place + ": ", error.what()));
+        throw InputError(key + error.what());
     }
     auto imported = std::make_shared<ImportedCamera>();
     imported->tracks = camera_file_tracks(scene, file);
@@ -179,214 +173,70 @@ void refresh_camera_file(Scene& scene, const std::string& place) {
     attach_camera_file(scene, place);
 }
 
-namespace {
-
-constexpr std::array<std::string_view, 2> component_names{"xyzw", "rgb"};
-
-/// The columns of one key.
-struct KeyColumns {
-    Track track;
-    std::vector<std::optional<std::size_t>> columns;  // by component
-};
-
-/// A column's name as a key, and which of its numbers it is; -1: all of it.
-struct ColumnName {
-    ParameterKey key;
-    int component = -1;
-};
-
-/// Vectors have several columns, all other parameters one.
-bool has_components(const ParameterSpec& spec) {
-    using Type = ParameterType;
-    return spec.type == Type::vector || spec.type == Type::position || spec.type == Type::color ||
-           spec.type == Type::rotation;
+CameraTrack camera_track(const Scene& scene, std::span<const std::int64_t> frames) {
+    if (!has_camera_places(scene))
+        throw InputError(
+            fmt::format("{}: camera.position: expected a position, or keyframes of it, found none: such a "
+                        "camera frames its layers",
+                        scene.file.string()));
+    const auto width = static_cast<double>(scene.output.width),
+               height = static_cast<double>(scene.output.height);
+    CameraTrack track;
+    track.fps = scene.output.fps;
+    std::size_t perspective = 0, orthographic = 0;
+    for (const std::int64_t frame : frames) {
+        CameraParams params = scene_at(scene, static_cast<double>(frame)).camera;
+        params.eye = Eye::centre;
+        params.fisheye_tilt = 0.0;
+        const Camera camera = make_camera(params, width, height, {});
+        TrackSample sample;
+        sample.frame = static_cast<double>(frame);
+        sample.eye = camera.eye;
+        quaternion_from_axes(camera.world_from_camera, sample.rotation);
+        // The same turn on the side where the one before is, so that other programs go the short way.
+        if (!track.samples.empty() && glm::dot(sample.rotation, track.samples.back().rotation) < 0.0)
+            sample.rotation = -sample.rotation;
+        if (params.projection == Projection::perspective) {
+            sample.fov_deg = real::degrees(2.0 * real::atan2(0.5 * height, camera.focal_px));
+            ++perspective;
+        }
+        if (params.projection == Projection::orthographic) {
+            sample.height = height / camera.focal_px;
+            ++orthographic;
+        }
+        track.samples.push_back(sample);
+    }
+    track.has_fov = perspective == frames.size();
+    track.orthographic = orthographic == frames.size();
+    if (perspective + orthographic > 0 && !track.has_fov && !track.orthographic)
+        throw InputError(
+            fmt::format("{}: camera.projection: expected one projection at all frames, found several",
+                        scene.file.string()));
+    return track;
 }
 
-ColumnName column_name(const Description& description, std::string_view word) {
-    if (find_parameter(description, word) || word.size() < 3 || word[word.size() - 2] != '.') return {word};
-    const std::string_view rest = word.substr(0, word.size() - 2);
-    const Parameter* vector = find_parameter(description, rest);
-    if (!vector || !has_components(vector->spec)) return {word};
-    for (const std::string_view names : component_names)
-        if (const std::size_t at = names.find(word.back()); at < names.size())
-            return {rest, static_cast<int>(at)};
-    return {word};
-}
-
-/// As many numbers as a value of it has.
-std::size_t component_count(const ParameterSpec& spec) {
-    if (spec.type == ParameterType::rotation) return 4;
-    return has_components(spec) ? static_cast<std::size_t>(std::max(spec.components, 1)) : 1;
-}
-
-[[noreturn]] void fail_unknown(const TextRows& rows, const Scene& scene, const ParameterKey& key,
-                               const std::string& place) {
-    ParameterKey group = "layer";
-    if (key.is_below("layer")) {
-        const std::string name = key.layer();
-        if (const std::string problem = unknown_layer(scene, name); !problem.empty())
-            throw InputError(fmt::format("{}:{}: {}: {}", place, rows.line(), key, problem));
-        group = layer_key(name);
+std::string camera_text(const CameraTrack& track, const Scene& scene, const std::filesystem::path& file) {
+    const FileFormat* const format = format_by_name(file, FileUse::camera_written);
+    const std::string_view id = format ? format->id : "";
+    if (id == "table") return csv_text(sampled_tracks(track, {}, file));
+    const double aspect = static_cast<double>(scene.output.width) / static_cast<double>(scene.output.height);
+    if (id == "usda") return usda_text(track, {aspect, scene.camera.near, scene.camera.far});
+    if (id == "gltf") {
+        const auto other_lens = [&](const TrackSample& sample) {
+            return sample.fov_deg != track.samples[0].fov_deg || sample.height != track.samples[0].height;
+        };
+        if (std::ranges::any_of(track.samples, other_lens))
+            log_warning(fmt::format("{}: the lens changes, which glTF cannot say: it is that of frame {}",
+                                    printable(file.string()), shortest(track.samples[0].frame)));
+        return gltf_text(track, aspect, scene.camera.near, scene.camera.far);
     }
-    throw InputError(fmt::format("{}:{}: {}", place, rows.line(), unknown_key(key, key, group)));
-}
-
-class CsvReader {
-  public:
-    CsvReader(const std::filesystem::path& file, std::string_view text, const FrameRate& rate, Scene& scene)
-        : place_(file.string()), rows_(text, place_), rate_(rate), scene_(scene) {}
-
-    std::vector<Track> read() {
-        read_header();
-        Scene scratch = scene_;  // values are checked by setting them
-        const Description description = describe(scratch);
-        for (KeyColumns& key : keys_) parameters_.push_back(find_parameter(description, key.track.key));
-        while (rows_.next()) read_row();
-        std::vector<Track> tracks;
-        for (KeyColumns& key : keys_) {
-            if (key.track.keyframes.empty()) rows_.fail("rows of numbers below the header", "none");
-            tracks.push_back(std::move(key.track));
-        }
-        return tracks;
-    }
-
-  private:
-    void read_header() {
-        if (!rows_.next()) rows_.fail("a header such as frame,camera.position.x", "an empty file");
-        separator_ = separator_of(rows_.text());
-        const std::vector<std::string_view> names = rows_.fields(separator_);
-        const auto frame = std::ranges::find(names, "frame");
-        if (frame == names.end())
-            rows_.fail("a header with a column 'frame'", shown(names.empty() ? "" : names[0]));
-        frame_ = static_cast<std::size_t>(frame - names.begin());
-        columns_ = names.size();
-        grow_lists(names);
-        const Description description = describe(scene_);
-        for (std::size_t i = 0; i < names.size(); ++i)
-            if (i != frame_) add_column(description, names[i], i);
-        if (keys_.empty()) rows_.fail("at least one key beside 'frame'", "none");
-        for (const KeyColumns& key : keys_) check_complete(key);
-    }
-
-    void grow_lists(const std::vector<std::string_view>& names) {
-        for (const std::string_view name : names) {
-            try {
-                extend_lists(describe(scene_), name);
-            } catch (const ValueError& error) {
-                throw InputError(fmt::format("{}:{}: {}: {}", place_, rows_.line(), name, error.what()));
-            }
-        }
-    }
-
-    void add_column(const Description& description, std::string_view name, std::size_t column) {
-        const ColumnName of = column_name(description, name);
-        const Parameter* parameter = find_parameter(description, of.key);
-        if (!parameter) fail_unknown(rows_, scene_, printable(name), place_);
-        const ParameterSpec& spec = parameter->spec;
-        if (spec.animation == Animation::no) rows_.fail("keys that can be animated", shown(name));
-        if (spec.type == ParameterType::curve) rows_.fail("keys of numbers", shown(name) + ", a curve");
-        const std::size_t count = component_count(spec);
-        const auto component = static_cast<std::size_t>(std::max(of.component, 0));
-        if (of.component < 0 && has_components(spec))
-            rows_.fail(fmt::format("columns {0}.x, {0}.y, ...", spec.key), shown(name));
-        if (component >= count) rows_.fail(fmt::format("{} numbers for {}", count, spec.key), shown(name));
-        auto key = std::ranges::find_if(keys_, [&](const KeyColumns& k) { return k.track.key == spec.key; });
-        if (key == keys_.end()) {
-            keys_.push_back({{}, std::vector<std::optional<std::size_t>>(count)});
-            key = keys_.end() - 1;
-            key->track.key = spec.key;
-        }
-        if (key->columns[component]) rows_.fail("each column once", shown(name) + " twice");
-        key->columns[component] = column;
-    }
-
-    void check_complete(const KeyColumns& key) const {
-        for (std::size_t i = 0; i < key.columns.size(); ++i)
-            if (!key.columns[i])
-                rows_.fail(fmt::format("{} columns for {}", key.columns.size(), key.track.key),
-                           fmt::format("none for its number {}", i + 1));
-    }
-
-    void read_row() {
-        const std::vector<std::string_view>& words = rows_.fields(separator_);
-        if (words.size() != columns_)
-            rows_.fail(fmt::format("{} columns as in the header", columns_), std::to_string(words.size()));
-        const double factor = rate_.file_fps > 0.0 ? rate_.output_fps / rate_.file_fps : 1.0;
-        const double frame = rows_.number(words[frame_], "the frame") * factor;
-        if (!std::isfinite(frame)) rows_.fail("a frame number", shown(words[frame_]));
-        for (std::size_t k = 0; k < keys_.size(); ++k) {
-            KeyColumns& key = keys_[k];
-            auto& keyframes = key.track.keyframes;
-            if (!keyframes.empty() && !(frame > keyframes.back().frame))
-                rows_.fail("ascending frames, each once",
-                           fmt::format("{} after {}", shortest(frame), shortest(keyframes.back().frame)));
-            keyframes.push_back(
-                {frame, numbers_of_row(words, key, *parameters_[k]), Interpolation::linear, {}, {}});
-        }
-    }
-
-    std::vector<double> numbers_of_row(const std::vector<std::string_view>& words, const KeyColumns& key,
-                                       const Parameter& parameter) const {
-        try {
-            if (!has_components(parameter.spec)) {
-                const std::string_view word = words[*key.columns[0]];
-                const Value value = is_numeric(parameter.spec.type)
-                                        ? Value(rows_.number(word, key.track.key.text()))
-                                        : typed_value(std::string(word));
-                parameter.set(value);
-                const std::vector<double> numbers = to_numbers(parameter.spec, value);
-                if (numbers.size() != 1)
-                    throw ValueError(fmt::format("expected {}, found none", expectation(parameter.spec)));
-                return numbers;
-            }
-            std::vector<double> numbers;
-            for (const std::optional<std::size_t>& column : key.columns)
-                numbers.push_back(rows_.number(words[*column], key.track.key.text()));
-            if (parameter.spec.type == ParameterType::rotation &&
-                std::ranges::all_of(numbers, [](double x) { return x == 0.0; }))
-                throw ValueError("expected a quaternion that is not zero, found 0, 0, 0, 0");
-            Value::List list;
-            for (const double number : numbers) list.emplace_back(number);
-            parameter.set(Value(list));
-            return numbers;
-        } catch (const ValueError& error) {
-            throw InputError(fmt::format("{}:{}: {}: {}", place_, rows_.line(), key.track.key, error.what()));
-        }
-    }
-
-    std::string place_;
-    TextRows rows_;
-    FrameRate rate_;
-    Scene& scene_;
-    char separator_ = ',';
-    std::size_t frame_ = 0, columns_ = 0;
-    std::vector<KeyColumns> keys_;
-    std::vector<const Parameter*> parameters_;
-};
-
-}  // namespace
-
-std::vector<Track> read_csv_tracks(const std::filesystem::path& file, const FrameRate& rate, Scene& scene) {
-    const std::string text = read_file(file);
-    return CsvReader(file, text, rate, scene).read();
-}
-
-std::string csv_text(const std::vector<Track>& tracks) {
-    std::string text = "frame";
-    for (const Track& track : tracks) {
-        const std::size_t count = track.keyframes.front().value.size();
-        for (std::size_t c = 0; c < count; ++c)
-            text +=
-                count == 1 ? "," + track.key.text() : fmt::format(",{}.{}", track.key, component_names[0][c]);
-    }
-    text += "\n";
-    for (std::size_t i = 0; i < tracks.front().keyframes.size(); ++i) {
-        text += shortest(tracks.front().keyframes[i].frame);
-        for (const Track& track : tracks)
-            for (const double number : track.keyframes[i].value) text += "," + shortest(number);
-        text += "\n";
-    }
-    return text;
+    if (id == "chan" && track.orthographic)
+        throw InputError(
+            fmt::format("{}: expected a perspective camera, for .chan has no other, found orthographic",
+                        printable(file.string())));
+    if (id == "chan") return chan_text(track);
+    bad_input(file.string(), "", "a name ending in " + alternatives(endings_of(FileUse::camera_written)),
+              "'" + printable(file.extension().string()) + "'");
 }
 
 }  // namespace astrosplat

@@ -1,9 +1,12 @@
-// The tracks of a scene's camera.file, which win over those of [animation]. In: another program's camera, or
-// a .csv whose header names `frame` and keys of the scene, numbers of a vector as KEY.x, KEY.y, KEY.z (w),
-// colours as KEY.r, KEY.g, KEY.b. Out: tracks; and the text of such a table.
+// Cameras of other programs. In: a scene's camera.file, whose tracks win over those of [animation]: another
+// program's camera, or a .csv whose header names `frame` and keys of the scene, numbers of a vector as KEY.x,
+// KEY.y, KEY.z (w), colours as KEY.r, KEY.g, KEY.b. Out: the scene's camera, frame by frame, as the text of
+// such a file.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -31,5 +34,15 @@ std::vector<Track> read_csv_tracks(const std::filesystem::path& file, const Fram
 
 /// The text of such a file: one row for every frame, of tracks that have a keyframe at each of these frames.
 std::string csv_text(const std::vector<Track>& tracks);
+
+/// The camera at each of these ascending frames: in scene units, y up, between a pair's eyes, before a
+/// fisheye's tilt. With fov where it is perspective at all of them, with height where it is orthographic at
+/// all; projections may change to no other kind in between. Throws InputError where the camera has no place
+/// of its own but frames its layers.
+CameraTrack camera_track(const Scene& scene, std::span<const std::int64_t> frames);
+
+/// The text of a file whose name ends in .chan, .csv, .gltf or .usda. camera.file reads .chan and .csv
+/// back within 1e-6, .gltf within a float's precision. Throws InputError for other names.
+std::string camera_text(const CameraTrack& track, const Scene& scene, const std::filesystem::path& file);
 
 }  // namespace astrosplat

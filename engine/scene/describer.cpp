@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "scene/suggest.h"
+#include "scene/parameter_key.h"
 
 namespace astrosplat {
 

@@ -11,8 +11,7 @@
 #include "core/error.h"
 #include "scene/describe.h"
 #include "scene/parameter.h"
-#include "scene/scene_files.h"
-#include "scene/suggest.h"
+#include "scene/parameter_key.h"
 
 namespace astrosplat {
 

@@ -1,6 +1,6 @@
-// From TOML to parameters, for scenes, presets and --set alike. In: TOML text. Out: tables with line numbers,
-// flattened into entries "key = value" with their places, and written into whatever a Description describes.
-// Include in .cpp files only: toml++ is large.
+// From TOML to parameters and tracks, for scenes, presets and --set alike. In: TOML text. Out: tables with line
+// numbers, flattened into entries "key = value" with their places, and written into whatever a Description
+// describes; the tracks of [animation]. Include in .cpp files only: toml++ is large.
 #pragma once
 
 #include <toml++/toml.h>
@@ -12,7 +12,6 @@
 
 #include "scene/parameter.h"
 #include "scene/scene.h"
-#include "scene/value.h"
 
 namespace astrosplat {
 
@@ -68,5 +67,17 @@ std::string unknown_key(const std::string& shown, const ParameterKey& key, const
 
 /// "unknown layer 'x'; did you mean 'y'?", or "" where the scene has it.
 std::string unknown_layer(const Scene& scene, const std::string& name);
+
+// The [animation] table.
+
+/// Reads one track and checks it against the parameter it animates. Lists of the scene grow where a key names
+/// their next element (noise.cull where no noise is set). `place` begins every message. Throws InputError.
+Track read_track(const ParameterKey& key, const toml::node& node, Scene& scene, const std::string& place);
+
+/// Reads all of [animation], in the order of the file.
+std::vector<Track> read_tracks(const toml::table& table, Scene& scene, const std::string& file);
+
+/// "{ keys = [[1, 0.5], ...], interpolation = "smooth" }"
+std::string track_to_toml(const Track& track, const ParameterSpec& spec);
 
 }  // namespace astrosplat

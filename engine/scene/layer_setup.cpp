@@ -5,33 +5,25 @@
 #include <algorithm>
 #include <cmath>
 
-#include "camera/path.h"
+#include "camera/keyframe.h"
 #include "core/error.h"
 #include "core/rotation.h"
 #include "generate/lattice.h"
 #include "render/footprint.h"
 #include "scene/animate.h"
+#include "source/mesh.h"
+#include "source/obj.h"
 #include "stars/star_set.h"
 
 namespace astrosplat {
 
 namespace {
 
-ColumnLaw column_law(Blend blend) {
-    switch (blend) {
-        case Blend::add:
-            return ColumnLaw::sum;
-        case Blend::lighten:
-            return ColumnLaw::maximum;
-        case Blend::screen:
-            return ColumnLaw::screen;
-        case Blend::over:
-        case Blend::hybrid:
-        case Blend::absorb:
-            return ColumnLaw::transmittance;
-    }
-    return ColumnLaw::transmittance;
-}
+/// By Blend.
+constexpr ColumnLaw column_laws[] = {ColumnLaw::transmittance, ColumnLaw::sum,
+                                     ColumnLaw::screen,        ColumnLaw::maximum,
+                                     ColumnLaw::transmittance, ColumnLaw::transmittance};
+static_assert(std::size(column_laws) == names_of(Blend{}).size());
 
 StarPsf star_psf(const StarsParams& stars) {
     StarPsf psf;
@@ -85,7 +77,7 @@ LookInputs look_inputs(const LayerParams& params) {
     inputs.seed = resolved_seed(params.source.seed, params.name);
     inputs.falloff_integral = falloff_integral(params.render.falloff);
     inputs.falloff_variance = falloff_variance(params.render.falloff);
-    inputs.column = column_law(params.render.blend);
+    inputs.column = column_laws[static_cast<std::size_t>(params.render.blend)];
     return inputs;
 }
 
@@ -115,20 +107,10 @@ namespace {
 constexpr int places_on_path = 1024;  // about
 constexpr double tolerance = 0.01;    // of the distance that stars lie from the path
 
-const Track* position_track(const Scene& scene) {
-    const auto find_in = [](const std::vector<Track>& tracks) {
-        const auto found =
-            std::ranges::find_if(tracks, [](const Track& track) { return track.key == "camera.position"; });
-        return found == tracks.end() ? nullptr : &*found;
-    };
-    const Track* const imported = scene.imported.camera ? find_in(scene.imported.camera->tracks) : nullptr;
-    return imported ? imported : find_in(scene.animation);
-}
+const Track* position_track(const Scene& scene) { return moving_track(scene, "camera.position"); }
 
-}  // namespace
-
-bool has_camera_places(const Scene& scene) { return scene.camera.position || position_track(scene); }
-
+/// Places of the scene's camera: of one that is animated, in equal steps between its keyframes; empty for one
+/// without a position.
 std::vector<glm::dvec3> camera_places(const Scene& scene) {
     const Track* const track = position_track(scene);
     if (!track)
@@ -146,6 +128,10 @@ std::vector<glm::dvec3> camera_places(const Scene& scene) {
     add(keyframes.back().frame);
     return places;
 }
+
+}  // namespace
+
+bool has_camera_places(const Scene& scene) { return scene.camera.position || position_track(scene); }
 
 bool follows_camera(const SourceParams& source) {
     return source.kind == SourceKind::stars && source.stars.along == "camera";
@@ -170,6 +156,52 @@ SourceParams source_of(const Scene& scene, const LayerParams& layer) {
     const std::vector<glm::dvec3> places = camera_places(scene);
     if (!places.empty()) source.stars.path = simplified_path(places, tolerance * source.stars.spread);
     return source;
+}
+
+std::vector<std::filesystem::path> named_files(const SourceParams& source) {
+    if (source.kind == SourceKind::splats) return {source.file};
+    if (source.kind == SourceKind::stars)
+        return source.stars.catalogue.empty() ? std::vector<std::filesystem::path>()
+                                              : std::vector{source.stars.catalogue};
+    std::vector<std::filesystem::path> files;
+    for (const MeshInput& input : source.meshes) {
+        if (!is_builtin_mesh(input.mesh)) files.push_back(input.mesh);
+        files.insert(files.end(), input.texture.begin(), input.texture.end());
+        files.push_back(input.shape.depth_map);
+    }
+    const PrepareParams& prepare = source.texture.prepare;
+    files.insert(files.end(), {prepare.align, prepare.fill, prepare.mask});
+    for (const MaskParams& mask : source.texture.mask) {
+        files.push_back(mask.image);
+        for (const MaskTerms& terms : mask.any) files.push_back(terms.image);
+    }
+    std::erase(files, std::filesystem::path());
+    return files;
+}
+
+std::vector<std::filesystem::path> all_files(const SourceParams& source) {
+    std::vector<std::filesystem::path> files = named_files(source);
+    if (source.kind != SourceKind::mesh) return files;
+    for (const MeshInput& input : source.meshes) {
+        if (!has_own_pictures(input)) continue;
+        const std::vector<std::filesystem::path> materials = obj_materials(input.mesh);
+        files.insert(files.end(), materials.begin(), materials.end());
+    }
+    return files;
+}
+
+bool has_own_pictures(const MeshInput& input) {
+    const auto is_empty = [](const std::filesystem::path& file) { return file.empty(); };
+    return !is_builtin_mesh(input.mesh) && std::ranges::all_of(input.texture, is_empty);
+}
+
+std::vector<std::filesystem::path> picture_files(const Scene& scene) {
+    std::vector<std::filesystem::path> files = scene.environment.cube;
+    files.push_back(scene.environment.image);
+    files.push_back(scene.environment.tile);
+    for (const LayerParams& layer : scene.layers) files.push_back(layer.look.thickness.map);
+    std::erase(files, std::filesystem::path());
+    return files;
 }
 
 }  // namespace astrosplat

@@ -1,8 +1,10 @@
 // A layer of a scene as the look and the renderer want it, for the pipeline and the viewer's preview alike.
-// In: a scene and one of its layers. Out: plain inputs of look and renderer, and its source with what that
-// takes from the rest of the scene.
+// In: a scene and one of its layers. Out: plain inputs of look and renderer, its source with what that takes
+// from the rest of the scene, and the files it is made of, which are watched while the scene is open, asked
+// for before a run, and hashed.
 #pragma once
 
+#include <filesystem>
 #include <glm/vec3.hpp>
 #include <vector>
 
@@ -50,5 +52,16 @@ const LayerParams* like_layer(const Scene& scene, const LayerParams& layer);
 
 /// layer.source, of stars along the camera with its path, of those of a picture with the rest of its layer's.
 SourceParams source_of(const Scene& scene, const LayerParams& layer);
+
+/// The files that a source names: meshes, textures, pictures of masks, splats, catalogues. Not what is built
+/// in.
+std::vector<std::filesystem::path> named_files(const SourceParams& source);
+/// The same with what an OBJ brings of its own: material libraries and their pictures. Reads it.
+std::vector<std::filesystem::path> all_files(const SourceParams& source);
+/// A mesh from a file that takes the pictures its own materials name.
+bool has_own_pictures(const MeshInput& input);
+
+/// Those of a scene beside its layers' sources: thickness maps and pictures of the sky.
+std::vector<std::filesystem::path> picture_files(const Scene& scene);
 
 }  // namespace astrosplat

@@ -21,7 +21,6 @@
 #include "scene/entries.h"
 #include "scene/parameter.h"
 #include "scene/parameter_key.h"
-#include "scene/tracks.h"
 
 namespace astrosplat {
 

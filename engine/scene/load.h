@@ -10,7 +10,6 @@
 #include "scene/parameter.h"
 #include "scene/parameter_key.h"
 #include "scene/scene.h"
-#include "scene/value.h"
 
 namespace astrosplat {
 

@@ -21,8 +21,8 @@
 #include "core/real.h"
 #include "core/text.h"
 #include "prepare/star_removal.h"
-#include "scene/suggest.h"
-#include "scene/value.h"
+#include "scene/parameter.h"
+#include "scene/parameter_key.h"
 #include "source/texture.h"
 #include "stars/catalogue.h"
 

@@ -1,14 +1,85 @@
-// Parameter specs: building them, putting their range in words, numbers per component for animation.
+// Values to text (by fmt and from_chars, which know no locale), a parameter's range in words, numbers per
+// component for animation, and paths.
 #include "scene/parameter.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 
 #include "core/text.h"
 
 namespace astrosplat {
+
+double Value::number() const {
+    if (const auto* i = std::get_if<std::int64_t>(&data)) return static_cast<double>(*i);
+    return std::get<double>(data);
+}
+
+bool operator==(const Value& a, const Value& b) { return a.data == b.data; }
+
+std::string short_number(double number) {
+    return fmt::format("{}", number == std::trunc(number) && std::fabs(number) < 1e15
+                                 ? fmt::format("{:.0f}", number)
+                                 : fmt::format("{}", number));
+}
+
+double widen(float number) {
+    const std::string text = fmt::format("{}", number);
+    double wide = 0.0;
+    std::from_chars(text.data(), text.data() + text.size(), wide);
+    return wide;
+}
+
+std::string to_toml(const std::string& text) {
+    std::string quoted = "\"";
+    for (const char c : text) {
+        if (c == '"' || c == '\\') {
+            quoted += {'\\', c};
+        } else if (c == '\n') {
+            quoted += "\\n";
+        } else if (c == '\t') {
+            quoted += "\\t";
+        } else if ((c >= 0 && c < 0x20) || c == 0x7f) {
+            quoted += fmt::format("\\u{:04X}", static_cast<int>(c));
+        } else {
+            quoted += c;
+        }
+    }
+    return quoted + '"';
+}
+
+namespace {
+
+std::string number_to_toml(double number) {
+    std::string text = fmt::format("{}", number);
+    if (text.find_first_of(".en") == std::string::npos) text += ".0";  // 24 would be an integer
+    return text;
+}
+
+std::string list_to_toml(const Value::List& list) {
+    std::string text = "[";
+    for (const Value& element : list) text += (text.size() > 1 ? ", " : "") + to_toml(element);
+    return text + "]";
+}
+
+}  // namespace
+
+std::string to_toml(const Value& value) {
+    if (const auto* b = std::get_if<bool>(&value.data)) return *b ? "true" : "false";
+    if (const auto* i = std::get_if<std::int64_t>(&value.data)) return fmt::format("{}", *i);
+    if (const auto* d = std::get_if<double>(&value.data)) return number_to_toml(*d);
+    if (const auto* text = value.text()) return to_toml(*text);
+    return list_to_toml(*value.list());
+}
+
+std::string kind_of(const Value& value) {
+    if (std::holds_alternative<bool>(value.data)) return std::get<bool>(value.data) ? "true" : "false";
+    if (value.is_number()) return "a number";
+    if (value.text()) return "a string";
+    return fmt::format("a list of {}", value.list()->size());
+}
 
 bool is_numeric(ParameterType type) {
     using Type = ParameterType;
@@ -126,6 +197,85 @@ Value from_numbers(const ParameterSpec& spec, const std::vector<double>& numbers
             return list;
         }
     }
+}
+
+namespace fs = std::filesystem;
+
+// Paths are handled as text: no file needs to exist.
+
+namespace {
+
+/// `text` with every ${NAME} replaced. Throws ValueError for an undefined variable or a missing brace.
+std::string expand_environment(const std::string& text) {
+    std::string expanded;
+    std::size_t from = 0;
+    for (;;) {
+        const std::size_t open = text.find("${", from);
+        if (open == std::string::npos) return expanded + text.substr(from);
+        const std::size_t close = text.find('}', open);
+        if (close == std::string::npos) throw ValueError("expected '}' after '${', found none");
+        const std::string name = text.substr(open + 2, close - open - 2);
+        const char* value = std::getenv(name.c_str());
+        if (!value)
+            throw ValueError(
+                fmt::format("expected the environment variable {} to be set, found it undefined", name));
+        expanded += text.substr(from, open - from) + value;
+        from = close + 1;
+    }
+}
+
+bool stands_for_itself(const std::string& text, const ParameterSpec& spec) {
+    return text.empty() || std::ranges::find(spec.choices, text) != spec.choices.end();
+}
+
+std::string resolve(const std::string& text, const ParameterSpec& spec, const fs::path& folder) {
+    if (stands_for_itself(text, spec)) return text;
+    const std::string path = (folder / expand_environment(text)).lexically_normal().string();
+    return stands_for_itself(path, spec) ? "./" + path : path;  // a file that is called "plane"
+}
+
+std::string unresolve(const std::string& text, const ParameterSpec& spec, const fs::path& folder) {
+    if (stands_for_itself(text, spec)) return text;
+    const fs::path path(text), base = folder.lexically_normal();
+    std::string written = text;
+    if (path.is_absolute() == base.is_absolute()) {
+        const fs::path relative = path.lexically_relative(base.empty() ? "." : base);
+        const bool below = !relative.empty() && *relative.begin() != "..";
+        if (!relative.empty() && (below || !path.is_absolute())) written = relative.string();
+    }
+    if (stands_for_itself(written, spec)) written = "./" + written;
+    const bool lost = path.is_relative() && resolve(written, spec, folder) != text;
+    return lost ? fs::absolute(path).lexically_normal().string() : written;
+}
+
+template <class Change>
+Value changed(const Value& value, Change change) {
+    if (const auto* text = value.text()) return change(*text);
+    if (const auto* list = value.list()) {
+        Value::List result;
+        for (const Value& element : *list) result.push_back(changed(element, change));
+        return result;
+    }
+    return value;
+}
+
+}  // namespace
+
+Value resolve_paths(const Value& value, const ParameterSpec& spec, const fs::path& folder,
+                    bool absolute_patterns) {
+    const bool file = spec.type == ParameterType::file || spec.type == ParameterType::files;
+    if (file) return changed(value, [&](const std::string& text) { return resolve(text, spec, folder); });
+    if (spec.type != ParameterType::pattern) return value;
+    return changed(value, [&](const std::string& text) {
+        const std::string pattern = expand_environment(text);
+        return absolute_patterns && !pattern.empty() ? fs::absolute(folder / pattern).string() : pattern;
+    });
+}
+
+Value unresolve_paths(const Value& value, const ParameterSpec& spec, const fs::path& folder) {
+    const bool file = spec.type == ParameterType::file || spec.type == ParameterType::files;
+    if (!file) return value;
+    return changed(value, [&](const std::string& text) { return unresolve(text, spec, folder); });
 }
 
 }  // namespace astrosplat

@@ -1,18 +1,53 @@
-// Facts about one parameter: its key, its words for people, its range, whether it may be animated; and a
-// handle that reads and writes it in the struct it lives in. describe.h makes these, everything else only
-// reads them.
+// One parameter of a scene. Its value as a scene file writes it: what TOML can say, without the tables. Facts
+// about it: its key, its words for people, its range, whether it may be animated; and a handle that reads and
+// writes it in the struct it lives in. describe.h makes these; load, save, --set, animation and the window
+// only read them, and speak only Values.
 #pragma once
 
+#include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "core/error.h"
 #include "core/text.h"
 #include "scene/parameter_key.h"
-#include "scene/value.h"
 
 namespace astrosplat {
+
+struct Value {
+    using List = std::vector<Value>;
+    std::variant<bool, std::int64_t, double, std::string, List> data;
+
+    Value() : data(List{}) {}
+    Value(bool b) : data(b) {}
+    Value(std::int64_t i) : data(i) {}
+    Value(double d) : data(d) {}
+    Value(const char* text) : data(std::string(text)) {}
+    Value(std::string text) : data(std::move(text)) {}
+    Value(List list) : data(std::move(list)) {}
+
+    const std::string* text() const { return std::get_if<std::string>(&data); }
+    const List* list() const { return std::get_if<List>(&data); }
+    bool is_number() const { return data.index() == 1 || data.index() == 2; }
+    double number() const;  // of an integer or a number
+};
+bool operator==(const Value& a, const Value& b);
+
+/// TOML text: numbers shortest round-trip and with a point, strings quoted and escaped, lists in brackets.
+std::string to_toml(const Value& value);
+std::string to_toml(const std::string& text);
+
+/// A value as written, for messages: "a number", "the text 'abc'", "a list of 2".
+std::string kind_of(const Value& value);
+
+/// Shortest text that reads back as `number`; "12" for whole numbers.
+std::string short_number(double number);
+
+/// A float as the double with the same shortest decimal text: 0.35f becomes 0.35, not 0.3499999940395355.
+double widen(float number);
 
 enum class ParameterType {
     boolean,
@@ -119,5 +154,15 @@ std::string expectation(const ParameterSpec& spec);
 std::vector<double> to_numbers(const ParameterSpec& spec, const Value& value);
 /// The value nearest to these numbers that the parameter's type and range allow.
 Value from_numbers(const ParameterSpec& spec, const std::vector<double>& numbers);
+
+/// The paths of a file, files or pattern parameter, expanded and put below `folder`; names that stand for
+/// themselves (built-in meshes) and empty ones stay. Frame patterns stay relative to the scene unless
+/// `absolute_patterns`.
+Value resolve_paths(const Value& value, const ParameterSpec& spec, const std::filesystem::path& folder,
+                    bool absolute_patterns);
+
+/// The inverse for a scene file in `folder`: relative where the path was, or where it lies below the folder.
+/// resolve_paths(unresolve_paths(v)) == v.
+Value unresolve_paths(const Value& value, const ParameterSpec& spec, const std::filesystem::path& folder);
 
 }  // namespace astrosplat

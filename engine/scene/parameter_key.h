@@ -1,12 +1,13 @@
 // The dotted path of a parameter, or of a group of them, as --set, [animation] and messages write it:
 // "camera.position", "layer.stars.look.noise.0.cull". Everything that builds such a path, takes one apart or
-// asks where one lies goes through here.
+// asks where one lies goes through here; so does the nearest of the known names, where one is misspelt.
 #pragma once
 
 #include <fmt/format.h>
 
 #include <compare>
 #include <map>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -66,6 +67,16 @@ bool is_list_index(std::string_view part);
 
 /// Where keys were last set: "scene.toml:12", "--set".
 using Places = std::map<ParameterKey, std::string>;
+
+/// Number of insertions, deletions, substitutions and swaps of neighbours that turn a into b.
+int edit_distance(std::string_view a, std::string_view b);
+
+/// The known name nearest to `name`, or "" when none is near. Dotted keys may also match by their last part,
+/// so that a right key in the wrong section is found.
+std::string nearest_name(std::string_view name, std::span<const std::string> known);
+
+/// "; did you mean 'NAME'?" or "".
+std::string did_you_mean(std::string_view name, std::span<const std::string> known);
 
 }  // namespace astrosplat
 

@@ -11,9 +11,8 @@
 #include "scene/describe.h"
 #include "scene/entries.h"
 #include "scene/load.h"
-#include "scene/scene_files.h"
+#include "scene/parameter.h"
 #include "scene/toml_text.h"
-#include "scene/tracks.h"
 
 namespace astrosplat {
 namespace fs = std::filesystem;

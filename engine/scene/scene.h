@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "camera/camera.h"
-#include "camera/path.h"
+#include "camera/keyframe.h"
 #include "core/text.h"
 #include "look/look.h"
 #include "ocio/display_transform.h"

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <map>
 
+#include "scene/parameter.h"
 #include "scene/parameter_key.h"
-#include "scene/value.h"
 
 namespace astrosplat {
 

@@ -1,5 +1,5 @@
 // Tracks of keyframes as scenes write them, and their messages.
-#include "scene/tracks.h"
+#include "scene/entries.h"
 
 #include <fmt/format.h>
 
@@ -12,11 +12,8 @@
 #include "camera/keyframe.h"
 #include "core/error.h"
 #include "scene/describe.h"
-#include "scene/entries.h"
 #include "scene/parameter.h"
 #include "scene/parameter_key.h"
-#include "scene/suggest.h"
-#include "scene/value.h"
 
 namespace astrosplat {
 

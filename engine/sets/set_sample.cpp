@@ -15,7 +15,7 @@
 #include "generate/generate.h"
 #include "sets/kept.h"
 #include "sets/load_source.h"
-#include "splat_files/native_blocks.h"
+#include "splat_files/native.h"
 #include "splats/splat_set.h"
 
 namespace astrosplat {

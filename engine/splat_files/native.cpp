@@ -18,9 +18,8 @@
 #include "core/hash.h"
 #include "core/memory.h"
 #include "core/parallel.h"
-#include "splat_files/mapped_file.h"
+#include "splat_files/file_bytes.h"
 #include "splat_files/native_layout.h"
-#include "splat_files/ordered_writer.h"
 #include "splats/row_order.h"
 
 namespace astrosplat {

@@ -1,7 +1,7 @@
 // Reading: columns one by one straight into the set's arrays, so that unwanted ones are not read at all.
 // Writing: one block at a time; every column has its place in the block as if it was full, rows are put there
 // as they come, and a full block goes to the file.
-#include "splat_files/native_blocks.h"
+#include "splat_files/native.h"
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -21,7 +21,7 @@
 #include "core/file.h"
 #include "core/hash.h"
 #include "core/parallel.h"
-#include "splat_files/mapped_file.h"
+#include "splat_files/file_bytes.h"
 #include "splat_files/native_layout.h"
 #include "splats/row_order.h"
 

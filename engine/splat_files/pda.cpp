@@ -13,9 +13,8 @@
 #include <vector>
 
 #include "core/error.h"
-#include "splat_files/mapped_file.h"
+#include "splat_files/file_bytes.h"
 #include "splat_files/number_text.h"
-#include "splat_files/ordered_writer.h"
 #include "splat_files/splat_table.h"
 
 namespace astrosplat {

@@ -16,9 +16,8 @@
 #include "core/color.h"
 #include "core/error.h"
 #include "core/text.h"
+#include "splat_files/file_bytes.h"
 #include "splat_files/gaussian_rows.h"
-#include "splat_files/mapped_file.h"
-#include "splat_files/ordered_writer.h"
 #include "splat_files/ply_bytes.h"
 #include "splat_files/splat_table.h"
 

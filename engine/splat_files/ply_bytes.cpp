@@ -22,7 +22,7 @@
 #include "core/error.h"
 #include "core/parallel.h"
 #include "core/text.h"
-#include "splat_files/mapped_file.h"
+#include "splat_files/file_bytes.h"
 #include "splat_files/number_text.h"
 #include "splat_files/splat_table.h"
 

@@ -14,7 +14,7 @@
 #include "core/log.h"
 #include "core/memory.h"
 #include "core/parallel.h"
-#include "splat_files/mapped_file.h"
+#include "splat_files/file_bytes.h"
 #include "splat_files/number_text.h"
 
 namespace astrosplat {

@@ -10,11 +10,10 @@
 #include "core/error.h"
 #include "core/file.h"
 #include "core/text.h"
+#include "splat_files/file_bytes.h"
 #include "splat_files/gaussian_rows.h"
-#include "splat_files/mapped_file.h"
 #include "splat_files/number_text.h"
 #include "usd/usda_stage.h"
-#include "usd/usda_transform.h"
 
 namespace astrosplat {
 namespace {

@@ -9,7 +9,7 @@
 #include "core/progress.h"
 #include "look/apply.h"
 #include "look/shared_uniforms.h"
-#include "splat_files/native_blocks.h"
+#include "splat_files/native.h"
 #include "splats/shaded_splats.h"
 
 namespace astrosplat {

@@ -1,9 +1,12 @@
-// The text of USD (.usda) as a tree of prims, of which only what places cameras and Gaussians is kept. In:
-// the text. Out: prims with their transforms, lenses and Gaussians' lists; all else is passed by. No file
-// that it refers to is opened.
+// The text of USD (.usda) as a tree of prims, of which only what places cameras and Gaussians is kept, and
+// where each prim stands at a time. In: the text. Out: prims with their transforms, lenses and Gaussians'
+// lists; all else is passed by. No file that it refers to is opened.
 #pragma once
 
+#include <glm/mat4x4.hpp>
 #include <map>
+#include <set>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -45,5 +48,19 @@ struct UsdStage {
 
 /// `text` outlives what its lists are read from. Throws InputError with `file` and the line.
 UsdStage parse_usda(std::string_view text, const std::string& file);
+
+// Where a prim stands at a time: matrices and numbers, between samples as USD has them.
+
+/// An attribute's numbers at a time code: held before its first sample and after its last, linear between
+/// neighbours of as many numbers, else held. `fallback` where it has neither value nor samples.
+std::vector<double> numbers_at(const UsdPrim& prim, const std::string& name, double time,
+                               std::vector<double> fallback);
+
+/// From the last prim's space to the world: each prim is a child of the one before. Column vectors. Throws
+/// InputError with `file` where an operation is unknown or has too few numbers.
+glm::dmat4 world_from_prim(std::span<const UsdPrim* const> prims, double time, const std::string& file);
+
+/// Adds the time codes at which anything that moves the prim or its lens has a sample.
+void add_times(const UsdPrim& prim, std::set<double>& times);
 
 }  // namespace astrosplat

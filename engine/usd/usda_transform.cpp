@@ -1,4 +1,4 @@
-#include "usd/usda_transform.h"
+#include "usd/usda_stage.h"
 
 #include <fmt/format.h>
 

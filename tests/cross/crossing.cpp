@@ -7,7 +7,7 @@
 #include <set>
 
 #include "cross/inputs.h"
-#include "scene/value.h"
+#include "scene/parameter.h"
 #include "support/random_values.h"
 
 namespace astrosplat::test {

@@ -19,7 +19,7 @@
 #include "edit/command_lines.h"
 #include "edit/document.h"
 #include "edit/layers.h"
-#include "output/read_frame.h"
+#include "output/metadata.h"
 #include "output/write.h"
 #include "scene/animate.h"
 #include "scene/describe.h"

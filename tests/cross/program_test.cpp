@@ -10,7 +10,7 @@
 #include "cross/rendering.h"
 #include "edit/command_lines.h"
 #include "edit/document.h"
-#include "output/read_frame.h"
+#include "output/metadata.h"
 #include "output/write.h"
 #include "support/printing.h"
 #include "support/run_program.h"

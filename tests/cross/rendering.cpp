@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "camera/aperture.h"
+#include "camera/camera.h"
 #include "core/parallel.h"
 #include "cross/inputs.h"
 #include "frame/frame_hash.h"

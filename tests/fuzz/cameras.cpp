@@ -7,8 +7,8 @@
 #include <fstream>
 #include <glm/geometric.hpp>
 
+#include "camera_files/camera_track.h"
 #include "camera_files/formats.h"
-#include "camera_files/read_camera.h"
 #include "fuzz/targets.h"
 #include "scene/camera_file.h"
 

@@ -8,7 +8,7 @@
 
 #include "gl/gl_fixture.h"
 #include "gl/image_texture.h"
-#include "output/encode.h"
+#include "output/format.h"
 #include "support/color_config.h"
 #include "support/temp_folder.h"
 

@@ -5,7 +5,7 @@
 
 #include "core/real.h"
 #include "core/shared_maths.h"
-#include "output/encode.h"
+#include "output/format.h"
 #include "output/write.h"
 #include "render/render.h"
 #include "support/temp_folder.h"

@@ -1,7 +1,7 @@
 // Two looks one after the other, and the output's own pixels.
 #include <cmath>
 
-#include "output/read_frame.h"
+#include "output/metadata.h"
 #include "source/texture.h"
 #include "window/window_test.h"
 

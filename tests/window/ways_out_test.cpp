@@ -5,7 +5,7 @@
 
 #include "edit/command_lines.h"
 #include "gui/key_codes.h"
-#include "output/read_frame.h"
+#include "output/metadata.h"
 #include "source/texture.h"
 #include "window/window_test.h"
 

@@ -4,9 +4,9 @@
 
 #include <vector>
 
+#include "scene/parameter.h"
 #include "scene/parameter_key.h"
 #include "scene/scene.h"
-#include "scene/value.h"
 
 namespace astrosplat::panel {
 

@@ -6,7 +6,6 @@
 #include <glm/geometric.hpp>
 
 #include "camera/keyframe.h"
-#include "camera/path.h"
 #include "core/real.h"
 
 namespace astrosplat {

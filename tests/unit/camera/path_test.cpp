@@ -1,5 +1,5 @@
 // Interpolation against values worked out by hand.
-#include "camera/path.h"
+#include "camera/keyframe.h"
 
 #include <gtest/gtest.h>
 

@@ -7,7 +7,7 @@
 #include <glm/matrix.hpp>
 
 #include "camera/camera.h"
-#include "camera_files/read_camera.h"
+#include "camera_files/camera_track.h"
 #include "core/real.h"
 #include "core/rotation.h"
 #include "support/camera_tracks.h"

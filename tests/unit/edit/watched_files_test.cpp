@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <chrono>
 
-#include "scene/scene_files.h"
+#include "scene/layer_setup.h"
 #include "support/temp_folder.h"
 
 namespace astrosplat {

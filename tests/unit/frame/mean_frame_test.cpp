@@ -1,5 +1,5 @@
 // Means of renderings by hand: light, depth by opacity, and layers that only some of them show.
-#include "frame/mean_frame.h"
+#include "frame/frame_scene.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Pixels as a file holds them: closed forms of view, alpha rule and dither.
-#include "output/encode.h"
+#include "output/format.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // Frame files written and read back: pixels, channels, windows, header, errors.
 #include "output/write.h"
-#include "output/read_frame.h"
+#include "output/metadata.h"
 
 #include <fmt/format.h>
 // fmt first: OpenImageIO brings a copy of it with other settings.
@@ -17,8 +17,7 @@
 
 #include "core/color.h"
 #include "core/error.h"
-#include "output/encode.h"
-#include "output/metadata.h"
+#include "output/format.h"
 #include "source/write_image.h"
 #include "support/errors.h"
 #include "support/file_limit.h"

@@ -8,7 +8,7 @@
 #include <glm/matrix.hpp>
 #include <set>
 
-#include "camera/aperture.h"
+#include "camera/camera.h"
 #include "camera/projection.h"
 #include "pipeline.h"
 #include "support/frames.h"

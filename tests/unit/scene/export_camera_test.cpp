@@ -1,5 +1,5 @@
 // The scene's camera for other programs: there and back through every format, and what USD says.
-#include "scene/export_camera.h"
+#include "scene/camera_file.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // "Did you mean": distances worked out by hand, and the slips people make in keys.
-#include "scene/suggest.h"
+#include "scene/parameter_key.h"
 
 #include <gtest/gtest.h>
 

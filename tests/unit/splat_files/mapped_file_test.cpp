@@ -1,6 +1,6 @@
 // A file that another program shortens while it is read: one line, where the kernel alone would end the
 // process.
-#include "splat_files/mapped_file.h"
+#include "splat_files/file_bytes.h"
 
 #include <gtest/gtest.h>
 

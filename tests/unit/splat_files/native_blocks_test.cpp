@@ -1,6 +1,5 @@
 // Native files block by block: the rows that the whole file has, damage found where it is asked for, and a
 // sample that is some of them.
-#include "splat_files/native_blocks.h"
 
 #include <algorithm>
 

@@ -9,8 +9,6 @@
 #include <numbers>
 #include <utility>
 
-#include "volumes/voxel_splats.h"
-
 namespace astrosplat::test {
 namespace {
 

@@ -1,13 +1,21 @@
-// A file's bytes as read-only memory. In: a path. Out: a string_view of the bytes while a reader works on
-// them. The kernel pages the file in as it is touched, so nothing is copied. Where another program shortens
-// the file meanwhile, the missing pages read as zeros instead of ending the process, and the reader fails.
+// The bytes of large files. Read: as read-only memory that the kernel pages in as it is touched, so nothing is
+// copied; where another program shortens the file meanwhile, the missing pages read as zeros instead of
+// ending the process, and the reader fails. Written: rows that are formatted in parallel and come out in
+// order: threads format chunks of rows into memory of a few chunks, and one of them at a time appends what is
+// complete, so that the bytes do not depend on threads.
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <filesystem>
+#include <functional>
+#include <string>
 #include <string_view>
 
+#include "core/atomic_file.h"
 #include "core/error.h"
 #include "core/file.h"
+#include "core/progress.h"
 
 namespace astrosplat {
 
@@ -50,5 +58,16 @@ auto read_mapped(const std::filesystem::path& file, const Read& read) {
         throw;
     }
 }
+
+/// Writes rows [begin, end) to `out` and returns the end of what it wrote.
+using FormatRows = std::function<char*(std::int64_t begin, std::int64_t end, char* out)>;
+/// Text behind the rows; asked for once all of them are formatted.
+using Footer = std::function<std::string()>;
+
+/// `header`, then `count` rows in chunks of `chunk`, each row at most `row_bytes` long. Atomic: the file
+/// appears whole or not at all. Throws OutputError, Cancelled.
+void write_ordered(const WriteTarget& target, std::string_view header, std::int64_t count, std::int64_t chunk,
+                   std::size_t row_bytes, const Progress& progress, const FormatRows& format,
+                   const Footer& footer = {});
 
 }  // namespace astrosplat
