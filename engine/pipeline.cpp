@@ -64,8 +64,7 @@ const SplatSetFacts& facts_of(const LayerState& layer) {
 /// Where the layer is seen from.
 SeenFrom seen_from(const Camera& camera, const RenderLayer& layer) {
     const glm::dmat3 layer_from_world = glm::transpose(layer.world_from_layer);
-    if (camera.projection == Projection::orthographic)
-        return {{}, -(layer_from_world * camera.world_from_camera[2])};
+    if (camera.projection == Projection::orthographic) return {{}, layer_from_world * view_direction(camera)};
     return {layer_from_world * (camera.eye - layer.translate) / layer.scale, {}};
 }
 

@@ -61,16 +61,6 @@ std::size_t layer_index(const Scene& scene, const ParameterKey& key) {
     return index;
 }
 
-[[noreturn]] void fail_unknown(const Scene& scene, const ParameterKey& key) {
-    if (!key.is_below("layer")) throw InputError(unknown_key(key, key, "layer"));
-    const std::string name = key.layer();
-    std::vector<std::string> names;
-    for (const LayerParams& layer : scene.layers) names.push_back(layer.name);
-    if (std::find(names.begin(), names.end(), name) != names.end())
-        throw InputError(unknown_key(key, key, layer_key(name)));
-    throw InputError(fmt::format("{}: unknown layer '{}'{}", key, name, did_you_mean(name, names)));
-}
-
 /// The parameter of a key in `scene`, whose lists grow for it.
 Parameter parameter_for(Scene& scene, const ParameterKey& key) {
     Description description = describe(scene);
@@ -81,7 +71,7 @@ Parameter parameter_for(Scene& scene, const ParameterKey& key) {
         throw InputError(fmt::format("{}: {}", key, error.what()));
     }
     if (const Parameter* parameter = find_parameter(description, key)) return *parameter;
-    fail_unknown(scene, key);
+    throw InputError(why_unknown(scene, key));
 }
 
 void set_value(const Parameter& parameter, const Value& value, const fs::path& folder) {

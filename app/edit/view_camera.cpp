@@ -53,7 +53,7 @@ bool has_parallel_rays(const FreeCamera& camera) { return camera.projection == P
 
 ViewAxes view_axes(const FreeCamera& camera) {
     const Camera resolved = make_camera(camera_params(camera), 1.0, 1.0, {});
-    return {resolved.world_from_camera[0], resolved.world_from_camera[1], -resolved.world_from_camera[2]};
+    return {resolved.world_from_camera[0], resolved.world_from_camera[1], view_direction(resolved)};
 }
 
 CameraParams camera_params(const FreeCamera& camera) {
@@ -89,7 +89,7 @@ FreeCamera free_camera(const CameraParams& params, const Bounds& box, double asp
     CameraParams level = params;
     level.fisheye_tilt = 0.0;
     const Camera camera = make_camera(level, aspect, 1.0, box);
-    const glm::dvec3 forward = -camera.world_from_camera[2];
+    const glm::dvec3 forward = view_direction(camera);
     FreeCamera free = lens_of(camera, params);
     free.position = camera.eye;
     const glm::dvec3 middle = box_to_frame(box).center();

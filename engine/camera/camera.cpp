@@ -195,7 +195,7 @@ Camera make_camera(const CameraParams& params, double width_px, double height_px
     camera.far = params.far;
     camera.near_fade = params.near_fade;
     camera.target_distance = params.rotation ? glm::length(target - camera.eye)
-                                             : -glm::dot(camera.world_from_camera[2], target - camera.eye);
+                                             : glm::dot(view_direction(camera), target - camera.eye);
     move_to_eye(camera, params);
     return camera;
 }

@@ -70,24 +70,6 @@ T bezier_point(const T& a, const T& b, const T& c, const T& d, double u) {
     return a * (v * v * v) + b * (3.0 * v * v * u) + c * (3.0 * v * u * u) + d * (u * u * u);
 }
 
-/// Its derivative with respect to u.
-template <class T>
-T bezier_slope(const T& a, const T& b, const T& c, const T& d, double u) {
-    const double v = 1.0 - u;
-    return (b - a) * (3.0 * v * v) + (c - b) * (6.0 * v * u) + (d - c) * (3.0 * u * u);
-}
-
-/// u at which the curve from 0 to 1 with the control points b and c, both in [0, 1], is at x in [0, 1]: it
-/// rises all the way.
-inline double bezier_parameter(double b, double c, double x) {
-    double lo = 0.0, hi = 1.0;
-    for (int k = 0; k < 54; ++k) {
-        const double mid = 0.5 * (lo + hi);
-        (bezier_point(0.0, b, c, 1.0, mid) < x ? lo : hi) = mid;
-    }
-    return 0.5 * (lo + hi);
-}
-
 // T is double or glm::dvec3. Keyframes are ascending in frame.
 
 /// The handles of keyframe i as they act: free ones shortened to their segment, the others worked out. 0
@@ -103,10 +85,22 @@ struct BezierSegment {
     T a, b, c, d;
     double out, in;  // frames of b and c, as shares of the segment's
 
-    /// The parameter at a share of the segment's frames.
-    double parameter(double share) const { return bezier_parameter(out, in, share); }
+    /// u at a share of the segment's frames, of which the curve from 0 to 1 with the control points `out` and
+    /// `in`, both in [0, 1], rises all the way.
+    double parameter(double share) const {
+        double lo = 0.0, hi = 1.0;
+        for (int k = 0; k < 54; ++k) {
+            const double mid = 0.5 * (lo + hi);
+            (bezier_point(0.0, out, in, 1.0, mid) < share ? lo : hi) = mid;
+        }
+        return 0.5 * (lo + hi);
+    }
     T at(double u) const { return bezier_point(a, b, c, d, u); }
-    T slope(double u) const { return bezier_slope(a, b, c, d, u); }
+    /// The derivative with respect to u.
+    T slope(double u) const {
+        const double v = 1.0 - u;
+        return (b - a) * (3.0 * v * v) + (c - b) * (6.0 * v * u) + (d - c) * (3.0 * u * u);
+    }
 };
 
 template <class T>

@@ -36,6 +36,12 @@ struct CameraTrack {
 struct FrameRate {
     double output_fps = 24.0;  // 1/s
     double file_fps = 0.0;     // of a file that counts frames; 0: as the file says, else the output's
+
+    /// Frames of the output in a frame of a file that says `own_fps`; 0: it says nothing.
+    double output_frames(double own_fps = 0.0) const {
+        const double fps = file_fps > 0.0 ? file_fps : own_fps;
+        return fps > 0.0 ? output_fps / fps : 1.0;
+    }
 };
 
 /// The longest track that is read: a day at 60 frames a second, and then some.

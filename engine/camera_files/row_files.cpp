@@ -52,7 +52,6 @@ double unrolled(double angle, double before) {
 CameraTrack read_chan(const std::filesystem::path& file, const FrameRate& rate) {
     const std::string text = read_file(file);
     TextRows rows(text, file.string());
-    const double factor = rate.file_fps > 0.0 ? rate.output_fps / rate.file_fps : 1.0;
     CameraTrack track;
     std::size_t columns = 0;
     while (rows.next()) {
@@ -64,7 +63,7 @@ CameraTrack read_chan(const std::filesystem::path& file, const FrameRate& rate) 
         columns = words.size();
         const auto number = [&](std::size_t i, const char* what) { return rows.number(words[i], what); };
         TrackSample sample;
-        sample.frame = number(0, "the frame") * factor;
+        sample.frame = number(0, "the frame") * rate.output_frames();
         sample.eye = {number(1, "tx"), number(2, "ty"), number(3, "tz")};
         sample.rotation = quaternion_from_zxy(
             {within_turn(number(4, "rx")), within_turn(number(5, "ry")), within_turn(number(6, "rz"))});

@@ -68,8 +68,7 @@ class CameraReader {
         track_.fps = number_of(stage, "timeCodesPerSecond");
         if (!(track_.fps > 0.0)) track_.fps = number_of(stage, "framesPerSecond");
         if (!(track_.fps > 0.0) || !std::isfinite(track_.fps)) track_.fps = 0.0;
-        const double own = rate.file_fps > 0.0 ? rate.file_fps : track_.fps;
-        frames_per_code_ = own > 0.0 ? rate.output_fps / own : 1.0;
+        frames_per_code_ = rate.output_frames(track_.fps);
         const auto projection = camera_.attributes.find("projection");
         track_.orthographic =
             projection != camera_.attributes.end() && is_word(projection->second.value.words, "orthographic");

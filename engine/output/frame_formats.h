@@ -42,8 +42,9 @@ struct FrameFileFormat {
 };
 
 /// By FrameKind.
-inline constexpr FrameFileFormat frame_file_formats[] = {{"openexr", write_exr, read_exr_header, exr_is_whole},
-                                                         {"tiff", write_tiff, read_tiff_header, tiff_is_whole},
-                                                         {"png", write_png, read_png_header, png_is_whole}};
+inline constexpr FrameFileFormat frame_file_formats[] = {
+    {"openexr", write_exr, read_exr_header, exr_is_whole},
+    {"tiff", write_tiff, read_tiff_header, tiff_is_whole},
+    {"png", write_png, read_png_header, png_is_whole}};
 
 }  // namespace astrosplat

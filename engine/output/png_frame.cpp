@@ -148,7 +148,8 @@ void write_png(const FrameFile& target, const FrameFormat& format, const Rendere
     if (!metadata.provenance.credit.empty()) entries.emplace_back("Copyright", metadata.provenance.credit);
     std::vector<png_text> texts;
     for (const auto& [name, value] : entries) texts.push_back(text_of(name, value));
-    PngPicture picture{frame.beauty.width, frame.beauty.height, stored_channels(format), 8, nullptr, &format, &texts};
+    PngPicture picture{
+        frame.beauty.width, frame.beauty.height, stored_channels(format), 8, nullptr, &format, &texts};
     std::vector<std::uint8_t> bytes;
     std::vector<std::uint16_t> words;
     if (format.depth == OutputParams::Depth::uint8) {

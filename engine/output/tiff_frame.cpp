@@ -226,10 +226,10 @@ void write_tiff(const FrameFile& target, const FrameFormat& format, const Render
                 const FrameMetadata& metadata) {
     const int channels = stored_channels(format);
     const auto write = [&](int bytes_each, const void* rows) {
-        write_samples(
-            target, format,
-            {frame.beauty.width, frame.beauty.height, channels, bytes_each, static_cast<const unsigned char*>(rows)},
-            metadata);
+        write_samples(target, format,
+                      {frame.beauty.width, frame.beauty.height, channels, bytes_each,
+                       static_cast<const unsigned char*>(rows)},
+                      metadata);
     };
     if (format.depth == Depth::uint8)
         write(1, encode_8bit(format, frame.beauty, target.region.x, target.region.y).data());

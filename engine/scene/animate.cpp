@@ -34,22 +34,16 @@ std::vector<Keyframe<double>> component(const Keyframes& keyframes, std::size_t 
     return scalar;
 }
 
-std::vector<double> evaluate_position_track(const Track& track, double frame) {
-    const glm::dvec3 p =
-        evaluate_position(position_keyframes(track), frame, track.ends, track.constant_speed);
-    return {p.x, p.y, p.z};
+std::vector<Keyframe<glm::dvec4>> rotation_keyframes(const Track& track) {
+    return converted<glm::dvec4>(track.keyframes, [](const std::vector<double>& v) {
+        const glm::dvec4 q(v.at(0), v.at(1), v.at(2), v.at(3));
+        return q / std::sqrt(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w);
+    });
 }
 
-std::vector<double> evaluate_rotation_track(const Track& track, double frame) {
-    std::vector<Keyframe<glm::dvec4>> keyframes;
-    for (const auto& keyframe : track.keyframes) {
-        const glm::dvec4 q(keyframe.value.at(0), keyframe.value.at(1), keyframe.value.at(2),
-                           keyframe.value.at(3));
-        const double length = std::sqrt(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w);
-        keyframes.push_back({keyframe.frame, q / length, keyframe.interpolation});
-    }
-    const glm::dvec4 q = evaluate_rotation(keyframes, frame, track.ends);
-    return {q.x, q.y, q.z, q.w};
+/// Those of camera.file.
+std::span<const Track> imported_tracks(const Scene& scene) {
+    return scene.imported.camera ? std::span(scene.imported.camera->tracks) : std::span<const Track>();
 }
 
 /// The part of a linear track that decides at `frame`: at most two of its keyframes.
@@ -97,8 +91,15 @@ std::vector<TrackHandles> handles_of(const Track& track, const ParameterSpec& sp
 }
 
 std::vector<double> track_at(const Track& track, const ParameterSpec& spec, double frame) {
-    if (spec.type == ParameterType::position) return evaluate_position_track(track, frame);
-    if (spec.type == ParameterType::rotation) return evaluate_rotation_track(track, frame);
+    if (spec.type == ParameterType::position) {
+        const glm::dvec3 p =
+            evaluate_position(position_keyframes(track), frame, track.ends, track.constant_speed);
+        return {p.x, p.y, p.z};
+    }
+    if (spec.type == ParameterType::rotation) {
+        const glm::dvec4 q = evaluate_rotation(rotation_keyframes(track), frame, track.ends);
+        return {q.x, q.y, q.z, q.w};
+    }
     std::vector<double> numbers;
     const bool steps = spec.animation == Animation::steps;
     for (std::size_t i = 0; i < track.keyframes.front().value.size(); ++i)
@@ -108,8 +109,6 @@ std::vector<double> track_at(const Track& track, const ParameterSpec& spec, doub
 
 Scene scene_at(const Scene& scene, double frame) {
     Scene still = scene;
-    const std::span<const Track> imported =
-        scene.imported.camera ? std::span(scene.imported.camera->tracks) : std::span<const Track>();
     const Description description = describe(still, [&](const ParameterKey& group) {
         return moves(scene, [&](const ParameterKey& key) { return key.is_below(group); });
     });
@@ -119,7 +118,7 @@ Scene scene_at(const Scene& scene, double frame) {
         parameter->set(from_numbers(parameter->spec, track_at(track, parameter->spec, frame)));
     };
     for (const Track& track : scene.animation) set(track);
-    for (const Track& track : imported) set(around(track, frame));
+    for (const Track& track : imported_tracks(scene)) set(around(track, frame));
     return still;
 }
 
@@ -131,17 +130,18 @@ void stop_animation(Scene& scene) {
 bool moves(const Scene& scene, const std::function<bool(const ParameterKey&)>& wanted) {
     const auto is_wanted = [&](const Track& track) { return wanted(track.key); };
     return std::ranges::any_of(scene.animation, is_wanted) ||
-           (scene.imported.camera && std::ranges::any_of(scene.imported.camera->tracks, is_wanted));
+           std::ranges::any_of(imported_tracks(scene), is_wanted);
+}
+
+const Track* track_of(const Scene& scene, const ParameterKey& key) {
+    for (const std::span<const Track> tracks : {imported_tracks(scene), std::span(scene.animation)})
+        if (const auto found = std::ranges::find(tracks, key, &Track::key); found != tracks.end())
+            return &*found;
+    return nullptr;
 }
 
 bool ever_visible(const Scene& scene, const LayerParams& layer) {
-    const ParameterKey key = layer_key(layer.name) / "visible";
-    const auto track_in = [&](std::span<const Track> tracks) {
-        const auto found = std::ranges::find(tracks, key, &Track::key);
-        return found == tracks.end() ? nullptr : &*found;
-    };
-    const Track* track = scene.imported.camera ? track_in(scene.imported.camera->tracks) : nullptr;
-    if (!track) track = track_in(scene.animation);
+    const Track* const track = track_of(scene, layer_key(layer.name) / "visible");
     if (!track) return layer.visible;
     return std::ranges::any_of(track->keyframes,
                                [](const auto& k) { return !k.value.empty() && k.value[0] != 0.0; });

@@ -62,18 +62,6 @@ std::size_t component_count(const ParameterSpec& spec) {
     return has_components(spec) ? static_cast<std::size_t>(std::max(spec.components, 1)) : 1;
 }
 
-[[noreturn]] void fail_unknown(const TextRows& rows, const Scene& scene, const ParameterKey& key,
-                               const std::string& place) {
-    ParameterKey group = "layer";
-    if (key.is_below("layer")) {
-        const std::string name = key.layer();
-        if (const std::string problem = unknown_layer(scene, name); !problem.empty())
-            throw InputError(fmt::format("{}:{}: {}: {}", place, rows.line(), key, problem));
-        group = layer_key(name);
-    }
-    throw InputError(fmt::format("{}:{}: {}", place, rows.line(), unknown_key(key, key, group)));
-}
-
 class CsvReader {
   public:
     CsvReader(const std::filesystem::path& file, std::string_view text, const FrameRate& rate, Scene& scene)
@@ -124,7 +112,9 @@ class CsvReader {
     void add_column(const Description& description, std::string_view name, std::size_t column) {
         const ColumnName of = column_name(description, name);
         const Parameter* parameter = find_parameter(description, of.key);
-        if (!parameter) fail_unknown(rows_, scene_, printable(name), place_);
+        if (!parameter)
+            throw InputError(
+                fmt::format("{}:{}: {}", place_, rows_.line(), why_unknown(scene_, printable(name))));
         const ParameterSpec& spec = parameter->spec;
         if (spec.animation == Animation::no) rows_.fail("keys that can be animated", shown(name));
         if (spec.type == ParameterType::curve) rows_.fail("keys of numbers", shown(name) + ", a curve");
@@ -154,8 +144,7 @@ class CsvReader {
         const std::vector<std::string_view>& words = rows_.fields(separator_);
         if (words.size() != columns_)
             rows_.fail(fmt::format("{} columns as in the header", columns_), std::to_string(words.size()));
-        const double factor = rate_.file_fps > 0.0 ? rate_.output_fps / rate_.file_fps : 1.0;
-        const double frame = rows_.number(words[frame_], "the frame") * factor;
+        const double frame = rows_.number(words[frame_], "the frame") * rate_.output_frames();
         if (!std::isfinite(frame)) rows_.fail("a frame number", shown(words[frame_]));
         for (std::size_t k = 0; k < keys_.size(); ++k) {
             KeyColumns& key = keys_[k];

@@ -1,6 +1,6 @@
 // Every parameter of a scene, described once: describe() lists them all with key, words, range and a handle
 // on the field. Loading, saving, --set, the manual, animation and the window's sliders are loops over this
-// list. To add a parameter: a field, one line in describe.cpp or describe_layer.cpp, and its use.
+// list. To add a parameter: a field, one line in a describe_*.cpp, and its use.
 #pragma once
 
 #include <functional>

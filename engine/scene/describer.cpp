@@ -137,6 +137,10 @@ Value choice_value(const std::string& name) {
     return name;
 }
 
+Value words_value(const std::vector<std::string>& words) { return Value::List(words.begin(), words.end()); }
+
+Value path_value(const std::filesystem::path& file) { return file.string(); }
+
 Value files_value(const std::vector<std::filesystem::path>& files, const ParameterSpec& spec) {
     if (files.empty()) return spec.nothing;
     if (files.size() == 1) return files[0].string();

@@ -32,6 +32,8 @@ std::vector<glm::vec2> curve_of(const Value& value, const ParameterSpec& spec);
 Value choice_value(const std::string& name);  // "true" and "false" as booleans
 Value files_value(const std::vector<std::filesystem::path>& files, const ParameterSpec& spec);
 Value curve_value(const std::vector<glm::vec2>& points);
+Value words_value(const std::vector<std::string>& words);
+Value path_value(const std::filesystem::path& file);
 
 inline double widened(double x) { return x; }
 inline double widened(float x) { return widen(x); }
@@ -39,17 +41,31 @@ inline double widened(float x) { return widen(x); }
 template <class T>
 struct Field;
 
-/// Fields of one type and one way in.
-template <ParameterType kind, auto read>
+/// Fields of one type, read and written by one function each.
+template <ParameterType kind, auto read, auto write>
 struct PlainField {
     static void describe(ParameterSpec& spec) { spec.type = kind; }
+    static Value get(const auto& field, const ParameterSpec&) { return write(field); }
     static auto set(const Value& value, const ParameterSpec& spec) { return read(value, spec); }
 };
 
+template <class T>
+Value as_value(const T& field) {
+    return field;
+}
+
 template <>
-struct Field<bool> : PlainField<ParameterType::boolean, boolean_of> {
-    static Value get(bool field, const ParameterSpec&) { return field; }
-};
+struct Field<bool> : PlainField<ParameterType::boolean, boolean_of, as_value<bool>> {};
+template <>
+struct Field<double> : PlainField<ParameterType::number, number_of, as_value<double>> {};
+template <>
+struct Field<float> : PlainField<ParameterType::number, float_of, widen> {};
+template <>
+struct Field<std::filesystem::path> : PlainField<ParameterType::file, text_of, path_value> {};
+template <>
+struct Field<std::vector<std::string>> : PlainField<ParameterType::words, words_of, words_value> {};
+template <>
+struct Field<std::vector<glm::vec2>> : PlainField<ParameterType::curve, curve_of, curve_value> {};
 
 template <std::integral T>
 requires(!std::same_as<T, bool>) struct Field<T> {
@@ -62,16 +78,6 @@ requires(!std::same_as<T, bool>) struct Field<T> {
     static T set(const Value& value, const ParameterSpec& spec) {
         return static_cast<T>(integer_of(value, spec));
     }
-};
-
-template <>
-struct Field<double> : PlainField<ParameterType::number, number_of> {
-    static Value get(double field, const ParameterSpec&) { return field; }
-};
-
-template <>
-struct Field<float> : PlainField<ParameterType::number, float_of> {
-    static Value get(float field, const ParameterSpec&) { return widen(field); }
 };
 
 template <class T>
@@ -97,27 +103,12 @@ struct Field<std::string> {
 };
 
 template <>
-struct Field<std::vector<std::string>> : PlainField<ParameterType::words, words_of> {
-    static Value get(const std::vector<std::string>& field, const ParameterSpec&) {
-        return Value::List(field.begin(), field.end());
-    }
-};
-
-template <>
-struct Field<std::filesystem::path> : PlainField<ParameterType::file, text_of> {
-    static Value get(const std::filesystem::path& field, const ParameterSpec&) { return field.string(); }
-};
-
-template <>
-struct Field<std::vector<std::filesystem::path>> : PlainField<ParameterType::files, files_of> {
+struct Field<std::vector<std::filesystem::path>> {
+    static void describe(ParameterSpec& spec) { spec.type = ParameterType::files; }
     static Value get(const std::vector<std::filesystem::path>& field, const ParameterSpec& spec) {
         return files_value(field, spec);
     }
-};
-
-template <>
-struct Field<std::vector<glm::vec2>> : PlainField<ParameterType::curve, curve_of> {
-    static Value get(const std::vector<glm::vec2>& field, const ParameterSpec&) { return curve_value(field); }
+    static auto set(const Value& value, const ParameterSpec& spec) { return files_of(value, spec); }
 };
 
 template <int N, class T>

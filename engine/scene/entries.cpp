@@ -86,6 +86,13 @@ std::vector<std::string> known_keys(const ParameterKey& layer_group) {
     return keys;
 }
 
+/// "unknown key 'x'; did you mean 'y'?" for a key that no parameter has. `shown` is as the person wrote it.
+std::string unknown_key(const std::string& shown, const ParameterKey& key, const ParameterKey& layer_group) {
+    const std::string hint = did_you_mean(key, known_keys(layer_group));
+    return fmt::format("unknown key '{}'{}", shown,
+                       hint.empty() ? "; 'astrosplat parameters' lists all keys" : hint);
+}
+
 /// As written below its [section]: 'alpha.powr'.
 std::string shown_key(const Entry& entry, const EntryOrigin& origin) {
     if (origin.command_line) return entry.key;
@@ -243,16 +250,12 @@ void add_children(const toml::table& table, const Entry& parent, const EntryOrig
 
 }  // namespace
 
-std::string unknown_key(const std::string& shown, const ParameterKey& key, const ParameterKey& layer_group) {
-    const std::string hint = did_you_mean(key, known_keys(layer_group));
-    return fmt::format("unknown key '{}'{}", shown,
-                       hint.empty() ? "; 'astrosplat parameters' lists all keys" : hint);
-}
-
-std::string unknown_layer(const Scene& scene, const std::string& name) {
+std::string why_unknown(const Scene& scene, const ParameterKey& key) {
+    if (!key.is_below("layer")) return unknown_key(key, key, "layer");
+    const std::string name = key.layer();
     const std::vector<std::string> names = layer_names(scene);
-    if (std::ranges::find(names, name) != names.end()) return "";
-    return fmt::format("unknown layer '{}'{}", name, did_you_mean(name, names));
+    if (std::ranges::find(names, name) != names.end()) return unknown_key(key, key, layer_key(name));
+    return fmt::format("{}: unknown layer '{}'{}", key, name, did_you_mean(name, names));
 }
 
 void flatten(const toml::node& node, const ParameterKey& key, const ParameterKey& generic_key,

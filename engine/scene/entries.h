@@ -1,6 +1,6 @@
-// From TOML to parameters and tracks, for scenes, presets and --set alike. In: TOML text. Out: tables with line
-// numbers, flattened into entries "key = value" with their places, and written into whatever a Description
-// describes; the tracks of [animation]. Include in .cpp files only: toml++ is large.
+// From TOML to parameters and tracks, for scenes, presets and --set alike. In: TOML text. Out: tables with
+// line numbers, flattened into entries "key = value" with their places, and written into whatever a
+// Description describes; the tracks of [animation]. Include in .cpp files only: toml++ is large.
 #pragma once
 
 #include <toml++/toml.h>
@@ -62,11 +62,9 @@ void apply_entries(std::vector<Entry> entries, const EntryOrigin& origin,
 /// out of date. Throws ValueError for an index beyond that.
 bool extend_lists(const Description& description, const ParameterKey& key);
 
-/// "unknown key 'x'; did you mean 'y'?" for a key that no parameter has. `shown` is as the person wrote it.
-std::string unknown_key(const std::string& shown, const ParameterKey& key, const ParameterKey& layer_group);
-
-/// "unknown layer 'x'; did you mean 'y'?", or "" where the scene has it.
-std::string unknown_layer(const Scene& scene, const std::string& name);
+/// Why the scene has no parameter of a key: "unknown key 'x'; did you mean 'y'?" or "KEY: unknown layer 'x';
+/// did you mean 'y'?".
+std::string why_unknown(const Scene& scene, const ParameterKey& key);
 
 // The [animation] table.
 

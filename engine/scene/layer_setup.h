@@ -37,11 +37,7 @@ void check_extent(const Bounds& box, const std::string& layer, double farthest =
 
 bool has_environment(const EnvironmentParams& params);
 
-/// Places of the scene's camera: of one that is animated, in equal steps between its keyframes;
-/// empty for one without a position.
-std::vector<glm::dvec3> camera_places(const Scene& scene);
-
-/// Whether there are such.
+/// Whether the scene's camera has a position, or keyframes of it.
 bool has_camera_places(const Scene& scene);
 
 /// Whether a layer's stars lie along the camera's path.

@@ -240,7 +240,9 @@ class Loader {
             return;
         }
         const std::string layer = key.layer();
-        if (!layer.empty()) check_layer_exists(layer, key);
+        if (!layer.empty() &&
+            std::ranges::find(scene_.layers, layer, &LayerParams::name) == scene_.layers.end())
+            throw InputError("--set: " + why_unknown(scene_, key));
         if (key == layer_key(layer) / "name") {
             rename_layer(layer, node.is_string() ? node.as_string()->get() : assignment.value);
             return;
@@ -258,11 +260,6 @@ class Loader {
             if (overrule(full_key(describe(scene_), entry.key)))
                 log_info(fmt::format("--set {} replaces its animation", entry.key));
         if (key == "output.preset") read_output_preset();
-    }
-
-    void check_layer_exists(const std::string& name, const ParameterKey& key) const {
-        if (const std::string problem = unknown_layer(scene_, name); !problem.empty())
-            throw InputError(fmt::format("--set: {}: {}", key, problem));
     }
 
     void rename_layer(const std::string& from, const std::string& to) {
@@ -313,17 +310,12 @@ Assignment parse_assignment(const std::string& text) {
     return {key, std::string(trim(std::string_view(text).substr(equals + 1)))};
 }
 
-static std::string place_near(const Places& places, const ParameterKey& key, const fs::path& file) {
-    const auto found = places.find(key);
-    return found == places.end() ? file.string() : found->second;
-}
-
 static PlacedScene parse(const std::string& toml, const fs::path& file,
                          std::span<const Assignment> assignments, bool checked) {
     const toml::table root = parse_toml(toml, file.string());
     PlacedScene placed = Loader(file.string(), file.parent_path()).load(root, assignments, checked);
     placed.scene.file = file;
-    if (checked) attach_camera_file(placed.scene, place_near(placed.places, "camera.file", file));
+    if (checked) attach_camera_file(placed.scene, place_of(placed.places, "camera.file", file.string()));
     return placed;
 }
 

@@ -74,6 +74,11 @@ bool is_list_index(std::string_view part) {
     return !part.empty() && std::ranges::all_of(part, [](char c) { return c >= '0' && c <= '9'; });
 }
 
+std::string place_of(const Places& places, const ParameterKey& key, const std::string& otherwise) {
+    const auto found = places.find(key);
+    return found == places.end() ? otherwise : found->second;
+}
+
 int edit_distance(std::string_view a, std::string_view b) {
     std::vector<int> before(b.size() + 1), above(b.size() + 1), row(b.size() + 1);
     for (std::size_t j = 0; j <= b.size(); ++j) above[j] = static_cast<int>(j);

@@ -67,6 +67,8 @@ bool is_list_index(std::string_view part);
 
 /// Where keys were last set: "scene.toml:12", "--set".
 using Places = std::map<ParameterKey, std::string>;
+/// That of a key; `otherwise` where it was not set.
+std::string place_of(const Places& places, const ParameterKey& key, const std::string& otherwise);
 
 /// Number of insertions, deletions, substitutions and swaps of neighbours that turn a into b.
 int edit_distance(std::string_view a, std::string_view b);

@@ -213,13 +213,7 @@ const Parameter& animated_parameter(const Description& description, const Scene&
         if (parameter->spec.animation == Animation::no) at.fail("this parameter cannot be animated");
         return *parameter;
     }
-    ParameterKey layer_group = "layer";
-    if (at.key.is_below("layer")) {
-        const std::string name = at.key.layer();
-        if (const std::string problem = unknown_layer(scene, name); !problem.empty()) at.fail(problem);
-        layer_group = layer_key(name);
-    }
-    throw InputError(fmt::format("{}: {}", at.place, unknown_key(at.key, at.key, layer_group)));
+    throw InputError(fmt::format("{}: {}", at.place, why_unknown(scene, at.key)));
 }
 
 }  // namespace

@@ -106,7 +106,7 @@ CameraParams params_of(const Camera& camera) {
     CameraParams params;
     params.projection = camera.projection;
     params.position = camera.eye;
-    params.target = camera.eye - camera.world_from_camera[2];
+    params.target = camera.eye + view_direction(camera);
     params.up = camera.world_from_camera[1];
     params.near = camera.near;
     if (parallel)

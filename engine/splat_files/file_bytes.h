@@ -1,5 +1,5 @@
-// The bytes of large files. Read: as read-only memory that the kernel pages in as it is touched, so nothing is
-// copied; where another program shortens the file meanwhile, the missing pages read as zeros instead of
+// The bytes of large files. Read: as read-only memory that the kernel pages in as it is touched, so nothing
+// is copied; where another program shortens the file meanwhile, the missing pages read as zeros instead of
 // ending the process, and the reader fails. Written: rows that are formatted in parallel and come out in
 // order: threads format chunks of rows into memory of a few chunks, and one of them at a time appends what is
 // complete, so that the bytes do not depend on threads.

@@ -29,21 +29,26 @@ Symmetric covariance_of(const glm::dmat3& m, double square) {
     return {entry(0, 0), entry(1, 1), entry(2, 2), entry(0, 1), entry(0, 2), entry(1, 2)};
 }
 
+Symmetric adjugate_of(const Symmetric& c) {
+    return {c[1] * c[2] - c[5] * c[5], c[0] * c[2] - c[4] * c[4], c[0] * c[1] - c[3] * c[3],
+            c[4] * c[5] - c[3] * c[2], c[3] * c[5] - c[4] * c[1], c[3] * c[4] - c[5] * c[0]};
+}
+
+/// Area that the weight e^(-d^2 / 2) of a covariance has on a frame across `n`, in its square units:
+/// 2 pi sqrt(n . adj(covariance) n).
+double footprint_area(const Symmetric& covariance, const glm::dvec3& n) {
+    const Symmetric a = adjugate_of(covariance);
+    const double form = n.x * n.x * a[0] + n.y * n.y * a[1] + n.z * n.z * a[2] +
+                        2.0 * (n.x * n.y * a[3] + n.x * n.z * a[4] + n.y * n.z * a[5]);
+    return 2.0 * real::pi * std::sqrt(std::max(0.0, form));
+}
+
 double mean_deviation(const VoxelSplat& splat) {
     const Symmetric& c = splat.covariance;
     return std::sqrt((c[0] + c[1] + c[2]) / 3.0);
 }
 
 }  // namespace
-
-double footprint_area(const Symmetric& c, const glm::dvec3& n) {
-    const double xx = c[1] * c[2] - c[5] * c[5], yy = c[0] * c[2] - c[4] * c[4],
-                 zz = c[0] * c[1] - c[3] * c[3], xy = c[4] * c[5] - c[3] * c[2],
-                 xz = c[3] * c[5] - c[4] * c[1], yz = c[3] * c[4] - c[5] * c[0];
-    const double form = n.x * n.x * xx + n.y * n.y * yy + n.z * n.z * zz +
-                        2.0 * (n.x * n.y * xy + n.x * n.z * xz + n.y * n.z * yz);
-    return 2.0 * real::pi * std::sqrt(std::max(0.0, form));
-}
 
 void add_voxel_splats(const RenderLayer& layer, const Camera& camera, double gain,
                       std::vector<VoxelSplat>& out, BakeCounts& counts) {
@@ -87,20 +92,67 @@ double default_voxel_size(const std::vector<VoxelSplat>& splats) {
     return std::clamp(double(median(deviations)), longest / 512.0, longest / 128.0);
 }
 
+double optical_depth_that_hides(double hidden) {
+    double t = hidden;
+    for (int step = 0; step < 8; ++step) {
+        // Ein(t), and its derivative (1 - e^-t) / t, as series.
+        double power = 1.0, ein = 0.0, slope = 0.0;
+        for (int k = 1; k <= 40; ++k) {
+            slope += power / k;  // power: (-t)^(k-1) / (k-1)!
+            ein += power * t / (double(k) * k);
+            power *= -t / k;
+        }
+        t += (hidden - ein) / slope;
+    }
+    return t;
+}
+
 namespace {
 
 constexpr double filter_variance = 0.25;  // square voxels
 constexpr double cut = 4.0;               // standard deviations
 
+/// Sums of a voxel: density, three channels of light, and what shows.
+constexpr int voxel_channels = 5;
+
+/// In voxels; voxel (i, j, k) is sampled at the point (i, j, k).
+struct VoxelBody {
+    glm::dvec3 centre{0.0};
+    glm::ivec3 lo{0}, hi{0};  // voxels that it reaches, both included
+    bool ball = true;
+    Symmetric precision{};                       // inverse of the covariance
+    std::array<double, voxel_channels> share{};  // what it brings to a voxel of weight 1
+};
+
+/// The whole of what a splat adds, square scene units.
+struct Brought {
+    double density = 0.0;
+    glm::dvec3 emission{0.0};
+};
+
 Symmetric inverse(const Symmetric& c) {
-    const double xx = c[1] * c[2] - c[5] * c[5], xy = c[4] * c[5] - c[3] * c[2],
-                 xz = c[3] * c[5] - c[4] * c[1];
-    const double d = c[0] * xx + c[3] * xy + c[4] * xz;
-    return {xx / d, (c[0] * c[2] - c[4] * c[4]) / d, (c[0] * c[1] - c[3] * c[3]) / d, xy / d,
-            xz / d, (c[3] * c[4] - c[5] * c[0]) / d};
+    Symmetric a = adjugate_of(c);
+    const double determinant = c[0] * a[0] + c[3] * a[3] + c[4] * a[4];
+    for (double& entry : a) entry /= determinant;
+    return a;
 }
 
 double gauss(double square) { return real::exp(-0.5 * square); }
+
+/// e^(-d^2 / 2) of a ball along axis k at voxel i; its weight is the product of three.
+double weight_along(const VoxelBody& body, int k, int i) {
+    const double d = i - body.centre[k];
+    return gauss(body.precision[0] * d * d);
+}
+
+/// The weight of a body that is no ball, 0 beyond four standard deviations.
+double weight_of_ellipsoid(const VoxelBody& body, const glm::ivec3& voxel) {
+    const Symmetric& p = body.precision;
+    const glm::dvec3 d = glm::dvec3(voxel) - body.centre;
+    const double square = p[0] * d.x * d.x + p[1] * d.y * d.y + p[2] * d.z * d.z +
+                          2.0 * (p[3] * d.x * d.y + p[4] * d.x * d.z + p[5] * d.y * d.z);
+    return square <= cut * cut ? gauss(square) : 0.0;
+}
 
 double sum_of_weights(const VoxelBody& body) {
     double sum = 0.0;
@@ -116,25 +168,12 @@ double sum_of_weights(const VoxelBody& body) {
     return sum;
 }
 
-}  // namespace
-
+/// How far a splat may reach from its centre, scene units.
 double voxel_reach(const Symmetric& c, double voxel_size) {
     return cut * std::sqrt(std::max({c[0], c[1], c[2]}) + filter_variance * voxel_size * voxel_size);
 }
 
-double weight_along(const VoxelBody& body, int k, int i) {
-    const double d = i - body.centre[k];
-    return gauss(body.precision[0] * d * d);
-}
-
-double weight_of_ellipsoid(const VoxelBody& body, const glm::ivec3& voxel) {
-    const Symmetric& p = body.precision;
-    const glm::dvec3 d = glm::dvec3(voxel) - body.centre;
-    const double square = p[0] * d.x * d.x + p[1] * d.y * d.y + p[2] * d.z * d.z +
-                          2.0 * (p[3] * d.x * d.y + p[4] * d.x * d.z + p[5] * d.y * d.z);
-    return square <= cut * cut ? gauss(square) : 0.0;
-}
-
+/// The body of a splat; its weights times its shares, times the voxel's volume, sum up to what it brings.
 VoxelBody voxel_body(const VoxelSplat& splat, double voxel_size, Brought& brought) {
     VoxelBody body;
     body.ball = splat.ball;
@@ -162,23 +201,6 @@ VoxelBody voxel_body(const VoxelSplat& splat, double voxel_size, Brought& brough
     return body;
 }
 
-double optical_depth_that_hides(double hidden) {
-    double t = hidden;
-    for (int step = 0; step < 8; ++step) {
-        // Ein(t), and its derivative (1 - e^-t) / t, as series.
-        double power = 1.0, ein = 0.0, slope = 0.0;
-        for (int k = 1; k <= 40; ++k) {
-            slope += power / k;  // power: (-t)^(k-1) / (k-1)!
-            ein += power * t / (double(k) * k);
-            power *= -t / k;
-        }
-        t += (hidden - ein) / slope;
-    }
-    return t;
-}
-
-namespace {
-
 constexpr double farthest = 1 << 20;  // voxels from the origin
 
 struct Pair {
@@ -193,15 +215,12 @@ struct BlockBox {
     glm::ivec3 lo{std::numeric_limits<int>::max()}, hi{std::numeric_limits<int>::min()};
 
     std::uint64_t number(int x, int y, int z) const {
-        const auto ny = static_cast<std::uint64_t>(hi.y - lo.y + 1),
-                   nz = static_cast<std::uint64_t>(hi.z - lo.z + 1);
-        return (static_cast<std::uint64_t>(x - lo.x) * ny + static_cast<std::uint64_t>(y - lo.y)) * nz +
-               static_cast<std::uint64_t>(z - lo.z);
+        const glm::u64vec3 side(hi - lo + 1), from_lo(glm::ivec3(x, y, z) - lo);
+        return (from_lo.x * side.y + from_lo.y) * side.z + from_lo.z;
     }
     glm::ivec3 place(std::uint64_t number) const {
-        const auto ny = static_cast<std::uint64_t>(hi.y - lo.y + 1),
-                   nz = static_cast<std::uint64_t>(hi.z - lo.z + 1);
-        return lo + glm::ivec3(number / (ny * nz), number / nz % ny, number % nz);
+        const glm::u64vec3 side(hi - lo + 1);
+        return lo + glm::ivec3(number / (side.y * side.z), number / side.z % side.y, number % side.z);
     }
 };
 
