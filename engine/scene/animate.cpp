@@ -133,7 +133,7 @@ bool moves(const Scene& scene, const std::function<bool(const ParameterKey&)>& w
            std::ranges::any_of(imported_tracks(scene), is_wanted);
 }
 
-const Track* track_of(const Scene& scene, const ParameterKey& key) {
+const Track* moving_track(const Scene& scene, const ParameterKey& key) {
     for (const std::span<const Track> tracks : {imported_tracks(scene), std::span(scene.animation)})
         if (const auto found = std::ranges::find(tracks, key, &Track::key); found != tracks.end())
             return &*found;
@@ -141,7 +141,7 @@ const Track* track_of(const Scene& scene, const ParameterKey& key) {
 }
 
 bool ever_visible(const Scene& scene, const LayerParams& layer) {
-    const Track* const track = track_of(scene, layer_key(layer.name) / "visible");
+    const Track* const track = moving_track(scene, layer_key(layer.name) / "visible");
     if (!track) return layer.visible;
     return std::ranges::any_of(track->keyframes,
                                [](const auto& k) { return !k.value.empty() && k.value[0] != 0.0; });

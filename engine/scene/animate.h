@@ -21,7 +21,7 @@ void stop_animation(Scene& scene);
 bool moves(const Scene& scene, const std::function<bool(const ParameterKey&)>& wanted);
 
 /// The track that moves a parameter, of camera.file before that of [animation]; nullptr where none does.
-const Track* track_of(const Scene& scene, const ParameterKey& key);
+const Track* moving_track(const Scene& scene, const ParameterKey& key);
 
 /// The numbers of one track at `frame`, before they are fitted to the parameter's type and range. The track
 /// has at least one keyframe and belongs to a parameter of this kind.
