@@ -108,50 +108,43 @@ bool exr_is_whole(const std::filesystem::path& file) { return ask(file, read_all
 
 namespace {
 
+constexpr std::size_t piece_bytes = std::size_t{4} << 20;
+
 /// OpenEXR's output to an AtomicFile, collected into large pieces: it writes a frame as hundreds of small
 /// ones, and comes back to the table in front of them.
 class ExrStream : public Imf::OStream {
   public:
-    explicit ExrStream(AtomicFile& file);
+    explicit ExrStream(AtomicFile& file) : OStream(file.target().c_str()), file_(file) {
+        piece_.reserve(piece_bytes);
+    }
 
-    void write(const char bytes[], int size) override;
+    void write(const char bytes[], int size) override {
+        const auto count = static_cast<std::size_t>(size);
+        if (piece_.size() + count > piece_bytes) flush();
+        piece_.insert(piece_.end(), bytes, bytes + count);
+    }
+
     std::uint64_t tellp() override { return begin_ + piece_.size(); }
-    void seekp(std::uint64_t position) override;
+    void seekp(std::uint64_t position) override {
+        if (position == tellp()) return;
+        flush();
+        begin_ = position;
+    }
 
     /// Writes what is collected. Throws the first OutputError of all writes, of which some may have been made
     /// where nothing can be thrown.
-    void flush();
+    void flush() {
+        file_.write_at(static_cast<std::int64_t>(begin_), piece_.data(), piece_.size());
+        file_.rethrow_failure();  // which OpenEXR swallows where it ends a file
+        begin_ += piece_.size();
+        piece_.clear();
+    }
 
   private:
     GuardedFile file_;
     std::vector<char> piece_;
     std::uint64_t begin_ = 0;  // of the piece in the file
 };
-
-constexpr std::size_t piece_bytes = std::size_t{4} << 20;
-
-ExrStream::ExrStream(AtomicFile& file) : OStream(file.target().c_str()), file_(file) {
-    piece_.reserve(piece_bytes);
-}
-
-void ExrStream::write(const char bytes[], int size) {
-    const auto count = static_cast<std::size_t>(size);
-    if (piece_.size() + count > piece_bytes) flush();
-    piece_.insert(piece_.end(), bytes, bytes + count);
-}
-
-void ExrStream::seekp(std::uint64_t position) {
-    if (position == tellp()) return;
-    flush();
-    begin_ = position;
-}
-
-void ExrStream::flush() {
-    file_.write_at(static_cast<std::int64_t>(begin_), piece_.data(), piece_.size());
-    file_.rethrow_failure();  // which OpenEXR swallows where it ends a file
-    begin_ += piece_.size();
-    piece_.clear();
-}
 
 constexpr float largest_half = 65504.0f;
 constexpr std::int64_t band_rows = 256;  // a multiple of every compression's block height

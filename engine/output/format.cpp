@@ -131,9 +131,9 @@ void check_output(const OutputParams& output, const Places& places) {
     try {
         resolve_format(output, output.path);
     } catch (const OcioError& error) {
-        const auto found = places.find(error.key);
-        if (found == places.end()) throw;
-        throw InputError(fmt::format("{}: {}", found->second, error.what()));
+        const std::string place = place_of(places, error.key, "");
+        if (place.empty()) throw;
+        throw InputError(fmt::format("{}: {}", place, error.what()));
     }
 }
 

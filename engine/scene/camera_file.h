@@ -22,10 +22,6 @@ void attach_camera_file(Scene& scene, const std::string& place);
 /// The same where the scene's keys ask for other tracks than those it has.
 void refresh_camera_file(Scene& scene, const std::string& place);
 
-/// The tracks of a camera file, for a scene that has its keys camera.file_*. Lists of the scene grow where a
-/// table names their next element. Throws InputError.
-std::vector<Track> camera_file_tracks(Scene& scene, const std::filesystem::path& file);
-
 /// One linear track per key, in the order of the header; booleans, choices and whole numbers step. Columns
 /// are separated by commas, semicolons or tabs, numbers have decimal points. Lists of the scene grow where a
 /// key names their next element. Throws InputError for keys that cannot be animated, values out of range and

@@ -42,8 +42,10 @@ struct Checker {
     }
 };
 
-void check_curve(const DensityCurve& curve, const ParameterKey& at, const Checker& check) {
-    check.require(curve.shape != DensityCurve::Shape::curve || curve.points.size() >= 2,
+/// Of density or of opacity.
+template <class Curve>
+void check_curve(const Curve& curve, const ParameterKey& at, const Checker& check) {
+    check.require(curve.shape != Curve::Shape::curve || curve.points.size() >= 2,
                   {at / "points", at / "shape"},
                   "expected at least 2 points for shape \"curve\", found none");
 }
@@ -56,25 +58,27 @@ void check_look(const Look& look, const ParameterKey& at, const Checker& check) 
                   "expected thickness.keys that the map's colours stand for, found none");
     check.require(!look.thickness.map.empty() || look.thickness.stops.size() <= 1, {at / "thickness.keys"},
                   "expected a thickness.map for several stops, found none");
-    check.require(look.vertical.shape != VerticalAlpha::Shape::curve || look.vertical.points.size() >= 2,
-                  {at / "vertical.points", at / "vertical.shape"},
-                  "expected at least 2 points for shape \"curve\", found none");
+    check_curve(look.vertical, at / "vertical", check);
     check.require(
         look.radius.min <= look.radius.max, {at / "radius.min", at / "radius.max"},
         fmt::format("expected min not above max, found {} and {}", look.radius.min, look.radius.max));
 }
 
+/// What is wrong with a range or an ellipse, if anything is.
+std::string problem_of(const std::optional<glm::dvec2>& range) {
+    if (!range || range->x < range->y) return "";
+    return fmt::format("expected the lower end first, found {} and {}", range->x, range->y);
+}
+std::string problem_of(const std::optional<glm::dvec4>& ellipse) {
+    if (!ellipse || (ellipse->z > 0.0 && ellipse->w > 0.0)) return "";
+    return fmt::format("expected half axes above 0, found {} and {}", ellipse->z, ellipse->w);
+}
+
 void check_mask_terms(const MaskTerms& mask, const ParameterKey& at, const Checker& check) {
-    const auto ordered = [&](const std::optional<glm::dvec2>& range, const char* name) {
-        check.require(
-            !range || range->x < range->y, {at / name},
-            range ? fmt::format("expected the lower end first, found {} and {}", range->x, range->y) : "");
-    };
-    ordered(mask.luminance, "luminance");
-    ordered(mask.saturation, "saturation");
-    const glm::dvec4 ellipse = mask.ellipse.value_or(glm::dvec4(1.0));
-    check.require(ellipse.z > 0.0 && ellipse.w > 0.0, {at / "ellipse"},
-                  fmt::format("expected half axes above 0, found {} and {}", ellipse.z, ellipse.w));
+    for (const auto& [key, message] : {KeyProblem{"luminance", problem_of(mask.luminance)},
+                                       {"saturation", problem_of(mask.saturation)},
+                                       {"ellipse", problem_of(mask.ellipse)}})
+        check.require(message.empty(), {at / key}, message);
 }
 
 void check_masks(const std::vector<MaskParams>& masks, const ParameterKey& at, const Checker& check) {
@@ -183,12 +187,9 @@ void check_dome(const OutputParams& output, const Checker& check) {
 bool is_dome(const OutputParams& output) { return output.preset.stem() == "dome"; }
 
 std::optional<KeyProblem> problem_of(const PrepareParams& prepare) {
-    if (prepare.ellipse && !(prepare.ellipse->z > 0.0 && prepare.ellipse->w > 0.0))
-        return KeyProblem{"ellipse", fmt::format("expected half axes above 0, found {} and {}",
-                                                 prepare.ellipse->z, prepare.ellipse->w)};
-    if (prepare.alpha && !(prepare.alpha->x < prepare.alpha->y))
-        return KeyProblem{"alpha", fmt::format("expected the lower end first, found {} and {}",
-                                               prepare.alpha->x, prepare.alpha->y)};
+    for (const KeyProblem& problem :
+         {KeyProblem{"ellipse", problem_of(prepare.ellipse)}, {"alpha", problem_of(prepare.alpha)}})
+        if (!problem.message.empty()) return problem;
     return {};
 }
 
@@ -221,8 +222,10 @@ void check_layer_name(const std::string& name, const std::string& place) {
 
 void check_scene(const Scene& scene, const std::string& file, const Places& places) {
     const Checker check{file, places};
-    const auto frames = places.find("output.frames");
-    parse_frames(scene.output.frames, (frames == places.end() ? file : frames->second) + ": output.frames");
+    const auto check_frames = [&](const std::string& text, const ParameterKey& key) {
+        parse_frames(text, fmt::format("{}: {}", place_of(places, key, file), key.generic()));
+    };
+    check_frames(scene.output.frames, "output.frames");
     check.require(!scene.output.path.empty(), {"output.path"}, "expected a file name, found an empty one");
     check_dome(scene.output, check);
     const CameraParams& c = scene.camera;
@@ -241,12 +244,9 @@ void check_scene(const Scene& scene, const std::string& file, const Places& plac
                   {"environment.image", "environment.cube", "environment.tile"},
                   e.tile.empty() ? "expected image or cube, found both"
                                  : "expected image, cube or tile, found several of them");
-    for (std::size_t i = 0; i < scene.references.size(); ++i) {
-        const ParameterKey key = ParameterKey("reference") / i / "frames";
-        const auto place = places.find(key);
-        if (const std::string& of = scene.references[i].frames; !of.empty())
-            parse_frames(of, (place == places.end() ? file : place->second) + ": reference.frames");
-    }
+    for (std::size_t i = 0; i < scene.references.size(); ++i)
+        if (const std::string& frames = scene.references[i].frames; !frames.empty())
+            check_frames(frames, ParameterKey("reference") / i / "frames");
     for (const LayerParams& layer : scene.layers) check_layer(layer, check);
     for (const LayerParams& layer : scene.layers) check_like(scene, layer, check);
 }

@@ -162,25 +162,14 @@ class CsvReader {
         try {
             if (!has_components(parameter.spec)) {
                 const std::string_view word = words[*key.columns[0]];
-                const Value value = is_numeric(parameter.spec.type)
-                                        ? Value(rows_.number(word, key.track.key.text()))
-                                        : typed_value(std::string(word));
-                parameter.set(value);
-                const std::vector<double> numbers = to_numbers(parameter.spec, value);
-                if (numbers.size() != 1)
-                    throw ValueError(fmt::format("expected {}, found none", expectation(parameter.spec)));
-                return numbers;
+                return keyframe_numbers(parameter, is_numeric(parameter.spec.type)
+                                                       ? Value(rows_.number(word, key.track.key.text()))
+                                                       : typed_value(std::string(word)));
             }
-            std::vector<double> numbers;
-            for (const std::optional<std::size_t>& column : key.columns)
-                numbers.push_back(rows_.number(words[*column], key.track.key.text()));
-            if (parameter.spec.type == ParameterType::rotation &&
-                std::ranges::all_of(numbers, [](double x) { return x == 0.0; }))
-                throw ValueError("expected a quaternion that is not zero, found 0, 0, 0, 0");
             Value::List list;
-            for (const double number : numbers) list.emplace_back(number);
-            parameter.set(Value(list));
-            return numbers;
+            for (const std::optional<std::size_t>& column : key.columns)
+                list.emplace_back(rows_.number(words[*column], key.track.key.text()));
+            return keyframe_numbers(parameter, list);
         } catch (const ValueError& error) {
             throw InputError(fmt::format("{}:{}: {}: {}", place_, rows_.line(), key.track.key, error.what()));
         }

@@ -75,6 +75,10 @@ Track read_track(const ParameterKey& key, const toml::node& node, Scene& scene, 
 /// Reads all of [animation], in the order of the file.
 std::vector<Track> read_tracks(const toml::table& table, Scene& scene, const std::string& file);
 
+/// The numbers of a keyframe's value, which is checked by setting the parameter. Throws ValueError where it
+/// does not fit, and where it is none or a quaternion of zeros.
+std::vector<double> keyframe_numbers(const Parameter& parameter, const Value& value);
+
 /// "{ keys = [[1, 0.5], ...], interpolation = "smooth" }"
 std::string track_to_toml(const Track& track, const ParameterSpec& spec);
 

@@ -75,6 +75,14 @@ opacity = 1.0                     # of the whole layer
 # "camera.position" = {{ keys = [[1, [0, 12, 12]], [240, [0, 2, 6]]], interpolation = "smooth" }}
 )";
 
+/// The path of a picture as a scene in `file` writes it.
+std::string picture_path(const fs::path& image, const fs::path& file) {
+    const fs::path folder = fs::absolute(file).lexically_normal().parent_path();
+    const fs::path picture = fs::absolute(image).lexically_normal();
+    const fs::path relative = picture.lexically_relative(folder);
+    return relative.empty() ? picture.string() : relative.string();
+}
+
 }  // namespace
 
 std::string new_scene_text(const fs::path& image, const std::string& shape, const fs::path& file) {
@@ -89,13 +97,6 @@ std::string new_scene_text(const fs::path& image, const std::string& shape, cons
                        fmt::arg("relief", shape == "relief" ? ", relief = 0.15" : ""),
                        // Jitter moves along one axis: depth for a flat picture, a smear on a sphere's sides.
                        fmt::arg("jitter", shape == "sphere" ? "0.0" : "0.1"));
-}
-
-std::string picture_path(const fs::path& image, const fs::path& file) {
-    const fs::path folder = fs::absolute(file).lexically_normal().parent_path();
-    const fs::path picture = fs::absolute(image).lexically_normal();
-    const fs::path relative = picture.lexically_relative(folder);
-    return relative.empty() ? picture.string() : relative.string();
 }
 
 std::string layer_name_of(const std::string& text, const char* otherwise) {

@@ -36,6 +36,17 @@ struct TrackPlace {
     }
 };
 
+/// What stands where another value was expected.
+std::string found_in(const toml::node& node) {
+    const auto* text = node.as_string();
+    return text ? "'" + text->get() + "'" : kind_of(node);
+}
+
+bool read_boolean(const toml::node& node, std::string_view name, const TrackPlace& at) {
+    if (!node.is_boolean()) at.fail(fmt::format("{}: expected true or false, found {}", name, kind_of(node)));
+    return node.as_boolean()->get();
+}
+
 const std::vector<std::string> handle_settings{"in", "out", "broken"};
 
 /// "[frames, value]" of a handle: as many numbers as the keyframe has, on its own side of it.
@@ -72,7 +83,7 @@ Handle<std::vector<double>> read_handle(const toml::node& node, std::size_t numb
     if (text && text->get() == "auto") return {};
     if (text && text->get() == "flat") return {HandleKind::flat, 0.0, {}};
     at.fail(fmt::format("{}: expected auto, flat or [frames, value], found {}", before ? "in" : "out",
-                        text ? "'" + text->get() + "'" : kind_of(node)));
+                        found_in(node)));
 }
 
 std::string handle_to_toml(const Handle<std::vector<double>>& handle) {
@@ -92,7 +103,7 @@ void read_handles(const toml::node& node, Keyframe<std::vector<double>>& keyfram
         if (!text || text->get() != "flat")
             at.fail(
                 fmt::format("expected handles \"flat\" or {{ in = [frames, value], out = ... }}, found {}",
-                            text ? "'" + text->get() + "'" : kind_of(node)));
+                            found_in(node)));
         keyframe.in.kind = keyframe.out.kind = HandleKind::flat;
         return;
     }
@@ -101,10 +112,8 @@ void read_handles(const toml::node& node, Keyframe<std::vector<double>>& keyfram
             keyframe.in = read_handle(part, numbers, true, at);
         else if (name == "out")
             keyframe.out = read_handle(part, numbers, false, at);
-        else if (name == "broken" && part.is_boolean())
-            keyframe.broken = part.as_boolean()->get();
         else if (name == "broken")
-            at.fail(fmt::format("broken: expected true or false, found {}", kind_of(part)));
+            keyframe.broken = read_boolean(part, "broken", at);
         else
             at.fail(fmt::format("unknown key '{}' of a keyframe{}", name.str(),
                                 did_you_mean(std::string(name.str()), handle_settings)));
@@ -134,8 +143,7 @@ E read_name(const toml::node& node, const std::string& what, const TrackPlace& a
     const auto* text = node.as_string();
     const auto found = std::ranges::find(names, text ? text->get() : "");
     if (found != names.end()) return static_cast<E>(found - names.begin());
-    at.fail(fmt::format("{}: expected {}, found {}{}", what, fmt::join(names, ", "),
-                        text ? "'" + text->get() + "'" : kind_of(node),
+    at.fail(fmt::format("{}: expected {}, found {}{}", what, fmt::join(names, ", "), found_in(node),
                         text ? did_you_mean(text->get(), names) : ""));
 }
 
@@ -155,15 +163,7 @@ Keyframe<std::vector<double>> read_keyframe(const toml::node& node, const Parame
         at.fail(fmt::format("expected a frame number first in a keyframe, found {}", kind_of((*parts)[0])));
     Keyframe<std::vector<double>> keyframe{*frame, {}, track.interpolation, {}, {}};
     try {
-        const Value value = value_of((*parts)[1]);
-        parameter.set(value);
-        keyframe.value = to_numbers(parameter.spec, value);
-        const bool none = keyframe.value.empty() || (value.text() && value == parameter.spec.nothing);
-        const bool zero =
-            std::ranges::count(keyframe.value, 0.0) == static_cast<std::ptrdiff_t>(keyframe.value.size());
-        if (zero && parameter.spec.type == ParameterType::rotation)
-            throw ValueError("expected a quaternion that is not zero, found 0, 0, 0, 0");
-        if (none) throw ValueError(fmt::format("expected {}, found none", expectation(parameter.spec)));
+        keyframe.value = keyframe_numbers(parameter, value_of((*parts)[1]));
     } catch (const ValueError& error) {
         at.fail(fmt::format("frame {}: {}", short_number(*frame), error.what()));
     }
@@ -195,9 +195,7 @@ void read_settings(const toml::table& table, const ParameterSpec& spec, Track& t
         else if (key == "ends")
             track.ends = read_name<Ends>(node, key, at);
         else if (key == "constant_speed") {
-            if (!node.is_boolean())
-                at.fail(fmt::format("constant_speed: expected true or false, found {}", kind_of(node)));
-            track.constant_speed = node.as_boolean()->get();
+            track.constant_speed = read_boolean(node, key, at);
             if (track.constant_speed && spec.type != ParameterType::position)
                 at.fail("constant_speed: expected it on a position, found it on another parameter");
         } else if (key != "keys") {
@@ -217,6 +215,17 @@ const Parameter& animated_parameter(const Description& description, const Scene&
 }
 
 }  // namespace
+
+std::vector<double> keyframe_numbers(const Parameter& parameter, const Value& value) {
+    parameter.set(value);
+    std::vector<double> numbers = to_numbers(parameter.spec, value);
+    const bool zero = std::ranges::count(numbers, 0.0) == std::ssize(numbers);
+    if (zero && parameter.spec.type == ParameterType::rotation)
+        throw ValueError("expected a quaternion that is not zero, found 0, 0, 0, 0");
+    if (numbers.empty() || (value.text() && value == parameter.spec.nothing))
+        throw ValueError(fmt::format("expected {}, found none", expectation(parameter.spec)));
+    return numbers;
+}
 
 Track read_track(const ParameterKey& key, const toml::node& node, Scene& scene, const std::string& place) {
     const TrackPlace at{place, key};
