@@ -35,8 +35,7 @@ void describe_output(const Describer& d, OutputParams& o) {
                     format = d.shown_in("Output", "File format");
     picture(o.preset, "preset", "Preset", "",
             "A file with [output] and [camera] for a kind of screen, by name: dome. Keys of the scene win "
-            "over it, but "
-            "not where --set names it.");
+            "over it, but not where --set names it.");
     picture.custom(
         spec("resolution", "Resolution", "px", "Width and height of the frames.", as(Type::vector),
              components(2), range(1, 65536), slider(16, 8192)),
@@ -140,8 +139,7 @@ void describe_camera(const Describer& d, CameraParams& c) {
                                  .only_with("projection", {"perspective", "equirectangular", "cylindrical"});
     stereo.still()(c.eye, "eye", "Eye", "",
                    "The eye of a stereo pair that is shown; where %V is in output.path, it stands for left "
-                   "and right and "
-                   "--batch writes both.");
+                   "and right and --batch writes both.");
     stereo(c.eye_separation, "eye_separation", "Eye separation", "scene units", "From eye to eye.",
            at_least(0), slider(0, 1));
     stereo(c.convergence, "convergence", "Convergence", "scene units",
@@ -188,8 +186,7 @@ void describe_environment(const Describer& d, EnvironmentParams& e) {
 void describe_tiling(const Describer& d, EnvironmentParams& e) {
     d(e.tile, "tile", "Tiled picture", "",
       "Or one picture of a part of the sky, such as a deep field: cut-outs of it, turned at random, make up "
-      "the "
-      "whole.");
+      "the whole.");
     const Describer tiled = d.never_with("tile", {""});
     tiled(e.tiling.height_deg, "tile_height", "Its size", "degrees",
           "What the picture's shorter side covers on the sky.", range(2, 120), slider(5, 90));

@@ -126,17 +126,14 @@ void describe_buffer(const Describer& d, std::optional<glm::dvec3>& buffer) {
 void describe_stars(const Describer& d, StarsParams& stars) {
     d(stars.catalogue, "catalogue", "Catalogue", "",
       "Stars: Hipparcos (hip_main.dat), HYG, or a table with ra, dec and mag; or with like the stars.csv of "
-      "a "
-      "prepared picture; .gz too.");
+      "a prepared picture; .gz too.");
     d(stars.like, "like", "Stars of", "",
       "The layer whose picture the catalogue's stars were found in (prepare's stars.csv): its surface, "
-      "camera, "
-      "depths and transform are theirs, and from that camera they look as in the picture.");
+      "camera, depths and transform are theirs, and from that camera they look as in the picture.");
     const Describer of_picture = d.never_with("like", {""});
-    of_picture(
-        stars.depth, "depth", "Depth by", "",
-        "Where the stars of a picture lie in their layer's depth: layer spreads them as it spreads its "
-        "own, magnitude sorts them, the brightest nearest.");
+    of_picture(stars.depth, "depth", "Depth by", "",
+               "Where the stars of a picture lie in their layer's depth: layer spreads them as it spreads "
+               "its own, magnitude sorts them, the brightest nearest.");
     of_picture(stars.slab, "slab", "Slab", "scene units",
                "The stars of a picture lie within this depth around the surface, evenly; 0: as deep as their "
                "layer's own.",
@@ -211,11 +208,10 @@ void describe_structure(const Describer& d, StructureParams& s) {
     bodies(s.density, "density", "Body density", "", "Opacity of white.", within(0, 1), slider(0.1, 0.98));
     bodies(s.border, "border", "Soft border", "of the width",
            "Light fades over this share towards the picture's edges.", within(0, 0.5), slider(0, 0.2));
-    bodies(
-        s.margin, "margin", "Picture margin", "of the width",
-        "How far a picture on a plane goes on beyond its edges, mirrored and fading: without straight edges "
-        "from aslant, and whole from the front.",
-        within(0, 0.5), slider(0, 0.3));
+    bodies(s.margin, "margin", "Picture margin", "of the width",
+           "How far a picture on a plane goes on beyond its edges, mirrored and fading: without straight "
+           "edges from aslant, and whole from the front.",
+           within(0, 0.5), slider(0, 0.3));
 }
 
 void describe_uv_camera(const Describer& d, UvCamera& c) {

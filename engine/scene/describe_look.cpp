@@ -83,8 +83,8 @@ void describe_vertical(const Describer& d, VerticalAlpha& v) {
       "Where x = 1 for this alone; 0: the layer's reach.", at_least(0), slider(0, 10), zero_is("Auto"),
       shown_as("Reach"));
     d(v.match, "match", "Match the picture", "",
-      "Makes the front view show the picture's opacity; picture: its light too, measured part by part; "
-      "auto: coverage for meshes, none for splat files.");
+      "Makes the front view show the picture's opacity; picture: its light too, measured part by part; auto: "
+      "coverage for meshes, none for splat files.");
 }
 
 void describe_radius(const Describer& d, Radius& r) {
@@ -171,8 +171,7 @@ void describe_render(const Describer& d, LayerRender& r) {
     mixing(r.isolate, "isolate", "Isolate", "", "Rendered alone, then composited as a whole.");
     mixing(r.space, "space", "Mixed in", "",
            "display: splats are mixed as a display shows them (sRGB), as captures are trained, and the "
-           "picture is "
-           "made linear again; of isolated layers that mix by over.",
+           "picture is made linear again; of isolated layers that mix by over.",
            only_with("isolate", {true}), only_with("blend", {"over"}));
 }
 

@@ -6,10 +6,8 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <functional>
 #include <optional>
-#include <string>
 
 #include "core/error.h"
 #include "core/file.h"
@@ -19,26 +17,17 @@
 #include "scene/check.h"
 #include "scene/describe.h"
 #include "scene/entries.h"
-#include "scene/parameter.h"
-#include "scene/parameter_key.h"
 
 namespace astrosplat {
 
+namespace fs = std::filesystem;
 namespace {
 
 /// A file of keys that hold before a scene's own: the look of a layer, or the output for a kind of screen.
 struct PresetFile {
-    std::filesystem::path file;
+    fs::path file;
     std::string text;
 };
-
-/// A file, or the short name of a look of one's own or that comes with the program. Throws InputError.
-PresetFile find_look(const std::filesystem::path& wanted);
-
-/// The same for a kind of screen; a scene beside this one may have the short name, too. Throws InputError.
-PresetFile find_output_preset(const std::filesystem::path& wanted);
-
-namespace fs = std::filesystem;
 
 /// Throws InputError unless the table says `astrosplat = 1`; where it is not `required`, it may say nothing.
 void check_version(const toml::table& table, const std::string& file, bool required) {
@@ -47,15 +36,14 @@ void check_version(const toml::table& table, const std::string& file, bool requi
     if (!node)
         throw InputError(fmt::format("{}: expected a scene that begins with 'astrosplat = 1', found {}", file,
                                      table.empty() ? "an empty file" : "no such line"));
-    const std::string place = place_of(file, node->source());
-    if (!node->is_integer())
-        throw InputError(
-            fmt::format("{}: astrosplat: expected the format version 1, found {}", place, kind_of(*node)));
-    if (node->as_integer()->get() != 1)
-        throw InputError(fmt::format("{}: astrosplat: expected the format version 1, found {}", place,
-                                     node->as_integer()->get()));
+    const auto* version = node->as_integer();
+    if (!version || version->get() != 1)
+        throw InputError(fmt::format("{}: astrosplat: expected the format version 1, found {}",
+                                     place_of(file, node->source()),
+                                     version ? std::to_string(version->get()) : kind_of(*node)));
 }
 
+/// A file, or the short name of a look of one's own or that comes with the program. Throws InputError.
 PresetFile find_look(const fs::path& wanted) {
     std::error_code ignored;
     const fs::path file = find_by_name("looks", wanted), looks = assets_folder("looks");
@@ -66,6 +54,7 @@ PresetFile find_look(const fs::path& wanted) {
                     file.string(), looks.string(), fmt::join(names_in("looks"), ", ")));
 }
 
+/// The same for a kind of screen; a scene beside this one may have the short name, too. Throws InputError.
 PresetFile find_output_preset(const fs::path& wanted) {
     std::error_code ignored;
     if (wanted.has_extension()) return {wanted, read_file(wanted)};
@@ -76,6 +65,15 @@ PresetFile find_output_preset(const fs::path& wanted) {
                                  wanted.filename().string(), fmt::join(names_in("masters"), ", ")));
 }
 
+/// Adds the keys of a table but those that are read elsewhere; `group` and `generic_group` are its own key.
+void flatten_all(const toml::table& table, const ParameterKey& group, const ParameterKey& generic_group,
+                 std::initializer_list<std::string_view> left_out, const EntryOrigin& origin,
+                 std::vector<Entry>& entries) {
+    for (const auto& [key, node] : table)
+        if (std::ranges::find(left_out, key.str()) == left_out.end())
+            flatten(node, group / key.str(), generic_group / key.str(), origin, key.source(), entries);
+}
+
 /// Sets the preset's keys in what `describe` lists, anew each time it is called. Throws InputError, and
 /// nothing is set then.
 void apply_preset(const PresetFile& preset, const std::function<Description()>& describe, Places& places) {
@@ -84,9 +82,7 @@ void apply_preset(const PresetFile& preset, const std::function<Description()>& 
     check_version(root, file, false);
     const EntryOrigin origin{file, preset.file.parent_path(), false, {}};
     std::vector<Entry> entries;
-    for (const auto& [key, node] : root)
-        if (key.str() != "astrosplat")
-            flatten(node, std::string(key.str()), std::string(key.str()), origin, key.source(), entries);
+    flatten_all(root, {}, {}, {"astrosplat"}, origin, entries);
     apply_entries(std::move(entries), origin, describe, places);
 }
 
@@ -159,6 +155,11 @@ class Loader {
     }
 
   private:
+    void apply(std::vector<Entry> entries, const EntryOrigin& origin) {
+        apply_entries(
+            std::move(entries), origin, [this] { return describe(scene_); }, places_);
+    }
+
     void load_preset(const LayerTable& source, LayerParams& layer, std::span<const Assignment> assignments) {
         const ParameterKey key = layer_key(layer.name) / "preset";
         EntryOrigin origin{file_, folder_};
@@ -174,8 +175,7 @@ class Loader {
             origin = {"--set", "", true, layer_key(layer.name)};
             entries = {{Entry::Kind::leaf, key, "layer.preset", "--set", {}, assigned.get("value"), &raw}};
         }
-        apply_entries(
-            entries, origin, [this] { return describe(scene_); }, places_);
+        apply(entries, origin);
         if (!layer.preset.empty()) read_preset(layer);
     }
 
@@ -193,8 +193,7 @@ class Loader {
         const EntryOrigin origin{file_, folder_};
         std::vector<Entry> entries;
         flatten(*node, "output.preset", "output.preset", origin, node->source(), entries);
-        apply_entries(
-            entries, origin, [this] { return describe(scene_); }, places_);
+        apply(entries, origin);
         read_output_preset();
     }
 
@@ -211,22 +210,14 @@ class Loader {
     void read_keys(const toml::table& root, const std::vector<LayerTable>& layers) {
         const EntryOrigin origin{file_, folder_};
         std::vector<Entry> entries;
-        for (const auto& [key, node] : root) {
-            const std::string name(key.str());
-            if (name == "astrosplat" || name == "layer" || name == "animation") continue;
-            flatten(node, name, name, origin, key.source(), entries);
-        }
+        flatten_all(root, {}, {}, {"astrosplat", "layer", "animation"}, origin, entries);
         for (const LayerTable& layer : layers) {
             const ParameterKey group = layer_key(layer.name);
             places_[group] = place_of(file_, layer.table->source());
-            for (const auto& [key, node] : *layer.table) {
-                const std::string name(key.str());
-                if (name == "preset") continue;  // read before everything else, perhaps replaced by --set
-                flatten(node, group / name, "layer." + name, origin, key.source(), entries);
-            }
+            // The preset was read before everything else, and may have been replaced by --set.
+            flatten_all(*layer.table, group, "layer", {"preset"}, origin, entries);
         }
-        apply_entries(
-            std::move(entries), origin, [this] { return describe(scene_); }, places_);
+        apply(std::move(entries), origin);
     }
 
     void assign(const Assignment& assignment) {
@@ -254,8 +245,7 @@ class Loader {
             entry.place = "--set";
             if (entry.key == key) entry.raw = &assignment.value;
         }
-        apply_entries(
-            entries, origin, [this] { return describe(scene_); }, places_);
+        apply(entries, origin);
         for (const Entry& entry : entries)
             if (overrule(full_key(describe(scene_), entry.key)))
                 log_info(fmt::format("--set {} replaces its animation", entry.key));
@@ -269,9 +259,8 @@ class Loader {
                 throw InputError(
                     fmt::format("--set: layer.name: expected each name once, found '{}' twice", to));
             if (layer.name == from) layer.name = to;
-        }
-        for (LayerParams& layer : scene_.layers)
             if (layer.source.stars.like == from) layer.source.stars.like = to;
+        }
         for (Track& track : scene_.animation)
             if (track.key.layer() == from) track.key = track.key.moved(layer_key(from), layer_key(to));
     }

@@ -81,8 +81,9 @@ std::string kind_of(const Value& value) {
     return fmt::format("a list of {}", value.list()->size());
 }
 
-bool is_numeric(ParameterType type) {
-    using Type = ParameterType;
+using Type = ParameterType;
+
+bool is_numeric(Type type) {
     return type == Type::integer || type == Type::number || type == Type::vector || type == Type::position ||
            type == Type::color || type == Type::rotation || type == Type::curve;
 }
@@ -115,34 +116,22 @@ std::string range_words(const ParameterSpec& spec) {
 
 std::string expectation(const ParameterSpec& spec) {
     const std::string or_nothing = spec.nothing.text() ? " or \"" + *spec.nothing.text() + "\"" : "";
-    switch (spec.type) {
-        case ParameterType::boolean:
-            return "true or false";
-        case ParameterType::integer:
-            return "a whole number" + range_words(spec) + or_nothing;
-        case ParameterType::number:
-            return "a number" + range_words(spec) + or_nothing;
-        case ParameterType::text:
-            return spec.choices.empty() ? "a string" + or_nothing : alternatives(spec.choices);
-        case ParameterType::choice:
-            return alternatives(spec.choices);
-        case ParameterType::words:
-            return "a list of " + alternatives(spec.choices);
-        case ParameterType::file:
-            return "a file name";
-        case ParameterType::files:
-            return "a file name or a list of them";
-        case ParameterType::pattern:
-            return "a file name with a frame token such as ####";
-        case ParameterType::curve:
-            return "a list of points [[x, y], ...]";
-        default:
-            return fmt::format("{} numbers", spec.components) + range_words(spec) + or_nothing;
-    }
+    const std::string in_range = range_words(spec) + or_nothing, choices = alternatives(spec.choices);
+    if (spec.type == Type::boolean) return "true or false";
+    if (spec.type == Type::integer) return "a whole number" + in_range;
+    if (spec.type == Type::number) return "a number" + in_range;
+    if (spec.type == Type::text && spec.choices.empty()) return "a string" + or_nothing;
+    if (spec.type == Type::text || spec.type == Type::choice) return choices;
+    if (spec.type == Type::words) return "a list of " + choices;
+    if (spec.type == Type::file) return "a file name";
+    if (spec.type == Type::files) return "a file name or a list of them";
+    if (spec.type == Type::pattern) return "a file name with a frame token such as ####";
+    if (spec.type == Type::curve) return "a list of points [[x, y], ...]";
+    return fmt::format("{} numbers", spec.components) + in_range;
 }
 
 std::vector<double> to_numbers(const ParameterSpec& spec, const Value& value) {
-    if (spec.type == ParameterType::choice) {
+    if (spec.type == Type::choice) {
         const std::string name = value.text() ? *value.text() : to_toml(value);
         const auto found = std::ranges::find(spec.choices, name);
         return {static_cast<double>(found - spec.choices.begin())};
@@ -178,25 +167,17 @@ Value from_numbers(const ParameterSpec& spec, const std::vector<double>& numbers
         const double hi = spec.below_max ? std::nextafter(spec.max, spec.min) : spec.max;
         return std::clamp(x, spec.min, hi);
     };
-    switch (spec.type) {
-        case ParameterType::boolean:
-            return first >= 0.5;
-        case ParameterType::integer:
-            return static_cast<std::int64_t>(std::floor(clamped(first) + 0.5));
-        case ParameterType::number:
-            return clamped(first);
-        case ParameterType::choice: {
-            const double last = static_cast<double>(spec.choices.size()) - 1.0;
-            return spec.choices[static_cast<std::size_t>(std::clamp(std::floor(first + 0.5), 0.0, last))];
-        }
-        case ParameterType::curve:
-            return curve_from(numbers);
-        default: {
-            Value::List list;
-            for (const double x : numbers) list.emplace_back(clamped(x));
-            return list;
-        }
+    if (spec.type == Type::boolean) return first >= 0.5;
+    if (spec.type == Type::integer) return static_cast<std::int64_t>(std::floor(clamped(first) + 0.5));
+    if (spec.type == Type::number) return clamped(first);
+    if (spec.type == Type::curve) return curve_from(numbers);
+    if (spec.type == Type::choice) {
+        const double last = static_cast<double>(spec.choices.size()) - 1.0;
+        return spec.choices[static_cast<std::size_t>(std::clamp(std::floor(first + 0.5), 0.0, last))];
     }
+    Value::List list;
+    for (const double x : numbers) list.emplace_back(clamped(x));
+    return list;
 }
 
 namespace fs = std::filesystem;
@@ -263,9 +244,9 @@ Value changed(const Value& value, Change change) {
 
 Value resolve_paths(const Value& value, const ParameterSpec& spec, const fs::path& folder,
                     bool absolute_patterns) {
-    const bool file = spec.type == ParameterType::file || spec.type == ParameterType::files;
+    const bool file = spec.type == Type::file || spec.type == Type::files;
     if (file) return changed(value, [&](const std::string& text) { return resolve(text, spec, folder); });
-    if (spec.type != ParameterType::pattern) return value;
+    if (spec.type != Type::pattern) return value;
     return changed(value, [&](const std::string& text) {
         const std::string pattern = expand_environment(text);
         return absolute_patterns && !pattern.empty() ? fs::absolute(folder / pattern).string() : pattern;
@@ -273,7 +254,7 @@ Value resolve_paths(const Value& value, const ParameterSpec& spec, const fs::pat
 }
 
 Value unresolve_paths(const Value& value, const ParameterSpec& spec, const fs::path& folder) {
-    const bool file = spec.type == ParameterType::file || spec.type == ParameterType::files;
+    const bool file = spec.type == Type::file || spec.type == Type::files;
     if (!file) return value;
     return changed(value, [&](const std::string& text) { return unresolve(text, spec, folder); });
 }

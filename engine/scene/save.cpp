@@ -48,10 +48,11 @@ class Saver {
         return path;
     }
 
-    void set(const ParameterSpec& spec, const Value& value, const Description& description) {
-        const std::string written = to_toml(unresolve_paths(value, spec, folder_));
+    void set(const Parameter& parameter, const Description& description) {
+        const ParameterSpec& spec = parameter.spec;
         const TomlPath path = path_of(spec.key, description);
-        text_.set(path, section_size(spec.generic_key, path), written);
+        text_.set(path, section_size(spec.generic_key, path),
+                  to_toml(unresolve_paths(parameter.get(), spec, folder_)));
     }
 
     /// Writes lists whose length differs, or that the text does not have, as a whole.
@@ -72,8 +73,7 @@ class Saver {
     void set_values(const Description& base, const Description& wanted) {
         for (const Parameter& parameter : wanted.parameters) {
             const Parameter* old = find_parameter(base, parameter.spec.key);
-            const Value value = parameter.get();
-            if (!old || !(old->get() == value)) set(parameter.spec, value, wanted);
+            if (!old || !(old->get() == parameter.get())) set(parameter, wanted);
         }
     }
 
@@ -210,21 +210,18 @@ void rebase_paths(Saver& saver, const std::string& original, const fs::path& fro
         const ParameterType type = parameter.spec.type;
         if (type != ParameterType::file && type != ParameterType::files) continue;
         if (saver.text().contains(saver.path_of(parameter.spec.key, description)))
-            saver.set(parameter.spec, parameter.get(), description);
+            saver.set(parameter, description);
     }
 }
 
 /// Presets come first: they change what the other keys start from.
 void set_presets(Saver& saver, const Scene& before, const Scene& scene, const Description& wanted) {
-    if (before.output.preset != scene.output.preset) {
-        const Parameter* parameter = find_parameter(wanted, "output.preset");
-        saver.set(parameter->spec, parameter->get(), wanted);
-    }
+    if (before.output.preset != scene.output.preset)
+        saver.set(*find_parameter(wanted, "output.preset"), wanted);
     for (const LayerParams& layer : scene.layers) {
         const auto old = std::ranges::find(before.layers, layer.name, &LayerParams::name);
         if (old == before.layers.end() ? layer.preset.empty() : old->preset == layer.preset) continue;
-        const Parameter* parameter = find_parameter(wanted, layer_key(layer.name) / "preset");
-        saver.set(parameter->spec, parameter->get(), wanted);
+        saver.set(*find_parameter(wanted, layer_key(layer.name) / "preset"), wanted);
     }
 }
 
