@@ -6,14 +6,8 @@
 
 #include <algorithm>
 #include <cassert>
-#include <cfloat>
-#include <cmath>
 #include <cstring>
 #include <limits>
-#include <span>
-#include <string>
-#include <string_view>
-#include <vector>
 
 #include "core/hash.h"
 #include "core/memory.h"
@@ -175,14 +169,8 @@ bool unpack(SplatSet& set, std::uint32_t flags, const Block& block, std::span<co
 template <class Unpack>
 void read_block(const Checker& checker, const Layout& layout, std::size_t number, const Unpack& unpack_rows) {
     const Block block = block_at(layout, number);
-    const std::string place = fmt::format("block {}", number);
-    const BlockEntry& stored = layout.table[number];
     const BlockEntry found = describe_block(layout.header.flags, block.bytes, block.rows);
-    if (stored.checksum != found.checksum)
-        checker.fail(place, "the checksum written with it", "another (damaged file)");
-    if (stored.lo != found.lo || stored.hi != found.hi)
-        checker.fail(place, "positions within its bounds", "others");
-    if (!unpack_rows(block)) checker.fail(place, "finite numbers", "infinity or NaN");
+    checker.block(number, layout.table[number], found, [&] { return unpack_rows(block); });
     forget_pages(block.bytes);
 }
 

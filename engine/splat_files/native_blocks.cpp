@@ -132,7 +132,6 @@ SplatSet NativeBlocks::sample(std::int64_t rows_wanted) const {
 void NativeBlocks::read(std::size_t block, const OptionalColumns& wanted, Check check, SplatSet& out) const {
     const State& state = *state_;
     const native::Checker checker{state.path.string()};
-    const std::string place = fmt::format("block {}", block);
     const std::size_t rows = state.rows(block);
     std::size_t offset = state.offset(block);
     RunningChecksum checksum;
@@ -153,14 +152,9 @@ void NativeBlocks::read(std::size_t block, const OptionalColumns& wanted, Check 
         if (!used) array.clear();
     });
     if (check == Check::none) return;
-    const native::BlockEntry& stored = state.layout.table[block];
-    if (checksum.value() != stored.checksum)
-        checker.fail(place, "the checksum written with it", "another (damaged file)");
-    native::BlockEntry found{glm::vec3(FLT_MAX), glm::vec3(-FLT_MAX), stored.checksum};
+    native::BlockEntry found{glm::vec3(FLT_MAX), glm::vec3(-FLT_MAX), checksum.value()};
     native::add_to_box(out.position, found);
-    if (stored.lo != found.lo || stored.hi != found.hi)
-        checker.fail(place, "positions within its bounds", "others");
-    if (!finite) checker.fail(place, "finite numbers", "infinity or NaN");
+    checker.block(block, state.layout.table[block], found, [&] { return finite; });
 }
 
 struct NativeStream::State {

@@ -68,6 +68,15 @@ void Checker::checksum(std::string_view place, std::string_view bytes) const {
     if (stored != xxh64(bytes)) fail(place, "the checksum written with it", "another (damaged file)");
 }
 
+void Checker::block(std::size_t number, const BlockEntry& stored, const BlockEntry& found,
+                    const std::function<bool()>& is_finite) const {
+    const std::string place = fmt::format("block {}", number);
+    if (stored.checksum != found.checksum)
+        fail(place, "the checksum written with it", "another (damaged file)");
+    if (stored.lo != found.lo || stored.hi != found.hi) fail(place, "positions within its bounds", "others");
+    if (!is_finite()) fail(place, "finite numbers", "infinity or NaN");
+}
+
 namespace {
 
 void check_values(const Checker& checker, const Header& header) {

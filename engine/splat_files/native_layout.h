@@ -3,10 +3,12 @@
 // and table. For the readers and the writers alone.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cfloat>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <glm/vec3.hpp>
 #include <span>
 #include <string>
@@ -58,19 +60,13 @@ struct BlockEntry {
 static_assert(sizeof(BlockEntry) == 32);
 
 /// The bits of the flags that say that a file has a column, by index_of(); 0: every file has it.
-inline constexpr std::array<std::uint32_t, splat_column_count> column_flags = {0,
-                                                                               0,
-                                                                               0,
-                                                                               0,
-                                                                               0,
-                                                                               has_uv,
-                                                                               has_normal,
-                                                                               has_mesh,
-                                                                               has_radius,
-                                                                               has_face,
-                                                                               has_scale,
-                                                                               has_rotation,
-                                                                               has_harmonics};
+inline constexpr auto column_flags = [] {
+    std::array<std::uint32_t, splat_column_count> flags{};
+    constexpr std::uint32_t optional[] = {has_uv,   has_normal, has_mesh,     has_radius,
+                                          has_face, has_scale,  has_rotation, has_harmonics};
+    std::ranges::copy(optional, flags.end() - std::ssize(optional));
+    return flags;
+}();
 static_assert(column_flags.back() == has_harmonics);
 bool has(std::uint32_t flags, SplatColumn column);
 SplatColumns columns_of(std::uint32_t flags);
@@ -100,6 +96,9 @@ struct Checker {
                            const std::string& found) const;
     /// The 8 bytes behind `bytes` are their checksum.
     void checksum(std::string_view place, std::string_view bytes) const;
+    /// Checksum and bounds as stored, then that all numbers are finite.
+    void block(std::size_t number, const BlockEntry& stored, const BlockEntry& found,
+               const std::function<bool()>& is_finite) const;
 };
 
 /// Checks all lengths against the file's size, then the checksums of header and table. Throws InputError.

@@ -92,14 +92,12 @@ bool has_attribute(const std::vector<Attribute>& attributes, std::string_view na
     return std::ranges::any_of(attributes, [&](const Attribute& a) { return a.name == name; });
 }
 
-std::string_view read_attributes(Words& words, std::vector<Attribute>& attributes) {
-    std::string_view word = words.next();
-    for (; word != "TYPES"; word = words.next()) {
+void read_attributes(Words& words, std::vector<Attribute>& attributes) {
+    for (std::string_view word = words.next(); word != "TYPES"; word = words.next()) {
         if (word.empty()) words.fail("'TYPES'", word);
         if (has_attribute(attributes, word)) words.fail("each attribute once", word);
         attributes.push_back({std::string(word), 'R'});
     }
-    return word;
 }
 
 void read_types(Words& words, std::vector<Attribute>& attributes) {

@@ -6,7 +6,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <charconv>
 #include <cmath>
@@ -15,8 +14,8 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <tuple>
 #include <type_traits>
-#include <utility>
 #include <vector>
 
 #include "core/error.h"
@@ -30,25 +29,11 @@ namespace astrosplat {
 
 namespace {
 
-constexpr std::array<std::pair<std::string_view, NumberType>, 18> type_names = {
-    {{"char", NumberType::i8},
-     {"int8", NumberType::i8},
-     {"uchar", NumberType::u8},
-     {"uint8", NumberType::u8},
-     {"short", NumberType::i16},
-     {"int16", NumberType::i16},
-     {"ushort", NumberType::u16},
-     {"uint16", NumberType::u16},
-     {"int", NumberType::i32},
-     {"int32", NumberType::i32},
-     {"uint", NumberType::u32},
-     {"uint32", NumberType::u32},
-     {"int64", NumberType::i64},
-     {"uint64", NumberType::u64},
-     {"float", NumberType::f32},
-     {"float32", NumberType::f32},
-     {"double", NumberType::f64},
-     {"float64", NumberType::f64}}};
+/// By NumberType.
+constexpr std::string_view type_names[][2] = {
+    {"char", "int8"},     {"uchar", "uint8"},   {"short", "int16"}, {"ushort", "uint16"},
+    {"int", "int32"},     {"uint", "uint32"},   {"int64", "int64"}, {"uint64", "uint64"},
+    {"float", "float32"}, {"double", "float64"}};
 
 struct HeaderReader {
     std::string file;
@@ -82,10 +67,10 @@ std::vector<std::string_view> words_of(std::string_view line) {
 }
 
 NumberType number_type(const HeaderReader& reader, std::string_view name) {
-    const auto* const found =
-        std::ranges::find_if(type_names, [&](const auto& entry) { return entry.first == name; });
-    if (found == type_names.end()) reader.fail("a number type such as float or uchar", name);
-    return found->second;
+    const auto* const found = std::ranges::find_if(
+        type_names, [&](const auto& names) { return names[0] == name || names[1] == name; });
+    if (found == std::end(type_names)) reader.fail("a number type such as float or uchar", name);
+    return static_cast<NumberType>(found - type_names);
 }
 
 PlyFormat read_format(const HeaderReader& reader, std::string_view line) {
@@ -166,24 +151,6 @@ PlyHeader read_ply_header(const std::filesystem::path& file, std::string_view by
 
 namespace {
 
-/// Bytes of one number.
-std::size_t size_of(NumberType type) {
-    switch (type) {
-        case NumberType::i8:
-        case NumberType::u8:
-            return 1;
-        case NumberType::i16:
-        case NumberType::u16:
-            return 2;
-        case NumberType::i32:
-        case NumberType::u32:
-        case NumberType::f32:
-            return 4;
-        default:
-            return 8;
-    }
-}
-
 constexpr std::int64_t rows_read_at_once = 1 << 14;
 
 template <class T>
@@ -194,31 +161,21 @@ T load(const char* p, bool swap) {
     return std::bit_cast<T>(bytes);
 }
 
+using NumberTypes = std::tuple<std::int8_t, std::uint8_t, std::int16_t, std::uint16_t, std::int32_t,
+                               std::uint32_t, std::int64_t, std::uint64_t, float, double>;
+
 /// Calls use(value) with the number at p in its own type.
-template <class Use>
+template <std::size_t first = 0, class Use>
 auto with_number(NumberType type, const char* p, bool swap, Use&& use) {
-    switch (type) {
-        case NumberType::i8:
-            return use(load<std::int8_t>(p, swap));
-        case NumberType::u8:
-            return use(load<std::uint8_t>(p, swap));
-        case NumberType::i16:
-            return use(load<std::int16_t>(p, swap));
-        case NumberType::u16:
-            return use(load<std::uint16_t>(p, swap));
-        case NumberType::i32:
-            return use(load<std::int32_t>(p, swap));
-        case NumberType::u32:
-            return use(load<std::uint32_t>(p, swap));
-        case NumberType::i64:
-            return use(load<std::int64_t>(p, swap));
-        case NumberType::u64:
-            return use(load<std::uint64_t>(p, swap));
-        case NumberType::f32:
-            return use(load<float>(p, swap));
-        default:
-            return use(load<double>(p, swap));
-    }
+    if constexpr (first + 1 < std::tuple_size_v<NumberTypes>)
+        if (type != static_cast<NumberType>(first)) return with_number<first + 1>(type, p, swap, use);
+    return use(load<std::tuple_element_t<first, NumberTypes>>(p, swap));
+}
+
+/// Bytes of one number.
+std::size_t size_of(NumberType type) {
+    constexpr char any[sizeof(double)] = {};
+    return with_number(type, any, false, [](auto value) { return sizeof value; });
 }
 
 template <class T>
