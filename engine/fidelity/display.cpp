@@ -6,41 +6,31 @@
 #include <vector>
 
 #include "core/color.h"
-#include "core/parallel.h"
 #include "core/real.h"
 #include "core/sorting.h"
+#include "image/channels.h"
 
 namespace astrosplat {
 namespace {
 
-// A picture of `channels` whose pixels are made of those of `from`: make(in, out).
-template <class PerPixel>
-Image made_of(const Image& from, int channels, const PerPixel& make) {
-    assert(from.channels >= 3);
-    Image image{from.width, from.height, channels, {}};
-    image.pixels.resize(static_cast<std::size_t>(from.width * from.height * channels));
-    parallel_each(from.width * from.height, 1 << 14, [&](std::int64_t i) {
-        make(from.pixels.data() + i * from.channels, image.pixels.data() + i * channels);
-    });
-    return image;
+float displayed_mean(const float* p) {
+    return (display_srgb(p[0]) + display_srgb(p[1]) + display_srgb(p[2])) / 3.0f;
 }
 
 }  // namespace
 
 Image display_colors(const Image& linear) {
-    return made_of(linear, 3, [](const float* in, float* out) {
+    return made_by_pixel(linear, 3, [](const float* in, float* out) {
         for (int c = 0; c < 3; ++c) out[c] = display_srgb(in[c]);
     });
 }
 
 Image display_mean(const Image& linear) {
-    return made_of(linear, 1, [](const float* in, float* out) {
-        *out = (display_srgb(in[0]) + display_srgb(in[1]) + display_srgb(in[2])) / 3.0f;
-    });
+    return made_by_pixel(linear, 1, [](const float* in, float* out) { *out = displayed_mean(in); });
 }
 
 Image display_max(const Image& linear) {
-    return made_of(linear, 1, [](const float* in, float* out) {
+    return made_by_pixel(linear, 1, [](const float* in, float* out) {
         *out = display_srgb(std::max({in[0], in[1], in[2]}));
     });
 }
@@ -54,25 +44,17 @@ Image inner_colors(const Image& linear, std::int64_t margin_px) {
     return inner;
 }
 
-namespace {
-
-float displayed_mean(const float* p) {
-    return (display_srgb(p[0]) + display_srgb(p[1]) + display_srgb(p[2])) / 3.0f;
-}
-
-}  // namespace
-
 Image signed_difference(const Image& a, const Image& b) {
     constexpr float none[3] = {18, 18, 22}, more[3] = {255, 150, 40}, less[3] = {70, 160, 255};
-    Image shown = make_image(a.width, a.height, 4, 1.0f);
-    parallel_chunks(a.height, 16, [&](std::int64_t begin, std::int64_t end, int) {
-        for (std::int64_t y = begin; y < end; ++y)
-            for (std::int64_t x = 0; x < a.width; ++x) {
-                const float difference = displayed_mean(a.at(x, y)) - displayed_mean(b.at(x, y));
-                const float t = std::min(1.0f, std::fabs(difference) / static_cast<float>(full_difference));
-                const float* const full = difference > 0.0f ? more : less;
-                for (int c = 0; c < 3; ++c) shown.at(x, y)[c] = (none[c] + (full[c] - none[c]) * t) / 255.0f;
-            }
+    const std::int64_t width = a.width;
+    Image shown = make_image(width, a.height, 4, 1.0f);
+    parallel_each(width * a.height, 1 << 14, [&](std::int64_t i) {
+        const float difference =
+            displayed_mean(a.at(i % width, i / width)) - displayed_mean(b.at(i % width, i / width));
+        const float t = std::min(1.0f, std::fabs(difference) / static_cast<float>(full_difference));
+        const float* const full = difference > 0.0f ? more : less;
+        for (int c = 0; c < 3; ++c)
+            shown.pixels[static_cast<std::size_t>(4 * i + c)] = (none[c] + (full[c] - none[c]) * t) / 255.0f;
     });
     return shown;
 }

@@ -4,8 +4,19 @@
 #include <algorithm>
 
 #include "core/image.h"
+#include "core/parallel.h"
 
 namespace astrosplat {
+
+/// An image of as many pixels, each made of the one of `from` there: make(in, out), on all threads.
+template <class PerPixel>
+Image made_by_pixel(const Image& from, int channels, const PerPixel& make) {
+    Image image = unfilled_image(from.width, from.height, channels);
+    parallel_each(from.width * from.height, 1 << 14, [&](std::int64_t i) {
+        make(from.pixels.data() + i * from.channels, image.pixels.data() + i * channels);
+    });
+    return image;
+}
 
 /// A copy made by all threads: one alone would take as long to fetch its memory as to fill it.
 Image copied(const Image& image);

@@ -100,21 +100,15 @@ std::string form_of(const OIIO::ImageSpec& spec) {
     return text;
 }
 
-class FrameFileRows {
-  public:
-    explicit FrameFileRows(const std::filesystem::path& file) : in_(open_picture(file)) {}
-    const OIIO::ImageSpec& spec() const { return in_->spec(); }
-    /// False: damaged. Rows begin .. end from the top of what is stored.
-    bool read(int begin, int end, std::vector<float>& values) {
-        const OIIO::ImageSpec& s = spec();
-        values.resize(static_cast<std::size_t>(end - begin) * static_cast<std::size_t>(s.width) *
-                      static_cast<std::size_t>(s.nchannels));
-        return read_rows(*in_, begin, end, OIIO::TypeDesc::FLOAT, values.data());
-    }
+using OpenFrame = std::unique_ptr<OIIO::ImageInput>;
 
-  private:
-    std::unique_ptr<OIIO::ImageInput> in_;
-};
+/// Rows begin .. end from the top of what is stored; false: damaged.
+bool read_values(OIIO::ImageInput& in, int begin, int end, std::vector<float>& values) {
+    const OIIO::ImageSpec& spec = in.spec();
+    values.resize(static_cast<std::size_t>(end - begin) * static_cast<std::size_t>(spec.width) *
+                  static_cast<std::size_t>(spec.nchannels));
+    return read_rows(in, begin, end, OIIO::TypeDesc::FLOAT, values.data());
+}
 
 /// Sums over rows.
 class StoredSums {
@@ -135,9 +129,7 @@ class StoredSums {
     StoredComparison result() const {
         StoredComparison sums = sums_;
         sums.pixels = std::int64_t{spec_.width} * spec_.height;
-        const double mean = squares_ / std::fmax(1.0, static_cast<double>(colors_));
-        sums.psnr_db =
-            mean == 0.0 ? std::numeric_limits<double>::infinity() : -10.0 * real::log(mean) / real::log(10.0);
+        sums.psnr_db = psnr(squares_ / std::fmax(1.0, static_cast<double>(colors_)));
         return sums;
     }
 
@@ -147,9 +139,8 @@ class StoredSums {
         const std::string& name = spec_.channelnames[channel];
         const bool color = name.size() == 1 && name.find_first_of("RGBA") == 0;
         colors_ += color;
-        if (std::bit_cast<std::uint32_t>(a) == std::bit_cast<std::uint32_t>(b)) return false;
-        double d = std::fabs(static_cast<double>(a) - static_cast<double>(b));
-        if (std::isnan(d)) d = std::numeric_limits<double>::infinity();
+        if (same_bits(a, b)) return false;
+        const double d = difference(a, b);
         if (color) squares_ += d * d;
         if (sums_.max_channel.empty() || d > sums_.max_difference) {
             sums_.max_difference = d;
@@ -166,8 +157,8 @@ class StoredSums {
     std::int64_t colors_ = 0;  // values of colours
 };
 
-std::unique_ptr<FrameFileRows> frame_rows_if_readable(const std::filesystem::path& file) try {
-    return std::make_unique<FrameFileRows>(file);
+OpenFrame open_if_readable(const std::filesystem::path& file) try {
+    return open_picture(file);
 } catch (const InputError&) {
     return nullptr;
 }
@@ -177,21 +168,21 @@ std::unique_ptr<FrameFileRows> frame_rows_if_readable(const std::filesystem::pat
 StoredComparison compare_stored(const std::filesystem::path& first, const std::filesystem::path& second) {
     StoredComparison comparison;
     comparison.result = StoredComparison::Result::first_damaged;
-    const auto a = frame_rows_if_readable(first);
-    FrameFileRows b(second);
+    const OpenFrame a = open_if_readable(first), b = open_picture(second);
     if (!a) return comparison;
-    if (form_of(a->spec()) != form_of(b.spec())) {
+    const OIIO::ImageSpec& spec = b->spec();
+    if (form_of(a->spec()) != form_of(spec)) {
         comparison.result = StoredComparison::Result::other_form;
-        comparison.other_form = form_of(a->spec()) + " against " + form_of(b.spec());
+        comparison.other_form = form_of(a->spec()) + " against " + form_of(spec);
         return comparison;
     }
-    StoredSums sums(b.spec());
+    StoredSums sums(spec);
     std::vector<float> rows_a, rows_b;
     constexpr int band = 256;  // rows
-    for (int y = 0; y < b.spec().height; y += band) {
-        const int end = std::min(y + band, b.spec().height);
-        if (!a->read(y, end, rows_a)) return comparison;
-        if (!b.read(y, end, rows_b)) fail_picture(second, "it ends early");
+    for (int y = 0; y < spec.height; y += band) {
+        const int end = std::min(y + band, spec.height);
+        if (!read_values(*a, y, end, rows_a)) return comparison;
+        if (!read_values(*b, y, end, rows_b)) fail_picture(second, "it ends early");
         sums.add_rows(y, rows_a, rows_b);
     }
     return sums.result();

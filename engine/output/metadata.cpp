@@ -27,6 +27,22 @@ namespace astrosplat {
 
 namespace {
 
+struct KeyLine {
+    std::string_view key, value;
+};
+
+/// Of lines "KEY<between>VALUE"; others are left out.
+std::vector<KeyLine> key_lines(std::string_view text, std::string_view between) {
+    std::vector<KeyLine> lines;
+    while (!text.empty()) {
+        const std::string_view line = text.substr(0, text.find('\n'));
+        text.remove_prefix(std::min(line.size() + 1, text.size()));
+        if (const std::size_t at = line.find(between); at != line.npos)
+            lines.push_back({line.substr(0, at), line.substr(at + between.size())});
+    }
+    return lines;
+}
+
 // The value on one line, so that it cannot be mistaken for the next entry.
 std::string one_line(std::string text) {
     for (char& c : text)
@@ -64,12 +80,7 @@ std::string metadata_lines(const MetadataEntries& entries) {
 
 std::map<std::string, std::string> parse_metadata_lines(std::string_view lines) {
     std::map<std::string, std::string> entries;
-    while (!lines.empty()) {
-        const std::string_view line = lines.substr(0, lines.find('\n'));
-        lines.remove_prefix(std::min(line.size() + 1, lines.size()));
-        if (const std::size_t equals = line.find('='); equals != line.npos)
-            entries.emplace(line.substr(0, equals), line.substr(equals + 1));
-    }
+    for (const auto& [name, value] : key_lines(lines, "=")) entries.emplace(name, value);
     return entries;
 }
 
@@ -86,41 +97,25 @@ namespace {
 
 constexpr std::size_t longest_text = std::size_t{64} << 20;  // bytes; of a damaged file's promises
 
-struct HashedLine {
-    std::string_view key, value;
-};
-
-std::vector<HashedLine> hashed_lines(std::string_view text) {
-    std::vector<HashedLine> lines;
-    while (!text.empty()) {
-        const std::string_view line = text.substr(0, text.find('\n'));
-        text.remove_prefix(std::min(line.size() + 1, text.size()));
-        if (const std::size_t equals = line.find(" ="); equals != line.npos)
-            lines.push_back({line.substr(0, equals), trim(line.substr(equals + 2))});
-    }
+std::vector<KeyLine> hashed_lines(std::string_view text) {
+    std::vector<KeyLine> lines = key_lines(text, " =");
+    for (KeyLine& line : lines) line.value = trim(line.value);
     return lines;
 }
 
-/// Keys in their order, with their values.
-class KeyValues {
-  public:
-    explicit KeyValues(const std::string& text) {
-        for (const auto& [key, value] : hashed_lines(text)) {
-            const auto [known, added] = values_.try_emplace(std::string(key), value);
-            if (added)
-                keys_.emplace_back(key);
-            else
-                known->second += "; " + std::string(value);
-        }
+/// Keys in their order, each once, with the values of all of its lines.
+std::vector<std::pair<std::string, std::string>> values_by_key(const std::string& text) {
+    std::vector<std::pair<std::string, std::string>> values;
+    std::map<std::string_view, std::size_t> places;
+    for (const auto& [key, value] : hashed_lines(text)) {
+        const auto [known, added] = places.try_emplace(key, values.size());
+        if (added)
+            values.emplace_back(key, value);
+        else
+            values[known->second].second.append("; ").append(value);
     }
-    const std::vector<std::string>& keys() const { return keys_; }
-    bool has(const std::string& key) const { return values_.count(key) > 0; }
-    std::string value(const std::string& key) const { return has(key) ? values_.at(key) : ""; }
-
-  private:
-    std::vector<std::string> keys_;
-    std::map<std::string, std::string> values_;
-};
+    return values;
+}
 
 }  // namespace
 
@@ -155,19 +150,19 @@ std::optional<std::string> unpack_hashed_text(const std::string& packed) {
 }
 
 std::optional<std::string> hashed_value(const std::string& text, const std::string& key) {
-    for (const HashedLine& line : hashed_lines(text))
+    for (const KeyLine& line : hashed_lines(text))
         if (line.key == key) return std::string(line.value);
     return std::nullopt;
 }
 
 std::vector<KeyDifference> differing_keys(const std::string& first, const std::string& second) {
-    const KeyValues a(first), b(second);
+    const auto a = values_by_key(first), b = values_by_key(second);
+    std::map<std::string, std::string> of_a(a.begin(), a.end()), of_b(b.begin(), b.end());
     std::vector<KeyDifference> differences;
-    for (const std::string& key : a.keys())
-        if (!b.has(key) || a.value(key) != b.value(key))
-            differences.push_back({key, a.value(key), b.value(key)});
-    for (const std::string& key : b.keys())
-        if (!a.has(key)) differences.push_back({key, "", b.value(key)});
+    for (const auto& [key, value] : a)
+        if (!of_b.count(key) || of_b[key] != value) differences.push_back({key, value, of_b[key]});
+    for (const auto& [key, value] : b)
+        if (!of_a.count(key)) differences.push_back({key, "", value});
     return differences;
 }
 
