@@ -4,11 +4,9 @@
 // backwards.
 #include "camera/keyframe.h"
 
-#include <algorithm>
 #include <array>
 #include <cassert>
 #include <cmath>
-#include <cstddef>
 #include <glm/geometric.hpp>
 
 #include "core/real.h"

@@ -8,7 +8,6 @@
 #include "core/parallel.h"
 #include "core/real.h"
 #include "core/sorting.h"
-#include "fidelity/display.h"
 #include "image/blur.h"
 
 namespace astrosplat {

@@ -2,7 +2,6 @@
 // mean that rendering again would give the same pixels, so --resume skips the frame.
 #pragma once
 
-#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <string>

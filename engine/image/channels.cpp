@@ -1,7 +1,5 @@
 #include "image/channels.h"
 
-#include <algorithm>
-
 namespace astrosplat {
 
 Image copied(const Image& image) {

@@ -9,7 +9,6 @@
 #include <cmath>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "core/color.h"
 #include "core/error.h"

@@ -7,12 +7,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <new>
 #include <numeric>
-#include <string_view>
-#include <utility>
-#include <vector>
 
 #include "core/error.h"
 #include "core/file_format.h"

@@ -8,7 +8,6 @@
 #include <cmath>
 #include <optional>
 
-#include "camera_files/camera_track.h"
 #include "core/error.h"
 #include "core/file.h"
 #include "core/file_format.h"

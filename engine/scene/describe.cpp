@@ -1,8 +1,6 @@
 // The description of everything but the layers, and the functions over descriptions.
 #include "scene/describe.h"
 
-#include <algorithm>
-
 #include "scene/describe_layer.h"
 
 namespace astrosplat {

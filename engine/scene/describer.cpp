@@ -1,8 +1,6 @@
 // The checks behind Field<T>: a Value either fits a parameter or is refused with what was expected and found.
 #include "scene/describer.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 

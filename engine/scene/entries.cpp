@@ -10,7 +10,6 @@
 
 #include "core/error.h"
 #include "scene/describe.h"
-#include "scene/parameter.h"
 #include "scene/parameter_key.h"
 
 namespace astrosplat {

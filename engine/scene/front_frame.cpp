@@ -7,14 +7,12 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
-#include <optional>
 #include <vector>
 
 #include "core/error.h"
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "source/sample.h"
-#include "source/textured_mesh.h"
 
 namespace astrosplat {
 

@@ -12,7 +12,6 @@
 #include <system_error>
 #include <vector>
 
-#include "bodies/choose.h"
 #include "bodies/picture_light.h"
 #include "bodies/picture_splats.h"
 #include "core/error.h"

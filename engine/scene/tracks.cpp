@@ -5,14 +5,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string>
 #include <tuple>
 #include <vector>
 
 #include "camera/keyframe.h"
 #include "core/error.h"
 #include "scene/describe.h"
-#include "scene/parameter.h"
 #include "scene/parameter_key.h"
 
 namespace astrosplat {

@@ -15,12 +15,10 @@
 #include <cerrno>
 #include <condition_variable>
 #include <csignal>
-#include <cstdint>
 #include <mutex>
 #include <system_error>
 #include <vector>
 
-#include "core/atomic_file.h"
 #include "core/buffer.h"
 #include "core/parallel.h"
 

@@ -15,7 +15,6 @@
 #include "core/rotation.h"
 #include "core/text.h"
 #include "splats/harmonics.h"
-#include "splats/splat_set.h"
 
 namespace astrosplat {
 

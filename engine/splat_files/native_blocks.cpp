@@ -10,14 +10,11 @@
 #include <cassert>
 #include <cerrno>
 #include <cfloat>
-#include <cmath>
 #include <cstring>
 #include <string>
 #include <string_view>
 #include <utility>
-#include <vector>
 
-#include "core/atomic_file.h"
 #include "core/file.h"
 #include "core/hash.h"
 #include "core/parallel.h"

@@ -2,9 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <bit>
-#include <cfloat>
 #include <cstring>
 #include <glm/common.hpp>
 

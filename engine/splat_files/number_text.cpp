@@ -5,7 +5,6 @@
 #include "splat_files/number_text.h"
 
 #include <array>
-#include <bit>
 #include <cmath>
 #include <limits>
 #include <string_view>

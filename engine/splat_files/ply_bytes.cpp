@@ -9,21 +9,15 @@
 #include <bit>
 #include <charconv>
 #include <cmath>
-#include <cstdint>
 #include <cstring>
-#include <optional>
-#include <string>
-#include <string_view>
 #include <tuple>
 #include <type_traits>
-#include <vector>
 
 #include "core/error.h"
 #include "core/parallel.h"
 #include "core/text.h"
 #include "splat_files/file_bytes.h"
 #include "splat_files/number_text.h"
-#include "splat_files/splat_table.h"
 
 namespace astrosplat {
 

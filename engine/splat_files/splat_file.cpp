@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cassert>
-#include <string>
 #include <string_view>
 
 #include "core/error.h"

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <glm/mat4x4.hpp>
 
 #include "core/error.h"

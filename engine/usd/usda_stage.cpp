@@ -7,8 +7,6 @@
 #include <algorithm>
 #include <array>
 #include <optional>
-#include <string>
-#include <string_view>
 
 #include "core/error.h"
 #include "core/text.h"

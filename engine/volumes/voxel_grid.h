@@ -5,7 +5,6 @@
 #pragma once
 
 #include <array>
-#include <cstdint>
 #include <glm/vec3.hpp>
 #include <vector>
 
