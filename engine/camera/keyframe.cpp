@@ -220,23 +220,23 @@ glm::dvec3 at_constant_speed(const Curve& curve, double frame, Ends ends) {
         return ends == Ends::ease && (way == Interpolation::smooth || way == Interpolation::bezier);
     };
     double u = (frame - keyframes.front().frame) / (keyframes.back().frame - keyframes.front().frame);
-    std::vector<double> length(segments * pieces_per_segment);
+    struct Piece {
+        std::size_t segment;
+        double begin, end, length;  // of the segment's u
+    };
+    std::vector<Piece> pieces;
     double total = 0.0;
-    for (std::size_t k = 0; k < length.size(); ++k) {
-        auto piece = static_cast<double>(k % pieces_per_segment);
-        length[k] = piece_length(curve, k / pieces_per_segment, piece / pieces_per_segment,
-                                 (piece + 1.0) / pieces_per_segment);
-        total += length[k];
-    }
-    double rest = distance_share(u, eased(0), eased(segments - 1)) * total;
-    for (std::size_t k = 0; k < length.size(); ++k) {
-        if (rest <= length[k] && length[k] > 0.0) {
-            auto piece = static_cast<double>(k % pieces_per_segment);
-            std::size_t i = k / pieces_per_segment;
-            double u0 = piece / pieces_per_segment, u1 = (piece + 1.0) / pieces_per_segment;
-            return curve_point(curve, i, solve_length(curve, i, u0, u1, rest));
+    for (std::size_t i = 0; i < segments; ++i)
+        for (int k = 0; k < pieces_per_segment; ++k) {
+            const double begin = double(k) / pieces_per_segment, end = double(k + 1) / pieces_per_segment;
+            pieces.push_back({i, begin, end, piece_length(curve, i, begin, end)});
+            total += pieces.back().length;
         }
-        rest -= length[k];
+    double rest = distance_share(u, eased(0), eased(segments - 1)) * total;
+    for (const auto& [i, begin, end, length] : pieces) {
+        if (rest <= length && length > 0.0)
+            return curve_point(curve, i, solve_length(curve, i, begin, end, rest));
+        rest -= length;
     }
     return keyframes.back().value;  // no length at all, or rounding at the end
 }

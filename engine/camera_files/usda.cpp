@@ -41,10 +41,6 @@ double number_of(const UsdStage& stage, const char* name) {
                                                                               : found->second.numbers[0];
 }
 
-bool is_word(const std::vector<std::string>& words, const char* word) {
-    return words.size() == 1 && words[0] == word;
-}
-
 // Of every sample, and whole ones between the first and the last.
 std::vector<double> time_codes(const Chain& chain, const std::string& file) {
     std::set<double> times;
@@ -68,9 +64,7 @@ class CameraReader {
         if (!(track_.fps > 0.0)) track_.fps = number_of(stage, "framesPerSecond");
         if (!(track_.fps > 0.0) || !std::isfinite(track_.fps)) track_.fps = 0.0;
         frames_per_code_ = rate.output_frames(track_.fps);
-        const auto projection = camera_.attributes.find("projection");
-        track_.orthographic =
-            projection != camera_.attributes.end() && is_word(projection->second.value.words, "orthographic");
+        track_.orthographic = camera_.attribute("projection").value.is("orthographic");
         track_.has_fov = !track_.orthographic && camera_.attributes.count("focalLength") > 0;
     }
 

@@ -36,15 +36,11 @@ namespace {
 constexpr std::int64_t chunk_values = 1 << 16;
 
 void add(Image& sum, const Image& image) {
-    parallel_chunks(std::ssize(sum.pixels), chunk_values, [&](std::int64_t begin, std::int64_t end, int) {
-        for (std::int64_t i = begin; i < end; ++i) sum.pixels[i] += image.pixels[i];
-    });
+    parallel_each(sum.pixels.size(), chunk_values, [&](std::size_t i) { sum.pixels[i] += image.pixels[i]; });
 }
 
 void scale(Image& image, float factor) {
-    parallel_chunks(std::ssize(image.pixels), chunk_values, [&](std::int64_t begin, std::int64_t end, int) {
-        for (std::int64_t i = begin; i < end; ++i) image.pixels[i] *= factor;
-    });
+    parallel_each(image.pixels.size(), chunk_values, [&](std::size_t i) { image.pixels[i] *= factor; });
 }
 
 void multiply(Image& depth, const Image& opacity) {
@@ -78,11 +74,10 @@ void add_rendering(RenderedFrame& sum, RenderedFrame&& rendering, std::span<cons
         sum.layers = std::move(summed);
         return;
     }
-    add(sum.beauty, rendering.beauty);
-    add(sum.depth, rendering.depth);
-    add(sum.opacity, rendering.opacity);
-    add(sum.coverage, rendering.coverage);
-    add(sum.count, rendering.count);
+    using Frame = RenderedFrame;
+    for (Image Frame::*image :
+         {&Frame::beauty, &Frame::depth, &Frame::opacity, &Frame::coverage, &Frame::count})
+        add(sum.*image, rendering.*image);
     RenderStatistics& statistics = sum.statistics;
     statistics.splats_in += rendering.statistics.splats_in;
     statistics.splats_drawn += rendering.statistics.splats_drawn;

@@ -156,14 +156,9 @@ GlslTable plane_table(const ocio::GpuShaderDesc& shader, unsigned index) {
     const float* values = nullptr;
     shader.getTextureValues(index, values);
     const int channels = channel == ocio::GpuShaderCreator::TEXTURE_RED_CHANNEL ? 1 : 3;
-    const std::size_t count = std::size_t{width} * height * static_cast<unsigned>(channels);
-    return {sampler,
-            height > 1 ? 2 : 1,
-            static_cast<int>(width),
-            int(height),
-            channels,
-            interpolation != ocio::INTERP_NEAREST,
-            {values, values + count}};
+    const int w = static_cast<int>(width), h = static_cast<int>(height);
+    const float* const end = values + std::size_t{width} * height * static_cast<unsigned>(channels);
+    return {sampler, h > 1 ? 2 : 1, w, h, channels, interpolation != ocio::INTERP_NEAREST, {values, end}};
 }
 
 GlslTable cube_table(const ocio::GpuShaderDesc& shader, unsigned index) {

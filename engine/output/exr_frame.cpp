@@ -44,7 +44,7 @@ int exr_threads() {
     }
 }
 
-constexpr int rows_at_once = 256;                             // the most that a compression takes together
+constexpr std::int64_t band_rows = 256;  // a multiple of every compression's block height
 constexpr std::int64_t largest_band = std::int64_t{1} << 30;  // bytes; no frame has rows that wide
 
 Region region_of(const Imath::Box2i& window, const Imath::Box2i& whole) {
@@ -59,9 +59,9 @@ bool read_all(Imf::InputFile& in) {
     if (channel == in.header().channels().end()) return false;
     constexpr std::size_t value_bytes = 4;
     const std::int64_t width = std::int64_t{window.max.x} - window.min.x + 1;
-    if (width * rows_at_once * std::int64_t{value_bytes} > largest_band) return false;
-    std::vector<char> band(static_cast<std::size_t>(width) * rows_at_once * value_bytes);
-    for (std::int64_t y = window.min.y; y <= window.max.y; y += rows_at_once) {
+    if (width * band_rows * std::int64_t{value_bytes} > largest_band) return false;
+    std::vector<char> band(static_cast<std::size_t>(width * band_rows) * value_bytes);
+    for (std::int64_t y = window.min.y; y <= window.max.y; y += band_rows) {
         Imf::FrameBuffer buffer;
         char* const origin =
             band.data() - (y * width + window.min.x) * static_cast<std::int64_t>(value_bytes);
@@ -69,7 +69,7 @@ bool read_all(Imf::InputFile& in) {
                                                  value_bytes * static_cast<std::size_t>(width)));
         in.setFrameBuffer(buffer);
         in.readPixels(static_cast<int>(y),
-                      static_cast<int>(std::min<std::int64_t>(y + rows_at_once - 1, window.max.y)));
+                      static_cast<int>(std::min<std::int64_t>(y + band_rows - 1, window.max.y)));
     }
     return true;
 }
@@ -147,7 +147,6 @@ class ExrStream : public Imf::OStream {
 };
 
 constexpr float largest_half = 65504.0f;
-constexpr std::int64_t band_rows = 256;  // a multiple of every compression's block height
 
 /// One channel: where its floats lie and how they are stored.
 struct Channel {
@@ -176,18 +175,10 @@ std::vector<Channel> channels_of(const Image& beauty, const std::vector<Image>& 
 
 Imf::Compression compression_of(OutputParams::Compression compression) {
     using Compression = OutputParams::Compression;
-    switch (compression) {
-        case Compression::zips:
-            return Imf::ZIPS_COMPRESSION;
-        case Compression::piz:
-            return Imf::PIZ_COMPRESSION;
-        case Compression::dwaa:
-            return Imf::DWAA_COMPRESSION;
-        case Compression::none:
-            return Imf::NO_COMPRESSION;
-        default:
-            return Imf::ZIP_COMPRESSION;
-    }
+    if (compression == Compression::zips) return Imf::ZIPS_COMPRESSION;
+    if (compression == Compression::piz) return Imf::PIZ_COMPRESSION;
+    if (compression == Compression::dwaa) return Imf::DWAA_COMPRESSION;
+    return compression == Compression::none ? Imf::NO_COMPRESSION : Imf::ZIP_COMPRESSION;
 }
 
 Imf::Chromaticities chromaticities_of(OutputParams::Primaries primaries) {

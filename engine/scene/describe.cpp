@@ -227,18 +227,19 @@ Description describe(Scene& scene) {
 Description describe(Scene& scene, const std::function<bool(const ParameterKey& group)>& wanted) {
     Description description;
     const Describer d(description, {}, false);
-    if (wanted("output")) describe_output(d.in("output", false), scene.output);
-    if (wanted("output"))
+    if (wanted("output")) {
+        describe_output(d.in("output", false), scene.output);
         describe_ocio(d.in("output.ocio", false).shown_in("Output", "Colour management"), scene.output.ocio);
+    }
     if (wanted("camera")) {
         describe_camera(d.in("camera", true), scene.camera);
         describe_camera_file(d.in("camera", false).shown_in("Camera", "Place"), scene.camera);
     }
-    if (wanted("environment"))
-        describe_environment(d.in("environment", true).shown_in("Environment", "Environment"),
-                             scene.environment);
-    if (wanted("environment"))
-        describe_tiling(d.in("environment", false).shown_in("Environment", "Environment"), scene.environment);
+    if (wanted("environment")) {
+        const Describer sky = d.in("environment", true).shown_in("Environment", "Environment");
+        describe_environment(sky, scene.environment);
+        describe_tiling(sky.still(), scene.environment);
+    }
     if (wanted("provenance"))
         describe_provenance(d.in("provenance", false).shown_in("Output", "Provenance"), scene.provenance);
     if (wanted("reference"))

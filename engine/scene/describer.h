@@ -221,10 +221,10 @@ class Describer {
     Describer(Description& description, ParameterKey group, bool animated)
         : description_(&description), group_(std::move(group)), animated_(animated) {}
 
-    /// Describes what lies in the group `name` below this one.
+    /// Describes what lies in the group `name` below this one; no name: in this one.
     Describer in(const std::string& name, bool animated) const {
         Describer inner = *this;
-        inner.group_ = group_ / name;
+        if (!name.empty()) inner.group_ = group_ / name;
         inner.animated_ = animated;
         return inner;
     }
@@ -248,18 +248,10 @@ class Describer {
     }
 
     /// The same place, where parameters are animated whatever the group says.
-    Describer animated() const {
-        Describer moving = *this;
-        moving.animated_ = true;
-        return moving;
-    }
+    Describer animated() const { return in({}, true); }
 
     /// The same place, where no parameter is.
-    Describer still() const {
-        Describer fixed = *this;
-        fixed.animated_ = false;
-        return fixed;
-    }
+    Describer still() const { return in({}, false); }
 
     /// Describes one field, by its words and traits as in spec(). Its type follows from the field, unless a
     /// trait says more (color, position, ...).

@@ -2,6 +2,7 @@
 // for a set, and rows as the program draws them.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <filesystem>
 #include <glm/mat3x3.hpp>
@@ -9,6 +10,7 @@
 #include <optional>
 #include <string>
 
+#include "core/progress.h"
 #include "splats/splat_set.h"
 
 namespace astrosplat {
@@ -35,6 +37,12 @@ std::optional<GaussianPlacement> gaussian_placement(const glm::dmat4& world);
 /// and harmonics.
 void place_gaussians(SplatSet& set, std::size_t begin, std::size_t end, const GaussianPlacement& placement);
 
+/// Whether any of the parts of a file has harmonics beyond degree 0.
+template <class Part>
+bool is_directional(const std::vector<Part>& parts) {
+    return std::ranges::any_of(parts, [](const Part& part) { return part.degree > 0; });
+}
+
 /// How a file stores its numbers.
 struct GaussianNumbers {
     bool trained = false;  // scales as logarithms, opacities as logits: what training works with
@@ -46,6 +54,23 @@ struct GaussianNumbers {
 /// makes radius and color. Rows with numbers that are not finite, or without a rotation, are left out and
 /// counted in a warning; opacities are clamped to 0..1.
 SplatSet finish_gaussians(SplatSet set, const GaussianNumbers& numbers, const std::filesystem::path& file);
+
+/// A set of parts that have a count and a degree of their harmonics: read(part, first, set) fills the rows
+/// from `first` on, with the numbers that finish_gaussians wants. Throws InputError, Cancelled.
+template <class Part, class Read>
+SplatSet read_gaussian_parts(const std::vector<Part>& parts, const GaussianNumbers& numbers,
+                             const std::filesystem::path& file, const Progress& progress, const Read& read) {
+    std::int64_t count = 0;
+    for (const Part& part : parts) count += part.count;
+    SplatSet set = room_for_gaussians(count, is_directional(parts), "splats of " + file.string());
+    std::size_t first = 0;
+    for (const Part& part : parts) {
+        progress.check();
+        read(part, first, set);
+        first += static_cast<std::size_t>(part.count);
+    }
+    return finish_gaussians(std::move(set), numbers, file);
+}
 
 /// Radius of a Gaussian, as SplatSet::scale says.
 float gaussian_radius(const glm::vec3& scale);

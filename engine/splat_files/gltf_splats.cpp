@@ -163,21 +163,11 @@ void read_part(GltfFile& file, const Part& part, std::size_t first, SplatSet& se
 
 SplatSet read_parts(GltfFile& file, const Progress& progress) {
     const std::vector<Part> parts = parts_of(file);
-    std::int64_t count = 0;
-    bool directional = false;
-    for (const Part& part : parts) {
-        column_of(file, part, "POSITION", 3);  // its count is that of numbers which are there
-        count += part.count;
-        directional = directional || part.degree > 0;
-    }
-    SplatSet set = room_for_gaussians(count, directional, "splats of " + file.path().string());
-    std::size_t first = 0;
-    for (const Part& part : parts) {
-        progress.check();
-        read_part(file, part, first, set);
-        first += static_cast<std::size_t>(part.count);
-    }
-    return finish_gaussians(std::move(set), {.trained = false, .display = parts[0].display}, file.path());
+    for (const Part& part : parts)
+        column_of(file, part, "POSITION", 3);  // its count is of numbers that are there
+    return read_gaussian_parts(
+        parts, {.trained = false, .display = parts[0].display}, file.path(), progress,
+        [&](const Part& part, std::size_t first, SplatSet& set) { read_part(file, part, first, set); });
 }
 
 /// The result of `read` for the file; wrong types in its JSON are reported in our words.
@@ -198,11 +188,8 @@ SplatSet read_gltf_splats(const std::filesystem::path& file, const Progress& pro
 }
 
 SplatColumns gltf_splat_columns(const std::filesystem::path& file) {
-    return read_json(file, [](GltfFile& gltf) {
-        const std::vector<Part> parts = parts_of(gltf);
-        return gaussian_set_columns(
-            std::ranges::any_of(parts, [](const Part& part) { return part.degree > 0; }));
-    });
+    return read_json(file,
+                     [](GltfFile& gltf) { return gaussian_set_columns(is_directional(parts_of(gltf))); });
 }
 
 }  // namespace astrosplat

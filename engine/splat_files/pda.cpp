@@ -161,30 +161,17 @@ constexpr std::size_t longest_number = float_text_room;  // a whole number has 2
 
 char* put_text(char* out, float value) { return put_float(out, value); }
 char* put_text(char* out, std::uint64_t value) { return std::to_chars(out, out + longest_number, value).ptr; }
-char* put_text(char* out, const glm::vec3& v) {
-    out = put_text(out, v.x);
-    *out++ = ' ';
-    out = put_text(out, v.y);
-    *out++ = ' ';
-    return put_text(out, v.z);
-}
-template <class T>
-char* put_next(char* out, const T& value) {
-    *out++ = ' ';
-    return put_text(out, value);
-}
 
 /// The longest row: nine floats, a mesh, an id, blanks and the newline.
 constexpr std::size_t longest_row = 11 * (longest_number + 1);
 
 char* put_row(char* out, const SplatSet& set, std::size_t i) {
-    out = put_text(out, set.position[i]);
-    out = put_next(out, set.color[i]);
-    out = put_next(out, set.alpha[i]);
-    out = put_next(out, set.distance[i]);
-    if (!set.mesh.empty()) out = put_next(out, std::uint64_t{set.mesh[i]});
-    if (!set.radius.empty()) out = put_next(out, set.radius[i]);
-    out = put_next(out, set.id[i]);
+    const auto put = [&](const auto&... numbers) { ((out = put_text(out, numbers), *out++ = ' '), ...); };
+    const glm::vec3 &p = set.position[i], &c = set.color[i];
+    put(p.x, p.y, p.z, c.x, c.y, c.z, set.alpha[i], set.distance[i]);
+    if (!set.mesh.empty()) put(std::uint64_t{set.mesh[i]});
+    if (!set.radius.empty()) put(set.radius[i]);
+    out = put_text(out, set.id[i]);
     *out++ = '\n';
     return out;
 }

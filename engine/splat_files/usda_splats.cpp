@@ -65,11 +65,8 @@ struct GaussianPrim {
 
 /// Empty where the prim does not have it. Floats go before halves, whose names end in an h.
 std::string_view list_of(const UsdPrim& prim, const std::string& name) {
-    for (const std::string& each : {name, name + "h"}) {
-        const auto found = prim.attributes.find(each);
-        if (found != prim.attributes.end() && !found->second.list.empty()) return found->second.list;
-    }
-    return {};
+    const std::string_view floats = prim.attribute(name).list;
+    return floats.empty() ? prim.attribute(name + "h").list : floats;
 }
 
 std::int64_t tuples_in(const UsdText& text, std::string_view list, int components) {
@@ -83,9 +80,9 @@ std::int64_t tuples_in(const UsdText& text, std::string_view list, int component
 
 /// The degree that the prim states, else the one its coefficients suffice for.
 int degree_of(const UsdText& text, const GaussianPrim& own, std::string_view list) {
-    const auto told = own.prim->attributes.find("radiance:sphericalHarmonicsDegree");
-    if (told != own.prim->attributes.end() && told->second.value.numbers.size() == 1) {
-        const double degree = told->second.value.numbers[0];
+    const std::vector<double>& told = own.prim->attribute("radiance:sphericalHarmonicsDegree").value.numbers;
+    if (told.size() == 1) {
+        const double degree = told[0];
         if (degree == 0.0 || degree == 1.0 || degree == 2.0 || degree == 3.0) return static_cast<int>(degree);
         text.fail(list.data(), "harmonics of degree 0 to 3", shortest(degree));
     }
@@ -193,16 +190,6 @@ void read_prim(const UsdText& text, const GaussianPrim& own, std::size_t first, 
     place_gaussians(set, first, end, own.placement);
 }
 
-bool is_directional(const std::vector<GaussianPrim>& all) {
-    return std::ranges::any_of(all, [](const GaussianPrim& own) { return own.degree > 0; });
-}
-
-std::int64_t count_of(const std::vector<GaussianPrim>& all) {
-    std::int64_t count = 0;
-    for (const GaussianPrim& own : all) count += own.count;
-    return count;
-}
-
 /// The result of read(text, all) for a file.
 template <class Read>
 auto read_prims(const std::filesystem::path& file, const Read& read) {
@@ -217,14 +204,10 @@ auto read_prims(const std::filesystem::path& file, const Read& read) {
 
 SplatSet read_usda_splats(const std::filesystem::path& file, const Progress& progress) {
     return read_prims(file, [&](const UsdText& text, const std::vector<GaussianPrim>& all) {
-        SplatSet set = room_for_gaussians(count_of(all), is_directional(all), "splats of " + text.file);
-        std::size_t first = 0;
-        for (const GaussianPrim& own : all) {
-            progress.check();
-            read_prim(text, own, first, set);
-            first += static_cast<std::size_t>(own.count);
-        }
-        return finish_gaussians(std::move(set), {.trained = false, .display = true}, file);
+        return read_gaussian_parts(all, {.trained = false, .display = true}, file, progress,
+                                   [&](const GaussianPrim& own, std::size_t first, SplatSet& set) {
+                                       read_prim(text, own, first, set);
+                                   });
     });
 }
 
@@ -235,8 +218,11 @@ SplatColumns usda_splat_columns(const std::filesystem::path& file) {
 }
 
 std::int64_t usda_splat_count(const std::filesystem::path& file) {
-    return read_prims(file,
-                      [](const UsdText&, const std::vector<GaussianPrim>& all) { return count_of(all); });
+    return read_prims(file, [](const UsdText&, const std::vector<GaussianPrim>& all) {
+        std::int64_t count = 0;
+        for (const GaussianPrim& own : all) count += own.count;
+        return count;
+    });
 }
 
 }  // namespace astrosplat

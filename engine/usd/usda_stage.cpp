@@ -292,9 +292,7 @@ class Parser {
         if (scan_.peek() == '(') {
             std::map<std::string, UsdValue> own;
             metadata(own);
-            const auto active = own.find("active");
-            if (active != own.end() && active->second.words == std::vector<std::string>{"false"})
-                prim.defined = false;
+            if (own["active"].is("false")) prim.defined = false;
         }
         scan_.require('{');
         while (!scan_.take('}')) statement(prim, depth);
@@ -364,9 +362,15 @@ class Parser {
 
 }  // namespace
 
+const UsdAttribute& UsdPrim::attribute(const std::string& attribute_name) const {
+    static const UsdAttribute none;
+    const auto found = attributes.find(attribute_name);
+    return found == attributes.end() ? none : found->second;
+}
+
 bool UsdStage::is_z_up() const {
     const auto up = metadata.find("upAxis");
-    return up != metadata.end() && up->second.words == std::vector<std::string>{"Z"};
+    return up != metadata.end() && up->second.is("Z");
 }
 
 std::string UsdStage::none_found() const {

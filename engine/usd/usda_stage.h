@@ -18,6 +18,8 @@ namespace astrosplat {
 struct UsdValue {
     std::vector<double> numbers;
     std::vector<std::string> words;  // strings and tokens
+
+    bool is(std::string_view word) const { return words.size() == 1 && words[0] == word; }
 };
 
 struct UsdAttribute {
@@ -34,6 +36,9 @@ struct UsdPrim {
     bool defined = true;                             // def; else over or class, which alone make nothing
     std::map<std::string, UsdAttribute> attributes;  // as usda_stage.cpp has them
     std::vector<UsdPrim> children;
+
+    /// An empty one where it has none of the name.
+    const UsdAttribute& attribute(const std::string& name) const;
 };
 
 struct UsdStage {

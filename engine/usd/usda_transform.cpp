@@ -94,9 +94,7 @@ glm::dmat4 op_at(const UsdPrim& prim, const std::string& name, double time, cons
 glm::dmat4 parent_from_prim(const UsdPrim& prim, double time, const std::string& file, bool& resets) {
     glm::dmat4 m(1.0);
     resets = false;
-    const auto order = prim.attributes.find("xformOpOrder");
-    if (order == prim.attributes.end()) return m;
-    for (const std::string& word : order->second.value.words) {
+    for (const std::string& word : prim.attribute("xformOpOrder").value.words) {
         if (word == reset) {
             resets = true;
             m = glm::dmat4(1.0);
@@ -121,10 +119,9 @@ glm::dmat4 parent_from_prim(const UsdPrim& prim, double time, const std::string&
 
 std::vector<double> numbers_at(const UsdPrim& prim, const std::string& name, double time,
                                std::vector<double> fallback) {
-    const auto found = prim.attributes.find(name);
-    if (found == prim.attributes.end()) return fallback;
-    const auto& samples = found->second.samples;
-    if (samples.empty()) return found->second.has_value ? found->second.value.numbers : fallback;
+    const UsdAttribute& attribute = prim.attribute(name);
+    const auto& samples = attribute.samples;
+    if (samples.empty()) return attribute.has_value ? attribute.value.numbers : fallback;
     const auto next = std::ranges::upper_bound(samples, time, {}, &std::pair<double, UsdValue>::first);
     if (next == samples.begin()) return samples.front().second.numbers;
     const auto& [before, value] = *(next - 1);
