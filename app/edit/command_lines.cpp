@@ -80,8 +80,8 @@ RenderTask make_render_task(const Document& document, RenderKind kind, double fr
 fs::path render_target(const RenderTask& task) { return task.folder / task.name; }
 
 std::vector<std::string> render_endings(RenderKind kind) {
-    if (kind == RenderKind::movie) return {".mp4", ".mov", ".mkv"};
-    return endings_of({FileKind::picture}, FileUse::written);
+    return kind == RenderKind::movie ? endings_of(FileUse::movie)
+                                     : endings_of({FileKind::picture}, FileUse::written);
 }
 
 std::string with_ending(const std::string& name, const std::string& ending) {

@@ -19,13 +19,12 @@ namespace astrosplat {
 
 namespace {
 
-// Stereo pairs. In: a camera that stands between the eyes. Out: the camera of one of them.
-
-/// Turned about its y axis, to the left.
-glm::dmat3 turned_left(const glm::dmat3& world_from_camera, double angle) {
-    const double c = real::cos(angle), s = real::sin(angle);
-    const glm::dvec3 &right = world_from_camera[0], &back = world_from_camera[2];
-    return {right * c - back * s, world_from_camera[1], back * c + right * s};
+/// Turns two orthogonal axes in their plane: `a` away from `b`, which follows.
+void turn(glm::dvec3& a, glm::dvec3& b, double radians) {
+    const double c = real::cos(radians), s = real::sin(radians);
+    const glm::dvec3 before = a;
+    a = a * c - b * s;
+    b = b * c + before * s;
 }
 
 /// Moves a camera between the eyes to the one that `params` name. Flat frames are parallel, moved against
@@ -45,8 +44,8 @@ void move_to_eye(Camera& camera, const CameraParams& params) {
     }
     const double sine = std::fmin(std::fmax(-to_right / meeting, -1.0), 1.0);
     camera.parallax = -to_right;
-    camera.world_from_camera =
-        turned_left(camera.world_from_camera, -real::atan2(sine, std::sqrt(1.0 - sine * sine)));
+    glm::dmat3& axes = camera.world_from_camera;
+    turn(axes[0], axes[2], -real::atan2(sine, std::sqrt(1.0 - sine * sine)));
 }
 
 constexpr double framing_elevation_deg = 35.0;
@@ -94,8 +93,8 @@ glm::dmat3 look_along(const glm::dvec3& view, glm::dvec3 up, double roll_deg) {
     glm::dvec3 back = -glm::normalize(view);
     glm::dvec3 right = glm::normalize(glm::cross(up, back));
     glm::dvec3 above = glm::cross(back, right);
-    double c = real::cos(real::radians(roll_deg)), s = real::sin(real::radians(roll_deg));
-    return glm::dmat3(right * c - above * s, right * s + above * c, back);
+    turn(right, above, real::radians(roll_deg));
+    return glm::dmat3(right, above, back);
 }
 
 // Half the frame's height at distance 1.
@@ -129,14 +128,6 @@ glm::dmat3 framing_direction() {
     const double elevation = real::radians(framing_elevation_deg);
     const glm::dvec3 back(0.0, real::sin(elevation), real::cos(elevation));
     return {glm::dvec3(1.0, 0.0, 0.0), glm::dvec3(0.0, back.z, -back.y), back};
-}
-
-/// Turned about its x axis, so that it looks higher.
-glm::dmat3 tilted_up(const glm::dmat3& world_from_camera, double degrees) {
-    if (degrees == 0.0) return world_from_camera;
-    const double c = real::cos(real::radians(degrees)), s = real::sin(real::radians(degrees));
-    const glm::dvec3 &above = world_from_camera[1], &back = world_from_camera[2];
-    return {world_from_camera[0], above * c + back * s, back * c - above * s};
 }
 
 glm::dmat3 orientation(const CameraParams& params, const glm::dvec3& position, const glm::dvec3& target) {
@@ -183,7 +174,9 @@ Camera make_camera(const CameraParams& params, double width_px, double height_px
         case Projection::fisheye:
             camera.edge = 0.5 * real::radians(params.fisheye_fov);
             camera.focal_px = 0.5 * std::fmin(width_px, height_px) / camera.edge;
-            camera.world_from_camera = tilted_up(camera.world_from_camera, params.fisheye_tilt);
+            if (params.fisheye_tilt != 0.0)  // looks higher
+                turn(camera.world_from_camera[2], camera.world_from_camera[1],
+                     real::radians(params.fisheye_tilt));
             break;
         case Projection::equirectangular:
         case Projection::cylindrical:

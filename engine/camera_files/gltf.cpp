@@ -51,11 +51,10 @@ GltfCurve gltf_curve(GltfFile& file, const nlohmann::json& sampler, int componen
     GltfCurve curve;
     curve.components = components;
     const std::string between = sampler.value("interpolation", "LINEAR");
-    if (between != "LINEAR" && between != "STEP" && between != "CUBICSPLINE")
-        file.fail("LINEAR, STEP or CUBICSPLINE", "'" + printable(between) + "'");
-    curve.between = between == "LINEAR" ? GltfCurve::Between::linear
-                    : between == "STEP" ? GltfCurve::Between::step
-                                        : GltfCurve::Between::cubic;
+    constexpr std::string_view ways[] = {"LINEAR", "STEP", "CUBICSPLINE"};  // by Between
+    const auto* const way = std::ranges::find(ways, between);
+    if (way == std::end(ways)) file.fail("LINEAR, STEP or CUBICSPLINE", "'" + printable(between) + "'");
+    curve.between = static_cast<GltfCurve::Between>(way - ways);
     curve.fps = fps;
     for (const float seconds : file.numbers(sampler.at("input"), 1))
         curve.frames.push_back(frame_of(double(seconds), fps));

@@ -190,8 +190,8 @@ void filter_line(std::vector<float>& line, std::int64_t count, std::int64_t widt
         std::copy_n(line.begin() + (reach + count - 1) * width, width,
                     line.begin() + (reach + count + i) * width);
     }
-    const auto join = [&](std::int64_t size,
-                          std::int64_t shift) {  // windows of `size` + `shift` from such of `size`
+    // Makes windows of `size` + `shift` of such of `size`.
+    const auto join = [&](std::int64_t size, std::int64_t shift) {
         const std::int64_t values = (total - size - shift + 1) * width;
         float* const to = line.data();
         const float* const from = to + shift * width;

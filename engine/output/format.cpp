@@ -71,8 +71,9 @@ const KindRules& rules_for(const std::filesystem::path& file) {
     const FileFormat* const format = format_by_name(file);
     for (const KindRules& rule : rules())
         if (format && format->id == rule.format) return rule;
-    throw InputError(
-        fmt::format("output.path: expected a file ending in .exr, .tif or .png, found '{}'", file.string()));
+    throw InputError(fmt::format("output.path: expected a file ending in {}, found '{}'",
+                                 alternatives(endings_of({FileKind::picture}, FileUse::written)),
+                                 file.string()));
 }
 
 template <class T>

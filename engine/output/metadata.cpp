@@ -245,13 +245,10 @@ FrameHeader read_frame_header(const std::filesystem::path& file) {
         return found == stored->texts.end() ? std::string() : found->second;
     };
     FrameHeader header;
+    static_cast<StoredHeader&>(header) = *stored;
     header.frame = parse_int64(text_of("astrosplat/frame"));
     header.frame_hash = text_of("astrosplat/frameHash");
     header.pixel_hash = text_of("astrosplat/pixelHash");
-    header.dwaa = stored->dwaa;
-    header.whole_width = stored->whole_width;
-    header.whole_height = stored->whole_height;
-    header.region = stored->region;
     header.eye = eye_of(text_of("view"));
     std::optional<std::string> text = unpack_hashed_text(text_of("astrosplat/hashed"));
     if (text && Sha256().add(*text).hex() == header.frame_hash) take_hashed_text(header, *text);

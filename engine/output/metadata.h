@@ -74,15 +74,12 @@ struct ImageInfo {
 /// file cannot be opened as a picture.
 ImageInfo read_image_info(const std::filesystem::path& file);
 
-/// The header of a frame file.
-struct FrameHeader {
+/// The header of a frame file. The stored size and region are those of its hashed text, where it has one.
+struct FrameHeader : StoredHeader {
     std::optional<std::int64_t> frame;
     std::string frame_hash, pixel_hash;  // hex
     std::string hashed_text;  // what the frame hash was made of; empty in frames that older versions wrote
-    bool dwaa = false;        // compressed with a loss
     Eye eye = Eye::centre;
-    std::int64_t whole_width = 0, whole_height = 0;  // px
-    Region region{};                                 // of the whole frame; empty: all
 };
 /// Fields that are not told, or not in a readable way, are empty; all of them where the file is no picture.
 FrameHeader read_frame_header(const std::filesystem::path& file);

@@ -53,9 +53,10 @@ PictureDirections picture_directions(std::span<const TexturedMesh> meshes, int t
 }
 
 int thinnest_axis(const glm::dvec3& extent) {
+    constexpr double clearly_less = 0.999;  // sides that differ by rounding count as equal
     int thin = 1;
     for (const int axis : {2, 0})
-        if (extent[axis] < 0.999 * extent[thin]) thin = axis;
+        if (extent[axis] < clearly_less * extent[thin]) thin = axis;
     return thin;
 }
 
@@ -73,7 +74,8 @@ void turn_upright(FrontFrame& frame, const PictureDirections& picture) {
     const auto fit = [&](const glm::dvec3& right, const glm::dvec3& up) {
         return glm::dot(picture.u, right) + glm::dot(picture.v, up);
     };
-    double best = fit(x, y) + 0.2 * picture.most;
+    constexpr double clearly_better = 0.2;  // of the best fit there could be
+    double best = fit(x, y) + clearly_better * picture.most;
     for (const glm::dvec3& right : {x, -x, y, -y})
         for (const glm::dvec3& up : {y, -y, x, -x}) {
             if (glm::dot(right, up) != 0.0 || !(fit(right, up) > best)) continue;

@@ -93,9 +93,9 @@ TEST(Format, EveryGoodCombinationPasses) {
 
 TEST(Format, EachMisfitHasItsMessage) {
     EXPECT_EQ(error_of(to("a.####.jpg")),
-              "output.path: expected a file ending in .exr, .tif or .png, found 'a.####.jpg'");
+              "output.path: expected a file ending in .exr, .tif, .tiff or .png, found 'a.####.jpg'");
     EXPECT_EQ(error_of(to("frames")),
-              "output.path: expected a file ending in .exr, .tif or .png, found 'frames'");
+              "output.path: expected a file ending in .exr, .tif, .tiff or .png, found 'frames'");
     OutputParams png = to("a.png");
     png.depth = Depth::float32;
     EXPECT_EQ(error_of(png), "output.depth: expected 8 or 16 in png files, found float");
