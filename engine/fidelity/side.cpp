@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 #include <optional>
 #include <vector>
 
@@ -35,8 +36,6 @@ Profiles mean_profiles(const Image& light) {
     return p;
 }
 
-double greatest(const Profile& p) { return *std::max_element(p.begin(), p.end()); }
-
 // First and last index whose value is above a threshold that the greatest exceeds.
 struct Span {
     std::int64_t first, last;
@@ -63,7 +62,8 @@ double depth_of_lane(const Profile& rows, const Span& half) {
     const Profile all = blurred(rows, 0.8);
     const Profile inside(all.begin() + half.first, all.begin() + half.last + 1);
     const std::int64_t quarter = half.length() / 4;
-    return 1.0 - *std::min_element(inside.begin() + quarter, inside.end() - quarter) / greatest(inside);
+    return 1.0 -
+           *std::min_element(inside.begin() + quarter, inside.end() - quarter) / std::ranges::max(inside);
 }
 
 // Values [begin, end) as far as they exist; one at least.
@@ -74,9 +74,7 @@ Profile part(const Profile& p, std::int64_t begin, std::int64_t end) {
 }
 
 double mean(const Profile& p) {
-    double sum = 0.0;
-    for (const double v : p) sum += v;
-    return sum / static_cast<double>(p.size());
+    return std::accumulate(p.begin(), p.end(), 0.0) / static_cast<double>(p.size());
 }
 
 double center_over_half_radius(const Image& light, const Profile& columns, const Span& disk) {
@@ -113,9 +111,9 @@ double body_brightness(const Image& light) {
 EdgeOnProfile edge_on_profile(const Image& edge_view) {
     const Image light = brightest_channel(edge_view);
     const auto [rows, columns] = mean_profiles(light);
-    if (rows.empty() || columns.empty() || !(greatest(rows) > 0.0)) return {};
-    const Span half = span_above(rows, 0.5 * greatest(rows)),
-               disk = span_above(columns, 0.15 * greatest(columns));
+    if (rows.empty() || columns.empty() || !(std::ranges::max(rows) > 0.0)) return {};
+    const Span half = span_above(rows, 0.5 * std::ranges::max(rows)),
+               disk = span_above(columns, 0.15 * std::ranges::max(columns));
     EdgeOnProfile result;
     result.fwhm_over_length = static_cast<double>(half.length()) / static_cast<double>(disk.length());
     result.dust_dip = depth_of_lane(rows, half);
