@@ -7,7 +7,6 @@
 #include <glm/geometric.hpp>
 
 #include "camera/camera.h"
-#include "core/error.h"
 #include "core/file.h"
 #include "core/real.h"
 #include "core/text.h"

@@ -10,8 +10,6 @@
 
 #include "core/error.h"
 #include "core/file.h"
-#include "core/file_format.h"
-#include "core/log.h"
 #include "core/text.h"
 #include "core/text_table.h"
 #include "scene/describe.h"
@@ -37,12 +35,8 @@ struct ColumnName {
     int component = -1;
 };
 
-/// Vectors have several columns, all other parameters one.
-bool has_components(const ParameterSpec& spec) {
-    using Type = ParameterType;
-    return spec.type == Type::vector || spec.type == Type::position || spec.type == Type::color ||
-           spec.type == Type::rotation;
-}
+/// Vectors have a column for each of their numbers, all other parameters one.
+bool has_components(const ParameterSpec& spec) { return spec.components > 1; }
 
 ColumnName column_name(const Description& description, std::string_view word) {
     if (find_parameter(description, word) || word.size() < 3 || word[word.size() - 2] != '.') return {word};
@@ -53,12 +47,6 @@ ColumnName column_name(const Description& description, std::string_view word) {
         if (const std::size_t at = names.find(word.back()); at < names.size())
             return {rest, static_cast<int>(at)};
     return {word};
-}
-
-/// As many numbers as a value of it has.
-std::size_t component_count(const ParameterSpec& spec) {
-    if (spec.type == ParameterType::rotation) return 4;
-    return has_components(spec) ? static_cast<std::size_t>(std::max(spec.components, 1)) : 1;
 }
 
 class CsvReader {
@@ -117,7 +105,7 @@ class CsvReader {
         const ParameterSpec& spec = parameter->spec;
         if (spec.animation == Animation::no) rows_.fail("keys that can be animated", shown(name));
         if (spec.type == ParameterType::curve) rows_.fail("keys of numbers", shown(name) + ", a curve");
-        const std::size_t count = component_count(spec);
+        const auto count = static_cast<std::size_t>(spec.components);
         const auto component = static_cast<std::size_t>(std::max(of.component, 0));
         if (of.component < 0 && has_components(spec))
             rows_.fail(fmt::format("columns {0}.x, {0}.y, ...", spec.key), shown(name));

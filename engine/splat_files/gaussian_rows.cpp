@@ -13,7 +13,6 @@
 #include "core/parallel.h"
 #include "core/real.h"
 #include "core/rotation.h"
-#include "core/text.h"
 #include "splats/harmonics.h"
 
 namespace astrosplat {

@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <glm/mat4x4.hpp>
 
-#include "core/error.h"
-#include "core/file.h"
 #include "core/text.h"
 #include "gltf/gltf_file.h"
 #include "splat_files/gaussian_rows.h"

@@ -9,7 +9,6 @@
 #include <cstring>
 #include <limits>
 
-#include "core/hash.h"
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "splat_files/file_bytes.h"

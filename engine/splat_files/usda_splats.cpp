@@ -7,7 +7,6 @@
 #include <glm/mat4x4.hpp>
 
 #include "core/error.h"
-#include "core/file.h"
 #include "core/text.h"
 #include "splat_files/file_bytes.h"
 #include "splat_files/gaussian_rows.h"
