@@ -19,6 +19,10 @@
 namespace astrosplat {
 namespace {
 
+// Blurs that take away single splats and stars and leave what is measured.
+constexpr double lane_blur_px = 0.8, center_blur_px = 1.5, body_blur_px = 6.0;
+constexpr float least_of_body = 0.3f;  // of the brightest place: what is brighter belongs to the body
+
 using Profile = std::vector<double>;
 
 struct Profiles {
@@ -59,7 +63,7 @@ Profile blurred(const Profile& profile, double sigma_px) {
 // The least of the middle half of the profile between its half maxima, below their greatest.
 double depth_of_lane(const Profile& rows, const Span& half) {
     if (half.length() <= 6) return 0.0;
-    const Profile all = blurred(rows, 0.8);
+    const Profile all = blurred(rows, lane_blur_px);
     const Profile inside(all.begin() + half.first, all.begin() + half.last + 1);
     const std::int64_t quarter = half.length() / 4;
     return 1.0 -
@@ -78,7 +82,7 @@ double mean(const Profile& p) {
 }
 
 double center_over_half_radius(const Image& light, const Profile& columns, const Span& disk) {
-    const Image smooth = convolved_with_gaussian(light, 1.5);
+    const Image smooth = convolved_with_gaussian(light, center_blur_px);
     Profile peak(columns.size());
     for (std::int64_t y = 0; y < smooth.height; ++y)
         for (std::size_t x = 0; x < peak.size(); ++x)
@@ -95,8 +99,8 @@ double center_over_half_radius(const Image& light, const Profile& columns, const
 }
 
 double body_brightness(const Image& light) {
-    const Image smooth = convolved_with_gaussian(light, 6.0);
-    const float threshold = 0.3f * *std::max_element(smooth.pixels.begin(), smooth.pixels.end());
+    const Image smooth = convolved_with_gaussian(light, body_blur_px);
+    const float threshold = least_of_body * *std::max_element(smooth.pixels.begin(), smooth.pixels.end());
     double sum = 0.0, count = 0.0;
     for (std::size_t i = 0; i < light.pixels.size(); ++i) {
         if (!(smooth.pixels[i] > threshold)) continue;
