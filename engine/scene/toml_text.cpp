@@ -3,176 +3,105 @@
 #include "scene/toml_text.h"
 
 #include <algorithm>
-#include <map>
 
-#include "scene/parameter.h"
-#include "scene/parameter_key.h"
+#include "scene/entries.h"
 
 namespace astrosplat {
 
-/// Finds the keys, values and headers of a valid TOML text. A friend of TomlText, whose items it makes.
+/// Finds the headers, keys and values of a text, of which toml++ says where each stands. A friend of
+/// TomlText, whose items it makes.
 class TomlScanner {
   public:
     TomlScanner(const std::string& text, std::vector<TomlText::Header>& headers,
                 std::vector<TomlText::Item>& items)
         : text_(text), headers_(headers), items_(items) {}
+
     void scan() {
-        if (text_.rfind("\xEF\xBB\xBF", 0) == 0) pos_ = 3;
-        headers_.push_back({{}, pos_, pos_});
-        for (;;) {
-            skip_blank(true);
-            if (done()) return;
-            if (at() == '[')
-                header();
-            else
-                pair(TomlPath(headers_.back().path), false);
-        }
+        const std::size_t begin = text_.starts_with("\xEF\xBB\xBF") ? 3 : 0;
+        lines_.push_back(begin);
+        for (std::size_t end = 0; (end = text_.find('\n', end)) != std::string::npos;)
+            lines_.push_back(++end);
+        headers_.push_back({{}, begin, begin});
+        table(parse_toml(text_, ""), {}, false);
+        order_headers();
+        std::ranges::sort(items_, {}, &TomlText::Item::begin);
+        for (TomlText::Item& item : items_)
+            item.header = static_cast<std::size_t>(std::ranges::count_if(
+                              headers_, [&](const auto& header) { return header.begin <= item.begin; })) -
+                          1;
     }
 
   private:
-    char at(std::size_t offset = 0) const {
-        return pos_ + offset < text_.size() ? text_[pos_ + offset] : '\0';
+    /// Columns count characters, which begin with any byte but 10xxxxxx.
+    std::size_t offset(const toml::source_position& position) const {
+        std::size_t at = lines_[position.line - 1];
+        for (auto column = position.column; column > 1; --column)
+            while (++at < text_.size() && (text_[at] & 0xC0) == 0x80) {
+            }
+        return at;
     }
-    bool done() const { return pos_ >= text_.size(); }
-    void skip_blank(bool newlines) {
-        while (!done()) {
-            const char c = at();
-            if (c == '#' && newlines) {
-                pos_ = std::min(text_.find('\n', pos_), text_.size());
-            } else if (c == ' ' || c == '\t' || (newlines && (c == '\n' || c == '\r'))) {
-                ++pos_;
+
+    void add_item(const TomlPath& path, std::size_t begin, const toml::node& value, bool nested) {
+        items_.push_back({path, 0, begin, offset(value.source().begin), offset(value.source().end), nested});
+    }
+
+    void add_header(const TomlPath& path, const toml::node& table) {
+        const std::size_t begin = offset(table.source().begin), end = text_.find('\n', begin);
+        headers_.push_back({path, begin, end == std::string::npos ? text_.size() : end + 1});
+    }
+
+    /// Where a key begins: dotted ones with their first part, which may stand in more than one of them.
+    std::size_t key_begin(const toml::key& key, bool nested) const {
+        const std::size_t at = offset(key.source().begin);
+        if (!nested) return at;
+        return text_.find_first_not_of(" \t\r", text_.find_last_of("{,\n", at - 1) + 1);
+    }
+
+    void table(const toml::table& table, const TomlPath& path, bool nested) {
+        for (const auto& [key, node] : table) {
+            TomlPath own = path;
+            own.emplace_back(key.str());
+            const toml::table* const inner = node.as_table();
+            const toml::array* const list = list_of_tables(node);
+            if (inner && !inner->is_inline()) {
+                // Dotted keys make tables without a header.
+                if (text_[offset(node.source().begin)] == '[') add_header(own, node);
+                this->table(*inner, own, nested);
+            } else if (list && !list->front().as_table()->is_inline()) {
+                elements(*list, own, false);
             } else {
-                return;
+                add_item(own, key_begin(key, nested), node, nested);
+                if (inner) this->table(*inner, own, true);
+                if (const toml::array* array = node.as_array()) elements(*array, own, true);
             }
         }
     }
 
-    std::string key_part() {
-        const char quote = at();
-        std::string part;
-        if (quote == '"' || quote == '\'') {
-            for (++pos_; !done() && at() != quote; ++pos_) {
-                if (quote == '"' && at() == '\\') ++pos_;
-                part += at();
-            }
-            ++pos_;
-            return part;
-        }
-        while (!done() && std::string_view(" \t.=]").find(at()) == std::string_view::npos)
-            part += text_[pos_++];
-        return part;
-    }
-
-    TomlPath key() {
-        TomlPath path;
-        for (;;) {
-            skip_blank(false);
-            path.push_back(key_part());
-            skip_blank(false);
-            if (at() != '.') return path;
-            ++pos_;
+    /// Of a list of values, in which everything is `nested`, or of [[tables]].
+    void elements(const toml::array& array, const TomlPath& path, bool nested) {
+        for (std::size_t i = 0; i < array.size(); ++i) {
+            TomlPath own = path;
+            own.push_back(std::to_string(i));
+            const toml::table* const inner = array[i].as_table();
+            if (inner && nested) add_item(own, offset(inner->source().begin), *inner, true);
+            if (inner && !nested) add_header(own, *inner);
+            if (inner) table(*inner, own, nested);
+            if (const toml::array* list = array[i].as_array()) elements(*list, own, true);
         }
     }
 
-    void header() {
-        const std::size_t begin = pos_;
-        const bool list = at(1) == '[';
-        pos_ += list ? 2 : 1;
-        const TomlPath path = key();
-        if (list) {
-            TomlPath outer = resolved(TomlPath(path.begin(), path.end() - 1));
-            outer.push_back(path.back());
-            ++lists_[outer];
-        }
-        const std::size_t end = text_.find('\n', pos_);
-        pos_ = end == std::string::npos ? text_.size() : end + 1;
-        headers_.push_back({resolved(path), begin, pos_});
-    }
-
-    void pair(const TomlPath& parent, bool nested) {
-        const std::size_t begin = pos_;
-        TomlPath path = parent;
-        for (std::string& part : key()) path.push_back(std::move(part));
-        ++pos_;  // =
-        skip_blank(false);
-        const std::size_t slot = items_.size();
-        items_.push_back({path, headers_.size() - 1, begin, pos_, pos_, nested});
-        value(path);
-        items_[slot].value_end = pos_;
-    }
-
-    void value(const TomlPath& path) {
-        const char c = at();
-        if (c == '"' || c == '\'') return string_value();
-        if (c == '[') return list(path);
-        if (c == '{') return inline_table(path);
-        const std::size_t begin = pos_;
-        pos_ = std::min(text_.find_first_of(",]}#\r\n", pos_), text_.size());
-        while (pos_ > begin && (text_[pos_ - 1] == ' ' || text_[pos_ - 1] == '\t')) --pos_;
-    }
-
-    void string_value() {
-        const char quote = at();
-        const bool long_string = at(1) == quote && at(2) == quote;
-        if (!long_string) {
-            for (++pos_; !done() && at() != quote; ++pos_)
-                if (quote == '"' && at() == '\\') ++pos_;
-            ++pos_;
-            return;
-        }
-        for (pos_ += 3; !done() && !(at() == quote && at(1) == quote && at(2) == quote); ++pos_)
-            if (quote == '"' && at() == '\\') ++pos_;
-        pos_ += 3;
-        while (at() == quote) ++pos_;  // up to two quotes may end the string's own text
-    }
-
-    void list(const TomlPath& path) {
-        ++pos_;
-        for (std::size_t index = 0;; ++index) {
-            skip_blank(true);
-            if (at() == ']' || done()) break;
-            TomlPath element = path;
-            element.push_back(std::to_string(index));
-            const std::size_t begin = pos_;
-            const bool table = at() == '{';
-            const std::size_t slot = items_.size();
-            if (table) items_.push_back({element, headers_.size() - 1, begin, begin, begin, true});
-            value(element);
-            if (table) items_[slot].value_end = pos_;
-            skip_blank(true);
-            if (at() == ',') ++pos_;
-        }
-        ++pos_;
-    }
-
-    void inline_table(const TomlPath& path) {
-        ++pos_;
-        for (;;) {
-            skip_blank(true);
-            if (at() == '}' || done()) break;
-            pair(path, true);
-            skip_blank(true);
-            if (at() == ',') ++pos_;
-        }
-        ++pos_;
-    }
-
-    /// The path with the index of the newest element after every [[list]] in it.
-    TomlPath resolved(const TomlPath& path) const {
-        TomlPath result;
-        for (const std::string& part : path) {
-            result.push_back(part);
-            const auto found = lists_.find(result);
-            if (found != lists_.end()) result.push_back(std::to_string(found->second - 1));
-        }
-        return result;
+    /// Of tables that one header makes, [a.b] perhaps a and b, the innermost has it.
+    void order_headers() {
+        std::ranges::sort(headers_, {}, [](const auto& h) { return std::pair(h.body_begin, h.path.size()); });
+        const auto same = [](const auto& a, const auto& b) { return a.body_begin == b.body_begin; };
+        const auto kept = std::unique(headers_.rbegin(), headers_.rend(), same);
+        headers_.erase(headers_.begin(), kept.base());
     }
 
     const std::string& text_;
     std::vector<TomlText::Header>& headers_;
     std::vector<TomlText::Item>& items_;
-    std::map<TomlPath, std::size_t> lists_;  // [[path]] -> elements so far
-    std::size_t pos_ = 0;
+    std::vector<std::size_t> lines_;  // where each begins
 };
 
 namespace {
