@@ -45,11 +45,10 @@ Image inner_colors(const Image& linear, std::int64_t margin_px) {
 
 Image signed_difference(const Image& a, const Image& b) {
     constexpr float none[3] = {18, 18, 22}, more[3] = {255, 150, 40}, less[3] = {70, 160, 255};
-    const std::int64_t width = a.width;
-    Image shown = make_image(width, a.height, 4, 1.0f);
-    parallel_each(width * a.height, 1 << 14, [&](std::int64_t i) {
-        const float difference =
-            displayed_mean(a.at(i % width, i / width)) - displayed_mean(b.at(i % width, i / width));
+    Image shown = make_image(a.width, a.height, 4, 1.0f);
+    parallel_each(a.width * a.height, 1 << 14, [&](std::int64_t i) {
+        const float difference = displayed_mean(a.pixels.data() + i * a.channels) -
+                                 displayed_mean(b.pixels.data() + i * b.channels);
         const float t = std::min(1.0f, std::fabs(difference) / static_cast<float>(full_difference));
         const float* const full = difference > 0.0f ? more : less;
         for (int c = 0; c < 3; ++c)
