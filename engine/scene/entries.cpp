@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <charconv>
-#include <tuple>
 
 #include "core/error.h"
 #include "scene/describe.h"
@@ -290,9 +289,7 @@ bool extend_lists(const Description& description, const ParameterKey& key) {
 
 void apply_entries(std::vector<Entry> entries, const EntryOrigin& origin,
                    const std::function<Description()>& describe_target, Places& places) {
-    std::ranges::stable_sort(entries, [](const Entry& a, const Entry& b) {
-        return std::tie(a.position.line, a.position.column) < std::tie(b.position.line, b.position.column);
-    });
+    std::ranges::stable_sort(entries, {}, &Entry::position);
     Description description = describe_target();
     for (const Entry& entry : entries) set_list_length(description, entry, origin, describe_target);
     for (const Entry& entry : entries) {

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <tuple>
 #include <vector>
 
 #include "camera/keyframe.h"
@@ -264,9 +263,7 @@ std::vector<Track> read_tracks(const toml::table& table, Scene& scene, const std
                 throw InputError(
                     fmt::format("{}: {}: expected one track, found a second", place, found.back().track.key));
     }
-    std::ranges::sort(found, [](const Found& a, const Found& b) {
-        return std::tie(a.position.line, a.position.column) < std::tie(b.position.line, b.position.column);
-    });
+    std::ranges::sort(found, {}, &Found::position);
     std::vector<Track> tracks;
     for (Found& one : found) tracks.push_back(std::move(one.track));
     return tracks;
