@@ -11,7 +11,6 @@
 #include "core/error.h"
 #include "core/file.h"
 #include "core/text.h"
-#include "core/text_table.h"
 #include "scene/describe.h"
 #include "scene/entries.h"
 #include "scene/load.h"

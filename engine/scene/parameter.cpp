@@ -8,8 +8,6 @@
 #include <charconv>
 #include <cmath>
 
-#include "core/text.h"
-
 namespace astrosplat {
 
 double Value::number() const {

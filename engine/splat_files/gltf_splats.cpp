@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <glm/mat4x4.hpp>
 
 #include "core/text.h"

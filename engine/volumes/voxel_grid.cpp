@@ -15,7 +15,6 @@
 #include "core/parallel.h"
 #include "core/real.h"
 #include "core/sorting.h"
-#include "gaussians/appearance.h"
 
 namespace astrosplat {
 
