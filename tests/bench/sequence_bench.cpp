@@ -7,7 +7,6 @@
 #include <chrono>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -17,17 +16,15 @@
 #include "pipeline.h"
 #include "scene/load.h"
 #include "support/frames.h"
+#include "support/pixmap.h"
 #include "support/temp_folder.h"
 
 namespace astrosplat::bench {
 namespace {
 
-// Binary PPM, the plainest format that every reader of pictures knows.
 std::string ppm(const Image& image) {
-    std::string text = fmt::format("P6\n{} {}\n255\n", image.width, image.height);
-    for (std::size_t i = 0; i < image.pixels.size(); ++i)
-        if (i % 4 != 3) text += static_cast<char>(static_cast<unsigned char>(255.0f * image.pixels[i]));
-    return text;
+    return test::pixmap(int(image.width), int(image.height),
+                        [&](int x, int y, int k) { return 255.0f * image.at(x, y)[k]; });
 }
 
 std::string scene_text(std::int64_t count, int width, int height) {

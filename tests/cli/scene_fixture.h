@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "support/pixmap.h"
 #include "support/run_program.h"
 
 namespace astrosplat::test {
@@ -38,13 +39,7 @@ inline std::string cube_of_splats(int count) {
 
 /// A picture of 32x16 pixels in colours, as a portable pixmap.
 inline std::string small_picture() {
-    std::string text = "P6\n32 16\n255\n";
-    for (int y = 0; y < 16; ++y) {
-        for (int x = 0; x < 32; ++x) {
-            for (const int value : {x * 8, y * 16, 128}) text += static_cast<char>(value);
-        }
-    }
-    return text;
+    return pixmap(32, 16, [](int x, int y, int k) { return k == 2 ? 128 : k == 0 ? x * 8 : y * 16; });
 }
 
 class SceneTest : public FolderTest {

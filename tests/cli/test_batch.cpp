@@ -9,7 +9,7 @@
 #include <thread>
 
 #include "scene_fixture.h"
-#include "support/file_limit.h"
+#include "support/process_state.h"
 
 namespace astrosplat::test {
 namespace {

@@ -1,6 +1,7 @@
 // --submit slurm: scripts that any file name survives, chunks of what is missing, and both jobs or none.
 // Slurm's tools are stand-ins here, which keep what they were called with; tests/slurm has real ones.
 #include "scene_fixture.h"
+#include "support/errors.h"
 
 namespace astrosplat::test {
 namespace {
@@ -70,7 +71,7 @@ TEST_F(Submit, ADryRunPrintsBothScriptsAndDoesNothing) {
           "#SBATCH --job-name=astrosplat-scene\n", "#SBATCH --array=0-2\n",
           "#SBATCH --partition=long,short\n", "#SBATCH --cpus-per-task=1\n", "#SBATCH --requeue\n",
           " --frames=1-5 --sets-only\n", " --frames=\"${frames[SLURM_ARRAY_TASK_ID]}\" --resume\n"})
-        EXPECT_NE(result.out.find(line), std::string::npos) << line << result.out;
+        EXPECT_HAS(result.out, line) << line << result.out;
     // The estimate, and a half more.
     const std::size_t at = result.out.find("#SBATCH --mem=") + 14;
     const int mebibytes = std::stoi(result.out.substr(at));
@@ -81,9 +82,7 @@ TEST_F(Submit, ADryRunPrintsBothScriptsAndDoesNothing) {
 TEST_F(Submit, TheArrayWaitsForTheSets) {
     const RunResult result = submit({"-q"});
     ASSERT_EQ(result.code, 0) << result.err;
-    EXPECT_NE(result.out.find("3 frames in 1 task submitted as job 2, which waits for the sets of job 1\n"),
-              std::string::npos)
-        << result.out;
+    EXPECT_HAS(result.out, "3 frames in 1 task submitted as job 2, which waits for the sets of job 1\n");
     const std::string place = (folder / "frames/slurm/0001").string();
     EXPECT_EQ(sbatch_call(1), (Words{place, "--parsable", "sets.sh"}));
     EXPECT_EQ(sbatch_call(2), (Words{place, "--parsable", "--dependency=afterok:1", "frames.sh"}));
@@ -134,7 +133,7 @@ TEST_F(Submit, FramesOfOtherSettingsAreReplacedOnlyWhenAsked) {
     expect_nothing_submitted(submit(other), "shot.0002.exr: holds a frame of other settings");
     ASSERT_EQ(submit({other[0], other[1], "--overwrite"}).code, 0);
     EXPECT_EQ(chunks(script("frames.sh")), "1-3");
-    EXPECT_NE(script("frames.sh").find(" --overwrite "), std::string::npos);
+    EXPECT_HAS(script("frames.sh"), " --overwrite ");
     EXPECT_EQ(script("sets.sh").find("--overwrite"), std::string::npos);
 }
 
@@ -208,13 +207,11 @@ TEST_F(Submit, WhatIsInTheQueueIsNotSubmittedAgain) {
                "2 1 RUNNING somebody-else\n");
     const RunResult second = submit({"-f", "1-9"});
     EXPECT_EQ(second.code, 0) << second.err;
-    EXPECT_NE(second.out.find("4 frames in the queue already, as job 2\n"), std::string::npos) << second.out;
+    EXPECT_HAS(second.out, "4 frames in the queue already, as job 2\n");
     EXPECT_EQ(chunks(script("frames.sh", 2)), "1-4,9");
     const RunResult third = submit({"-f", "5-8"});
     EXPECT_EQ(third.code, 0) << third.err;
-    EXPECT_NE(third.out.find("no frame is missing that is not in the queue: nothing to submit\n"),
-              std::string::npos)
-        << third.out;
+    EXPECT_HAS(third.out, "no frame is missing that is not in the queue: nothing to submit\n");
     const RunResult other = submit({"-f", "9", "--set", "layer.stars.render.opacity=0.5"});
     expect_one_line(other, 2, "job 2 still makes these frames with other options");
     EXPECT_EQ(submit({"-f", "1", "-o", "frames/other.#.exr", "--set", "layer.stars.render.opacity=0.5"}).code,
@@ -229,15 +226,13 @@ TEST_F(Submit, StatusTellsTheQueue) {
     };
     EXPECT_EQ(status({}).out.find("queue"), std::string::npos);
     ASSERT_EQ(submit({"--chunk", "1"}).code, 0);
-    EXPECT_NE(status({}).out.find("\nqueue job 2, 3 tasks: over\n"), std::string::npos) << status({}).out;
+    EXPECT_HAS(status({}).out, "\nqueue job 2, 3 tasks: over\n");
     write_text(
         folder / "bin/queue",
         "1 N/A RUNNING astrosplat-scene-sets\n2 0 PENDING astrosplat-scene\n2 1 FAILED astrosplat-scene\n"
         "2 2 PENDING astrosplat-scene\n");
-    EXPECT_NE(
-        status({}).out.find("\nqueue job 1, the sets: RUNNING\nqueue job 2, 3 tasks: 1 FAILED, 2 PENDING\n"),
-        std::string::npos)
-        << status({}).out;
+    EXPECT_HAS(status({}).out,
+               "\nqueue job 1, the sets: RUNNING\nqueue job 2, 3 tasks: 1 FAILED, 2 PENDING\n");
     const nlohmann::json report = nlohmann::json::parse(status({"--json"}).out);
     EXPECT_EQ(report.at("queue").at(0).at("tasks"), (nlohmann::json{{"FAILED", 1}, {"PENDING", 2}}));
     EXPECT_EQ(report.at("queue").at(0).at("sets"), "RUNNING");
@@ -247,9 +242,9 @@ TEST_F(Submit, StatusTellsTheQueue) {
     // Other frames have no queue; a queue that cannot be asked is no fault of the frames.
     EXPECT_EQ(status({"-o", "frames/other.#.exr"}).out.find("queue"), std::string::npos);
     fs::remove(folder / "bin/squeue");
-    EXPECT_NE(status({}).out.find("\nqueue unknown: squeue is not on the PATH\n"), std::string::npos);
+    EXPECT_HAS(status({}).out, "\nqueue unknown: squeue is not on the PATH\n");
     write_text(folder / "frames/slurm/0001/submission.json", "{");
-    EXPECT_NE(status({}).err.find("is no record of a submission"), std::string::npos);
+    EXPECT_HAS(status({}).err, "is no record of a submission");
 }
 
 TEST_F(Submit, BothJobsOrNone) {
@@ -291,7 +286,7 @@ TEST_F(Submit, SetsOnlyFillsTheCacheAndRendersNothing) {
     EXPECT_EQ(result.code, 0) << result.err;
     EXPECT_EQ(result.out, "");
     EXPECT_FALSE(fs::exists(folder / "f.01.exr"));
-    EXPECT_NE(result.err.find("layer columns: "), std::string::npos) << result.err;
+    EXPECT_HAS(result.err, "layer columns: ");
     ASSERT_EQ(batch({"-q", "-f", "1", "--stats", "stats.json"}).code, 0);
     const nlohmann::json stats = json("stats.json");
     EXPECT_EQ(stats.at("layers").size(), 2u);

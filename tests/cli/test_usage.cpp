@@ -1,10 +1,14 @@
-// Help, version, and every way to call the program wrongly: one line, exit code 2, nothing written.
+// How the program is called: help, names, refusals, libraries.
+
 #include <regex>
 
+#include "cli/scene_fixture.h"
 #include "scene_fixture.h"
 
 namespace astrosplat::test {
 namespace {
+
+// Help, version, and every way to call the program wrongly: one line, exit code 2, nothing written.
 
 class Usage : public SceneTest {};
 
@@ -125,6 +129,119 @@ TEST_F(Usage, SeveralFramesNeedAFrameToken) {
     expect_one_line(batch({"-o", "one.exr"}), 2, "one.exr");
     EXPECT_EQ(batch({"-o", "one.exr", "-f", "2"}).code, 0);
     EXPECT_TRUE(fs::exists(folder / "one.exr"));
+}
+
+// Short names of looks and scenes: beside the scene, then the person's own, then those that come with the
+// program.
+
+class Names : public SceneTest {
+  protected:
+    static std::string look(const std::string& opacity) {
+        return "astrosplat = 1\n[render]\nopacity = " + opacity + "\n";
+    }
+    void write_scene_with(const std::string& preset) {
+        write_text(folder / "named.toml",
+                   "astrosplat = 1\n[output]\nresolution = [32, 24]\npath = \"n.exr\"\nframes = "
+                   "\"1\"\n[camera]\nposition = [0, 0, 9]\n[[layer]]\nname = "
+                   "\"a\"\npreset = \"" +
+                       preset +
+                       "\"\n[layer.source]\nkind = "
+                       "\"splats\"\nfile = \"stars.pda\"\n");
+    }
+    RunOptions own_data() const {
+        RunOptions options;
+        options.environment = {"XDG_DATA_HOME=" + (folder / "data ö").string()};
+        return options;
+    }
+    /// Hash of the frame's pixels.
+    std::string pixels() const {
+        const RunResult result =
+            run({"--batch", "named.toml", "--overwrite", "-q", "--stats", "s.json"}, own_data());
+        EXPECT_EQ(result.code, 0) << result.err;
+        return json("s.json").at("frames").at(0).at("sha256");
+    }
+};
+
+TEST_F(Names, OfLooksAreFoundBesideTheSceneThenThePersonsThenThePrograms) {
+    write_scene_with("s106");
+    const std::string shipped = pixels();
+    write_text(folder / "data ö/astrosplat/looks/s106.toml", look("0.5"));
+    const std::string own = pixels();
+    EXPECT_NE(own, shipped);
+    write_text(folder / "s106.toml", look("0.25"));
+    const std::string beside = pixels();
+    EXPECT_NE(beside, own);
+    EXPECT_NE(beside, shipped);
+    write_scene_with("data ö/astrosplat/looks/s106.toml");
+    EXPECT_EQ(pixels(), own) << "a file's name means that file";
+}
+
+TEST_F(Names, ThatAreNotKnownNameThoseThatAre) {
+    write_scene_with("s107");
+    write_text(folder / "data ö/astrosplat/looks/mine.toml", look("0.5"));
+    const RunResult result = run({"--batch", "named.toml"}, own_data());
+    EXPECT_EQ(result.code, 2);
+    EXPECT_NE(result.err.find("by name: m51, mine, s106"), std::string::npos) << result.err;
+    write_scene_with("s106.tom");
+    EXPECT_EQ(run({"--batch", "named.toml"}, own_data()).code, 2) << "an ending makes it a file";
+}
+
+TEST_F(Names, OfScenes) {
+    const RunResult known = run({"--batch", "spiral", "--dry-run", "-f", "1", "-o", "a.exr"}, own_data());
+    EXPECT_EQ(known.code, 0) << known.err;
+    EXPECT_NE(known.out.find("scenes/spiral.toml"), std::string::npos) << known.out;
+    EXPECT_EQ(run({"--batch", "scene", "--dry-run"}, own_data()).code, 0) << "beside";
+    const RunResult unknown = run({"--batch", "spirale", "--dry-run"}, own_data());
+    EXPECT_EQ(unknown.code, 2);
+}
+
+// The libraries that the program loads when it starts.
+
+class Start : public SceneTest {
+  protected:
+    void SetUp() override {
+        SceneTest::SetUp();
+#if !defined(__x86_64__) || defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+        GTEST_SKIP() << "only x86-64 without sanitizers has the lazy loader";
+#endif
+    }
+
+    /// The libraries that the dynamic linker loaded during a run, by its own account.
+    std::string libraries_of(const std::vector<std::string>& arguments) const {
+        const fs::path report = folder / ("libraries of " + arguments[0]);
+        fs::remove_all(report);
+        fs::create_directories(report);
+        const std::string output = "LD_DEBUG_OUTPUT=" + (report / "report").string();
+        RunOptions options;
+        options.environment = {"LD_DEBUG=files", output};
+        EXPECT_EQ(run(arguments, options).code, 0);
+        std::string text;
+        for (const auto& entry : fs::directory_iterator(report)) text += text_of(entry.path());
+        return text;
+    }
+};
+
+// With all that it needs OpenImageIO is 250 libraries, a fifth of a second and 100 MB.
+TEST_F(Start, ThePictureLibraryWaitsForTheFirstPicture) {
+    write_text(folder / "picture.ppm", small_picture());
+    const std::string library = "libOpenImageIO.so", colors = "libOpenColorIO.so";
+    EXPECT_NE(libraries_of({"info", "picture.ppm"}).find(library), std::string::npos);
+    const std::string without = libraries_of({"parameters"});
+    EXPECT_NE(without.find("libc.so"), std::string::npos);
+    EXPECT_EQ(without.find(library), std::string::npos);
+    EXPECT_EQ(without.find(colors), std::string::npos);
+    EXPECT_EQ(libraries_of({"info", "stars.pda"}).find(library), std::string::npos);
+}
+
+TEST_F(Start, FramesAreWrittenAndResumedWithoutIt) {
+    for (const char* file : {"frame.exr", "frame.png", "frame.tif"}) {
+        for (const char* how : {"--overwrite", "--resume"}) {
+            const std::string loaded =
+                libraries_of({"--batch", "scene.toml", "--frames", "1", "--output", file, how});
+            EXPECT_NE(loaded.find("libc.so"), std::string::npos);
+            EXPECT_EQ(loaded.find("libOpenImageIO.so"), std::string::npos) << file << " " << how;
+        }
+    }
 }
 
 }  // namespace

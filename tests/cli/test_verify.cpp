@@ -1,7 +1,6 @@
 // verify: each of its four verdicts, for every format, pairs, parts of frames, and frames of older versions.
 #include <cmath>
 #include <cstring>
-#include <regex>
 
 #include "scene_fixture.h"
 

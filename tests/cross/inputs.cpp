@@ -6,20 +6,11 @@
 #include "splat_files/native.h"
 #include "splat_files/splat_file.h"
 #include "support/capture.h"
+#include "support/pixmap.h"
 #include "support/temp_folder.h"
 
 namespace astrosplat::test {
 namespace {
-
-/// A binary portable pixmap of value(x, y, channel), 0 to 255.
-template <class F>
-std::string pixmap(int width, int height, const F& value) {
-    std::string text = fmt::format("P6\n{} {}\n255\n", width, height);
-    for (int y = 0; y < height; ++y)
-        for (int x = 0; x < width; ++x)
-            for (int k = 0; k < 3; ++k) text += static_cast<char>(static_cast<unsigned char>(value(x, y, k)));
-    return text;
-}
 
 /// No two places alike, and dim enough that twice its light is still below white.
 std::string sky_picture(int width, int height, int number) {

@@ -1,7 +1,5 @@
 #include "cross/rendering.h"
 
-#include <utility>
-
 #include "camera/camera.h"
 #include "core/parallel.h"
 #include "cross/inputs.h"

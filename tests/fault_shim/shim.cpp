@@ -201,34 +201,17 @@ ssize_t writev(int file, const iovec* parts, int count) {
 }
 
 // --- open ---
-int open(const char* path, int flags, ...) {
-    va_list arguments;
-    va_start(arguments, flags);
-    const mode_t mode = mode_of(flags, arguments);
-    va_end(arguments);
-    return opened(AT_FDCWD, path, flags, mode);
-}
-int open64(const char* path, int flags, ...) {
-    va_list arguments;
-    va_start(arguments, flags);
-    const mode_t mode = mode_of(flags, arguments);
-    va_end(arguments);
-    return opened(AT_FDCWD, path, flags, mode);
-}
-int openat(int folder, const char* path, int flags, ...) {
-    va_list arguments;
-    va_start(arguments, flags);
-    const mode_t mode = mode_of(flags, arguments);
-    va_end(arguments);
-    return opened(folder, path, flags, mode);
-}
-int openat64(int folder, const char* path, int flags, ...) {
-    va_list arguments;
-    va_start(arguments, flags);
-    const mode_t mode = mode_of(flags, arguments);
-    va_end(arguments);
-    return opened(folder, path, flags, mode);
-}
+// With the mode among the arguments where the flags ask for one.
+#define RETURN_OPENED(folder)                      \
+    va_list arguments;                             \
+    va_start(arguments, flags);                    \
+    const mode_t mode = mode_of(flags, arguments); \
+    va_end(arguments);                             \
+    return opened(folder, path, flags, mode)
+int open(const char* path, int flags, ...) { RETURN_OPENED(AT_FDCWD); }
+int open64(const char* path, int flags, ...) { RETURN_OPENED(AT_FDCWD); }
+int openat(int folder, const char* path, int flags, ...) { RETURN_OPENED(folder); }
+int openat64(int folder, const char* path, int flags, ...) { RETURN_OPENED(folder); }
 FILE* fopen(const char* path, const char* mode) {
     if (fails_with_errno(Kind::open)) return nullptr;
     static const auto real = next<FILE* (*)(const char*, const char*)>("fopen");

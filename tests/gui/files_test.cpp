@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <set>
+#include <sstream>
 
 #include "gui/file_list.h"
 #include "gui/file_queries.h"
@@ -62,21 +63,11 @@ TEST(FileList, SortsByTimeAndSizeAndBackwards) {
 }
 
 TEST(FileList, NumbersInNamesCount) {
-    const std::vector<std::string> in_order{"10 a",
-                                            "a",
-                                            "p",
-                                            "p.png",
-                                            "p2.png",
-                                            "p9.png",
-                                            "p010.png",
-                                            "p10.png",
-                                            "P10b.png",
-                                            "p11.png",
-                                            "p100.2.png",
-                                            "p100.10.png",
-                                            "pa",
-                                            "q99999999999999999998",
-                                            "q99999999999999999999"};
+    std::istringstream names_in_order(
+        "10 a|a|p|p.png|p2.png|p9.png|p010.png|p10.png|P10b.png|p11.png|p100.2.png|p100.10.png|pa|"
+        "q99999999999999999998|q99999999999999999999");
+    std::vector<std::string> in_order;
+    for (std::string name; std::getline(names_in_order, name, '|');) in_order.push_back(name);
     std::vector<FileEntry> entries;
     for (const std::string& name : in_order) entries.push_back({name, false, 0, {}});
     std::ranges::reverse(entries);
@@ -179,13 +170,29 @@ class FileDialogTest : public testing::Test {
         window.tap('A', true);
         window.type(path);
     }
+    void begin(const std::string& command) {
+        window.choose(command);
+        window.frame(2);
+    }
+    /// The dialog of a command, led to a file or folder by its path.
+    void begin_at(const std::string& command, const std::filesystem::path& place) {
+        begin(command);
+        type_path(place.string());
+        window.tap(key_code::enter);
+        window.frame(2);
+    }
+    /// Where the one command that came leads.
+    fs::path taken() {
+        const Commands commands = window.take_commands();
+        EXPECT_EQ(commands.size(), 1U);
+        return commands.empty() ? fs::path() : commands[0].path;
+    }
     TempFolder folder;
     TestWindow window;
 };
 
 TEST_F(FileDialogTest, TabCompletesAndEnterGoesIntoAFolder) {
-    window.choose("File/Open...");
-    window.frame(2);
+    begin("File/Open...");
     type_path(folder.path().string() + "/sc");
     window.tap(key_code::tab);
     window.tap(key_code::enter);
@@ -201,11 +208,7 @@ TEST_F(FileDialogTest, TabCompletesAndEnterGoesIntoAFolder) {
 
 TEST_F(FileDialogTest, OtherFilesAreListedWhereAllAreAskedFor) {
     folder.file("scenes/notes.txt", "");
-    window.choose("File/Open...");
-    window.frame(2);
-    type_path((folder / "scenes").string());
-    window.tap(key_code::enter);
-    window.frame(2);
+    begin_at("File/Open...", folder / "scenes");
     EXPECT_TRUE(window.has("file/old.toml"));
     EXPECT_FALSE(window.has("file/notes.txt"));
 }
@@ -218,11 +221,7 @@ TEST_F(FileDialogTest, SizesHaveTheUnitThatKeepsThemShort) {
                                                             {"e.toml", 2000000000}};
     for (const auto& [name, size] : files)
         fs::resize_file(folder.file(std::string("scenes/") + name, ""), size);
-    window.choose("File/Open...");
-    window.frame(2);
-    type_path((folder / "scenes").string());
-    window.tap(key_code::enter);
-    window.frame(2);
+    begin_at("File/Open...", folder / "scenes");
     const glm::vec2 first = window.at("file/a.toml"), last = window.at("file/e.toml");
     const int top = static_cast<int>(first.y) - 12, bottom = static_cast<int>(last.y) + 12;
     expect_like_reference("file_sizes", cropped(window.picture(Style::schematic),
@@ -231,11 +230,7 @@ TEST_F(FileDialogTest, SizesHaveTheUnitThatKeepsThemShort) {
 
 TEST_F(FileDialogTest, AColumnSortsAndClickedAgainTheOtherWayRound) {
     folder.file("scenes/new.toml", "12345");
-    window.choose("File/Open...");
-    window.frame(2);
-    type_path((folder / "scenes").string());
-    window.tap(key_code::enter);
-    window.frame(2);
+    begin_at("File/Open...", folder / "scenes");
     const auto old_is_first = [&] { return window.at("file/old.toml").y < window.at("file/new.toml").y; };
     EXPECT_FALSE(old_is_first());
     window.click("file/by Size");
@@ -248,15 +243,13 @@ TEST_F(FileDialogTest, AColumnSortsAndClickedAgainTheOtherWayRound) {
 
 TEST_F(FileDialogTest, FoldersThatFilesWereChosenInArePlaces) {
     const std::string place = "place/" + (folder / "scenes").string();
-    window.choose("File/Open...");
-    window.frame(2);
+    begin("File/Open...");
     EXPECT_FALSE(window.has(place));
     type_path((folder / "scenes/old.toml").string());
     window.tap(key_code::enter);
     window.frame(2);
     window.take_commands();
-    window.choose("File/Open...");
-    window.frame(2);
+    begin("File/Open...");
     window.click(place);
     window.frame(2);
     EXPECT_TRUE(window.has("file/old.toml"));
@@ -267,11 +260,7 @@ TEST_F(FileDialogTest, PicturesAreListedAsTheyLook) {
     for (const char* name : {"a.png", "b.png", "c.FITS", "d.txt"})
         folder.file(std::string("scenes/") + name, "");
     fs::create_directory(folder / "scenes/more");
-    window.choose("File/Import as a layer...");
-    window.frame(2);
-    type_path((folder / "scenes").string());
-    window.tap(key_code::enter);
-    window.frame(2);
+    begin_at("File/Import as a layer...", folder / "scenes");
     const std::vector<ListedPicture> listed = window.view.listed_pictures;
     ASSERT_EQ(listed.size(), 3U);
     EXPECT_EQ(listed[0].file, folder / "scenes/a.png");
@@ -294,11 +283,7 @@ TEST_F(FileDialogTest, PicturesAreListedAsTheyLook) {
 
 TEST_F(FileDialogTest, OfAFolderOfThousandsOnlyRowsThatAreSeenAreDrawn) {
     for (int i = 0; i < 3000; ++i) folder.file("scenes/frame" + std::to_string(10000 + i) + ".png", "");
-    window.choose("File/Import as a layer...");
-    window.frame(2);
-    type_path((folder / "scenes").string());
-    window.tap(key_code::enter);
-    window.frame(2);
+    begin_at("File/Import as a layer...", folder / "scenes");
     EXPECT_TRUE(window.has("file/frame10000.png"));
     EXPECT_FALSE(window.has("file/frame10100.png"));
     EXPECT_LT(window.view.listed_pictures.size(), 12U);
@@ -323,11 +308,7 @@ TEST_F(FileDialogTest, ADoubleClickOnAFolderOnlyEntersIt) {
         window.release();
         window.frame();
     };
-    window.choose("File/Open...");
-    window.frame(2);
-    type_path((folder / "scenes").string());
-    window.tap(key_code::enter);
-    window.frame(4);
+    begin_at("File/Open...", folder / "scenes");
     double_click(window.at("file/deep"));
     window.frame(2);
     EXPECT_TRUE(window.has("file/deeper"));
@@ -345,11 +326,7 @@ TEST_F(FileDialogTest, ADoubleClickOnAFolderOnlyEntersIt) {
 
 TEST_F(FileDialogTest, UpAndDownChooseAndTheListFollows) {
     for (int i = 0; i < 200; ++i) folder.file("scenes/shot" + std::to_string(100 + i) + ".png", "");
-    window.choose("File/Import as a layer...");
-    window.frame(2);
-    type_path((folder / "scenes").string());
-    window.tap(key_code::enter);
-    window.frame(4);
+    begin_at("File/Import as a layer...", folder / "scenes");
     EXPECT_FALSE(window.has("file/shot250.png"));
     window.type("SHOT250");
     window.frame(2);
@@ -366,8 +343,7 @@ TEST_F(FileDialogTest, UpAndDownChooseAndTheListFollows) {
 }
 
 TEST_F(FileDialogTest, AMissingFileIsSaid) {
-    window.choose("File/Open...");
-    window.frame(2);
+    begin("File/Open...");
     type_path((folder / "nothing.toml").string());
     window.click("file/Open");
     EXPECT_TRUE(window.has("file/path"));
@@ -375,27 +351,18 @@ TEST_F(FileDialogTest, AMissingFileIsSaid) {
 }
 
 TEST_F(FileDialogTest, ReplacingIsAsked) {
-    window.choose("File/Save as...");
-    window.frame(2);
+    begin("File/Save as...");
     type_path((folder / "scenes/old.toml").string());
     window.click("file/Save");
     EXPECT_TRUE(window.take_commands().empty());
     window.keep_screen("replace");
     window.click("file/Replace");
-    const Commands commands = window.take_commands();
-    ASSERT_EQ(commands.size(), 1U);
-    EXPECT_EQ(commands[0].path, folder / "scenes/old.toml");
+    EXPECT_EQ(taken(), folder / "scenes/old.toml");
 }
 
 TEST_F(FileDialogTest, TheExtensionIsAdded) {
-    window.choose("File/Save as...");
-    window.frame(2);
-    type_path((folder / "new").string());
-    window.tap(key_code::enter);
-    window.frame(2);
-    const Commands commands = window.take_commands();
-    ASSERT_EQ(commands.size(), 1U);
-    EXPECT_EQ(commands[0].path, folder / "new.toml");
+    begin_at("File/Save as...", folder / "new");
+    EXPECT_EQ(taken(), folder / "new.toml");
 }
 
 }  // namespace

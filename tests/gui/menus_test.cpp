@@ -1,21 +1,28 @@
-// Menus: every item can be reached and becomes its command, or a question for a file.
+// Where things lie, menus and settings.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <tuple>
+#include <utility>
 
+#include "core/color.h"
+#include "core/real.h"
 #include "edit/camera_moves.h"
 #include "gui/actions.h"
 #include "gui/key_codes.h"
 #include "gui/test_window.h"
+#include "gui/theme.h"
 
 namespace astrosplat {
 namespace {
 
+// Menus: every item can be reached and becomes its command, or a question for a file.
+
 using Kind = Command::Kind;
 
-TEST(Menus, EveryItemCanBeReached) {
-    TestWindow window(example_document());
+class MenusTest : public ExampleWindow {};
+
+TEST_F(MenusTest, EveryItemCanBeReached) {
     for (const Action& action : actions()) {
         const std::string path = std::string(action.menu) + "/" + action.label;
         if (path.front() == '/') continue;  // keys only
@@ -32,7 +39,7 @@ TEST(Menus, EveryItemCanBeReached) {
     }
 }
 
-TEST(Menus, ItemsBecomeCommands) {
+TEST(MenusOfAnother, ItemsBecomeCommands) {
     const std::vector<std::pair<std::string, Kind>> expected{
         {"File/Open the demo", Kind::open_demo},
         {"Edit/Store as B", Kind::store_b},
@@ -49,7 +56,7 @@ TEST(Menus, ItemsBecomeCommands) {
     }
 }
 
-TEST(Menus, ItemsWithoutAFileAskForIt) {
+TEST(MenusOfAnother, ItemsWithoutAFileAskForIt) {
     for (const std::string path :
          {"File/New from picture...", "File/Open...", "File/Save", "File/Save as...",
           "File/Import as a layer...", "File/Import camera...", "File/Export camera...",
@@ -65,8 +72,7 @@ TEST(Menus, ItemsWithoutAFileAskForIt) {
     }
 }
 
-TEST(Menus, NewScenesBeginEmptyOrWithAShape) {
-    TestWindow window(example_document());
+TEST_F(MenusTest, NewScenesBeginEmptyOrWithAShape) {
     for (const auto& [path, text] : {std::pair{"File/New/Empty scene", ""}, {"File/New/Ring", "ring"}}) {
         window.click("File");
         window.move(window.at("File/New"));
@@ -84,8 +90,7 @@ TEST(Menus, NewScenesBeginEmptyOrWithAShape) {
     EXPECT_TRUE(window.take_commands().empty()) << "what is not saved is asked about";
 }
 
-TEST(Menus, AMeshWithoutAPictureOffersToChooseOne) {
-    TestWindow window(example_document());
+TEST_F(MenusTest, AMeshWithoutAPictureOffersToChooseOne) {
     window.view.grey_layer = "stars";
     window.frame(2);
     window.click("notice/Choose a picture...");
@@ -98,8 +103,7 @@ TEST(Menus, AMeshWithoutAPictureOffersToChooseOne) {
     EXPECT_FALSE(window.has("notice/Keep grey"));
 }
 
-TEST(Menus, RecentFilesOpen) {
-    TestWindow window(example_document());
+TEST_F(MenusTest, RecentFilesOpen) {
     window.click("File");
     window.move(window.at("File/Open recent"));
     window.frame(30);
@@ -109,8 +113,7 @@ TEST(Menus, RecentFilesOpen) {
     EXPECT_EQ(commands[0].path, "/scenes/nebula.toml");
 }
 
-TEST(Menus, LayersMoveAsFarAsTheListGoes) {
-    TestWindow window(example_document());
+TEST_F(MenusTest, LayersMoveAsFarAsTheListGoes) {
     const auto names = [&] {
         std::vector<std::string> list;
         for (const LayerParams& layer : window.document.scene().layers) list.push_back(layer.name);
@@ -139,8 +142,7 @@ void choose_move(TestWindow& window, const std::string& name) {
     window.frame(3);
 }
 
-TEST(Menus, ADomeMasterIsASquareFisheye) {
-    TestWindow window(example_document());
+TEST_F(MenusTest, ADomeMasterIsASquareFisheye) {
     window.click("Camera");
     window.move(window.at("Camera/Dome master"));
     window.frame(30);
@@ -155,8 +157,7 @@ TEST(Menus, ADomeMasterIsASquareFisheye) {
     EXPECT_TRUE(window.view.safe_areas);
 }
 
-TEST(Menus, CameraMoves) {
-    TestWindow window(example_document());
+TEST_F(MenusTest, CameraMoves) {
     window.view.frame = 240;  // no keyframe of the camera comes later
     choose_move(window, "Fly in");
     const Commands commands = window.take_commands();
@@ -164,8 +165,7 @@ TEST(Menus, CameraMoves) {
     EXPECT_EQ(commands[0].index, static_cast<std::size_t>(CameraMove::fly_in));
 }
 
-TEST(Menus, AMoveAsksAboutLaterKeyframes) {
-    TestWindow window(example_document());
+TEST_F(MenusTest, AMoveAsksAboutLaterKeyframes) {
     window.view.frame = 24;
     choose_move(window, "Orbit");
     EXPECT_TRUE(window.take_commands().empty());
@@ -184,6 +184,158 @@ TEST(Menus, AMoveAsksAboutLaterKeyframes) {
     window.frame(2);
     EXPECT_TRUE(window.take_commands().empty());
     EXPECT_FALSE(window.view.asked_move);
+}
+
+class SettingsDialogTest : public ExampleWindow {};
+
+// Edit > Settings: every choice of every row is taken, and kept when the dialog closes.
+TEST_F(SettingsDialogTest, EveryChoiceCanBeClicked) {
+    window.choose("Edit/Settings...");
+    window.frame(2);
+    for (const SettingRow& row : setting_rows())
+        for (std::size_t i = row.choices.size(); i-- > 0;) {
+            window.click(std::string("settings/") + row.name + "/" + row.choices[i].label);
+            EXPECT_EQ(window.view.settings.*row.value, row.choices[i].value) << row.name;
+        }
+    EXPECT_NE(window.view.settings, Settings());
+    window.click("settings/threads/2");
+    window.click("settings/Done");
+    EXPECT_FALSE(window.view.settings_open);
+    EXPECT_EQ(kinds(window.take_commands()), std::vector<Kind>{Kind::keep_settings});
+    EXPECT_EQ(window.view.settings.threads, 2);
+}
+
+TEST_F(SettingsDialogTest, TheCacheFolderIsTyped) {
+    window.choose("Edit/Settings...");
+    window.frame(2);
+    window.click("settings/cache_folder");
+    window.type("/a/folder");
+    EXPECT_EQ(window.view.settings.cache_folder, "/a/folder");
+    window.click("settings/Done");
+    EXPECT_EQ(kinds(window.take_commands()), std::vector<Kind>{Kind::keep_settings});
+}
+
+/// W3C's WCAG 2.1, "relative luminance" and "contrast ratio".
+double luminance(ImU32 c) {
+    double sum = 0.0;
+    for (const auto& [shift, weight] :
+         {std::pair{IM_COL32_R_SHIFT, 0.2126}, {IM_COL32_G_SHIFT, 0.7152}, {IM_COL32_B_SHIFT, 0.0722}})
+        sum += weight * real::srgb_to_linear(double(c >> shift & 255) / 255.0);
+    return sum;
+}
+double contrast(ImU32 a, ImU32 b) {
+    const double one = luminance(a), other = luminance(b);
+    return (std::max(one, other) + 0.05) / (std::min(one, other) + 0.05);
+}
+
+// The levels AA for normal, AAA for high contrast.
+TEST(Contrast, IsAsHighAsSaid) {
+    TestWindow window(example_document());
+    for (const int level : {0, 1}) {
+        set_contrast(level);
+        EXPECT_EQ(theme_contrast(), level);
+        for (const ImU32 back : {color::window, color::panel, color::field}) {
+            EXPECT_GT(contrast(color::text, back), level ? 12.0 : 7.0);
+            EXPECT_GT(contrast(color::dim, back), level ? 7.0 : 4.0);
+            EXPECT_GT(contrast(color::error, back), level ? 6.0 : 3.0);
+        }
+        EXPECT_GT(contrast(color::line, color::panel), level ? 3.0 : 1.0) << "WCAG 1.4.11";
+        EXPECT_EQ(ImGui::GetStyle().Colors[ImGuiCol_Text].x, color4(color::text).x);
+    }
+    const ImU32 high = color::dim;
+    set_contrast(0);
+    EXPECT_NE(color::dim, high);
+}
+
+TEST_F(SettingsDialogTest, EscapeClosesAndKeeps) {
+    window.choose("Edit/Settings...");
+    window.frame(2);
+    window.tap(key_code::escape);
+    window.frame(2);
+    EXPECT_FALSE(window.view.settings_open);
+    EXPECT_EQ(kinds(window.take_commands()), std::vector<Kind>{Kind::keep_settings});
+}
+
+// Where things lie, splitters, and the row of tools.
+
+TEST(Layout, CoversTheWindowWithoutGaps) {
+    ViewState view;
+    for (const bool panels : {true, false})
+        for (const bool snapshots : {true, false}) {
+            view.panels = panels;
+            view.snapshots_open = snapshots;
+            const Layout l = make_layout(view, 1600, 900, 1);
+            float area = 0;
+            for (const Rect& r :
+                 {l.menu, l.tools, l.notice, l.viewport, l.snapshots, l.panel, l.timeline, l.status})
+                area += r.width * r.height;
+            EXPECT_EQ(area, 1600.0f * 900.0f);
+        }
+}
+
+TEST(Layout, TheWindowKeepsToItAtOddScales) {
+    TestWindow window(example_document(), 1600, 1000, 1.25f);
+    const Rect viewport = make_layout(window.view, 1600, 1000, 1.25f).viewport;
+    EXPECT_EQ(window.at("frame in view"),
+              glm::vec2(viewport.x + viewport.width / 2, viewport.y + viewport.height / 2));
+}
+
+TEST(Layout, SplittersAreDraggedAndReset) {
+    TestWindow window(example_document());
+    window.drag(window.at("panel splitter"), {-100, 0});
+    EXPECT_NEAR(window.view.panel_width, 460, 1);
+    window.drag(window.at("panel splitter"), {-1000, 0});
+    EXPECT_EQ(window.view.panel_width, 520);
+    window.double_click(window.at("panel splitter"));
+    EXPECT_EQ(window.view.panel_width, 360);
+    window.drag(window.at("timeline splitter"), {0, -80});
+    EXPECT_NEAR(window.view.timeline_height, 228, 1);
+    window.click("fold timeline");
+    EXPECT_EQ(make_layout(window.view, 1600, 900, 1).timeline.height, 36);
+}
+
+TEST(Layout, APictureOfTheViewportsSizeIsShownPixelByPixel) {
+    const Rect viewport{0, 60, 1241, 667};
+    const Rect fit = place_frame(ViewState{}, viewport, 1241, 667);
+    EXPECT_EQ(fit.x, 0);
+    EXPECT_EQ(fit.y, 60);
+    EXPECT_EQ(fit.width, 1241);
+    ViewState view;
+    view.size = SizeMode::one_to_one;
+    view.pan_px = {10, -5};
+    view.zoom = 2;
+    const Rect zoomed = place_frame(view, {0, 0, 1000, 500}, 100, 50);
+    EXPECT_EQ(zoomed.x, 410);
+    EXPECT_EQ(zoomed.y, 195);
+    EXPECT_EQ(zoomed.width, 200);
+}
+
+/// In the smallest window, with the longest words.
+TEST(Tools, DoNotLieOverEachOther) {
+    TestWindow window(example_document(), 900, 600);
+    window.status.reference = ReferenceStatus{0, 1.5, ""};
+    window.view.compare_with = CompareWith::reference;
+    window.view.compare = CompareMode::difference;
+    window.frame(2);
+    EXPECT_LT(window.at("compare/Diff").x + 30.0f, window.at("more tools").x);
+    window.click("more tools");
+    window.frame(2);
+    EXPECT_TRUE(window.has("compare with"));
+    EXPECT_TRUE(window.has("place/Place"));
+}
+
+TEST(Tools, ChooseViewSizeAndComparison) {
+    TestWindow window(example_document());
+    window.click("view/Side");
+    EXPECT_EQ(window.view.view, ViewKind::side);
+    window.click("view/Camera");
+    EXPECT_EQ(window.view.view, ViewKind::camera);
+    window.click("size/1:1");
+    EXPECT_EQ(window.view.size, SizeMode::one_to_one);
+    window.click("compare/A|B");
+    EXPECT_EQ(window.view.compare, CompareMode::wipe);
+    window.click("compare/Diff");
+    EXPECT_EQ(window.view.compare, CompareMode::difference);
 }
 
 }  // namespace

@@ -1,10 +1,16 @@
-// Curves, levels and lists of the Look and Source tabs, driven by the mouse.
+// Curves, levels and lists of the panel, and a way to every parameter.
 #include <gtest/gtest.h>
 
+#include <set>
+
 #include "gui/panel_driver.h"
+#include "scene/describe.h"
+#include "support/temp_folder.h"
 
 namespace astrosplat {
 namespace {
+
+// Curves, levels and lists of the Look and Source tabs, driven by the mouse.
 
 const char* const curves_scene = R"(astrosplat = 1
 [[layer]]
@@ -28,8 +34,12 @@ glm::vec2 on_plot(const PanelDriver& d, float x, float y) {
     return {plot.x + x * plot.z, plot.y + plot.w - 2.0f - y * (plot.w - 5.0f)};
 }
 
-TEST(PanelCurves, AClickAddsAPointOneUndoStep) {
-    PanelDriver d(curves_scene);
+class PanelCurvesTest : public testing::Test {
+  protected:
+    PanelDriver d{curves_scene};
+};
+
+TEST_F(PanelCurvesTest, AClickAddsAPointOneUndoStep) {
     d.show(PanelTab::look);
     d.click(on_plot(d, 0.5f, 0.25f));
     ASSERT_EQ(curve(d).size(), 3u);
@@ -40,8 +50,7 @@ TEST(PanelCurves, AClickAddsAPointOneUndoStep) {
     EXPECT_FALSE(d.document.can_undo());
 }
 
-TEST(PanelCurves, ADragMovesAPointButNotPastItsNeighbours) {
-    PanelDriver d(curves_scene);
+TEST_F(PanelCurvesTest, ADragMovesAPointButNotPastItsNeighbours) {
     d.show(PanelTab::look);
     d.click(on_plot(d, 0.5f, 0.25f));
     const glm::vec2 from = on_plot(d, 0.5f, 0.25f);
@@ -56,8 +65,7 @@ TEST(PanelCurves, ADragMovesAPointButNotPastItsNeighbours) {
     EXPECT_NEAR(curve(d)[1].x, 0.75f, 0.01f);
 }
 
-TEST(PanelCurves, ARightClickDeletesDownToTwoPoints) {
-    PanelDriver d(curves_scene);
+TEST_F(PanelCurvesTest, ARightClickDeletesDownToTwoPoints) {
     d.show(PanelTab::look);
     d.click(on_plot(d, 0.5f, 0.25f));
     d.click(on_plot(d, 0.5f, 0.25f), 1);
@@ -66,8 +74,7 @@ TEST(PanelCurves, ARightClickDeletesDownToTwoPoints) {
     EXPECT_EQ(curve(d), (Points{{0.0f, 1.0f}, {1.0f, 0.0f}}));
 }
 
-TEST(PanelCurves, ArrowsNudgeTheSelectedPoint) {
-    PanelDriver d(curves_scene);
+TEST_F(PanelCurvesTest, ArrowsNudgeTheSelectedPoint) {
     d.show(PanelTab::look);
     d.click(on_plot(d, 0.5f, 0.25f));
     const glm::vec2 before = curve(d)[1];
@@ -77,8 +84,7 @@ TEST(PanelCurves, ArrowsNudgeTheSelectedPoint) {
     EXPECT_NEAR(curve(d)[1].y, before.y + 0.01f, 1e-5f);
 }
 
-TEST(PanelCurves, AtMostSixteenPoints) {
-    PanelDriver d(curves_scene);
+TEST_F(PanelCurvesTest, AtMostSixteenPoints) {
     d.show(PanelTab::look);
     for (int i = 0; i < 20; ++i)
         d.click(on_plot(d, 0.04f + 0.045f * static_cast<float>(i), i % 2 ? 0.3f : 0.7f));
@@ -99,7 +105,7 @@ void tell_values(PanelDriver& d, double lo, double hi) {
     d.status.layers[0].histograms = histograms;
 }
 
-TEST(PanelCurves, RowsOfLevelsAreDraggedAsFastAsTheDataIsWide) {
+TEST(PanelCurvesOfAnother, RowsOfLevelsAreDraggedAsFastAsTheDataIsWide) {
     for (const double wide : {1e-3, 1e5}) {
         PanelDriver d(curves_scene);
         tell_values(d, 0.0, wide);
@@ -110,8 +116,7 @@ TEST(PanelCurves, RowsOfLevelsAreDraggedAsFastAsTheDataIsWide) {
     }
 }
 
-TEST(PanelCurves, BlackAndWhiteAreDraggedOverTheHistogram) {
-    PanelDriver d(curves_scene);
+TEST_F(PanelCurvesTest, BlackAndWhiteAreDraggedOverTheHistogram) {
     tell_values(d, 0.0, 1000.0);
     d.show(PanelTab::source);
     EXPECT_EQ(d.value(black), Value("auto"));
@@ -126,6 +131,113 @@ TEST(PanelCurves, BlackAndWhiteAreDraggedOverTheHistogram) {
     d.document.undo();
     EXPECT_EQ(d.value(black), Value("auto"));
     EXPECT_FALSE(d.document.can_undo());
+}
+
+// Every parameter of the description can be reached in some tab, and its words lead to the right one.
+
+std::set<std::string> keys_drawn(const std::string& toml, const std::set<PanelTab>& tabs) {
+    PanelDriver d(toml, 360.0f, 900.0f);
+    d.status.reference = ReferenceStatus{0, 1.5, ""};
+    Scene scene = d.document.scene();
+    const Description description = describe(scene);
+    std::set<std::string> keys;
+    for (const PanelTab tab : tabs) {
+        d.show(tab);
+        for (const DrawnRow& row : d.panel.rows()) {
+            const Parameter* parameter = find_parameter(description, row.key);
+            if (parameter) keys.insert(parameter->spec.generic_key);
+        }
+    }
+    return keys;
+}
+
+const std::set<PanelTab> all_tabs{PanelTab::source, PanelTab::look,        PanelTab::mixing,
+                                  PanelTab::camera, PanelTab::environment, PanelTab::output};
+
+std::string layer(const std::string& source, const std::string& look, const std::string& render,
+                  const std::string& top = "") {
+    return "astrosplat = 1\n" + top + "[[layer]]\nname = \"a\"\n[layer.source]\n" + source +
+           "\n[layer.look]\n" + look + "\n[layer.render]\n" + render + "\n";
+}
+
+// Scenes that between them make every parameter matter.
+std::vector<std::string> telling_scenes() {
+    const std::string mesh = "meshes = [ { mesh = \"relief\", texture = \"a.fits\" } ]";
+    return {
+        layer(mesh,
+              "pdf = { shape = \"exponential\" }\nvertical = { shape = \"exponential\" }\n"
+              "noise = { cull = 0.5 }\ncrop = [ {}, { shape = \"sphere\" } ]",
+              "falloff = \"trapezoid\"\nblend = \"hybrid\""),
+        layer(mesh,
+              "pdf = { shape = \"gaussian\" }\nvertical = { shape = \"curve\", points = [[0, 1], [1, 0]] }\n"
+              "thickness = { map = \"m.png\", keys = [ { color = [1, 0, 0], shape = \"curve\", points = [[0, "
+              "1], [1, 0]] },"
+              "{ shape = \"exponential\" }, { shape = \"gaussian\" } ] }",
+              "",
+              "[camera]\nprojection = \"orthographic\"\nposition = [0, 0, 9]\n[[reference]]\nfile = "
+              "\"b.png\"\n"),
+        layer(mesh + "\nstructure = { kind = \"walls\" }", "", "blend = \"absorb\""),
+        layer("meshes = [ { mesh = \"sheet\" }, { mesh = \"hourglass\" }, { mesh = \"shell\" }, { mesh = "
+              "\"bubble\" },"
+              "{ mesh = \"spheroid\", shells = 3 }, { mesh = \"ring\" },"
+              "{ mesh = \"revolution\", outline = [[0, 0], [1, 1]] } ]\nuv = \"planar-xy\"\nuv_width = 5\n"
+              "mask = [ { ellipse = [0.5, 0.5, 0.2, 0.2], any = [ { ellipse = [0.5, 0.5, 0.2, 0.2] } ] } ]",
+              "", ""),
+        layer(mesh + "\nprepare = { stars = \"remove\", lupton = true, ellipse = [9, 9, 5, 5] }", "", ""),
+        layer(
+            mesh + "\nuv = \"camera\"\nuv_camera = { position = [0, 9, 0] }\nstructure = { kind = \"disk\" }",
+            "", ""),
+        layer("kind = \"splats\"\nfile = \"a.ply\"",
+              "pdf = { shape = \"gaussian\" }\nradius = { min = 0.1, max = 0.2 }", "",
+              "[camera]\nprojection = \"fisheye\"\n"),
+        layer("kind = \"stars\"\ncatalogue = \"c.csv\"\n"
+              "wings = { share = 0.1 }\nspikes = { share = 0.1 }",
+              "pdf = { shape = \"curve\", points = [[0, 1], [1, 0]] }", "",
+              "[camera]\nfocal_length = 50.0\nf_number = 2.0\n"),
+        layer("kind = \"stars\"\ncatalogue = \"stars.csv\"\nlike = \"b\"", "",
+              "[[layer]]\nname = \"b\"\n[layer.source]\n" + mesh),
+        layer("kind = \"stars\"\nalong = \"camera\"", "", "", "[camera]\nposition = [0, 0, 9]\n"),
+        layer("kind = \"splats\"\nfile = \"a.ply\"", "", "isolate = true",
+              "[output.ocio]\nconfig = \"c.ocio\"\n[camera]\nprojection = "
+              "\"cylindrical\"\n[environment]\ntile = \"t.png\"\n")};
+}
+
+TEST(PanelCoverage, EveryParameterIsInSomeTab) {
+    std::set<std::string> drawn;
+    for (const std::string& scene : telling_scenes()) drawn.merge(keys_drawn(scene, all_tabs));
+    const TempFolder folder;
+    const std::string camera = folder.file("a.chan", "1 0 0 9 0 0 0\n").string();
+    drawn.merge(keys_drawn(
+        layer("kind = \"splats\"\nfile = \"a.ply\"", "", "", "[camera]\nfile = \"" + camera + "\"\n"),
+        all_tabs));
+    for (const ParameterRow& row : parameter_rows())
+        EXPECT_TRUE(drawn.count(row.spec.generic_key)) << row.spec.generic_key << " is in no tab";
+}
+
+TEST(PanelCoverage, NoParameterIsDrawnTwiceInOneTab) {
+    for (const std::string& scene : telling_scenes()) {
+        PanelDriver d(scene);
+        for (const PanelTab tab : all_tabs) {
+            d.show(tab);
+            std::set<std::string> keys;
+            for (const DrawnRow& row : d.panel.rows()) EXPECT_TRUE(keys.insert(row.key).second) << row.key;
+        }
+    }
+}
+
+TEST(PanelCoverage, RowsKeepInsideThePanelFrom300To520Px) {
+    for (const float width : {300.0f, 360.0f, 520.0f}) {
+        PanelDriver d(telling_scenes()[0], width);
+        for (const PanelTab tab : all_tabs) {
+            d.show(tab);
+            for (const DrawnRow& row : d.panel.rows()) {
+                EXPECT_GT(row.label.x, 0.0f);
+                EXPECT_LT(row.value.x, width - 20.0f);
+                EXPECT_GT(row.value.x, row.label.x);
+                EXPECT_LT(row.diamond.x, width - 10.0f);
+            }
+        }
+    }
 }
 
 }  // namespace

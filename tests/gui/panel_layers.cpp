@@ -36,8 +36,12 @@ std::vector<std::string> names(const PanelDriver& d) {
 }
 using Names = std::vector<std::string>;
 
-TEST(PanelLayers, AClickSelectsAndTheEyeHides) {
-    PanelDriver d(layers_scene);
+class PanelLayersTest : public testing::Test {
+  protected:
+    PanelDriver d{layers_scene};
+};
+
+TEST_F(PanelLayersTest, AClickSelectsAndTheEyeHides) {
     d.click(at(1, name));
     EXPECT_EQ(d.view.layer, 1u);
     d.click(at(2, eye));
@@ -47,8 +51,7 @@ TEST(PanelLayers, AClickSelectsAndTheEyeHides) {
     EXPECT_TRUE(d.document.scene().layers[2].visible);
 }
 
-TEST(PanelLayers, SoloIsOfTheWindowHoldoutAndIsolateOfTheScene) {
-    PanelDriver d(layers_scene);
+TEST_F(PanelLayersTest, SoloIsOfTheWindowHoldoutAndIsolateOfTheScene) {
     d.click(at(1, solo));
     EXPECT_EQ(d.view.solo, std::set<std::string>{"dust"});
     EXPECT_FALSE(d.document.edited());
@@ -60,8 +63,7 @@ TEST(PanelLayers, SoloIsOfTheWindowHoldoutAndIsolateOfTheScene) {
     EXPECT_TRUE(d.view.solo.empty());
 }
 
-TEST(PanelLayers, ADoubleClickRenames) {
-    PanelDriver d(layers_scene);
+TEST_F(PanelLayersTest, ADoubleClickRenames) {
     d.click(at(1, solo));
     d.double_click(at(1, name));
     d.frames(2);
@@ -74,8 +76,7 @@ TEST(PanelLayers, ADoubleClickRenames) {
     EXPECT_EQ(names(d), (Names{"disk", "dust", "stars"}));
 }
 
-TEST(PanelLayers, ANameThatIsTakenIsRefused) {
-    PanelDriver d(layers_scene);
+TEST_F(PanelLayersTest, ANameThatIsTakenIsRefused) {
     d.double_click(at(1, name));
     d.frames(2);
     d.type("disk");
@@ -84,8 +85,7 @@ TEST(PanelLayers, ANameThatIsTakenIsRefused) {
     EXPECT_NE(d.panel.message().find("disk"), std::string::npos) << d.panel.message();
 }
 
-TEST(PanelLayers, DraggingChangesTheOrder) {
-    PanelDriver d(layers_scene);
+TEST_F(PanelLayersTest, DraggingChangesTheOrder) {
     d.drag(at(0, name), {0.0f, 56.0f});
     EXPECT_EQ(names(d), (Names{"dust", "stars", "disk"}));
     EXPECT_EQ(d.view.layer, 2u);
@@ -103,8 +103,7 @@ void choose(PanelDriver& d, int row, const std::string& item) {
     d.choose(item);
 }
 
-TEST(PanelLayers, TheMenuDuplicatesAndDeletes) {
-    PanelDriver d(layers_scene);
+TEST_F(PanelLayersTest, TheMenuDuplicatesAndDeletes) {
     choose(d, 0, "Duplicate");
     ASSERT_EQ(d.document.scene().layers.size(), 4u);
     EXPECT_FLOAT_EQ(d.document.scene().layers[d.view.layer].render.opacity, 0.5f);
@@ -112,8 +111,7 @@ TEST(PanelLayers, TheMenuDuplicatesAndDeletes) {
     EXPECT_EQ(d.document.scene().layers.size(), 3u);
 }
 
-TEST(PanelLayers, LooksAreCopiedAndGivenToAll) {
-    PanelDriver d(layers_scene);
+TEST_F(PanelLayersTest, LooksAreCopiedAndGivenToAll) {
     choose(d, 0, "Export look...");
     ASSERT_EQ(d.commands.size(), 1u);
     EXPECT_EQ(d.commands[0].kind, Command::Kind::save_look);
@@ -126,8 +124,7 @@ TEST(PanelLayers, LooksAreCopiedAndGivenToAll) {
     EXPECT_EQ(d.document.undo_name(), "Look of disk to all layers");
 }
 
-TEST(PanelLayers, PlusAsksForAFileOrTakesAShape) {
-    PanelDriver d(layers_scene);
+TEST_F(PanelLayersTest, PlusAsksForAFileOrTakesAShape) {
     d.click({360.0f - 19.0f, 16.0f});
     EXPECT_TRUE(d.commands.empty());
     d.choose("File...");
@@ -140,8 +137,7 @@ TEST(PanelLayers, PlusAsksForAFileOrTakesAShape) {
     EXPECT_EQ(d.commands[1].text, "sphere");
 }
 
-TEST(PanelLayers, NothingMovesUnderTheHeldMouse) {
-    PanelDriver d(layers_scene);
+TEST_F(PanelLayersTest, NothingMovesUnderTheHeldMouse) {
     d.status.layers.resize(3);
     d.show(PanelTab::source);
     const std::string count = "layer.disk.source.count";
@@ -159,7 +155,7 @@ TEST(PanelLayers, NothingMovesUnderTheHeldMouse) {
     EXPECT_NE(d.row(count).value, before) << "then there is room for the progress and the error";
 }
 
-TEST(PanelLayers, TheLastLayerCanBeDeleted) {
+TEST(PanelLayersOfAnother, TheLastLayerCanBeDeleted) {
     PanelDriver d(
         "astrosplat = 1\n[[layer]]\nname = \"only\"\n[layer.source]\nmeshes = [ { mesh = \"disk\" } ]\n");
     choose(d, 0, "Delete");
@@ -169,16 +165,14 @@ TEST(PanelLayers, TheLastLayerCanBeDeleted) {
     EXPECT_EQ(names(d), Names{"only"});
 }
 
-TEST(PanelLayers, AFileParametersAnswerIsAnEdit) {
-    PanelDriver d(layers_scene);
+TEST_F(PanelLayersTest, AFileParametersAnswerIsAnEdit) {
     const std::string key = "environment.image";
     d.panel.answer(key, "/nowhere/sky.png", d.frame());
     EXPECT_EQ(to_toml(d.value(key)), "\"/nowhere/sky.png\"");
     EXPECT_TRUE(d.commands.empty());
 }
 
-TEST(PanelLayers, LoadingCanBeCancelledAndStaleSetsMadeAnew) {
-    PanelDriver d(layers_scene);
+TEST_F(PanelLayersTest, LoadingCanBeCancelledAndStaleSetsMadeAnew) {
     d.status.layers.resize(3);
     d.status.layers[0].loading = true;
     d.status.layers[1].stale = true;
@@ -193,8 +187,7 @@ TEST(PanelLayers, LoadingCanBeCancelledAndStaleSetsMadeAnew) {
 }
 
 // A layer's parameters and the scene's are two panels, each with the tab it had last.
-TEST(PanelLayers, TheSceneHasAPanelOfItsOwn) {
-    PanelDriver d(layers_scene);
+TEST_F(PanelLayersTest, TheSceneHasAPanelOfItsOwn) {
     const glm::vec2 layers{45.0f, 16.0f}, scene{100.0f, 16.0f};
     d.show(PanelTab::mixing);
     d.click(scene);

@@ -1,14 +1,15 @@
-// Rows of the side panel, driven by mouse and keyboard: what is dragged, typed, animated and reset arrives in
-// the document, as one undo step each.
+// Rows of the side panel, driven by mouse and keyboard, and their values in words.
 #include <gtest/gtest.h>
 
-#include <set>
-
 #include "edit/keyframes.h"
+#include "gui/panel/words.h"
 #include "gui/panel_driver.h"
 
-namespace astrosplat {
+namespace astrosplat::panel {
 namespace {
+
+// Rows of the side panel, driven by mouse and keyboard: what is dragged, typed, animated and reset arrives in
+// the document, as one undo step each.
 
 const char* const rows_scene = R"(astrosplat = 1
 [[layer]]
@@ -20,8 +21,12 @@ meshes = [ { mesh = "plane", texture = "dust.png" } ]
 const std::string power = "layer.dust.look.alpha.power", opacity = "layer.dust.render.opacity",
                   gain = "layer.dust.look.grade.gain", density = "layer.dust.look.density";
 
-TEST(PanelRows, DraggingAValueIsOneUndoStep) {
-    PanelDriver d(rows_scene);
+class PanelRowsTest : public testing::Test {
+  protected:
+    PanelDriver d{rows_scene};
+};
+
+TEST_F(PanelRowsTest, DraggingAValueIsOneUndoStep) {
     d.show(PanelTab::mixing);
     const double before = d.value(opacity).number();
     d.drag(d.row(opacity).value, {-50.0f, 0.0f});
@@ -32,7 +37,7 @@ TEST(PanelRows, DraggingAValueIsOneUndoStep) {
     EXPECT_FALSE(d.document.can_undo());
 }
 
-TEST(PanelRows, AFocalLengthTakesThePlaceOfTheAngle) {
+TEST_F(PanelRowsTest, AFocalLengthTakesThePlaceOfTheAngle) {
     PanelDriver angle(rows_scene);
     angle.show(PanelTab::camera);
     EXPECT_TRUE(angle.has_row("camera.fov"));
@@ -43,7 +48,7 @@ TEST(PanelRows, AFocalLengthTakesThePlaceOfTheAngle) {
     EXPECT_TRUE(length.has_row("camera.film_width"));
 }
 
-TEST(PanelRows, EverySourceHasItsOwnFiles) {
+TEST_F(PanelRowsTest, EverySourceHasItsOwnFiles) {
     const std::string splats =
         "astrosplat = 1\n[[layer]]\nname = \"dust\"\n[layer.source]\nkind = \"splats\"\n"
         "file = \"a.pda\"\n";
@@ -56,7 +61,7 @@ TEST(PanelRows, EverySourceHasItsOwnFiles) {
     EXPECT_TRUE(file.has_row("layer.dust.source.file"));
 }
 
-TEST(PanelRows, TheFirstThicknessStopChangesNothing) {
+TEST(PanelRowsOfAnother, TheFirstThicknessStopChangesNothing) {
     PanelDriver d(std::string(rows_scene) + "[layer.look]\npdf = { shape = \"gaussian\" }\n");
     d.show(PanelTab::look);
     const auto stops = [&] { return d.document.scene().layers[0].look.thickness.stops; };
@@ -67,8 +72,7 @@ TEST(PanelRows, TheFirstThicknessStopChangesNothing) {
     EXPECT_TRUE(stops().empty());
 }
 
-TEST(PanelRows, ANewCropIsABoxAroundTheLayerWithHandles) {
-    PanelDriver d(rows_scene);
+TEST_F(PanelRowsTest, ANewCropIsABoxAroundTheLayerWithHandles) {
     d.status.layers.resize(1);
     d.status.layers[0].box = {{-5.0, -1.0, -5.0}, {15.0, 1.0, 5.0}};
     d.document.edit("Crop", [](Scene& scene) { scene.layers[0].look.crop.resize(1); });
@@ -83,8 +87,7 @@ TEST(PanelRows, ANewCropIsABoxAroundTheLayerWithHandles) {
     EXPECT_NE(d.view.tool, HandleTool::none);
 }
 
-TEST(PanelRows, AMeshIsAShapeOrAFile) {
-    PanelDriver d(rows_scene);
+TEST_F(PanelRowsTest, AMeshIsAShapeOrAFile) {
     d.show(PanelTab::source);
     const std::string mesh = "layer.dust.source.meshes.0.mesh";
     const auto browse = [&] {
@@ -101,8 +104,7 @@ TEST(PanelRows, AMeshIsAShapeOrAFile) {
     EXPECT_EQ(request->text(), mesh);
 }
 
-TEST(PanelRows, TwoDragsAreTwoUndoSteps) {
-    PanelDriver d(rows_scene);
+TEST_F(PanelRowsTest, TwoDragsAreTwoUndoSteps) {
     d.show(PanelTab::mixing);
     d.drag(d.row(opacity).value, {-25.0f, 0.0f});
     d.drag(d.row(opacity).value, {-25.0f, 0.0f});
@@ -112,8 +114,7 @@ TEST(PanelRows, TwoDragsAreTwoUndoSteps) {
     EXPECT_TRUE(d.document.can_undo());
 }
 
-TEST(PanelRows, DraggingStopsAtTheRange) {
-    PanelDriver d(rows_scene);
+TEST_F(PanelRowsTest, DraggingStopsAtTheRange) {
     d.show(PanelTab::mixing);
     d.drag(d.row(opacity).value, {340.0f, 0.0f});
     EXPECT_DOUBLE_EQ(d.value(opacity).number(), 1.0);
@@ -122,8 +123,7 @@ TEST(PanelRows, DraggingStopsAtTheRange) {
     EXPECT_DOUBLE_EQ(d.value(opacity).number(), 0.0);
 }
 
-TEST(PanelRows, AltDragsFinerAndShiftCoarser) {
-    PanelDriver d(rows_scene);
+TEST_F(PanelRowsTest, AltDragsFinerAndShiftCoarser) {
     d.show(PanelTab::mixing);
     ImGui::GetIO().KeyAlt = true;
     d.drag(d.row(opacity).value, {-50.0f, 0.0f});
@@ -135,8 +135,7 @@ TEST(PanelRows, AltDragsFinerAndShiftCoarser) {
     EXPECT_NEAR(d.value(opacity).number(), 0.58, 1e-9);
 }
 
-TEST(PanelRows, ADoubleClickTypesAValue) {
-    PanelDriver d(rows_scene);
+TEST_F(PanelRowsTest, ADoubleClickTypesAValue) {
     d.show(PanelTab::look);
     d.double_click(d.row(density).value);
     d.type("0.25");
@@ -147,8 +146,7 @@ TEST(PanelRows, ADoubleClickTypesAValue) {
     EXPECT_FALSE(d.document.can_undo());
 }
 
-TEST(PanelRows, EscapeDropsWhatWasTyped) {
-    PanelDriver d(rows_scene);
+TEST_F(PanelRowsTest, EscapeDropsWhatWasTyped) {
     d.show(PanelTab::look);
     d.double_click(d.row(density).value);
     d.type("0.25");
@@ -158,8 +156,7 @@ TEST(PanelRows, EscapeDropsWhatWasTyped) {
     EXPECT_FALSE(d.panel.busy());
 }
 
-TEST(PanelRows, TabTypesTheNextValue) {
-    PanelDriver d(rows_scene);
+TEST_F(PanelRowsTest, TabTypesTheNextValue) {
     d.show(PanelTab::look);
     d.double_click(d.row("layer.dust.look.radius.min").value);
     d.type("0.1");
@@ -171,8 +168,7 @@ TEST(PanelRows, TabTypesTheNextValue) {
     EXPECT_DOUBLE_EQ(d.value("layer.dust.look.radius.max").number(), 0.2);
 }
 
-TEST(PanelRows, ARefusedValueIsSaidAndChangesNothing) {
-    PanelDriver d(rows_scene);
+TEST_F(PanelRowsTest, ARefusedValueIsSaidAndChangesNothing) {
     d.show(PanelTab::mixing);
     d.double_click(d.row(opacity).value);
     d.type("2");
@@ -184,8 +180,7 @@ TEST(PanelRows, ARefusedValueIsSaidAndChangesNothing) {
     EXPECT_EQ(d.panel.message(), "");
 }
 
-TEST(PanelRows, TheDiamondSetsAndRemovesAKeyframe) {
-    PanelDriver d(rows_scene);
+TEST_F(PanelRowsTest, TheDiamondSetsAndRemovesAKeyframe) {
     d.show(PanelTab::mixing);
     d.view.frame = 12.0;
     d.frames();
@@ -200,7 +195,7 @@ TEST(PanelRows, TheDiamondSetsAndRemovesAKeyframe) {
     EXPECT_TRUE(is_animated(d.document.scene(), opacity));
 }
 
-TEST(PanelRows, AKeyedValueIsShownAsItIsAtTheFrame) {
+TEST(PanelRowsOfAnother, AKeyedValueIsShownAsItIsAtTheFrame) {
     PanelDriver d(std::string(rows_scene) +
                   "[animation]\n\"layer.dust.render.opacity\" = { keys = [[1, 0.0], [101, 1.0]] }\n");
     d.show(PanelTab::mixing);
@@ -217,7 +212,7 @@ void choose(PanelDriver& d, const std::string& key, const std::string& item) {
     d.choose(item);
 }
 
-TEST(PanelRows, RightClickResets) {
+TEST(PanelRowsOfAnother, RightClickResets) {
     PanelDriver d(std::string(rows_scene) + "[layer.look]\ngrade = { gain = 3.0 }\n");
     d.show(PanelTab::look);
     ASSERT_DOUBLE_EQ(d.value(gain).number(), 3.0);
@@ -227,7 +222,7 @@ TEST(PanelRows, RightClickResets) {
     EXPECT_DOUBLE_EQ(d.value(gain).number(), 3.0);
 }
 
-TEST(PanelRows, TheMenuCopiesKeyAndSetOption) {
+TEST(PanelRowsOfAnother, TheMenuCopiesKeyAndSetOption) {
     PanelDriver d(std::string(rows_scene) + "[layer.look]\nalpha = { power = 6.0 }\n");
     d.show(PanelTab::look);
     choose(d, power, "Copy key path");
@@ -236,8 +231,7 @@ TEST(PanelRows, TheMenuCopiesKeyAndSetOption) {
     EXPECT_EQ(d.clipboard, "--set " + power + "=6.0");
 }
 
-TEST(PanelRows, TheMenuPastesASetOption) {
-    PanelDriver d(rows_scene);
+TEST_F(PanelRowsTest, TheMenuPastesASetOption) {
     d.show(PanelTab::look);
     d.clipboard = "--set layer.other.look.alpha.power=2.5";
     choose(d, power, "Paste");
@@ -248,8 +242,7 @@ TEST(PanelRows, TheMenuPastesASetOption) {
     EXPECT_NE(d.panel.message(), "");
 }
 
-TEST(PanelRows, WhatIsCopiedIsPasted) {
-    PanelDriver d(rows_scene);
+TEST_F(PanelRowsTest, WhatIsCopiedIsPasted) {
     d.show(PanelTab::output);
     const std::string title = "provenance.title";
     for (const std::string wanted : {"E = m c2", "\"quoted\" it's", "path=frames/a.exr"})
@@ -267,8 +260,7 @@ TEST(PanelRows, WhatIsCopiedIsPasted) {
     EXPECT_EQ(d.value(title), Value("a = b"));
 }
 
-TEST(PanelRows, ACheckBoxAndAVectorsComponent) {
-    PanelDriver d(rows_scene);
+TEST_F(PanelRowsTest, ACheckBoxAndAVectorsComponent) {
     d.show(PanelTab::mixing);
     const std::string holdout = "layer.dust.render.holdout";
     d.click(d.row(holdout).value);
@@ -281,8 +273,7 @@ TEST(PanelRows, ACheckBoxAndAVectorsComponent) {
     EXPECT_EQ(d.value(place), Value(Value::List{0.0, -4.0, 0.0}));
 }
 
-TEST(PanelRows, AutoIsTypedOverAndTypedBack) {
-    PanelDriver d(rows_scene);
+TEST_F(PanelRowsTest, AutoIsTypedOverAndTypedBack) {
     d.show(PanelTab::source);
     const std::string voxels = "layer.dust.source.voxels";
     d.click(d.row(voxels).value);
@@ -298,5 +289,79 @@ TEST(PanelRows, AutoIsTypedOverAndTypedBack) {
     EXPECT_EQ(d.value(voxels), typed);
 }
 
+// Numbers and values in words, as the side panel shows them; and how far a pixel of dragging goes.
+
+TEST(PanelWords, FiguresAreThreeAtLeastAndFiveAtMost) {
+    EXPECT_EQ(figures(0.35), "0.350");
+    EXPECT_EQ(figures(1.0), "1.00");
+    EXPECT_EQ(figures(45.0), "45.0");
+    EXPECT_EQ(figures(12.345), "12.345");
+    EXPECT_EQ(figures(2.487106), "2.4871");
+    EXPECT_EQ(figures(0.008), "0.00800");
+    EXPECT_EQ(figures(-812.0), "-812");
+    EXPECT_EQ(figures(0.0), "0.00");
+    EXPECT_EQ(figures(1e-9), short_number(1e-9));
+}
+
+TEST(PanelWords, ANarrowBoxShowsFewerFigures) {
+    const auto within = [](std::size_t most) {
+        return [most](const std::string& text) { return text.size() <= most; };
+    };
+    EXPECT_EQ(figures_that_fit(-12.3456, within(9)), "-12.346");
+    EXPECT_EQ(figures_that_fit(-12.3456, within(6)), "-12.35");
+    EXPECT_EQ(figures_that_fit(-12.3456, within(5)), "-12.3");
+    EXPECT_EQ(figures_that_fit(0.008, within(5)), "0.008");
+    EXPECT_EQ(figures_that_fit(1234.5, within(5)), "1234");
+    EXPECT_EQ(figures_that_fit(-81234.0, within(3)),
+              "-81 234");  // never other than what it is: the box ends it
+}
+
+TEST(PanelWords, LargeIntegersAreGrouped) {
+    EXPECT_EQ(figures(std::int64_t{4096}), "4096");
+    EXPECT_EQ(figures(std::int64_t{2000000}), "2 000 000");
+    EXPECT_EQ(figures(std::int64_t{-65536}), "-65 536");
+}
+
+TEST(PanelWords, SharesArePercent) {
+    EXPECT_EQ(percent(0.614), "61 %");
+    EXPECT_EQ(percent(0.004), "0.4 %");
+}
+
+TEST(PanelWords, SetOptionsAreOneWordOfAShell) {
+    EXPECT_EQ(set_option("layer.a.look.density", 0.5), "--set layer.a.look.density=0.5");
+    EXPECT_EQ(set_option("camera.up", Value::List{0.0, 1.0, 0.0}), "--set 'camera.up=[0.0, 1.0, 0.0]'");
+    EXPECT_EQ(set_option("provenance.title", "it's"), "--set 'provenance.title=\"it'\\''s\"'");
+}
+
+TEST(PanelWords, ADefaultOfZeroThatIsNoAmountSaysWhatItMeans) {
+    ParameterSpec spec;
+    spec.zero = "Auto";
+    const auto has = [&](const Value& standard, const char* text) {
+        return tooltip_text(spec, standard).find(text) != std::string::npos;
+    };
+    EXPECT_TRUE(has(0.0, "; default Auto (0.0)"));
+    EXPECT_TRUE(has(0.5, "; default 0.5"));
+    spec.zero = {};
+    EXPECT_TRUE(has(0.0, "; default 0.0"));
+}
+
+TEST(PanelWords, DraggingRoundsToCleanNumbers) {
+    ParameterSpec spec;
+    spec.min = 0.0, spec.max = 1.0;
+    const double step = drag_step(spec, 0.5);
+    EXPECT_DOUBLE_EQ(step, 0.004);
+    EXPECT_EQ(short_number(rounded_to_step(0.5 + 17 * step, step)), "0.568");
+    ParameterSpec magnitude;
+    magnitude.min = 1e-6, magnitude.slider_min = 0.01, magnitude.slider_max = 100.0;
+    magnitude.scale = Scale::logarithmic;
+    EXPECT_DOUBLE_EQ(drag_step(magnitude, 50.0), 0.5);  // of itself
+    EXPECT_EQ(rounded_to_step(1234.5, 20.0), 1230.0);
+    ParameterSpec open;  // on both sides of 0, and farther than the slider
+    open.slider_min = -10.0, open.slider_max = 10.0;
+    EXPECT_DOUBLE_EQ(drag_step(open, 0.0), 0.02);
+    EXPECT_DOUBLE_EQ(drag_step(open, -2.0), 0.04);
+    EXPECT_DOUBLE_EQ(drag_step(open, 1000.0), 0.08);
+}
+
 }  // namespace
-}  // namespace astrosplat
+}  // namespace astrosplat::panel

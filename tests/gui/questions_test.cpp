@@ -10,8 +10,9 @@ namespace {
 
 using Kind = Command::Kind;
 
-TEST(Quit, AsksOnlyAboutUnsavedChanges) {
-    TestWindow window(example_document());
+class QuitTest : public ExampleWindow {};
+
+TEST_F(QuitTest, AsksOnlyAboutUnsavedChanges) {
     window.tap('Q', true);
     EXPECT_EQ(kinds(window.take_commands()), std::vector<Kind>{Kind::quit});
     make_edited(window);
@@ -27,7 +28,7 @@ TEST(Quit, AsksOnlyAboutUnsavedChanges) {
     EXPECT_EQ(kinds(window.take_commands()), std::vector<Kind>{Kind::quit});
 }
 
-TEST(Quit, SavesFirstAndLeavesOnlyWhenThatWorked) {
+TEST(QuitOfAnother, SavesFirstAndLeavesOnlyWhenThatWorked) {
     const TempFolder folder;
     const auto file = folder.file("a.toml", example_document().text_for(folder / "a.toml"));
     TestWindow window(Document::open(file));
@@ -50,9 +51,8 @@ TEST(Quit, SavesFirstAndLeavesOnlyWhenThatWorked) {
     EXPECT_EQ(kinds(window.take_commands()), std::vector<Kind>{Kind::quit});
 }
 
-TEST(Quit, AnUntitledSceneIsAskedForItsFile) {
+TEST_F(QuitTest, AnUntitledSceneIsAskedForItsFile) {
     const TempFolder folder;
-    TestWindow window(example_document());
     make_edited(window);
     window.tap('Q', true);
     window.frame();
@@ -67,8 +67,7 @@ TEST(Quit, AnUntitledSceneIsAskedForItsFile) {
     EXPECT_EQ(commands[0].path, folder.path() / "new.toml");
 }
 
-TEST(Quit, ADroppedSceneAsksToo) {
-    TestWindow window(example_document());
+TEST_F(QuitTest, ADroppedSceneAsksToo) {
     window.dropped = {{Kind::open, "/scenes/m51.toml", {}, 0}};
     window.frame();
     EXPECT_EQ(kinds(window.take_commands()), std::vector<Kind>{Kind::open});
@@ -203,8 +202,9 @@ TEST(FirstStart, TheHintIsDismissed) {
     EXPECT_FALSE(window.view.hint_open);
 }
 
-TEST(Snapshots, BecomeBAndAreTaken) {
-    TestWindow window(example_document());
+class SnapshotsTest : public ExampleWindow {};
+
+TEST_F(SnapshotsTest, BecomeBAndAreTaken) {
     window.view.snapshots_open = true;
     window.status.snapshots = {{"One", nullptr, 1.78f, 100, 0.5}, {"Two", nullptr, 1.78f, 100, 0}};
     window.frame(2);
@@ -219,8 +219,7 @@ TEST(Snapshots, BecomeBAndAreTaken) {
     EXPECT_EQ(kinds(window.take_commands()), std::vector<Kind>{Kind::restore_snapshot});
 }
 
-TEST(Snapshots, StandUpright) {
-    TestWindow window(example_document());
+TEST_F(SnapshotsTest, StandUpright) {
     Picture8 thumbnail(8, 4);
     for (int x = 0; x < 8; ++x) thumbnail.at(x, 0) = thumbnail.at(x, 1) = {255, 0, 0, 255};
     window.view.snapshots_open = true;
@@ -233,8 +232,7 @@ TEST(Snapshots, StandUpright) {
     EXPECT_EQ(red(6.0f), 0);
 }
 
-TEST(Snapshots, AreRenamedInTheirCard) {
-    TestWindow window(example_document());
+TEST_F(SnapshotsTest, AreRenamedInTheirCard) {
     window.view.snapshots_open = true;
     window.status.snapshots = {{"One", nullptr, 1.78f, 100, 0.5}, {"Two", nullptr, 1.78f, 100, 0}};
     window.frame(2);

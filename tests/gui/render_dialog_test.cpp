@@ -24,8 +24,12 @@ struct RenderWindow : TestWindow {
     }
 };
 
-TEST(RenderDialog, BeginsWithWhatTheSceneSays) {
+class RenderDialogTest : public testing::Test {
+  protected:
     RenderWindow window;
+};
+
+TEST_F(RenderDialogTest, BeginsWithWhatTheSceneSays) {
     const OutputParams& output = window.document.scene().output;
     EXPECT_EQ(window.view.render.frames, output.frames);
     EXPECT_EQ(window.view.render.width, output.width);
@@ -36,8 +40,7 @@ TEST(RenderDialog, BeginsWithWhatTheSceneSays) {
     EXPECT_FALSE(window.view.render_open);
 }
 
-TEST(RenderDialog, EveryRowCounts) {
-    RenderWindow window;
+TEST_F(RenderDialogTest, EveryRowCounts) {
     const RenderTask before = window.view.render;
     window.type_into("render/frames", "3-9");
     window.click("render/Half");
@@ -58,8 +61,7 @@ TEST(RenderDialog, EveryRowCounts) {
     EXPECT_EQ(task.frames, "1");
 }
 
-TEST(RenderDialog, WhatCannotBeRenderedIsNot) {
-    RenderWindow window;
+TEST_F(RenderDialogTest, WhatCannotBeRenderedIsNot) {
     window.type_into("render/name", "a.####.doc");
     window.click("render/Render");
     EXPECT_TRUE(window.take_commands().empty());
@@ -70,8 +72,7 @@ TEST(RenderDialog, WhatCannotBeRenderedIsNot) {
     EXPECT_TRUE(window.take_commands().empty());
 }
 
-TEST(RenderDialog, AFarmIsOfferedWhereThereIsOne) {
-    RenderWindow window;
+TEST_F(RenderDialogTest, AFarmIsOfferedWhereThereIsOne) {
     EXPECT_FALSE(window.has("render/Slurm"));
     window.status.has_slurm = true;
     window.frame(2);
@@ -102,8 +103,7 @@ TEST(RenderDialog, AFarmIsOfferedWhereThereIsOne) {
     EXPECT_EQ(kinds(window.take_commands()), std::vector<Kind>{Kind::render});
 }
 
-TEST(RenderDialog, TheCommandIsCopied) {
-    RenderWindow window;
+TEST_F(RenderDialogTest, TheCommandIsCopied) {
     window.status.render_command = "astrosplat --batch a.toml";
     window.frame();
     window.click("render/Copy");

@@ -17,7 +17,9 @@ namespace {
 
 using Kind = Command::Kind;
 
-TEST(Shortcuts, CodesOfLettersAndDigitsAreTheirCharacters) {
+class ShortcutsTest : public ExampleWindow {};
+
+TEST_F(ShortcutsTest, CodesOfLettersAndDigitsAreTheirCharacters) {
     const auto expect_named = [](int code, char character) {
         EXPECT_EQ(code, character);
         EXPECT_EQ(shortcut_text({.code = code}), std::string(1, character));
@@ -33,8 +35,7 @@ TEST(Shortcuts, CodesOfLettersAndDigitsAreTheirCharacters) {
     EXPECT_EQ(shortcut_text({.code = 128}), "");
 }
 
-TEST(Shortcuts, UndoAndRedoNameTheirStep) {
-    TestWindow window(example_document());
+TEST_F(ShortcutsTest, UndoAndRedoNameTheirStep) {
     make_edited(window);
     window.click("Edit");
     window.keep_screen("undo_menu");
@@ -45,8 +46,7 @@ TEST(Shortcuts, UndoAndRedoNameTheirStep) {
     EXPECT_EQ(window.document.scene().layers[0].render.opacity, 0.5);
 }
 
-TEST(Shortcuts, WhatIsUndoneIsSaid) {
-    TestWindow window(example_document());
+TEST_F(ShortcutsTest, WhatIsUndoneIsSaid) {
     make_edited(window);
     const std::string name = window.document.undo_name();
     window.tap('Z', true);
@@ -74,9 +74,10 @@ TEST(Menus, TheHistoryGoesToAnyStep) {
     EXPECT_FALSE(window.document.can_undo());
 }
 
+class ToolRowTest : public ExampleWindow {};
+
 /// B and the reference are two things, each chosen by name.
-TEST(ToolRow, WhatIsComparedWithIsChosen) {
-    TestWindow window(example_document());
+TEST_F(ToolRowTest, WhatIsComparedWithIsChosen) {
     window.status.b_snapshot = 0;
     window.click("compare/Diff");
     EXPECT_EQ(window.view.compare_with, CompareWith::b);
@@ -94,8 +95,7 @@ TEST(ToolRow, WhatIsComparedWithIsChosen) {
     EXPECT_TRUE(window.take_commands().empty());
 }
 
-TEST(ToolRow, WhatIsMissingIsAskedForOrSaid) {
-    TestWindow window(example_document());
+TEST_F(ToolRowTest, WhatIsMissingIsAskedForOrSaid) {
     window.click("compare/A|B");
     Commands commands = window.take_commands();
     ASSERT_EQ(kinds(commands), std::vector<Command::Kind>{Command::Kind::say});
@@ -105,8 +105,7 @@ TEST(ToolRow, WhatIsMissingIsAskedForOrSaid) {
     EXPECT_TRUE(window.has("file/path")) << "there is no reference yet";
 }
 
-TEST(ToolRow, BlinkingHasAKeyAButtonAndARate) {
-    TestWindow window(example_document());
+TEST_F(ToolRowTest, BlinkingHasAKeyAButtonAndARate) {
     window.status.b_snapshot = 0;
     window.tap('X');
     EXPECT_EQ(window.view.compare, CompareMode::blink);
@@ -119,8 +118,7 @@ TEST(ToolRow, BlinkingHasAKeyAButtonAndARate) {
     EXPECT_EQ(window.view.compare, CompareMode::blink);
 }
 
-TEST(Shortcuts, FramesAndKeyframes) {
-    TestWindow window(example_document());
+TEST_F(ShortcutsTest, FramesAndKeyframes) {
     window.tap(key_code::right);
     EXPECT_EQ(window.view.frame, 2.0);
     window.tap(key_code::left);
@@ -138,8 +136,7 @@ TEST(Shortcuts, FramesAndKeyframes) {
     EXPECT_FALSE(window.view.playing);
 }
 
-TEST(Shortcuts, SetKeyframesOfTheCameraOrTheRowUnderTheMouse) {
-    TestWindow window(example_document());
+TEST_F(ShortcutsTest, SetKeyframesOfTheCameraOrTheRowUnderTheMouse) {
     window.view.frame = 50;
     window.tap('K');
     EXPECT_TRUE(has_keyframe_at(window.document.scene(), "camera.position", 50));
@@ -155,7 +152,7 @@ TEST(Shortcuts, SetKeyframesOfTheCameraOrTheRowUnderTheMouse) {
 }
 
 /// The menu, the shortcut and the panel's button mean one thing: a keyframe of what is seen.
-TEST(Shortcuts, KeyCameraHereIsOneAct) {
+TEST(ShortcutsOfAnother, KeyCameraHereIsOneAct) {
     for (const ViewKind kind : {ViewKind::camera, ViewKind::free, ViewKind::front}) {
         const auto scene_after = [&](const auto& act) {
             TestWindow window(example_document());
@@ -187,8 +184,7 @@ TEST(Shortcuts, KeyCameraHereIsOneAct) {
 }
 
 /// Before the viewport's shape is known, it is the output's.
-TEST(Shortcuts, ThreeQuarterFitsThePicture) {
-    TestWindow window(example_document());
+TEST_F(ShortcutsTest, ThreeQuarterFitsThePicture) {
     const OutputParams& output = window.document.scene().output;
     for (const double aspect : {0.0, 0.5}) {
         window.status.viewport_aspect = aspect;
@@ -200,8 +196,7 @@ TEST(Shortcuts, ThreeQuarterFitsThePicture) {
     }
 }
 
-TEST(Shortcuts, ViewsAndSwitches) {
-    TestWindow window(example_document());
+TEST_F(ShortcutsTest, ViewsAndSwitches) {
     window.tap(key_code::n7);
     EXPECT_EQ(window.view.view, ViewKind::top);
     window.tap(key_code::n9);
@@ -223,8 +218,7 @@ TEST(Shortcuts, ViewsAndSwitches) {
     EXPECT_FALSE(window.has("ruler"));
 }
 
-TEST(Shortcuts, HSetsAKeyframeWhereVisibilityIsAnimated) {
-    TestWindow window(example_document());
+TEST_F(ShortcutsTest, HSetsAKeyframeWhereVisibilityIsAnimated) {
     const std::string key = "layer.dust.visible";
     window.document.edit("Animate", [&](Scene& scene) {
         set_keyframe(scene, key, 1.0, true);
@@ -242,8 +236,7 @@ TEST(Shortcuts, HSetsAKeyframeWhereVisibilityIsAnimated) {
     EXPECT_EQ(find_track(window.document.scene(), key)->keyframes.size(), 4U);
 }
 
-TEST(Shortcuts, TheSheetOpensAndCloses) {
-    TestWindow window(example_document());
+TEST_F(ShortcutsTest, TheSheetOpensAndCloses) {
     window.tap(key_code::f1);
     EXPECT_TRUE(window.has("shortcuts/Close"));
     window.tap(key_code::f1);
@@ -256,8 +249,7 @@ TEST(Shortcuts, TheSheetOpensAndCloses) {
     EXPECT_FALSE(window.view.help_open);
 }
 
-TEST(Shortcuts, AreLettersWhereTextIsTyped) {
-    TestWindow window(example_document());
+TEST_F(ShortcutsTest, AreLettersWhereTextIsTyped) {
     window.double_click(window.at("frame"));
     window.tap('G');
     window.tap(key_code::space);
@@ -265,15 +257,14 @@ TEST(Shortcuts, AreLettersWhereTextIsTyped) {
     EXPECT_FALSE(window.view.playing);
 }
 
-TEST(Shortcuts, EscapeCancelsTheJob) {
-    TestWindow window(example_document());
+TEST_F(ShortcutsTest, EscapeCancelsTheJob) {
     window.status.jobs.push_back(running_job_of("frame 3 (3/240)", 0.01f));
     window.tap(key_code::escape);
     EXPECT_EQ(kinds(window.take_commands()), std::vector<Kind>{Kind::cancel_render});
 }
 
 // Two actions with one shortcut would make one of them unreachable.
-TEST(Shortcuts, NoneMeansTwoThings) {
+TEST_F(ShortcutsTest, NoneMeansTwoThings) {
     std::map<std::string, std::string> seen;
     for (const Action& action : actions()) {
         for (const Shortcut& shortcut : {action.shortcut, action.also}) {

@@ -2,9 +2,10 @@
 // asked for kept.
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <imgui.h>
 
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -62,6 +63,12 @@ class TestWindow {
 /// A document of three layers with keyframes, untitled; and the status of a window that shows it.
 Document example_document();
 Status example_status();
+
+/// A window that shows them.
+class ExampleWindow : public testing::Test {
+  protected:
+    TestWindow window{example_document()};
+};
 
 /// One unsaved edit, "Opacity of dust".
 void make_edited(TestWindow& window);

@@ -1,4 +1,4 @@
-// The timeline by mouse: playhead, keyframes, their menu and the graph.
+// The timeline and its graph by mouse and keys.
 #include <gtest/gtest.h>
 
 #include "edit/keyframes.h"
@@ -8,8 +8,10 @@
 namespace astrosplat {
 namespace {
 
-TEST(Timeline, ThePlayheadIsDragged) {
-    TestWindow window(example_document());
+class TimelineTest : public ExampleWindow {};
+
+// The timeline by mouse: playhead, keyframes, their menu and the graph.
+TEST_F(TimelineTest, ThePlayheadIsDragged) {
     const glm::vec2 first = window.at("keyframe camera.position 1"),
                     later = window.at("keyframe camera.position 90");
     const float y = window.at("ruler").y;
@@ -21,8 +23,7 @@ TEST(Timeline, ThePlayheadIsDragged) {
     EXPECT_EQ(window.view.frame, 1.0);
 }
 
-TEST(Timeline, AFrameIsTyped) {
-    TestWindow window(example_document());
+TEST_F(TimelineTest, AFrameIsTyped) {
     window.double_click(window.at("frame"));
     window.tap('A', true);
     window.type("137");
@@ -30,7 +31,7 @@ TEST(Timeline, AFrameIsTyped) {
     EXPECT_EQ(window.view.frame, 137.0);
 }
 
-TEST(Timeline, AStillIsAsLongAsTheFilmThatItMayBecome) {
+TEST(TimelineOfAnother, AStillIsAsLongAsTheFilmThatItMayBecome) {
     TestWindow window(Document::untitled("astrosplat = 1\n[output]\nframes = \"1\"\n", "/scene.toml"));
     window.view.view = ViewKind::free;
     const glm::vec2 ruler = window.at("ruler");
@@ -43,8 +44,7 @@ TEST(Timeline, AStillIsAsLongAsTheFilmThatItMayBecome) {
     EXPECT_EQ(window.view.frame, 1.0);
 }
 
-TEST(Timeline, ThePlayheadComesAlongWhereUndoTakesItsFrameAway) {
-    TestWindow window(example_document());
+TEST_F(TimelineTest, ThePlayheadComesAlongWhereUndoTakesItsFrameAway) {
     window.document.edit("Longer", [](Scene& scene) { scene.output.frames = "1-400"; });
     window.frame(2);
     window.view.frame = 390.0;
@@ -54,8 +54,7 @@ TEST(Timeline, ThePlayheadComesAlongWhereUndoTakesItsFrameAway) {
     EXPECT_EQ(window.view.frame, 240.0);
 }
 
-TEST(Timeline, AKeyframeMovesWithTheMouse) {
-    TestWindow window(example_document());
+TEST_F(TimelineTest, AKeyframeMovesWithTheMouse) {
     const std::string power = "layer.dust.look.alpha.power";
     const glm::vec2 from = window.at("keyframe " + power + " 90"),
                     to = window.at("keyframe camera.position 240");
@@ -69,8 +68,7 @@ TEST(Timeline, AKeyframeMovesWithTheMouse) {
     EXPECT_FALSE(window.document.can_undo());
 }
 
-TEST(Timeline, KeyframesOfTheFirstAndTheLastRowMoveToo) {
-    TestWindow window(example_document());
+TEST_F(TimelineTest, KeyframesOfTheFirstAndTheLastRowMoveToo) {
     const auto at = [&](const char* key) { return window.at(std::string("keyframe ") + key); };
     const float per_frame = (at("camera.position 240").x - at("camera.position 90").x) / 150.0f;
     window.drag(at("camera.position 90"), {20 * per_frame, 0});
@@ -80,7 +78,7 @@ TEST(Timeline, KeyframesOfTheFirstAndTheLastRowMoveToo) {
 }
 
 /// The same scene looks the same, whether it was opened so or edited while it was shown.
-TEST(Timeline, ShowsTheSceneAsItIsNow) {
+TEST(TimelineOfAnother, ShowsTheSceneAsItIsNow) {
     const auto pictures = [](bool shown_before) {
         const auto edit = [&](Document& document) {
             document.edit("Keyframes", [](Scene& scene) {
@@ -108,7 +106,7 @@ TEST(Timeline, ShowsTheSceneAsItIsNow) {
     for (std::size_t i = 0; i < edited.size(); ++i) EXPECT_TRUE(edited[i].pixels == opened[i].pixels) << i;
 }
 
-TEST(Timeline, EveryInterpolationHasAMarkOfItsOwn) {
+TEST(TimelineOfAnother, EveryInterpolationHasAMarkOfItsOwn) {
     std::vector<std::vector<Rgba8>> marks;
     for (const int interpolation : {-1, 0, 1, 2}) {
         TestWindow window(example_document());
@@ -131,8 +129,7 @@ TEST(Timeline, EveryInterpolationHasAMarkOfItsOwn) {
     for (const std::size_t i : {2u, 3u}) EXPECT_TRUE(middle(i) == middle(1)) << i;
 }
 
-TEST(Timeline, CtrlDragCopiesAndDeleteRemoves) {
-    TestWindow window(example_document());
+TEST_F(TimelineTest, CtrlDragCopiesAndDeleteRemoves) {
     const std::string opacity = "layer.stars.render.opacity";
     const glm::vec2 from = window.at("keyframe " + opacity + " 120"),
                     to = window.at("keyframe camera.position 240");
@@ -146,8 +143,7 @@ TEST(Timeline, CtrlDragCopiesAndDeleteRemoves) {
     EXPECT_TRUE(has_keyframe_at(window.document.scene(), opacity, 120));
 }
 
-TEST(Timeline, ABoxSelectsAndMovesTogether) {
-    TestWindow window(example_document());
+TEST_F(TimelineTest, ABoxSelectsAndMovesTogether) {
     const glm::vec2 camera = window.at("keyframe camera.position 90");
     const glm::vec2 opacity = window.at("keyframe layer.stars.render.opacity 120");
     window.drag({camera.x - 20, camera.y - 8},
@@ -160,8 +156,7 @@ TEST(Timeline, ABoxSelectsAndMovesTogether) {
     EXPECT_TRUE(has_keyframe_at(scene, "camera.position", 240));
 }
 
-TEST(Timeline, TheMenuOfAKeyframeChangesItsInterpolation) {
-    TestWindow window(example_document());
+TEST_F(TimelineTest, TheMenuOfAKeyframeChangesItsInterpolation) {
     window.click(window.at("keyframe layer.stars.render.opacity 24"), 1);
     window.frame();
     window.click("keyframe menu/Step");
@@ -171,8 +166,7 @@ TEST(Timeline, TheMenuOfAKeyframeChangesItsInterpolation) {
     EXPECT_EQ(track->keyframes[1].interpolation, Interpolation::linear);
 }
 
-TEST(Timeline, TheGraphDragsAValue) {
-    TestWindow window(example_document());
+TEST_F(TimelineTest, TheGraphDragsAValue) {
     window.click("graph");
     window.frame(2);
     const std::string power = "layer.dust.look.alpha.power";
@@ -185,6 +179,238 @@ TEST(Timeline, TheGraphDragsAValue) {
     EXPECT_NEAR(find_track(window.document.scene(), power)->keyframes[1].value[0], 1.75, 0.02);
     window.tap('Z', true);
     EXPECT_EQ(find_track(window.document.scene(), power)->keyframes[1].value[0], 2.5);
+}
+
+// The timeline's first row by mouse and keys: frames, rate, how they are played.
+
+struct TimelineHeader : testing::Test {
+    TestWindow window{example_document()};
+    void type_into(const std::string& name, const std::string& text, bool twice) {
+        if (twice)
+            window.double_click(window.at(name));
+        else
+            window.click(name);
+        window.tap('A', true);
+        window.type(text);
+        window.tap(key_code::enter);
+        window.frame(2);
+    }
+};
+
+TEST_F(TimelineHeader, FramesAreTyped) {
+    type_into("range", "1-48", false);
+    EXPECT_EQ(window.document.scene().output.frames, "1-48");
+    type_into("range", "1-", false);
+    EXPECT_EQ(window.document.scene().output.frames, "1-48") << "nonsense changes nothing";
+    window.tap('Z', true);
+    EXPECT_EQ(window.document.scene().output.frames, "1-240");
+}
+
+TEST_F(TimelineHeader, TheRateIsTyped) {
+    type_into("fps", "30", true);
+    EXPECT_EQ(window.document.scene().output.fps, 30.0);
+    window.tap('Z', true);
+    EXPECT_EQ(window.document.scene().output.fps, 24.0);
+}
+
+TEST_F(TimelineHeader, WhatComesAfterTheLastFrameIsChosen) {
+    window.click("playing/Loop");
+    EXPECT_EQ(window.view.play_mode, PlayMode::ping_pong);
+    window.frame(2);
+    window.click("playing/Ping-pong");
+    EXPECT_EQ(window.view.play_mode, PlayMode::once);
+    window.frame(2);
+    window.click("playing/Once");
+    EXPECT_EQ(window.view.play_mode, PlayMode::loop);
+    window.click("playing/Every frame");
+    EXPECT_TRUE(window.view.every_frame);
+    window.click("playing/Rendered");
+    EXPECT_TRUE(window.view.show_rendered);
+}
+
+TEST_F(TimelineHeader, InAndOutPointsAreSetByKeysAndDragged) {
+    window.view.frame = 40;
+    window.tap('I');
+    window.view.frame = 80;
+    window.tap('O');
+    window.frame(2);
+    EXPECT_EQ(window.view.play_first, 40.0);
+    EXPECT_EQ(window.view.play_last, 80.0);
+    const float per_frame =
+        (window.at("keyframe camera.position 240").x - window.at("keyframe camera.position 90").x) / 150.0f;
+    window.drag(window.at("out point"), {60 * per_frame, 0});
+    EXPECT_NEAR(*window.view.play_last, 140.0, 1.0);
+    window.drag(window.at("in point"), {500 * per_frame, 0});
+    EXPECT_EQ(window.view.play_first, window.view.play_last) << "it stays before the out point";
+    EXPECT_EQ(window.view.frame, 80.0) << "the playhead stays";
+    window.tap('I', false, true);
+    EXPECT_FALSE(window.view.play_first || window.view.play_last);
+}
+
+TEST_F(TimelineHeader, TheRateThatIsReachedIsTold) {
+    window.move({-100, -100});
+    window.frame(2);
+    const auto still = window.picture(Style::schematic).pixels;
+    window.status.played_fps = 11.5;
+    window.frame(2);
+    EXPECT_FALSE(window.picture(Style::schematic).pixels == still);
+}
+
+// The graph by mouse: handles of Bezier keyframes, their menu, channels, zoom and pan.
+
+struct GraphTest : testing::Test {
+    const std::string key = "layer.dust.look.alpha.power";  // 1.0 at 1, 2.5 at 90, 1.2 at 180
+    TestWindow window{example_document()};
+    GraphTest() {
+        window.view.timeline_height = 320;
+        window.frame(2);
+        window.click("graph");
+        window.click("track " + key);
+        window.frame(2);
+    }
+    void make_bezier() {
+        window.document.edit("Bezier", [&](Scene& scene) {
+            for (const double frame : {1.0, 90.0, 180.0})
+                set_interpolation(scene, key, frame, Interpolation::bezier);
+        });
+        window.click("graph " + key + " 90 0");
+        window.frame(2);
+    }
+    const Keyframe<std::vector<double>>& keyframe(std::size_t i) {
+        return find_track(window.document.scene(), key)->keyframes[i];
+    }
+    glm::vec2 point(const std::string& name) { return window.at("graph " + name); }
+    glm::vec2 handle(const std::string& side) { return window.at("handle " + key + " 90 0 " + side); }
+    void open_menu() {
+        window.click(point(key + " 90 0"), 1);
+        window.frame(2);
+    }
+    void choose_in_menu(const std::string& item) {
+        open_menu();
+        window.click("keyframe menu/" + item);
+        window.frame(3);
+    }
+};
+
+TEST_F(GraphTest, TheMenuMakesBezierKeyframesAndTheirHandles) {
+    choose_in_menu("Bezier");
+    EXPECT_EQ(keyframe(1).interpolation, Interpolation::bezier);
+    choose_in_menu("Flat handles");
+    EXPECT_EQ(keyframe(1).out.kind, HandleKind::flat);
+    choose_in_menu("Break handles");
+    EXPECT_TRUE(keyframe(1).broken);
+    choose_in_menu("Break handles");
+    EXPECT_FALSE(keyframe(1).broken);
+    choose_in_menu("Auto handles");
+    EXPECT_EQ(keyframe(1).out.kind, HandleKind::automatic);
+}
+
+TEST_F(GraphTest, TheMenuTicksWhatIsSet) {
+    make_bezier();
+    const auto tick = [&](const char* item) {
+        open_menu();
+        window.move({-100, -100});
+        window.frame(2);
+        const glm::vec2 at = window.at(std::string("keyframe menu/") + item);
+        const Picture8 seen = cropped(window.picture(Style::schematic), static_cast<int>(at.x),
+                                      static_cast<int>(at.y) - 8, 170, 16);
+        window.tap(key_code::escape);
+        window.frame(2);
+        return seen.pixels;
+    };
+    const auto bezier = tick("Bezier"), step = tick("Step");
+    window.document.edit("Step",
+                         [&](Scene& scene) { set_interpolation(scene, key, 90, Interpolation::step); });
+    EXPECT_FALSE(tick("Bezier") == bezier);
+    EXPECT_FALSE(tick("Step") == step);
+}
+
+TEST_F(GraphTest, HandlesAreDraggedTogetherInOneStep) {
+    make_bezier();
+    EXPECT_NEAR(handle("out").x - point(key + " 90 0").x,
+                (point(key + " 180 0").x - point(key + " 90 0").x) / 3.0f, 1.0f);
+    const float up = point(key + " 1 0").y - point(key + " 90 0").y;  // 1.5 of the values
+    window.drag(handle("out"), {0.0f, up / 3.0f});
+    EXPECT_NEAR(keyframe(1).out.value[0], -0.5, 0.03);
+    EXPECT_NEAR(keyframe(1).out.frames, 30.0, 0.5);
+    EXPECT_NEAR(keyframe(1).in.value[0], 0.5 * 89.0 / 90.0, 0.03) << "the other one turns with it";
+    window.tap('Z', true);
+    EXPECT_EQ(keyframe(1).out.kind, HandleKind::automatic) << "one drag is one step";
+}
+
+TEST_F(GraphTest, AltBreaksAHandle) {
+    make_bezier();
+    window.hold(false, false, true);
+    window.drag(handle("out"), {10.0f, 30.0f});
+    window.hold(false, false, false);
+    EXPECT_TRUE(keyframe(1).broken);
+    EXPECT_EQ(keyframe(1).in.kind, HandleKind::automatic);
+    EXPECT_EQ(keyframe(1).out.kind, HandleKind::free);
+}
+
+TEST_F(GraphTest, EscapeTakesADragBack) {
+    make_bezier();
+    const Scene before = window.document.scene();
+    for (const glm::vec2 from : {handle("out"), point(key + " 90 0")}) {
+        window.move(from);
+        window.frame(2);
+        window.press();
+        window.frame(2);
+        window.move(from + glm::vec2(0, 40));
+        window.frame(2);
+        EXPECT_FALSE(window.document.scene() == before);
+        window.tap(key_code::escape);
+        window.move(from + glm::vec2(0, 60));
+        window.frame(2);
+        window.release();
+        window.frame(2);
+        EXPECT_TRUE(window.document.scene() == before);
+    }
+}
+
+TEST_F(GraphTest, TheWheelZoomsValuesAndTheMiddleButtonMovesThePlot) {
+    const auto apart = [&] { return point(key + " 1 0") - point(key + " 90 0"); };
+    const glm::vec2 before = apart(), middle = window.at("graph area");
+    window.move(middle);
+    window.frame(2);
+    window.wheel(1);
+    window.frame(2);
+    EXPECT_NEAR(apart().y, 1.25f * before.y, 1.0f);
+    EXPECT_NEAR(apart().x, before.x, 0.5f);
+    window.hold(true, false, false);
+    window.wheel(1);
+    window.hold(false, false, false);
+    window.frame(2);
+    EXPECT_NEAR(apart().x, 1.25f * before.x, 1.0f);
+    const glm::vec2 at = point(key + " 90 0");
+    window.drag(middle, {-30, 20}, 2);
+    window.frame(2);
+    EXPECT_NEAR(point(key + " 90 0").x, at.x - 30.0f, 1.0f);
+    EXPECT_NEAR(point(key + " 90 0").y, at.y + 20.0f, 1.0f);
+    window.double_click(window.at("graph area"));
+    window.frame(3);
+    EXPECT_NEAR(apart().y, before.y, 0.5f);
+    EXPECT_NEAR(apart().x, before.x, 0.5f);
+}
+
+TEST_F(GraphTest, ChannelsAreHiddenAndShownOneByOne) {
+    window.click("track camera.position");
+    window.frame(2);
+    const auto seen = [&](int channel) {
+        return window.has("graph camera.position 90 " + std::to_string(channel));
+    };
+    EXPECT_TRUE(seen(0) && seen(1) && seen(2));
+    window.click("channel camera.position 1");
+    window.frame(2);
+    EXPECT_TRUE(seen(0) && !seen(1) && seen(2));
+    window.hold(false, true, false);
+    window.click("channel camera.position 2");
+    window.frame(2);
+    EXPECT_TRUE(!seen(0) && !seen(1) && seen(2)) << "Shift: it alone";
+    window.click("channel camera.position 2");
+    window.hold(false, false, false);
+    window.frame(2);
+    EXPECT_TRUE(seen(0) && seen(1) && seen(2)) << "and all again";
 }
 
 }  // namespace

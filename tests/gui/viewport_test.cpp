@@ -15,7 +15,9 @@ namespace {
 
 using Kind = Command::Kind;
 
-TEST(Viewport, ItsShapeIsInSmallNumbersOrToOne) {
+class ViewportTest : public ExampleWindow {};
+
+TEST_F(ViewportTest, ItsShapeIsInSmallNumbersOrToOne) {
     EXPECT_EQ(aspect_text(1920, 1080), "16:9");
     EXPECT_EQ(aspect_text(2900, 1900), "29:19");
     EXPECT_EQ(aspect_text(3000, 1900), "1.58:1");
@@ -23,7 +25,7 @@ TEST(Viewport, ItsShapeIsInSmallNumbersOrToOne) {
     EXPECT_EQ(aspect_text(1000, 1000), "1:1");
 }
 
-TEST(Viewport, MouseButtonsMeanDrags) {
+TEST_F(ViewportTest, MouseButtonsMeanDrags) {
     using Drag = ViewportInput::Drag;
     EXPECT_EQ(drag_of(0, false, false), Drag::orbit);
     EXPECT_EQ(drag_of(0, true, false), Drag::pan);
@@ -34,8 +36,7 @@ TEST(Viewport, MouseButtonsMeanDrags) {
     EXPECT_EQ(drag_of(1, false, true), Drag::dolly);
 }
 
-TEST(Viewport, ADragBeginsMovesAndEnds) {
-    TestWindow window(example_document());
+TEST_F(ViewportTest, ADragBeginsMovesAndEnds) {
     const glm::vec2 middle = window.at("frame in view");
     window.move(middle);
     window.frame(2);
@@ -70,9 +71,8 @@ ViewportInput::Click click_in_view(TestWindow& window, glm::vec2 by, float slip 
     return click;
 }
 
-TEST(Viewport, APressWithoutADragIsAClick) {
+TEST_F(ViewportTest, APressWithoutADragIsAClick) {
     using Click = ViewportInput::Click;
-    TestWindow window(example_document());
     EXPECT_EQ(click_in_view(window, {0, 0}), Click::in_front);
     EXPECT_EQ(click_in_view(window, {40, 0}), Click::in_front);
     EXPECT_EQ(click_in_view(window, {42, 1}), Click::behind) << "in the same place again";
@@ -86,8 +86,7 @@ TEST(Viewport, APressWithoutADragIsAClick) {
     EXPECT_EQ(click_in_view(window, {200, 0}), Click::none);
 }
 
-TEST(Viewport, ADoubleClickIsOneClickOnly) {
-    TestWindow window(example_document());
+TEST_F(ViewportTest, ADoubleClickIsOneClickOnly) {
     const glm::vec2 at = window.at("frame in view");
     window.frame(60);
     window.click(at);
@@ -97,8 +96,7 @@ TEST(Viewport, ADoubleClickIsOneClickOnly) {
     EXPECT_EQ(window.gui.viewport_input().click, ViewportInput::Click::none);
 }
 
-TEST(Viewport, LettersFlyOnlyWhileLookingAround) {
-    TestWindow window(example_document());
+TEST_F(ViewportTest, LettersFlyOnlyWhileLookingAround) {
     window.move(window.at("frame in view"));
     window.frame(2);
     ImGui::GetIO().KeysDown['W'] = true;
@@ -132,8 +130,7 @@ TEST(ToolRow, ThePreviewGoesFromFluidToEverySplat) {
     EXPECT_EQ(window.view.preview_share, 0.0f);
 }
 
-TEST(Viewport, TheWipeIsDragged) {
-    TestWindow window(example_document());
+TEST_F(ViewportTest, TheWipeIsDragged) {
     window.view.compare = CompareMode::wipe;
     window.frame();
     const glm::vec2 middle = window.at("frame in view");
@@ -217,14 +214,13 @@ TEST_F(Placing, TheWheelScalesItAboutTheMouseAndNotTheCamera) {
     EXPECT_EQ(placed().scale, 1.0) << "notches in a row are one step";
 }
 
-TEST(Viewport, TheDifferenceIsSaidInNumbers) {
+TEST_F(ViewportTest, TheDifferenceIsSaidInNumbers) {
     EXPECT_EQ(difference_text({0.0041, 31.24, 0.9699}), "Mean +0.4 %, 31.2 dB, light -3.0 %");
     EXPECT_EQ(difference_text({-0.0, std::numeric_limits<double>::infinity(), 1.0}),
               "Mean +0.0 %, the same, light +0.0 %");
 }
 
-TEST(Viewport, OneToOneZoomsAboutTheMouseAndMoves) {
-    TestWindow window(example_document());
+TEST_F(ViewportTest, OneToOneZoomsAboutTheMouseAndMoves) {
     window.view.size = SizeMode::one_to_one;
     const glm::vec2 middle = window.at("frame in view");
     window.move(middle + glm::vec2(100, 0));
@@ -238,7 +234,7 @@ TEST(Viewport, OneToOneZoomsAboutTheMouseAndMoves) {
     EXPECT_EQ(window.view.pan_px, glm::dvec2(40, 20));
 }
 
-TEST(Viewport, APictureOfNothingIsNotCalledFinal) {
+TEST_F(ViewportTest, APictureOfNothingIsNotCalledFinal) {
     Status status;
     status.view_frame.state = ViewFrameState::final;
     Scene scene;
@@ -250,7 +246,7 @@ TEST(Viewport, APictureOfNothingIsNotCalledFinal) {
     EXPECT_NE(badge_text(scene, status).text, "Empty");
 }
 
-TEST(Viewport, TheBadgeSaysHowFinalItIs) {
+TEST_F(ViewportTest, TheBadgeSaysHowFinalItIs) {
     const Document document = example_document();
     Status status = example_status();
     EXPECT_EQ(badge_text(document.scene(), status).text, "Refining 41 %");
@@ -274,7 +270,7 @@ TEST(Viewport, TheBadgeSaysHowFinalItIs) {
     EXPECT_EQ(badge_text(document.scene(), status).beside, "");
 }
 
-TEST(Viewport, TheFrontIsMeasuredBesideTheBadge) {
+TEST_F(ViewportTest, TheFrontIsMeasuredBesideTheBadge) {
     FrontStatus front;
     EXPECT_EQ(front_text(front), "");
     front.working = true;
@@ -294,8 +290,7 @@ TEST(Viewport, TheFrontIsMeasuredBesideTheBadge) {
     EXPECT_EQ(front_text(front), "Front cannot be compared: no picture");
 }
 
-TEST(Viewport, DShowsWhereTheFrontDiffersIfThereIsAPicture) {
-    TestWindow window(example_document());
+TEST_F(ViewportTest, DShowsWhereTheFrontDiffersIfThereIsAPicture) {
     window.frame();
     window.tap('D');
     EXPECT_EQ(window.view.compare, CompareMode::a);
@@ -307,8 +302,7 @@ TEST(Viewport, DShowsWhereTheFrontDiffersIfThereIsAPicture) {
     EXPECT_EQ(window.view.compare, CompareMode::a);
 }
 
-TEST(Viewport, TheBadgesButtons) {
-    TestWindow window(example_document());
+TEST_F(ViewportTest, TheBadgesButtons) {
     window.status.view_frame.state = ViewFrameState::failed;
     window.status.view_frame.error = "no such picture";
     window.frame(2);
@@ -324,8 +318,7 @@ TEST(Viewport, TheBadgesButtons) {
     EXPECT_EQ(commands[0].index, 1U);
 }
 
-TEST(Viewport, TheBadgeStaysInThePictureHoweverLongANameIs) {
-    TestWindow window(example_document());
+TEST_F(ViewportTest, TheBadgeStaysInThePictureHoweverLongANameIs) {
     window.document.edit("Rename", [](Scene& scene) { scene.layers[1].name = std::string(300, 'x'); });
     window.status.layers[1].loading = true;
     window.frame(2);
@@ -366,7 +359,7 @@ TEST(MessageBar, AnErrorStaysUntilItIsClicked) {
     EXPECT_TRUE(seen() == empty);
 }
 
-TEST(Viewport, CountsHaveThreeDigitsAtMost) {
+TEST_F(ViewportTest, CountsHaveThreeDigitsAtMost) {
     EXPECT_EQ(short_count(999), "999");
     EXPECT_EQ(splat_count(0), "0 splats");
     EXPECT_EQ(splat_count(1), "1 splat");

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -11,8 +12,19 @@
 #include <type_traits>
 #include <vector>
 
+#include "core/buffer.h"
 #include "core/image.h"
 #include "core/parallel.h"
+
+namespace astrosplat {
+
+/// Of two columns of splats.
+template <class T>
+bool same_bits(const Buffer<T>& a, const Buffer<T>& b) {
+    return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0);
+}
+
+}  // namespace astrosplat
 
 namespace astrosplat::test {
 
@@ -46,6 +58,13 @@ class Bits {
 inline std::string bytes_of(const std::filesystem::path& file) {
     std::ifstream in(file, std::ios::binary);
     return {std::istreambuf_iterator<char>(in), {}};
+}
+
+/// Fails the test where the text has no such part.
+inline std::string replaced(std::string text, const std::string& part, const std::string& by) {
+    const std::size_t at = text.find(part);
+    EXPECT_NE(at, std::string::npos) << part;
+    return at == std::string::npos ? text : text.replace(at, part.size(), by);
 }
 
 /// `run` gives Bits: the same on one thread, on several, and on every instruction set.

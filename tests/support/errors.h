@@ -1,7 +1,6 @@
-// Error messages as values, for tests that compare them.
+// Error messages as values, and texts that have a part, for tests that compare them.
 #pragma once
 
-#include <exception>
 #include <string>
 
 namespace astrosplat {
@@ -17,4 +16,11 @@ std::string message_of(const Call& call) {
     return "no error";
 }
 
+inline bool has_part(const std::string& text, const std::string& part) {
+    return text.find(part) != std::string::npos;
+}
+
 }  // namespace astrosplat
+
+/// Shows both where the text has no such part.
+#define EXPECT_HAS(text, part) EXPECT_PRED2(::astrosplat::has_part, text, part)

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 
@@ -46,27 +47,36 @@ inline void add_stars(Image& image, int count, double sigma) {
     }
 }
 
-/// Two arms, a warm bulge, blue knots along the arms, dust inside of them and stars before it.
-inline Image galaxy(std::int64_t width, std::int64_t height) {
+/// color(u, v) at the middle of every pixel: places in widths of the picture from its middle.
+template <class Color>
+Image of_colors(std::int64_t width, std::int64_t height, const Color& color) {
     Image image = make_image(width, height, 3);
     const double w = static_cast<double>(width);
-    for (std::int64_t y = 0; y < height; ++y) {
+    for (std::int64_t y = 0; y < height; ++y)
         for (std::int64_t x = 0; x < width; ++x) {
             const double u = (static_cast<double>(x) + 0.5 - 0.5 * w) / w;
             const double v = (static_cast<double>(y) + 0.5 - 0.5 * static_cast<double>(height)) / w;
-            const double r = std::hypot(u, v), turn = std::atan2(v, u) + 4.5 * std::log(r + 0.05);
-            const double clouds = 1.0 + 1.2 * static_cast<double>(fbm(u, v, 14.0, 3u));
-            const double arms = std::pow(0.5 + 0.5 * std::cos(2.0 * turn), 2.0) * std::exp(-r / 0.08);
-            const double dust =
-                1.0 - 0.6 * std::pow(0.5 + 0.5 * std::cos(2.0 * turn + 0.9), 6.0) * std::exp(-r / 0.3);
-            const double bulge = 0.8 * std::exp(-r / 0.035), disk = 0.15 * std::exp(-r / 0.07);
-            const double young = 0.35 * arms * std::max(0.1, clouds);
-            float* const p = image.at(x, y);
-            p[0] = static_cast<float>(dust * (bulge + disk + 0.7 * young) + 0.004);
-            p[1] = static_cast<float>(dust * (0.85 * bulge + 0.9 * disk + 0.85 * young) + 0.004);
-            p[2] = static_cast<float>(dust * (0.6 * bulge + 0.8 * disk + 1.2 * young) + 0.004);
+            const std::array<double, 3> rgb = color(u, v);
+            for (std::size_t k = 0; k < 3; ++k) image.at(x, y)[k] = static_cast<float>(rgb[k]);
         }
-    }
+    return image;
+}
+
+/// Two arms, a warm bulge, blue knots along the arms, dust inside of them and stars before it.
+inline Image galaxy(std::int64_t width, std::int64_t height) {
+    Image image = of_colors(width, height, [](double u, double v) {
+        const double r = std::hypot(u, v), turn = std::atan2(v, u) + 4.5 * std::log(r + 0.05);
+        const double clouds = 1.0 + 1.2 * static_cast<double>(fbm(u, v, 14.0, 3u));
+        const double arms = std::pow(0.5 + 0.5 * std::cos(2.0 * turn), 2.0) * std::exp(-r / 0.08);
+        const double dust =
+            1.0 - 0.6 * std::pow(0.5 + 0.5 * std::cos(2.0 * turn + 0.9), 6.0) * std::exp(-r / 0.3);
+        const double bulge = 0.8 * std::exp(-r / 0.035), disk = 0.15 * std::exp(-r / 0.07);
+        const double young = 0.35 * arms * std::max(0.1, clouds);
+        return std::array{dust * (bulge + disk + 0.7 * young) + 0.004,
+                          dust * (0.85 * bulge + 0.9 * disk + 0.85 * young) + 0.004,
+                          dust * (0.6 * bulge + 0.8 * disk + 1.2 * young) + 0.004};
+    });
+    const double w = static_cast<double>(width);
     for (std::uint32_t i = 0; i < 400; ++i) {
         const double r = 0.06 + 0.3 * random(i, 11), side = i % 2 == 0 ? 0.0 : 3.14159265;
         const double angle = side - 4.5 * std::log(r + 0.05) + 0.25 * (random(i, 12) - 0.5);
@@ -81,52 +91,37 @@ inline Image galaxy(std::int64_t width, std::int64_t height) {
 
 /// Two lobes of glowing gas with filaments and a bright middle.
 inline Image nebula(std::int64_t width, std::int64_t height) {
-    Image image = make_image(width, height, 3);
-    const double w = static_cast<double>(width);
-    for (std::int64_t y = 0; y < height; ++y) {
-        for (std::int64_t x = 0; x < width; ++x) {
-            const double u = (static_cast<double>(x) + 0.5 - 0.5 * w) / w;
-            const double v = (static_cast<double>(y) + 0.5 - 0.5 * static_cast<double>(height)) / w;
-            const double warp = 0.04 * static_cast<double>(fbm(u, v, 6.0, 9u));
-            const double waist = 0.03 + 0.5 * std::fabs(u) * (1.2 - std::fabs(u) * 2.0);
-            const double inside =
-                std::exp(-std::pow(std::fabs(v + warp) / waist, 4.0)) * std::exp(-std::fabs(u) / 0.25);
-            const double ridge = 1.0 - std::fabs(2.0 * static_cast<double>(fbm(u + warp, v, 11.0, 5u)));
-            const double gas = inside * (0.25 + 0.75 * std::pow(std::max(0.0, ridge), 6.0));
-            const double core = std::exp(-std::hypot(u, v) / 0.02);
-            float* const p = image.at(x, y);
-            p[0] = static_cast<float>(0.8 * gas + core + 0.003);
-            p[1] = static_cast<float>(0.35 * gas + 0.9 * core + 0.003);
-            p[2] = static_cast<float>(0.15 * gas + core + 0.003);
-        }
-    }
+    Image image = of_colors(width, height, [](double u, double v) {
+        const double warp = 0.04 * static_cast<double>(fbm(u, v, 6.0, 9u));
+        const double waist = 0.03 + 0.5 * std::fabs(u) * (1.2 - std::fabs(u) * 2.0);
+        const double inside =
+            std::exp(-std::pow(std::fabs(v + warp) / waist, 4.0)) * std::exp(-std::fabs(u) / 0.25);
+        const double ridge = 1.0 - std::fabs(2.0 * static_cast<double>(fbm(u + warp, v, 11.0, 5u)));
+        const double gas = inside * (0.25 + 0.75 * std::pow(std::max(0.0, ridge), 6.0));
+        const double core = std::exp(-std::hypot(u, v) / 0.02);
+        return std::array{0.8 * gas + core + 0.003, 0.35 * gas + 0.9 * core + 0.003,
+                          0.15 * gas + core + 0.003};
+    });
     add_stars(image, 60, 1.1);
     return image;
 }
 
 /// A shell of thin filaments about a faint blue glow.
 inline Image remnant(std::int64_t width, std::int64_t height) {
-    Image image = make_image(width, height, 3);
-    const double w = static_cast<double>(width);
-    for (std::int64_t y = 0; y < height; ++y) {
-        for (std::int64_t x = 0; x < width; ++x) {
-            const double u = (static_cast<double>(x) + 0.5 - 0.5 * w) / w;
-            const double v = (static_cast<double>(y) + 0.5 - 0.5 * static_cast<double>(height)) / w;
-            const double edge = 0.26 + 0.05 * static_cast<double>(fbm(u, v, 5.0, 21u));
-            const double r = std::hypot(u, 1.3 * v) / edge;
-            const double body = r < 1.0 ? std::sqrt(1.0 - r * r) : 0.0,
-                         shell = std::exp(-std::pow((r - 0.9) / 0.12, 2.0));
-            const double a = std::pow(
-                std::max(0.0, 1.0 - std::fabs(4.0 * static_cast<double>(fbm(u, v, 13.0, 22u)))), 8.0);
-            const double b = std::pow(
-                std::max(0.0, 1.0 - std::fabs(4.0 * static_cast<double>(fbm(u, v, 19.0, 23u)))), 8.0);
-            const double threads = (0.4 * body + shell);
-            float* const p = image.at(x, y);
-            p[0] = static_cast<float>(0.5 * threads * a + 0.05 * body + 0.003);
-            p[1] = static_cast<float>(0.3 * threads * (a + b) * 0.7 + 0.10 * body + 0.003);
-            p[2] = static_cast<float>(0.35 * threads * b + 0.16 * body + 0.003);
-        }
-    }
+    Image image = of_colors(width, height, [](double u, double v) {
+        const double edge = 0.26 + 0.05 * static_cast<double>(fbm(u, v, 5.0, 21u));
+        const double r = std::hypot(u, 1.3 * v) / edge;
+        const double body = r < 1.0 ? std::sqrt(1.0 - r * r) : 0.0,
+                     shell = std::exp(-std::pow((r - 0.9) / 0.12, 2.0));
+        const double a =
+            std::pow(std::max(0.0, 1.0 - std::fabs(4.0 * static_cast<double>(fbm(u, v, 13.0, 22u)))), 8.0);
+        const double b =
+            std::pow(std::max(0.0, 1.0 - std::fabs(4.0 * static_cast<double>(fbm(u, v, 19.0, 23u)))), 8.0);
+        const double threads = (0.4 * body + shell);
+        return std::array{0.5 * threads * a + 0.05 * body + 0.003,
+                          0.3 * threads * (a + b) * 0.7 + 0.10 * body + 0.003,
+                          0.35 * threads * b + 0.16 * body + 0.003};
+    });
     add_stars(image, 80, 1.0);
     return image;
 }

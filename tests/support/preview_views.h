@@ -5,7 +5,6 @@
 
 #include <cstdint>
 #include <span>
-#include <string>
 
 #include "core/image.h"
 #include "edit/view_state.h"

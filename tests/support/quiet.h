@@ -1,5 +1,8 @@
-// Tests that load sets on their way to something else do not repeat what the loader says.
+// The log in tests: silenced where sets are loaded on the way to something else, or caught to be compared.
 #pragma once
+
+#include <string>
+#include <vector>
 
 #include "core/log.h"
 
@@ -11,6 +14,30 @@ struct Quiet {
     ~Quiet() { set_log_level(LogLevel::info); }
     Quiet(const Quiet&) = delete;
     Quiet& operator=(const Quiet&) = delete;
+};
+
+/// While it lives, nothing is printed: what is said comes here, line by line, and warnings once more apart.
+struct Said {
+    std::vector<std::string> lines, warnings;
+
+    Said() {
+        set_log_sink([this](LogLevel level, const std::string& line) {
+            lines.push_back(line);
+            if (level == LogLevel::warning) warnings.push_back(line);
+        });
+    }
+    ~Said() {
+        flush_warning_counts();
+        set_log_sink(nullptr);
+    }
+    Said(const Said&) = delete;
+    Said& operator=(const Said&) = delete;
+
+    std::string text() const {
+        std::string all;
+        for (const std::string& line : lines) all += line + "\n";
+        return all;
+    }
 };
 
 }  // namespace astrosplat

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "scene/scene.h"
+#include "support/pixmap.h"
 #include "support/temp_folder.h"
 
 namespace astrosplat {
@@ -35,12 +36,9 @@ struct SmallScene {
 
     /// Binary PPM, 64x64 px, in which no two quarters are alike.
     static std::string picture() {
-        std::string text = "P6\n64 64\n255\n";
-        for (int y = 0; y < 64; ++y)
-            for (int x = 0; x < 64; ++x)
-                for (const int value : {40 + 3 * x, 250 - 3 * y, 60 + x + y})
-                    text += static_cast<char>(static_cast<unsigned char>(value));
-        return text;
+        return test::pixmap(64, 64, [](int x, int y, int k) {
+            return k == 0 ? 40 + 3 * x : k == 1 ? 250 - 3 * y : 60 + x + y;
+        });
     }
 };
 

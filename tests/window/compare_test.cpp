@@ -1,12 +1,18 @@
-// Two looks one after the other, and the output's own pixels.
+// Pictures to compare with: two looks, the output's own pixels, a reference.
+#include <gtest/gtest.h>
+
 #include <cmath>
 
+#include "gui/theme.h"
 #include "output/metadata.h"
 #include "source/texture.h"
+#include "source/write_image.h"
 #include "window/window_test.h"
 
 namespace astrosplat::test {
 namespace {
+
+// Two looks one after the other, and the output's own pixels.
 
 class WindowCompare : public WindowTest {};
 
@@ -37,9 +43,7 @@ TEST_F(WindowCompare, DShowsWhereTheFrontDiffersAndThePictureAgain) {
 
 /// Of a picture larger than the viewport its middle, pixel by pixel as it will be in the file.
 TEST_F(WindowCompare, OutputPixelsAreThoseOfTheFrame) {
-    std::string text = text_of(scene_file);
-    text.replace(text.find("[320, 180]"), 10, "[1600, 1200]");
-    write_text(scene_file, text);
+    replace_in_scene("[320, 180]", "[1600, 1200]");
     start();
     const Pixels fitted = settled_frame();
     person->press("z");
@@ -75,6 +79,131 @@ TEST_F(WindowCompare, WhatACommandDidIsSaid) {
     const Pixels before = message();
     choose("Render/Copy batch command");
     EXPECT_TRUE(comes_true([&] { return message() != before; }));
+}
+
+// A picture to compare with: over the view where it is placed, blinking, and taken from it.
+
+constexpr std::uint32_t picture_color = IM_COL32(200, 100, 50, 255);
+constexpr std::uint32_t no_difference = IM_COL32(128, 128, 128, 255);
+
+/// Of one colour, twice as wide as high, half as high as the frame, named in the scene.
+class WindowReference : public WindowTest {
+  protected:
+    WindowReference() {
+        std::vector<unsigned char> rgba;
+        for (int i = 0; i < 32 * 16; ++i) rgba.insert(rgba.end(), {200, 100, 50, 255});
+        write_image(folder / "ferner Nebel ä.png", 32, 16, rgba);
+        write_text(scene_file,
+                   text_of(scene_file) + "\n[[reference]]\nfile = \"ferner Nebel ä.png\"\nscale = 0.5\n");
+    }
+    Rect frame() const {
+        const Rect viewport = make_layout(ViewState(), width, height, 1.0f).viewport;
+        const OutputParams output = saved().output;
+        const double shown =
+            std::min(viewport.height / double(output.height), viewport.width / double(output.width));
+        return place_frame(ViewState(), viewport, int(std::lround(shown * double(output.width))),
+                           int(std::lround(shown * double(output.height))));
+    }
+    glm::vec2 middle() const { return {frame().x + 0.5f * frame().width, frame().y + 0.5f * frame().height}; }
+    int seen() const { return count_of(frame_pixels(), picture_color); }
+};
+
+TEST_F(WindowReference, IsPlacedByTheMouseSavedAndUndone) {
+    start();
+    const Pixels before = settled_frame();
+    EXPECT_EQ(seen(), 0);
+    person->press("shift+b");
+    person->press("p");
+    const double area = 0.5 * frame().height * frame().height;
+    EXPECT_TRUE(comes_true([&] { return seen() > 0.97 * area; })) << seen();
+    person->drag(middle(), {0.25f * frame().height, 0.125f * frame().height});
+    expect_title("scene.toml - edited");
+    save();
+    ASSERT_EQ(saved().references.size(), 1u);
+    EXPECT_NEAR(saved().references[0].position.x, 0.25, 0.01);
+    EXPECT_NEAR(saved().references[0].position.y, -0.125, 0.01);
+    person->press("ctrl+z");
+    expect_title("scene.toml - edited");
+    person->press("Escape");
+    person->press("Tab");
+    expect_settled(before);
+    EXPECT_EQ(end(SIGTERM).code, 143);
+}
+
+TEST_F(WindowReference, IsNotInThePictureOfASnapshot) {
+    start();
+    settled_frame();
+    person->press("shift+b");
+    person->press("Tab");
+    EXPECT_TRUE(comes_true([&] { return seen() > 0; }));
+    person->press("b");
+    const fs::path picture = folder / "scene.snapshots/0001.png";
+    ASSERT_TRUE(comes_true([&] { return fs::exists(picture); }));
+    const Image thumbnail = load_raw_image(picture);
+    const float* const middle = thumbnail.at(thumbnail.width / 2, thumbnail.height / 2);
+    EXPECT_GT(std::fabs(middle[0] - 200.0f / 255.0f) + std::fabs(middle[2] - 50.0f / 255.0f), 0.1f);
+}
+
+TEST_F(WindowReference, BlinksAndStops) {
+    start();
+    const Pixels before = settled_frame();
+    person->press("shift+b");
+    person->press("x");
+    for (int change = 0; change < 2; ++change) {
+        EXPECT_TRUE(comes_true([&] { return seen() > 0; }));
+        EXPECT_TRUE(comes_true([&] { return seen() == 0; }));
+    }
+    person->press("x");
+    expect_settled(before);
+}
+
+TEST_F(WindowReference, OneThatCannotBeReadIsSaid) {
+    fs::remove(folder / "ferner Nebel ä.png");
+    start();
+    const Pixels before = settled_frame();
+    person->press("shift+b");
+    person->press("Tab");
+    const Rect bar = make_layout(ViewState(), width, height, 1.0f).status;
+    EXPECT_TRUE(comes_true([&] {
+        return count_of(screen->pixels({0, int(bar.y), 600, int(bar.height)}), color::error) > 0;
+    })) << "the message is red";
+    EXPECT_EQ(frame_pixels(), before);
+}
+
+/// The frame itself, as a picture that lies elsewhere.
+TEST_F(WindowReference, IsAlignedToTheView) {
+    ASSERT_EQ(run({"--batch", scene_file.string(), "-f", "1", "-o", "frame.png", "--no-cache"}).code, 0);
+    std::string text = text_of(scene_file);
+    text.replace(text.find("ferner Nebel"), text.size(),
+                 "frame.png\"\nposition = [0.1, -0.05]\nscale = 0.8\n");
+    write_text(scene_file, text);
+    start();
+    settled_frame();
+    same_widgets().status.reference = ReferenceStatus{0, 16.0 / 9.0, ""};
+    same_widgets().frame(2);
+    choose("View/Align reference to this view");
+    expect_title("scene.toml - edited");
+    save();
+    const ReferenceParams found = saved().references.at(0);
+    EXPECT_NEAR(found.position.x, 0.0, 1.0 / frame().height);
+    EXPECT_NEAR(found.position.y, 0.0, 1.0 / frame().height);
+    EXPECT_NEAR(found.scale, 1.0, 0.005);
+    person->press("ctrl+z");
+    expect_title("scene.toml - edited");
+}
+
+/// Pixels equal to B are grey in the difference, whatever is stored as B; changes lie about that grey.
+TEST_F(WindowReference, TheDifferenceFromBIsNeverBlack) {
+    start();
+    settled_frame();
+    person->press("b");
+    choose("View/Difference");
+    const double pixels = double(frame().width) * double(frame().height);
+    EXPECT_TRUE(comes_true([&] { return count_of(frame_pixels(), no_difference) > 0.8 * pixels; }));
+    person->press("b");
+    EXPECT_TRUE(comes_true([&] { return count_of(frame_pixels(), no_difference) > 0.8 * pixels; }));
+    person->drag(value_box(power), {60.0f, 0.0f});
+    EXPECT_TRUE(comes_true([&] { return count_of(frame_pixels(), no_difference) < 0.8 * pixels; }));
 }
 
 }  // namespace

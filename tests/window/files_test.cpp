@@ -1,12 +1,16 @@
-// Files that a scene is made of are changed by other programs while it is open.
+// Files that change, that are dropped, and that are chosen in the dialog.
+
 #include <thread>
 
+#include "edit/preferences.h"
 #include "gui/theme.h"
 #include "source/write_image.h"
 #include "window/window_test.h"
 
 namespace astrosplat::test {
 namespace {
+
+// Files that a scene is made of are changed by other programs while it is open.
 
 class WindowFiles : public WindowTest {
   protected:
@@ -19,9 +23,7 @@ class WindowFiles : public WindowTest {
     /// Something in the window is in the colour of errors.
     bool failed() const { return count_of(screen->pixels({0, 0, width, height}), color::error) > 10; }
     void add(const std::string& before, const std::string& lines) {
-        std::string text = text_of(scene_file);
-        text.insert(text.find(before), lines);
-        write_text(scene_file, text);
+        replace_in_scene(before, lines + before);
     }
 };
 
@@ -78,6 +80,138 @@ TEST_F(WindowFiles, WhatCannotBeKeyedIsSaidInTheMessageBar) {
     const auto before = red();
     person->press("k");
     EXPECT_TRUE(comes_true([&] { return red() > 10 && red() != before; })) << "then why there is no keyframe";
+}
+
+// Files dropped on the window by another program.
+
+class WindowDrop : public WindowTest {
+  protected:
+    glm::vec2 middle() { return same_widgets().at("frame in view"); }
+};
+
+TEST_F(WindowDrop, APictureBecomesALayerAndASceneIsOpened) {
+    start();
+    const Pixels before = settled_frame();
+    write_rings(folder / "übrig 2.png");
+    ASSERT_TRUE(screen->drop({folder / "übrig 2.png"}, middle()));
+    expect_title("scene.toml - edited");
+    settled_frame(before);
+    save();
+    const Scene scene = saved();
+    ASSERT_EQ(scene.layers.size(), 2u);
+    const std::vector<MeshInput>& meshes = scene.layers[1].source.meshes;
+    ASSERT_EQ(meshes.size(), 1u);
+    EXPECT_EQ(meshes[0].mesh, "plane");
+    EXPECT_EQ(meshes[0].texture, std::vector<fs::path>{folder / "übrig 2.png"});
+
+    fs::copy_file(scene_file, folder / "other.toml");
+    ASSERT_TRUE(screen->drop({folder / "other.toml"}, middle()));
+    expect_title("other.toml");
+}
+
+TEST_F(WindowDrop, ACameraDrivesTheScenes) {
+    start();
+    const Pixels before = settled_frame();
+    write_text(folder / "weg ü.chan", "1 0 3 9 -15 10 0 30\n");
+    ASSERT_TRUE(screen->drop({folder / "weg ü.chan"}, middle()));
+    expect_title("scene.toml - edited");
+    settled_frame(before);
+    save();
+    EXPECT_EQ(saved().camera.file, folder / "weg ü.chan");
+    EXPECT_EQ(saved().layers.size(), 1u);
+}
+
+TEST_F(WindowDrop, ALookIsGivenToTheLayer) {
+    start();
+    const Pixels before = settled_frame();
+    write_text(folder / "look.toml", "[look]\nalpha = { power = 3.0 }\n");
+    ASSERT_TRUE(screen->drop({folder / "look.toml"}, middle()));
+    expect_title("scene.toml - edited");
+    settled_frame(before);
+    save();
+    EXPECT_EQ(saved().layers[0].look.alpha.power, 3.0f);
+}
+
+TEST_F(WindowDrop, OnTheDemoAPictureBecomesAGalaxy) {
+    start({"--no-cache"});
+    expect_title("Untitled");
+    ASSERT_TRUE(screen->drop({folder / "rings.png"}, middle()));
+    settled_frame();
+    person->press("ctrl+s");
+    person->press("ctrl+a");
+    person->type("galaxy.toml");
+    person->press("Return");
+    expect_title("galaxy.toml");
+    const Scene scene = load_scene(folder / "galaxy.toml");
+    ASSERT_EQ(scene.layers.size(), 1u);
+    EXPECT_EQ(scene.layers[0].source.meshes[0].mesh, "plane");
+    EXPECT_EQ(scene.layers[0].source.meshes[0].texture, std::vector<fs::path>{folder / "rings.png"});
+}
+
+// The window's own file dialog by real keys and clicks: names typed faster than anybody types, pictures seen
+// before they are chosen, in folders as large as a film's.
+
+class WindowFileDialog : public WindowTest {
+  protected:
+    void write_plain(const std::string& name, int side, unsigned char red, unsigned char green) const {
+        std::vector<unsigned char> rgba;
+        for (int i = 0; i < side * side; ++i) rgba.insert(rgba.end(), {red, green, 30, 255});
+        write_image(folder / name, side, side, rgba);
+    }
+    Pixels window() const { return screen->pixels({0, 0, width, height}); }
+    /// A thumbnail of 48 px a side, without its rim.
+    static constexpr int most_of_one = 40 * 40;
+    bool seen(unsigned char red, unsigned char green) const {
+        return count_of(window(), IM_COL32(red, green, 30, 255)) > most_of_one;
+    }
+};
+
+TEST_F(WindowFileDialog, ALongNameTypedFastKeepsEveryCharacter) {
+    fs::create_directories(folder / "many");
+    for (int i = 0; i < 4000; ++i)
+        write_text(folder / ("many/frame" + std::to_string(10000 + i) + ".toml"), "");
+    const std::string name = "the quick brown fox jumps over the lazy dog 0123456789.toml";
+    fs::copy_file(scene_file, folder / "many" / name);
+    fs::copy_file(folder / "rings.png", folder / "many/rings.png");
+    start();
+    person->press("ctrl+o");
+    person->type("many", 30);
+    person->enter_and_type(name, 8);
+    person->press("Return");
+    expect_title(name);
+}
+
+TEST_F(WindowFileDialog, PicturesAreSeenBeforeTheyAreChosen) {
+    fs::create_directories(folder / "pictures");
+    write_plain("pictures/b red.png", 500, 201, 40);
+    write_plain("pictures/c green.tif", 300, 40, 203);
+    write_text(folder / "pictures/a broken.jpg", "no picture");
+    for (int i = 0; i < 300; ++i)
+        fs::copy_file(folder / "rings.png", folder / ("pictures/d" + std::to_string(100 + i) + ".png"));
+    write_plain("pictures/z last.png", 200, 105, 106);
+    start();
+    settled_frame();
+    choose("File/Import as a layer...");
+    person->type("pictures");
+    person->press("Return");
+    EXPECT_TRUE(comes_true([&] { return seen(201, 40) && seen(40, 203); }));
+    EXPECT_FALSE(seen(105, 106)) << "below all others";
+    person->scroll({width * 0.5f, height * 0.5f}, 400);
+    EXPECT_TRUE(comes_true([&] { return seen(105, 106); }));
+    EXPECT_FALSE(seen(201, 40));
+    EXPECT_EQ(end(SIGTERM).err.find("broken"), std::string::npos) << "nobody opened it";
+}
+
+TEST_F(WindowFileDialog, WhateverWasOpenedIsRecent) {
+    start({(folder / "rings.png").string(), "--no-cache"});
+    person->press("ctrl+o");
+    person->type(scene_file.filename().string(), 30);
+    person->press("Return");
+    expect_title("scene.toml");
+    person->press("ctrl+q");
+    end();
+    const Preferences kept = load_preferences(folder / "home/config/astrosplat/viewer.json");
+    EXPECT_EQ(kept.recent, (std::vector<fs::path>{scene_file, folder / "rings.png"}));
 }
 
 }  // namespace

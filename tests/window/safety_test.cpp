@@ -1,9 +1,14 @@
-// Unsaved changes survive a crash, and a scene edited by hand meanwhile is offered.
+// What survives a crash: unsaved changes and snapshots.
+#include <gtest/gtest.h>
+
+#include "edit/snapshots.h"
 #include "gui/theme.h"
 #include "window/window_test.h"
 
 namespace astrosplat::test {
 namespace {
+
+// Unsaved changes survive a crash, and a scene edited by hand meanwhile is offered.
 
 class WindowSafety : public WindowTest {
   protected:
@@ -42,8 +47,7 @@ TEST_F(WindowSafety, AKilledSessionIsRecovered) {
     offer_recovery();
     click_when_shown("recovery/Recover");
     expect_title("scene.toml - edited");
-    person->press("ctrl+s");
-    expect_title("scene.toml");
+    save();
     EXPECT_GT(saved().layers[0].look.alpha.power, 1.0f);
     EXPECT_NE(text_of(scene_file).find("# by hand, keep this"), std::string::npos);
     EXPECT_TRUE(comes_true([&] { return autosaves().empty(); }));
@@ -65,9 +69,7 @@ TEST_F(WindowSafety, ATerminatedSessionSavesAtOnceAndMayBeDiscarded) {
 class WindowDisk : public WindowSafety {
   protected:
     void replace(const std::string& what, const std::string& by) {
-        std::string text = text_of(scene_file);
-        text.replace(text.find(what), what.size(), by);
-        write_text(scene_file, text);
+        replace_in_scene(what, by);
         same_widgets().status.changed_on_disk = true;
         same_widgets().frame(3);
     }
@@ -109,6 +111,101 @@ TEST_F(WindowDisk, AnEnvironmentThatCannotBeReadEndsNothing) {
     ASSERT_TRUE(running()) << program->err_so_far();
     person->press("ctrl+z");
     expect_settled(before);
+}
+
+// Snapshots lie beside the scene as soon as they are taken, and are there again after a crash.
+
+class WindowSnapshots : public WindowTest {
+  protected:
+    std::vector<KeptSnapshot> kept() const {
+        std::vector<std::string> problems;
+        std::vector<KeptSnapshot> found = read_snapshots(snapshot_folder(scene_file), problems);
+        EXPECT_EQ(problems, std::vector<std::string>());
+        return found;
+    }
+    /// The strip below the picture, with one card.
+    void open_strip() {
+        choose("View/Snapshots");
+        same_widgets().status.snapshots = {{"Look 1", nullptr, 1.0f, 1000, 0.0}};
+        same_widgets().frame(3);
+    }
+    bool says_an_error() const {
+        const Rect bar = make_layout(ViewState(), width, height, 1.0f).status;
+        return count_of(screen->pixels({0, static_cast<int>(bar.y), 600, static_cast<int>(bar.height)}),
+                        color::error) > 0;
+    }
+};
+
+TEST_F(WindowSnapshots, SurviveACrashAndAreComparedAfterIt) {
+    start();
+    const Pixels first = settled_frame();
+    person->drag(value_box(power), {60.0f, 0.0f});
+    const Pixels changed = settled_frame(first);
+    person->press("b");
+    EXPECT_TRUE(comes_true([&] { return fs::exists(snapshot_folder(scene_file) / "0001.png"); }));
+    end(SIGKILL);
+    ASSERT_EQ(kept().size(), 1u);
+    EXPECT_EQ(kept()[0].facts.name, "Look 1");
+    EXPECT_GT(kept()[0].scene.layers[0].look.alpha.power, saved().layers[0].look.alpha.power);
+
+    fs::remove_all(folder / "home/state");  // its autosave, which would be offered
+    start();
+    settled_frame();
+    open_strip();
+    person->click(same_widgets().at("snapshot 0"));
+    const Rect viewport = make_layout(ViewState(), width, height, 1.0f).viewport;
+    const auto upper_half = [&] {  // without badge and strip
+        return screen->pixels({static_cast<int>(viewport.x), static_cast<int>(viewport.y),
+                               static_cast<int>(viewport.width), static_cast<int>(viewport.height / 2)});
+    };
+    ViewState with_strip;
+    with_strip.snapshots_open = true;
+    EXPECT_TRUE(comes_true([&] { return settled(with_strip); })) << "the strip made the view smaller";
+    const Pixels saved_look = upper_half();
+    person->press("Tab");
+    EXPECT_TRUE(comes_true([&] { return upper_half() != saved_look; })) << "B is the changed look";
+    person->press("Tab");
+    EXPECT_TRUE(comes_true([&] { return upper_half() == saved_look; }));
+    expect_title("scene.toml");
+}
+
+TEST_F(WindowSnapshots, AreRestoredAsOneStepAndDeleted) {
+    Scene scene = saved();
+    scene.layers[0].look.alpha.power = 7.0f;
+    write_snapshot(snapshot_folder(scene_file), {"Look 1"}, scene, "");
+    start();
+    settled_frame();
+    open_strip();
+    const auto choose_of_card = [&](const std::string& entry) {
+        TestWindow& widgets = same_widgets();
+        const glm::vec2 card = widgets.at("snapshot 0");
+        widgets.click(card, 1);
+        widgets.frame(3);
+        person->click(card, 3);
+        person->click(widgets.at("snapshot/" + entry));
+        widgets.click(widgets.at("snapshot/" + entry));
+    };
+    choose_of_card("Restore");
+    expect_title("scene.toml - edited");
+    save();
+    EXPECT_EQ(saved().layers[0].look.alpha.power, 7.0f);
+    person->press("ctrl+z");
+    person->press("ctrl+s");
+    EXPECT_TRUE(comes_true([&] { return saved().layers[0].look.alpha.power != 7.0f; }));
+    choose_of_card("Delete");
+    EXPECT_TRUE(comes_true([&] { return kept().empty(); }));
+}
+
+TEST_F(WindowSnapshots, WhereTheyCannotBeKeptOneLineSaysSo) {
+    write_text(snapshot_folder(scene_file), "a file in the folder's place");
+    start();
+    const Pixels first = settled_frame();
+    person->press("b");
+    EXPECT_TRUE(comes_true([&] { return says_an_error(); }));
+    person->drag(value_box(power), {60.0f, 0.0f});
+    settled_frame(first);
+    person->press("Tab");
+    expect_settled(first);
 }
 
 }  // namespace

@@ -1,4 +1,6 @@
-// The settled picture is the very frame that --batch computes.
+// The settled picture is the frame of --batch, and a set is seen while it grows.
+
+#include <algorithm>
 #include <cstring>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -10,6 +12,8 @@
 
 namespace astrosplat::test {
 namespace {
+
+// The settled picture is the very frame that --batch computes.
 
 class Settled : public ViewerTest {
   protected:
@@ -77,10 +81,7 @@ TEST_F(Settled, EqualsBatchBitForBit) { expect_batch(); }
 // The viewport's transform is OpenColorIO's for OpenGL, the file's that for processors.
 TEST_F(Settled, LooksAsTheFileThroughAConfiguration) {
     write_color_config(folder);
-    std::string text = text_of(scene_file);
-    const std::string depth = "depth = \"float\"";
-    text.replace(text.find(depth), depth.size(), "ocio = { config = \"colors.ocio\" }\nexposure = 1");
-    write_text(scene_file, text);
+    replace_in_scene("depth = \"float\"", "ocio = { config = \"colors.ocio\" }\nexposure = 1");
     ASSERT_EQ(
         run({"--screenshot", "shot.png", "--settled", "--size", "200x120", scene_file.string(), "--no-cache"})
             .code,
@@ -104,9 +105,7 @@ TEST_F(Settled, LooksAsTheFileThroughAConfiguration) {
 
 TEST_F(Settled, EqualsBatchWithTheCameraOfAFile) {
     write_text(folder / "cam.chan", "1 0 6 8 -30 0 0 40\n24 4 5 7 -30 20 0 60\n");
-    std::string text = text_of(scene_file);
-    text.insert(text.find("target"), "file = \"cam.chan\"\n");
-    write_text(scene_file, text);
+    replace_in_scene("target", "file = \"cam.chan\"\ntarget");
     expect_batch();
 }
 
@@ -151,6 +150,35 @@ TEST_F(Settled, APreviewsLightCanBeSavedToo) {
             difference += std::abs(double(preview.pixels[i]) - double(batch.pixels[i]));
         EXPECT_LT(difference, 0.05 * sum) << "the same way up, in linear light " << engine;
     }
+}
+
+class WindowGrowth : public WindowTest {
+  protected:
+    /// A set that takes seconds.
+    void SetUp() override {
+        WindowTest::SetUp();
+        replace_in_scene("count = 60000", "count = 20000000");
+    }
+    /// More than the words over the picture.
+    bool something_is_seen() const {
+        const Pixels seen = frame_pixels();
+        const auto is_lit = [](std::uint32_t rgb) {
+            return std::max({rgb >> 16 & 0xff, rgb >> 8 & 0xff, rgb & 0xff}) > 60;
+        };
+        return std::count_if(seen.rgb.begin(), seen.rgb.end(), is_lit) > 3000;
+    }
+};
+
+TEST_F(WindowGrowth, APartOfTheSetIsSeenBeforeItIsWhole) {
+    start({scene_file.string(), "--no-cache", "--threads", "1"});
+    ASSERT_TRUE(comes_true([&] { return something_is_seen(); }));
+    // Escape gives up what is being generated, and leaves alone what is whole: nothing goes on until it is
+    // pressed.
+    stop();
+    person->press("Escape");
+    go_on();
+    EXPECT_TRUE(comes_true([&] { return !something_is_seen(); })) << "what was given up stays in the picture";
+    EXPECT_TRUE(running());
 }
 
 }  // namespace

@@ -1,11 +1,20 @@
-// Looking around leaves the scene alone, and a window nobody touches rests.
+// The view by hand: looking around, selecting, handles, the camera's path.
+#include <fmt/format.h>
+
 #include <fstream>
 #include <sstream>
 
+#include "edit/keyframes.h"
+#include "edit/placement.h"
+#include "gui/theme.h"
+#include "source/write_image.h"
+#include "support/color_config.h"
 #include "window/window_test.h"
 
 namespace astrosplat::test {
 namespace {
+
+// Looking around leaves the scene alone, and a window nobody touches rests.
 
 class WindowView : public WindowTest {};
 
@@ -47,6 +56,210 @@ TEST_F(WindowView, AnIdleWindowRests) {
     std::printf("idle window: %.1f %% of one core\n", 100.0 * used / while_s);
     EXPECT_LT(used, most_s);
     EXPECT_EQ(frame_pixels(), before);
+}
+
+// A click in the picture selects the layer that is seen there.
+
+/// Two flat squares side by side, and a dimmer one behind the right one.
+class WindowSelect : public WindowTest {
+  protected:
+    WindowSelect() {
+        std::vector<unsigned char> rgba;
+        for (int i = 0; i < 16 * 16; ++i) rgba.insert(rgba.end(), {200, 200, 200, 255});
+        write_image(folder / "grey.png", 16, 16, rgba);
+        write_text(scene_file, R"(astrosplat = 1
+[output]
+resolution = [320, 180]
+frames = "1"
+[camera]
+position = [0.0, 30.0, 0.0]
+)" + layer("left", "[-7.0, 0.0, 0.0]", "1.0") +
+                                   layer("right", "[7.0, 0.0, 0.0]", "1.0") +
+                                   layer("behind", "[7.0, -3.0, 0.0]", "0.2"));
+    }
+    static std::string layer(const std::string& name, const std::string& place, const std::string& gain) {
+        return "[[layer]]\nname = \"" + name + "\"\n[layer.transform]\ntranslate = " + place +
+               "\n[layer.source]\nmeshes = [ { mesh = \"plane\", texture = \"grey.png\" } ]\ncount = 4000\n" +
+               "[layer.look]\ngrade = { gain = " + gain + " }\n[layer.render]\nblend = \"add\"\n";
+    }
+    glm::vec2 row(int index) const {  // of the list of layers
+        const Rect panel = make_layout(ViewState(), width, height, 1.0f).panel;
+        return {panel.x + 100.0f, panel.y + 32.0f + 28.0f * (static_cast<float>(index) + 0.5f)};
+    }
+    Area list_area() const {
+        const Rect panel = make_layout(ViewState(), width, height, 1.0f).panel;
+        return {int(panel.x), int(panel.y), int(panel.width), 32 + 3 * 28};
+    }
+    /// The list, seen with the mouse elsewhere.
+    Pixels list() const {
+        person->move({width - 2.0f, height - 2.0f});
+        return screen->pixels(list_area());
+    }
+    Pixels list_after_click_on_row(int index) {
+        const Pixels before = list();
+        person->click(row(index));
+        comes_true([&] { return list() != before; });
+        return list();
+    }
+    glm::vec2 in_view(float right) const {  // of the middle, shares of the height
+        const Rect area = make_layout(ViewState(), width, height, 1.0f).viewport;
+        return {area.x + 0.5f * area.width + right * area.height, area.y + 0.5f * area.height};
+    }
+};
+
+TEST_F(WindowSelect, AClickSelectsAndAnotherTakesTheOneBehind) {
+    start();
+    settled_frame();
+    const Pixels left = list();
+    const Pixels behind = list_after_click_on_row(2), right = list_after_click_on_row(1);
+    ASSERT_NE(left, right);
+    ASSERT_NE(left, behind);
+    person->click(in_view(-0.2f));
+    EXPECT_TRUE(comes_true([&] { return list() == left; })) << "the left square is clicked";
+    person->click(in_view(0.2f));
+    EXPECT_TRUE(comes_true([&] { return list() == right; })) << "the brighter one of two";
+    usleep(700'000);  // no double click
+    person->click(in_view(0.2f));
+    EXPECT_TRUE(comes_true([&] { return list() == behind; })) << "the one behind it";
+    EXPECT_EQ(title(), "scene.toml - astrosplat") << "selecting is no edit";
+}
+
+// A layer is moved by its handles in the picture, and a crop cuts it.
+
+class WindowHandles : public WindowTest {
+  protected:
+    /// Where the scene's camera shows a point at frame 1, px of the window.
+    glm::vec2 at(const glm::dvec3& point) const {
+        const Rect viewport = make_layout(ViewState(), width, height, 1.0f).viewport;
+        const OutputParams output = saved().output;
+        const double aspect = double(output.width) / double(output.height);
+        const double high = std::min(double(viewport.height), double(viewport.width) / aspect);
+        const Rect place =
+            place_frame(ViewState(), viewport, int(std::lround(high * aspect)), int(std::lround(high)));
+        const Camera camera = make_camera(saved().camera, double(place.width), double(place.height), {});
+        return glm::vec2(place.x, place.y) + *project_point(camera, point);
+    }
+};
+
+TEST_F(WindowHandles, ALayerIsDraggedUndoneAndSaved) {
+    start();
+    const Pixels before = settled_frame();
+    person->press("w");
+    person->drag(at({0.0, 0.0, 0.0}), at({1.0, 0.0, 0.0}) - at({0.0, 0.0, 0.0}));
+    expect_title("scene.toml - edited");
+    save();
+    EXPECT_NEAR(saved().layers[0].transform.translate.x, 1.0, 0.05);
+    person->press("ctrl+z");
+    expect_title("scene.toml - edited");
+    person->press("w");
+    expect_settled(before);
+}
+
+TEST_F(WindowHandles, ADragBesideThemOrbits) {
+    start();
+    settled_frame();
+    person->press("w");
+    person->drag(at({0.0, 0.0, 0.0}) + glm::vec2(0.0f, 200.0f), {60.0f, 0.0f});
+    const Pixels tools = pixels_of(&Layout::tools);
+    person->press("0");
+    EXPECT_TRUE(comes_true([&] { return pixels_of(&Layout::tools) != tools; })) << "it was a free view";
+    EXPECT_EQ(title(), "scene.toml - astrosplat");
+}
+
+// The camera's path by hand: a keyframe is dragged in the view, and frames that are rendered are played.
+
+class WindowPath : public WindowTest {
+  protected:
+    /// Keyframes that a view from above shows, at frames 1 and 24.
+    void write_low_path() {
+        replace_in_scene("[[1, [0.0, 6.0, 8.0]], [24, [4.0, 5.0, 7.0]]]",
+                         "[[1, [0.0, 6.0, 2.0]], [24, [3.0, 5.0, 2.0]]]");
+    }
+    /// The middle of a point of the path at another frame than the one that is seen.
+    std::optional<glm::vec2> point_on_path() const {
+        const Rect area = make_layout(ViewState(), width, height, 1.0f).viewport;
+        const Pixels seen = frame_pixels();
+        const auto is_key = [&](int x, int y) {
+            return seen.rgb[static_cast<std::size_t>(y * seen.width + x)] == 0xD9A441;
+        };
+        for (int y = 0; y + 7 < seen.height; ++y)
+            for (int x = 0; x + 7 < seen.width; ++x) {
+                bool square = true;
+                for (int i = 0; i < 49 && square; ++i) square = is_key(x + i % 7, y + i / 7);
+                if (square) return glm::vec2(area.x, area.y) + glm::vec2(x + 3, y + 3);
+            }
+        return std::nullopt;
+    }
+    /// All of a finished frame.
+    void write_frame(int frame, unsigned char level) {
+        std::vector<unsigned char> rgba;
+        for (int i = 0; i < 320 * 180; ++i) rgba.insert(rgba.end(), {level, level, level, 255});
+        fs::create_directories(folder / "frames");
+        write_image(folder / fmt::format("frames/shot.{:04}.png", frame), 320, 180, rgba);
+    }
+    /// Frame 1 lies there as light of 0.2, and one stop of exposure.
+    void show_rendered_light(const std::string& view) {
+        replace_in_scene("shot.####.png", "shot.####.exr");
+        replace_in_scene("frames = ", view + "\nexposure = 1.0\nframes = ");
+        fs::create_directories(folder / "frames");
+        write_linear_image(folder / "frames/shot.0001.exr", make_image(320, 180, 4, 0.2f), "",
+                           Existing::replace);
+        start();
+        settled_frame();
+        person->click(same_widgets().at("playing/Rendered"));
+    }
+    bool sees(unsigned char level) const {
+        return count_of(frame_pixels(), IM_COL32(level, level, level, 255)) > 10'000;
+    }
+};
+
+TEST_F(WindowPath, AKeyframeIsDraggedInTheView) {
+    write_low_path();
+    start();
+    const Pixels camera = settled_frame();
+    person->press("7");
+    settled_frame(camera);
+    const std::optional<glm::vec2> point = point_on_path();
+    ASSERT_TRUE(point);
+    person->drag(*point, {80.0f, 0.0f});
+    expect_title("scene.toml - edited");
+    save();
+    const Scene scene = saved();
+    const std::vector<double>& moved = find_track(scene, "camera.position")->keyframes[1].value;
+    EXPECT_GT(moved[0], 3.5);
+    EXPECT_NEAR(moved[1], 5.0, 1e-3);
+    EXPECT_NEAR(moved[2], 2.0, 0.2);
+    person->press("ctrl+z");
+    person->press("ctrl+s");
+    EXPECT_TRUE(
+        comes_true([&] { return find_track(saved(), "camera.position")->keyframes[1].value[0] == 3.0; }));
+}
+
+TEST_F(WindowPath, RenderedFramesAreShownAndTheOthersAsPreviews) {
+    write_frame(1, 100);
+    write_frame(24, 200);
+    start();
+    settled_frame();
+    person->click(same_widgets().at("playing/Rendered"));
+    EXPECT_TRUE(comes_true([&] { return sees(100); }));
+    person->press("ctrl+Right");
+    EXPECT_TRUE(comes_true([&] { return sees(200); }));
+    person->press("Left");
+    EXPECT_TRUE(comes_true([&] { return !sees(200) && !sees(100); })) << "frame 23 is not rendered";
+    write_frame(23, 150);
+    EXPECT_TRUE(comes_true([&] { return sees(150); })) << "and now it is";
+}
+
+/// Frames of scene light are seen through the viewport's exposure and view, as the preview is.
+TEST_F(WindowPath, RenderedLightIsShownThroughTheView) {
+    show_rendered_light("view = \"linear\"");
+    EXPECT_TRUE(comes_true([&] { return sees(102); })) << "2 * 0.2 of 255";
+}
+
+TEST_F(WindowPath, RenderedLightIsShownThroughOpenColorIO) {
+    write_color_config(folder);
+    show_rendered_light("ocio = { config = \"colors.ocio\", display = \"Screen\", view = \"Film\" }");
+    EXPECT_TRUE(comes_true([&] { return sees(161); })) << "the root of 2 * 0.2, of 255";
 }
 
 }  // namespace

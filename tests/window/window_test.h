@@ -9,6 +9,7 @@
 #include "gui/panel/panel.h"
 #include "gui/test_window.h"
 #include "scene/load.h"
+#include "support/bits.h"
 #include "support/run_program.h"
 #include "window/person.h"
 #include "window/screen.h"
@@ -39,6 +40,10 @@ class ViewerTest : public FolderTest {
     virtual RunOptions options() const;
     RunResult run(std::vector<std::string> arguments) const;
     Scene saved() const { return load_scene(scene_file); }
+    /// In the file of the scene.
+    void replace_in_scene(const std::string& part, const std::string& by) const {
+        write_text(scene_file, replaced(text_of(scene_file), part, by));
+    }
 
     fs::path scene_file;
 };
@@ -61,6 +66,11 @@ class WindowTest : public ViewerTest {
     std::string title() const { return screen->title(); }
     /// Waits for this title: the scene's name, and whether it is edited.
     void expect_title(const std::string& begin);
+    /// By its shortcut, until the title says so.
+    void save() {
+        person->press("ctrl+s");
+        expect_title("scene.toml");
+    }
     /// The viewport without its badge.
     Pixels frame_pixels() const;
     /// The badge says that the picture is final.

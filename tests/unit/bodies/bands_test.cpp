@@ -1,9 +1,13 @@
-#include "bodies/picture_light.h"
-
+// Bands of a picture, and the dust that takes their light away.
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cmath>
 #include <vector>
 
+#include "bodies/dust.h"
+#include "bodies/picture_light.h"
+#include "image/channels.h"
 #include "support/painted_picture.h"
 
 namespace astrosplat {
@@ -85,6 +89,162 @@ TEST(Bands, AStarMakesNoDustAroundItButALaneIsDust) {
     const auto filled = [&](std::int64_t x, std::int64_t y) { return sum.at(x, y)[1] / light.at(x, y)[1]; };
     for (std::int64_t x = 60; x < 140; ++x) EXPECT_LT(filled(x, 100), 1.3f) << x;
     EXPECT_GT(filled(223, 60), 2.0f);
+}
+
+// Dust: what bands with filled holes and what takes it away again make together, and its optical depth.
+
+constexpr std::int64_t size_px = 240;
+
+// Even light with a dark lane of 12 px across.
+Image with_lane() {
+    Image light = make_image(size_px, size_px, 3, 0.4f);
+    for (std::int64_t y = 0; y < size_px; ++y)
+        for (std::int64_t x = 0; x < size_px; ++x) {
+            const double d = (static_cast<double>(y) - 120.0) / 6.0;
+            for (int c = 0; c < 3; ++c)
+                light.at(x, y)[c] *= static_cast<float>(1.0 - 0.6 * std::exp(-0.5 * d * d));
+        }
+    return light;
+}
+
+Image emission_of(const Image& light, bool fill_holes) {
+    Image sum = make_image(light.width, light.height, 3);
+    split_bands(light, make_bands(light.width), fill_holes, [&](const Band&, const Image& band) {
+        for (std::size_t i = 0; i < sum.pixels.size(); ++i) sum.pixels[i] += band.pixels[i];
+    });
+    return sum;
+}
+
+TEST(Dust, EmissionTimesTransmittanceIsThePicture) {
+    for (const Image& light : {with_lane(), painted::galaxy(size_px, size_px)}) {
+        const Image emission = emission_of(light, true);
+        const Image transmittance = transmittance_of(brightest_channel(light), emission);
+        for (std::size_t i = 0; i < transmittance.pixels.size(); ++i) {
+            const auto brightest = [&](const Image& image) {
+                const float* const p = image.pixels.data() + 3 * i;
+                return std::max({p[0], p[1], p[2]});
+            };
+            ASSERT_GE(brightest(emission), brightest(light) - 1e-6f) << i;
+            // Both with .004 of sky, which keeps noise of the dark from becoming dust.
+            ASSERT_NEAR((brightest(emission) + 0.004f) * transmittance.pixels[i], brightest(light) + 0.004f,
+                        1e-5)
+                << i;
+        }
+    }
+}
+
+TEST(Dust, IsTheLaneAndNothingElse) {
+    const Image light = with_lane();
+    const Image transmittance = transmittance_of(brightest_channel(light), emission_of(light, true));
+    EXPECT_LT(*transmittance.at(120, 120), 0.85f);
+    EXPECT_GT(*transmittance.at(120, 20), 0.97f);
+    EXPECT_GT(*transmittance_of(brightest_channel(light), emission_of(light, false)).at(120, 120),
+              0.9999f);  // bands without dust
+}
+
+Placement flat_placement() {
+    Placement placement;
+    placement.scale = 0.5;
+    placement.height = 10.0;
+    placement.seed = 7u;
+    placement.picture_width = placement.picture_height = size_px;
+    placement.thickness = make_image(size_px, size_px, 1, 10.0f);
+    return placement;
+}
+
+// Mean optical depth at an exponent of 1 of dots of Gaussian s: 2 pi sigma^2 Li2(s) each.
+double optical_depth(const PictureSplats& dots, std::int64_t first = 0) {
+    double sum = 0.0;
+    for (std::int64_t i = first; i < dots.splats.size(); ++i) {
+        const double s = dots.splats.alpha[static_cast<std::size_t>(i)], sigma = 1.3;
+        double dilogarithm = 0.0, power = s;
+        for (int k = 1; k < 200; ++k, power *= s) dilogarithm += power / (k * k);
+        sum += 2.0 * 3.14159265358979 * sigma * sigma * 0.9494 * dilogarithm;
+    }
+    return sum / static_cast<double>(size_px * size_px);
+}
+
+TEST(Dust, ASheetBeforeAllLightHasTheDepthThatIsSeen) {
+    for (const float seen : {0.95f, 0.6f, 0.2f}) {
+        PictureSplats dots;
+        add_dust(make_image(size_px, size_px, 1, seen), 1.0, dust_exponents, flat_placement(), dots);
+        EXPECT_TRUE(dots.absorbs);
+        EXPECT_TRUE(dots.ranges.empty());  // the fit leaves dust alone
+        EXPECT_NEAR(optical_depth(dots), -std::log(seen), -0.03 * std::log(seen)) << seen;
+    }
+}
+
+TEST(Dust, AmountIsAShareOfTheDepth) {
+    PictureSplats dots;
+    add_dust(make_image(size_px, size_px, 1, 0.6f), 0.5, dust_exponents, flat_placement(), dots);
+    EXPECT_NEAR(optical_depth(dots), -0.5 * std::log(0.6), 0.01);
+}
+
+// Half of the light lies before the sheet and is not dimmed: the rest has to lose twice as much.
+TEST(Dust, LightBeforeTheSheetIsMadeUpFor) {
+    PictureSplats dots;
+    for (int y = 2; y < size_px; y += 4)
+        for (int x = 2; x < size_px; x += 4)
+            for (const float z : {-20.0f, 20.0f}) {
+                dots.splats.position.emplace_back(static_cast<float>(x - 120), static_cast<float>(120 - y),
+                                                  z);
+                dots.splats.color.emplace_back(1.0f);
+                dots.splats.alpha.push_back(0.1f);
+                dots.splats.radius.push_back(2.0f * radius_sigmas);
+                dots.splats.id.push_back(dots.splats.id.size());
+                dots.distance.push_back(20.0f);
+            }
+    const std::int64_t first = dots.splats.size();
+    add_dust(make_image(size_px, size_px, 1, 0.8f), 1.0, dust_exponents, flat_placement(), dots);
+    EXPECT_NEAR(optical_depth(dots, first), -std::log(0.6), 0.02);
+}
+
+TEST(Dust, LiesTornAboutASheetBeforeTheMiddle) {
+    PictureSplats dots;
+    add_dust(make_image(size_px, size_px, 1, 0.5f), 1.0, dust_exponents, flat_placement(), dots);
+    double sum = 0.0, squares = 0.0;
+    for (const glm::vec3& p : dots.splats.position) {
+        sum += static_cast<double>(p.z);
+        squares += static_cast<double>(p.z * p.z);
+    }
+    const double count = static_cast<double>(dots.splats.size()), mean = sum / count;
+    EXPECT_NEAR(mean, 2.0, 1.2);  // .2 H, give or take the widest waves
+    const double deviation = std::sqrt(squares / count - mean * mean);
+    EXPECT_GT(deviation, 1.6);  // more than the sheet's own .05 H
+    EXPECT_LT(deviation, 5.0);
+    for (const glm::vec3& color : dots.splats.color) ASSERT_EQ(color, -dust_exponents);
+}
+
+TEST(Dust, OfAGreyPictureIsGrey) {
+    Image light = make_image(8, 8, 3, 0.25f);
+    EXPECT_EQ(dust_exponents_of(light), glm::vec3(1.0f));
+    light.pixels[3 * 20 + 2] = 0.251f;  // noise of a conversion
+    EXPECT_EQ(dust_exponents_of(light), glm::vec3(1.0f));
+    light.pixels[3 * 63 + 2] = 0.27f;
+    EXPECT_EQ(dust_exponents_of(light), dust_exponents);
+    PictureSplats dots;
+    add_dust(make_image(size_px, size_px, 1, 0.5f), 1.0, glm::vec3(1.0f), flat_placement(), dots);
+    ASSERT_GT(dots.splats.size(), 100);
+    for (const glm::vec3& color : dots.splats.color) ASSERT_EQ(color, glm::vec3(-1.0f));
+}
+
+// A lane stays one when a camera comes close: at every place the sheet is thin, whatever its waves.
+TEST(Dust, IsThinAtEveryPlace) {
+    PictureSplats dots;
+    add_dust(make_image(size_px, size_px, 1, 0.5f), 1.0, dust_exponents, flat_placement(), dots);
+    constexpr std::size_t cells = size_px / 4;
+    std::vector<std::array<double, 3>> sums(cells * cells);  // of 1, z, z^2
+    for (const glm::vec3& p : dots.splats.position) {
+        const auto column = static_cast<std::size_t>(p.x + 0.5f * size_px) / 4,
+                   row = static_cast<std::size_t>(0.5f * size_px - p.y) / 4;
+        auto& sum = sums[std::min(row, cells - 1) * cells + std::min(column, cells - 1)];
+        const auto z = static_cast<double>(p.z);
+        sum = {sum[0] + 1.0, sum[1] + z, sum[2] + z * z};
+    }
+    double within = 0.0;
+    for (const auto& [count, z, square] : sums)
+        if (count > 0.0) within += square - z * z / count;
+    EXPECT_LT(std::sqrt(within / static_cast<double>(dots.splats.size())), 0.8);  // .08 H
 }
 
 }  // namespace

@@ -9,7 +9,9 @@
 
 #include "camera/camera.h"
 #include "core/text.h"
+#include "support/bits.h"
 #include "support/camera_tracks.h"
+#include "support/errors.h"
 
 namespace astrosplat {
 namespace {
@@ -18,12 +20,6 @@ std::string floats(const std::vector<float>& values) {
     std::string bytes(4 * values.size(), '\0');
     std::memcpy(bytes.data(), values.data(), bytes.size());
     return bytes;
-}
-
-std::string replaced(std::string text, const std::string& what, const std::string& by) {
-    const std::size_t at = text.find(what);
-    EXPECT_NE(at, std::string::npos) << what;
-    return text.replace(at, what.size(), by);
 }
 
 class Gltf : public test::CameraFileTest {
@@ -88,7 +84,7 @@ TEST_F(Gltf, BinaryFilesAndBuffersBesideAreReadAlike) {
     const CameraTrack expected = read(moving("LINEAR", values));
     put("buffer ö.bin", floats({0.0f, 2.0f}) + floats(values));
     test::expect_same_way(read(moving("LINEAR", values, "translation", "buffer ö.bin")), expected);
-    std::string json = replaced(moving("LINEAR", values, "translation", "x"), R"(,"uri":"x")", "");
+    std::string json = test::replaced(moving("LINEAR", values, "translation", "x"), R"(,"uri":"x")", "");
     while (json.size() % 4) json += ' ';
     const std::string binary = floats({0.0f, 2.0f}) + floats(values);
     const auto word = [](std::size_t n) {
@@ -133,7 +129,7 @@ TEST_F(Gltf, OddFilesEndInOneLine) {
     const auto message = [&](const std::string& text) { return refusal("a.gltf", text, read_gltf); };
     const std::string good = moving("LINEAR", {0, 0, 0, 8, 0, 4});
     const auto with = [&](const std::string& what, const std::string& by) {
-        return message(replaced(good, what, by));
+        return message(test::replaced(good, what, by));
     };
     EXPECT_EQ(message(""), "a.gltf: expected glTF 2.0, JSON or binary, found something else");
     EXPECT_EQ(message("{}"), "a.gltf: expected version 2.0 of glTF, found none");
@@ -153,19 +149,16 @@ TEST_F(Gltf, OddFilesEndInOneLine) {
     EXPECT_EQ(with(";base64,", ";base64,*"),
               "a.gltf: expected base64 in a buffer's data:, found something else");
     EXPECT_EQ(with("\"yfov\":0.5", "\"yfov\":-1"), "a.gltf: expected a yfov between 0 and pi, found -1");
-    EXPECT_NE(with("\"yfov\":0.5", "\"yfov\":[]").find("a.gltf: expected a glTF 2.0 file, found"),
-              std::string::npos);
+    EXPECT_HAS(with("\"yfov\":0.5", "\"yfov\":[]"), "a.gltf: expected a glTF 2.0 file, found");
     for (const char* uri : {"../secret.bin", "/etc/passwd", "file:///etc/passwd", "a/../../b.bin"})
-        EXPECT_NE(message(moving("LINEAR", {0, 0, 0, 8, 0, 4}, "translation", uri))
-                      .find("buffers in or beside the file"),
-                  std::string::npos)
+        EXPECT_HAS(message(moving("LINEAR", {0, 0, 0, 8, 0, 4}, "translation", uri)),
+                   "buffers in or beside the file")
             << uri;
     std::string late = moving("LINEAR", {0, 0, 0, 8, 0, 4});
     const std::string before = base64(floats({0.0f, 2.0f, 0, 0, 0, 8, 0, 4}));
-    EXPECT_NE(message(replaced(late, before, base64(floats({0.0f, 2e9f, 0, 0, 0, 8, 0, 4}))))
-                  .find("at most 6000000 frames"),
-              std::string::npos);
-    EXPECT_EQ(message(replaced(late, before, base64(floats({2.0f, 2.0f, 0, 0, 0, 8, 0, 4})))),
+    EXPECT_HAS(message(test::replaced(late, before, base64(floats({0.0f, 2e9f, 0, 0, 0, 8, 0, 4})))),
+               "at most 6000000 frames");
+    EXPECT_EQ(message(test::replaced(late, before, base64(floats({2.0f, 2.0f, 0, 0, 0, 8, 0, 4})))),
               "a.gltf: expected times that ascend, found others");
 }
 

@@ -27,6 +27,7 @@
 #include "core/progress.h"
 #include "core/text.h"
 #include "support/errors.h"
+#include "support/quiet.h"
 #include "support/temp_folder.h"
 
 namespace astrosplat {
@@ -52,21 +53,18 @@ TEST(Progress, ThrowsOnlyWhenAskedToStop) {
 }
 
 TEST(Log, LevelsAndRepeatedWarnings) {
-    std::vector<std::string> lines;
-    set_log_sink([&](LogLevel, const std::string& line) { lines.push_back(line); });
+    const Said said;
     log_detail("hidden");
     log_info("shown");
     for (int i = 0; i < 3; ++i) log_warning("odd");
     flush_warning_counts();
     log_warning("odd");
     flush_warning_counts();
-    set_log_sink(nullptr);
-    EXPECT_EQ(lines, (std::vector<std::string>{"shown", "odd", "odd (3 times)", "odd"}));
+    EXPECT_EQ(said.text(), "shown\nodd\nodd (3 times)\nodd\n");
 }
 
 TEST(Log, AQuietThreadIsNeitherHeardNorCounted) {
-    std::vector<std::string> lines;
-    set_log_sink([&](LogLevel, const std::string& line) { lines.push_back(line); });
+    const Said said;
     {
         const QuietLog quiet;
         log_error("whispered");
@@ -75,8 +73,7 @@ TEST(Log, AQuietThreadIsNeitherHeardNorCounted) {
     }
     log_warning("odd");
     flush_warning_counts();
-    set_log_sink(nullptr);
-    EXPECT_EQ(lines, (std::vector<std::string>{"beside", "odd"}));
+    EXPECT_EQ(said.text(), "beside\nodd\n");
 }
 
 TEST(Text, NumbersDoNotDependOnTheLocale) {
@@ -115,11 +112,9 @@ TEST(Text, NounsAreCounted) {
 }
 
 TEST(Log, LinesStayOneLine) {
-    std::string shown;
-    set_log_sink([&](LogLevel, const std::string& line) { shown = line; });
+    const Said said;
     log_info("a\nb\x1b[2J: not found");
-    set_log_sink(nullptr);
-    EXPECT_EQ(shown, "a\\nb\\x1b[2J: not found");
+    EXPECT_EQ(said.lines, std::vector<std::string>{"a\\nb\\x1b[2J: not found"});
 }
 
 TEST(Bounds, AreEmptyWhereAnyAxisIs) {
@@ -328,7 +323,7 @@ TEST(VectorTarget, EachOfferedOneCanBeChosen) {
     const std::string message = message_of<InputError>([] { set_vector_target("mmx"); });
     EXPECT_EQ(message.find("vector target: expected one that this processor has (best, " + targets.front()),
               0u);
-    EXPECT_NE(message.find("found 'mmx'"), std::string::npos) << message;
+    EXPECT_HAS(message, "found 'mmx'");
 }
 
 }  // namespace

@@ -1,16 +1,22 @@
-// Autosave and recovery, with a process that is really killed.
-#include "edit/autosave.h"
-
+// What is kept beside a scene: autosaves and snapshots.
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include "core/log.h"
+#include "edit/autosave.h"
+#include "edit/keyframes.h"
+#include "edit/layers.h"
+#include "edit/snapshots.h"
 #include "scenes.h"
+#include "support/quiet.h"
+#include "support/run_program.h"
 
 namespace astrosplat {
 namespace {
+
+// Autosave and recovery, with a process that is really killed.
 
 namespace fs = std::filesystem;
 using std::chrono::seconds;
@@ -123,16 +129,12 @@ TEST_F(AutosaveTest, TheNewestRecoveryComesFirst) {
 TEST_F(AutosaveTest, AFolderThatCannotBeWrittenCostsOneWarning) {
     Document document = Document::open(f.file);
     document.set(opacity, 0.25, 1.0);
-    std::vector<std::string> warnings;
-    set_log_sink([&](LogLevel level, const std::string& line) {
-        if (level == LogLevel::warning) warnings.push_back(line);
-    });
+    const Said said;
     Autosave autosave(f.file / "inside a file");
     EXPECT_FALSE(autosave.write(document));
     EXPECT_FALSE(autosave.write(document));
-    set_log_sink(nullptr);
-    ASSERT_EQ(warnings.size(), 1u);
-    EXPECT_NE(warnings[0].find("no autosave of szene ä.toml: "), std::string::npos);
+    ASSERT_EQ(said.warnings.size(), 1u);
+    EXPECT_NE(said.warnings[0].find("no autosave of szene ä.toml: "), std::string::npos);
     EXPECT_TRUE(recoveries(f.file / "inside a file").empty());
     EXPECT_TRUE(recoveries(f.folder / "missing").empty());
 }
@@ -259,6 +261,165 @@ TEST_F(AutosaveTest, OtherFilesAreNoAutosaves) {
     EXPECT_TRUE(recoveries(folder).empty());
     EXPECT_EQ(message_of<InputError>([&] { recover(folder / "a-1-0.toml"); }),
               (folder / "a-1-0.toml").string() + ": expected an autosave, found another file");
+}
+
+// Snapshots: stored looks, and the folder that holds them beside their scene.
+
+// Stored looks: what they bring back, what they leave.
+
+const std::string power = "layer.dust.look.alpha.power";
+
+struct Snapshots : testing::Test {
+    test::SceneFolder f;
+    Document document = Document::open(f.file);
+    StoredLook first = store_look("Erster Blick", document, 1.0);
+};
+
+TEST_F(Snapshots, HoldTheMoment) {
+    const StoredLook later = store_look("Later", document, 12.0);
+    document.set(opacity, 0.25, 1.0);
+    EXPECT_EQ(later.name, "Later");
+    EXPECT_EQ(later.frame, 12.0);
+    EXPECT_EQ(*later.scene, load_scene(f.file));
+}
+
+TEST_F(Snapshots, RestoreIsOneStepThatBringsTheLookBack) {
+    const Scene before = document.scene();
+    document.set(opacity, 0.25, 1.0);
+    document.set(power, 5.0, 1.0);
+    document.set("layer.dust.visible", false, 1.0);
+    document.set("output.exposure", 2.0, 1.0);
+    document.edit("Keyframes", [](Scene& s) { set_keyframe(s, power, 3.0, 4.0); });
+    document.edit("Keyframes", [](Scene& s) { remove_track(s, "layer.stars.render.core"); });
+    restore_look(document, first);
+    Scene restored = document.scene();
+    EXPECT_EQ(restored.layers, before.layers);
+    EXPECT_EQ(restored.output.exposure, 0.0);
+    EXPECT_FALSE(is_animated(restored, power));
+    EXPECT_EQ(*find_track(restored, "layer.stars.render.core"),
+              *find_track(before, "layer.stars.render.core"));
+    EXPECT_EQ(document.undo_name(), "Restore Erster Blick");
+    document.undo();
+    EXPECT_EQ(test::value_of(document, power), Value(5.0));
+    document.save();
+    EXPECT_EQ(load_scene(f.file), document.scene());
+}
+
+TEST_F(Snapshots, WhatIsNoLookStays) {
+    document.set("camera.fov", 20.0, 1.0);
+    document.set("layer.dust.source.count", std::int64_t{5000}, 1.0);
+    document.set("layer.stars.transform.scale", 3.0, 1.0);
+    document.set("output.frames", "7", 1.0);
+    document.edit("Keyframes", [](Scene& s) { set_keyframe(s, "camera.fov", 3.0, 30.0); });
+    const Scene before = document.scene();
+    restore_look(document, first);
+    EXPECT_EQ(document.scene(), before);
+}
+
+TEST_F(Snapshots, LayersAreMatchedByName) {
+    document.edit("Layers", [](Scene& s) {
+        duplicate_layer(s, 1);
+        move_layer(s, 0, 2);
+        rename_layer(s, 2, "gas");
+        for (LayerParams& layer : s.layers) layer.look.density = 0.125f;
+    });
+    restore_look(document, first);
+    Scene scene = document.scene();
+    EXPECT_EQ(test::layer(scene, "stars").look.density, 1.0f);
+    EXPECT_EQ(test::layer(scene, "stars_2").look.density, 0.125f);
+    EXPECT_EQ(test::layer(scene, "gas").look.density, 0.125f);
+    EXPECT_TRUE(is_animated(scene, "layer.gas.look.noise.1.jitter"));
+    EXPECT_FALSE(is_animated(scene, "layer.dust.look.noise.1.jitter"));
+}
+
+// Snapshots in the folder beside their scene: what is written is read again, and nothing is lost where one of
+// them is broken.
+
+namespace fs = std::filesystem;
+
+struct SnapshotFiles : testing::Test {
+    test::SceneFolder f;
+    Document document = Document::open(f.file);
+    fs::path folder = snapshot_folder(f.file);
+    const SnapshotFacts facts{"Wärmer \"rot\"", 12.5, 3100000, 1.75};
+    std::vector<std::string> problems;
+
+    fs::path write(const SnapshotFacts& about) const {
+        return write_snapshot(folder, about, document.scene(), "png");
+    }
+};
+
+TEST_F(SnapshotFiles, WhatIsWrittenIsReadAgain) {
+    document.set(test::opacity, 0.25, 1.0);
+    const fs::path file = write(facts);
+    EXPECT_EQ(file, folder / "0001.toml");
+    const std::vector<KeptSnapshot> kept = read_snapshots(folder, problems);
+    ASSERT_EQ(kept.size(), 1u);
+    EXPECT_TRUE(problems.empty());
+    EXPECT_EQ(kept[0].file, file);
+    EXPECT_EQ(kept[0].facts, facts);
+    EXPECT_EQ(with_look_of(load_scene(f.file), kept[0].scene), document.scene());
+    EXPECT_EQ(test::text_of(snapshot_picture(file)), "png");
+}
+
+TEST_F(SnapshotFiles, ASnapshotIsASceneThatNamesTheSameFiles) {
+    const Scene kept = load_scene(write(facts));
+    Scene expected = document.scene();
+    expected.file = kept.file;
+    EXPECT_EQ(kept, expected);
+}
+
+TEST_F(SnapshotFiles, ANewOneComesAfterTheLastAndOverwritesNone) {
+    write(facts);
+    const fs::path second = write({"zwei"});
+    write({"drei"});
+    remove_snapshot(second);
+    EXPECT_FALSE(fs::exists(snapshot_picture(second)));
+    EXPECT_EQ(write({"vier"}), folder / "0004.toml");
+    std::vector<std::string> names;
+    for (const KeptSnapshot& kept : read_snapshots(folder, problems)) names.push_back(kept.facts.name);
+    EXPECT_EQ(names, (std::vector<std::string>{facts.name, "drei", "vier"}));
+}
+
+TEST_F(SnapshotFiles, AnotherNameChangesNothingElse) {
+    const fs::path file = write(facts);
+    const Scene before = load_scene(file);
+    rename_snapshot(file, "Kälter\nblau");
+    const std::vector<KeptSnapshot> kept = read_snapshots(folder, problems);
+    ASSERT_EQ(kept.size(), 1u);
+    SnapshotFacts renamed = facts;
+    renamed.name = "Kälter\nblau";
+    EXPECT_EQ(kept[0].facts, renamed);
+    EXPECT_EQ(kept[0].scene, before);
+}
+
+TEST_F(SnapshotFiles, ABrokenOneIsToldAndTheOthersAreThere) {
+    write(facts);
+    test::write_text(folder / "0002.toml", "astrosplat = 1\n");
+    test::write_text(folder / "0003.toml", "# astrosplat snapshot {\"name\": \n");
+    std::string text = test::text_of(folder / "0001.toml");
+    text.insert(text.find("opacity"), "opacty = 1\n");
+    test::write_text(folder / "0004.toml", text);
+    test::write_text(folder / "notes.txt", "mine");
+    EXPECT_EQ(read_snapshots(folder, problems).size(), 1u);
+    ASSERT_EQ(problems.size(), 3u);
+    EXPECT_EQ(problems[0], (folder / "0002.toml").string() + ":1: expected a snapshot, found another file");
+    EXPECT_EQ(problems[1], (folder / "0003.toml").string() + ":1: expected a snapshot, found another file");
+    EXPECT_NE(problems[2].find("opacty"), std::string::npos) << problems[2];
+    EXPECT_TRUE(fs::exists(folder / "0003.toml")) << "nothing is thrown away";
+}
+
+TEST_F(SnapshotFiles, WhereNoFolderCanBeNothingIsWritten) {
+    test::write_text(folder, "a file in its place");
+    EXPECT_THROW(write(facts), OutputError);
+    EXPECT_TRUE(read_snapshots(folder, problems).empty());
+}
+
+TEST_F(SnapshotFiles, AMissingOneIsAnError) {
+    const fs::path file = write(facts);
+    fs::remove(file);
+    EXPECT_THROW(rename_snapshot(file, "x"), InputError);
+    EXPECT_NO_THROW(remove_snapshot(file)) << "it is gone, as was wished";
 }
 
 }  // namespace

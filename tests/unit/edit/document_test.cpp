@@ -14,9 +14,14 @@ using test::opacity;
 using test::SceneFolder;
 using test::value_of;
 
-TEST(Document, OpensAsTheLoaderReads) {
+class DocumentTest : public testing::Test {
+  protected:
     const SceneFolder f;
-    const Document document = Document::open(f.file);
+    Document document = Document::open(f.file);
+};
+
+TEST_F(DocumentTest, OpensAsTheLoaderReads) {
+    document = Document::open(f.file);
     EXPECT_EQ(document.scene(), load_scene(f.file));
     EXPECT_EQ(document.file(), f.file);
     EXPECT_EQ(document.name(), "szene ä.toml");
@@ -26,9 +31,7 @@ TEST(Document, OpensAsTheLoaderReads) {
     EXPECT_EQ(document.undo_name(), "");
 }
 
-TEST(Document, OneEditIsOneStep) {
-    const SceneFolder f;
-    Document document = Document::open(f.file);
+TEST_F(DocumentTest, OneEditIsOneStep) {
     const Scene before = document.scene();
     const std::uint64_t revision = document.revision();
     document.set(opacity, 0.25, 1.0);
@@ -46,9 +49,7 @@ TEST(Document, OneEditIsOneStep) {
     EXPECT_FALSE(document.can_redo());
 }
 
-TEST(Document, AGestureIsOneStep) {
-    const SceneFolder f;
-    Document document = Document::open(f.file);
+TEST_F(DocumentTest, AGestureIsOneStep) {
     for (int i = 1; i <= 9; ++i) document.set(opacity, i * 0.1, 1.0, 7);
     document.set(opacity, 0.05, 1.0, 8);
     document.undo();
@@ -58,9 +59,7 @@ TEST(Document, AGestureIsOneStep) {
     EXPECT_FALSE(document.edited());
 }
 
-TEST(Document, AGestureThatComesBackIsNoStep) {
-    const SceneFolder f;
-    Document document = Document::open(f.file);
+TEST_F(DocumentTest, AGestureThatComesBackIsNoStep) {
     document.set("camera.fov", 50.0, 1.0);
     document.set(opacity, 0.7, 1.0, 7);
     document.set(opacity, 0.5, 1.0, 7);
@@ -73,9 +72,7 @@ TEST(Document, AGestureThatComesBackIsNoStep) {
 }
 
 // Sides are dragged one by one.
-TEST(Document, FramesOfDomesStaySquare) {
-    const SceneFolder f;
-    Document document = Document::open(f.file);
+TEST_F(DocumentTest, FramesOfDomesStaySquare) {
     const auto set_size = [&](std::int64_t width, std::int64_t height) {
         document.set("output.resolution", Value::List{width, height}, 1.0);
     };
@@ -92,9 +89,7 @@ TEST(Document, FramesOfDomesStaySquare) {
     EXPECT_EQ(load_scene(f.file).output.height, 8192);
 }
 
-TEST(Document, AnEditThatChangesNothingIsNotRecorded) {
-    const SceneFolder f;
-    Document document = Document::open(f.file);
+TEST_F(DocumentTest, AnEditThatChangesNothingIsNotRecorded) {
     const std::uint64_t revision = document.revision();
     document.set(opacity, 0.5, 1.0);
     document.edit("Nothing", [](Scene&) {});
@@ -102,9 +97,7 @@ TEST(Document, AnEditThatChangesNothingIsNotRecorded) {
     EXPECT_EQ(document.revision(), revision);
 }
 
-TEST(Document, AnEditAfterUndoEndsRedo) {
-    const SceneFolder f;
-    Document document = Document::open(f.file);
+TEST_F(DocumentTest, AnEditAfterUndoEndsRedo) {
     document.set(opacity, 0.25, 1.0);
     document.undo();
     document.set("camera.fov", 30.0, 1.0);
@@ -113,9 +106,7 @@ TEST(Document, AnEditAfterUndoEndsRedo) {
     EXPECT_EQ(value_of(document, opacity), Value(0.5));
 }
 
-TEST(Document, FiveHundredStepsCanBeUndone) {
-    const SceneFolder f;
-    Document document = Document::open(f.file);
+TEST_F(DocumentTest, FiveHundredStepsCanBeUndone) {
     for (int i = 1; i <= 510; ++i) document.set("camera.roll", static_cast<double>(i) / 10, 1.0);
     int steps = 0;
     for (; document.can_undo(); ++steps) document.undo();
@@ -124,9 +115,7 @@ TEST(Document, FiveHundredStepsCanBeUndone) {
     EXPECT_TRUE(document.edited());
 }
 
-TEST(Document, RefusedEditsChangeNothing) {
-    const SceneFolder f;
-    Document document = Document::open(f.file);
+TEST_F(DocumentTest, RefusedEditsChangeNothing) {
     const Scene before = document.scene();
     const std::uint64_t revision = document.revision();
     const auto message = [&](const std::function<void()>& edit) { return message_of<InputError>(edit); };
@@ -175,9 +164,7 @@ TEST(Document, RefusedEditsChangeNothing) {
     EXPECT_FALSE(document.can_undo());
 }
 
-TEST(Document, SettingAKeyedParameterSetsItsKey) {
-    const SceneFolder f;
-    Document document = Document::open(f.file);
+TEST_F(DocumentTest, SettingAKeyedParameterSetsItsKey) {
     const std::string core = "layer.stars.render.core";
     document.set(core, 0.75, 12.0);
     const Track& track = *find_track(document.scene(), core);
@@ -189,9 +176,7 @@ TEST(Document, SettingAKeyedParameterSetsItsKey) {
     EXPECT_EQ(find_track(document.scene(), core)->keyframes.size(), 2u);
 }
 
-TEST(Document, ResetGivesTheDefaultAndEndsTheAnimation) {
-    const SceneFolder f;
-    Document document = Document::open(f.file);
+TEST_F(DocumentTest, ResetGivesTheDefaultAndEndsTheAnimation) {
     document.reset("layer.stars.render.core");
     EXPECT_FALSE(is_animated(document.scene(), "layer.stars.render.core"));
     document.reset(opacity);
@@ -201,49 +186,37 @@ TEST(Document, ResetGivesTheDefaultAndEndsTheAnimation) {
     EXPECT_EQ(value_of(document, "layer.dust.look.noise.0.cull"), Value(0.0));
 }
 
-TEST(Document, RenamingALayerTakesItsTracksAlong) {
-    const SceneFolder f;
-    Document document = Document::open(f.file);
+TEST_F(DocumentTest, RenamingALayerTakesItsTracksAlong) {
     document.set("layer.stars.name", "suns", 1.0);
     EXPECT_TRUE(is_animated(document.scene(), "layer.suns.render.core"));
     document.save();
     EXPECT_EQ(load_scene(f.file), document.scene());
 }
 
-TEST(Document, TracksOfRemovedElementsGo) {
-    const SceneFolder f;
-    Document document = Document::open(f.file);
+TEST_F(DocumentTest, TracksOfRemovedElementsGo) {
     document.edit("Remove noise", [](Scene& s) { s.layers[0].look.noise.pop_back(); });
     EXPECT_FALSE(is_animated(document.scene(), "layer.dust.look.noise.1.jitter"));
     document.save();
     EXPECT_EQ(load_scene(f.file), document.scene());
 }
 
-TEST(Document, AListGrowsForItsNextElement) {
-    const SceneFolder f;
-    Document document = Document::open(f.file);
+TEST_F(DocumentTest, AListGrowsForItsNextElement) {
     document.set("layer.stars.look.noise.cull", 0.5, 1.0);
     ASSERT_EQ(document.scene().layers[1].look.noise.size(), 1u);
     EXPECT_EQ(document.scene().layers[1].look.noise[0].cull, 0.5f);
 }
 
-TEST(Document, TypedPathsAreRelativeToTheScene) {
-    const SceneFolder f;
-    Document document = Document::open(f.file);
+TEST_F(DocumentTest, TypedPathsAreRelativeToTheScene) {
     document.set("layer.dust.look.thickness.map", "neue karte.png", 1.0);
     EXPECT_EQ(document.scene().layers[0].look.thickness.map, f.folder / "neue karte.png");
     document.save();
     EXPECT_NE(f.text().find("map = \"neue karte.png\""), std::string::npos);
 }
 
-TEST(Document, SavingTouchesOnlyWhatChanged) {
-    const SceneFolder f;
-    Document document = Document::open(f.file);
+TEST_F(DocumentTest, SavingTouchesOnlyWhatChanged) {
     document.set(opacity, 0.25, 1.0);
     document.save();
-    std::string expected = edit_scene;
-    expected.replace(expected.find("opacity = 0.5"), 13, "opacity = 0.25");
-    EXPECT_EQ(f.text(), expected);
+    EXPECT_EQ(f.text(), test::replaced(edit_scene, "opacity = 0.5", "opacity = 0.25"));
     EXPECT_FALSE(document.edited());
     EXPECT_FALSE(document.changed_on_disk());
     document.undo();
@@ -252,9 +225,7 @@ TEST(Document, SavingTouchesOnlyWhatChanged) {
     EXPECT_EQ(f.text(), edit_scene);
 }
 
-TEST(Document, WhatWasSavedIsSavedAgainByteForByte) {
-    const SceneFolder f;
-    Document document = Document::open(f.file);
+TEST_F(DocumentTest, WhatWasSavedIsSavedAgainByteForByte) {
     document.set("layer.dust.look.radius.vertical_scale", Value(0.5), 1.0);  // a line that was not there
     document.save();
     const std::string edited = f.text();
@@ -273,9 +244,7 @@ TEST(Document, WhatWasSavedIsSavedAgainByteForByte) {
     EXPECT_NE(f.text().find("# from other hands"), std::string::npos);
 }
 
-TEST(Document, SavingElsewhereMovesTheDocument) {
-    const SceneFolder f;
-    Document document = Document::open(f.file);
+TEST_F(DocumentTest, SavingElsewhereMovesTheDocument) {
     document.set(opacity, 0.25, 1.0);
     std::filesystem::create_directories(f.folder / "neu ü");
     const std::filesystem::path target = f.folder / "neu ü/zweite szene.toml";
@@ -294,9 +263,7 @@ TEST(Document, SavingElsewhereMovesTheDocument) {
     EXPECT_EQ(load_scene(target), document.scene());
 }
 
-TEST(Document, SavingElsewhereKeepsWhereFramesGo) {
-    const SceneFolder f;
-    Document document = Document::open(f.file);
+TEST_F(DocumentTest, SavingElsewhereKeepsWhereFramesGo) {
     const auto place = [&] {
         return (document.file().parent_path() / document.scene().output.path).lexically_normal();
     };
@@ -309,7 +276,7 @@ TEST(Document, SavingElsewhereKeepsWhereFramesGo) {
     EXPECT_EQ(place(), before);
 }
 
-TEST(Document, UntitledAsksForAFile) {
+TEST(UntitledDocument, UntitledAsksForAFile) {
     const TempFolder folder;
     Document document = Document::untitled(edit_scene, folder / "untitled.toml");
     EXPECT_EQ(document.name(), "Untitled");
@@ -328,9 +295,7 @@ TEST(Document, UntitledAsksForAFile) {
     EXPECT_EQ(load_scene(folder / "szene.toml"), document.scene());
 }
 
-TEST(Document, AFileThatCannotBeWrittenLeavesTheDocument) {
-    const SceneFolder f;
-    Document document = Document::open(f.file);
+TEST_F(DocumentTest, AFileThatCannotBeWrittenLeavesTheDocument) {
     document.set(opacity, 0.25, 1.0);
     const std::filesystem::path blocked = f.file / "inside a file.toml";
     EXPECT_EQ(message_of<OutputError>([&] { document.save_as(blocked); }),
@@ -341,9 +306,7 @@ TEST(Document, AFileThatCannotBeWrittenLeavesTheDocument) {
     EXPECT_FALSE(document.edited());
 }
 
-TEST(Document, AFailedSaveAsLeavesNoEdit) {
-    const SceneFolder f;
-    Document document = Document::open(f.file);
+TEST_F(DocumentTest, AFailedSaveAsLeavesNoEdit) {
     document.set(opacity, 0.25, 1.0);
     document.undo();
     const Scene before = document.scene();
@@ -355,10 +318,9 @@ TEST(Document, AFailedSaveAsLeavesNoEdit) {
     EXPECT_TRUE(document.can_redo() && !document.can_undo());
 }
 
-TEST(Document, AssignmentsAreEdits) {
-    const SceneFolder f;
+TEST_F(DocumentTest, AssignmentsAreEdits) {
     const std::vector<Assignment> assignments{{opacity, "0.25"}, {"layer.dust.look.alpha", "{power=3}"}};
-    Document document = Document::open(f.file, assignments);
+    document = Document::open(f.file, assignments);
     EXPECT_EQ(document.scene(), load_scene(f.file, assignments));
     EXPECT_TRUE(document.edited());
     EXPECT_FALSE(document.can_undo());
@@ -375,24 +337,19 @@ TEST(Document, AssignmentsAreEdits) {
     EXPECT_FALSE(document.set_by_command_line(opacity));
 }
 
-TEST(Document, AnAssignedListElementIsMarkedWithoutItsIndex) {
-    const SceneFolder f;
+TEST_F(DocumentTest, AnAssignedListElementIsMarkedWithoutItsIndex) {
     const std::vector<Assignment> assignments{{"layer.dust.look.noise.cull", "0.25"}};
-    const Document document = Document::open(f.file, assignments);
+    document = Document::open(f.file, assignments);
     EXPECT_TRUE(document.set_by_command_line("layer.dust.look.noise.0.cull"));
     EXPECT_FALSE(document.set_by_command_line("layer.dust.look.noise.1.cull"));
 }
 
-TEST(Document, NoticesOtherHands) {
-    const SceneFolder f;
-    Document document = Document::open(f.file);
+TEST_F(DocumentTest, NoticesOtherHands) {
     EXPECT_FALSE(document.changed_on_disk());
     const auto time = std::filesystem::last_write_time(f.file);
     std::filesystem::last_write_time(f.file, time + std::chrono::seconds(5));
     EXPECT_FALSE(document.changed_on_disk());  // touched, but the same
-    std::string other = edit_scene;
-    other.replace(other.find("fov = 40.0"), 10, "fov = 35.0");
-    f.folder.file("szene ä.toml", other);
+    f.folder.file("szene ä.toml", test::replaced(edit_scene, "fov = 40.0", "fov = 35.0"));
     std::filesystem::last_write_time(f.file, time + std::chrono::seconds(10));
     EXPECT_TRUE(document.changed_on_disk());
     EXPECT_TRUE(document.changed_on_disk());
@@ -402,14 +359,10 @@ TEST(Document, NoticesOtherHands) {
     EXPECT_FALSE(document.changed_on_disk());
 }
 
-TEST(Document, ReloadIsOneStep) {
-    const SceneFolder f;
-    Document document = Document::open(f.file);
+TEST_F(DocumentTest, ReloadIsOneStep) {
     document.set(opacity, 0.25, 1.0);
     const Scene mine = document.scene();
-    std::string other = edit_scene;
-    other.replace(other.find("fov = 40.0"), 10, "fov = 35.0");
-    f.folder.file("szene ä.toml", other);
+    f.folder.file("szene ä.toml", test::replaced(edit_scene, "fov = 40.0", "fov = 35.0"));
     document.reload();
     EXPECT_EQ(document.scene(), load_scene(f.file));
     EXPECT_FALSE(document.edited());
@@ -422,9 +375,7 @@ TEST(Document, ReloadIsOneStep) {
     EXPECT_EQ(load_scene(f.file), mine);
 }
 
-TEST(Document, AReloadThatFailsChangesNothing) {
-    const SceneFolder f;
-    Document document = Document::open(f.file);
+TEST_F(DocumentTest, AReloadThatFailsChangesNothing) {
     const Scene before = document.scene();
     f.folder.file("szene ä.toml", "astrosplat = 1\n[camera]\nfov = \"wide\"\n");
     EXPECT_EQ(message_of<InputError>([&] { document.reload(); }),
@@ -433,10 +384,9 @@ TEST(Document, AReloadThatFailsChangesNothing) {
     EXPECT_FALSE(document.can_undo());
 }
 
-TEST(Document, ReloadKeepsAssignmentsThatWereNotSaved) {
-    const SceneFolder f;
+TEST_F(DocumentTest, ReloadKeepsAssignmentsThatWereNotSaved) {
     const std::vector<Assignment> assignments{{opacity, "0.25"}};
-    Document document = Document::open(f.file, assignments);
+    document = Document::open(f.file, assignments);
     document.reload();
     EXPECT_EQ(value_of(document, opacity), Value(0.25));
     document.save();
@@ -445,10 +395,9 @@ TEST(Document, ReloadKeepsAssignmentsThatWereNotSaved) {
     EXPECT_EQ(value_of(document, opacity), Value(0.5));
 }
 
-TEST(Document, ACommaLocaleChangesNothing) {
-    const SceneFolder f;
+TEST_F(DocumentTest, ACommaLocaleChangesNothing) {
     const test::CommaLocale comma;
-    Document document = Document::open(f.file);
+    document = Document::open(f.file);
     document.set(opacity, 0.125, 1.0);
     document.set("layer.dust.source.count", std::int64_t{1234567}, 1.0);
     document.save();
@@ -457,9 +406,7 @@ TEST(Document, ACommaLocaleChangesNothing) {
     EXPECT_EQ(load_scene(f.file), document.scene());
 }
 
-TEST(Document, ValuesOfOtherTypesAreAsInTheFile) {
-    const SceneFolder f;
-    Document document = Document::open(f.file);
+TEST_F(DocumentTest, ValuesOfOtherTypesAreAsInTheFile) {
     document.set("output.depth", std::int64_t{16}, 1.0);
     EXPECT_EQ(value_of(document, "output.depth"), Value("16"));
     document.set("layer.dust.source.unpremultiply", true, 1.0);

@@ -1,36 +1,42 @@
-// The window's settings on disk: round trip, damage, folders that cannot be written.
-#include "edit/preferences.h"
-
+// The window's settings on disk, and the files in use that change there.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <chrono>
 #include <cstddef>
 
 #include "core/file.h"
 #include "core/log.h"
 #include "edit/autosave.h"
+#include "edit/disk_files.h"
+#include "edit/preferences.h"
+#include "scene/layer_setup.h"
 #include "scenes.h"
-#include "support/variable.h"
+#include "support/process_state.h"
+#include "support/quiet.h"
+#include "support/temp_folder.h"
 
 namespace astrosplat {
 namespace {
+
+// The window's settings on disk: round trip, damage, folders that cannot be written.
 
 namespace fs = std::filesystem;
 
 /// Warnings while `work` runs.
 template <class Work>
 std::vector<std::string> warnings_of(const Work& work) {
-    std::vector<std::string> warnings;
-    set_log_sink([&](LogLevel level, const std::string& line) {
-        if (level == LogLevel::warning) warnings.push_back(line);
-    });
+    const Said said;
     work();
-    set_log_sink(nullptr);
-    flush_warning_counts();
-    return warnings;
+    return said.warnings;
 }
 
-TEST(Preferences, RoundTrip) {
+class PreferencesTest : public testing::Test {
+  protected:
     const TempFolder folder;
+};
+
+TEST_F(PreferencesTest, RoundTrip) {
     const test::CommaLocale comma;
     Preferences p;
     p.window_width = 1234;
@@ -47,8 +53,7 @@ TEST(Preferences, RoundTrip) {
     EXPECT_EQ(load_preferences(file), p);
 }
 
-TEST(Preferences, AMissingFileIsNoNews) {
-    const TempFolder folder;
+TEST_F(PreferencesTest, AMissingFileIsNoNews) {
     EXPECT_TRUE(warnings_of([&] {
                     EXPECT_EQ(load_preferences(folder / "viewer.json"), Preferences{});
                     EXPECT_EQ(load_preferences({}), Preferences{});
@@ -56,8 +61,7 @@ TEST(Preferences, AMissingFileIsNoNews) {
                 }).empty());
 }
 
-TEST(Preferences, DamageGivesDefaultsAndOneWarning) {
-    const TempFolder folder;
+TEST_F(PreferencesTest, DamageGivesDefaultsAndOneWarning) {
     for (const char* text : {"", "{", "[1, 2]", "\xff\xfe", "{\"window_width\": 12"}) {
         const fs::path file = folder.file("viewer.json", text);
         EXPECT_EQ(warnings_of([&] { EXPECT_EQ(load_preferences(file), Preferences{}); }).size(), 1u) << text;
@@ -66,8 +70,7 @@ TEST(Preferences, DamageGivesDefaultsAndOneWarning) {
     EXPECT_EQ(warnings_of([&] { load_preferences(folder / "ordner.json"); }).size(), 1u);
 }
 
-TEST(Preferences, SingleValuesThatAreWrongHaveTheirDefault) {
-    const TempFolder folder;
+TEST_F(PreferencesTest, SingleValuesThatAreWrongHaveTheirDefault) {
     const fs::path file =
         folder.file("viewer.json",
                     "{\"window_width\": \"wide\", \"window_height\": -5, \"panel_width\": 1e9,"
@@ -77,7 +80,7 @@ TEST(Preferences, SingleValuesThatAreWrongHaveTheirDefault) {
     EXPECT_EQ(load_preferences(file), Preferences{});
 }
 
-TEST(Preferences, EverySettingHasItsDefaultAmongItsChoices) {
+TEST_F(PreferencesTest, EverySettingHasItsDefaultAmongItsChoices) {
     for (const SettingRow& row : setting_rows())
         EXPECT_EQ(std::ranges::count(row.choices, Settings().*row.value, &SettingChoice::value), 1)
             << row.name;
@@ -110,14 +113,12 @@ TEST(Settings, ACacheFolderIsAbsoluteAndNoFile) {
     EXPECT_EQ(problem_of_cache_folder(file), "expected a folder, found the file '" + file + "'");
 }
 
-TEST(Preferences, AFolderThatCannotBeWrittenCostsOneWarning) {
-    const TempFolder folder;
+TEST_F(PreferencesTest, AFolderThatCannotBeWrittenCostsOneWarning) {
     const fs::path file = folder.file("file", "x") / "viewer.json";
     EXPECT_EQ(warnings_of([&] { save_preferences({}, file); }).size(), 1u);
 }
 
-TEST(Preferences, TwelveRecentFilesNewestFirstEachOnce) {
-    const TempFolder folder;
+TEST_F(PreferencesTest, TwelveRecentFilesNewestFirstEachOnce) {
     Preferences p;
     for (int i = 0; i < 15; ++i) add_recent(p, folder.file("scene " + std::to_string(i) + ".toml", "x"));
     EXPECT_EQ(p.recent.size(), 12u);
@@ -133,8 +134,7 @@ TEST(Preferences, TwelveRecentFilesNewestFirstEachOnce) {
     EXPECT_EQ(loaded.recent[1], folder / "scene 13.toml");
 }
 
-TEST(Preferences, EightRecentFoldersNewestFirstEachOnce) {
-    const TempFolder folder;
+TEST_F(PreferencesTest, EightRecentFoldersNewestFirstEachOnce) {
     Preferences p;
     for (int i = 0; i < 10; ++i) {
         fs::create_directory(folder / std::to_string(i));
@@ -149,7 +149,7 @@ TEST(Preferences, EightRecentFoldersNewestFirstEachOnce) {
     EXPECT_EQ(load_preferences(folder / "viewer.json").recent_folders.size(), 7u) << "existing ones only";
 }
 
-TEST(Preferences, PanelsGoIntoAViewAndBack) {
+TEST_F(PreferencesTest, PanelsGoIntoAViewAndBack) {
     Preferences p, back;
     p.panel_width = 444.0f;
     p.timeline_height = 99.0f;
@@ -177,6 +177,89 @@ TEST(UserFolders, FollowTheBaseDirectorySpecification) {
     const Variable no_home("HOME", nullptr);
     EXPECT_EQ(autosave_folder(), "");
     EXPECT_EQ(preferences_file(), "");
+}
+
+// Changes of files in use, and which files a scene uses.
+
+namespace fs = std::filesystem;
+using Paths = std::vector<fs::path>;
+
+class WatchedFilesTest : public testing::Test {
+  protected:
+    TempFolder folder;
+    fs::path a = folder.file("a ü.png", "a"), b = folder.file("b.png", "b");
+    WatchedFiles watched;
+
+    WatchedFilesTest() { watched.watch({a, b, folder / "missing.png", a}); }
+    /// As if written this many seconds from now, whatever the file system's clock can tell apart.
+    void date(const fs::path& file, int seconds) {
+        fs::last_write_time(file, fs::last_write_time(file) + std::chrono::seconds(seconds));
+    }
+};
+
+TEST_F(WatchedFilesTest, AChangeIsToldOnceItRests) {
+    EXPECT_EQ(watched.changed(), Paths{});
+    date(a, 5);
+    EXPECT_EQ(watched.changed(), Paths{}) << "it may still be written";
+    date(a, 5);
+    EXPECT_EQ(watched.changed(), Paths{});
+    EXPECT_EQ(watched.changed(), Paths{a});
+    EXPECT_EQ(watched.changed(), Paths{});
+    folder.file("b.png", "longer");
+    watched.changed();
+    EXPECT_EQ(watched.changed(), Paths{b});
+}
+
+TEST_F(WatchedFilesTest, AFileThatIsGoneIsWaitedFor) {
+    const std::string name = "a ü.png";
+    fs::remove(a);
+    EXPECT_EQ(watched.changed(), Paths{});
+    EXPECT_EQ(watched.changed(), Paths{});
+    folder.file(name, "another");
+    watched.changed();
+    EXPECT_EQ(watched.changed(), Paths{a});
+}
+
+TEST_F(WatchedFilesTest, AMissingFileAppears) {
+    const fs::path file = folder.file("missing.png", "here");
+    watched.changed();
+    EXPECT_EQ(watched.changed(), Paths{file});
+}
+
+TEST_F(WatchedFilesTest, WatchingAgainForgetsNothing) {
+    date(a, 5);
+    date(b, 5);
+    watched.watch({a});
+    watched.changed();
+    EXPECT_EQ(watched.changed(), Paths{a});
+    watched.watch({a, b});
+    watched.changed();
+    EXPECT_EQ(watched.changed(), Paths{}) << "b was changed while nobody watched it";
+}
+
+TEST_F(WatchedFilesTest, FilesOfAScene) {
+    Scene scene;
+    SourceParams source;
+    source.meshes = {{"plane", {a}, 0.15}, {folder / "m.obj", {}, 0.15}};
+    source.kind = SourceKind::stars;
+    EXPECT_EQ(named_files(source), Paths{});
+    source.stars.catalogue = folder / "m.obj";
+    EXPECT_EQ(named_files(source), Paths{folder / "m.obj"});
+    source.kind = SourceKind::mesh;
+    EXPECT_EQ(named_files(source), (Paths{a, folder / "m.obj"}));
+    folder.file("m.obj", "mtllib m.mtl\nv 0 0 0\n");
+    folder.file("m.mtl", "newmtl one\nmap_Kd b.png\n");
+    Paths all = all_files(source);
+    std::sort(all.begin(), all.end());
+    EXPECT_EQ(all, (Paths{a, b, folder / "m.mtl", folder / "m.obj"}));
+    source.kind = SourceKind::splats;
+    source.file = folder / "stars.pda";
+    EXPECT_EQ(all_files(source), Paths{folder / "stars.pda"});
+
+    scene.layers.resize(2);
+    scene.layers[1].look.thickness.map = a;
+    scene.environment.cube = {b};
+    EXPECT_EQ(picture_files(scene), (Paths{b, a}));
 }
 
 }  // namespace

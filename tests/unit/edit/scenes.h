@@ -6,6 +6,7 @@
 
 #include "edit/document.h"
 #include "scene/describe.h"
+#include "support/bits.h"
 #include "support/errors.h"
 #include "support/temp_folder.h"
 
@@ -55,10 +56,7 @@ struct SceneFolder {
     TempFolder folder;
     std::filesystem::path file = folder.file("szene ä.toml", edit_scene);
 
-    std::string text() const {
-        std::ifstream in(file, std::ios::binary);
-        return {std::istreambuf_iterator<char>(in), {}};
-    }
+    std::string text() const { return test::bytes_of(file); }
 };
 
 inline Value value_of(const Document& document, const std::string& key) {

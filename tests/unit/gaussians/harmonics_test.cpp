@@ -14,6 +14,7 @@
 #include "gaussians/gaussians.h"
 #include "splat_files/splat_file.h"
 #include "splats/harmonics.h"
+#include "support/bits.h"
 #include "support/capture.h"
 #include "support/temp_folder.h"
 
@@ -132,8 +133,7 @@ TEST(HarmonicsExport, CapturesComeOutWithTheColoursThatTheyCameWith) {
             EXPECT_EQ(found.harmonics.empty(), degree == 0);
             EXPECT_LT(differences(capture, found).largest, 1e-4) << degree << " " << name;
         }
-        std::ifstream in(capture.folder / "out.ply");
-        const std::string header{std::istreambuf_iterator<char>(in), {}};
+        const std::string header = bytes_of(capture.folder / "out.ply");
         const int rest = 3 * ((degree + 1) * (degree + 1) - 1);
         const auto has = [&](int n) {
             return header.find("property float f_rest_" + std::to_string(n) + "\n") != std::string::npos;

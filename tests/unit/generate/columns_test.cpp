@@ -1,14 +1,25 @@
-// Pictures read again into columns that are there: the bits of a generation, and nothing lost that was dark.
-#include "generate/generate.h"
-
+// Columns of a set, written in parts and read again, and the runs that are kept of it.
 #include <gtest/gtest.h>
 
+#include <fstream>
+#include <map>
+#include <mutex>
+#include <sstream>
+
 #include "core/parallel.h"
+#include "generate/generate.h"
+#include "generate/kept_store.h"
 #include "source/textured_mesh.h"
+#include "splat_files/native.h"
+#include "support/temp_folder.h"
 #include "unit/generate/generate_support.h"
 
 namespace astrosplat {
 namespace {
+
+// Columns of a set: read again into what is there, and written in parts.
+
+// Pictures read again into columns that are there: the bits of a generation, and nothing lost that was dark.
 
 /// Stripes of another colour, of which every n-th is transparent.
 Texture stripes(std::int64_t n, TextureSettings::Filter filter) {
@@ -92,6 +103,209 @@ TEST_F(ColumnsTest, TheEstimateTellsOfPositionsThatAreDark) {
         static_cast<double>(columns.splats.size()) * (68.0 + 36.0);  // and half of them twice
     EXPECT_LT(lit_splats(columns).size() * 50, columns.splats.size());
     EXPECT_NEAR(static_cast<double>(columns_memory_bytes(made, lattice, 0.3)) / bytes, 1.0, 0.25);
+}
+
+// A set written in parts is the file of the set written as a whole, whatever the parts.
+
+using glm::i64vec3;
+using test::flat_texture;
+using test::textured;
+
+std::string bytes_of(const std::filesystem::path& file) {
+    std::ostringstream bytes;
+    bytes << std::ifstream(file, std::ios::binary).rdbuf();
+    return bytes.str();
+}
+
+/// Its left half is transparent.
+Texture half_lit() {
+    Texture texture = flat_texture({0.25f, 0.5f, 1.0f, 0.75f}, 64);
+    for (std::int64_t y = 0; y < 64; ++y)
+        for (std::int64_t x = 0; x < 32; ++x) std::fill_n(texture.image.at(x, y), 4, 0.0f);
+    texture.credit = "NASA";
+    return texture;
+}
+
+struct Case {
+    const char* mesh;
+    i64vec3 voxels;
+    double max_distance;
+    glm::vec3 place{0.0f};
+    float size = 1.5f;
+};
+
+class WriteColumns : public testing::Test {
+  protected:
+    ~WriteColumns() override { set_thread_count(0); }
+
+    void expect_same_file(const Case& c, std::int64_t room_bytes, Texture texture, int threads) {
+        SCOPED_TRACE(testing::Message() << c.mesh << " in " << room_bytes << " bytes, threads " << threads);
+        Mesh mesh = builtin_mesh(c.mesh, c.size);
+        for (glm::vec3& p : mesh.positions) p += c.place;
+        std::vector<TexturedMesh> meshes;
+        meshes.push_back(textured(std::move(mesh), std::move(texture)));
+        SourceParams source;
+        source.voxels = c.voxels;
+        const Lattice lattice = make_lattice(source, meshes, c.max_distance);
+        set_thread_count(threads);
+        const SplatSet set = generate(meshes, lattice, c.max_distance, 1.0, 5);
+        write_native(folder_ / "whole.splats", set);
+        const std::int64_t splats =
+            write_columns(folder_ / "parts.splats", meshes, lattice, c.max_distance, 1.0, 5, room_bytes);
+        EXPECT_EQ(splats, set.size());
+        EXPECT_TRUE(bytes_of(folder_ / "parts.splats") == bytes_of(folder_ / "whole.splats"));
+    }
+
+    TempFolder folder_;
+};
+
+TEST_F(WriteColumns, AnyRoomMakesTheSameFile) {
+    for (const Case& c : {Case{"sphere", i64vec3(61, 50, 47), 0.6}, Case{"plane", i64vec3(90, 3, 110), 0.4},
+                          Case{"disk", i64vec3(40, 40, 40), 2.0}})
+        for (const std::int64_t room : {std::int64_t{1} << 40, std::int64_t{1} << 20, std::int64_t{200'000}})
+            expect_same_file(c, room, half_lit(), room == 200'000 ? 3 : 2);
+}
+
+// Jitter and float rounding move positions over the sides of parts.
+TEST_F(WriteColumns, FarFromTheOriginToo) {
+    expect_same_file({"sphere", i64vec3(40, 41, 42), 0.6, {1e4f, -3e5f, 2e3f}}, 300'000, half_lit(), 2);
+    expect_same_file({"sphere", i64vec3(12, 400, 7), 0.6, {0, 0, 0}, 0.01f}, 100'000, half_lit(), 2);
+}
+
+TEST_F(WriteColumns, SeveralBlocksOfTheFile) {
+    expect_same_file({"sphere", i64vec3(90, 91, 92), 3.0}, 3'000'000, flat_texture({1, 1, 1, 1}), 2);
+}
+
+TEST_F(WriteColumns, NothingLitIsAFileOfNothing) {
+    expect_same_file({"plane", i64vec3(20, 3, 20), 0.5}, 1 << 20, flat_texture({0, 0, 0, 0}), 2);
+}
+
+// Splats kept by a generation: how runs join, and who watches them.
+
+// Runs of splats from several stores join a set in order of id.
+
+KeptSplat splat_of(std::uint64_t id) {
+    const auto v = static_cast<float>(id);
+    return {glm::vec3(v), glm::vec3(0.5f), 1.0f, v, id, glm::vec2(v), glm::vec3(0, 1, 0), 7, 8};
+}
+
+// Store n of two has the odd or the even thousands; as many splats as two blocks and a half hold.
+constexpr std::uint64_t run_splats = 1000, runs_each = 164;
+
+void fill(KeptStore& store, std::uint64_t n) {
+    for (std::uint64_t run = 0; run < runs_each; ++run) {
+        store.begin_run();
+        for (std::uint64_t i = 0; i < run_splats; ++i) store.add(splat_of((2 * run + n) * run_splats + i));
+    }
+}
+
+void append(const KeptStore& store, std::size_t begin, std::size_t end, std::vector<KeptStore::Run>& runs) {
+    runs.insert(runs.end(), store.runs().data() + begin, store.runs().data() + end);
+}
+
+TEST(KeptStore, PartAfterPartJoinsASetInOrder) {
+    KeptStore stores[2];
+    SplatSet set;
+    for (int again = 0; again < 2; ++again) {  // clear() lets the blocks serve again
+        for (std::uint64_t n : {1u, 0u}) {
+            stores[n].clear();
+            fill(stores[n], n);
+            ASSERT_GT(stores[n].runs().size(),
+                      runs_each);  // one that reaches a block's end goes on as another
+        }
+    }
+    std::size_t begin[2] = {0, 0};
+    for (const std::uint64_t end_id : {100 * run_splats, 240 * run_splats, 2 * runs_each * run_splats}) {
+        std::vector<KeptStore::Run> runs;
+        for (std::size_t n = 0; n < 2; ++n) {
+            const std::vector<KeptStore::Run>& all = stores[n].runs();
+            std::size_t end = begin[n];
+            while (end < all.size() && all[end].splats->id < end_id) ++end;
+            append(stores[n], begin[n], end, runs);
+            begin[n] = end;
+        }
+        append_sorted(runs, set);
+        ASSERT_EQ(set.size(), static_cast<std::int64_t>(end_id));
+    }
+    for (std::size_t i = 0; i < set.id.size(); ++i) {
+        ASSERT_EQ(set.id[i], i);
+        ASSERT_EQ(set.position[i], glm::vec3(static_cast<float>(i)));
+        ASSERT_EQ(set.mesh[i], 7u);
+        ASSERT_EQ(set.face[i], 8u);
+    }
+}
+
+// Who watches a generation sees every splat once, and changes nothing.
+
+class Collector : public KeptWatcher {
+  public:
+    void begins(const SplatSet& empty, const Bounds& box) override {
+        ++begun;
+        EXPECT_TRUE(kept.empty());
+        EXPECT_EQ(empty.size(), 0);
+        spacing = empty.spacing;
+        max_distance = empty.max_distance;
+        generated = empty.generated;
+        lattice_box = box;
+    }
+    void keeps(std::span<const KeptStore::Run> runs) override {
+        const std::lock_guard lock(mutex);
+        for (const KeptStore::Run& run : runs)
+            for (std::size_t i = 0; i < run.count; ++i) {
+                EXPECT_TRUE(kept.emplace(run.splats[i].id, run.splats[i]).second) << "twice";
+                EXPECT_LT(run.splats[i].id, i + 1 < run.count ? run.splats[i + 1].id : ~std::uint64_t{0});
+            }
+    }
+
+    std::int64_t sample_limit() const override { return 1000; }
+    void ends(Columns sample, std::int64_t of) override {
+        ++ended;
+        EXPECT_EQ(sample.splats.size(), 1000);
+        EXPECT_EQ(static_cast<std::size_t>(of), kept.size());
+        for (std::size_t i = 0; i < sample.splats.id.size(); ++i)
+            EXPECT_EQ(kept.at(sample.splats.id[i]).face, sample.splats.face[i]);
+    }
+
+    int begun = 0, ended = 0;
+    glm::dvec3 spacing{0.0};
+    double max_distance = 0.0;
+    bool generated = false;
+    Bounds lattice_box;
+    std::map<std::uint64_t, KeptSplat> kept;
+
+  private:
+    std::mutex mutex;
+};
+
+TEST(KeptWatcher, SeesEverySplatOnceAndChangesNothing) {
+    std::vector<TexturedMesh> meshes;
+    meshes.push_back(
+        test::textured(builtin_mesh("sphere", 1.0), test::flat_texture({0.2f, 0.4f, 0.8f, 0.5f})));
+    SourceParams source;
+    source.count = 150000;  // more than one block of a store
+    const Lattice lattice = make_lattice(source, meshes, 0.5);
+    const SplatSet alone = generate(meshes, lattice, 0.5, 1.0, 9);
+    for (const int threads : {1, 3}) {
+        set_thread_count(threads);
+        Collector watcher;
+        const SplatSet watched = lit_splats(make_columns(meshes, lattice, 0.5, 1.0, 9, {}, &watcher));
+        test::expect_same_bits(watched, alone);
+        EXPECT_EQ(watcher.begun, 1);
+        EXPECT_EQ(watcher.ended, 1);
+        EXPECT_EQ(watcher.spacing, alone.spacing);
+        EXPECT_EQ(watcher.max_distance, alone.max_distance);
+        EXPECT_TRUE(watcher.generated);
+        EXPECT_EQ(watcher.lattice_box.lo, lattice.box.lo);
+        ASSERT_EQ(static_cast<std::int64_t>(watcher.kept.size()), alone.size());
+        std::size_t row = 0;
+        for (const auto& [id, splat] : watcher.kept) {
+            ASSERT_EQ(id, alone.id[row]);
+            ASSERT_EQ(splat.position, alone.position[row]);
+            ASSERT_EQ(splat.alpha, alone.alpha[row]);
+            ++row;
+        }
+    }
+    set_thread_count(0);
 }
 
 }  // namespace

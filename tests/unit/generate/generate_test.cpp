@@ -12,7 +12,6 @@
 #include "source/sample.h"
 #include "source/textured_mesh.h"
 #include "unit/generate/generate_support.h"
-#include "unit/generate/lattice_positions.h"
 
 namespace astrosplat {
 namespace {

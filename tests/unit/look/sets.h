@@ -2,10 +2,10 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 
 #include "look/apply.h"
 #include "look/shared_look.h"
+#include "support/dots.h"
 
 namespace astrosplat::test {
 
@@ -58,11 +58,9 @@ inline SplatSet slab(double spacing, double half, double max_distance, float alp
         const glm::dvec3 p(x + moved(0), y + moved(1), z + moved(2));
         const double distance = p.y < 0.0 ? -p.y : p.y;
         if (distance > max_distance) return;
-        set.position.push_back(glm::vec3(p));
-        set.color.push_back(glm::vec3(1.0f));
-        set.alpha.push_back(alpha);
-        set.distance.push_back(float(distance));
-        set.id.push_back(std::uint64_t(id));
+        add_splat(set, glm::vec3(p), glm::vec3(1.0f), alpha);
+        set.distance.back() = float(distance);
+        set.id.back() = std::uint64_t(id);
     };
     std::int64_t id = 0;
     for (double offset : {0.0, 0.5})

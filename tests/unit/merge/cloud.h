@@ -7,6 +7,7 @@
 
 #include "merge/cut.h"
 #include "merge/tree.h"
+#include "support/dots.h"
 
 namespace astrosplat::test {
 
@@ -15,11 +16,8 @@ struct Cloud {
     ShadedSplats splats;
 
     void add(const glm::vec3& position, const glm::vec3& color, float alpha, float radius, std::uint64_t id) {
-        set->position.push_back(position);
-        set->color.push_back(color);
-        set->alpha.push_back(alpha);
-        set->distance.push_back(0.0f);
-        set->id.push_back(id);
+        add_splat(*set, position, color, alpha);
+        set->id.back() = id;
         splats.position.push_back(position);
         splats.color.push_back(color);
         splats.alpha.push_back(alpha);

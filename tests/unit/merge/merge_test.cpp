@@ -5,8 +5,6 @@
 #include <array>
 #include <atomic>
 #include <cmath>
-#include <cstring>
-#include <functional>
 #include <vector>
 
 #include "core/error.h"

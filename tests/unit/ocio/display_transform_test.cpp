@@ -9,8 +9,8 @@
 
 #include "support/color_config.h"
 #include "support/errors.h"
+#include "support/process_state.h"
 #include "support/temp_folder.h"
-#include "support/variable.h"
 
 namespace astrosplat {
 namespace {

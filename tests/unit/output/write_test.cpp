@@ -19,8 +19,9 @@
 #include "core/error.h"
 #include "output/format.h"
 #include "source/write_image.h"
+#include "support/bits.h"
 #include "support/errors.h"
-#include "support/file_limit.h"
+#include "support/process_state.h"
 
 namespace astrosplat {
 namespace {
@@ -62,10 +63,7 @@ std::pair<std::string, std::string> hashes_of(const fs::path& file) {
     return {header.frame_hash, header.pixel_hash};
 }
 
-std::string bytes_of(const fs::path& file) {
-    std::ifstream in(file, std::ios::binary);
-    return {std::istreambuf_iterator<char>(in), {}};
-}
+using test::bytes_of;
 
 // Soft orange on nothing, brighter than 1 in the lower half.
 RenderedFrame soft_frame(std::int64_t width, std::int64_t height) {
@@ -189,9 +187,7 @@ TEST_F(WriteTest, DwaaIsWrittenToo) {
     const fs::path file = write("a.exr", output, frame);
     RawFile raw = read_raw(file);
     EXPECT_EQ(raw.spec.get_string_attribute("compression"), "dwaa");
-    std::ifstream in(file, std::ios::binary);
-    const std::string bytes((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
-    EXPECT_NE(bytes.find("dwaCompressionLevel"), std::string::npos);
+    EXPECT_NE(bytes_of(file).find("dwaCompressionLevel"), std::string::npos);
     EXPECT_NEAR(raw.at(40, 10, "R"), frame.beauty.at(40, 10)[0], 0.02f);
 }
 

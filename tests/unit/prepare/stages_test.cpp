@@ -1,14 +1,22 @@
-// Sky, cuts, colours and grids: closed forms.
+// Stages of prepare: sky, cuts, colours, holes and registration.
 #include <gtest/gtest.h>
+
+#include <cmath>
+#include <glm/geometric.hpp>
 
 #include "core/color.h"
 #include "core/real.h"
+#include "core/shared_maths.h"
+#include "prepare/fill.h"
 #include "prepare/filters.h"
+#include "prepare/registration.h"
 #include "prepare/sky.h"
 #include "unit/prepare/painted.h"
 
 namespace astrosplat {
 namespace {
+
+// Sky, cuts, colours and grids: closed forms.
 
 TEST(Sky, IsFoundBehindAGalaxy) {
     const auto sky = [](double x, double y, int c) {
@@ -156,6 +164,213 @@ TEST(SkyGrid, PicturesOfOtherScaleAndAngleMeet) {
         EXPECT_EQ(outside.at(0, 0), factor < 1.0) << factor;
         EXPECT_FALSE(outside.at(100, 80));
     }
+}
+
+// Holes: what Laplace's equation knows in closed form, and texture that goes on.
+
+PixelMask disc(std::int64_t width, std::int64_t height, double x, double y, double radius) {
+    PixelMask mask = make_mask(width, height);
+    for (std::int64_t j = 0; j < height; ++j)
+        for (std::int64_t i = 0; i < width; ++i)
+            mask.at(i, j) =
+                std::hypot(static_cast<double>(i) + 0.5 - x, static_cast<double>(j) + 0.5 - y) < radius;
+    return mask;
+}
+
+// Two harmonic functions: a plane, and a saddle.
+Image harmonic(std::int64_t size) {
+    return painted(size, size, 2, [&](double x, double y, int c) {
+        const double u = x / static_cast<double>(size) - 0.5, v = y / static_cast<double>(size) - 0.5;
+        return c == 0 ? 1.0 + 0.5 * u - 0.25 * v : 1.0 + u * u - v * v;
+    });
+}
+
+TEST(Fill, MembraneContinuesWhatIsHarmonic) {
+    for (const double radius : {1.0, 4.0, 20.0, 45.0}) {
+        const Image truth = harmonic(128);
+        const PixelMask holes = disc(128, 128, 66.0, 60.0, radius);
+        Image image = truth;
+        for (std::size_t i = 0; i < holes.pixels.size(); ++i)
+            if (holes.pixels[i]) image.pixels[2 * i] = image.pixels[2 * i + 1] = NAN;
+        fill(image, holes, FillKind::membrane);
+        for (std::size_t i = 0; i < image.pixels.size(); ++i)
+            ASSERT_NEAR(image.pixels[i], truth.pixels[i], i % 2 ? 4e-3f : 2.5e-3f) << radius << " " << i;
+    }
+}
+
+TEST(Fill, StaysWithinTheRim) {
+    Image image = painted(64, 64, 1, [](double x, double, int) { return x < 32.0 ? 0.0 : 1.0; });
+    const PixelMask holes = disc(64, 64, 32.0, 32.0, 15.0);
+    fill(image, holes, FillKind::membrane);
+    for (const float value : image.pixels) {
+        EXPECT_GE(value, 0.0f);
+        EXPECT_LE(value, 1.0f);
+    }
+    EXPECT_NEAR(*image.at(31, 32) + *image.at(32, 32), 1.0f, 0.05f) << "the middle of a symmetric rim";
+}
+
+TEST(Fill, TextureHasTheSpreadOfItsSurroundings) {
+    const Image truth =
+        add_noise(painted(160, 160, 3, [](double x, double, int) { return 0.5 + x / 640.0; }), 0.02, 7);
+    const PixelMask holes = disc(160, 160, 80.0, 80.0, 16.0);
+    const auto spread = [&](const Image& image) {  // of green about the slope
+        double sum = 0.0, squares = 0.0, count = 0.0;
+        for (std::int64_t y = 0; y < 160; ++y)
+            for (std::int64_t x = 0; x < 160; ++x) {
+                if (!holes.at(x, y)) continue;
+                const double d = image.at(x, y)[1] - (0.5 + (static_cast<double>(x) + 0.5) / 640.0);
+                sum += d;
+                squares += d * d;
+                count += 1.0;
+            }
+        return std::pair(sum / count, std::sqrt(squares / count));
+    };
+    Image smooth = truth, textured = truth;
+    fill(smooth, holes, FillKind::membrane);
+    fill(textured, holes, FillKind::texture);
+    EXPECT_LT(spread(smooth).second, 0.012);
+    EXPECT_NEAR(spread(textured).second, 0.02, 0.005);
+    EXPECT_NEAR(spread(textured).first, 0.0, 0.005);
+}
+
+TEST(Fill, WritesNothingButTheHoles) {
+    const Image before = add_noise(make_image(50, 40, 3, 0.5f), 0.1, 3);
+    PixelMask holes = disc(50, 40, 10.0, 10.0, 5.0);
+    holes.at(49, 39) = holes.at(0, 0) = 1;
+    Image after = before;
+    fill(after, holes, FillKind::texture);
+    std::size_t changed = 0;
+    for (std::size_t i = 0; i < holes.pixels.size(); ++i) {
+        const bool same = std::equal(&before.pixels[3 * i], &before.pixels[3 * i] + 3, &after.pixels[3 * i]);
+        ASSERT_TRUE(same || holes.pixels[i]) << i;
+        changed += same ? 0 : 1;
+    }
+    EXPECT_GT(changed, 75u);
+}
+
+TEST(Fill, PartsAreConnectedAtCornersToo) {
+    PixelMask mask = make_mask(8, 6);
+    mask.at(1, 1) = mask.at(2, 2) = mask.at(3, 1) = 1;
+    mask.at(6, 5) = 1;
+    const std::vector<PixelPart> parts = connected_parts(mask);
+    ASSERT_EQ(parts.size(), 2u);
+    EXPECT_EQ(parts[0].pixels, (std::vector<std::int64_t>{9, 18, 11})) << "from the first one outwards";
+    EXPECT_EQ(parts[0].box.width, 3);
+    EXPECT_EQ(parts[0].box.height, 2);
+    EXPECT_EQ(parts[1].box.x, 6);
+}
+
+TEST(Fill, APictureThatIsOneHoleBecomesZero) {
+    Image image = make_image(5, 4, 3, 2.0f);
+    PixelMask all = make_mask(5, 4);
+    std::fill(all.pixels.begin(), all.pixels.end(), 1);
+    fill(image, all, FillKind::texture);
+    for (const float value : image.pixels) EXPECT_EQ(value, 0.0f);
+}
+
+// A painted picture is found again after it was moved, turned and scaled by known amounts.
+
+/// Clouds of light at fixed places about (0, 0), reach about 1.5: no two parts are alike.
+double clouds(double x, double y) {
+    struct Cloud {
+        double x, y, radius, light;
+    };
+    constexpr Cloud all[] = {{0.0, 0.0, 0.25, 0.7},   {0.5, 0.1, 0.12, 0.5},   {-0.3, 0.45, 0.2, 0.4},
+                             {-0.6, -0.2, 0.08, 0.8}, {0.2, -0.55, 0.15, 0.5}, {0.8, 0.6, 0.1, 0.6},
+                             {-0.9, 0.5, 0.12, 0.5},  {0.75, -0.5, 0.06, 0.9}, {-0.5, -0.75, 0.1, 0.4}};
+    double light = 0.02;
+    for (const Cloud& c : all)
+        light += c.light *
+                 real::exp(-((x - c.x) * (x - c.x) + (y - c.y) * (y - c.y)) / (2.0 * c.radius * c.radius));
+    return light;
+}
+
+/// The clouds on width x height px: `place` says where a picture of 2 x 2 units, 200 px a side, lies.
+Image clouds_on(std::int64_t width, std::int64_t height, const PictureOnPicture& place) {
+    Image image = make_image(width, height, 1);
+    const double angle = real::radians(place.turn_deg), c = real::cos(angle), s = real::sin(angle);
+    for (std::int64_t y = 0; y < height; ++y)
+        for (std::int64_t x = 0; x < width; ++x) {
+            const double dx = (double(x) + 0.5 - place.middle.x) / place.scale / 100.0;
+            const double dy = (double(y) + 0.5 - place.middle.y) / place.scale / 100.0;
+            *image.at(x, y) = static_cast<float>(clouds(c * dx - s * dy, s * dx + c * dy));
+        }
+    return image;
+}
+
+const Image cloud_picture = clouds_on(200, 200, {{100.0, 100.0}, 1.0, 0.0});
+
+void expect_found(const Image& fixed, const Image& moving, const PictureOnPicture& place,
+                  const PictureOnPicture& start) {
+    const std::optional<Registration> found = registered(fixed, moving, start);
+    ASSERT_TRUE(found);
+    EXPECT_LT(glm::distance(found->place.middle, place.middle), 1.0);
+    EXPECT_NEAR(found->place.scale / place.scale, 1.0, 0.005);
+    EXPECT_NEAR(std::remainder(found->place.turn_deg - place.turn_deg, 360.0), 0.0, 0.3);
+    EXPECT_GT(found->likeness, 0.9);
+}
+
+TEST(Registration, FindsAKnownShiftTurnAndScale) {
+    for (const PictureOnPicture& place :
+         {PictureOnPicture{{160.0, 120.0}, 1.2, 0.0}, PictureOnPicture{{200.0, 90.0}, 1.0, 35.0},
+          PictureOnPicture{{140.0, 150.0}, 0.7, -110.0}, PictureOnPicture{{170.0, 110.0}, 1.7, 178.0}})
+        expect_found(clouds_on(320, 240, place), cloud_picture, place, {{160.0, 120.0}, 1.2, 0.0});
+}
+
+TEST(Registration, AnotherContrastAndOffsetDoNotMatter) {
+    const PictureOnPicture place{{150.0, 110.0}, 1.1, -20.0};
+    Image fixed = clouds_on(320, 240, place);
+    for (float& value : fixed.pixels) value = 0.2f + 0.4f * value;
+    expect_found(fixed, cloud_picture, place, {{160.0, 120.0}, 1.0, 0.0});
+}
+
+TEST(Registration, PartOfThePictureIsEnough) {
+    const PictureOnPicture place{{60.0, 190.0}, 1.4, 15.0};
+    expect_found(clouds_on(320, 240, place), cloud_picture, place, {{160.0, 120.0}, 1.2, 0.0});
+}
+
+TEST(Registration, LargerPicturesAreFoundAsWell) {
+    const PictureOnPicture place{{800.0, 500.0}, 4.0, 50.0};
+    expect_found(clouds_on(1600, 1000, place), cloud_picture, place, {{800.0, 500.0}, 5.0, 0.0});
+}
+
+TEST(Registration, WhatLiesRightStays) {
+    const PictureOnPicture place{{123.25, 130.5}, 1.0, 12.0};
+    expect_found(clouds_on(320, 240, place), cloud_picture, place, place);
+}
+
+/// Any turn shows the same, which must not keep the shift and the scale from being found.
+TEST(Registration, SomethingRoundIsFoundWithAnyTurn) {
+    const auto blob = [](std::int64_t width, std::int64_t height, glm::dvec2 middle, double radius) {
+        Image image = make_image(width, height, 1);
+        for (std::int64_t y = 0; y < height; ++y)
+            for (std::int64_t x = 0; x < width; ++x) {
+                const double r = glm::distance(glm::dvec2(double(x) + 0.5, double(y) + 0.5), middle) / radius;
+                *image.at(x, y) = static_cast<float>(real::exp(-r * r) * (1.0 + 0.5 * real::cos(6.0 * r)));
+            }
+        return image;
+    };
+    const auto found = registered(blob(320, 240, {170.0, 110.0}, 40.0), blob(200, 200, {100.0, 100.0}, 40.0),
+                                  {{160.0, 120.0}, 1.0, 33.0});
+    ASSERT_TRUE(found);
+    EXPECT_LT(glm::distance(found->place.middle, glm::dvec2(170.0, 110.0)), 1.0);
+    EXPECT_NEAR(found->place.scale, 1.0, 0.005);
+}
+
+Image noise(std::int64_t width, std::int64_t height, std::uint32_t seed) {
+    Image image = make_image(width, height, 1);
+    for (std::size_t i = 0; i < image.pixels.size(); ++i)
+        image.pixels[i] =
+            static_cast<float>(shared::as_hash(seed, static_cast<std::uint32_t>(i), 0u, 1u)) / 4294967296.0f;
+    return image;
+}
+
+TEST(Registration, WhereNothingMatchesThereIsNone) {
+    const PictureOnPicture start{{160.0, 120.0}, 1.0, 0.0};
+    EXPECT_FALSE(registered(make_image(320, 240, 1), cloud_picture, start)) << "flat";
+    EXPECT_FALSE(registered(clouds_on(320, 240, start), make_image(200, 200, 1, 0.5f), start)) << "flat";
+    EXPECT_FALSE(registered(noise(320, 240, 1), noise(200, 200, 2), start));
+    EXPECT_FALSE(registered(noise(320, 240, 1), cloud_picture, start));
 }
 
 }  // namespace

@@ -9,7 +9,7 @@
 #include "prepare/star_removal.h"
 #include "source/texture.h"
 #include "support/test_data.h"
-#include "unit/prepare/injected.h"
+#include "unit/prepare/painted.h"
 
 namespace astrosplat {
 namespace {

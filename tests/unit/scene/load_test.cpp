@@ -9,7 +9,7 @@
 #include "scene/save.h"
 #include "scene/toml_text.h"
 #include "scene_texts.h"
-#include "support/variable.h"
+#include "support/process_state.h"
 
 namespace astrosplat::test {
 namespace fs = std::filesystem;

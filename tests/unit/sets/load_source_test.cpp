@@ -1,13 +1,15 @@
 // The front door: built-in meshes, a mesh's own pictures, splat files, and its messages.
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "bodies/picture_size.h"
 #include "core/log.h"
 #include "sets/load_source.h"
 #include "source/textured_mesh.h"
 #include "splat_files/splat_file.h"
+#include "support/dots.h"
+#include "support/errors.h"
+#include "support/pixmap.h"
+#include "support/quiet.h"
 #include "support/test_data.h"
 #include "unit/splat_files/file_support.h"
 
@@ -16,11 +18,6 @@ namespace {
 
 class LoadSourceTest : public SplatFileTest {
   protected:
-    LoadSourceTest() {
-        set_log_sink([this](LogLevel, const std::string& line) { lines_ += line + "\n"; });
-    }
-    ~LoadSourceTest() override { set_log_sink(nullptr); }
-
     static std::string error_of(const SourceParams& source) {
         try {
             load_source(source, "dust");
@@ -38,15 +35,15 @@ class LoadSourceTest : public SplatFileTest {
     }
 
     SourceParams sheet_of_gas(int width, int height) const {
-        std::string pixels = "P6\n" + std::to_string(width) + " " + std::to_string(height) + "\n255\n";
-        for (int i = 0; i < width * height * 3; ++i) pixels += static_cast<char>(40 + i * 7 % 60);
+        const std::string pixels = test::pixmap(
+            width, height, [&](int x, int y, int k) { return 40 + (3 * (y * width + x) + k) * 7 % 60; });
         SourceParams source = mesh_source("plane", {write("gas.ppm", pixels)});
         source.count = 0;
         source.structure.kind = StructureKind::sheet;
         return source;
     }
 
-    std::string lines_;
+    Said said_;
 };
 
 TEST_F(LoadSourceTest, StarsComeFromACatalogue) {
@@ -62,17 +59,13 @@ TEST_F(LoadSourceTest, StarsComeFromACatalogue) {
     EXPECT_EQ(set.position[0], glm::vec3(20.0f, 0.0f, 0.0f));
     EXPECT_EQ(set.radius[0], 0.0f);
     const std::string file = source.stars.catalogue.string();
-    EXPECT_NE(
-        lines_.find("layer 'sky': " + file +
-                    ": 1 of 6 rows cannot be used, at line 6 (line 6: expected a number for the distance, "
-                    "found 'x')\n"),
-        std::string::npos)
-        << lines_;
-    EXPECT_NE(
-        lines_.find("layer 'sky': 4 stars, 1 fainter than magnitude 6 left out, 2 without a distance at "
-                    "infinity\n"),
-        std::string::npos)
-        << lines_;
+    EXPECT_HAS(said_.text(),
+               "layer 'sky': " + file +
+                   ": 1 of 6 rows cannot be used, at line 6 (line 6: expected a number for the distance, "
+                   "found 'x')\n");
+    EXPECT_HAS(said_.text(),
+               "layer 'sky': 4 stars, 1 fainter than magnitude 6 left out, 2 without a distance at "
+               "infinity\n");
 }
 
 TEST_F(LoadSourceTest, StarsAreScatteredAlongTheCamera) {
@@ -91,17 +84,12 @@ TEST_F(LoadSourceTest, StarsAreScatteredAlongTheCamera) {
     EXPECT_EQ(load_source(source, "other").position[0], load_source(source, "sky").position[0]);
     source.stars.catalogue = write("red.csv", "ra,dec,dist,mag,bv\n0,0,10,1,1.9\n0,0,,1,0\n0,0,10,13,0\n");
     for (const glm::vec3& color : load_source(source, "sky").color) EXPECT_GT(color.x, color.z);
-    EXPECT_NE(
-        lines_.find(
-            "layer 'sky': 3 k random stars within 5 of the camera's path, of 1 star of the catalogue\n"),
-        std::string::npos)
-        << lines_;
+    EXPECT_HAS(said_.text(),
+               "layer 'sky': 3 k random stars within 5 of the camera's path, of 1 star of the catalogue\n");
     source.stars.catalogue = write("far.csv", "ra,dec,dist,mag\n0,0,,1\n");
-    EXPECT_NE(error_of(source).find("expected stars of magnitude 12 or brighter with a distance, found none"),
-              std::string::npos)
-        << error_of(source);
+    EXPECT_HAS(error_of(source), "expected stars of magnitude 12 or brighter with a distance, found none");
     source.stars.path.clear();
-    EXPECT_NE(error_of(source).find("camera"), std::string::npos);
+    EXPECT_HAS(error_of(source), "camera");
 }
 
 TEST_F(LoadSourceTest, ACatalogueThatIsNoneIsRefused) {
@@ -117,7 +105,7 @@ TEST_F(LoadSourceTest, ALimitMayLeaveNoStar) {
     source.kind = SourceKind::stars;
     source.stars.catalogue = write("faint.csv", "ra,dec,mag\n1,2,13\n");
     EXPECT_EQ(load_source(source, "dust").size(), 0);
-    EXPECT_NE(lines_.find("0 stars, 1 fainter than magnitude 12 left out"), std::string::npos) << lines_;
+    EXPECT_HAS(said_.text(), "0 stars, 1 fainter than magnitude 12 left out");
 }
 
 TEST_F(LoadSourceTest, NeedsAMesh) {
@@ -150,7 +138,7 @@ TEST_F(LoadSourceTest, BodiesKeepToTexelsAndSplats) {
     source.structure.most_texels = 0;
     source.splats = 2000;
     EXPECT_LE(load_source(source, "gas").size(), 2000);
-    EXPECT_NE(lines_.find("would be more than"), std::string::npos) << lines_;
+    EXPECT_HAS(said_.text(), "would be more than");
 }
 
 TEST_F(LoadSourceTest, LargePicturesAreReducedWhileTheyAreRead) {
@@ -168,7 +156,7 @@ TEST_F(LoadSourceTest, LargePicturesAreReducedWhileTheyAreRead) {
     BodiesPlan smaller = plan(within);
     EXPECT_FALSE(smaller.fits_memory);
     reduce_pictures(smaller.meshes, smaller.structure, {4'000'000, 0}, "gas");
-    EXPECT_NE(lines_.find("a picture of 1300x900 px is reduced to"), std::string::npos) << lines_;
+    EXPECT_HAS(said_.text(), "a picture of 1300x900 px is reduced to");
     source.structure.kind = StructureKind::columns;
     EXPECT_EQ(most_texels_read(source, 4'000'000), 0);
 }
@@ -218,19 +206,15 @@ TEST_F(LoadSourceTest, AMarginOfAnotherMeshThanAPlaneIsNamed) {
     source.structure.kind = StructureKind::sheet;
     source.structure.margin = 0.1;
     load_source(source, "gas");
-    EXPECT_NE(lines_.find("layer 'gas': source.structure.margin acts on planes only, not on 'sphere'"),
-              std::string::npos)
-        << lines_;
+    EXPECT_HAS(said_.text(), "layer 'gas': source.structure.margin acts on planes only, not on 'sphere'");
 }
 
 TEST_F(LoadSourceTest, SplatFilesAreSortedAndKnowTheirLargestDistance) {
     SplatSet set;
     for (int i = 0; i < 4; ++i) {
-        set.position.push_back(glm::vec3(static_cast<float>(i)));
-        set.color.push_back(glm::vec3(0.5f));
-        set.alpha.push_back(1.0f);
-        set.distance.push_back(0.25f * static_cast<float>(i));
-        set.id.push_back(static_cast<std::uint64_t>(10 - i));
+        add_splat(set, glm::vec3(float(i)), glm::vec3(0.5f), 1.0f);
+        set.distance.back() = 0.25f * float(i);
+        set.id.back() = std::uint64_t(10 - i);
     }
     SourceParams source;
     source.kind = SourceKind::splats;
@@ -251,8 +235,8 @@ TEST_F(LoadSourceTest, PlaneTakesThePicturesAspectAndSaysWhatWasChosen) {
     EXPECT_NEAR(box.extent().x, 10.4, 0.3);  // the longer side, and 2 % on either side
     EXPECT_NEAR(box.extent().z, 6.65, 0.3);
     EXPECT_NEAR(static_cast<double>(set.size() + set.zero_alpha), 5000.0, 750.0);
-    EXPECT_NE(lines_.find("layer 'dust': "), std::string::npos);
-    EXPECT_NE(lines_.find("max distance 0.2"), std::string::npos);
+    EXPECT_HAS(said_.text(), "layer 'dust': ");
+    EXPECT_HAS(said_.text(), "max distance 0.2");
     const SplatSet other = load_source(source, "stars");  // another name, another seed
     EXPECT_NE(other.position[0], set.position[0]);
 }
@@ -268,7 +252,7 @@ TEST_F(LoadSourceTest, MeshesWithoutUvNeedAProjection) {
     ASTROSPLAT_TEST_DATA_OR_SKIP(mesh, "meshes/smallbodies/216Kleopatra.obj");
     ASTROSPLAT_TEST_DATA_OR_SKIP(picture, "images/sh2-106.png");
     SourceParams source = mesh_source(mesh, {picture});
-    EXPECT_NE(error_of(source).find("216Kleopatra.obj"), std::string::npos);
+    EXPECT_HAS(error_of(source), "216Kleopatra.obj");
     source.uv = UvMode::planar_xz;
     const std::vector<TexturedMesh> meshes = load_meshes(source);
     EXPECT_EQ(meshes[0].textures[0].wrap, TextureSettings::Wrap::clamp);

@@ -1,26 +1,26 @@
-// source.prepare: a source that prepares its picture is one of the prepared picture, to the bit; the picture
-// is kept beside the sets, and everything that reaches it reaches both names.
-#include "sets/kept.h"
-
+// Prepared pictures and skies kept beside the sets.
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
-#include <fstream>
 #include <functional>
 
 #include "core/error.h"
 #include "core/file.h"
 #include "core/log.h"
+#include "sets/kept.h"
 #include "sets/load_source.h"
 #include "source/prepared_picture.h"
 #include "source/write_image.h"
 #include "support/errors.h"
-#include "support/starry_picture.h"
+#include "support/pixmap.h"
+#include "support/quiet.h"
 #include "support/temp_folder.h"
 
 namespace astrosplat {
 namespace {
+
+// source.prepare: a source that prepares its picture is one of the prepared picture, to the bit; the picture
+// is kept beside the sets, and everything that reaches it reaches both names.
 
 namespace fs = std::filesystem;
 
@@ -30,9 +30,6 @@ std::string stars_on_a_slope() { return test::starry_pixmap({128, 96, 32, 32, 12
 class PreparedSource : public testing::Test {
   protected:
     PreparedSource() {
-        set_log_sink([this](LogLevel level, const std::string& line) {
-            if (level == LogLevel::warning) warnings_.push_back(line);
-        });
         folder_.file("p.ppm", stars_on_a_slope());
         source_.meshes = {{"plane", {folder_ / "p.ppm"}, 0.15}};
         source_.count = 3000;
@@ -40,10 +37,6 @@ class PreparedSource : public testing::Test {
         source_.texture.prepare.background = PrepareParams::Background::plane;
         source_.texture.prepare.ellipse = glm::dvec4(64.0, 48.0, 50.0, 40.0);
         cache_.folder = folder_ / "sets";
-    }
-    ~PreparedSource() override {
-        flush_warning_counts();
-        set_log_sink(nullptr);
     }
 
     std::vector<fs::path> pictures() const {
@@ -68,7 +61,7 @@ class PreparedSource : public testing::Test {
     TempFolder folder_;
     SourceParams source_;
     SetCache cache_;
-    std::vector<std::string> warnings_;
+    Said said_;
 };
 
 TEST_F(PreparedSource, IsTheSourceOfThePreparedPicture) {
@@ -98,7 +91,7 @@ TEST_F(PreparedSource, KeepsItsPictureForOtherSets) {
     source_.structure.clumps = 0.5;
     EXPECT_FALSE(same(load_source(cache_, source_, "dust").set, load_source(source_, "dust")));
     EXPECT_EQ(pictures().size(), 1u);
-    EXPECT_TRUE(warnings_.empty());
+    EXPECT_TRUE(said_.warnings.empty());
 }
 
 TEST_F(PreparedSource, DamagedPicturesArePreparedAgainWithAWarning) {
@@ -107,8 +100,9 @@ TEST_F(PreparedSource, DamagedPicturesArePreparedAgainWithAWarning) {
     fs::resize_file(pictures()[0], fs::file_size(pictures()[0]) / 2);
     const SplatSet set = load_source(cache_, source_, "dust").set;
     EXPECT_TRUE(same(set, load_source(source_, "dust")));
-    ASSERT_EQ(warnings_.size(), 1u);
-    EXPECT_NE(warnings_[0].find("; the picture is prepared again"), std::string::npos) << warnings_[0];
+    ASSERT_EQ(said_.warnings.size(), 1u);
+    EXPECT_NE(said_.warnings[0].find("; the picture is prepared again"), std::string::npos)
+        << said_.warnings[0];
 }
 
 TEST_F(PreparedSource, PicturesMakeRoomForOthers) {
@@ -221,6 +215,99 @@ TEST_F(PreparedSource, RefusesToAlignWhatHasNoSky) {
     EXPECT_EQ(message_of<InputError>([&] { load_source(source_, "dust"); }),
               "layer 'dust': " + (folder_ / "p.ppm").string() +
                   ": expected a FITS picture whose header tells the sky (RA---TAN), found none");
+}
+
+// Skies of one picture are kept beside the sets, to the bit, under a name that everything enters that makes
+// them.
+
+namespace fs = std::filesystem;
+
+class KeptSky : public testing::Test {
+  protected:
+    KeptSky() {
+        folder_.file("p.ppm", picture(120.0));
+        cache_.folder = folder_ / "sets";
+        tiling_.height_deg = 40.0;
+        tiling_.face_px = 32;
+    }
+    static std::string picture(double light) {
+        return test::starry_pixmap({64, 48, 16, 16, light, 3.0, 0.3, 2.0});
+    }
+    std::array<Image, 6> sky() const { return kept_skies(cache_)(folder_ / "p.ppm", tiling_, {}); }
+    std::array<Image, 6> made() const { return tiled_sky_of(folder_ / "p.ppm", tiling_); }
+    bool kept() const { return is_kept(cache_, folder_ / "p.ppm", tiling_); }
+
+    static void expect_same(const std::array<Image, 6>& a, const std::array<Image, 6>& b) {
+        for (std::size_t f = 0; f < 6; ++f) {
+            EXPECT_EQ(a[f].width, b[f].width);
+            EXPECT_EQ(a[f].channels, b[f].channels);
+            EXPECT_EQ(a[f].pixels, b[f].pixels) << f;
+        }
+    }
+
+    TempFolder folder_;
+    SetCache cache_;
+    SkyTiling tiling_;
+    Said said_;
+};
+
+TEST_F(KeptSky, IsTheOneThatWasMadeToTheBit) {
+    EXPECT_FALSE(kept());
+    expect_same(sky(), made());
+    EXPECT_TRUE(kept());
+    ASSERT_EQ(entries_of(cache_.folder).size(), 1u);
+    expect_same(sky(), made());
+    EXPECT_TRUE(said_.warnings.empty());
+}
+
+TEST_F(KeptSky, IsReadAndNotMadeAgain) {
+    sky();
+    const std::vector<fs::path> first = entries_of(cache_.folder);
+    SkyTiling other = tiling_;
+    other.seed = 2;
+    kept_skies(cache_)(folder_ / "p.ppm", other, {});
+    std::vector<fs::path> second = entries_of(cache_.folder);
+    std::erase(second, first.at(0));
+    // Another sky under the first one's name: what is read is what lies there.
+    fs::copy_file(second.at(0), first.at(0), fs::copy_options::overwrite_existing);
+    expect_same(sky(), tiled_sky_of(folder_ / "p.ppm", other));
+}
+
+TEST_F(KeptSky, EverythingThatMakesItIsInItsName) {
+    const fs::path file = folder_ / "p.ppm";
+    const std::string own = sky_recipe_text(file, tiling_);
+    SkyTiling other = tiling_;
+    other.seed = 2;
+    EXPECT_NE(sky_recipe_text(file, other), own);
+    other = tiling_;
+    other.height_deg = 41.0;
+    EXPECT_NE(sky_recipe_text(file, other), own);
+    other = tiling_;
+    other.face_px = 64;
+    EXPECT_NE(sky_recipe_text(file, other), own);
+    folder_.file("q.ppm", picture(120.0));
+    EXPECT_EQ(sky_recipe_text(folder_ / "q.ppm", tiling_), own) << "names of files stay out";
+    folder_.file("q.ppm", picture(121.0));
+    EXPECT_NE(sky_recipe_text(folder_ / "q.ppm", tiling_), own);
+    EXPECT_EQ(sky_recipe_text(folder_ / "none.ppm", tiling_), "");
+}
+
+TEST_F(KeptSky, ThatIsDamagedIsMadeAgain) {
+    sky();
+    const fs::path file = entries_of(cache_.folder).at(0);
+    fs::resize_file(file, fs::file_size(file) / 2);
+    expect_same(sky(), made());
+    ASSERT_EQ(said_.warnings.size(), 1u);
+    EXPECT_NE(said_.warnings[0].find("the sky is made again"), std::string::npos) << said_.warnings[0];
+    expect_same(sky(), made());
+    EXPECT_EQ(said_.warnings.size(), 1u);
+}
+
+TEST_F(KeptSky, IsMadeWithoutACache) {
+    cache_.folder.clear();
+    expect_same(sky(), made());
+    EXPECT_FALSE(kept());
+    EXPECT_FALSE(fs::exists(folder_ / "sets"));
 }
 
 }  // namespace

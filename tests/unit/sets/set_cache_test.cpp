@@ -20,8 +20,12 @@
 #include "sets/load_source.h"
 #include "sets/set_sample.h"
 #include "splat_files/native.h"
+#include "support/bits.h"
+#include "support/errors.h"
+#include "support/pixmap.h"
+#include "support/process_state.h"
+#include "support/quiet.h"
 #include "support/temp_folder.h"
-#include "support/variable.h"
 #include "unit/splat_files/file_support.h"
 
 namespace astrosplat {
@@ -30,34 +34,22 @@ namespace {
 namespace fs = std::filesystem;
 
 std::string picture(int size, int blue = 128) {
-    std::string text = "P6\n" + std::to_string(size) + " " + std::to_string(size) + "\n255\n";
-    for (int i = 0; i < size * size; ++i)
-        for (const int value : {i % size * 8, i / size * 8, blue}) text += static_cast<char>(value);
-    return text;
+    return test::pixmap(size, size,
+                        [&](int x, int y, int k) { return k == 2 ? blue : 8 * (k == 0 ? x : y); });
 }
 
 constexpr const char* triangle =
     "mtllib a.mtl\nv 0 0 0\nv 4 0 0\nv 0 4 0\nvt 0 0\nvt 1 0\nvt 0 1\nusemtl m\nf 1/1 2/2 3/3\n";
 
-std::string bytes_of(const fs::path& file) {
-    std::ifstream in(file, std::ios::binary);
-    return {std::istreambuf_iterator<char>(in), {}};
-}
+using test::bytes_of;
 
 class SetCacheTest : public testing::Test {
   protected:
     SetCacheTest() {
-        set_log_sink([this](LogLevel level, const std::string& line) {
-            (level == LogLevel::warning ? warnings_ : lines_).push_back(line);
-        });
         folder_.file("p.ppm", picture(16));
         source_.meshes = {{"plane", {folder_ / "p.ppm"}, 0.15}};
         source_.count = 3000;
         cache_.folder = folder_ / "sets";
-    }
-    ~SetCacheTest() override {
-        flush_warning_counts();
-        set_log_sink(nullptr);
     }
 
     /// A source with a mesh file whose picture comes from its own material.
@@ -92,7 +84,7 @@ class SetCacheTest : public testing::Test {
     TempFolder folder_;
     SourceParams source_;
     SetCache cache_;
-    std::vector<std::string> warnings_, lines_;
+    Said said_;
 };
 
 TEST_F(SetCacheTest, TheSecondTimeTheSameBitsComeFromTheFile) {
@@ -109,7 +101,7 @@ TEST_F(SetCacheTest, TheSecondTimeTheSameBitsComeFromTheFile) {
     }
     EXPECT_EQ(entries().size(), 2u);
     EXPECT_TRUE(entries(".lock").empty());
-    EXPECT_TRUE(warnings_.empty());
+    EXPECT_TRUE(said_.warnings.empty());
 }
 
 TEST_F(SetCacheTest, TheFileHasAllColumnsWhateverIsWanted) {
@@ -296,8 +288,8 @@ TEST_F(SetCacheTest, InputsThatCannotBeReadHaveNoNameAndTheLoaderSaysWhy) {
         load();
         FAIL();
     } catch (const InputError& error) {
-        EXPECT_NE(std::string(error.what()).find("layer 'dust': "), std::string::npos) << error.what();
-        EXPECT_NE(std::string(error.what()).find("none.ppm"), std::string::npos) << error.what();
+        EXPECT_HAS(std::string(error.what()), "layer 'dust': ") << error.what();
+        EXPECT_HAS(std::string(error.what()), "none.ppm") << error.what();
     }
     EXPECT_FALSE(fs::exists(cache_.folder));
 }
@@ -350,8 +342,7 @@ TEST_F(SetCacheTest, ASetLargerThanTheLimitIsNotKeptAndPushesNothingOut) {
     EXPECT_FALSE(load().cached);
     EXPECT_EQ(entries().size(), 1u);
     EXPECT_TRUE(load(small).cached);
-    EXPECT_NE(lines_[lines_.size() - 2].find("is not kept: the cache may hold 19.5 KiB"), std::string::npos)
-        << lines_[lines_.size() - 2];
+    EXPECT_HAS(said_.lines[said_.lines.size() - 2], "is not kept: the cache may hold 19.5 KiB");
 }
 
 // ---- entries and folders that cannot be used
@@ -365,13 +356,13 @@ TEST_F(SetCacheTest, DamagedEntriesAreMadeAgainWithAWarning) {
         for (const std::string& bytes : damaged) {
             fs::remove(file);
             std::ofstream(file, std::ios::binary) << bytes;
-            warnings_.clear();
+            said_.warnings.clear();
             const LoadedSet again = load();
             EXPECT_FALSE(again.cached);
             EXPECT_EQ(again.geometry_cached, file == texel_file(source_));
             expect_same_set(again.set, set);
-            ASSERT_EQ(warnings_.size(), 1u);
-            EXPECT_NE(warnings_[0].find("; the set is generated again"), std::string::npos) << warnings_[0];
+            ASSERT_EQ(said_.warnings.size(), 1u);
+            EXPECT_HAS(said_.warnings[0], "; the set is generated again");
             flush_warning_counts();
             EXPECT_EQ(bytes_of(file), whole);
             EXPECT_TRUE(load().cached);
@@ -485,12 +476,12 @@ TEST_F(SetCacheTest, AnEntryOfAnotherSetUnderThisNameIsNotTaken) {
         };
         load(other);
         fs::rename(file_of(other), file_of(source_));
-        warnings_.clear();
+        said_.warnings.clear();
         const LoadedSet again = load();
         EXPECT_FALSE(again.cached);
         expect_same_set(again.set, set);
-        ASSERT_EQ(warnings_.size(), 1u);
-        EXPECT_NE(warnings_[0].find("expected that of the set asked for"), std::string::npos) << warnings_[0];
+        ASSERT_EQ(said_.warnings.size(), 1u);
+        EXPECT_HAS(said_.warnings[0], "expected that of the set asked for");
         EXPECT_TRUE(again.set.recipe.empty());
         flush_warning_counts();
         const LoadedSet repaired = load();
@@ -502,15 +493,15 @@ TEST_F(SetCacheTest, AnEntryOfAnotherSetUnderThisNameIsNotTaken) {
 TEST_F(SetCacheTest, AFolderThatCannotBeMadeIsAWarning) {
     cache_.folder = folder_.file("file", "x") / "sets";
     EXPECT_FALSE(load().cached);
-    ASSERT_EQ(warnings_.size(), 1u);
-    EXPECT_NE(warnings_[0].find("cannot be made"), std::string::npos) << warnings_[0];
+    ASSERT_EQ(said_.warnings.size(), 1u);
+    EXPECT_HAS(said_.warnings[0], "cannot be made");
 }
 
 TEST_F(SetCacheTest, ThePlaceOfAnEntryTakenByAFolderIsAWarning) {
     fs::create_directories(entry_file(".texels"));
     EXPECT_FALSE(load().cached);
-    ASSERT_EQ(warnings_.size(), 1u);
-    EXPECT_NE(warnings_[0].find("what was generated is not kept"), std::string::npos) << warnings_[0];
+    ASSERT_EQ(said_.warnings.size(), 1u);
+    EXPECT_HAS(said_.warnings[0], "what was generated is not kept");
 }
 
 TEST_F(SetCacheTest, AReadOnlyFolderIsReadAndItsLackIsAWarning) {
@@ -518,11 +509,11 @@ TEST_F(SetCacheTest, AReadOnlyFolderIsReadAndItsLackIsAWarning) {
     load();
     fs::permissions(cache_.folder, fs::perms::owner_read | fs::perms::owner_exec);
     EXPECT_TRUE(load().cached);
-    EXPECT_TRUE(warnings_.empty());
+    EXPECT_TRUE(said_.warnings.empty());
     EXPECT_FALSE(load(source_, "stars").cached);
     fs::permissions(cache_.folder, fs::perms::owner_all);
-    ASSERT_EQ(warnings_.size(), 1u);
-    EXPECT_NE(warnings_[0].find("what was generated is not kept"), std::string::npos) << warnings_[0];
+    ASSERT_EQ(said_.warnings.size(), 1u);
+    EXPECT_HAS(said_.warnings[0], "what was generated is not kept");
 }
 
 // ---- several processes

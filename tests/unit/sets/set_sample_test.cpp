@@ -1,34 +1,34 @@
-// Samples of sets: rows of what is kept, and of what is not, dots as wide as those of the whole set.
-#include "sets/set_sample.h"
-
+// What is seen before a set is whole: samples, and pictures as they are.
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <fstream>
+#include <vector>
 
 #include "sets/kept.h"
 #include "sets/load_source.h"
+#include "sets/set_sample.h"
 #include "splat_files/native.h"
+#include "support/pixmap.h"
 #include "support/quiet.h"
 #include "support/temp_folder.h"
+#include "unit/splat_files/file_support.h"
 
 namespace astrosplat {
 namespace {
+
+// Samples of sets: rows of what is kept, and of what is not, dots as wide as those of the whole set.
 
 namespace fs = std::filesystem;
 
 class SetSampleTest : public testing::Test {
   protected:
     SetSampleTest() {
-        std::string picture = "P6\n640 480\n255\n";
-        for (int i = 0; i < 640 * 480; ++i) {
-            const int x = i % 640 - 320, y = i / 640 - 240;
-            const bool lit = x * x + y * y < 200 * 200;
-            for (const int value : {200, 150, 100})
-                picture +=
-                    static_cast<char>(lit ? value + static_cast<int>(50.0 * std::sin(0.02 * x * y)) : 0);
-        }
-        folder_.file("p.ppm", picture);
+        folder_.file("p.ppm", test::pixmap(640, 480, [](int column, int row, int k) {
+                         const int x = column - 320, y = row - 240;
+                         const bool lit = x * x + y * y < 200 * 200;
+                         return lit ? 200 - 50 * k + static_cast<int>(50.0 * std::sin(0.02 * x * y)) : 0;
+                     }));
         columns_.meshes = {{"plane", {folder_ / "p.ppm"}, 0.15}};
         columns_.count = 600000;
         bodies_ = columns_;
@@ -140,6 +140,89 @@ TEST_F(SetSampleTest, NumbersThatAreNoneAreNotThere) {
     bytes << std::string(1 << 20, '\xff');  // as floats not a number
     bytes.close();
     EXPECT_FALSE(sample_there(cache_, bodies_, "a"));
+}
+
+// Before its bodies are made, a picture is seen as it is: in its place, the right way round, in its colours.
+
+class Watcher : public KeptWatcher {
+  public:
+    void begins(const SplatSet& empty, const Bounds& of) override {
+        set = empty;
+        box = of;
+        ++begun;
+    }
+    void keeps(std::span<const KeptStore::Run> runs) override {
+        for (const KeptStore::Run& run : runs)
+            splats.insert(splats.end(), run.splats, run.splats + run.count);
+    }
+    std::int64_t sample_limit() const override { return 0; }
+    void ends(Columns, std::int64_t) override {}
+
+    SplatSet set;
+    Bounds box;
+    std::vector<KeptSplat> splats;
+    int begun = 0;
+};
+
+class FlatStartTest : public SplatFileTest {
+  protected:
+    /// The left third is red, the rest blue; the lower half is darker.
+    SourceParams picture(int width, int height) const {
+        const std::string pixels = test::pixmap(width, height, [&](int x, int y, int k) {
+            return k == (x < width / 3 ? 0 : 2) ? (y < height / 2 ? 120 : 60) : 0;
+        });
+        SourceParams source;
+        source.meshes.push_back({"plane", {write("picture.ppm", pixels)}, 0.0});
+        source.structure.kind = StructureKind::sheet;
+        return source;
+    }
+};
+
+TEST_F(FlatStartTest, APictureIsSeenInItsPlaceBeforeItsBodiesAre) {
+    Watcher watcher;
+    const SourceParams source = picture(300, 200);
+    const SplatSet set = load_source(source, "gas", {}, &watcher);
+    ASSERT_EQ(watcher.begun, 1);
+    ASSERT_GT(watcher.splats.size(), 20000u);
+    EXPECT_LE(watcher.splats.size(), 1u << 16);
+    EXPECT_GT(watcher.set.spacing.x, 0.0);
+    EXPECT_TRUE(watcher.set.generated);
+    for (std::size_t i = 0; i < watcher.splats.size(); ++i) {
+        const KeptSplat& splat = watcher.splats[i];
+        if (i > 0) {
+            ASSERT_LT(watcher.splats[i - 1].id, splat.id);
+        }
+        ASSERT_NEAR(splat.position.y, 0.0f, 1e-5f);
+        if (std::fabs(splat.uv.x - 1.0f / 3.0f) < 0.01f) continue;
+        const bool red = splat.uv.x < 1.0f / 3.0f;
+        ASSERT_EQ(splat.color.r > 0.5f, red) << "at " << splat.uv.x;
+        ASSERT_EQ(splat.color.b > 0.5f, !red);
+        ASSERT_NEAR(splat.position.x, 10.0f * (splat.uv.x - 0.5f), 1e-3f);
+    }
+    const auto light_of = [&](bool upper) {
+        double sum = 0.0;
+        for (const KeptSplat& splat : watcher.splats)
+            if ((splat.uv.y > 0.5f) == upper) sum += splat.alpha;
+        return sum;
+    };
+    EXPECT_GT(light_of(true), 2.0 * light_of(false));
+}
+
+TEST_F(FlatStartTest, LargePicturesAreSeenWithAsManySplats) {
+    Watcher watcher;
+    show_flat(load_meshes(picture(1200, 700)), watcher);
+    EXPECT_GT(watcher.splats.size(), 20000u);
+    EXPECT_LE(watcher.splats.size(), 1u << 16);
+    ASSERT_FALSE(watcher.box.empty());
+    EXPECT_NEAR(watcher.box.hi.x, 5.0, 1e-6);
+}
+
+TEST_F(FlatStartTest, TheSetIsTheSameWhoeverWatches) {
+    Watcher watcher;
+    const SourceParams source = picture(60, 40);
+    const SplatSet watched = load_source(source, "gas", {}, &watcher), alone = load_source(source, "gas");
+    EXPECT_EQ(watched.id, alone.id);
+    EXPECT_EQ(watched.position, alone.position);
 }
 
 }  // namespace

@@ -14,6 +14,7 @@
 
 #include "core/error.h"
 #include "source/picture.h"
+#include "support/bits.h"
 #include "support/errors.h"
 #include "support/temp_folder.h"
 
@@ -40,10 +41,7 @@ fs::path write_compressed(const fs::path& file, int compression) {
     return file;
 }
 
-std::string bytes_of(const fs::path& file) {
-    std::ifstream in(file, std::ios::binary);
-    return {std::istreambuf_iterator<char>(in), {}};
-}
+using test::bytes_of;
 
 /// The file with another value in one card: written right-aligned to column 30, as numbers are.
 std::string with_value(std::string bytes, const std::string& keyword, const std::string& value) {

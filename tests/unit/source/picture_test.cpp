@@ -1,26 +1,33 @@
-// Picture files as files: which are opened at all, damage, orientation, cube maps, and stopping half way.
-#include "source/picture.h"
-
+// Picture files, and lookup in pictures.
+#include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
 #include <gtest/gtest.h>
-// fmt first: OpenImageIO's copy of it would turn exceptions off.
-#include <OpenImageIO/imageio.h>
 #include <sys/stat.h>
 
 #include <atomic>
-#include <cstring>
 #include <fstream>
-#include <iterator>
+#include <glm/geometric.hpp>
+#include <limits>
+#include <vector>
 
 #include "core/error.h"
 #include "core/log.h"
+#include "source/picture.h"
+#include "source/sample.h"
+#include "source/shapes.h"
 #include "source/texture.h"
+#include "source/write_image.h"
 #include "support/cube_map.h"
 #include "support/errors.h"
+#include "support/quiet.h"
 #include "support/temp_folder.h"
+
+// fmt first: OpenImageIO's copy of it would turn exceptions off.
 
 namespace astrosplat {
 namespace {
+
+// Picture files as files: which are opened at all, damage, orientation, cube maps, and stopping half way.
 
 namespace fs = std::filesystem;
 using Bytes = std::vector<unsigned char>;
@@ -45,8 +52,12 @@ fs::path write_noise(const fs::path& file, int width, int height) {
                        noise(static_cast<std::size_t>(width * height) * 3));
 }
 
-TEST(PictureFile, OnlyFormatsOfTheListAreOpened) {
+class PictureFileTest : public testing::Test {
+  protected:
     const TempFolder folder;
+};
+
+TEST_F(PictureFileTest, OnlyFormatsOfTheListAreOpened) {
     const auto error = [](const fs::path& file) {
         const std::string message = message_of<InputError>([&] { read_picture(file); });
         return message.substr(std::min(message.size(), file.string().size()));
@@ -62,8 +73,7 @@ TEST(PictureFile, OnlyFormatsOfTheListAreOpened) {
     EXPECT_THROW(require_picture(folder / "x.null"), InputError);
 }
 
-TEST(PictureFile, EveryFormatOfTheListIsReadAlsoUnderAnotherName) {
-    const TempFolder folder;
+TEST_F(PictureFileTest, EveryFormatOfTheListIsReadAlsoUnderAnotherName) {
     for (const char* ending :
          {"exr", "tif", "png", "jpg", "hdr", "dpx", "webp", "gif", "bmp", "tga", "ppm"}) {
         const fs::path file = write_noise(folder / (std::string("a.") + ending), 24, 16);
@@ -80,8 +90,7 @@ TEST(PictureFile, EveryFormatOfTheListIsReadAlsoUnderAnotherName) {
               read_picture(folder / "a.exr").image.pixels.size());
 }
 
-TEST(PictureFile, LibrariesPrintNothingOfTheirOwn) {
-    const TempFolder folder;
+TEST_F(PictureFileTest, LibrariesPrintNothingOfTheirOwn) {
     for (const char* ending : {"png", "tif", "jpg", "exr", "webp", "gif"}) {
         const fs::path whole = write_noise(folder / (std::string("a.") + ending), 64, 64);
         const auto size = fs::file_size(whole);
@@ -104,16 +113,14 @@ TEST(PictureFile, LibrariesPrintNothingOfTheirOwn) {
     EXPECT_EQ(testing::internal::GetCapturedStderr(), "others still print\n");
 }
 
-TEST(PictureFile, ADamagedHeaderIsNotBlamedOnTheColours) {
-    const TempFolder folder;
+TEST_F(PictureFileTest, ADamagedHeaderIsNotBlamedOnTheColours) {
     const fs::path file = folder.file("a.exr", "\x76\x2f\x31\x01 and then nothing of the kind");
     const std::string message = message_of<InputError>([&] { read_picture(file); });
     EXPECT_EQ(message.rfind(file.string() + ": ", 0), 0u) << message;
     EXPECT_EQ(message.find("resolution"), message.npos) << message;
 }
 
-TEST(PictureFile, ReadingStopsWhenAsked) {
-    const TempFolder folder;
+TEST_F(PictureFileTest, ReadingStopsWhenAsked) {
     for (const char* ending : {"png", "exr", "tif", "jpg"}) {
         const fs::path file = write_noise(folder / (std::string("a.") + ending), 256, 2048);
         std::atomic<bool> stop{false};
@@ -149,17 +156,15 @@ TEST(Orientation, EachOfTheEightIsTurnedUpright) {
         OIIO::ImageSpec spec(columns, rows, 3, OIIO::TypeUInt8);
         spec.attribute("Orientation", s.tag);
         const fs::path file = write_bytes(folder / fmt::format("{}.tif", s.tag), spec, stored);
-        std::vector<std::string> lines;
-        set_log_sink([&](LogLevel, const std::string& line) { lines.push_back(line); });
+        const Said said;
         const Image image = read_picture(file).image;
-        set_log_sink(nullptr);
         ASSERT_EQ(image.width, width) << s.tag;
         ASSERT_EQ(image.height, height) << s.tag;
         for (int y = 0; y < height; ++y)
             for (int x = 0; x < width; ++x)
                 EXPECT_FLOAT_EQ(image.at(x, y)[0], static_cast<float>(seen(x, y)) / 255.0f)
                     << s.tag << " " << x << " " << y;
-        EXPECT_EQ(lines.size(), s.tag == 1 ? 0u : 1u) << s.tag;
+        EXPECT_EQ(said.lines.size(), s.tag == 1 ? 0u : 1u) << s.tag;
     }
 }
 
@@ -168,11 +173,9 @@ TEST(Orientation, OfAJpegAndInWords) {
     OIIO::ImageSpec spec(32, 16, 3, OIIO::TypeUInt8);
     spec.attribute("Orientation", 6);
     const fs::path file = write_bytes(folder / "a.jpg", spec, noise(32 * 16 * 3));
-    std::string said;
-    set_log_sink([&](LogLevel, const std::string& line) { said = line; });
+    const Said said;
     EXPECT_EQ(load_linear_image(file).height, 32);
-    set_log_sink(nullptr);
-    EXPECT_EQ(said, file.string() + ": turned by 90 degrees clockwise, as its orientation 6 says");
+    EXPECT_EQ(said.text(), file.string() + ": turned by 90 degrees clockwise, as its orientation 6 says\n");
 }
 
 TEST(CubeMap, AllSixFacesOfAnExrAreRead) {
@@ -188,6 +191,141 @@ TEST(CubeMap, AllSixFacesOfAnExrAreRead) {
         EXPECT_EQ(faces[face].at(4, 4)[2], static_cast<float>(16 * face + 15));
     }
     EXPECT_EQ(load_environment_pictures(write_noise(folder / "a.png", 4, 24), 0).size(), 1u);
+}
+
+// A picture made in memory is the file that a reader takes.
+
+TEST(PngBytes, AreAFileWithTheseValues) {
+    const TempFolder folder;
+    std::vector<unsigned char> rgb;
+    for (int i = 0; i < 19 * 7 * 3; ++i) rgb.push_back(static_cast<unsigned char>(i * 37));
+    const std::string png = png_bytes(19, 7, rgb);
+    const Image read = load_raw_image(folder.file("memory.png", png));
+    ASSERT_EQ(read.width, 19);
+    ASSERT_EQ(read.height, 7);
+    for (std::size_t i = 0; i < rgb.size(); ++i) ASSERT_NEAR(read.pixels[i] * 255.0f, rgb[i], 1e-3) << i;
+    EXPECT_EQ(png_bytes(19, 7, rgb), png) << "no time, no chance";
+}
+
+// Lookup on pictures of a few texels whose filtered values can be worked out by hand.
+
+using Filter = TextureSettings::Filter;
+using Wrap = TextureSettings::Wrap;
+
+// Opaque gray texels, row by row from the top.
+Texture gray(std::int64_t width, std::int64_t height, const std::vector<float>& values) {
+    Texture texture;
+    texture.image = make_image(width, height, 4, 1.0f);
+    for (std::size_t i = 0; i < values.size(); ++i)
+        for (std::size_t c = 0; c < 3; ++c) texture.image.pixels[4 * i + c] = values[i];
+    return texture;
+}
+
+TEST(Sample, TexelCentresAndOrientation) {
+    Texture texture = gray(3, 2, {1, 2, 3, 4, 5, 6});  // 1 2 3 is the top row, v towards 1
+    for (const Filter filter : {Filter::nearest, Filter::bilinear, Filter::area}) {
+        texture.filter = filter;
+        EXPECT_FLOAT_EQ(sample(texture, {0.5f / 3, 0.75f}).color.x, 1.0f);
+        EXPECT_FLOAT_EQ(sample(texture, {2.5f / 3, 0.75f}).color.x, 3.0f);
+        EXPECT_FLOAT_EQ(sample(texture, {0.5f / 3, 0.25f}).color.x, 4.0f);
+        EXPECT_FLOAT_EQ(sample(texture, {2.5f / 3, 0.25f}).color.x, 6.0f);
+    }
+}
+
+TEST(Sample, BilinearBetweenCentres) {
+    const Texture texture = gray(2, 2, {0, 1, 2, 3});
+    EXPECT_FLOAT_EQ(sample(texture, {0.5f, 0.5f}).color.x, 1.5f);
+    EXPECT_FLOAT_EQ(sample(texture, {0.375f, 0.75f}).color.x, 0.25f);
+    EXPECT_FLOAT_EQ(sample(texture, {0.25f, 0.625f}).color.x, 0.5f);
+}
+
+TEST(Sample, WrapModesAtAndBeyondTheEdge) {
+    Texture texture = gray(2, 1, {1, 3});
+    texture.wrap = Wrap::clamp;
+    EXPECT_EQ(sample(texture, {0.0f, 0.5f}).color.x, 1.0f);
+    EXPECT_EQ(sample(texture, {5.0f, -3.0f}).color.x, 3.0f);
+    texture.wrap = Wrap::repeat;
+    EXPECT_EQ(sample(texture, {0.0f, 0.5f}).color.x, 2.0f);
+    EXPECT_EQ(sample(texture, {-0.75f, 7.5f}).color.x, 1.0f);
+    EXPECT_EQ(sample(texture, {1.75f, 0.5f}).color.x, 3.0f);
+    texture.wrap = Wrap::black;
+    const TextureSample edge = sample(texture, {0.0f, 0.5f});
+    EXPECT_EQ(edge.alpha, 0.5f);
+    EXPECT_EQ(edge.color.x, 1.0f);  // straight: half a texel of colour over half its alpha
+    EXPECT_EQ(sample(texture, {1.5f, 0.5f}).alpha, 0.0f);
+}
+
+TEST(Sample, FiltersPremultipliedAndDividesAfterwards) {
+    Texture texture = gray(2, 1, {1, 0});
+    texture.image.at(1, 0)[3] = 0.0f;  // an empty neighbour must not darken
+    const TextureSample middle = sample(texture, {0.5f, 0.5f});
+    EXPECT_EQ(middle.alpha, 0.5f);
+    EXPECT_EQ(middle.color, glm::vec3(1.0f));
+    const TextureSample empty = sample(texture, {0.75f, 0.5f});
+    EXPECT_EQ(empty.alpha, 0.0f);
+    EXPECT_EQ(empty.color, glm::vec3(0.0f));
+}
+
+TEST(Sample, AreaIsTheExactBoxMean) {
+    Texture texture = gray(4, 1, {0, 4, 8, 100});
+    texture.filter = Filter::area;
+    EXPECT_FLOAT_EQ(sample(texture, {0.375f, 0.5f}, {2.0f, 1.0f}).color.x, 4.0f);  // 0.25 0 + 0.5 4 + 0.25 8
+    EXPECT_FLOAT_EQ(sample(texture, {0.375f, 0.5f}, {0.0f, 0.0f}).color.x, 4.0f);  // at least one texel
+    EXPECT_FLOAT_EQ(sample(texture, {0.5f, 0.5f}, {4.0f, 1.0f}).color.x, 28.0f);   // all
+    EXPECT_FLOAT_EQ(sample(texture, {0.5f, 0.5f}, {1e9f, 1e9f}).color.x,
+                    28.0f);  // never more than the picture
+}
+
+TEST(Sample, PlacesThatAreNoNumbersAreEmpty) {
+    const Texture texture = gray(2, 1, {1, 3});
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    EXPECT_EQ(sample(texture, {nan, 0.5f}).alpha, 0.0f);
+    EXPECT_EQ(sample(texture, {0.5f, std::numeric_limits<float>::infinity()}).alpha, 0.0f);
+    EXPECT_EQ(sample(texture, {3e38f, -3e38f}).alpha, 1.0f);
+}
+
+TEST(Relief, LiftsTheBrightSideAndKeepsThePlane) {
+    std::vector<float> values(64 * 32, 0.0f);
+    for (std::size_t y = 0; y < 32; ++y)
+        for (std::size_t x = 48; x < 64; ++x) values[y * 64 + x] = 1.0f;
+    const Mesh mesh = relief_mesh(gray(64, 32, values), 0.15);
+    EXPECT_EQ(mesh.positions.size(), 257u * 129u);
+    const Bounds box = bounds(mesh);
+    EXPECT_EQ(box.extent().x, 10.0);
+    EXPECT_EQ(box.extent().z, 5.0);
+    EXPECT_NEAR(box.hi.y, 1.5, 1e-6);
+    EXPECT_NEAR(box.lo.y, 0.0, 1e-6);
+    for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+        const glm::vec3 p = mesh.positions[i];
+        ASSERT_NEAR(mesh.uvs[i].x, p.x / 10.0f + 0.5f, 1e-6f);
+        ASSERT_NEAR(mesh.uvs[i].y, 0.5f - p.z / 5.0f, 1e-6f);
+        ASSERT_TRUE(p.x < 4.0f || p.y > 1.4f) << i;
+        ASSERT_TRUE(p.x > 1.0f || p.y < 0.1f) << i;
+    }
+}
+
+TEST(Relief, IsAsHighForADarkPicture) {
+    std::vector<float> bright(16 * 16), dark(16 * 16);
+    for (std::size_t i = 0; i < bright.size(); ++i) {
+        bright[i] = static_cast<float>(i % 16) / 16.0f;
+        dark[i] = bright[i] / 1024.0f;
+    }
+    const Mesh a = relief_mesh(gray(16, 16, bright), 0.15), b = relief_mesh(gray(16, 16, dark), 0.15);
+    EXPECT_NEAR(bounds(a).hi.y, 1.5, 1e-6);
+    EXPECT_NEAR(bounds(b).hi.y, 1.5, 1e-6);
+}
+
+TEST(Relief, CoversThePlaneOnceFacingUp) {
+    const Mesh mesh = relief_mesh(gray(8, 4, std::vector<float>(32, 0.5f)), 0.15);
+    double area = 0.0;
+    for (const Mesh::Triangle& t : mesh.triangles) {
+        const glm::dvec3 a(mesh.positions[t.position[0]]), b(mesh.positions[t.position[1]]),
+            c(mesh.positions[t.position[2]]);
+        const double up = glm::cross(b - a, c - a).y;
+        ASSERT_GT(up, 0.0);
+        area += up * 0.5;
+    }
+    EXPECT_NEAR(area, 10.0 * 5.0, 1e-4);
 }
 
 }  // namespace

@@ -1,7 +1,4 @@
-// Built-in shapes by closed form: areas, volumes (which turn negative with faces that look inward), texture
-// coordinates without jumps, no face without area.
-#include "source/shapes.h"
-
+// Built-in shapes, and how pictures lie on them.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -11,11 +8,16 @@
 
 #include "core/error.h"
 #include "core/real.h"
+#include "source/shapes.h"
+#include "source/textured_mesh.h"
 #include "support/errors.h"
 #include "support/temp_folder.h"
 
 namespace astrosplat {
 namespace {
+
+// Built-in shapes by closed form: areas, volumes (which turn negative with faces that look inward), texture
+// coordinates without jumps, no face without area.
 
 using real::pi;
 
@@ -203,6 +205,159 @@ TEST(Sheet, WithoutAMapItsHeightIsTheBlurredBrightness) {
     }
     for (std::int64_t i = 0; i < side * side; ++i) std::fill_n(texture.image.pixels.data() + 4 * i, 3, 0.5f);
     EXPECT_NEAR(bounds(sheet_mesh(texture, shape)).extent().y, 0.0, 1e-3) << "even light is a plane";
+}
+
+// Where a picture is in a scene: its camera, its size, its back wall.
+
+// Pictures in scene units and back walls: places worked out by hand, and what stays as it was.
+
+// One vertex, in the middle of a large box.
+glm::vec2 uv_at(const glm::vec3& p, const SourceParams& source, double aspect) {
+    Mesh mesh;
+    mesh.positions = {p, p, p};
+    mesh.triangles = {{{0, 1, 2}, {0, 1, 2}, 0}};
+    apply_source_uv(mesh, source, {glm::dvec3(-50.0), glm::dvec3(50.0)}, aspect);
+    return mesh.uvs[0];
+}
+
+SourceParams planar(UvMode mode, double width) {
+    SourceParams source;
+    source.uv = mode;
+    source.uv_width = width;
+    return source;
+}
+
+TEST(PlanarUv, AWidthInSceneUnitsDoesNotDependOnTheMesh) {
+    // A picture 8 wide and 4 high.
+    EXPECT_EQ(uv_at({2, 1, 7}, planar(UvMode::planar_xy, 8.0), 2.0), glm::vec2(0.75f, 0.75f));
+    EXPECT_EQ(uv_at({2, 7, 1}, planar(UvMode::planar_xz, 8.0), 2.0), glm::vec2(0.75f, 0.25f));
+    EXPECT_EQ(uv_at({7, 1, 2}, planar(UvMode::planar_yz, 8.0), 2.0), glm::vec2(0.25f, 0.75f));
+    SourceParams moved = planar(UvMode::planar_xy, 8.0);
+    moved.uv_center = {2.0, 1.0, 0.0};
+    EXPECT_EQ(uv_at({2, 1, 7}, moved, 2.0), glm::vec2(0.5f, 0.5f));
+    EXPECT_EQ(uv_at({6, 3, 7}, moved, 2.0), glm::vec2(1.0f, 1.0f));
+}
+
+TEST(PlanarUv, WithoutAWidthThePictureIsStretchedOverTheBox) {
+    EXPECT_EQ(uv_at({25, -50, 7}, planar(UvMode::planar_xy, 0.0), 2.0), glm::vec2(0.75f, 0.0f));
+}
+
+Mesh ball(BackWall back) {
+    Mesh mesh = builtin_mesh("sphere", 1.0);
+    SourceParams source = planar(UvMode::planar_xy, 0.0);
+    source.back = back;
+    apply_source_uv(mesh, source, bounds(mesh), 1.0);
+    return mesh;
+}
+
+TEST(PlanarUv, AMirroredBackReadsRightFromBehind) {
+    const Mesh mesh = ball(BackWall::mirrored);
+    int behind = 0;
+    for (const Mesh::Triangle& t : mesh.triangles) {
+        float z = 0.0f;
+        for (const std::uint32_t corner : t.position) z += mesh.positions[corner].z;
+        behind += z < 0.0f;
+        for (int k = 0; k < 3; ++k) {
+            const glm::vec3 p = mesh.positions[t.position[k]];
+            const glm::vec2 uv = mesh.uvs[t.uv[k]];
+            ASSERT_NEAR(uv.x, 0.5f + (z < 0.0f ? -0.1f : 0.1f) * p.x, 1e-5f);
+            ASSERT_NEAR(uv.y, 0.5f + 0.1f * p.y, 1e-5f);
+        }
+    }
+    EXPECT_EQ(behind, static_cast<int>(mesh.triangles.size() / 2));
+}
+
+TEST(PlanarUv, AVariedBackLeavesTheFrontAndHasNoJump) {
+    const Mesh same = ball(BackWall::same), varied = ball(BackWall::varied);
+    double sum = 0.0, most = 0.0;
+    int behind = 0;
+    for (std::size_t i = 0; i < same.positions.size(); ++i) {
+        const auto off = static_cast<double>(glm::length(varied.uvs[i] - same.uvs[i]));
+        if (same.positions[i].z >= 0.0f) {
+            ASSERT_EQ(off, 0.0);
+        } else if (same.positions[i].z < -2.5f) {
+            sum += off, ++behind;
+        }
+        most = std::max(most, off);
+    }
+    EXPECT_GT(sum / behind, 0.04);
+    EXPECT_LT(most, 0.45);
+    for (const Mesh::Triangle& t : varied.triangles)
+        for (int k = 0; k < 3; ++k)
+            ASSERT_LT(glm::length(varied.uvs[t.uv[k]] - varied.uvs[t.uv[(k + 1) % 3]]), 0.1f);
+}
+
+// The camera that took a picture: places worked out by hand.
+
+// Ten units before the origin on z; 90 degrees, so that at depth d the picture is 2 d high.
+UvCamera wide() {
+    UvCamera camera;
+    camera.position = glm::dvec3(0.0, 0.0, 10.0);
+    camera.fov = 90.0;
+    return camera;
+}
+
+glm::dvec2 uv_of(const Camera& camera, const glm::dvec3& point) {
+    const auto place = place_in_picture(camera, point);
+    EXPECT_TRUE(place);
+    return place ? place->uv : glm::dvec2(-1.0);
+}
+
+void expect_near(const glm::dvec2& a, const glm::dvec2& b) {
+    EXPECT_LT(glm::distance(a, b), 1e-12) << a.x << " " << a.y;
+}
+
+TEST(PictureCamera, PlacesShrinkWithTheirDistance) {
+    const Camera camera = picture_camera(wide(), 2.0);  // at the origin 40 wide and 20 high
+    expect_near(uv_of(camera, {0, 0, 0}), {0.5, 0.5});
+    expect_near(uv_of(camera, {20, 10, 0}), {1.0, 1.0});
+    expect_near(uv_of(camera, {10, -5, 5}), {1.0, 0.0});
+    expect_near(uv_of(camera, {10, 5, -10}), {0.625, 0.625});
+    EXPECT_NEAR(place_in_picture(camera, {3, 4, -2})->depth, 12.0, 1e-12);
+    EXPECT_NEAR(picture_height_at(camera, 12.0), 24.0, 1e-12);
+}
+
+TEST(PictureCamera, ParallelRaysKeepTheirDistance) {
+    UvCamera params = wide();
+    params.height = 8.0;  // and no field of view
+    const Camera camera = picture_camera(params, 0.5);
+    for (const double z : {9.0, 0.0, -50.0}) expect_near(uv_of(camera, {1, 2, z}), {0.75, 0.75});
+    EXPECT_NEAR(picture_height_at(camera, 60.0), 8.0, 1e-12);
+}
+
+TEST(PictureCamera, FollowsTargetAndUp) {
+    UvCamera params;
+    params.position = glm::dvec3(5.0, 3.0, 0.0);
+    params.target = glm::dvec3(5.0, 0.0, 0.0);
+    params.up = glm::dvec3(1.0, 0.0, 0.0);
+    params.height = 4.0;
+    expect_near(uv_of(picture_camera(params, 1.0), {6, 0, 0}), {0.5, 0.75});
+    expect_near(uv_of(picture_camera(params, 1.0), {5, 0, 1}), {0.75, 0.5});
+}
+
+TEST(PictureCamera, ShowsNothingBehindItself) {
+    const Camera camera = picture_camera(wide(), 1.0);
+    EXPECT_FALSE(place_in_picture(camera, {0, 0, 10}));
+    EXPECT_FALSE(place_in_picture(camera, {0, 0, 11}));
+    Mesh mesh;
+    mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 20}};
+    mesh.triangles = {{{0, 1, 2}, {0, 0, 0}, 0}, {{0, 1, 3}, {0, 0, 0}, 0}};
+    apply_camera_uv(mesh, camera);
+    ASSERT_EQ(mesh.triangles[0].uv, mesh.triangles[0].position);
+    EXPECT_EQ(mesh.uvs[1], glm::vec2(0.55f, 0.5f));
+    EXPECT_EQ(mesh.triangles[1].uv[0], Mesh::no_uv);
+}
+
+TEST(PictureCamera, IsTheSameAsParameters) {
+    for (const double height : {0.0, 7.0}) {
+        UvCamera params = wide();
+        params.position = glm::dvec3(3.0, 5.0, 10.0);
+        params.height = height;
+        const Camera camera = picture_camera(params, 1.5);
+        const Camera again = make_camera(params_of(camera), 1.5, 1.0, {});
+        for (const glm::dvec3& point : {glm::dvec3(1, 2, 3), glm::dvec3(-4, 0, -7)})
+            expect_near(uv_of(camera, point), uv_of(again, point));
+    }
 }
 
 }  // namespace

@@ -60,8 +60,12 @@ Pixels pixels_of(const fs::path& file, const TextureSettings& settings = {}) {
 
 const std::vector<std::string> rgb{"R", "G", "B"}, rgba{"R", "G", "B", "A"};
 
-TEST(Texture, EightBitsAreSrgbFloatIsLinear) {
+class TextureTest : public testing::Test {
+  protected:
     const TempFolder folder;
+};
+
+TEST_F(TextureTest, EightBitsAreSrgbFloatIsLinear) {
     const fs::path png =
         write(folder / "ä b.png", {1, 1, rgb, OIIO::TypeUInt8}, {1.0f, 128.0f / 255.0f, 0.0f});
     const fs::path exr = write(folder / "x.exr", {1, 1, rgb}, {1.0f, 0.5f, 0.0f});
@@ -76,15 +80,13 @@ TEST(Texture, EightBitsAreSrgbFloatIsLinear) {
     EXPECT_EQ(pixels_of(exr, settings)[1], static_cast<float>(real::srgb_to_linear(0.5)));
 }
 
-TEST(Texture, SixteenBitsAreSrgbToTheLastStep) {
-    const TempFolder folder;
+TEST_F(TextureTest, SixteenBitsAreSrgbToTheLastStep) {
     const fs::path tif =
         write(folder / "x.tif", {1, 1, rgb, OIIO::TypeUInt16}, {1.0f / 65535, 30000.0f / 65535, 1.0f});
     EXPECT_EQ(pixels_of(tif)[1], static_cast<float>(real::srgb_to_linear(30000.0 / 65535.0)));
 }
 
-TEST(Texture, DerivedAlphaIsTheBrightestChannelAndKeepsThePicture) {
-    const TempFolder folder;
+TEST_F(TextureTest, DerivedAlphaIsTheBrightestChannelAndKeepsThePicture) {
     const fs::path exr = write(folder / "x.exr", {1, 1, rgb}, {0.25f, 0.5f, 0.125f});
     const Texture texture = load_texture({exr}, {}, Wrap::clamp);
     EXPECT_TRUE(texture.divided);
@@ -100,8 +102,7 @@ TEST(Texture, DerivedAlphaIsTheBrightestChannelAndKeepsThePicture) {
     EXPECT_EQ(pixels_of(exr, settings), (Pixels{0.125f, 0.25f, 0.0625f, 0.5f}));
 }
 
-TEST(Texture, StraightFileAlphaIsMultipliedInLinearLight) {
-    const TempFolder folder;
+TEST_F(TextureTest, StraightFileAlphaIsMultipliedInLinearLight) {
     const fs::path png = write(folder / "x.png", {1, 1, rgba, OIIO::TypeUInt8, true},
                                {1.0f, 128.0f / 255.0f, 0.0f, 51.0f / 255.0f});
     const Texture texture = load_texture({png}, {}, Wrap::clamp);
@@ -112,8 +113,7 @@ TEST(Texture, StraightFileAlphaIsMultipliedInLinearLight) {
     EXPECT_FLOAT_EQ(s.color.y, static_cast<float>(real::srgb_to_linear(128.0 / 255.0)));
 }
 
-TEST(Texture, AssociatedFileAlphaIsDividedOut) {
-    const TempFolder folder;
+TEST_F(TextureTest, AssociatedFileAlphaIsDividedOut) {
     const fs::path exr = write(folder / "x.exr", {1, 1, rgba}, {0.25f, 0.5f, 0.0f, 0.5f});
     const Texture texture = load_texture({exr}, {}, Wrap::clamp);
     EXPECT_TRUE(texture.divided);
@@ -123,8 +123,7 @@ TEST(Texture, AssociatedFileAlphaIsDividedOut) {
     EXPECT_EQ(pixels_of(exr, settings), (Pixels{0.125f, 0.25f, 0.0f, 0.5f}));
 }
 
-TEST(Texture, AssociatedIntegersWereMultipliedEncoded) {
-    const TempFolder folder;
+TEST_F(TextureTest, AssociatedIntegersWereMultipliedEncoded) {
     const fs::path tif = write(folder / "x.tif", {1, 1, rgba, OIIO::TypeUInt16}, {0.5f, 0.25f, 0.0f, 0.5f});
     const Texture texture = load_texture({tif}, {}, Wrap::clamp);
     EXPECT_TRUE(texture.divided);
@@ -133,16 +132,14 @@ TEST(Texture, AssociatedIntegersWereMultipliedEncoded) {
     EXPECT_NEAR(s.color.y, real::srgb_to_linear(0.5), 1e-4);
 }
 
-TEST(Texture, UnusualValues) {
-    const TempFolder folder;
+TEST_F(TextureTest, UnusualValues) {
     const fs::path exr = write(folder / "x.exr", {5, 1, rgba},
                                {nan, 1, 1, 1, infinity, 0, 0, 1, -1, 0, 2, 1, 1, 1, 1, 7, 1, 1, 1, -3});
     EXPECT_EQ(pixels_of(exr), (Pixels{0, 0, 0, 0, 65504, 0, 0, 1, 0, 0, 2, 1, 1, 1, 1, 1, 1, 1, 1, 0}));
     EXPECT_EQ(sample(load_texture({exr}, {}, Wrap::clamp), {1.0f, 0.5f}).alpha, 0.0f);
 }
 
-TEST(Texture, SingleChannelsAndGrayBecomeGray) {
-    const TempFolder folder;
+TEST_F(TextureTest, SingleChannelsAndGrayBecomeGray) {
     for (const char* channel : {"Y", "G", "Z"}) {
         const fs::path exr = write(folder / (std::string(channel) + ".exr"), {1, 1, {channel}}, {0.5f});
         EXPECT_EQ(pixels_of(exr), (Pixels{0.5f, 0.5f, 0.5f, 0.5f})) << channel;
@@ -151,8 +148,7 @@ TEST(Texture, SingleChannelsAndGrayBecomeGray) {
     EXPECT_EQ(pixels_of(ya), (Pixels{0.25f, 0.25f, 0.25f, 0.5f}));
 }
 
-TEST(Texture, LuminanceAndChromaBecomeRgb) {
-    const TempFolder folder;
+TEST_F(TextureTest, LuminanceAndChromaBecomeRgb) {
     const float r = 0.5f, g = 0.25f, b = 1.0f, y = luminance(r, g, b);
     // EXR files order their channels by name.
     const fs::path exr = write(folder / "x.exr", {1, 1, {"BY", "RY", "Y"}}, {(b - y) / y, (r - y) / y, y});
@@ -162,8 +158,7 @@ TEST(Texture, LuminanceAndChromaBecomeRgb) {
     EXPECT_NEAR(pixels[2], b, 1e-6f);
 }
 
-TEST(Texture, DisplayWindowOfAnExr) {
-    const TempFolder folder;
+TEST_F(TextureTest, DisplayWindowOfAnExr) {
     const fs::path file = folder / "window.exr";
     OIIO::ImageSpec spec(2, 1, 3, OIIO::TypeFloat);  // data at x = 1, 2; display from 0 to 1
     spec.x = 1;
@@ -177,16 +172,14 @@ TEST(Texture, DisplayWindowOfAnExr) {
     EXPECT_EQ(pixels_of(file), (Pixels{0, 0, 0, 0, 1, 1, 1, 1}));
 }
 
-TEST(Texture, FirstRowOfAPictureIsTheTop) {
-    const TempFolder folder;
+TEST_F(TextureTest, FirstRowOfAPictureIsTheTop) {
     const fs::path exr = write(folder / "x.exr", {1, 2, rgb}, {1, 1, 1, 0.5f, 0.5f, 0.5f});
     const Texture texture = load_texture({exr}, {}, Wrap::clamp);
     EXPECT_EQ(sample(texture, {0.5f, 0.75f}).alpha, 1.0f);
     EXPECT_EQ(sample(texture, {0.5f, 0.25f}).alpha, 0.5f);
 }
 
-TEST(Texture, ThreePicturesAreRedGreenAndBlue) {
-    const TempFolder folder;
+TEST_F(TextureTest, ThreePicturesAreRedGreenAndBlue) {
     std::vector<fs::path> files;
     for (const float value : {0.25f, 0.5f, 0.75f})
         files.push_back(write(folder / fmt::format("{}.exr", value), {2, 1, {"Y"}}, {value, value / 2}));
@@ -197,8 +190,7 @@ TEST(Texture, ThreePicturesAreRedGreenAndBlue) {
     EXPECT_EQ(pixels, (Pixels{0.25f, 0.5f, 0.75f, 1, 0.125f, 0.25f, 0.375f, 1}));
 }
 
-TEST(Texture, LinearImagesOfEncodedFilesAreLight) {
-    const TempFolder folder;
+TEST_F(TextureTest, LinearImagesOfEncodedFilesAreLight) {
     const Pixels codes{188.0f / 255.0f, 0.0f, 1.0f};
     const Image light = load_linear_image(write(folder / "a.png", {1, 1, rgb, OIIO::TypeUInt8}, codes));
     EXPECT_NEAR(light.pixels[0], real::srgb_to_linear(188.0 / 255.0), 1e-6);
@@ -207,8 +199,7 @@ TEST(Texture, LinearImagesOfEncodedFilesAreLight) {
     EXPECT_EQ(light.pixels[3], 1.0f);
 }
 
-TEST(Texture, RawImagesKeepStoredValues) {
-    const TempFolder folder;
+TEST_F(TextureTest, RawImagesKeepStoredValues) {
     const fs::path png =
         write(folder / "x.png", {1, 1, rgba, OIIO::TypeUInt8, true}, {1.0f, 51.0f / 255.0f, 0.0f, 0.2f});
     const Image raw = load_raw_image(png);

@@ -16,7 +16,7 @@
 #include "core/error.h"
 #include "core/parallel.h"
 #include "splats/splat_set.h"
-#include "unit/splats/same_bits.h"
+#include "support/bits.h"
 
 namespace astrosplat {
 
@@ -43,14 +43,11 @@ class SplatFileTest : public testing::Test {
         return path(name);
     }
 
-    static std::string bytes_of(const std::filesystem::path& file) {
-        std::ifstream in(file, std::ios::binary);
-        return {std::istreambuf_iterator<char>(in), {}};
-    }
-
   private:
     std::filesystem::path folder_;
 };
+
+using test::bytes_of;
 
 /// The line an InputError says, without the folder of the file; "" when nothing is thrown.
 template <class Read>

@@ -7,7 +7,8 @@
 #include <string>
 
 #include "core/log.h"
-#include "support/comma_locale.h"
+#include "support/process_state.h"
+#include "support/quiet.h"
 #include "support/test_data.h"
 #include "unit/splat_files/file_support.h"
 
@@ -127,16 +128,14 @@ TEST_F(Pda, ParticleIdWinsOverId) {
 }
 
 TEST_F(Pda, OpacityIsClampedWithAWarning) {
-    std::string warning;
-    set_log_sink([&](LogLevel, const std::string& line) { warning = line; });
+    const Said said;
     const SplatSet set = read(
         "ATTRIBUTES position opacityPP TYPES V R NUMBER_OF_PARTICLES: 3\nBEGIN DATA\n"
         "0 0 0 1.5\n0 0 0 -1\n0 0 0 0.5\n");
-    set_log_sink(nullptr);
     EXPECT_EQ(set.alpha[0], 1.0f);
     EXPECT_EQ(set.alpha[1], 0.0f);
     EXPECT_EQ(set.alpha[2], 0.5f);
-    EXPECT_NE(warning.find("2 of 3 opacities lie outside 0..1"), std::string::npos) << warning;
+    EXPECT_NE(said.text().find("2 of 3 opacities lie outside 0..1"), std::string::npos) << said.text();
 }
 
 TEST_F(Pda, RealFiles) {

@@ -12,8 +12,8 @@
 #include "sets/load_source.h"
 #include "source/prepared_picture.h"
 #include "support/fits_text.h"
+#include "support/pixmap.h"
 #include "support/small_scene.h"
-#include "support/starry_picture.h"
 #include "support/temp_folder.h"
 
 namespace astrosplat {

@@ -11,9 +11,9 @@
 #include "edit/document.h"
 #include "sets/kept.h"
 #include "sets/load_source.h"
+#include "support/bits.h"
 #include "support/fits_text.h"
 #include "support/small_scene.h"
-#include "unit/splats/same_bits.h"
 #include "viewer/set_wishes.h"
 
 namespace astrosplat {

@@ -4,12 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <bit>
 #include <chrono>
 #include <condition_variable>
 #include <functional>
 #include <mutex>
-#include <numeric>
 #include <optional>
 #include <thread>
 #include <utility>
@@ -17,6 +15,8 @@
 #include "core/error.h"
 #include "sets/load_source.h"
 #include "splat_files/formats.h"
+#include "support/dots.h"
+#include "support/fits_text.h"
 #include "support/small_scene.h"
 
 namespace astrosplat {
@@ -396,11 +396,7 @@ TEST_F(SetLoaderTest, SaysWhatNoRadiusMeans) {
 TEST_F(SetLoaderTest, ASplatFileBringsItsRadii) {
     SplatSet set;
     for (int i = 0; i < 10; ++i) {
-        set.position.push_back(glm::vec3(float(i)));
-        set.color.push_back(glm::vec3(1.0f));
-        set.alpha.push_back(1.0f);
-        set.distance.push_back(float(i));
-        set.id.push_back(std::uint64_t(i));
+        add_splat(set, glm::vec3(float(i)), glm::vec3(1.0f), 1.0f);
         set.radius.push_back(0.5f + 0.25f * float(i));
     }
     write_ply(small.folder / "stars.ply", set);
@@ -429,27 +425,9 @@ TEST_F(SetLoaderTest, HistogramsAreSharesOfTheFullestBin) {
     EXPECT_EQ(h.values.share[0], 0.0f);  // the darkest pixel is 61 of 255
 }
 
-/// A FITS picture of 100 x 100 float values 0, 1, 2, ... 9999.
-std::string ramp_fits() {
-    std::string header;
-    const auto card = [&](std::string text) { header += text + std::string(80 - text.size(), ' '); };
-    card("SIMPLE  =                    T");
-    card("BITPIX  =                  -32");
-    card("NAXIS   =                    2");
-    card("NAXIS1  =                  100");
-    card("NAXIS2  =                  100");
-    card("END");
-    header.resize(2880, ' ');
-    for (int i = 0; i < 10000; ++i) {
-        const auto bits = std::bit_cast<std::uint32_t>(static_cast<float>(i));
-        for (int shift = 24; shift >= 0; shift -= 8) header += static_cast<char>(bits >> shift & 0xffu);
-    }
-    header.resize((header.size() + 2879) / 2880 * 2880, '\0');
-    return header;
-}
-
 TEST_F(SetLoaderTest, FitsValuesAreDataValuesWithTheAutomaticLimits) {
-    small.scene.layers[0].source.meshes[0].texture = {small.folder.file("ramp.fits", ramp_fits())};
+    small.scene.layers[0].source.meshes[0].texture = {
+        small.folder.file("ramp.fits", fits_file(100, 100, "", [](int x, int y) { return 100 * y + x; }))};
     small.scene.layers[0].source.texture.black = 4000.0;  // which leaves what "auto" means alone
     const auto found = loaded("gas");
     ASSERT_TRUE(found && found->histograms) << status(0).error;

@@ -1,0 +1,294 @@
+// The light of a picture's dots: filled holes, and the flat light in closed form.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "bodies/filled_light.h"
+#include "bodies/flat_light.h"
+#include "bodies/placement.h"
+#include "core/real.h"
+#include "core/shared_maths.h"
+#include "image/channels.h"
+#include "support/painted_picture.h"
+
+namespace astrosplat {
+namespace {
+
+constexpr std::int64_t shell_width = 640, shell_height = 400;
+constexpr double shell_x = 300.0, shell_y = 200.0;
+
+double from_shell(double x, double y) { return std::hypot(x - shell_x, y - shell_y); }
+
+// A round shell on a dark sky with a core in its middle and a filament across.
+Image shell_with(float core, float filament) {
+    Image light = make_image(shell_width, shell_height, 1, 0.001f);
+    for (std::int64_t y = 0; y < shell_height; ++y) {
+        for (std::int64_t x = 0; x < shell_width; ++x) {
+            const double r = from_shell(static_cast<double>(x), static_cast<double>(y));
+            float& value = *light.at(x, y);
+            if (r < 150.0) value += 0.1f;
+            if (r < 28.0) value += core;
+            if (r < 150.0 && std::fabs(static_cast<double>(y) - 250.0) < 8.0) value += filament;
+        }
+    }
+    return light;
+}
+
+float at(const Image& field, double x, double y) {
+    const double share = static_cast<double>(field.width) / static_cast<double>(shell_width);
+    return bilinear(field, 0, static_cast<float>(x * share), static_cast<float>(y * share));
+}
+
+TEST(FilledLight, ACoreIsAsDeepAsItIsWide) {
+    const FilledLight filled = find_filled_light(shell_with(0.3f, 0.0f));
+    EXPECT_GT(at(filled.core_share, shell_x, shell_y), 0.9f);
+    EXPECT_NEAR(at(filled.core_reach, shell_x, shell_y), 28.0f, 8.0f);
+    EXPECT_LT(at(filled.core_share, shell_x + 80.0, shell_y), 0.02f);
+    EXPECT_LT(at(filled.core_reach, shell_x + 80.0, shell_y), 2.0f);
+}
+
+TEST(FilledLight, ShellsAndFilamentsAreNoCores) {
+    for (const float filament : {0.0f, 0.5f}) {
+        const FilledLight filled = find_filled_light(shell_with(0.0f, filament));
+        EXPECT_LT(*std::max_element(filled.core_share.pixels.begin(), filled.core_share.pixels.end()), 0.05f);
+    }
+}
+
+TEST(FilledLight, TheSkyIsWhatLiesAroundTheShell) {
+    const FilledLight filled = find_filled_light(shell_with(1.0f, 0.5f));
+    for (const double inside : {0.0, 60.0, 120.0})
+        EXPECT_LT(at(filled.sky_share, shell_x - inside, shell_y), 0.01f) << inside;
+    EXPECT_GT(at(filled.sky_share, 600.0, 40.0), 0.99f);
+    EXPECT_GT(at(filled.sky_share, shell_x + 190.0, shell_y), 0.99f);
+}
+
+// The depths of fine dots about a place.
+struct Depths {
+    double mean = 0.0, deviation = 0.0, farthest = 0.0;
+    std::array<double, 8> eighths{};  // of -103 to 103 texels
+};
+Depths depths_about(double x, double y, bool fine, double clumps = 0.0, float around = 30.0f) {
+    StructureParams params;
+    params.kind = StructureKind::walls;
+    params.depth = 0.4;
+    params.clumps = clumps;
+    Placement placement = make_placement(shell_with(0.3f, 0.0f), params, 64.0, true, 5u);
+    placement.knots = {};
+    const std::vector<Band> bands = make_bands(shell_width);
+    const BandDots dots = band_dots(fine ? bands[1] : bands.back(), !fine, placement)[0];
+    double sum = 0.0, squares = 0.0, count = 0.0;
+    Depths depths;
+    for (std::uint32_t number = 0; number < 40; ++number) {
+        PlacedBlock block;
+        block.count = DepthBlock::size;
+        for (int i = 0; i < block.count; ++i) {
+            const auto id = number * DepthBlock::size + static_cast<std::uint32_t>(i);
+            const auto random = [&](std::uint32_t purpose) { return shared::as_hash(3u, id, 0u, purpose); };
+            block.x[i] = static_cast<float>(x) + around * (shared::as_uniform(random(1u)) - 0.5f);
+            block.y[i] = static_cast<float>(y) + around * (shared::as_uniform(random(2u)) - 0.5f);
+            block.random[i] = random(3u);
+        }
+        place(placement, dots, block);
+        for (int i = 0; i < block.count; ++i) {
+            const auto z = static_cast<double>(block.z[i]);
+            sum += z;
+            squares += z * z;
+            depths.farthest = std::max(depths.farthest, std::fabs(z));
+            ++depths.eighths[static_cast<std::size_t>(std::clamp(4.0 * (z / 103.0 + 1.0), 0.0, 7.99))];
+            ++count;
+        }
+    }
+    depths.mean = sum / count;
+    depths.deviation = std::sqrt(squares / count);
+    return depths;
+}
+
+// A wall lies at 128 texels in the middle: light of the core, which is 28 wide, is not there, neither as
+// detail nor as glow; that of the shell beside it is.
+TEST(FilledLight, ACoreIsABallInsideOfItsShell) {
+    for (const bool fine : {true, false}) {
+        const double core = depths_about(shell_x, shell_y, fine).deviation;
+        const double shell = depths_about(shell_x + 75.0, shell_y, fine).deviation;
+        EXPECT_LT(core, 45.0) << fine;
+        EXPECT_GT(shell, fine ? 65.0 : 40.0) << fine;
+    }
+}
+
+// Four fifths of a wall's greatest distance, to both sides, and thinner towards the picture's edges, which
+// would be those of a slab: the root of 1 - u^4 - v^4.
+TEST(FilledLight, TheSkyIsACushionAndNoSheet) {
+    for (const bool fine : {true, false}) {
+        for (const double y : {200.0, 100.0, 60.0}) {
+            const Depths sky = depths_about(560.0, y, fine);
+            const double u = 0.75, v = y / 200.0 - 1.0;
+            const double reach = 102.4 * std::sqrt(1.0 - std::pow(u, 4.0) - std::pow(v, 4.0));
+            EXPECT_NEAR(sky.deviation, reach / std::sqrt(3.0), 0.2 * reach) << fine << ' ' << y;
+            EXPECT_LT(sky.farthest, 1.15 * reach) << fine << ' ' << y;
+            EXPECT_GT(sky.farthest, 0.92 * reach) << fine << ' ' << y;
+            EXPECT_LT(std::fabs(sky.mean), 0.25 * reach) << fine << ' ' << y;
+        }
+    }
+}
+
+// On the walls they would be seen again, before and behind, in the core's own colours.
+TEST(FilledLight, DetailsOfACoreAreItsOwnUpToItsEdge) {
+    for (const double x : {0.0, 20.0, 27.0})
+        EXPECT_LT(depths_about(shell_x + x, shell_y, true, 0.0, 3.0f).deviation, 30.0) << x;
+}
+
+// Spread evenly in every column, what is small and bright there would be a needle.
+TEST(FilledLight, SmallThingsOfTheSkyFloatWithTheirClouds) {
+    for (const double x : {540.0, 570.0, 600.0}) {
+        const auto eighths = depths_about(x, 60.0, true, 1.0, 3.0f).eighths;
+        double all = 0.0, fullest = 0.0;
+        for (std::size_t i = 0; i < 8; ++i) {
+            all += eighths[i];
+            fullest = std::max(fullest, eighths[i] + (i > 0 ? eighths[i - 1] : 0.0));
+        }
+        EXPECT_GT(fullest, 0.45 * all) << x;
+    }
+}
+
+// The flat light of a picture's dots against closed forms and against the renderer's.
+
+constexpr std::int64_t width = 96, height = 64;
+constexpr double filter_px = 0.5;
+
+void add_dot(PictureSplats& dots, const glm::vec3& position, const glm::vec3& color, float alpha,
+             float radius) {
+    dots.splats.position.push_back(position);
+    dots.splats.color.push_back(color);
+    dots.splats.alpha.push_back(alpha);
+    dots.splats.radius.push_back(radius);
+}
+
+// Dots of three sizes all over the picture, in rows, and one of dust.
+PictureSplats some_dots() {
+    PictureSplats dots;
+    std::uint32_t n = 0;
+    for (const float sigma : {0.5f, 1.7f, 6.0f}) {
+        const auto begin = dots.splats.size();
+        for (int i = 0; i < 300; ++i, ++n) {
+            const auto x = static_cast<float>((painted::random(n, 1) - 0.5) * static_cast<double>(width));
+            add_dot(dots, {x, 31.9f - 0.21f * float(i), 0.0f}, {1.0f, 0.5f, float(painted::random(n, 2))},
+                    0.1f, radius_sigmas * sigma);
+        }
+        dots.ranges.push_back({begin, dots.splats.size(), sigma});
+    }
+    add_dot(dots, glm::vec3(0.0f), glm::vec3(-1.0f), 0.5f, 4.0f);
+    return dots;
+}
+
+PictureSplats one_dot(float x, float y, float sigma) {
+    PictureSplats dots;
+    add_dot(dots, {x, y, 0.0f}, {0.0f, 2.0f, 0.0f}, 0.25f, radius_sigmas * sigma);
+    dots.ranges.push_back({0, 1, sigma});
+    return dots;
+}
+
+// Flux, centre and variance along the axes of one dot, on every grid.
+TEST(FlatLight, OneDotIsItsFootprint) {
+    for (const double sigma : {0.45, 0.5, 0.6, 0.75, 0.9, 1.3, 3.0, 7.0}) {
+        PictureSplats dots = one_dot(3.3f, -5.6f, static_cast<float>(sigma));
+        const Image light = FlatLight(dots, width, height, filter_px).sum();
+        double sum = 0.0, x_sum = 0.0, y_sum = 0.0, squares = 0.0;
+        for (std::int64_t y = 0; y < height; ++y) {
+            for (std::int64_t x = 0; x < width; ++x) {
+                const auto value = static_cast<double>(light.at(x, y)[1]);
+                const double dx = static_cast<double>(x) + 0.5 - (48.0 + 3.3),
+                             dy = static_cast<double>(y) + 0.5 - (32.0 + 5.6);
+                sum += value;
+                x_sum += value * dx;
+                y_sum += value * dy;
+                squares += value * (dx * dx + dy * dy);
+            }
+        }
+        const double flux = 0.5 * 0.9494 * 2.0 * real::pi * sigma * sigma;
+        const double variance = footprint_variance * sigma * sigma + filter_px * filter_px;
+        EXPECT_NEAR(sum, flux, 0.002 * flux) << sigma;
+        EXPECT_NEAR(x_sum / sum, 0.0, 0.02 * sigma) << sigma;
+        EXPECT_NEAR(y_sum / sum, 0.0, 0.02 * sigma) << sigma;
+        EXPECT_NEAR(squares / sum / 2.0, variance, 0.05 * variance) << sigma;
+    }
+}
+
+// Of green; the other channels are right.
+Fraction fraction_of(float ratio) {
+    Fraction fraction{make_image(width, height, 3, 0.3f), make_image(width, height, 3, 0.3f)};
+    for (std::size_t i = 1; i < fraction.wanted.pixels.size(); i += 3)
+        fraction.wanted.pixels[i] = 0.3f * ratio;
+    return fraction;
+}
+
+TEST(FlatLight, AnEvenRatioCorrectsAllThatShines) {
+    const PictureSplats before = some_dots();
+    const auto corrected = [&](float ratio, bool overshoot) {
+        PictureSplats dots = before;
+        FlatLight(dots, width, height, filter_px).correct(fraction_of(ratio), overshoot);
+        return dots.splats.color;
+    };
+    const auto plain = corrected(1.5f, false), over = corrected(1.5f, true), most = corrected(2.5f, true);
+    for (std::size_t i = 0; i + 1 < plain.size(); ++i) {
+        ASSERT_NEAR(plain[i].y, 0.75f, 1e-5f);
+        ASSERT_NEAR(over[i].y, 1.125f, 1e-5f);
+        ASSERT_NEAR(most[i].y, 1.5f, 1e-5f);
+        ASSERT_NEAR(plain[i].x, 1.0f, 1e-6f);
+        ASSERT_NEAR(plain[i].z, before.splats.color[i].z, 1e-6f);
+    }
+    EXPECT_EQ(plain.back(), glm::vec3(-1.0f));  // dust
+}
+
+// Detail that only fine splats can show is left to them.
+TEST(FlatLight, FineDotsAreSharpened) {
+    Fraction fraction = fraction_of(1.0f);
+    fraction.wanted.at(48, 32)[1] = 0.45f;
+    const auto factor = [&](float sigma, bool overshoot) {
+        PictureSplats dots = one_dot(0.5f, -0.5f, sigma);
+        FlatLight(dots, width, height, filter_px).correct(fraction, overshoot);
+        return dots.splats.color[0].y / 2.0f;
+    };
+    const float fine = factor(0.5f, false), coarse = factor(4.0f, false);
+    EXPECT_GT(fine, 1.2f);
+    EXPECT_LT(coarse, 1.1f);
+    EXPECT_GT(factor(0.5f, true), 1.1f * fine * fine);
+    EXPECT_NEAR(factor(4.0f, true), coarse * coarse, 1e-5f);
+}
+
+// A view of their own would take as long as that of many.
+TEST(FlatLight, FewDotsSeeWhatTheNextNarrowerOnesDo) {
+    Fraction fraction = fraction_of(1.0f);
+    fraction.wanted.at(48, 32)[1] = 0.45f;
+    // Of a dot of the first size and one of the second, at the same place.
+    const auto factors = [&](float second_sigma, int of_second_size) {
+        PictureSplats dots = one_dot(0.5f, -0.5f, 0.5f);
+        for (int i = 0; i < of_second_size; ++i)
+            add_dot(dots, {0.5f, -0.5f, 0.0f}, {0.0f, 2.0f, 0.0f}, 0.25f, radius_sigmas * second_sigma);
+        dots.ranges.push_back({1, dots.splats.size(), second_sigma});
+        FlatLight(dots, width, height, filter_px).correct(fraction, true);
+        return std::pair(dots.splats.color[0].y, dots.splats.color.back().y);
+    };
+    const auto [narrow, few] = factors(0.8f, 61);
+    EXPECT_EQ(few, narrow);
+    const auto [narrow_again, many] = factors(0.8f, 62);
+    EXPECT_EQ(narrow_again, narrow);
+    EXPECT_LT(many, 0.98f * narrow);
+    const auto [as_narrow, coarse] = factors(4.0f, 1);  // is not sharpened
+    EXPECT_EQ(as_narrow, narrow);
+    EXPECT_LT(coarse, 0.9f * narrow);
+}
+
+TEST(FlatLight, MultipliesByAGridsValues) {
+    PictureSplats dots = one_dot(0.0f, 0.0f, 1.0f);  // in the middle of the picture: between cells
+    Image cells = make_image(3, 2, 3, 1.0f);
+    cells.at(1, 0)[1] = 2.0f;
+    cells.at(1, 1)[1] = 4.0f;
+    FlatLight(dots, width, height, filter_px).multiply(cells, 32.0);
+    EXPECT_NEAR(dots.splats.color[0].y, 6.0f, 1e-5f);
+}
+
+}  // namespace
+}  // namespace astrosplat
