@@ -82,10 +82,10 @@ inline void expect_crop(const Image& part, const Image& whole, const Region& reg
 }
 
 /// The picture draw(settings) has the same bits for any threads, instruction set and tiles, in bands when
-/// memory is little, and in a region.
+/// memory is little, and in regions.
 template <class Draw>
 void expect_same_picture(const Draw& draw, const RenderSettings& usual, std::int64_t little_bytes,
-                         const Region& region) {
+                         const std::vector<Region>& regions) {
     const Image expected = draw(usual);
     EXPECT_GT(total(expected, 3), 100.0);
     expect_same_bits([&] { return Bits() << draw(usual); });
@@ -98,8 +98,10 @@ void expect_same_picture(const Draw& draw, const RenderSettings& usual, std::int
     settings.memory_limit_bytes = little_bytes;
     EXPECT_EQ(expected.pixels, draw(settings).pixels) << "in bands";
     settings = usual;
-    settings.region = region;
-    expect_crop(draw(settings), expected, region);
+    for (const Region& region : regions) {
+        settings.region = region;
+        expect_crop(draw(settings), expected, region);
+    }
 }
 
 }  // namespace astrosplat::test

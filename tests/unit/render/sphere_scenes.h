@@ -1,9 +1,10 @@
 // Cameras that show the sphere, directions, and light by solid angle.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
-#include <glm/geometric.hpp>
 #include <ostream>
+#include <vector>
 
 #include "core/real.h"
 #include "unit/render/scenes.h"
@@ -50,12 +51,20 @@ inline double solid_angle(const Camera& camera, std::int64_t x, std::int64_t y) 
     return camera.focal_px * (real::sin(v + half) - real::sin(v - half));
 }
 
-inline double light_on_sphere(const Image& picture, const Camera& camera, int channel) {
+/// Of every pixel, row by row: for pictures of one camera after the other.
+inline std::vector<double> solid_angles(const Camera& camera) {
+    std::vector<double> angles;
+    for (std::int64_t y = 0; y < std::int64_t(2.0 * camera.center_y_px); ++y)
+        for (std::int64_t x = 0; x < std::int64_t(2.0 * camera.center_x_px); ++x)
+            angles.push_back(solid_angle(camera, x, y));
+    return angles;
+}
+
+inline double light_on_sphere(const Image& picture, const std::vector<double>& angles, int channel) {
+    EXPECT_EQ(picture.pixels.size(), 4 * angles.size());
     double sum = 0.0;
-    for (std::int64_t y = 0; y < picture.height; ++y)
-        for (std::int64_t x = 0; x < picture.width; ++x)
-            if (const double light = picture.at(x, y)[channel]; light != 0.0)
-                sum += light * solid_angle(camera, x, y);
+    for (std::size_t i = 0; i < angles.size(); ++i)
+        sum += picture.pixels[4 * i + std::size_t(channel)] * angles[i];
     return sum;
 }
 
@@ -66,6 +75,33 @@ struct SphereCase {
 };
 inline void PrintTo(const SphereCase& c, std::ostream* out) {
     *out << name_of(c.projection) << ", " << name_of(c.shape);
+}
+inline std::vector<SphereCase> sphere_cases() {
+    std::vector<SphereCase> cases;
+    for (const Projection projection : projections)
+        for (const Falloff::Shape shape : all_shapes) cases.push_back({projection, shape});
+    return cases;
+}
+
+/// A cloud all around the eye looks the same where one projection has its middle and the other its seam.
+template <class Draw>
+void expect_no_seam(const Draw& draw, double tolerance) {
+    for (const Projection projection : {Projection::equirectangular, Projection::cylindrical}) {
+        CameraParams params = params_of(projection);
+        const Image ahead = draw(make_camera(params, wide_px, high_px, {}));
+        params.target = {0.0, 0.0, 1.0};
+        const Image behind = draw(make_camera(params, wide_px, high_px, {}));
+        double worst = 0.0, brightest = 0.0;
+        for (std::int64_t y = 0; y < high_px; ++y)
+            for (std::int64_t x = 0; x < wide_px; ++x)
+                for (int k = 0; k < 4; ++k) {
+                    const double a = ahead.at(x, y)[k], b = behind.at((x + wide_px / 2) % wide_px, y)[k];
+                    worst = std::max(worst, std::fabs(a - b));
+                    brightest = std::max(brightest, a);
+                }
+        EXPECT_GT(brightest, 0.5);
+        EXPECT_LT(worst, tolerance) << name_of(projection);
+    }
 }
 
 }  // namespace astrosplat::test

@@ -17,14 +17,14 @@ namespace {
 
 using namespace astrosplat::test;
 
-constexpr int side_px = 256;
+constexpr int frame_px = 256;
 
 Camera star_camera(double fov_deg = 40.0) {
     CameraParams params;
     params.position = glm::dvec3(0.0);
     params.target = {0.0, 0.0, -1.0};
     params.fov = fov_deg;
-    return make_camera(params, side_px, side_px, {});
+    return make_camera(params, frame_px, frame_px, {});
 }
 
 RenderLayer star_layer(const ShadedSplats& splats, const StarPsf& psf = {}) {
@@ -38,7 +38,7 @@ OneSplat star_at(const glm::vec3& position, float light = 1.0f) {
 }
 
 Image picture_of(std::span<const RenderLayer> layers, const Camera& camera) {
-    return render(layers, camera, nullptr, settings_of(side_px, side_px)).beauty;
+    return render(layers, camera, nullptr, settings_of(frame_px, frame_px)).beauty;
 }
 
 /// Middle of the light of a channel, px.
@@ -79,8 +79,8 @@ TEST(Stars, AreAsWideAsTheirCoreWhateverTheFieldOfView) {
             const RenderLayer layer = star_layer(splats, {.core_px = core_px});
             const Image picture = picture_of({&layer, 1}, star_camera(fov));
             double variance = 0.0;
-            for (std::int64_t y = 0; y < side_px; ++y)
-                for (std::int64_t x = 0; x < side_px; ++x)
+            for (std::int64_t y = 0; y < frame_px; ++y)
+                for (std::int64_t x = 0; x < frame_px; ++x)
                     variance += std::pow(double(x) - 127.5, 2.0) * double(picture.at(x, y)[0]);
             EXPECT_NEAR(std::sqrt(variance / total(picture, 0)), core_px, 0.05 * core_px)
                 << fov << " degrees";
@@ -147,9 +147,8 @@ TEST(Stars, HaveTheirSpikesOnDomesAndPanoramas) {
         return render({&layer, 1}, camera, nullptr, s).beauty;
     };
     const glm::dvec3 ahead(0.0, 0.0, -1.0);
-    const Image flat = picture_to(star_camera(), ahead, settings_of(side_px, side_px));
-    for (const Projection projection :
-         {Projection::fisheye, Projection::equirectangular, Projection::cylindrical}) {
+    const Image flat = picture_to(star_camera(), ahead, settings_of(frame_px, frame_px));
+    for (const Projection projection : projections) {
         CameraParams params = params_of(projection);
         params.fisheye_fov = 180.0;
         const RenderSettings settings = settings_of(projection == Projection::fisheye ? 512 : 1024, 512);
@@ -159,7 +158,7 @@ TEST(Stars, HaveTheirSpikesOnDomesAndPanoramas) {
             const glm::dvec3 toward = direction(place.x, place.y);
             const Image picture = picture_to(camera, toward, settings);
             SCOPED_TRACE(std::string(name_of(projection)) + ", longitude " + std::to_string(place.x));
-            EXPECT_NEAR(light_on_sphere(picture, camera, 0), 5000.0, 25.0);
+            EXPECT_NEAR(light_on_sphere(picture, solid_angles(camera), 0), 5000.0, 25.0);
             const shared::Instance at = shared::instance_of(make_lens(camera), glm::vec3(toward));
             const double area = 1.0 / solid_angle(camera, static_cast<std::int64_t>(at.x_px),
                                                   static_cast<std::int64_t>(at.y_px));
@@ -178,7 +177,7 @@ TEST(Stars, HaveTheirSpikesOnDomesAndPanoramas) {
 TEST(Stars, FaintOnesHaveNoWingsAndLoseNothing) {
     StarPsf psf{.wing_share = 0.5f, .wing_px = 6.0f, .wing_power = 2.0f};
     double before = 0.0;
-    for (float light = 0.0005f; light < 50.0f; light *= 1.1f) {
+    for (float light = 0.0005f; light < 50.0f; light *= 1.25f) {
         const ShadedSplats splats = make_splats({star_at({0.0f, 0.0f, -50.0f}, light)});
         const RenderLayer layer = star_layer(splats, psf);
         const Image picture = picture_of({&layer, 1}, star_camera());
@@ -198,7 +197,7 @@ TEST(Stars, GrowBrighterAsOneFliesPastUnlessAtInfinity) {
         const Image picture = picture_of({&layer, 1}, camera);
         double sum = 0.0;
         for (std::int64_t y = lower ? 100 : 0; y < (lower ? 156 : 100); ++y)
-            for (std::int64_t x = 0; x < side_px; ++x) sum += picture.at(x, y)[0];
+            for (std::int64_t x = 0; x < frame_px; ++x) sum += picture.at(x, y)[0];
         return sum;
     };
     for (const double z : {0.0, -20.0, -39.0, 120.0})
@@ -214,10 +213,10 @@ TEST(Stars, GrowBrighterAsOneFliesPastUnlessAtInfinity) {
     EXPECT_NEAR(total(picture_of({&layer, 1}, faded), 0), 1.0, 0.01) << "what is at infinity has no far side";
 }
 
-// No twinkling, as a slow pan would show it: 120 frames of .1 px over a field of stars, some of them faint,
+// No twinkling, as a slow pan would show it: 40 frames of .1 px over a field of stars, some of them faint,
 // in a frame wide enough that all stay inside.
 TEST(Stars, KeepTheirLightWhileTheCameraPans) {
-    constexpr int stars = 64, frames = 120;
+    constexpr int stars = 64, frames = 40;
     for (const float core_px : {0.6f, 1.0f}) {
         const Camera camera = star_camera();
         std::vector<OneSplat> many;
@@ -232,7 +231,7 @@ TEST(Stars, KeepTheirLightWhileTheCameraPans) {
         std::vector<double> first;
         for (int frame = 0; frame < frames; ++frame) {
             Camera panned = camera;
-            panned.center_x_px += 0.1 * frame - 6.0;
+            panned.center_x_px += 0.1 * frame - 2.0;
             const Image picture = picture_of({&layer, 1}, panned);
             ASSERT_NEAR(total(picture, 0) / light, 1.0, 0.002) << "frame " << frame;
             for (int n = 0; n < stars; n += 9) {
@@ -271,7 +270,7 @@ TEST(Stars, OfAPictureCoverWhatTheirPixelsDid) {
     params.position = glm::dvec3(0.0);
     params.target = {0.0, 0.0, -1.0};
     params.height = 40.0;
-    const Camera parallel = make_camera(params, side_px, side_px, {});
+    const Camera parallel = make_camera(params, frame_px, frame_px, {});
     const double side_px_there = std::hypot(3.0, 40.0) / camera.focal_px * parallel.focal_px;
     EXPECT_NEAR(total(picture_of({&layer, 1}, parallel), 0), side_px_there * side_px_there, 0.01);
     layer.star_pixels = {glm::dvec3(0.0), 0.0, 2.0 / parallel.focal_px};
@@ -291,7 +290,7 @@ TEST(Stars, AreHiddenByWhatLiesBeforeThem) {
 
 TEST(Stars, HaveTheSameBitsHoweverThePictureIsMade) {
     std::vector<OneSplat> many;
-    for (std::uint32_t n = 0; n < 1000; ++n) {
+    for (std::uint32_t n = 0; n < 300; ++n) {
         const auto random = [n](std::uint32_t purpose) {
             return shared::as_uniform(shared::as_hash(5u, n, 0u, purpose));
         };
@@ -306,7 +305,7 @@ TEST(Stars, HaveTheSameBitsHoweverThePictureIsMade) {
     const auto picture = [&](const RenderSettings& settings) {
         return render(layers, star_camera(), nullptr, settings).beauty;
     };
-    expect_same_picture(picture, settings_of(side_px, side_px), 200000, {20, 9, 41, 50});
+    expect_same_picture(picture, settings_of(frame_px, frame_px), 200000, {{20, 9, 41, 50}});
 }
 
 }  // namespace
