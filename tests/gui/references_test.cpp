@@ -1,5 +1,6 @@
-// The window, state by state, against committed pictures. A change that is meant to be
-// seen comes with new references; one that is not fails here.
+// The window, state by state: every control lies inside the window at every size, and at one size it looks as
+// in a committed picture. A change that is meant to be seen comes with new references; one that is not fails
+// here. With $ASTROSPLAT_GUI_PICTURES all pictures are kept to be looked at.
 #include <gtest/gtest.h>
 
 #include "gui/icons.h"
@@ -12,31 +13,66 @@
 namespace astrosplat {
 namespace {
 
-class References : public testing::Test {
+struct Size {
+    int width, height;
+    float scale;
+    const char* name;
+    friend void PrintTo(const Size& given, std::ostream* out) { *out << given.name; }
+};
+constexpr Size sizes[] = {{1100, 700, 1.0f, "of_references"},
+                          {900, 600, 1.0f, "small"},
+                          {1600, 900, 1.0f, "large"},
+                          {2200, 1400, 2.0f, "double"}};
+
+class References : public testing::TestWithParam<Size> {
   protected:
-    References() : window(example_document(), 1100, 700) {}
-    void expect_reference(const std::string& name) {
+    References() : window(example_document(), GetParam().width, GetParam().height, GetParam().scale) {}
+    /// Every control that was drawn can be reached by the mouse.
+    void expect_inside(const std::string& name) {
         window.frame(3);
-        expect_like_reference(name, window.picture(Style::schematic));
+        window.keep_screen(std::string(GetParam().name) + "_" + name);
+        for (const DrawnItem& item : window.gui.drawn_items()) {
+            // May be scrolled away: what the timeline lists, and in a low window the end of the longest menu.
+            if (item.name.starts_with("track ") || item.name.starts_with("keyframe ") ||
+                (GetParam().height < 700 && item.name.starts_with("View/")))
+                continue;
+            EXPECT_GE(item.middle.x, 0) << name << ": " << item.name;
+            EXPECT_GE(item.middle.y, 0) << name << ": " << item.name;
+            EXPECT_LE(item.middle.x, GetParam().width) << name << ": " << item.name;
+            EXPECT_LE(item.middle.y, GetParam().height) << name << ": " << item.name;
+        }
+    }
+    void expect_reference(const std::string& name) {
+        expect_inside(name);
+        if (GetParam().name == sizes[0].name) expect_like_reference(name, window.picture(Style::schematic));
     }
     TestWindow window;
 };
+INSTANTIATE_TEST_SUITE_P(Sizes, References, testing::ValuesIn(sizes),
+                         [](const auto& given) { return std::string(given.param.name); });
 
-TEST_F(References, Main) {
+TEST_P(References, Main) {
     window.view.frame = 86;
     expect_reference("main");
 }
-TEST_F(References, MenuOpen) {
+TEST_P(References, MenuOpen) {
     window.click("View");
     expect_reference("menu");
 }
-TEST_F(References, Graph) {
+TEST_P(References, EveryMenu) {
+    for (const char* menu : {"File", "Edit", "View", "Layer", "Camera", "Render", "Help"}) {
+        window.click(menu);
+        expect_inside(std::string("menu_") + menu);
+        window.tap(key_code::escape);
+    }
+}
+TEST_P(References, Graph) {
     window.view.frame = 60;
     window.click("graph");
     window.click("track camera.position");
     expect_reference("graph");
 }
-TEST_F(References, SnapshotsAndWipe) {
+TEST_P(References, SnapshotsAndWipe) {
     window.view.snapshots_open = true;
     window.view.compare = CompareMode::wipe;
     void* picture = window.status.viewport_texture;
@@ -46,23 +82,23 @@ TEST_F(References, SnapshotsAndWipe) {
     window.status.b_name = "Warm dust";
     expect_reference("wipe");
 }
-TEST_F(References, Log) {
+TEST_P(References, Log) {
     window.view.log_open = true;
     window.status.log.push_back({"whirlpool.toml:12: expected over, add or screen, found 'plus'", true});
     expect_reference("log");
 }
-TEST_F(References, Shortcuts) {
+TEST_P(References, Shortcuts) {
     window.tap(key_code::f1);
     expect_reference("shortcuts");
 }
-TEST_F(References, RenderDialog) {
+TEST_P(References, RenderDialog) {
     window.choose("Render/Frames...");
     window.view.render.folder = "/films/one";
     window.view.render.name = "a.doc";
     window.status.render_command = "astrosplat --batch /films/whirlpool.toml --frames=1-240";
     expect_reference("render");
 }
-TEST_F(References, Queue) {
+TEST_P(References, Queue) {
     QueuedJob done = running_job_of("", 1.0f), failed = done,
               running = running_job_of("frame 12 (12/240)", 0.05f);
     done.state = QueuedJob::State::done;
@@ -77,12 +113,25 @@ TEST_F(References, Queue) {
     window.view.queue_open = true;
     expect_reference("queue");
 }
-TEST_F(References, Question) {
+TEST_P(References, Question) {
     make_edited(window);
     window.choose("File/Quit");
     expect_reference("question");
 }
-TEST_F(References, Failed) {
+TEST_P(References, Recovery) {
+    window.status.recoveries = {
+        {"/state/whirlpool-812-3f.toml", "whirlpool.toml", "2026-04-12 18:03:10 UTC"}};
+    expect_inside("recovery");
+}
+TEST_P(References, OpenAFile) {
+    window.status.recent = {"/usr/share/doc/a.toml",
+                            std::filesystem::path(ASTROSPLAT_SOURCE_DIR) / "assets/scenes/nebula.toml"};
+    window.choose("File/Open...");
+    window.type(ASTROSPLAT_SOURCE_DIR "/assets");
+    window.click("file/Open");
+    expect_inside("open");
+}
+TEST_P(References, Failed) {
     window.status.view_frame.state = ViewFrameState::failed;
     window.status.view_frame.error = "the picture 'stars.png' of layer stars cannot be read";
     window.status.message = {"/scenes/whirlpool.toml:14: expected a file that can be read, found none", true};
@@ -90,7 +139,45 @@ TEST_F(References, Failed) {
     window.status.jobs.push_back(running_job_of("frame 12 (12/240)", 0.05f));
     expect_reference("failed");
 }
-TEST_F(References, WhatTheButtonsOfANoticeDo) {
+TEST_P(References, FirstStart) {
+    window.view.hint_open = true;
+    window.status.layers[1].loading = true;
+    window.status.layers[1].progress = 0.37f;
+    window.status.layers[1].found = 3100000;
+    window.status.layers[2].stale = true;
+    expect_reference("first_start");
+}
+TEST_P(References, FreeViewWithOverlays) {
+    window.status.view_frame.state = ViewFrameState::preview;
+    window.view.view = ViewKind::free;
+    window.view.inspect_exposure = 2.5f;
+    window.view.preview_share = 0.25f;
+    window.view.safe_areas = true;
+    window.view.layer = 1;
+    window.view.solo = {"stars"};
+    window.status.overlay_lines = {{{100, 300}, {300, 250}, {500, 330}}};
+    expect_reference("free");
+}
+TEST_P(References, WithoutPanels) {
+    window.tap(key_code::f11);
+    window.status.view_frame.state = ViewFrameState::final;
+    window.status.view_frame.seconds = 1.8;
+    expect_reference("no_panels");
+}
+TEST_P(References, DomesHaveRoundGatesAndSafeAreas) {
+    window.tap(key_code::f11);
+    window.document.edit("Dome", [](Scene& scene) {
+        scene.output.width = scene.output.height = 1024;
+        scene.camera.projection = Projection::fisheye;
+    });
+    window.view.safe_areas = true;
+    window.status.view_frame.width = window.status.view_frame.height = 1024;
+    window.status.view_frame.state = ViewFrameState::final;
+    expect_reference("dome");
+}
+
+TEST(NoticeReferences, WhatTheButtonsDo) {
+    TestWindow window(example_document(), sizes[0].width, sizes[0].height);
     window.status.changed_on_disk = true;
     window.frame(2);
     for (const std::string button : {"Reload", "Keep"}) {
@@ -102,41 +189,13 @@ TEST_F(References, WhatTheButtonsOfANoticeDo) {
                                       static_cast<int>(place.y) - 10, 420, 80));
     }
 }
-TEST_F(References, FirstStart) {
-    window.view.hint_open = true;
-    window.status.layers[1].loading = true;
-    window.status.layers[1].progress = 0.37f;
-    window.status.layers[1].found = 3100000;
-    window.status.layers[2].stale = true;
-    expect_reference("first_start");
-}
-TEST_F(References, FreeViewWithOverlays) {
-    window.status.view_frame.state = ViewFrameState::preview;
-    window.view.view = ViewKind::free;
-    window.view.inspect_exposure = 2.5f;
-    window.view.preview_share = 0.25f;
-    window.view.safe_areas = true;
-    window.view.layer = 1;
-    window.view.solo = {"stars"};
-    window.status.overlay_lines = {{{100, 300}, {300, 250}, {500, 330}}};
-    expect_reference("free");
-}
-TEST_F(References, WithoutPanels) {
-    window.tap(key_code::f11);
-    window.status.view_frame.state = ViewFrameState::final;
-    window.status.view_frame.seconds = 1.8;
-    expect_reference("no_panels");
-}
-TEST_F(References, DomesHaveRoundGatesAndSafeAreas) {
-    window.tap(key_code::f11);
-    window.document.edit("Dome", [](Scene& scene) {
-        scene.output.width = scene.output.height = 1024;
-        scene.camera.projection = Projection::fisheye;
-    });
-    window.view.safe_areas = true;
-    window.status.view_frame.width = window.status.view_frame.height = 1024;
-    window.status.view_frame.state = ViewFrameState::final;
-    expect_reference("dome");
+
+void expect_panel_reference(const std::string& name, PanelDriver& driver, PanelTab tab, int height) {
+    driver.show(tab);
+    driver.frames(3);
+    Picture8 picture(360, height);
+    software_draw(*ImGui::GetDrawData(), picture, Style::schematic);
+    expect_like_reference(name, picture);
 }
 
 TEST(PanelReferences, EveryTabWithAllSectionsOpen) {
@@ -163,11 +222,7 @@ grade = { gain = 2.0, tint = [1.0, 0.8, 0.6] }
                            360.0f, 1400.0f);
         driver.status = example_status();
         driver.status.layers[0].color = glm::vec3(0.8f, 0.4f, 0.2f);
-        driver.show(static_cast<PanelTab>(tab));
-        driver.frames(3);
-        Picture8 picture(360, 1400);
-        software_draw(*ImGui::GetDrawData(), picture, Style::schematic);
-        expect_like_reference(std::string("panel_") + names[tab], picture);
+        expect_panel_reference(std::string("panel_") + names[tab], driver, static_cast<PanelTab>(tab), 1400);
     }
 }
 
@@ -183,11 +238,7 @@ hybrid = { from_deg = 20.0, to_deg = 65.0 }
 )",
                        360.0f, 900.0f);
     driver.status = example_status();
-    driver.show(PanelTab::mixing);
-    driver.frames(3);
-    Picture8 picture(360, 900);
-    software_draw(*ImGui::GetDrawData(), picture, Style::schematic);
-    expect_like_reference("panel_hybrid", picture);
+    expect_panel_reference("panel_hybrid", driver, PanelTab::mixing, 900);
 }
 
 TEST(IconReferences, Sheet) {
