@@ -1,49 +1,28 @@
-// Seeds and checks of the fuzzed readers.
+// Seeds and checks of the fuzzed readers of files.
 #include "fuzz/targets.h"
 
 #include <fitsio.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
-#include <stdexcept>
 
 #include "core/hash.h"
-#include "fuzz/cameras.h"
-#include "fuzz/catalogues.h"
-#include "fuzz/gaussians.h"
-#include "scene/load.h"
+#include "fuzz/seeds.h"
 #include "source/mesh.h"
 #include "source/obj.h"
 #include "source/texture.h"
 #include "splat_files/formats.h"
 #include "splat_files/native.h"
+#include "support/bits.h"
 
 namespace astrosplat::fuzz {
 
 namespace {
 
 namespace fs = std::filesystem;
-
-/// A file of this process that holds the bytes while the object lives.
-struct TemporaryFile {
-    fs::path path;
-    TemporaryFile(std::string_view bytes, const std::string& ending)
-        : path(fs::temp_directory_path() / ("astrosplat_fuzz_" + std::to_string(::getpid()) + "." + ending)) {
-        std::ofstream(path, std::ios::binary).write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-    }
-    ~TemporaryFile() { fs::remove(path); }
-};
-
-std::string bytes_of(const fs::path& file) {
-    std::ifstream in(file, std::ios::binary);
-    return {std::istreambuf_iterator<char>(in), {}};
-}
 
 bool finite(float v) { return std::isfinite(v); }
 bool finite(const glm::vec2& v) { return finite(v.x) && finite(v.y); }
@@ -71,10 +50,10 @@ std::size_t check(const SplatSet& set) {
 }
 
 std::size_t read_pda_bytes(std::string_view bytes) {
-    return check(read_pda(TemporaryFile(bytes, "pda").path));
+    return check(read_pda(TemporaryFile(bytes, ".pda").path));
 }
 std::size_t read_ply_bytes(std::string_view bytes) {
-    return check(read_ply(TemporaryFile(bytes, "ply").path));
+    return check(read_ply(TemporaryFile(bytes, ".ply").path));
 }
 
 /// Makes the checksums of a native file of one block right again, so that mutations get past them.
@@ -97,11 +76,11 @@ std::string with_checksums(std::string bytes) {
 }
 
 std::size_t read_native_bytes(std::string_view bytes) {
-    return check(read_native(TemporaryFile(with_checksums(std::string(bytes)), "splats").path));
+    return check(read_native(TemporaryFile(with_checksums(std::string(bytes)), ".splats").path));
 }
 
 std::size_t read_obj_bytes(std::string_view bytes) {
-    const Mesh mesh = load_obj(TemporaryFile(bytes, "obj").path);
+    const Mesh mesh = load_obj(TemporaryFile(bytes, ".obj").path);
     demand(!mesh.triangles.empty(), "at least one triangle");
     for (const glm::vec3& p : mesh.positions) demand(finite(p), "finite coordinates");
     for (const Mesh::Triangle& triangle : mesh.triangles) {
@@ -114,16 +93,9 @@ std::size_t read_obj_bytes(std::string_view bytes) {
     return mesh.triangles.size();
 }
 
-std::size_t read_toml_bytes(std::string_view bytes) {
-    const Scene scene = parse_scene(std::string(bytes), fs::temp_directory_path() / "fuzz.toml");
-    demand(scene.output.width > 0 && scene.output.height > 0, "a resolution");
-    demand(std::isfinite(scene.camera.fov) && std::isfinite(scene.output.exposure), "finite numbers");
-    return scene.layers.size();
-}
-
 std::size_t read_fits_bytes(std::string_view bytes) {
     const Texture texture =
-        load_texture({TemporaryFile(bytes, "fits").path}, TextureSettings{}, TextureSettings::Wrap::clamp);
+        load_texture({TemporaryFile(bytes, ".fits").path}, TextureSettings{}, TextureSettings::Wrap::clamp);
     const Image& image = texture.image;
     demand(image.width > 0 && image.height > 0 && image.channels == 4, "an RGBA picture");
     demand(image.pixels.size() == static_cast<std::size_t>(image.width * image.height * 4), "all its pixels");
@@ -152,9 +124,9 @@ SplatSet small_set() {
 
 std::string written(void (*write)(const WriteTarget&, const SplatSet&, const Progress&),
                     const std::string& ending) {
-    const TemporaryFile file("", ending);
+    const TemporaryFile file("", "." + ending);
     write(file.path, small_set(), {});
-    return bytes_of(file.path);
+    return test::bytes_of(file.path);
 }
 
 const char* const ascii_ply =
@@ -178,15 +150,6 @@ const char* const obj =
     "# box\nmtllib absent.mtl\no one\nv 0 0 0\nv 1 0 0\nv 1 1 0.5\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"
     "vn 0 0 1\nusemtl red\nf 1/1/1 2/2/1 3/3/1 4/4/1\ng two\nf -4//1 -3//1 -2//1\nf 1 3 4\n";
 
-const char* const toml =
-    "astrosplat = 1\n[output]\nresolution = [320, 180]\nframes = \"1-20x2\"\npath = \"a.####.exr\"\n"
-    "aovs = [\"depth\"]\n[camera]\nposition = [0.0, 1.0, 10.0]\nfov = 35.0\n[[layer]]\nname = \"stars\"\n"
-    "[layer.source]\nmeshes = [ { mesh = \"plane\", texture = \"a.png\" } ]\ncount = 1000\n[layer.look]\n"
-    "pdf = { shape = \"curve\", points = [[0.0, 1.0], [1.0, 0.0]] }\nnoise = [ { cull = 0.5 }, { jitter = "
-    "0.1 } ]\n"
-    "[layer.render]\nblend = \"screen\"\n[animation]\n"
-    "\"camera.fov\" = { keys = [[1, 35.0], [20, 40.0, \"step\"]], interpolation = \"smooth\" }\n";
-
 /// A FITS file by hand: cards of 80 characters in blocks of 2880 bytes, then 4 x 3 big-endian 16-bit numbers.
 std::string fits(const std::vector<std::string>& cards) {
     std::string bytes;
@@ -202,7 +165,7 @@ std::string fits(const std::vector<std::string>& cards) {
 
 /// A tile-compressed one of 8 x 6 numbers.
 std::string compressed_fits(int compression) {
-    const TemporaryFile file("", "fits");
+    const TemporaryFile file("", ".fits");
     fs::remove(file.path);
     fitsfile* out = nullptr;
     int status = 0;
@@ -215,7 +178,7 @@ std::string compressed_fits(int compression) {
     fits_write_img(out, TSHORT, 1, 8 * 6, values, &status);
     fits_close_file(out, &status);
     demand(status == 0, "a compressed FITS file");
-    return bytes_of(file.path);
+    return test::bytes_of(file.path);
 }
 
 std::vector<std::string> fits_seeds() {
@@ -231,35 +194,30 @@ std::vector<std::string> fits_seeds() {
 }  // namespace
 
 const std::vector<Target>& targets() {
+    using Seeds = std::vector<std::string>;
     static const std::vector<Target> all = {
-        {"pda", {written(write_pda, "pda")}, read_pda_bytes},
-        {"ply", {written(write_ply, "ply"), ascii_ply, big_endian_ply()}, read_ply_bytes},
+        {"pda", [] { return Seeds{written(write_pda, "pda")}; }, read_pda_bytes},
+        {"ply",
+         [] {
+             return Seeds{written(write_ply, "ply"), ascii_ply, big_endian_ply()};
+         },
+         read_ply_bytes},
         {"splats",
-         {written([](const auto& file, const auto& set,
-                     const auto& progress) { write_native(file, set, progress); },
-                  "splats")},
+         [] {
+             return Seeds{written([](const auto& file, const auto& set,
+                                     const auto& progress) { write_native(file, set, progress); },
+                                  "splats")};
+         },
          read_native_bytes},
-        {"obj", {obj}, read_obj_bytes},
-        {"toml", {toml}, read_toml_bytes},
-        {"fits", fits_seeds(), read_fits_bytes},
-        {"stars", catalogue_seeds(), read_catalogue_bytes},
-        {"cameras", camera_seeds(), read_camera_bytes},
-        {"gaussian_ply", gaussian_ply_seeds(), read_gaussian_ply_bytes},
-        {"gltf", gltf_seeds(), read_gltf_bytes},
-        {"usda", usda_seeds(), read_usda_bytes},
+        {"obj", [] { return Seeds{obj}; }, read_obj_bytes},
+        {"fits", fits_seeds, read_fits_bytes},
+        {"stars", catalogue_seeds, read_catalogue_bytes},
+        {"cameras", camera_seeds, read_camera_bytes},
+        {"gaussian_ply", gaussian_ply_seeds, read_gaussian_ply_bytes},
+        {"gltf", gltf_seeds, read_gltf_bytes},
+        {"usda", usda_seeds, read_usda_bytes},
     };
     return all;
-}
-
-const Target& target(const std::string& name) {
-    const auto& all = targets();
-    const auto found = std::find_if(all.begin(), all.end(), [&](const Target& t) { return t.name == name; });
-    demand(found != all.end(), "a known target");
-    return *found;
-}
-
-void demand(bool truth, const char* what) {
-    if (!truth) throw std::logic_error(std::string("reader's result lacks ") + what);
 }
 
 }  // namespace astrosplat::fuzz

@@ -1,0 +1,210 @@
+#include "fuzz/seeds.h"
+
+#include <zlib.h>
+
+#include <cmath>
+#include <filesystem>
+#include <glm/geometric.hpp>
+
+#include "camera_files/camera_track.h"
+#include "camera_files/formats.h"
+#include "core/text.h"
+#include "fuzz/targets.h"
+#include "splat_files/formats.h"
+#include "stars/catalogue.h"
+#include "stars/star_set.h"
+#include "support/capture.h"
+#include "unit/stars/catalogues.h"
+
+namespace astrosplat::fuzz {
+namespace {
+
+std::string ending_of(std::string_view bytes) {
+    const auto has = [&](std::string_view part) { return bytes.find(part) != std::string_view::npos; };
+    if (bytes.starts_with("glTF")) return ".glb";
+    if (bytes.starts_with("{")) return has("transform_matrix") ? ".json" : ".gltf";
+    if (bytes.starts_with("#usda")) return ".usda";
+    if (bytes.starts_with("OpenSpace")) return ".osrectxt";
+    return has("1548767330626") ? ".gsc" : ".chan";
+}
+
+std::string binary_gltf(std::string json) {
+    while (json.size() % 4) json += ' ';
+    return "glTF" + test::little_endian(2) + test::little_endian(20 + json.size()) +
+           test::little_endian(json.size()) + "JSON" + json;
+}
+
+std::size_t check(const CameraTrack& track) {
+    demand(!track.samples.empty(), "a sample");
+    for (const TrackSample& sample : track.samples) {
+        demand(std::isfinite(sample.frame) && std::isfinite(sample.fov_deg) && std::isfinite(sample.height),
+               "finite numbers");
+        for (int i = 0; i < 3; ++i) demand(std::isfinite(sample.eye[i]), "a finite place");
+        demand(std::fabs(glm::length(sample.rotation) - 1.0) < 1e-6, "a rotation of length 1");
+    }
+    for (std::size_t i = 1; i < track.samples.size(); ++i)
+        demand(track.samples[i].frame > track.samples[i - 1].frame, "frames that ascend");
+    return track.samples.size();
+}
+
+// As one member of a gzip file; zlib's header would hold the time if it were asked to.
+std::string gzipped(const std::string& text) {
+    std::string packed(compressBound(static_cast<uLong>(text.size())) + 32, '\0');
+    z_stream stream{};
+    demand(deflateInit2(&stream, 9, Z_DEFLATED, 15 + 16, 8, Z_DEFAULT_STRATEGY) == Z_OK, "a compressor");
+    stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(text.data()));
+    stream.avail_in = static_cast<uInt>(text.size());
+    stream.next_out = reinterpret_cast<Bytef*>(packed.data());
+    stream.avail_out = static_cast<uInt>(packed.size());
+    demand(deflate(&stream, Z_FINISH) == Z_STREAM_END, "a gzip file");
+    packed.resize(stream.total_out);
+    deflateEnd(&stream);
+    return packed;
+}
+
+bool all_finite(const glm::vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+
+std::size_t read_picture_bytes(const std::filesystem::path& file) {
+    const PictureTable table = read_picture_table(file);
+    demand(table.rows == table.bad.count + static_cast<std::int64_t>(table.stars.size()),
+           "every row on one side");
+    for (const TableStar& star : table.stars) {
+        demand(std::isfinite(star.uv.x) && std::isfinite(star.uv.y) && std::isfinite(star.sigma_px),
+               "places");
+        demand(std::isfinite(star.luminance()) && star.luminance() > 0.0, "light");
+    }
+    return table.stars.size();
+}
+
+template <class Vector>
+void demand_finite(const Vector& v) {
+    for (int k = 0; k < v.length(); ++k) demand(std::isfinite(v[k]), "finite numbers");
+}
+
+std::size_t check_capture(const SplatSet& set) {
+    const std::size_t size = set.position.size();
+    demand(set.color.size() == size && set.alpha.size() == size && set.distance.size() == size &&
+               set.id.size() == size && set.scale.size() == set.rotation.size(),
+           "arrays of one length");
+    demand(set.scale.empty() || (set.scale.size() == size && set.radius.size() == size), "a radius each");
+    demand(set.harmonics.empty() || set.harmonics.size() == size, "harmonics each");
+    for (std::size_t i = 0; i < set.scale.size(); ++i) {
+        demand_finite(set.position[i]);
+        demand_finite(set.color[i]);
+        demand_finite(set.scale[i]);
+        demand(std::isfinite(set.radius[i]), "a finite radius");
+        demand(set.alpha[i] >= 0.0f && set.alpha[i] <= 1.0f, "an opacity");
+        double length = 0.0;
+        for (int k = 0; k < 4; ++k) length += double(set.rotation[i][k]) * set.rotation[i][k];
+        demand(std::fabs(length - 1.0) < 1e-5, "rotations of length 1");
+    }
+    for (const Harmonics& harmonics : set.harmonics)
+        for (const glm::vec3& c : harmonics.c) demand_finite(c);
+    return size;
+}
+
+/// The same as text, with its bytes inside.
+std::string text_of_glb(const std::string& glb) {
+    const std::size_t binary = glb.find(std::string("BIN\0", 4));
+    std::string json = glb.substr(20, binary - 24);
+    const std::string buffer = "\"buffers\":[{";
+    return json.insert(json.find(buffer) + buffer.size(), "\"uri\":\"data:application/octet-stream;base64," +
+                                                              base64(glb.substr(binary + 4)) + "\",");
+}
+
+}  // namespace
+
+std::vector<std::string> camera_seeds() {
+    CameraTrack track;
+    track.fps = 24.0;
+    track.has_fov = true;
+    track.samples = {{1.0, {0.0, 1.0, 2.0}, {0.0, 0.0, 0.0, 1.0}, 40.0, 0.0},
+                     {2.0, {3.0, 1.0, 2.0}, {0.0, 0.6, 0.0, 0.8}, 40.0, 0.0}};
+    const std::string gltf = gltf_text(track, 1.5, 0.1, 0.0);
+    return {
+        "# frame\n1 0 0 9 0 0 0 40\n2 0.5 -0.25 8 10 20 -30 42.5\n",
+        "1548767330626 1 2 3 1 0 0 0 1 0\n1548767330626 2 2 3 0 0 -2 0.5 3 0\n",
+        "OpenSpace_record/playback03.00A\nscript 0 0 1 x()\ncamera 0.5 7 1 2 3 0.8 0 0.6 0 0.1 - Venus\n"
+        "camera 1.5 8 1e12 2 3 0.8 0 0.6 0 0.1 F Mars\n",
+        gltf,
+        binary_gltf(gltf),
+        usda_text(track, {}),
+        "#usda 1.0\n(\n upAxis = \"Z\"\n metersPerUnit = 0.01\n)\ndef Xform \"a\" (\n kind = 'x'\n)\n{\n"
+        " float3 xformOp:rotateXYZ.timeSamples = { 0: (1, 2, 3), 4: (5, 6, 7) }\n"
+        " double3 xformOp:translate = (1, 2, 3)\n"
+        " uniform token[] xformOpOrder = [\"xformOp:translate\", \"xformOp:rotateXYZ\"]\n"
+        " def Camera \"c\"\n {\n float focalLength = 35\n rel r = </a>\n"
+        " quatf xformOp:orient = (1, 0, 0, 0)\n uniform token[] xformOpOrder = [\"xformOp:orient\"]\n }\n}\n",
+        R"({"camera_angle_x":0.7,"w":8,"h":6,"frames":[{"transform_matrix":[[0,0,-1,1],[-1,0,0,2],[0,1,0,3]]},)"
+        R"({"fl_y":5,"transform_matrix":[[1,0,0,1],[0,1,0,2],[0,0,1,3],[0,0,0,1]]}]})"};
+}
+
+std::size_t read_camera_bytes(std::string_view bytes) {
+    return check(read_camera(TemporaryFile(bytes, ending_of(bytes)).path, FrameRate{24.0, 0.0}));
+}
+
+std::vector<std::string> catalogue_seeds() {
+    const std::string hipparcos =
+        test::hipparcos_line({}) +
+        test::hipparcos_line({"-1.44", "", "", "379.21", "", "06 45 08", "-16 42 58"});
+    const std::string table =
+        "\xef\xbb\xbfra;Dec;plx;\"vmag\";bv\r\n1;-2.5;10;3e0;\r\n# none\r\n359.9;90;-1;\"4\";~\r\n";
+    const std::string hyg = std::string(test::hyg_header) +
+                            "0,,,,,,Sol,0,0,0,0,0,0,-26.7,4.85,G2V,0.656,0,0,0\n"
+                            "1,2,3,4,\"Gl, 5\",,,6.75,-16.7,100000,0,0,0,-1.44,1.4,A0,0.009,0,0,0\n";
+    const std::string picture =
+        "x,y,u,v,flux_r,flux_g,flux_b,sigma_px\n1,2,0.1,0.9,1,2,3,1.5\n3,4,.5,.5,-1,0,1e3,2\n";
+    return {hipparcos, table, hyg, gzipped(hipparcos + hipparcos), picture};
+}
+
+std::size_t read_catalogue_bytes(std::string_view bytes) {
+    const TemporaryFile file(bytes, ".stars");
+    if (kind_of_catalogue(file.path) == CatalogueKind::picture) return read_picture_bytes(file.path);
+    const StarCatalogue catalogue = read_catalogue(file.path);
+    demand(catalogue.rows == catalogue.bad.count + static_cast<std::int64_t>(catalogue.stars.size()),
+           "every row on one side");
+    const SplatSet set = star_set(catalogue, {1.0, 100.0, 4.0});
+    check_consistent(set);
+    demand(set.position.size() == catalogue.stars.size(), "every star");
+    for (const glm::vec3& p : set.position) demand(all_finite(p) && p != glm::vec3(0.0f), "places");
+    for (const glm::vec3& c : set.color)
+        demand(all_finite(c) && c.x >= 0.0f && c.y >= 0.0f && c.z >= 0.0f, "light");
+    return catalogue.stars.size();
+}
+
+std::vector<std::string> gaussian_ply_seeds() {
+    using namespace astrosplat::test;
+    return {ply_of(capture(3, 0), 0), ply_of(capture(2, 1), 1)};
+}
+
+std::vector<std::string> gltf_seeds() {
+    using namespace astrosplat::test;
+    const std::string turned =
+        glb_of(capture(2, 1), 1, R"(,"rotation":[0,0.6,0,0.8],"scale":[2,2,2],"translation":[1,2,3])");
+    return {glb_of(capture(3, 0), 0), turned, text_of_glb(turned)};
+}
+
+std::vector<std::string> usda_seeds() {
+    using namespace astrosplat::test;
+    return {
+        usda_of(capture(3, 0), 0),
+        usda_of(capture(2, 1), 1,
+                "        quatf xformOp:orient = (0.8, 0, 0.6, 0)\n        float3 xformOp:scale = (2, 2, 2)\n"
+                "        uniform token[] xformOpOrder = [\"xformOp:orient\", \"xformOp:scale\"]\n",
+                "    upAxis = \"Z\"\n")};
+}
+
+std::size_t read_gaussian_ply_bytes(std::string_view bytes) {
+    return check_capture(read_ply(TemporaryFile(bytes, ".ply").path));
+}
+
+std::size_t read_usda_bytes(std::string_view bytes) {
+    return check_capture(read_usda_splats(TemporaryFile(bytes, ".usda").path));
+}
+
+std::size_t read_gltf_bytes(std::string_view bytes) {
+    return check_capture(
+        read_gltf_splats(TemporaryFile(bytes, bytes.starts_with("{") ? ".gltf" : ".glb").path));
+}
+
+}  // namespace astrosplat::fuzz

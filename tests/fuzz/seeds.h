@@ -1,0 +1,28 @@
+// Camera files, star catalogues and captures of every format for the fuzzer: seeds, and checks of what was
+// read. Readers throw InputError for bad input, std::logic_error for results that cannot be.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace astrosplat::fuzz {
+
+std::vector<std::string> camera_seeds();
+/// By the reader that the bytes look most like: each format is told by its name's ending elsewhere.
+std::size_t read_camera_bytes(std::string_view bytes);
+
+/// Hipparcos, HYG, a table with names, gzip-compressed, a picture's table.
+std::vector<std::string> catalogue_seeds();
+std::size_t read_catalogue_bytes(std::string_view bytes);
+
+/// PLY files of Gaussians; glTF files of them, binary and as text; USD.
+std::vector<std::string> gaussian_ply_seeds();
+std::vector<std::string> gltf_seeds();
+std::vector<std::string> usda_seeds();
+std::size_t read_gaussian_ply_bytes(std::string_view bytes);
+std::size_t read_gltf_bytes(std::string_view bytes);
+std::size_t read_usda_bytes(std::string_view bytes);
+
+}  // namespace astrosplat::fuzz
