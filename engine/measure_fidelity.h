@@ -58,7 +58,7 @@ struct FidelityReport {
 struct FidelitySettings {
     SetCache cache;
     std::int64_t width_px = 1280;  // of the smaller front view and of the views from the side
-    /// Told of each step; says where the step reports to. Empty: nowhere.
+    /// Called when a step begins; returns what the step reports to. Empty: to nothing.
     std::function<Progress(const std::string& step)> begin_step;
 };
 

@@ -25,7 +25,7 @@ using SetList = std::vector<std::shared_ptr<const SplatSet>>;  // one a layer; n
 
 constexpr double farthest_in_world = 1000.0 * largest_number;  // scene units, of splats in place
 
-/// All that reaches apply_look beside the set: while it stays equal, the shaded splats stay.
+/// All that reaches apply_look besides the set: while it stays equal, the shaded splats stay.
 struct ShadingInputs {
     Look look;
     glm::vec3 axis{0.0f};
@@ -40,7 +40,7 @@ struct ShadingInputs {
 /// One layer between frames; the index is that of Scene::layers.
 struct LayerState {
     std::shared_ptr<const SplatSet> set;    // null: not drawn
-    std::shared_ptr<SplatSet> to_use_up;    // the same where nobody reads its splats after the first shading
+    std::shared_ptr<SplatSet> to_use_up;    // the same, where its splats are not read after the first shading
     std::unique_ptr<StreamedSet> streamed;  // in place of `set` and `shaded`
     Bounds box;                             // of the set, layer space
     std::filesystem::path thickness_file;

@@ -14,6 +14,7 @@
 #include <string>
 #include <string_view>
 
+#include "core/bounds.h"
 #include "core/color.h"
 #include "core/error.h"
 #include "core/real.h"
@@ -91,8 +92,9 @@ std::string number_bytes(std::uint32_t value) {
 
 /// POSITION must say its bounds.
 std::string bounds_text(const Gaussians& g) {
-    glm::vec3 lo(std::numeric_limits<float>::max()), hi(-lo);
-    for (const glm::vec3& p : g.position) lo = glm::min(lo, p), hi = glm::max(hi, p);
+    Bounds box;
+    for (const glm::vec3& p : g.position) box.add(glm::dvec3(p));
+    const glm::vec3 lo(box.lo), hi(box.hi);
     return fmt::format(R"("min":[{},{},{}],"max":[{},{},{}])", lo.x, lo.y, lo.z, hi.x, hi.y, hi.z);
 }
 
@@ -230,13 +232,13 @@ char* put_row(char* out, const Gaussians& g, std::int64_t row) {
 
 /// Three standard deviations around all centres.
 std::string extent_text(const Gaussians& g) {
-    glm::vec3 lo(std::numeric_limits<float>::max()), hi(-lo);
+    Bounds box;
     for (std::size_t i = 0; i < g.position.size(); ++i) {
-        const glm::vec3& s = g.scale[i];
-        const glm::vec3 reach(3.0f * glm::max(s.x, glm::max(s.y, s.z)));
-        lo = glm::min(lo, g.position[i] - reach);
-        hi = glm::max(hi, g.position[i] + reach);
+        const float reach = 3.0f * std::max({g.scale[i].x, g.scale[i].y, g.scale[i].z});
+        box.add(glm::dvec3(g.position[i] - reach));
+        box.add(glm::dvec3(g.position[i] + reach));
     }
+    const glm::vec3 lo(box.lo), hi(box.hi);
     return fmt::format("[({}, {}, {}), ({}, {}, {})]", lo.x, lo.y, lo.z, hi.x, hi.y, hi.z);
 }
 

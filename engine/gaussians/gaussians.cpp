@@ -85,7 +85,7 @@ std::vector<ShadedSplats> reduce_splats(std::span<const RenderLayer> layers,
         const auto tree = std::make_shared<const MergeTree>(build_merge_tree(*set, progress));
         merged[i] = merge_splats({set, tree}, *layers[i].splats, progress);
         RenderLayer plain = layers[i];
-        plain.render.lod = {};  // nobody looks from there, however near
+        plain.render.lod = {};  // this camera only measures, however near it is
         cuts.push_back(
             {&merged[i], &dots[i], make_projection(plain, static_cast<std::uint16_t>(i), camera, frame)});
     }
@@ -214,15 +214,29 @@ void count(const glm::dvec3& light, const glm::dvec3& kept, double alpha, double
     if (alpha < 1.0 / 255.0) ++counts.faint;
 }
 
-/// One layer on its way into Gaussians.
+/// The largest with a coefficient that is not 0.
+int degree_of(const Buffer<Harmonics>& harmonics) {
+    int degree = 0;
+    for (const Harmonics& h : harmonics) {
+        for (std::size_t k = harmonics_up_to(degree); k < Harmonics::count; ++k)
+            if (h.c[k] != glm::vec3(0.0f))
+                degree = k < harmonics_up_to(1) ? 1 : k < harmonics_up_to(2) ? 2 : 3;
+        if (degree == 3) break;
+    }
+    return degree;
+}
+
+/// One layer on its way into Gaussians, behind those that are there already.
 class Baker {
   public:
-    Baker(const RenderLayer& layer, const Camera& camera, double gain)
+    Baker(const RenderLayer& layer, const Camera& camera, double gain, Gaussians& out)
         : layer_(layer),
           appearance_(layer, camera, gain),
-          turn_(quaternion_of_matrix(layer.world_from_layer)) {}
+          turn_(quaternion_of_matrix(layer.world_from_layer)) {
+        if (layer.directional) begin_harmonics(out);
+    }
 
-    void add(std::size_t i, Gaussians& out, BakeCounts& counts) const {
+    void add(std::size_t i, Gaussians& out, BakeCounts& counts) {
         const SplatAppearance seen = appearance_.of(i, counts);
         double square = seen.sigma * seen.sigma;
         double hides = seen.hides;
@@ -250,6 +264,7 @@ class Baker {
         } else {
             add_shape(layer_.splats->stretch[i], std::sqrt(square), out);
         }
+        if (layer_.directional) add_harmonics(layer_.splats->id[i], out);
     }
 
   private:
@@ -266,50 +281,28 @@ class Baker {
         out.rotation.push_back(glm::vec4(quaternion_product(turn_, quaternion_of_matrix(axes))));
     }
 
-    const RenderLayer& layer_;
-    LayerAppearance appearance_;
-    glm::dvec4 turn_;
-};
-
-/// The largest with a coefficient that is not 0.
-int degree_of(const Buffer<Harmonics>& harmonics) {
-    int degree = 0;
-    for (const Harmonics& h : harmonics) {
-        for (std::size_t k = harmonics_up_to(degree); k < Harmonics::count; ++k)
-            if (h.c[k] != glm::vec3(0.0f))
-                degree = k < harmonics_up_to(1) ? 1 : k < harmonics_up_to(2) ? 2 : 3;
-        if (degree == 3) break;
-    }
-    return degree;
-}
-
-/// Takes the source's harmonics of a layer along while its splats are baked one after the other.
-class HarmonicsTaker {
-  public:
-    HarmonicsTaker(const RenderLayer& layer, Gaussians& out) : layer_(layer), taken_(out.position.size()) {
-        if (!layer.directional) return;
-        const std::size_t all = out.position.size() + layer.splats->position.size();
+    /// Of the layer's set, which are taken along.
+    void begin_harmonics(Gaussians& out) const {
+        const std::size_t before = out.position.size(), all = before + layer_.splats->position.size();
         claim_memory(static_cast<std::int64_t>(all * sizeof(Harmonics)), "harmonics");
         out.harmonics.reserve(all);
-        out.harmonics.resize(out.position.size());
-        out.degree = std::max(out.degree, degree_of(layer.directional->harmonics));
-        out.sources.push_back({out.position.size(), out.position.size(), layer.directional->display_harmonics,
-                               layer.world_from_layer});
+        out.harmonics.resize(before);
+        out.degree = std::max(out.degree, degree_of(layer_.directional->harmonics));
+        out.sources.push_back(
+            {before, before, layer_.directional->display_harmonics, layer_.world_from_layer});
     }
 
-    /// Of splat i, if it became the last Gaussian of `out`.
-    void take(std::size_t i, Gaussians& out) {
-        if (!layer_.directional || out.position.size() == taken_) return;
-        taken_ = out.position.size();
+    void add_harmonics(std::uint64_t id, Gaussians& out) {
         // Both are in ascending order of id, and no row is there twice.
-        while (layer_.directional->id[row_] != layer_.splats->id[i]) ++row_;
+        while (layer_.directional->id[row_] != id) ++row_;
         out.harmonics.push_back(layer_.directional->harmonics[row_]);
         out.sources.back().end = out.harmonics.size();
     }
 
-  private:
     const RenderLayer& layer_;
-    std::size_t row_ = 0, taken_ = 0;
+    LayerAppearance appearance_;
+    glm::dvec4 turn_;
+    std::size_t row_ = 0;  // of the set
 };
 
 }  // namespace
@@ -334,12 +327,8 @@ void bake_layer(const RenderLayer& layer, const Camera& camera, double gain, Gau
     out.alpha.reserve(all);
     out.scale.reserve(all);
     out.rotation.reserve(all);
-    const Baker baker(layer, camera, gain);
-    HarmonicsTaker harmonics(layer, out);
-    for (std::size_t i = 0; i < layer.splats->position.size(); ++i) {
-        baker.add(i, out, counts);
-        harmonics.take(i, out);
-    }
+    Baker baker(layer, camera, gain, out);
+    for (std::size_t i = 0; i < layer.splats->position.size(); ++i) baker.add(i, out, counts);
 }
 
 void encode_for_display(Gaussians& gaussians) {

@@ -158,17 +158,14 @@ Image half_size(const Image& image) {
     return result;
 }
 
-// RGB with room for the border; colour over black where the picture has alpha (it is premultiplied).
+// A sky's face, RGB, with room for the border.
 Image with_border(const Image& picture) {
     std::int64_t texels = (picture.width + 2 * border) * (picture.height + 2 * border);
     claim_memory(texels * 3 * static_cast<std::int64_t>(sizeof(float)) * 4 / 3,
                  "environment picture and its mip levels");
     Image result = unfilled_image(picture.width + 2 * border, picture.height + 2 * border, 3);
     for (std::int64_t y = 0; y < picture.height; ++y)
-        for (std::int64_t x = 0; x < picture.width; ++x) {
-            const float* p = picture.at(x, y);
-            set_texel(result, x, y, {p[0], p[1], p[2]});
-        }
+        std::copy_n(picture.at(0, y), 3 * picture.width, result.at(border, y + border));
     return result;
 }
 
@@ -251,17 +248,13 @@ Environment load_environment(const EnvironmentParams& params, const Progress& pr
         if (files.size() == 6 && pictures.size() != 1)
             bad_input(file.string(), "environment.cube", "a picture of one face",
                       "a cube map, which environment.image takes");
-        for (Image& picture : pictures) {
-            faces.emplace_back();
-            faces.back().push_back(std::move(picture));
-            environment.largest_texel = std::max(environment.largest_texel, largest_value(faces.back()[0]));
-        }
+        for (Image& picture : pictures) faces.emplace_back().push_back(std::move(picture));
     }
     if (!params.tile.empty())
-        for (const Image& face : make_sky(params.tile, params.tiling, progress)) {
-            faces.push_back({with_border(face)});
-            environment.largest_texel = std::max(environment.largest_texel, largest_value(faces.back()[0]));
-        }
+        for (const Image& face : make_sky(params.tile, params.tiling, progress))
+            faces.emplace_back().push_back(with_border(face));
+    for (const std::vector<Image>& face : faces)
+        environment.largest_texel = std::max(environment.largest_texel, largest_value(face[0]));
     if (files.size() == 6) check_cube(files, faces);
     if (!faces.empty()) build_levels(faces, progress);
     environment.faces = std::make_shared<const EnvironmentFaces>(std::move(faces));

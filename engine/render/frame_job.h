@@ -72,7 +72,7 @@ Tiles choose_tiles(const FrameJob& job);
 std::int64_t carried_bytes(const FrameJob& job, const TileGrid& grid);
 
 /// The frame in bands, each of some rows of tiles, so that what they take keeps to the memory limit as far as
-/// can be told before. With tile_done those nearest to the middle come first, and what has many splats is cut
+/// can be estimated. With tile_done those nearest to the middle come first, and what has many splats is cut
 /// so that its first tiles come soon.
 struct Bands {
     std::vector<TileGrid> grids;

@@ -23,7 +23,7 @@ namespace {
 
 // ---- a band of the frame
 
-/// Of a record of the tile being folded, beside itself: its places in the order, and its disc.
+/// Bytes besides the record itself while its tile is folded: its places in the order, and its disc.
 constexpr std::int64_t fold_bytes_per_record = SplatSorter::bytes_per_record + 6 * sizeof(float);
 
 // Of a record: itself with the unused ends of blocks, and an id where they are kept.
@@ -66,8 +66,7 @@ class BandRun {
     }
 
   private:
-    // Of a band's progress: all slabs, before their tiles are resolved; of one slab, what comes before
-    // folding.
+    // Of a band's progress: all slabs, before their tiles are resolved; of one slab, its two steps.
     static constexpr double slabs_share = 0.95, scatter_share = 0.4, fold_share = 0.6;
     static constexpr double filled = 0.9;  // of the limit by what is planned: estimates miss some
     static constexpr double finer = 0.7;   // records of a slab over those of one that did not fit
@@ -87,7 +86,7 @@ class BandRun {
         cache_.store.limit(limit_);
     }
 
-    /// One slab where all records fit, as far as can be told.
+    /// One slab where all records fit, as far as can be estimated.
     std::vector<DepthRange> plan() {
         limit_store(0);
         const double bytes = record_bytes + (blocks_.empty() ? 0.0 : id_bytes);
@@ -230,7 +229,7 @@ std::int64_t image_bytes(std::span<const RenderLayer> layers, const RenderSettin
 }
 
 /// RenderSettings::what_is_free in bytes: the memory available now, less the frame's images and what each
-/// thread takes beside records. With less than 24 MB a frame would be cut into ever more bands and slabs for
+/// thread takes besides records. With less than 24 MB a frame would be cut into ever more bands and slabs for
 /// hours: it is better to begin, and to fail where that does not suffice.
 std::int64_t free_bytes(std::span<const RenderLayer> layers, const RenderSettings& settings,
                         const RenderCache::State& state) {
@@ -303,8 +302,8 @@ std::int64_t scattered_bytes(std::span<const RenderLayer> layers, const Camera& 
     const std::vector<RenderLayer> drawn = as_drawn(layers);
     RenderSettings unlimited = settings;
     unlimited.memory_limit_bytes = 0;
-    const TileDone nobody;
-    FrameJob job{drawn, camera, nullptr, unlimited, progress, nobody, {}, {}, {}, {}, {}, {}};
+    const TileDone unwatched;
+    FrameJob job{drawn, camera, nullptr, unlimited, progress, unwatched, {}, {}, {}, {}, {}, {}};
     prepare(job, *cache.state);
     return static_cast<std::int64_t>(settings.splats_each *
                                      static_cast<double>(scattered_bytes(job, *cache.state)));

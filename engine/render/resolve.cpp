@@ -42,16 +42,16 @@ GroupPixel group_pixel(const BlendGroup& group, const TilePlanes& planes, std::s
                        : group.kind == FoldKind::add ? 1.0f
                                                      : planes.transmittance[k][i];
     if (!group.isolated || group.holdout || group.blend == Blend::absorb) return p;
+    const auto through = [&](float light) {
+        return group.blend == Blend::add ? 1.0f : 1.0f - (group.blend == Blend::screen ? light : p.alpha);
+    };
     float hidden = 0.0f;
     for (int k = 0; k < 3; ++k) {
-        hidden += std::min(1.0f, p.color[k]);
-        p.through[k] = group.blend == Blend::add      ? 1.0f
-                       : group.blend == Blend::screen ? 1.0f - std::min(1.0f, p.color[k])
-                                                      : 1.0f - p.alpha;
+        const float light = std::min(1.0f, p.color[k]);
+        hidden += light;
+        p.through[k] = through(light);
     }
-    p.through[3] = group.blend == Blend::add      ? 1.0f
-                   : group.blend == Blend::screen ? 1.0f - hidden / 3.0f
-                                                  : 1.0f - p.alpha;
+    p.through[3] = through(hidden / 3.0f);
     if (group.blend == Blend::screen) p.alpha = hidden / 3.0f;
     if (group.blend == Blend::add) p.alpha = 0.0f;
     return p;

@@ -54,7 +54,7 @@ double mean_along_row(double focal, double own, double colatitude, const Weight&
 }
 
 /// The sum of weights over the rows around a pole of an equirectangular frame, each times its pixels' solid
-/// angle, px of the sphere: there rows are few and unlike each other, and no spectrum tells their sum.
+/// angle, px of the sphere: there rows are few and unlike each other, and no spectrum gives their sum.
 template <class Weight>
 double sum_at_pole(const Lens& lens, const NearPole& pole, double support_px, const Weight& weight) {
     const double focal = lens.focal_px;

@@ -1,6 +1,6 @@
 // Sums over the pixels of a frame that shows the sphere, each weighted by its solid angle: where pixels are
 // few and unlike each other, at a panorama's poles and at the rim of a fisheye that sees all round, no
-// spectrum tells what a footprint adds up to. In: a lens, a place, weights. Out: px of the sphere; and the
+// spectrum says what a footprint adds up to. In: a lens, a place, weights. Out: px of the sphere; and the
 // gains that came of such sums, kept for the next time.
 #pragma once
 
@@ -202,7 +202,7 @@ class PoleRows {
         const double half = real::acos(std::fmax(reach, -1.0));
         const double places = std::ceil(16.0 + 2.0 * half * sine * focal_ / step_px_);
         const double longitude = real::atan2(toward_.x, -toward_.z);
-        // From one to the next by a turn: sines and cosines are dear.
+        // From one to the next by a turn: sines and cosines are expensive.
         const double begin = longitude + half * (1.0 / places - 1.0), step = 2.0 * half / places;
         const double turn_sine = real::sin(step), turn_cosine = real::cos(step);
         double right = real::sin(begin), ahead = real::cos(begin), sum = 0.0;
@@ -228,7 +228,7 @@ class PoleRows {
 class CountedGains {
   public:
     using Key = std::array<float, 15>;
-    /// `splat`: what the gains depend on beside the table and the lens.
+    /// `splat`: what the gains depend on besides the table and the lens.
     static Key key_of(const FootprintTable& table, const Lens& lens, const std::array<float, 6>& splat) {
         const auto projection = static_cast<float>(lens.projection),
                    shape = static_cast<float>(static_cast<int>(table.falloff.shape));

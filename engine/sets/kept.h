@@ -24,8 +24,7 @@
 
 namespace astrosplat {
 
-// ---- the names under which things are kept: hashes of everything that reaches a bit of them, and of nothing
-// else
+// ---- names, under which things are kept: hashes of all that reaches a bit of them, and of nothing else
 
 /// Raised whenever generation, or the reading of meshes and pictures, gives other bits than before.
 inline constexpr int set_version = 31;

@@ -1,6 +1,5 @@
 // An entry is read without a lock, for it appears whole or not at all. The lock of its name is held from
-// before generation until the file is in place; what is found unlocked was left by a process that ended
-// early.
+// before generation until the file is in place; what is found unlocked was left by a process that was killed.
 #include "sets/kept.h"
 
 #include <fmt/format.h>

@@ -1,5 +1,4 @@
-// Whether a block shows anything is found out once for a look; rendering then makes only the blocks that it
-// needs.
+// Whether a block shows anything is found out once for a look; rendering makes only the blocks that it needs.
 #include "streamed/streamed_set.h"
 
 #include <algorithm>
