@@ -311,6 +311,16 @@ TEST(Structure, NoFileNamesAFolderOfOneMachine) {
     }
 }
 
+TEST(Structure, ReadmeNamesFilesThatAreThere) {
+    std::ifstream in(root / "README.md");
+    const std::string text(std::istreambuf_iterator<char>(in), {});
+    const std::regex place("`((app|assets|engine|shaders|tests|third_party)/[A-Za-z0-9_./-]+)`");
+    int count = 0;
+    for (std::sregex_iterator found(text.begin(), text.end(), place), end; found != end; ++found, ++count)
+        EXPECT_TRUE(fs::exists(root / (*found)[1].str())) << (*found)[1].str();
+    EXPECT_GT(count, 10);
+}
+
 TEST(Structure, CodeIsFormatted) {
     if (output_of("clang-format --version").find("version 14") == std::string::npos) {
         GTEST_SKIP() << "clang-format 14 is not installed";
