@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <functional>
@@ -100,12 +101,15 @@ glm::dvec4 value_of(const GltfCurve& curve, double frame) {
 
 // ---- nodes
 
+constexpr std::array<std::string_view, 3> moved_paths = {"translation", "rotation", "scale"};
+
 struct MovedNode {
     GltfNode rest;
-    std::optional<GltfCurve> translation, rotation, scale;
+    std::array<std::optional<GltfCurve>, 3> curves{};  // by moved_paths
 
     glm::dmat4 matrix_at(double frame) const {
         GltfNode node = rest;
+        const auto& [translation, rotation, scale] = curves;
         if (translation) node.translation = glm::dvec3(value_of(*translation, frame));
         if (rotation) node.rotation = value_of(*rotation, frame);
         node.rotation /= glm::length(node.rotation);
@@ -144,19 +148,15 @@ void attach_curves(GltfFile& file, const std::vector<std::int64_t>& way, double 
             const Json& target = channel.at("target");
             const auto found = std::ranges::find(way, target.value("node", std::int64_t(-1)));
             const std::string path = target.value("path", "");
-            if (found == way.end() || path == "weights") continue;
+            const auto* const moved = std::ranges::find(moved_paths, path);
+            if (found == way.end() || moved == moved_paths.end()) continue;  // weights, or of an extension
             MovedNode& node = nodes[static_cast<std::size_t>(found - way.begin())];
-            std::optional<GltfCurve>* const curve = path == "translation" ? &node.translation
-                                                    : path == "rotation"  ? &node.rotation
-                                                    : path == "scale"     ? &node.scale
-                                                                          : nullptr;
-            if (!curve) continue;  // of an extension
             const auto sampler = channel.at("sampler").get<std::int64_t>();
             const Json& samplers = animation.at("samplers");
             if (sampler < 0 || sampler >= std::ssize(samplers))
                 file.fail("a number of one of its samplers", std::to_string(sampler));
-            *curve = gltf_curve(file, samplers[static_cast<std::size_t>(sampler)], path == "rotation" ? 4 : 3,
-                                fps);
+            node.curves[static_cast<std::size_t>(moved - moved_paths.begin())] = gltf_curve(
+                file, samplers[static_cast<std::size_t>(sampler)], path == "rotation" ? 4 : 3, fps);
             node.rest.matrix.reset();
             moves = true;
         }
@@ -168,9 +168,9 @@ void attach_curves(GltfFile& file, const std::vector<std::int64_t>& way, double 
 std::optional<std::pair<double, double>> span_of(const std::vector<MovedNode>& nodes) {
     std::optional<std::pair<double, double>> span;
     for (const MovedNode& node : nodes)
-        for (const auto* curve : {&node.translation, &node.rotation, &node.scale})
-            if (*curve) {
-                const double first = (*curve)->frames.front(), last = (*curve)->frames.back();
+        for (const std::optional<GltfCurve>& curve : node.curves)
+            if (curve) {
+                const double first = curve->frames.front(), last = curve->frames.back();
                 span = span ? std::pair(std::min(span->first, first), std::max(span->second, last))
                             : std::pair(first, last);
             }
@@ -194,7 +194,7 @@ CameraTrack read_checked_gltf(const std::filesystem::path& path, const FrameRate
     GltfFile file(path);
     const std::vector<std::int64_t> way = way_to_camera(file);
     std::vector<MovedNode> nodes;
-    for (const std::int64_t i : way) nodes.push_back({node_of(file, file.element("nodes", i)), {}, {}, {}});
+    for (const std::int64_t i : way) nodes.push_back({node_of(file, file.element("nodes", i))});
     attach_curves(file, way, rate.output_fps, nodes);
     const auto span = span_of(nodes).value_or(std::pair(0.0, 0.0));
     const double first = std::floor(span.first), last = std::ceil(span.second);
