@@ -7,21 +7,22 @@
 #include <algorithm>
 #include <cstdint>
 #include <filesystem>
-#include <memory>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "batch_plan.h"
 #include "bodies/picture_size.h"
 #include "camera/camera.h"
+#include "command.h"
 #include "core/error.h"
 #include "core/file_format.h"
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "core/text.h"
+#include "exit.h"
 #include "generate/generate.h"
 #include "generate/lattice.h"
-#include "interrupt.h"
 #include "output/format.h"
 #include "pipeline.h"
 #include "sampled_run.h"
@@ -41,11 +42,12 @@ namespace {
 // One layer: from its source and the sizes of its files, and from its sample where there is one.
 
 struct LayerNeed {
-    const LayerParams* params;
+    const LayerParams* params = nullptr;
     std::int64_t splats = 0;
-    bool has_shapes = false;            // captures
     std::int64_t making = 0, held = 0;  // bytes while it is made, and from then on
     std::int64_t streamed = 0;          // bytes held where it stays on disk
+    bool has_radius = false;
+    bool has_shapes = false;  // captures: their look leaves the set whole, as it has the shapes
     bool may_stream = false, reads_pictures = false;
 };
 
@@ -54,77 +56,72 @@ constexpr std::int64_t shaded_bytes = 40;
 // by direction.
 constexpr std::int64_t capture_row_bytes = 68, harmonics_row_bytes = 180;
 constexpr std::int64_t shape_bytes = 68, harmonics_bytes = 204;
-constexpr std::int64_t sorting_bytes = 32;  // a row of a file whose rows are not in order of id
+// A row of a .splats file beside its bytes, whose rows are put in order of id: 41, as VmHWM shows for a file
+// of 2.5 M splats, and a little for what follows at once.
+constexpr std::int64_t sorting_bytes = 44;
 constexpr std::int64_t streamed_bytes_per_block = 128 * shaded_bytes + 256;  // sample, bounds
 constexpr std::int64_t catalogue_bytes_per_star = 100;                       // HYG; Hipparcos, compressed
 
 // More than any machine holds, few enough that bytes of many layers still fit 63 bits.
 constexpr std::int64_t most_splats = 1'000'000'000'000'000;
 
-struct Expected {
-    std::int64_t splats = 0;
-    std::int64_t making_bytes = 0;  // while the set is made or read; 0: what it takes then
-    std::shared_ptr<const NativeBlocks> file = nullptr;  // of kind splats, where it is .splats
-    bool has_radius = false;
-    bool has_shapes = false;      // captures: their look leaves the set whole, as it has the shapes
-    std::int64_t held_bytes = 0;  // by the set and by what is shaded, beyond what all have
-};
-
-Expected expected_columns(const SourceParams& source, const std::vector<TexturedMesh>& meshes) {
+LayerNeed need_of_columns(const SourceParams& source, const std::vector<TexturedMesh>& meshes) {
     Bounds box;
     for (const TexturedMesh& textured : meshes) box.add(bounds(textured.mesh));
     const double max_distance = resolved_max_distance(source, box);
     const Lattice lattice = make_lattice(source, meshes, max_distance);
-    return {static_cast<std::int64_t>(expected_splats(source, lattice, meshes, max_distance)),
-            columns_memory_bytes(meshes, lattice, max_distance)};
+    return {.splats = static_cast<std::int64_t>(expected_splats(source, lattice, meshes, max_distance)),
+            .making = columns_memory_bytes(meshes, lattice, max_distance)};
 }
 
 /// Of a file that cannot be read nothing: the reader will say why.
-Expected expected_file(const std::filesystem::path& path) try {
-    Expected expected;
+LayerNeed need_of_file(const LayerParams& layer) try {
+    const std::filesystem::path& path = layer.source.file;
+    LayerNeed need;
     const std::vector<std::string> attributes = splat_attributes(path);
     const auto has = [&](const char* name) {
         return std::ranges::find(attributes, name) != attributes.end();
     };
     const std::string_view format = format_of_file(path)->id;
     if (format == "splats") {
-        expected.file = std::make_shared<NativeBlocks>(path);
-        expected.splats = expected.file->splats();
-        expected.making_bytes = expected.file->bytes() + expected.splats * sorting_bytes;
+        const NativeBlocks file(path);
+        need.splats = file.splats();
+        need.making = file.bytes() + need.splats * sorting_bytes;
+        need.streamed = static_cast<std::int64_t>(file.size()) * streamed_bytes_per_block;
+        need.may_stream = !is_encoded(layer.render) && why_not_streamed(file, look_of(layer)).empty();
     } else if (format == "gltf") {
         const auto bytes = static_cast<std::int64_t>(std::filesystem::file_size(path));
-        expected.splats = bytes / (capture_row_bytes + (has("harmonics") ? harmonics_row_bytes : 0));
+        need.splats = bytes / (capture_row_bytes + (has("harmonics") ? harmonics_row_bytes : 0));
     } else {
-        expected.splats = splat_count(path);
+        need.splats = splat_count(path);
     }
-    expected.has_radius = has("radius") || has("scale");
-    expected.has_shapes = has("scale");
-    if (expected.has_shapes)
-        expected.held_bytes = expected.splats * (shape_bytes + (has("harmonics") ? harmonics_bytes : 0));
-    return expected;
+    need.has_radius = has("radius") || has("scale");
+    need.has_shapes = has("scale");
+    if (need.has_shapes) need.held = need.splats * (shape_bytes + (has("harmonics") ? harmonics_bytes : 0));
+    return need;
 } catch (const InputError&) {
     return {};
 }
 
-Expected expected_of(const SetCache& cache, const LayerParams& layer) {
+LayerNeed need_of_source(const SetCache& cache, const LayerParams& layer) {
     const SourceParams& source = layer.source;
-    if (source.kind == SourceKind::splats) return expected_file(source.file);
+    if (source.kind == SourceKind::splats) return need_of_file(layer);
     if (source.kind == SourceKind::stars) {
-        if (!source.stars.along.empty()) return {source.count};
+        if (!source.stars.along.empty()) return {.splats = source.count};
         std::error_code ignored;
         const auto size = std::filesystem::file_size(source.stars.catalogue, ignored);
-        return {ignored ? 0 : static_cast<std::int64_t>(size) / catalogue_bytes_per_star};
+        return {.splats = ignored ? 0 : static_cast<std::int64_t>(size) / catalogue_bytes_per_star};
     }
     const bool bodies = source.structure.kind != StructureKind::columns;
     if (!bodies && has_automatic_voxels(source) && source.splats <= 0)
-        return {source.count, columns_memory_bytes(source.count)};
+        return {.splats = source.count, .making = columns_memory_bytes(source.count)};
     std::vector<TexturedMesh> meshes =
-        load_meshes(cache, source, Progress{{}, &interrupted()}, most_texels_read(source, room_for_bodies()));
-    if (!bodies) return expected_columns(source, meshes);
+        load_meshes(cache, source, stoppable(), most_texels_read(source, room_for_bodies()));
+    if (!bodies) return need_of_columns(source, meshes);
     const BodiesPlan plan = plan_bodies(source, std::move(meshes), layer.name);
     const std::int64_t dots = expected_dots(plan.meshes, plan.structure);
-    return {std::min(dots, source.splats > 0 ? source.splats : most_splats),
-            bodies_memory_bytes(plan.meshes, dots)};
+    return {.splats = std::min(dots, source.splats > 0 ? source.splats : most_splats),
+            .making = bodies_memory_bytes(plan.meshes, dots)};
 }
 
 /// Loads meshes and pictures where `count` alone does not tell and the set is not in the cache. Throws as
@@ -132,37 +129,34 @@ Expected expected_of(const SetCache& cache, const LayerParams& layer) {
 /// sampled: nullptr, of layers that are not.
 LayerNeed need_of(const BatchPlan& plan, const LayerParams& layer, const SampledRun::Layer* sampled) {
     const bool is_kept = sampled && !sampled->is_made && layer.source.kind == SourceKind::mesh;
-    Expected expected = is_kept ? Expected{} : expected_of(plan.cache, layer);
-    if (sampled) expected.splats = sampled->splats;
-    if (sampled && sampled->has_radius) expected.has_radius = true;
-    expected.splats = std::min(expected.splats, most_splats);
-    const Look look = look_of(layer);
-    const OptionalColumns wanted = columns_read(look);
-    const std::int64_t row = 40 + (wanted.uv ? 8 : 0) + (wanted.mesh ? 4 : 0) + (expected.has_radius ? 4 : 0);
-    LayerNeed need{&layer, expected.splats, expected.has_shapes};
-    need.making = std::max(expected.making_bytes, expected.splats * row);
-    const bool used_up = is_shaded_alike(plan.scene, layer.name) && !expected.has_shapes;
-    need.held = expected.splats * (used_up ? row : row + shaded_bytes);
+    LayerNeed need = is_kept ? LayerNeed{} : need_of_source(plan.cache, layer);
+    need.params = &layer;
+    if (sampled) need.splats = sampled->splats;
+    need.splats = std::min(need.splats, most_splats);
+    need.has_radius |= sampled && sampled->has_radius;
     need.reads_pictures = !is_kept && layer.source.kind == SourceKind::mesh;
-    need.making += expected.held_bytes;
-    need.held += expected.held_bytes;
-    if (expected.file)
-        need.streamed = static_cast<std::int64_t>(expected.file->size()) * streamed_bytes_per_block;
-    need.may_stream =
-        expected.file && !is_encoded(layer.render) && why_not_streamed(*expected.file, look).empty();
+    const OptionalColumns wanted = columns_read(look_of(layer));
+    const std::int64_t row = 40 + (wanted.uv ? 8 : 0) + (wanted.mesh ? 4 : 0) + (need.has_radius ? 4 : 0);
+    const bool used_up = is_shaded_alike(plan.scene, layer.name) && !need.has_shapes;
+    need.making = need.held + std::max(need.making, need.splats * row);
+    need.held += need.splats * (used_up ? row : row + shaded_bytes);
     return need;
 }
 
-constexpr std::int64_t program_bytes = 45'000'000;  // with its libraries, before any scene
-constexpr std::int64_t picture_bytes = 78'000'000;  // libraries that read pictures
+constexpr std::int64_t program_bytes = 43'000'000;  // with its libraries, before any scene
+constexpr std::int64_t picture_bytes = 92'000'000;  // libraries that read pictures
 constexpr std::int64_t drawing_bytes = 10'000'000;  // what rendering and writing any frame adds
 constexpr std::int64_t worker_bytes = 800'000;      // a thread that renders, beside what folding takes
 constexpr std::int64_t block_bytes = 6'700'000;     // the same where sets come by the block
-constexpr std::int64_t reserve_bytes = 6'000'000;   // for what an estimate is short of, where a limit is kept
+// Of what is told: buffers grow by steps, malloc keeps holes, AOVs take more beside their planes. Without it
+// 30 runs took from 16 % less to 8 % more than was told: files and meshes in memory and on disk, one to three
+// layers, every AOV, blur, panoramas, split splats, each format, up to 4K.
+constexpr double told_margin = 1.1;
+constexpr std::int64_t reserve_bytes = 8'000'000;   // for what an estimate is short of, where a limit is kept
 constexpr std::int64_t least_records = 24'000'000;  // bytes for projected splats that any frame is worth
 // A projected splat lies in so many tiles, where nothing is known of the splats' places; and its place in a
-// bin. A twentieth of the memory for those that are known stays unused, at the end of blocks.
-constexpr double usual_records = 1.4, record_bytes = 44.0, fold_bytes = 56.0, unused_share = 1.05;
+// bin. Up to a twelfth of the memory for those that are known stays unused, at the end of blocks.
+constexpr double usual_records = 1.4, record_bytes = 44.0, fold_bytes = 56.0, unused_share = 1.08;
 constexpr double split_records = 4.0;        // where large ones are split, in a pass close by
 constexpr double shape_record_bytes = 40.0;  // outlines of those that are not round, while they are joined
 constexpr std::int64_t largest_guess = 250'000'000;  // bytes, beyond which sets are made small to be sure
@@ -195,32 +189,41 @@ SkyBytes sky_bytes(const EnvironmentParams& sky) try {
     return {};
 }
 
-/// Of a sample while it is written: EXR takes floats.
-std::int64_t written_bytes(const OutputParams& output) {
-    switch (resolve_format(output, output.path).depth) {
-        case OutputParams::Depth::uint8:
-            return 1;
-        case OutputParams::Depth::uint16:
-            return 2;
-        default:
-            return sizeof(float);
+// Of a file of EXR: rows that are stored together, and what OpenEXR takes for the planes of a layer (from
+// 640x360 to 3840x2160 px the peak rose by 9 to 13 MB a layer beside its floats).
+constexpr std::int64_t stored_rows = 256, layer_plane_bytes = 11'000'000;
+
+/// What writing a frame takes. `layers` have planes of their own.
+std::int64_t written_bytes(const OutputParams& output, std::int64_t width, std::int64_t height,
+                           std::int64_t layers) {
+    const FrameFormat format = resolve_format(output, output.path);
+    const std::int64_t values = 4 + 4 * layers;  // a pixel, of light and alpha
+    if (format.kind != FrameKind::exr) {
+        const bool is_8_bit = format.depth == OutputParams::Depth::uint8;
+        const bool is_16_bit = format.depth == OutputParams::Depth::uint16;
+        return width * height * values * (is_8_bit ? 1 : is_16_bit ? 2 : 4);
     }
+    const std::int64_t stored =
+        (values + output.holds("coverage")) * (format.depth == OutputParams::Depth::float32 ? 4 : 2) +
+        4 * (output.holds("depth") + output.holds("count"));
+    return width * (height * values * std::int64_t{sizeof(float)} + std::min(height, stored_rows) * stored) +
+           layers * layer_plane_bytes;
 }
 
-/// The frame, and what writing it takes.
+/// The frame, and what writing it takes. A blurred one is made of two renderings, each with what depth is
+/// weighted by; the second is gone when it is written.
 std::int64_t frame_bytes(const BatchPlan& plan) {
     const OutputParams& output = plan.scene.output;
     const bool whole = plan.region.width == 0;
-    const std::int64_t pixels = whole ? output.width * output.height : plan.region.width * plan.region.height;
+    const std::int64_t width = whole ? output.width : plan.region.width,
+                       height = whole ? output.height : plan.region.height;
     const std::int64_t layers =
         output.holds("layers") ? static_cast<std::int64_t>(plan.scene.layers.size()) : 0;
-    const bool blurred =
-        is_blurred(plan.scene.camera);  // two renderings, each with what depth is weighted by
-    const std::int64_t planes =
-        output.holds("depth") * (blurred ? 2 : 1) + output.holds("coverage") + output.holds("count");
-    const std::int64_t images = blurred ? 2 : 1;
-    const std::int64_t made = images * (4 + planes + 4 * layers);
-    return pixels * (made * std::int64_t{sizeof(float)} + (4 + 4 * layers) * written_bytes(output));
+    const bool blurred = is_blurred(plan.scene.camera);
+    const std::int64_t planes = 4 + output.holds("depth") * (blurred ? 2 : 1) + output.holds("coverage") +
+                                output.holds("count") + 4 * layers;
+    const std::int64_t made = width * height * planes * std::int64_t{sizeof(float)};
+    return made + std::max(written_bytes(output, width, height, layers), blurred ? made : 0);
 }
 
 bool uses_pictures(const BatchPlan& plan, const std::vector<LayerNeed>& needs) {
@@ -229,19 +232,51 @@ bool uses_pictures(const BatchPlan& plan, const std::vector<LayerNeed>& needs) {
            std::ranges::any_of(needs, &LayerNeed::reads_pictures);
 }
 
-/// Bytes of all layers: at the most while they are made one after the other, and when all are there.
-struct SetBytes {
-    std::int64_t making = 0, held = 0;
+/// All layers of a job, and what it takes beside them.
+struct JobNeed {
+    std::vector<LayerNeed> layers;
+    SkyBytes sky;
+    std::int64_t program = 0;  // bytes from its start on
+    std::int64_t working = 0;  // the same and what rendering takes beside sets, sky and records
 };
-SetBytes sets_of(const std::vector<LayerNeed>& needs, const std::vector<std::string>& streamed) {
-    SetBytes bytes;
-    for (const LayerNeed& need : needs) {
-        const bool on_disk = std::ranges::find(streamed, need.params->name) != streamed.end();
-        if (!on_disk) bytes.making = std::max(bytes.making, bytes.held + need.making);
-        bytes.held += on_disk ? need.streamed : need.held;
+
+using Names = std::vector<std::string>;
+
+std::int64_t held_bytes(const JobNeed& job, const Names& streamed) {
+    std::int64_t held = job.sky.held + (streamed.empty() ? 0 : thread_count() * block_bytes);
+    for (const LayerNeed& need : job.layers)
+        held += std::ranges::count(streamed, need.params->name) ? need.streamed : need.held;
+    return held;
+}
+
+/// While sets and sky are made one after the other, sky last.
+std::int64_t making_bytes(const JobNeed& job, const Names& streamed) {
+    std::int64_t most = job.sky.making, held = job.sky.held;
+    for (const LayerNeed& need : job.layers) {
+        const bool on_disk = std::ranges::count(streamed, need.params->name) > 0;
+        if (!on_disk) most = std::max(most, held + need.making);
+        held += on_disk ? need.streamed : need.held;
     }
-    if (!streamed.empty()) bytes.held += thread_count() * block_bytes;
-    return bytes;
+    return job.program + most;
+}
+
+/// At its peak, with so many bytes of records.
+std::int64_t peak_bytes(const JobNeed& job, const Names& streamed, std::int64_t records) {
+    return std::max(making_bytes(job, streamed), job.working + held_bytes(job, streamed) + records);
+}
+
+/// Those that have to stay on disk, the largest first. With less than a part of the records in memory there
+/// would be many passes over what is in memory.
+Names layers_on_disk(const JobNeed& job, std::int64_t all_records, std::int64_t limit) {
+    std::vector<const LayerNeed*> largest;
+    for (const LayerNeed& need : job.layers)
+        if (need.may_stream) largest.push_back(&need);
+    std::ranges::sort(largest, {}, [](const LayerNeed* need) { return -need->held; });
+    const std::int64_t records = std::max(all_records / 4, std::min(all_records, least_records));
+    Names streamed;
+    for (const LayerNeed* need : largest)
+        if (peak_bytes(job, streamed, records) > limit) streamed.push_back(need->params->name);
+    return streamed;
 }
 
 bool is_split(const LayerParams& layer) { return layer.render.lod.max_px > 0.0; }
@@ -255,13 +290,45 @@ std::int64_t guessed_records(const OutputParams& output, const LayerNeed& need) 
     return static_cast<std::int64_t>(each * static_cast<double>(need.splats));
 }
 
+/// Bytes of projected splats in the fullest frame. Sets guesses_much.
+std::int64_t expected_records(const BatchPlan& plan, const std::vector<LayerNeed>& needs, SampledRun& sample,
+                              JobEstimate& job) {
+    auto records = static_cast<std::int64_t>(unused_share * static_cast<double>(sample.record_bytes()));
+    std::int64_t guessed = 0;
+    for (const LayerNeed& need : needs) {
+        if (sample.find(need.params->name)) continue;
+        const std::int64_t bytes = guessed_records(plan.scene.output, need);
+        records += bytes;
+        if (need.params->source.kind != SourceKind::mesh) continue;
+        guessed += bytes;
+        job.guesses_much |= guessed > largest_guess || is_split(*need.params);
+    }
+    return records;
+}
+
+JobNeed need_of(const BatchPlan& plan, std::vector<LayerNeed> layers) {
+    JobNeed need;
+    need.program = program_bytes + (uses_pictures(plan, layers) ? picture_bytes : 0);
+    need.working = need.program + drawing_bytes + frame_bytes(plan) + thread_count() * worker_bytes +
+                   (plan.memory_limit_bytes > 0 ? reserve_bytes : 0);
+    need.sky = sky_bytes(plan.scene.environment);
+    need.layers = std::move(layers);
+    return need;
+}
+
+[[noreturn]] void refuse_limit(std::int64_t least, std::int64_t limit) {
+    constexpr double gib = 1073741824.0;
+    bad_input("--memory", "",
+              fmt::format("at least {:.2f} GiB, which this needs", static_cast<double>(least) / gib + 0.005),
+              fmt::format("{:.4g}", static_cast<double>(limit) / gib));
+}
+
 }  // namespace
 
 std::int64_t parse_memory(const std::string& text) {
-    const std::optional<double> gib = parse_double(text);
-    if (!gib || !(*gib > 0.0 && *gib < 1048576.0))
-        bad_input("--memory", "", "a size in GiB, such as 4", "'" + text + "'");
-    return static_cast<std::int64_t>(*gib * 1073741824.0);
+    constexpr double least = 1e-9, most = 1048575.0;  // GiB
+    return static_cast<std::int64_t>(
+        option_number("--memory", text, "a size in GiB, such as 4", least, most) * 1073741824.0);
 }
 
 void limit_bodies(LayerParams& layer, std::int64_t bytes, const SetCache& cache) {
@@ -270,7 +337,7 @@ void limit_bodies(LayerParams& layer, std::int64_t bytes, const SetCache& cache)
     SourceParams& source = layer.source;
     if (source.kind != SourceKind::mesh || source.structure.kind == StructureKind::columns) return;
     std::vector<TexturedMesh> meshes =
-        load_meshes(cache, source, Progress{{}, &interrupted()}, most_texels_read(source, bytes));
+        load_meshes(cache, source, stoppable(), most_texels_read(source, bytes));
     enlarge_small_pictures(meshes, layer.name);
     const std::int64_t largest = largest_picture(meshes);
     reduce_pictures(meshes, source.structure, {bytes, 0}, layer.name);
@@ -282,7 +349,7 @@ JobEstimate estimate(const BatchPlan& plan) {
     {
         SampledRun sample(plan, SampledRun::Layers::there);
         JobEstimate job = estimate(plan, sample);
-        if (job.guessed_bytes <= largest_guess) return job;
+        if (!job.guesses_much) return job;
     }
     SampledRun sample(plan, SampledRun::Layers::meshes);
     return estimate(plan, sample);
@@ -290,53 +357,29 @@ JobEstimate estimate(const BatchPlan& plan) {
 
 JobEstimate estimate(const BatchPlan& plan, SampledRun& sample) {
     JobEstimate job;
-    std::vector<LayerNeed> needs;
+    std::vector<LayerNeed> layers;
     for (const LayerParams& layer : plan.scene.layers) {
         if (!ever_visible(plan.scene, layer)) continue;
-        needs.push_back(need_of(plan, layer, sample.find(layer.name)));
-        job.layers.push_back({layer.name, needs.back().splats});
-        job.splats += needs.back().splats;
-    }
-    const bool is_limited = plan.memory_limit_bytes > 0;
-    const std::int64_t limit = is_limited ? plan.memory_limit_bytes : available_memory_bytes() / 10 * 9;
-    const std::int64_t program = program_bytes + (uses_pictures(plan, needs) ? picture_bytes : 0);
-    const std::int64_t working = program + drawing_bytes + frame_bytes(plan) + thread_count() * worker_bytes +
-                                 (is_limited ? reserve_bytes : 0);
-    auto records = static_cast<std::int64_t>(unused_share * static_cast<double>(sample.record_bytes()));
-    for (const LayerNeed& need : needs) {
-        if (sample.find(need.params->name)) continue;
-        const std::int64_t bytes = guessed_records(plan.scene.output, need);
-        records += bytes;
-        if (need.params->source.kind == SourceKind::mesh) job.guessed_bytes += bytes;
+        layers.push_back(need_of(plan, layer, sample.find(layer.name)));
+        job.layers.push_back({layer.name, layers.back().splats});
+        job.splats += layers.back().splats;
     }
     const EnvironmentParams& sky = plan.scene.environment;
-    const SkyBytes skies = sky_bytes(sky);
     if (sky.visible && !sky.tile.empty())
-        job.sky_kept = is_kept(plan.cache, sky.tile, sky.tiling, Progress{{}, &interrupted()});
-    const auto needed = [&](std::int64_t of_records) {
-        const SetBytes sets = sets_of(needs, job.streamed);
-        return std::max(program + std::max(sets.making + skies.held, skies.making),
-                        working + sets.held + skies.held + of_records);
-    };
-    // Less than a part of the records makes many passes over what is in memory.
-    std::vector<const LayerNeed*> largest;
-    for (const LayerNeed& need : needs)
-        if (need.may_stream) largest.push_back(&need);
-    std::ranges::sort(largest, {}, [](const LayerNeed* need) { return -need->held; });
-    for (const LayerNeed* need : largest)
-        if (needed(std::max(records / 4, std::min(records, least_records))) > limit)
-            job.streamed.push_back(need->params->name);
-    job.bytes = needed(records);
+        job.sky_kept = is_kept(plan.cache, sky.tile, sky.tiling, stoppable());
+    const std::int64_t records = expected_records(plan, layers, sample, job);
+    const JobNeed need = need_of(plan, std::move(layers));
+    const bool is_limited = plan.memory_limit_bytes > 0;
+    const std::int64_t limit = is_limited ? plan.memory_limit_bytes : available_memory_bytes() / 10 * 9;
+    job.streamed = layers_on_disk(need, records, limit);
+    job.bytes =
+        static_cast<std::int64_t>(told_margin * static_cast<double>(peak_bytes(need, job.streamed, records)));
     if (!is_limited && job.streamed.empty()) return job;
-    const std::int64_t least = needed(std::min(records, least_records));
-    if (is_limited && least > limit)
-        bad_input("--memory", "",
-                  fmt::format("at least {:.2f} GiB, which this needs",
-                              static_cast<double>(least) / 1073741824.0 + 0.005),
-                  fmt::format("{:.4g}", static_cast<double>(limit) / 1073741824.0));
+    const std::int64_t least = peak_bytes(need, job.streamed, std::min(records, least_records));
+    if (is_limited && least > limit) refuse_limit(least, limit);
     // Memory that malloc does not give back, and the last piece of each kind, is a thirtieth.
-    job.renderer_bytes = std::max(
-        limit - limit / 32 - working - sets_of(needs, job.streamed).held - skies.held, least_records);
+    job.renderer_bytes =
+        std::max(limit - limit / 32 - need.working - held_bytes(need, job.streamed), least_records);
     job.bytes = std::min(job.bytes, std::max(limit, least));
     return job;
 }

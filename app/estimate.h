@@ -24,7 +24,8 @@ struct JobEstimate {
     std::optional<bool> sky_kept;  // of a scene whose sky is made of one picture: whether it is in the cache
     /// Layers of .splats files that stay on disk, because all in memory would be more than there may be.
     std::vector<std::string> streamed;
-    std::int64_t guessed_bytes = 0;   // for splats of meshes of which nobody knows yet where they lie
+    /// For splats of meshes of which nobody knows yet where they lie, or into how many they are split.
+    bool guesses_much = false;
     std::int64_t renderer_bytes = 0;  // what is left for RenderSettings::memory_limit_bytes; 0: any number
 };
 /// Loads meshes and pictures where `count` alone does not tell and the set is not in the cache, nothing else.

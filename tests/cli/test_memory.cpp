@@ -91,6 +91,12 @@ position = {}
         if (unit == "GiB") run.told_mib *= 1024.0;
         return run;
     }
+
+    /// What was told is never less than what was taken, and at most a fifth more.
+    static void expect_enough(const Run& run) {
+        EXPECT_GE(run.told_mib, run.taken_mib) << run.err;
+        EXPECT_LE(run.told_mib, 1.2 * run.taken_mib) << run.err;
+    }
 };
 
 TEST_F(Memory, AFileLargerThanTheMemoryGivesTheSamePixels) {
@@ -116,13 +122,35 @@ TEST_F(Memory, WhatWillNotFitIsSaidBeforeAnythingIsDone) {
 TEST_F(Memory, ARunTakesWhatItAnnounces) {
     make_ball(2500000, "[640, 360]");
     const Run whole = rendered({});
-    EXPECT_NEAR(whole.told_mib, whole.taken_mib, 0.15 * whole.taken_mib) << whole.err;
+    expect_enough(whole);
     const Run large = rendered({"--resolution", "3840x2160"});
-    EXPECT_NEAR(large.told_mib, large.taken_mib, 0.15 * large.taken_mib) << large.err;
+    expect_enough(large);
     EXPECT_GT(large.taken_mib, whole.taken_mib + 100.0);
     // Away from the ball; then reading its file takes the most.
     const Run nothing = rendered({"--set", "camera.target=[6.0, 12.0, 26.0]"});
-    EXPECT_NEAR(nothing.told_mib, nothing.taken_mib, 0.15 * nothing.taken_mib) << nothing.err;
+    expect_enough(nothing);
+}
+
+// Planes of every layer, two renderings of a blurred frame, a projection onto the sphere, and splats split in
+// front of the camera; each of two layers in memory, then of one on disk where there is not room for both.
+TEST_F(Memory, EveryKindOfFrameIsCounted) {
+    make_ball(1000000, "[1280, 720]",
+              "[[layer]]\nname = \"second\"\n[layer.source]\nkind = \"splats\"\nfile = \"ball.splats\"\n");
+    const std::string aovs = "output.aovs=[\"depth\", \"coverage\", \"count\", \"layers\"]";
+    const std::vector<std::vector<std::string>> kinds = {
+        {aovs},
+        {"camera.shutter=180", aovs},
+        {"camera.projection=equirectangular", "camera.position=[0.2, 0.1, 0.3]"},
+        {"camera.position=[0.6, 0.4, 1.3]", "layer.ball.render.lod.max_px=8"},
+        {"layer.ball.render.isolate=true", "layer.ball.render.blend=screen"}};
+    for (const std::vector<std::string>& kind : kinds) {
+        std::vector<std::string> words;
+        for (const std::string& assignment : kind) words.insert(words.end(), {"--set", assignment});
+        expect_enough(rendered(words));
+    }
+    const Run streamed = rendered({"--memory", "0.23", "--set", aovs});
+    EXPECT_NE(streamed.err.find("block by block"), std::string::npos) << streamed.err;
+    expect_enough(streamed);
 }
 
 // More than what a small frame takes.
@@ -130,7 +158,7 @@ TEST_F(Memory, LibrariesThatReadPicturesAreCounted) {
     make_ball_to_generate(1000, "[3.0, 6.0, 13.0]");
     const Run run = rendered({});
     EXPECT_GT(run.told_mib, 100.0);
-    EXPECT_NEAR(run.told_mib, run.taken_mib, 0.15 * run.taken_mib) << run.err;
+    expect_enough(run);
 }
 
 TEST_F(Memory, EveryFormatOfFramesIsCounted) {
@@ -139,7 +167,7 @@ TEST_F(Memory, EveryFormatOfFramesIsCounted) {
         for (const char* size : {"640x360", "1920x1080"}) {
             const Run run = rendered(
                 {"--set", fmt::format("output.path=frames/shot.####.{}", ending), "--resolution", size});
-            EXPECT_NEAR(run.told_mib, run.taken_mib, 0.15 * run.taken_mib) << run.err;
+            expect_enough(run);
         }
     }
 }
@@ -155,13 +183,13 @@ TEST_F(Memory, TheProgramThatStartsThisOneIsNotCounted) {
 TEST_F(Memory, ASetThatIsNotThereIsMadeSmallToBeSure) {
     make_ball_to_generate(2500000, "[3.0, 6.0, 13.0]", "[layer.render.lod]\nmax_px = 200.0\n");
     const Run run = rendered({});
-    EXPECT_NEAR(run.told_mib, run.taken_mib, 0.15 * run.taken_mib) << run.err;
+    expect_enough(run);
 }
 
 TEST_F(Memory, GeneratingTakesWhatIsAnnounced) {
     make_ball_to_generate(2500000, "[3.0, 6.0, 13.0]");
     const Run run = rendered({});
-    EXPECT_NEAR(run.told_mib, run.taken_mib, 0.15 * run.taken_mib) << run.err;
+    expect_enough(run);
 }
 
 // Splats close by, which are split, wide and out of the frame; their set is in the cache.
@@ -170,8 +198,15 @@ TEST_F(Memory, WhatAPassCloseByTakesIsToldFromASample) {
         300000, "[0.6, 0.4, 1.3]",
         "[layer.render]\nlod = { max_px = 8 }\n[layer.look]\nradius = { min = 0.05, max = 0.05 }\n");
     ASSERT_EQ(batch({"--sets-only", "-q"}).code, 0);
-    const Run run = rendered({}, true);
-    EXPECT_NEAR(run.told_mib, run.taken_mib, 0.15 * run.taken_mib) << run.err;
+    expect_enough(rendered({}, true));
+}
+
+// The same where the set is still to be made.
+TEST_F(Memory, IntoHowManySplatsAreSplitIsNotGuessed) {
+    make_ball_to_generate(
+        300000, "[0.6, 0.4, 1.3]",
+        "[layer.render]\nlod = { max_px = 8 }\n[layer.look]\nradius = { min = 0.05, max = 0.05 }\n");
+    expect_enough(rendered({}));
 }
 
 // Sets of Gaussians stay whole beside what the look makes of them, as their shapes do.
@@ -180,7 +215,7 @@ TEST_F(Memory, CapturesAreCountedWithTheirShapesAndHarmonics) {
     for (const int degree : {0, 3}) {
         write_text(folder / "capture.ply", ply_of(capture(300000, degree, 0.05), degree));
         const Run run = rendered({});
-        EXPECT_NEAR(run.told_mib, run.taken_mib, 0.15 * run.taken_mib) << run.err;
+        expect_enough(run);
     }
 }
 
@@ -205,7 +240,7 @@ TEST_F(Memory, TheSkyIsCounted) {
     make_ball(1000, "[64, 36]", "[environment]\nimage = \"sky.ppm\"\n");
     for (const char* visible : {"true", "false"}) {
         const Run run = rendered({"--set", fmt::format("environment.visible={}", visible)});
-        EXPECT_NEAR(run.told_mib, run.taken_mib, 0.15 * run.taken_mib) << run.err;
+        expect_enough(run);
     }
 }
 
