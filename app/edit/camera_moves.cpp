@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <glm/geometric.hpp>
@@ -13,12 +14,11 @@
 #include <set>
 #include <span>
 
+#include "camera/keyframe.h"
 #include "core/real.h"
 #include "core/rotation.h"
 #include "edit/edit_rules.h"
-#include "edit/fit_path.h"
 #include "edit/keyframes.h"
-#include "edit/rounding.h"
 #include "edit/view_camera.h"
 #include "scene/animate.h"
 #include "scene/describe.h"
@@ -26,6 +26,118 @@
 
 namespace astrosplat {
 namespace {
+
+// A path into keyframes: by bisection the farthest keyframe that one segment reaches within the tolerance,
+// then the next from there. Then the tolerance is lowered while the number of segments stays, so that the
+// last one is no rest of the others.
+
+/// Scene units at a frame; smooth.
+using PathInTime = std::function<glm::dvec3(double frame)>;
+
+constexpr int samples = 16;               // of a segment, where it is compared with the path
+constexpr double least_step = 1.0 / 512;  // of a handle's length, as a share of its segment
+
+/// A segment whose handles have the path's velocities, `out` and `in` of its frames long.
+struct FittedSegment {
+    double out = 1.0 / 3.0, in = 1.0 / 3.0;
+    double error = 0.0;  // the largest distance to the path at the same frame, scene units
+};
+
+class Fitter {
+  public:
+    Fitter(const PathInTime& path, double first, double last) : path_(path), first_(first), last_(last) {}
+
+    /// Keyframes as counts of frames from the first.
+    std::vector<double> greedy(double tolerance) const {
+        std::vector<double> ends = {0.0};
+        const double length = last_ - first_;
+        while (ends.back() < length) {
+            double lo = ends.back() + 1.0, hi = length;
+            while (lo < hi) {
+                const double mid = std::floor(0.5 * (lo + hi + 1.0));
+                if (best(ends.back(), mid).error < tolerance)
+                    lo = mid;
+                else
+                    hi = mid - 1.0;
+            }
+            ends.push_back(std::fmin(lo, length));
+        }
+        return ends;
+    }
+
+    /// By turns one handle, the other, or both at once, in ever smaller steps.
+    FittedSegment best(double from, double to) const {
+        constexpr std::array<std::array<double, 2>, 6> ways = {
+            {{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, -1}, {-1, 1}}};
+        FittedSegment found;
+        found.error = error_of(found, from, to);
+        for (double step = 0.25; step > least_step;) {
+            const FittedSegment before = found;
+            for (const auto& [out, in] : ways) {
+                FittedSegment next{std::clamp(before.out + out * step, 0.0, 1.0),
+                                   std::clamp(before.in + in * step, 0.0, 1.0)};
+                next.error = error_of(next, from, to);
+                if (next.error < found.error) found = next;
+            }
+            if (found.error == before.error) step *= 0.5;
+        }
+        return found;
+    }
+
+    glm::dvec3 place(double at) const { return path_(first_ + at); }
+
+    /// Scene units a frame.
+    glm::dvec3 velocity(double at) const {
+        constexpr double h = 1e-3;
+        const double before = std::fmax(0.0, at - h), after = std::fmin(last_ - first_, at + h);
+        return (place(after) - place(before)) / (after - before);
+    }
+
+  private:
+    double error_of(const FittedSegment& segment, double from, double to) const {
+        const double span = to - from;
+        const glm::dvec3 a = place(from), d = place(to);
+        const glm::dvec3 b = a + velocity(from) * (segment.out * span),
+                         c = d - velocity(to) * (segment.in * span);
+        double most = 0.0;
+        for (int i = 1; i < samples; ++i) {
+            const double u = static_cast<double>(i) / samples;
+            const double at = from + span * bezier_point(0.0, segment.out, 1.0 - segment.in, 1.0, u);
+            most = std::fmax(most, glm::distance(bezier_point(a, b, c, d, u), place(at)));
+        }
+        return most;
+    }
+
+    const PathInTime& path_;
+    double first_, last_;
+};
+
+/// As few Bezier keyframes as follow the path, at whole numbers of frames from `first` on, the last one at
+/// `last` (a whole number of frames later, 1 at least). Between them the path is missed by less than
+/// `tolerance` scene units at every frame, unless it takes a bend within a single one; at them, speed and
+/// direction are the path's.
+std::vector<Keyframe<glm::dvec3>> fit_path(const PathInTime& path, double first, double last,
+                                           double tolerance) {
+    const Fitter fitter(path, first, last);
+    std::vector<double> ends = fitter.greedy(tolerance);
+    for (int i = 0; i < 20; ++i) {
+        std::vector<double> more_even = fitter.greedy(tolerance *= 0.9);
+        if (more_even.size() > ends.size()) break;
+        ends = std::move(more_even);
+    }
+    std::vector<Keyframe<glm::dvec3>> keyframes;
+    for (const double at : ends)
+        keyframes.push_back({first + at, fitter.place(at), Interpolation::bezier, {}, {}});
+    for (std::size_t i = 0; i + 1 < ends.size(); ++i) {
+        const FittedSegment segment = fitter.best(ends[i], ends[i + 1]);
+        const double span = ends[i + 1] - ends[i], out = segment.out * span, in = segment.in * span;
+        keyframes[i].out = {HandleKind::free, out, fitter.velocity(ends[i]) * out};
+        keyframes[i + 1].in = {HandleKind::free, -in, fitter.velocity(ends[i + 1]) * -in};
+    }
+    return keyframes;
+}
+
+// The moves.
 
 constexpr double tolerance = 8e-4;        // of the distance to the middle
 constexpr double fly_in_share = 0.15;     // of the distance that is left at the end
@@ -66,17 +178,6 @@ struct Move {
     std::optional<glm::dvec3> up_at_end = {};  // where the camera's up turns, too
 };
 
-template <class Gone>
-void remove_keyframes(Scene& scene, const std::string& key, const Gone& gone) {
-    for (Track& track : scene.animation)
-        if (track.key == key)
-            std::erase_if(track.keyframes, [&](const auto& keyframe) { return gone(keyframe.frame); });
-}
-
-void remove_empty_tracks(Scene& scene) {
-    std::erase_if(scene.animation, [](const Track& track) { return track.keyframes.empty(); });
-}
-
 bool is_camera_track(const Track& track) { return track.key.is_below("camera"); }
 
 /// Makes room for a move of `frames` frames from `frame` on, in `keys`. What is animated only later stays as
@@ -87,15 +188,17 @@ void make_room(Scene& scene, std::span<const char* const> keys, double frame, do
     for (Track& track : scene.animation) {
         if (!is_camera_track(track)) continue;
         if (later == LaterKeys::replace)
-            remove_keyframes(scene, track.key, [&](double at) { return at > frame; });
+            std::erase_if(track.keyframes, [&](const auto& keyframe) { return keyframe.frame > frame; });
         if (later == LaterKeys::shift)
             for (auto& keyframe : track.keyframes)
                 if (keyframe.frame > frame) keyframe.frame += frames;
         if (track.keyframes.empty()) scene.camera = now.camera;
     }
     for (const char* key : keys)
-        remove_keyframes(scene, key, [&](double at) { return at >= frame && at <= frame + frames; });
-    remove_empty_tracks(scene);
+        if (Track* const track = find_track(scene, key))
+            std::erase_if(track->keyframes,
+                          [&](const auto& k) { return k.frame >= frame && k.frame <= frame + frames; });
+    std::erase_if(scene.animation, [](const Track& track) { return track.keyframes.empty(); });
 }
 
 glm::dvec3 rounded(const glm::dvec3& v, double step) {
@@ -107,33 +210,27 @@ void set_smooth_keyframe(Scene& scene, const char* key, double frame, const glm:
     set_interpolation(scene, key, frame, Interpolation::smooth);
 }
 
-/// In order, where no keyframe of that time is left; places to `step` scene units.
+/// In order, where make_room() has left no keyframe; places to `step` scene units.
 void insert_positions(Scene& scene, const std::vector<Keyframe<glm::dvec3>>& keyframes, double step) {
+    using Numbers = std::vector<double>;
     constexpr double frame_step = 1e-3;
+    const auto numbers = [&](const glm::dvec3& v) {
+        const glm::dvec3 r = rounded(v, step);
+        return Numbers{r.x, r.y, r.z};
+    };
+    const auto handle = [&](const Handle<glm::dvec3>& h) {
+        if (h.kind != HandleKind::free) return Handle<Numbers>{};
+        return Handle<Numbers>{h.kind, rounded_to_step(h.frames, frame_step), numbers(h.value)};
+    };
     set_smooth_keyframe(scene, position_key, keyframes.front().frame, keyframes.front().value);
-    for (Track& track : scene.animation) {
-        if (track.key != position_key) continue;
-        track.constant_speed = false;  // the handles carry the speed
-        auto at = std::ranges::find(track.keyframes, keyframes.front().frame,
-                                    &Keyframe<std::vector<double>>::frame);
-        at = track.keyframes.erase(at);
-        for (const Keyframe<glm::dvec3>& k : keyframes) {
-            const auto numbers = [&](const glm::dvec3& v) {
-                const glm::dvec3 r = rounded(v, step);
-                return std::vector<double>{r.x, r.y, r.z};
-            };
-            const auto handle = [&](const Handle<glm::dvec3>& h) {
-                return h.kind == HandleKind::free
-                           ? Handle<std::vector<double>>{h.kind, rounded_to_step(h.frames, frame_step),
-                                                         numbers(h.value)}
-                           : Handle<std::vector<double>>{};
-            };
-            at = track.keyframes.insert(
-                at, {k.frame, numbers(k.value), k.interpolation, handle(k.in), handle(k.out)});
-            ++at;
-        }
-        (at - 1)->interpolation = Interpolation::smooth;
-    }
+    Track& track = *find_track(scene, position_key);
+    track.constant_speed = false;  // the handles carry the speed
+    auto at = std::ranges::find(track.keyframes, keyframes.front().frame, &Keyframe<Numbers>::frame);
+    at = track.keyframes.erase(at);
+    for (const Keyframe<glm::dvec3>& k : keyframes)
+        at = 1 + track.keyframes.insert(
+                     at, {k.frame, numbers(k.value), k.interpolation, handle(k.in), handle(k.out)});
+    (at - 1)->interpolation = Interpolation::smooth;
 }
 
 /// The frames to render reach to the end of the move, whose last keyframe is where a loop would begin again.
@@ -288,18 +385,10 @@ void add_camera_move(Scene& scene, CameraMove move, const Bounds& box, double fr
     if (seen.empty()) seen.add(glm::dvec3(0.0));
     const CameraParams camera = scene_at(scene, frame).camera;
     const glm::dvec3 middle = middle_of(camera, seen), start = place_of(camera, scene, seen);
-    const auto path = [&] {
-        switch (move) {
-            case CameraMove::orbit:
-                return orbit(camera, middle, start);
-            case CameraMove::fly_in:
-                return fly_in(middle, start);
-            case CameraMove::face_on_to_edge_on:
-                break;
-        }
-        return face_on_to_edge_on(scene, camera, seen, middle, start);
-    };
-    add_path(scene, path(), frame, later);
+    const Move path = move == CameraMove::orbit    ? orbit(camera, middle, start)
+                      : move == CameraMove::fly_in ? fly_in(middle, start)
+                                                   : face_on_to_edge_on(scene, camera, seen, middle, start);
+    add_path(scene, path, frame, later);
 }
 
 }  // namespace astrosplat

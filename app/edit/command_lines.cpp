@@ -50,16 +50,6 @@ std::string frame_problem(const RenderTask& task, const CameraParams& camera) {
     return "";
 }
 
-/// The text as a pattern of ffmpeg that matches nothing else.
-std::string literal_in_glob(const std::string& text) {
-    std::string literal;
-    for (const char c : text) {
-        if (std::string_view("*?[]{}\\").find(c) != std::string_view::npos) literal += '\\';
-        literal += c;
-    }
-    return literal;
-}
-
 }  // namespace
 
 RenderTask make_render_task(const Document& document, RenderKind kind, double frame) {
@@ -150,29 +140,14 @@ fs::path render_files(const RenderTask& task) {
 }
 
 std::vector<std::string> movie_command(const fs::path& movie, double fps) {
-    return {"ffmpeg",
-            "-y",
-            "-loglevel",
-            "error",
-            "-framerate",
-            fmt::format("{}", fps),
-            "-pattern_type",
-            "glob",
-            "-i",
-            literal_in_glob(movie_folder(movie).string()) + "/frame.*.png",
-            "-c:v",
-            "libx264",
-            "-crf",
-            "16",
-            "-preset",
-            "slow",
-            "-pix_fmt",
-            "yuv420p",
-            "-vf",
-            "pad=ceil(iw/2)*2:ceil(ih/2)*2",
-            "-movflags",
-            "+faststart",
-            movie.string()};
+    std::vector<std::string> words = {"ffmpeg", "-y", "-loglevel", "error", "-framerate"};
+    words.push_back(fmt::format("{}", fps));
+    words.insert(words.end(), {"-pattern_type", "glob", "-i"});
+    words.push_back(with_backslashes(movie_folder(movie).string(), "*?[]{}\\") + "/frame.*.png");
+    words.insert(words.end(), {"-c:v", "libx264", "-crf", "16", "-preset", "slow", "-pix_fmt", "yuv420p"});
+    words.insert(words.end(), {"-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2", "-movflags", "+faststart"});
+    words.push_back(movie.string());
+    return words;
 }
 
 namespace {
@@ -230,6 +205,15 @@ Scene shown_scene(const Document& document, const BatchCommandOptions& options) 
 }
 
 }  // namespace
+
+std::string with_backslashes(const std::string& text, std::string_view special) {
+    std::string escaped;
+    for (const char c : text) {
+        if (special.find(c) != special.npos) escaped += '\\';
+        escaped += c;
+    }
+    return escaped;
+}
 
 std::string shell_word(const std::string& text) {
     const auto plain = [](char c) {

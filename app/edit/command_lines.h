@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "camera/camera.h"
@@ -98,6 +99,9 @@ BatchCommand batch_command(const Document& document, const BatchCommandOptions& 
 /// The command line that renders what the dialog asks for, from any folder; a movie by a second command
 /// behind it.
 BatchCommand render_command(const Document& document, const RenderTask& task, const std::string& program);
+
+/// A backslash before each of the `special` characters.
+std::string with_backslashes(const std::string& text, std::string_view special);
 
 /// One word for a POSIX shell, in quotes where it needs them.
 std::string shell_word(const std::string& text);

@@ -56,30 +56,22 @@ std::string edit_name(const ParameterSpec& spec) {
 
 /// The layer that a key such as "layer.stars.name" is of.
 std::size_t layer_index(const Scene& scene, const ParameterKey& key) {
-    std::size_t index = 0;
-    while (scene.layers.at(index).name != key.layer()) ++index;
-    return index;
+    return static_cast<std::size_t>(find_layer(scene, key.layer()) - scene.layers.data());
 }
 
 /// The parameter of a key in `scene`, whose lists grow for it.
 Parameter parameter_for(Scene& scene, const ParameterKey& key) {
     Description description = describe(scene);
     if (const Parameter* parameter = find_parameter(description, key)) return *parameter;
-    try {
+    naming(key, [&] {
         while (extend_lists(description, key)) description = describe(scene);
-    } catch (const ValueError& error) {
-        throw InputError(fmt::format("{}: {}", key, error.what()));
-    }
+    });
     if (const Parameter* parameter = find_parameter(description, key)) return *parameter;
     throw InputError(why_unknown(scene, key));
 }
 
 void set_value(const Parameter& parameter, const Value& value, const fs::path& folder) {
-    try {
-        parameter.set(resolve_paths(value, parameter.spec, folder, false));
-    } catch (const ValueError& error) {
-        throw InputError(fmt::format("{}: {}", parameter.spec.key, error.what()));
-    }
+    naming(parameter.spec.key, [&] { parameter.set(resolve_paths(value, parameter.spec, folder, false)); });
 }
 
 /// A preset that cannot be read would be met only at saving.

@@ -1,16 +1,14 @@
 // Every value is checked by setting it to itself: the description knows its range.
 #include "edit/edit_rules.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <cstdlib>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <vector>
 
-#include "core/error.h"
 #include "scene/camera_file.h"
 #include "scene/check.h"
 #include "scene/describe.h"
@@ -48,11 +46,7 @@ void check_text(const Value& value, const std::string& key) {
 }
 
 void set_checked(const Parameter& parameter, const Value& value) {
-    try {
-        parameter.set(value);
-    } catch (const ValueError& error) {
-        throw InputError(fmt::format("{}: {}", parameter.spec.key, error.what()));
-    }
+    naming(parameter.spec.key, [&] { parameter.set(value); });
 }
 
 void check_track(const Track& track, const Parameter& parameter) {
@@ -142,6 +136,16 @@ void film_still(const Scene& before, Scene& after) {
     if (last > first)
         after.output.frames = fmt::format(
             "{}-{}", frames.front(), std::llround(std::max(first + film_frames(after.output) - 1.0, last)));
+}
+
+double rounded_to_step(double value, double step) {
+    if (!(step > 0.0)) return value;
+    const int digits = static_cast<int>(std::floor(std::log10(step)));
+    // Dividing by a whole power of ten gives the double nearest to the short decimal; multiplying by 0.001
+    // does not.
+    const double power = std::pow(10.0, std::abs(digits));
+    const double rounded = digits < 0 ? std::round(value * power) / power : std::round(value / power) * power;
+    return rounded + 0.0;  // never -0
 }
 
 }  // namespace astrosplat

@@ -7,8 +7,8 @@
 
 #include "core/real.h"
 #include "core/rotation.h"
+#include "edit/edit_rules.h"
 #include "edit/placement.h"
-#include "edit/rounding.h"
 #include "scene/parameter.h"
 
 namespace astrosplat {
@@ -80,19 +80,25 @@ double angle_about(const Camera& camera, const Handled& handled, const glm::dvec
     return real::atan2(glm::dot(axis, glm::cross(from, to)), glm::dot(from, to));
 }
 
+/// Once around in the plane of a and b, from a to a.
+std::vector<glm::dvec3> circle(const glm::dvec3& a, const glm::dvec3& b) {
+    constexpr int pieces = 64;
+    std::vector<glm::dvec3> points;
+    for (int i = 0; i <= pieces; ++i) {
+        const double turn = 2.0 * real::pi * i / pieces;
+        points.push_back(a * real::cos(turn) + b * real::sin(turn));
+    }
+    return points;
+}
+
 }  // namespace
 
 std::vector<glm::dvec3> handle_line(const Camera& camera, const Handled& handled, HandleTool tool, int axis,
                                     const HandleSizes& sizes) {
     const double length = sizes.length * units_per_px(camera, handled.origin);
     if (tool != HandleTool::rotate) return {handled.origin, handled.origin + handled.axes[axis] * length};
-    constexpr int pieces = 64;
-    std::vector<glm::dvec3> ring;
-    const glm::dvec3 a = handled.axes[(axis + 1) % 3], b = handled.axes[(axis + 2) % 3];
-    for (int i = 0; i <= pieces; ++i) {
-        const double turn = 2.0 * real::pi * i / pieces;
-        ring.push_back(handled.origin + (a * real::cos(turn) + b * real::sin(turn)) * length);
-    }
+    std::vector<glm::dvec3> ring = circle(handled.axes[(axis + 1) % 3], handled.axes[(axis + 2) % 3]);
+    for (glm::dvec3& point : ring) point = handled.origin + point * length;
     return ring;
 }
 
@@ -283,22 +289,13 @@ std::vector<std::vector<glm::dvec3>> crop_outline(const LayerParams& layer, std:
     std::vector<std::vector<glm::dvec3>> lines;
     if (crop.shape == Crop::Shape::box) {
         const Bounds box{-0.5 * glm::dvec3(crop.size), 0.5 * glm::dvec3(crop.size)};
-        for (int corner = 0; corner < 8; ++corner)
-            for (const int side : {1, 2, 4})
-                if (!(corner & side))
-                    lines.push_back({at(box.corner(corner)), at(box.corner(corner | side))});
+        for (const MarkLine& edge : box_edges(box, {})) lines.push_back({at(edge.from), at(edge.to)});
         return lines;
     }
-    constexpr int pieces = 64;
+    const glm::dmat3 radii(double(crop.radius));  // along x, y and z
     for (int axis = 0; axis < 3; ++axis) {
-        lines.emplace_back();
-        for (int i = 0; i <= pieces; ++i) {
-            const double turn = 2.0 * real::pi * i / pieces;
-            glm::dvec3 p(0.0);
-            p[(axis + 1) % 3] = double(crop.radius) * real::cos(turn);
-            p[(axis + 2) % 3] = double(crop.radius) * real::sin(turn);
-            lines.back().push_back(at(p));
-        }
+        lines.push_back(circle(radii[(axis + 1) % 3], radii[(axis + 2) % 3]));
+        for (glm::dvec3& point : lines.back()) point = at(point);
     }
     return lines;
 }

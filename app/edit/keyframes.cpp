@@ -5,8 +5,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/error.h"
+#include "edit/edit_rules.h"
 #include "scene/animate.h"
 #include "scene/describe.h"
 
@@ -16,12 +18,6 @@ namespace {
 using Numbers = std::vector<double>;
 using TrackKeyframe = Keyframe<Numbers>;
 
-Track* track_of(Scene& scene, const std::string& key) {
-    for (Track& track : scene.animation)
-        if (track.key == key) return &track;
-    return nullptr;
-}
-
 /// Null: none.
 TrackKeyframe* keyframe_at(Track* track, double frame) {
     if (!track) return nullptr;
@@ -30,7 +26,7 @@ TrackKeyframe* keyframe_at(Track* track, double frame) {
 }
 
 TrackKeyframe* keyframe_of(Scene& scene, const std::string& key, double frame) {
-    return keyframe_at(track_of(scene, key), frame);
+    return keyframe_at(find_track(scene, key), frame);
 }
 
 /// Puts a keyframe in its place, instead of one that is there.
@@ -50,18 +46,16 @@ Interpolation way_at(const Track& track, double frame) {
 
 /// The numbers of a value that fits the parameter; sets it in passing.
 Numbers numbers_for(const Parameter& parameter, const Value& value) {
-    try {
+    return naming(parameter.spec.key, [&] {
         parameter.set(value);
         Numbers numbers = to_numbers(parameter.spec, value);
         const bool nothing = numbers.empty() || (value.text() && value == parameter.spec.nothing);
-        const bool zero = std::all_of(numbers.begin(), numbers.end(), [](double x) { return x == 0.0; });
+        const bool zero = std::ranges::all_of(numbers, [](double x) { return x == 0.0; });
         if (nothing || (zero && parameter.spec.type == ParameterType::rotation))
             throw ValueError(
                 fmt::format("expected {}, found {}", expectation(parameter.spec), nothing ? "none" : "0"));
         return numbers;
-    } catch (const ValueError& error) {
-        throw InputError(fmt::format("{}: {}", parameter.spec.key, error.what()));
-    }
+    });
 }
 
 /// A new track moves smoothly, as people expect of a camera or a slider; values that step have no way
@@ -80,6 +74,10 @@ const Track* find_track(const Scene& scene, const std::string& key) {
     return found == scene.animation.end() ? nullptr : &*found;
 }
 
+Track* find_track(Scene& scene, const std::string& key) {
+    return const_cast<Track*>(find_track(std::as_const(scene), key));
+}
+
 bool is_animated(const Scene& scene, const std::string& key) { return find_track(scene, key) != nullptr; }
 
 bool has_keyframe_at(const Scene& scene, const std::string& key, double frame) {
@@ -96,7 +94,7 @@ void set_keyframe(Scene& scene, const std::string& key, double frame, const Valu
     if (parameter->spec.animation == Animation::no)
         throw InputError(parameter->spec.key.text() + ": this parameter cannot be animated");
     Numbers numbers = numbers_for(*parameter, value);
-    Track* track = track_of(scene, parameter->spec.key);
+    Track* track = find_track(scene, parameter->spec.key);
     if (!track) {
         scene.animation.push_back(new_track(parameter->spec));
         track = &scene.animation.back();
@@ -115,7 +113,7 @@ void set_keyframe(Scene& scene, const std::string& key, double frame, const Valu
 void remove_keyframe(Scene& scene, const std::string& key, double frame) {
     const TrackKeyframe* const found = keyframe_of(scene, key, frame);
     if (!found) return;
-    Track& track = *track_of(scene, key);
+    Track& track = *find_track(scene, key);
     if (track.keyframes.size() > 1) {
         std::erase_if(track.keyframes, [&](const TrackKeyframe& k) { return k.frame == frame; });
         return;
@@ -133,7 +131,7 @@ void remove_track(Scene& scene, const std::string& key) {
 void move_keyframe(Scene& scene, const std::string& key, double from, double to) {
     if (from == to || !std::isfinite(to) || !has_keyframe_at(scene, key, from)) return;
     copy_keyframe(scene, key, from, to);
-    std::erase_if(track_of(scene, key)->keyframes, [&](const TrackKeyframe& k) { return k.frame == from; });
+    std::erase_if(find_track(scene, key)->keyframes, [&](const TrackKeyframe& k) { return k.frame == from; });
 }
 
 void copy_keyframe(Scene& scene, const std::string& key, double from, double to) {
@@ -141,7 +139,7 @@ void copy_keyframe(Scene& scene, const std::string& key, double from, double to)
     if (!found || !std::isfinite(to)) return;
     TrackKeyframe copy = *found;
     copy.frame = to;
-    insert_keyframe(*track_of(scene, key), std::move(copy));
+    insert_keyframe(*find_track(scene, key), std::move(copy));
 }
 
 void set_interpolation(Scene& scene, const std::string& key, double frame, Interpolation interpolation) {
@@ -149,7 +147,7 @@ void set_interpolation(Scene& scene, const std::string& key, double frame, Inter
 }
 
 void set_ends(Scene& scene, const std::string& key, Ends ends) {
-    if (Track* track = track_of(scene, key)) track->ends = ends;
+    if (Track* track = find_track(scene, key)) track->ends = ends;
 }
 
 std::vector<double> frames_with_keyframes(const Scene& scene) {

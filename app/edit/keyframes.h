@@ -14,6 +14,7 @@ namespace astrosplat {
 
 /// The track of a full parameter key; nullptr when it is not animated.
 const Track* find_track(const Scene& scene, const std::string& key);
+Track* find_track(Scene& scene, const std::string& key);
 bool is_animated(const Scene& scene, const std::string& key);
 bool has_keyframe_at(const Scene& scene, const std::string& key, double frame);
 

@@ -18,11 +18,6 @@ namespace astrosplat {
 namespace fs = std::filesystem;
 namespace {
 
-bool is_taken(const Scene& scene, const std::string& name) {
-    return std::any_of(scene.layers.begin(), scene.layers.end(),
-                       [&](const LayerParams& layer) { return layer.name == name; });
-}
-
 bool belongs_to(const Track& track, const std::string& layer) { return track.key.layer() == layer; }
 
 fs::path place_of(const Scene& scene) {
@@ -53,12 +48,17 @@ const std::string& name_of(const Document& document, std::size_t index) {
 
 }  // namespace
 
+const LayerParams* find_layer(const Scene& scene, const std::string& name) {
+    const auto found = std::ranges::find(scene.layers, name, &LayerParams::name);
+    return found == scene.layers.end() ? nullptr : &*found;
+}
+
 std::string free_layer_name(const Scene& scene, const std::string& wanted) {
     const std::string name = layer_name_of(wanted);
-    if (!is_taken(scene, name)) return name;
+    if (!find_layer(scene, name)) return name;
     for (int number = 2;; ++number) {
         const std::string numbered = fmt::format("{}_{}", name, number);
-        if (!is_taken(scene, numbered)) return numbered;
+        if (!find_layer(scene, numbered)) return numbered;
     }
 }
 
@@ -103,7 +103,7 @@ void rename_layer(Scene& scene, std::size_t index, const std::string& name) {
     LayerParams& layer = scene.layers.at(index);
     if (layer.name == name) return;
     check_layer_name(name, layer.name);
-    if (is_taken(scene, name))
+    if (find_layer(scene, name))
         throw InputError(
             fmt::format("{}: layer.name: expected each name once, found '{}' twice", layer.name, name));
     for (Track& track : scene.animation)

@@ -11,6 +11,8 @@
 
 namespace astrosplat {
 
+/// Null: there is none of that name.
+const LayerParams* find_layer(const Scene& scene, const std::string& name);
 /// A name like `wanted` that no layer has and that scene files allow.
 std::string free_layer_name(const Scene& scene, const std::string& wanted);
 /// A layer for a picture (on the built-in plane), a mesh (with its own texture) or a splat file, at the end

@@ -7,13 +7,12 @@
 #include <array>
 #include <cmath>
 #include <functional>
-#include <glm/geometric.hpp>
 #include <sstream>
 
+#include "camera/camera.h"
 #include "core/error.h"
 #include "core/file.h"
 #include "core/file_format.h"
-#include "core/real.h"
 #include "scene/new_scene.h"
 #include "scene/parameter.h"
 #include "source/mesh.h"
@@ -49,21 +48,25 @@ std::string path_from(const fs::path& file, const fs::path& place) {
     return to_toml((below ? relative : full).string());
 }
 
-constexpr const char* scene_format = R"(# {name}: a first scene. 'astrosplat parameters' lists every key.
+/// The beginning of every scene, up to the comment of its camera.
+std::string head_text(const std::string& name, const char* what) {
+    return fmt::format(R"(# {}: {}. 'astrosplat parameters' lists every key.
 astrosplat = 1
 
 [output]
 resolution = [1920, 1080]         # px
 frames     = "1"                  # such as "1-240" or "1-100,120,200-300x2"
-path       = {path}  # the ending chooses the format: .exr .tif .png
+path       = {}  # the ending chooses the format: .exr .tif .png
 
-[camera]                          # without a position it frames everything, from 35 degrees above
-fov = 40.0                        # degrees, vertical
-{layer})";
+[camera] )",
+                       name, what, to_toml("frames/" + name + ".####.exr"));
+}
 
 std::string scene_text(const std::string& name, const std::string& layer) {
-    return fmt::format(scene_format, fmt::arg("name", name),
-                       fmt::arg("path", to_toml("frames/" + name + ".####.exr")), fmt::arg("layer", layer));
+    return head_text(name, "a first scene") +
+           "                         # without a position it frames everything, from 35 degrees above\n"
+           "fov = 40.0                        # degrees, vertical\n" +
+           layer;
 }
 
 std::string scene_text(const fs::path& file, const std::string& layer) {
@@ -142,12 +145,9 @@ Bounds middle_box(const SplatSet& set) {
     return box;
 }
 
-/// The camera that frames this box from 35 degrees above.
+/// The camera that frames this box as one without a position would frame the whole scene.
 std::string camera_lines(const Bounds& box) {
-    const glm::dvec3 middle = 0.5 * (box.lo + box.hi);
-    const double distance = std::max(1e-3, 0.5 * glm::length(box.extent()) / std::sin(real::radians(20.0)));
-    const double up = real::radians(35.0);
-    const glm::dvec3 eye = middle + distance * glm::dvec3(0.0, std::sin(up), std::cos(up));
+    const auto [eye, middle, height] = frame_box(box, 40.0, 16.0 / 9.0);
     return fmt::format("position = [{:.4g}, {:.4g}, {:.4g}]\ntarget = [{:.4g}, {:.4g}, {:.4g}]\n", eye.x,
                        eye.y, eye.z, middle.x, middle.y, middle.z);
 }
@@ -184,15 +184,7 @@ std::string splat_scene_text(const fs::path& file, const fs::path& place) {
 }
 
 constexpr const char* sky_format =
-    R"(# {name}: the stars of a catalogue. 'astrosplat parameters' lists every key.
-astrosplat = 1
-
-[output]
-resolution = [1920, 1080]         # px
-frames     = "1"                  # such as "1-240" or "1-100,120,200-300x2"
-path       = {path}  # the ending chooses the format: .exr .tif .png
-
-[camera]                          # at the origin, where the stars are as bright as the catalogue says
+    R"(                         # at the origin, where the stars are as bright as the catalogue says
 position = [0, 0, 0]
 target   = [0, 0, -10]            # declination 0, right ascension 90 degrees
 fov      = 60.0                   # degrees, vertical
@@ -211,9 +203,8 @@ psf        = 0.8                  # px, standard deviation of their images
 
 std::string sky_scene_text(const fs::path& file, const fs::path& place) {
     const std::string name = layer_name_of(file.stem().string());
-    return fmt::format(sky_format, fmt::arg("name", name),
-                       fmt::arg("path", to_toml("frames/" + name + ".####.exr")),
-                       fmt::arg("catalogue", path_from(file, place)));
+    return head_text(name, "the stars of a catalogue") +
+           fmt::format(sky_format, fmt::arg("name", name), fmt::arg("catalogue", path_from(file, place)));
 }
 
 PictureScene scene_of_picture(const fs::path& file) {

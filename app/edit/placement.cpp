@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
@@ -13,13 +14,9 @@
 namespace astrosplat {
 namespace {
 
-double nearest_turn(double degrees, double near) {
-    return degrees + 360.0 * std::round((near - degrees) / 360.0);
-}
-
+/// The same angles up to whole turns, next to those of `near`.
 glm::dvec3 nearest_turns(const glm::dvec3& degrees, const glm::dvec3& near) {
-    return {nearest_turn(degrees.x, near.x), nearest_turn(degrees.y, near.y),
-            nearest_turn(degrees.z, near.z)};
+    return degrees + 360.0 * glm::round((near - degrees) / 360.0);
 }
 
 }  // namespace
@@ -54,14 +51,7 @@ glm::dvec3 degrees_of(const glm::dmat3& r, const glm::dvec3& near) {
 }
 
 glm::dmat3 rotation_about(const glm::dvec3& axis, double radians) {
-    const double c = real::cos(radians), s = real::sin(radians);
-    glm::dmat3 turned;
-    for (int i = 0; i < 3; ++i) {
-        glm::dvec3 unit(0.0);
-        unit[i] = 1.0;
-        turned[i] = unit * c + glm::cross(axis, unit) * s + axis * (glm::dot(axis, unit) * (1.0 - c));
-    }
-    return turned;
+    return matrix_of_quaternion({axis * real::sin(0.5 * radians), real::cos(0.5 * radians)});
 }
 
 namespace {

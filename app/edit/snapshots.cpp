@@ -10,18 +10,17 @@
 #include "core/error.h"
 #include "core/file.h"
 #include "core/text.h"
+#include "edit/keyframes.h"
+#include "edit/layers.h"
 #include "scene/load.h"
 #include "scene/save.h"
 
 namespace astrosplat {
 namespace fs = std::filesystem;
-namespace {
 
-const LayerParams* find_layer(const Scene& scene, const std::string& name) {
-    const auto found = std::find_if(scene.layers.begin(), scene.layers.end(),
-                                    [&](const LayerParams& layer) { return layer.name == name; });
-    return found == scene.layers.end() ? nullptr : &*found;
-}
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(SnapshotFacts, name, frame, splats, seconds)
+
+namespace {
 
 /// Whether a key is part of the look of a layer that both scenes have.
 bool is_of_look(const ParameterKey& key, const Scene& scene, const Scene& stored) {
@@ -50,21 +49,17 @@ Scene with_look_of(const Scene& scene, const Scene& stored) {
         layer.visible = old->visible;
     }
     // A track that both have keeps its place in the list, so that going back and forth changes nothing else.
-    std::vector<Track> tracks;
-    const auto find = [](const std::vector<Track>& list, const ParameterKey& key) {
-        return std::find_if(list.begin(), list.end(), [&](const Track& t) { return t.key == key; });
-    };
+    result.animation.clear();
     for (const Track& track : scene.animation) {
-        const auto old = find(stored.animation, track.key);
+        const Track* const old = find_track(stored, track.key);
         if (!is_of_look(track.key, scene, stored))
-            tracks.push_back(track);
-        else if (old != stored.animation.end())
-            tracks.push_back(*old);
+            result.animation.push_back(track);
+        else if (old)
+            result.animation.push_back(*old);
     }
     for (const Track& track : stored.animation)
-        if (is_of_look(track.key, scene, stored) && find(tracks, track.key) == tracks.end())
-            tracks.push_back(track);
-    result.animation = std::move(tracks);
+        if (is_of_look(track.key, scene, stored) && !find_track(scene, track.key))
+            result.animation.push_back(track);
     return result;
 }
 
@@ -78,23 +73,17 @@ namespace {
 constexpr std::string_view head_of_facts = "# astrosplat snapshot ";
 
 std::string facts_line(const SnapshotFacts& facts) {
-    const nlohmann::ordered_json json{
-        {"name", facts.name}, {"frame", facts.frame}, {"splats", facts.splats}, {"seconds", facts.seconds}};
-    return std::string(head_of_facts) + json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) +
-           "\n";
+    return std::string(head_of_facts) +
+           nlohmann::json(facts).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
 }
 
 /// Throws InputError where the text begins with something else.
 SnapshotFacts facts_of(const std::string& text, const fs::path& file) {
     const std::string_view line = std::string_view(text).substr(0, text.find('\n'));
     try {
-        if (line.starts_with(head_of_facts)) {
-            const auto json = nlohmann::json::parse(line.substr(head_of_facts.size()));
-            return {json.at("name").get<std::string>(), json.at("frame").get<double>(),
-                    json.at("splats").get<std::int64_t>(), json.at("seconds").get<double>()};
-        }
+        if (line.starts_with(head_of_facts)) return nlohmann::json::parse(line.substr(head_of_facts.size()));
     } catch (const nlohmann::json::exception&) {
-        // told below
+        // The line below says it.
     }
     bad_input(file.string(), "1", "a snapshot", "another file");
 }

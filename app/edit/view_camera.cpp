@@ -7,6 +7,7 @@
 #include "camera/projection.h"
 #include "core/error.h"
 #include "core/real.h"
+#include "edit/placement.h"
 #include "scene/animate.h"
 
 namespace astrosplat {
@@ -144,33 +145,30 @@ CameraParams seen_camera(const Scene& scene, const ViewState& view, const Status
     return camera;
 }
 
-FreeCamera with_height(const FreeCamera& camera, double factor) {
-    FreeCamera result = camera;
-    result.height *= factor;
-    result.fov_deg = 2.0 * real::degrees(real::atan(factor * real::tan(0.5 * real::radians(camera.fov_deg))));
-    return result;
+FreeCamera with_height(FreeCamera camera, double factor) {
+    camera.height *= factor;
+    camera.fov_deg = 2.0 * real::degrees(real::atan(factor * real::tan(0.5 * real::radians(camera.fov_deg))));
+    return camera;
 }
 
-FreeCamera framed(const FreeCamera& camera, const Bounds& box, double aspect) {
+FreeCamera framed(FreeCamera camera, const Bounds& box, double aspect) {
     const ViewAxes axes = view_axes(camera);
     const Framing framing =
         frame_box(box, glm::dmat3(axes.right, axes.up, -axes.forward), camera.fov_deg, aspect);
-    FreeCamera result = camera;
-    result.pivot = framing.target;
-    result.height = std::fmax(framing.height, 1e-9);
-    result.position = framing.position;
+    camera.pivot = framing.target;
+    camera.height = std::fmax(framing.height, 1e-9);
+    camera.position = framing.position;
     // From far enough outside that the near plane cuts nothing, nor dots beyond the box.
     if (has_parallel_rays(camera))
-        result.position = framing.target - axes.forward * (2.0 * glm::length(box_to_frame(box).extent()));
-    return result;
+        camera.position = framing.target - axes.forward * (2.0 * glm::length(box_to_frame(box).extent()));
+    return camera;
 }
 
-FreeCamera three_quarter_view(const FreeCamera& camera, const Bounds& box, double aspect) {
-    FreeCamera result = camera;
-    result.pivot = glm::dvec3(0.0);
-    result.position = glm::dvec3(1.0, 0.8, 1.0);
-    result.up = glm::dvec3(0.0, 1.0, 0.0);
-    return framed(result, box, aspect);
+FreeCamera three_quarter_view(FreeCamera camera, const Bounds& box, double aspect) {
+    camera.pivot = glm::dvec3(0.0);
+    camera.position = glm::dvec3(1.0, 0.8, 1.0);
+    camera.up = glm::dvec3(0.0, 1.0, 0.0);
+    return framed(camera, box, aspect);
 }
 
 namespace {
@@ -223,9 +221,8 @@ FreeCamera scaled_about(const FreeCamera& camera, const glm::dvec3& fixed, doubl
 }  // namespace
 
 double scene_units_per_px(const FreeCamera& camera, double viewport_height_px) {
-    const Camera resolved = make_camera(camera_params(camera), viewport_height_px, viewport_height_px, {});
-    const glm::dvec3 pivot(0.0, 0.0, -distance_of(camera));
-    return 1.0 / exact::instance_of(make_exact_lens(resolved), pivot).px_per_unit;
+    return units_per_px(make_camera(camera_params(camera), viewport_height_px, viewport_height_px, {}),
+                        camera.pivot);
 }
 
 glm::dvec3 point_under(const FreeCamera& camera, const glm::dvec2& px, const glm::dvec2& viewport_px) {
@@ -239,25 +236,23 @@ glm::dvec3 point_at_depth(const FreeCamera& camera, const glm::dvec2& px, const 
            resolved.world_from_camera * exact::point_at_depth(make_exact_lens(resolved), px.x, px.y, depth);
 }
 
-FreeCamera orbit(const FreeCamera& camera, const glm::dvec2& delta_px, double viewport_height_px) {
+FreeCamera orbit(FreeCamera camera, const glm::dvec2& delta_px, double viewport_height_px) {
     const double distance = distance_of(camera), per_px = real::pi / viewport_height_px;
     const Elevation now = elevation_of((camera.position - camera.pivot) / distance, glm::normalize(camera.up),
                                        view_axes(camera).up);
-    FreeCamera result = camera;
-    result.position =
+    camera.position =
         camera.pivot + turned(now, -delta_px.x * per_px, delta_px.y * per_px).direction() * distance;
-    return result;
+    return camera;
 }
 
-FreeCamera look_around(const FreeCamera& camera, const glm::dvec2& delta_px, double viewport_height_px) {
+FreeCamera look_around(FreeCamera camera, const glm::dvec2& delta_px, double viewport_height_px) {
     const double per_px =
         real::radians(has_parallel_rays(camera) ? 45.0 : camera.fov_deg) / viewport_height_px;
     const ViewAxes axes = view_axes(camera);
     const Elevation now = elevation_of(axes.forward, glm::normalize(camera.up), axes.up);
-    FreeCamera result = camera;
-    result.pivot = camera.position +
+    camera.pivot = camera.position +
                    turned(now, -delta_px.x * per_px, -delta_px.y * per_px).direction() * distance_of(camera);
-    return result;
+    return camera;
 }
 
 FreeCamera pan(const FreeCamera& camera, const glm::dvec2& delta_px, double viewport_height_px) {
@@ -276,23 +271,21 @@ FreeCamera zoom_to(const FreeCamera& camera, double steps, const glm::dvec2& px,
                         real::exp(-steps * real::log(zoom_per_step)));
 }
 
-FreeCamera fly(const FreeCamera& camera, const glm::dvec3& distance) {
+FreeCamera fly(FreeCamera camera, const glm::dvec3& distance) {
     const ViewAxes axes = view_axes(camera);
     const glm::dvec3 way = axes.right * distance.x + axes.up * distance.y + axes.forward * distance.z;
-    FreeCamera result = camera;
-    result.position += way;
-    result.pivot += way;
-    return result;
+    camera.position += way;
+    camera.pivot += way;
+    return camera;
 }
 
-FreeCamera with_pivot(const FreeCamera& camera, const glm::dvec3& point) {
+FreeCamera with_pivot(FreeCamera camera, const glm::dvec3& point) {
     const glm::dvec3 forward = view_axes(camera).forward;
     const double depth = glm::dot(point - camera.position, forward);
     if (!(depth > nearest)) return camera;
-    FreeCamera result = camera;
-    result.pivot = point;
-    result.position = point - forward * depth;
-    return result;
+    camera.pivot = point;
+    camera.position = point - forward * depth;
+    return camera;
 }
 
 }  // namespace astrosplat

@@ -39,11 +39,11 @@ FreeCamera free_camera(const CameraParams& params, const Bounds& box, double asp
 CameraParams moved_camera(const CameraParams& base, const FreeCamera& camera, double aspect);
 
 /// Its view grown upwards and downwards, or cut, to `factor` times the height, at the same scale.
-FreeCamera with_height(const FreeCamera& camera, double factor);
+FreeCamera with_height(FreeCamera camera, double factor);
 /// The whole box in the frame, seen from the same direction; the pivot is its middle.
-FreeCamera framed(const FreeCamera& camera, const Bounds& box, double aspect);
+FreeCamera framed(FreeCamera camera, const Bounds& box, double aspect);
 /// The whole box seen diagonally from above, with the lens of `camera`.
-FreeCamera three_quarter_view(const FreeCamera& camera, const Bounds& box, double aspect);
+FreeCamera three_quarter_view(FreeCamera camera, const Bounds& box, double aspect);
 
 /// Unit vectors of the frame in world space.
 struct ViewAxes {
@@ -60,7 +60,7 @@ glm::dvec3 point_at_depth(const FreeCamera& camera, const glm::dvec2& px, const 
                           double depth);
 
 /// Around the pivot like a turntable: half a turn per viewport height, never over the poles.
-FreeCamera orbit(const FreeCamera& camera, const glm::dvec2& delta_px, double viewport_height_px);
+FreeCamera orbit(FreeCamera camera, const glm::dvec2& delta_px, double viewport_height_px);
 /// Sideways, so that the plane through the pivot moves with the mouse.
 FreeCamera pan(const FreeCamera& camera, const glm::dvec2& delta_px, double viewport_height_px);
 /// Towards the pivot (dragging up or right): a viewport height is a factor of 16 in distance.
@@ -69,11 +69,11 @@ FreeCamera dolly(const FreeCamera& camera, const glm::dvec2& delta_px, double vi
 FreeCamera zoom_to(const FreeCamera& camera, double steps, const glm::dvec2& px,
                    const glm::dvec2& viewport_px);
 /// Turns the camera where it stands, one field of view per viewport height.
-FreeCamera look_around(const FreeCamera& camera, const glm::dvec2& delta_px, double viewport_height_px);
+FreeCamera look_around(FreeCamera camera, const glm::dvec2& delta_px, double viewport_height_px);
 /// Moves camera and pivot by scene units to the right, up and forward.
-FreeCamera fly(const FreeCamera& camera, const glm::dvec3& distance);
+FreeCamera fly(FreeCamera camera, const glm::dvec3& distance);
 /// Moves sideways until `point` is in the middle; it is the pivot then. A point behind the camera is not
 /// taken.
-FreeCamera with_pivot(const FreeCamera& camera, const glm::dvec3& point);
+FreeCamera with_pivot(FreeCamera camera, const glm::dvec3& point);
 
 }  // namespace astrosplat

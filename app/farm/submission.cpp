@@ -20,9 +20,12 @@
 
 namespace astrosplat {
 namespace fs = std::filesystem;
+
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Submission, name, output, options, sets_job, frames_job, chunks)
+
 namespace {
 
-using Json = nlohmann::ordered_json;
+using Json = nlohmann::json;
 
 constexpr const char* record_name = "submission.json";
 
@@ -37,15 +40,8 @@ std::vector<std::string> as_utf8(std::vector<std::string> texts) {
 }
 
 Submission read_submission(const fs::path& folder) {
-    const Json record = Json::parse(read_file(folder / record_name));
-    Submission submission;
+    Submission submission = Json::parse(read_file(folder / record_name));
     submission.folder = folder;
-    submission.name = record.at("name");
-    submission.output = record.at("output");
-    submission.options = record.at("options").get<std::vector<std::string>>();
-    submission.sets_job = record.at("sets_job");
-    submission.frames_job = record.at("frames_job");
-    submission.chunks = record.at("chunks").get<std::vector<std::string>>();
     return submission;
 }
 
@@ -79,14 +75,9 @@ bool have_same_options(const Submission& a, const Submission& b) {
 }
 
 void write_submission(const Submission& submission) {
-    const Json record = {{"name", submission.name},
-                         {"output", submission.output},
-                         {"options", submission.options},
-                         {"sets_job", submission.sets_job},
-                         {"frames_job", submission.frames_job},
-                         {"chunks", submission.chunks}};
     write_file_atomically(submission.folder / record_name,
-                          record.dump(2, ' ', false, Json::error_handler_t::replace) + "\n", Existing::keep);
+                          Json(submission).dump(2, ' ', false, Json::error_handler_t::replace) + "\n",
+                          Existing::keep);
 }
 
 std::vector<Submission> submissions_of(const std::string& output) {
@@ -156,8 +147,7 @@ QueueState ask_queue(const std::vector<Submission>& submissions) {
         for (const std::int64_t job : {one.sets_job, one.frames_job}) jobs.push_back(job);
     const auto result = run_tool({"squeue", "--noheader", "--array", "--states=all", "--format=%F %K %T %j",
                                   fmt::format("--jobs={}", fmt::join(jobs, ","))});
-    if (!result) queue.problem = "squeue is not on the PATH";
-    if (!result) return queue;
+    if (!result) return {std::move(queue.submissions), "squeue is not on the PATH"};
     std::istringstream lines(result->out);
     for (std::string line; std::getline(lines, line);) add_line(line, submissions, queue);
     // That the jobs are forgotten is no problem: nothing of them waits or runs.

@@ -17,7 +17,7 @@
 #include "core/parallel.h"
 #include "core/progress.h"
 #include "edit/preferences.h"
-#include "exit_code.h"
+#include "exit.h"
 #include "gui/theme.h"
 #include "viewer/session.h"
 #include "viewer/window.h"

@@ -9,7 +9,7 @@
 #include "core/log.h"
 #include "core/progress.h"
 #include "core/text.h"
-#include "exit_code.h"
+#include "exit.h"
 #include "output/write.h"
 #include "scene/check.h"
 #include "source/write_image.h"

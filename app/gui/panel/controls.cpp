@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "edit/rounding.h"
+#include "edit/edit_rules.h"
 #include "gui/icons.h"
 #include "gui/key_codes.h"
 #include "gui/theme.h"

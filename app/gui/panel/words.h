@@ -5,7 +5,7 @@
 #include <functional>
 #include <string>
 
-#include "edit/rounding.h"
+#include "edit/edit_rules.h"
 #include "scene/parameter.h"
 
 namespace astrosplat::panel {

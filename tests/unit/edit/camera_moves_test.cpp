@@ -10,7 +10,6 @@
 #include "core/real.h"
 #include "edit/edit_rules.h"
 #include "edit/keyframes.h"
-#include "edit/rounding.h"
 #include "scene/animate.h"
 #include "scenes.h"
 

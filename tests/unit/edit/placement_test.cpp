@@ -6,9 +6,9 @@
 
 #include "core/real.h"
 #include "core/rotation.h"
+#include "edit/edit_rules.h"
 #include "edit/handles.h"
 #include "edit/placement.h"
-#include "edit/rounding.h"
 #include "unit/edit/scenes.h"
 
 namespace astrosplat {
