@@ -1,7 +1,5 @@
 // --batch: plans, checks that the output can be written, then renders frame after frame; with --dry-run it
 // only prints the plan. A frame that fails does not stop the others; an interrupt stops between two pixels.
-#include "batch.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,9 +9,11 @@
 #include <nlohmann/json.hpp>
 #include <set>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "batch_plan.h"
+#include "cli.h"
 #include "core/atomic_file.h"
 #include "core/error.h"
 #include "core/log.h"
@@ -22,11 +22,10 @@
 #include "core/progress.h"
 #include "core/text.h"
 #include "estimate.h"
+#include "exit.h"
 #include "generate/generate.h"
-#include "interrupt.h"
 #include "output/write.h"
 #include "pipeline.h"
-#include "places.h"
 #include "progress_report.h"
 #include "sampled_run.h"
 
@@ -69,44 +68,36 @@ std::string json_text(const T& value) {
 }
 std::string json_text(const std::filesystem::path& file) { return json_text(file.string()); }
 
-using Members = std::vector<std::pair<std::string, std::string>>;  // name and JSON
-
-std::string object_text(const Members& members, const std::string& indent = "      ") {
-    std::string text = "{";
-    for (const auto& [name, value] : members)
-        text += (text.size() > 1 ? ",\n" : "\n") + indent + json_text(name) + ": " + value;
-    return text + "\n" + indent.substr(2) + "}";
+/// `names`: of the values, one after the other, with commas between them.
+template <class... Values>
+std::string object_text(std::string_view names, const Values&... values) {
+    std::string text;
+    for (const std::string& value : {json_text(values)...}) {
+        const std::size_t end = names.find(' ');
+        text += fmt::format("{}\"{}\": {}", text.empty() ? "" : ", ", names.substr(0, end), value);
+        names.remove_prefix(end == names.npos ? names.size() : end + 1);
+    }
+    return "{" + text + "}";
 }
 
-std::string object_of(const FrameFigures& frame) {
-    return object_text({{"frame", json_text(frame.frame)},
-                        {"file", json_text(frame.file)},
-                        {"seconds", json_text(frame.seconds)},
-                        {"render_seconds", json_text(frame.render_seconds)},
-                        {"write_seconds", json_text(frame.write_seconds)},
-                        {"splats_in", json_text(frame.splats_in)},
-                        {"splats_drawn", json_text(frame.splats_drawn)},
-                        {"sha256", json_text(frame.sha256)}});
+std::string object_of(const FrameFigures& f) {
+    return object_text("frame file seconds render_seconds write_seconds splats_in splats_drawn sha256",
+                       f.frame, f.file, f.seconds, f.render_seconds, f.write_seconds, f.splats_in,
+                       f.splats_drawn, f.sha256);
 }
 
 std::string object_of(const LayerStatistics& layer) {
-    return object_text({{"name", json_text(layer.name)},
-                        {"test_positions", json_text(layer.test_positions)},
-                        {"kept", json_text(layer.kept)},
-                        {"zero_alpha", json_text(layer.zero_alpha)},
-                        {"drawn", json_text(layer.drawn)},
-                        {"generate_seconds", json_text(layer.generate_seconds)},
-                        {"look_seconds", json_text(layer.look_seconds)},
-                        {"cached", json_text(layer.cached)},
-                        {"geometry_cached", json_text(layer.geometry_cached)}});
+    return object_text(
+        "name test_positions kept zero_alpha drawn generate_seconds look_seconds cached geometry_cached",
+        layer.name, layer.test_positions, layer.kept, layer.zero_alpha, layer.drawn, layer.generate_seconds,
+        layer.look_seconds, layer.cached, layer.geometry_cached);
 }
 
 std::string object_of(const FailedFrame& frame) {
-    return object_text({{"frame", json_text(frame.frame)},
-                        {"file", json_text(frame.file)},
-                        {"error", json_text(frame.error)}});
+    return object_text("frame file error", frame.frame, frame.file, frame.error);
 }
 
+/// An object a line.
 template <class T>
 std::string list_of(const std::vector<T>& items) {
     std::string text = "[";
@@ -116,15 +107,12 @@ std::string list_of(const std::vector<T>& items) {
 
 /// Writes the figures whole or not at all. Throws OutputError.
 void write_stats(const std::filesystem::path& file, const RunFigures& figures) {
-    const Members members = {{"frames", list_of(figures.frames)},
-                             {"failed", list_of(figures.failed)},
-                             {"layers", list_of(figures.layers)},
-                             {"seconds", json_text(figures.seconds)},
-                             {"peak_memory_bytes", json_text(peak_memory_bytes())},
-                             {"threads", json_text(thread_count())},
-                             {"vector_target", json_text(vector_target())},
-                             {"version", json_text(ASTROSPLAT_VERSION)}};
-    write_file_atomically(file, object_text(members, "  ") + "\n");
+    const std::string lists =
+        fmt::format("\n  \"frames\": {},\n  \"failed\": {},\n  \"layers\": {},\n  ", list_of(figures.frames),
+                    list_of(figures.failed), list_of(figures.layers));
+    std::string text = object_text("seconds peak_memory_bytes threads vector_target version", figures.seconds,
+                                   peak_memory_bytes(), thread_count(), vector_target(), ASTROSPLAT_VERSION);
+    write_file_atomically(file, text.insert(1, lists) + "\n");
 }
 
 // --dry-run: the plan and its cost, as lines on stdout.
@@ -178,7 +166,7 @@ void print_plan(const BatchPlan& plan) {
 }
 
 /// Throws OutputError where a frame or the figures could not be written.
-void check_writable(const BatchPlan& plan, const BatchOptions& options) {
+void check_writable(const BatchPlan& plan, const CommandOptions& options) {
     std::filesystem::path last;
     for (const FramePlan& frame : plan.frames) {
         const std::filesystem::path folder = folder_of(frame.file);
@@ -228,7 +216,7 @@ void BatchRun::prepare() {
                              fmt::join(job.streamed, ", ")));
     pipeline_ =
         std::make_unique<Pipeline>(plan_.scene, report_.begin_step("preparing"), plan_.cache, job.streamed);
-    check_unchanged(plan_.hasher.files(), Progress{{}, &interrupted()});
+    check_unchanged(plan_.hasher.files(), stoppable());
 }
 
 RenderSettings BatchRun::settings(const OutputParams& output) const {
@@ -348,7 +336,7 @@ void report_failures(const std::vector<FailedFrame>& failed) {
 }
 
 /// The figures, where they are asked for. Without them frames that failed are still to be named: false.
-bool keep_stats(const BatchOptions& options, const BatchRun& run) try {
+bool keep_stats(const CommandOptions& options, const BatchRun& run) try {
     if (options.stats) write_stats(*options.stats, run.figures());
     return true;
 } catch (const OutputError& error) {
@@ -361,7 +349,7 @@ bool keep_stats(const BatchOptions& options, const BatchRun& run) try {
 
 }  // namespace
 
-int run_batch(const BatchOptions& options) {
+int run_batch(const CommandOptions& options) {
     const BatchPlan plan = plan_batch(options);
     defer_interrupts();
     if (options.dry_run) {

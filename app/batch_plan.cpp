@@ -24,16 +24,6 @@ namespace astrosplat {
 namespace fs = std::filesystem;
 namespace {
 
-std::vector<std::string> split(const std::string& text, char separator) {
-    std::vector<std::string> parts;
-    std::size_t begin = 0;
-    for (std::size_t end; (end = text.find(separator, begin)) != std::string::npos; begin = end + 1) {
-        parts.emplace_back(trim(std::string_view(text).substr(begin, end - begin)));
-    }
-    parts.emplace_back(trim(std::string_view(text).substr(begin)));
-    return parts;
-}
-
 /// Exactly `count` whole numbers between separators, or none.
 std::vector<std::int64_t> whole_numbers(const std::string& text, char separator, std::size_t count) {
     std::vector<std::int64_t> numbers;
@@ -104,12 +94,10 @@ Region parse_region(const std::string& text, const OutputParams& output) {
     return {r[0], r[1], r[2], r[3]};
 }
 
-Scene batch_scene(const BatchOptions& options) {
-    std::vector<Assignment> assignments;
-    for (const std::string& text : options.assignments) assignments.push_back(parse_assignment(text));
-    auto [scene, places] = load_placed(options.scene, assignments);
+Scene batch_scene(const CommandOptions& options) {
+    auto [scene, places] = load_placed(options.input, assignments_of(options));
     if (options.frames) scene.output.frames = *options.frames;
-    scene.output.path = options.output.value_or(scene.output.path);
+    if (options.output) scene.output.path = options.output->string();
     if (options.resolution) apply_resolution(scene.output, *options.resolution);
     if (options.layers) apply_layers(scene, *options.layers);
     check_renderable(scene, places);
@@ -143,7 +131,7 @@ std::vector<std::int64_t> frame_numbers(const BatchPlan& plan, bool from_command
 }
 
 /// Decides what becomes of files that lie where frames go (DESIGN 8).
-void decide(std::vector<FramePlan>& frames, const BatchOptions& options) {
+void decide(std::vector<FramePlan>& frames, const CommandOptions& options) {
     for (const FramePlan& frame : frames) refuse_other_than_file(frame.file);
     if (options.overwrite && !options.resume) return;
     std::vector<const FramePlan*> in_the_way;
@@ -184,7 +172,7 @@ std::int64_t count_to_render(const BatchPlan& plan) {
     return count;
 }
 
-BatchPlan plan_scene(const BatchOptions& options) {
+BatchPlan plan_scene(const CommandOptions& options) {
     BatchPlan plan;
     plan.scene = batch_scene(options);
     const fs::path scene_folder = fs::absolute(plan.scene.file).parent_path();
@@ -202,7 +190,7 @@ BatchPlan plan_scene(const BatchOptions& options) {
     return plan;
 }
 
-BatchPlan plan_frames(const BatchOptions& options) {
+BatchPlan plan_frames(const CommandOptions& options) {
     BatchPlan plan = plan_scene(options);
     const std::vector<Eye> eyes = eyes_of(plan.output, plan.scene.camera);
     for (const std::int64_t frame : frame_numbers(plan, options.frames.has_value()))
@@ -213,7 +201,7 @@ BatchPlan plan_frames(const BatchOptions& options) {
     return plan;
 }
 
-BatchPlan plan_batch(const BatchOptions& options) {
+BatchPlan plan_batch(const CommandOptions& options) {
     BatchPlan plan = plan_frames(options);
     decide(plan.frames, options);
     return plan;

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "batch.h"
+#include "command.h"
 #include "core/atomic_file.h"
 #include "core/image.h"
 #include "frame/frame_hash.h"
@@ -45,14 +45,14 @@ enum class Found { nothing, same, damaged, other };
 Found found_at(const FramePlan& frame);
 
 /// All of a plan but its frames. Throws InputError.
-BatchPlan plan_scene(const BatchOptions& options);
+BatchPlan plan_scene(const CommandOptions& options);
 
 /// The frames, all of them to be rendered, without a look at what lies at their places. Throws InputError.
-BatchPlan plan_frames(const BatchOptions& options);
+BatchPlan plan_frames(const CommandOptions& options);
 
 /// plan_frames, and then what becomes of frames that have files already. Throws InputError for bad input, and
 /// where files are in the way that neither --resume nor --overwrite covers; OutputError where something else
 /// than a file lies at a frame's place.
-BatchPlan plan_batch(const BatchOptions& options);
+BatchPlan plan_batch(const CommandOptions& options);
 
 }  // namespace astrosplat

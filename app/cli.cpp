@@ -1,209 +1,81 @@
-// The command line, described once for parsing, help, manual page and completion. In: its words. Out: the
-// command that they ask for, run.
 #include "cli.h"
 
-#include <fmt/format.h>
-
-#include <CLI/App.hpp>
-#include <CLI/Config.hpp>
-#include <CLI/Formatter.hpp>
-#include <algorithm>
-#include <cstdio>
-#include <string>
-
-#include "batch.h"
-#include "batch_plan.h"
-#include "cli_parts.h"
 #include "core/error.h"
-#include "core/log.h"
-#include "core/memory.h"
-#include "core/parallel.h"
-#include "core/text.h"
-#include "interrupt.h"
-#include "json_log.h"
-#include "places.h"
-#include "progress_report.h"
-#include "scene/animate.h"
-#include "scene/layer_setup.h"
-#include "window.h"
 
 namespace astrosplat {
 
-/// Of the sources, 12 hexadecimal digits, with "-dirty" where files had changed; "unknown" outside a
-/// repository.
-extern const char* const built_commit;  // of commit.cmake
-
-namespace {
-
-// Options of the program without a command; those of the commands are in cli_commands.cpp.
-
-void add_batch(CLI::App& app, Invocation& call) {
-    BatchOptions& batch = call.batch_options;
-    app.add_flag("--batch", call.batch, "Renders the scene's frames without a window");
-    app.add_option("SCENE", call.input, "A scene; without --batch also a picture, mesh or splat file");
-    add_frame_choice(app, batch);
-    app.add_flag("--resume", batch.resume, "Skips frames that are there already, renders missing ones");
-    app.add_flag("--overwrite", batch.overwrite, "Replaces files that are there already");
-    app.add_flag("--dry-run", batch.dry_run, "Tells frames, time, memory and bytes, and does nothing");
-    app.add_flag("--sets-only", batch.sets_only, "Generates the sets into the cache, renders nothing");
-    add_value(app, "--stats", batch.stats, "FILE.json", "Writes figures as JSON");
-    add_progress(app, batch.progress);
+void add_input(CLI::App& app, CommandOptions& options, const std::string& name, const std::string& help) {
+    add_value(app, name, options.input, name, help)->required();
 }
 
-void add_submit(CLI::App& app, SubmitOptions& submit) {
-    add_value(app, "--submit", submit.system, "slurm",
-              "Renders what is missing of the scene's frames on a farm, by --batch with --resume");
-    add_value(app, "--chunk", submit.chunk, "N", "With --submit: frames of a task (default: 10)");
-    add_value(app, "--partition", submit.partition, "NAME", "With --submit: where the tasks run");
+CLI::Option* add_output(CLI::App& app, CommandOptions& options, const std::string& placeholder,
+                        const std::string& help) {
+    CLI::Option* const output = add_value(app, "-o,--output", options.output, placeholder, help)->required();
+    app.add_flag("--overwrite", options.overwrite, "Replaces what is there already");
+    return output;
 }
 
-void add_screenshot(CLI::App& app, Invocation& call) {
-    ScreenshotOptions& shot = call.screenshot;
-    add_value(app, "--screenshot", shot.output, "OUT.png|OUT.exr",
-              "Saves what the window would show, without one");
-    add_value(app, "--size", shot.size, "WxH", "With --screenshot: its size in pixels (default: 960x540)");
-    add_value(app, "--frame", shot.frame, "N", "With --screenshot: the frame (default: the first)");
-    app.add_flag("--ui", shot.ui, "With --screenshot: the whole window with its panels");
-    app.add_flag("--settled", shot.settled, "With --screenshot: the final frame, not the preview");
-    app.add_flag("--opengl", shot.opengl, "With --screenshot: a preview drawn by OpenGL on any machine");
+void add_assignments(CLI::App& app, CommandOptions& options) {
+    app.add_option_function<std::vector<std::string>>(
+           "--set", [&options](const std::vector<std::string>& texts) { options.assignments = texts; },
+           "Sets a key of the scene; may be repeated")
+        ->option_text("KEY=VALUE")
+        ->expected(1)
+        ->allow_extra_args(false)  // what follows is the scene
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
 }
 
-/// Of window, --batch, --submit and --screenshot.
-void add_program_options(CLI::App& app, Invocation& call) {
-    add_common(app, call.common);
-    add_batch(app, call);
-    add_submit(app, call.submit);
-    add_screenshot(app, call);
+void add_progress(CLI::App& app, CommandOptions& options) {
+    app.add_option_function<std::string>(
+           "--progress",
+           [&options](const std::string& text) {
+               if (text != "auto" && text != "plain" && text != "none")
+                   bad_input("--progress", "", "auto, plain or none", "'" + text + "'");
+               options.progress = text == "auto"    ? ProgressMode::automatic
+                                  : text == "plain" ? ProgressMode::plain
+                                                    : ProgressMode::none;
+           },
+           "How to report progress on stderr")
+        ->option_text("auto|plain|none");
 }
 
-// --version
+void add_json(CLI::App& app, CommandOptions& options) { app.add_flag("--json", options.json, "Prints JSON"); }
 
-#if defined(__clang__)
-constexpr const char* compiler = "Clang " __clang_version__;
-#else
-constexpr const char* compiler = "GCC " __VERSION__;
-#endif
-
-/// "astrosplat VERSION" on the first line; then one fact a line: "commit ...", "built with ..." (compiler,
-/// kind of build), "libraries ..." (name and version of each, as they were at the build) and "instructions
-/// ..." (the set in use on this machine).
-std::string version_text() {
-    return fmt::format(
-        "astrosplat {}\n"
-        "commit {}\n"
-        "built with {}, {}\n"
-        "libraries {}\n"
-        "instructions {}\n",
-        ASTROSPLAT_VERSION, built_commit, compiler, ASTROSPLAT_BUILD_KIND, ASTROSPLAT_LIBRARIES,
-        vector_target());
+void add_common(CLI::App& app, Invocation& call) {
+    app.set_help_flag("-h,--help", "Prints this help");
+    app.set_version_flag("--version", "astrosplat " ASTROSPLAT_VERSION,
+                         "Prints version, commit and libraries");
+    add_value(app, "-t,--threads", call.threads, "N", "Threads (default: the cores this process may use)");
+    add_value(
+        app, "--cache", call.cache, "DIR",
+        "Folder that keeps generated sets and prepared pictures (default: $ASTROSPLAT_CACHE, "
+        "$XDG_CACHE_HOME/astrosplat or ~/.cache/astrosplat); at most 20 GiB or a tenth of the disk, the "
+        "least recently used go");
+    app.add_flag("--no-cache", call.no_cache, "Neither reads nor writes generated sets");
+    app.add_flag("-v,--verbose", call.verbose, "Says more");
+    app.add_flag("-q,--quiet", call.quiet, "Says only warnings and errors");
+    const std::string log_json = "Messages and progress on stderr as JSON, one object a line";
+    app.add_flag("--log-json", log_json);  // was seen to before all else
 }
 
-// --batch --sets-only: generates the sets of the frames into the cache, one after the other, and renders
-// nothing. A farm does so once before its tasks begin.
-
-/// Reports on stderr; the exit code. Throws InputError (also where an option beside asks for frames or there
-/// is no cache), OutputError (the cache cannot be written), Cancelled.
-int run_sets_only(const BatchOptions& options) {
-    if (options.cache.folder.empty()) bad_input("--sets-only", "", "a cache that keeps them", "none");
-    if (options.dry_run || options.stats)
-        bad_input("--sets-only", "",
-                  fmt::format("no {} beside it", options.dry_run ? "--dry-run" : "--stats"), "both");
-    const BatchPlan plan = plan_frames(options);
-    defer_interrupts();
-    prove_writable(options.cache.folder);
-    ProgressReport report(options.progress);
-    for (const LayerParams& layer : plan.scene.layers) {
-        if (!ever_visible(plan.scene, layer)) continue;
-        const LoadedSet loaded = load_source(plan.cache, source_of(plan.scene, layer), layer.name,
-                                             report.begin_step("preparing " + layer.name));
-        log_info(fmt::format("layer {}: {}{}", layer.name, human_count(loaded.set.size(), "splat"),
-                             loaded.cached ? ", kept already" : ""));
-    }
-    check_unchanged(plan.hasher.files(), Progress{{}, &interrupted()});
-    return exit_done;
+void add_frame_choice(CLI::App& app, CommandOptions& options) {
+    add_value(app, "-f,--frames", options.frames, "1-100,120,200-300x2", "Frames instead of output.frames");
+    add_value(app, "-o,--output", options.output, "PATTERN", "Frame files, such as frames/shot.####.exr");
+    add_value(app, "--resolution", options.resolution, "1920x1080|50%", "Size of the frame");
+    add_assignments(app, options);
+    add_value(app, "--layers", options.layers, "A,B", "Only these layers");
+    add_value(app, "--memory", options.memory_gib, "GiB",
+              "Limit of all that the program takes: larger .splats files are read block by block, and "
+              "pictures that bodies are made of are reduced");
+    add_value(app, "--region", options.region, "X,Y,W,H", "Part of the frame, from the top left, in pixels");
 }
 
-void apply_common(const CommonOptions& common) {
-    if (common.quiet) set_log_level(LogLevel::warning);
-    if (common.verbose) set_log_level(LogLevel::detail);
-    if (!common.threads.empty()) {
-        const std::optional<std::int64_t> threads = parse_int64(common.threads);
-        if (!threads || *threads < 1 || *threads > 1024) {
-            bad_input("--threads", "", "a number from 1 to 1024", "'" + common.threads + "'");
-        }
-        set_thread_count(static_cast<int>(*threads));
-    }
-}
-
-SetCache cache_of(const CommonOptions& common) {
-    if (common.no_cache) return {};
-    return {common.cache.empty() ? default_cache_folder() : std::filesystem::path(common.cache)};
-}
-
-/// Of every command, unless a mode was asked for.
-void silence_progress(Invocation& call) {
-    for (ProgressMode* mode : {&call.batch_options.progress, &call.generate.progress, &call.convert.progress,
-                               &call.export_options.progress, &call.fidelity.progress, &call.prepare.progress,
-                               &call.verify.batch.progress})
-        if (*mode == ProgressMode::automatic) *mode = ProgressMode::none;
-}
-
-int run(Invocation& call) {
-    apply_common(call.common);
-    log_detail(fmt::format("threads {}, vector target {}", thread_count(), vector_target()));
-    for (SetCache* cache : {&call.batch_options.cache, &call.status.batch.cache, &call.verify.batch.cache,
-                            &call.generate.cache, &call.export_options.cache, &call.fidelity.cache})
-        *cache = cache_of(call.common);
-    if (call.common.quiet) silence_progress(call);
-    if (call.action) {
-        if (call.batch) bad_input("--batch", "", "a scene", "a command as well");
-        return call.action();
-    }
-    const bool submits = !call.submit.system.empty();
-    if (!submits && (call.submit.chunk || call.submit.partition))
-        bad_input(call.submit.chunk ? "--chunk" : "--partition", "", "--submit slurm beside it", "none");
-    if (!call.batch && !submits) return run_window(call);
-    const char* mode = submits ? "--submit" : "--batch";
-    if (!call.screenshot.output.empty()) bad_input(mode, "", "no --screenshot beside it", "both");
-    if (call.input.empty()) bad_input(mode, "", "a scene file", "none (see --help)");
-    call.batch_options.scene = call.input;
-    if (submits) return run_submit(call.submit, call.batch_options);
-    return call.batch_options.sets_only ? run_sets_only(call.batch_options) : run_batch(call.batch_options);
-}
-
-/// CLI11's message as one line.
-int report_usage_error(const CLI::ParseError& error) {
-    std::string line = error.what();
-    std::replace(line.begin(), line.end(), '\n', ' ');
-    log_error(line + " (see astrosplat --help)");
-    return exit_not_started;
-}
-
-}  // namespace
-
-int run_command_line(int argc, char** argv) {
-    // A mistake in the command line is to be JSON, too.
-    if (std::any_of(argv, argv + argc, [](const std::string& text) { return text == "--log-json"; }))
-        log_as_json();
-    Invocation call;
-    CLI::App app("Turns a mesh and a telescope picture into a volume of soft splats and renders film frames.",
-                 "astrosplat");
-    app.require_subcommand(0, 1);
-    add_program_options(app, call);
-    add_commands(app, call);
-    try {
-        app.parse(argc, argv);
-    } catch (const CLI::CallForHelp&) {
-        const auto commands = app.get_subcommands();
-        fmt::print("{}", commands.empty() ? app.help() : commands.front()->help());
-        return exit_done;
-    } catch (const CLI::CallForVersion&) {
-        fmt::print("{}", version_text());
-        return exit_done;
-    } catch (const CLI::ParseError& error) {
-        return report_usage_error(error);
-    }
-    return run(call);
+CLI::App& add_command(CLI::App& app, Invocation& call, const char* name, const char* help,
+                      std::function<int(const CommandOptions&)> run) {
+    CLI::App& command = *app.add_subcommand(name, help);
+    add_common(command, call);
+    command.callback([&call, run = std::move(run)] { call.command = run; });
+    return command;
 }
 
 }  // namespace astrosplat

@@ -1,5 +1,5 @@
 // The command line as words, for the manual page and the shells' completion. In: the one description that
-// also parses (cli.cpp). Out: plain names and texts.
+// also parses (cli.h). Out: plain names and texts.
 #pragma once
 
 #include <string>
@@ -16,10 +16,6 @@ struct OptionWords {
     std::string placeholder;         // "auto|plain|none", "SCENE"; empty: a flag
     std::string help;
     bool repeats = false;  // a positional that takes several
-
-    bool is_file() const;                      // its value is a file or a folder
-    bool is_assignment() const;                // KEY=VALUE
-    std::vector<std::string> choices() const;  // of a placeholder such as "auto|plain|none"; else empty
 };
 
 struct CommandWords {
@@ -31,12 +27,5 @@ struct CommandWords {
 
 /// The program's own words first, then those of its commands, as they stand in the help.
 std::vector<CommandWords> command_words(const CLI::App& app);
-
-/// `shell`: bash, zsh or fish. `keys`: what --set completes. Throws InputError for another shell.
-std::string completion_script(const std::string& shell, const std::vector<CommandWords>& commands,
-                              const std::vector<std::string>& keys);
-
-std::string command_manual(const std::vector<CommandWords>& commands);
-std::string scene_manual();
 
 }  // namespace astrosplat

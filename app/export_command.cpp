@@ -1,15 +1,16 @@
 // export: the shaded splats of one frame, baked and written as Gaussians (.ply, .glb, .usda) or as an OpenVDB
 // volume (.vdb). One line about the file goes to stdout.
-#include "commands.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <glm/common.hpp>
+#include <limits>
+#include <string_view>
 #include <vector>
 
 #include "camera/camera.h"
+#include "cli.h"
 #include "core/color.h"
 #include "core/error.h"
 #include "core/file_format.h"
@@ -17,16 +18,14 @@
 #include "core/memory.h"
 #include "core/progress.h"
 #include "core/text.h"
+#include "exit.h"
 #include "gaussians/gaussian_file.h"
 #include "gaussians/gaussians.h"
-#include "interrupt.h"
 #include "pipeline.h"
-#include "places.h"
 #include "render/frame.h"
 #include "scene/animate.h"
 #include "scene/frames.h"
 #include "scene/load.h"
-#include "scene/parameter_key.h"
 #include "volumes/openvdb_file.h"
 #include "volumes/voxel_grid.h"
 
@@ -122,56 +121,30 @@ bool export_volume(const std::vector<RenderLayer>& layers, const Camera& camera,
     return true;
 }
 
-}  // namespace
-
-const char* const export_help =
-    "Writes the scene's splats for other programs, with the look and the exposure of one frame: as Gaussians "
-    "(3D "
-    "Gaussian Splatting) in .ply, .glb and .usda, as a volume in .vdb (OpenVDB). Approximated: other "
-    "falloffs by the "
-    "nearest Gaussian of the same integral; screen and hybrid by what they hide (hybrid as seen from that "
-    "frame's "
-    "camera); dust by grey; Gaussians that were read keep their shapes, and their harmonics "
-    "up to the degree of their file: exact in the direction of that frame's camera, in all others times what "
-    "the look and the frame did to that one, channel by channel (.vdb and splats merged by --count "
-    "have "
-    "the one colour that the camera sees). As Gaussians: add by over, light above 1 by more opacity; of "
-    "display colours "
-    "the light "
-    "is fitted to that frame, unless all layers are mixed in display values (space = \"display\"). As a "
-    "volume: float "
-    "grid density (extinction per scene unit), vector grids emission (linear light per scene unit) and Cd "
-    "(straight "
-    "colour); each splat alone hides and shines through the grid what it does on the frame. Isolated layers "
-    "lie among "
-    "the others. Left out: stars, environment, children of level of detail, near fade, the view transform. "
-    "Axes and "
-    "units are the scene's, y up";
-
-namespace {
+// Gaussians, and what both share.
 
 constexpr std::int64_t fitted_height_px = 540;
 
-enum class Kind { ply, glb, usda, vdb };
+struct ExportOptions {
+    std::optional<std::string> frame, layer, count, space, voxel_size;
+};
 
-Kind kind_of_output(const std::filesystem::path& file) {
-    const FileFormat* const format = format_by_name(file, FileUse::exported);
-    const std::string_view id = format ? format->id : "";
-    if (id == "ply") return Kind::ply;
-    if (id == "gltf") return Kind::glb;
-    if (id == "usda") return Kind::usda;
-    if (id == "openvdb") return Kind::vdb;
+/// One of the table of formats: "ply", "gltf", "usda" or "openvdb".
+std::string_view format_of_output(const std::filesystem::path& file) {
+    if (const FileFormat* const format = format_by_name(file, FileUse::exported)) return format->id;
     bad_input(file.string(), "", "a name ending in " + alternatives(endings_of(FileUse::exported)),
               "'" + file.extension().string() + "'");
 }
 
+bool is_volume(std::string_view format) { return format == "openvdb"; }
+
 /// Whether colours are encoded for a display.
-bool is_encoded(const ExportOptions& options, Kind kind) {
-    const bool linear = kind == Kind::glb || kind == Kind::vdb;
+bool is_encoded(const ExportOptions& options, std::string_view format) {
+    const bool linear = format == "gltf" || is_volume(format);
     const std::string space = options.space.value_or(linear ? "linear" : "display");
     if (space != "display" && space != "linear")
         bad_input("--space", "", "display or linear", "'" + space + "'");
-    if (space == "display" && kind == Kind::vdb)
+    if (space == "display" && is_volume(format))
         bad_input("--space", "", "linear for .vdb, which holds light", "'display'");
     if (space == "linear" && !linear)
         bad_input("--space", "", "display for .ply and .usda, whose readers know no other", "'linear'");
@@ -179,40 +152,32 @@ bool is_encoded(const ExportOptions& options, Kind kind) {
 }
 
 double frame_of(const ExportOptions& options, const Scene& scene) {
-    if (!options.frame)
-        return static_cast<double>(parse_frames(scene.output.frames, "output.frames").front());
-    const auto frame = parse_double(*options.frame);
-    if (!frame || !std::isfinite(*frame)) bad_input("--frame", "", "a number", "'" + *options.frame + "'");
-    return *frame;
+    constexpr double most = std::numeric_limits<double>::max();
+    return options.frame ? option_number("--frame", *options.frame, "a number", -most, most)
+                         : static_cast<double>(parse_frames(scene.output.frames, "output.frames").front());
 }
 
+/// 0: all.
 std::int64_t count_of(const ExportOptions& options) {
-    if (!options.count) return 0;
-    const auto count = parse_int64(*options.count);
-    if (!count || *count < 1)
-        bad_input("--count", "", "a number of splats, 1 or more", "'" + *options.count + "'");
-    return *count;
+    constexpr std::int64_t most = std::numeric_limits<std::int64_t>::max();
+    return options.count ? option_count("--count", *options.count, "a number of splats, 1 or more", 1, most)
+                         : 0;
 }
 
 /// 0: none was asked for.
-double voxel_size_of(const ExportOptions& options, Kind kind) {
+double voxel_size_of(const ExportOptions& options, const std::filesystem::path& output) {
+    using Limits = std::numeric_limits<double>;
     if (!options.voxel_size) return 0.0;
-    const auto size = parse_double(*options.voxel_size);
-    if (!size || !std::isfinite(*size) || !(*size > 0.0))
-        bad_input("--voxel-size", "", "a number above 0, in scene units", "'" + *options.voxel_size + "'");
-    if (kind != Kind::vdb)
-        bad_input("--voxel-size", "", "a name ending in .vdb", "'" + options.output.string() + "'");
-    return *size;
+    const double size = option_number("--voxel-size", *options.voxel_size, "a number above 0, in scene units",
+                                      Limits::denorm_min(), Limits::max());
+    if (!is_volume(format_of_output(output)))
+        bad_input("--voxel-size", "", "a name ending in .vdb", "'" + output.string() + "'");
+    return size;
 }
 
 /// Hides all other layers, and what no Gaussian can be.
 void keep_exported(Scene& scene, const std::optional<std::string>& wanted) {
-    std::vector<std::string> names;
-    for (const LayerParams& layer : scene.layers) names.push_back(layer.name);
-    if (wanted && std::ranges::find(names, *wanted) == names.end())
-        bad_input(scene.file.string(), "",
-                  fmt::format("--layer to name one of its layers ({})", fmt::join(names, ", ")),
-                  "'" + *wanted + "'" + did_you_mean(*wanted, names));
+    if (wanted) layer_named(scene, *wanted);
     std::erase_if(scene.layers, [&](const LayerParams& layer) {
         if (wanted && layer.name != *wanted) return true;
         if (layer.source.kind != SourceKind::stars) return false;
@@ -268,31 +233,25 @@ Baked bake(const std::vector<RenderLayer>& layers, const Camera& camera, double 
     bad_input(scene.file.string(), "", "splats that are visible at this frame", "none");
 }
 
-void report(const ExportOptions& options, const Baked& baked) {
+void report(const std::filesystem::path& file, const Baked& baked) {
     const BakeCounts& n = baked.counts;
     std::string line =
-        fmt::format("{}: {}; {:.2f} % of the light lost, {} above 1", printable(options.output.string()),
+        fmt::format("{}: {}; {:.2f} % of the light lost, {} above 1", printable(file.string()),
                     counted(baked.gaussians.size(), "splat"), 100.0 * n.share_lost(), n.bright);
     if (n.faint > 0) line += fmt::format("; {} fainter than 1/255, which some programs do not draw", n.faint);
     if (n.dust > 0) line += fmt::format("; {} of dust are grey", n.dust);
     fmt::print("{}\n", line);
 }
 
-}  // namespace
-
-int run_export(const ExportOptions& options) {
-    std::vector<Assignment> assignments;
-    for (const std::string& text : options.assignments) assignments.push_back(parse_assignment(text));
-    const Kind kind = kind_of_output(options.output);
-    const bool encoded = is_encoded(options, kind);
-    const std::int64_t count = count_of(options);
-    const double voxel_size = voxel_size_of(options, kind);
-    Scene scene = load_scene(options.scene, assignments);
-    const double frame = frame_of(options, scene);
-    keep_exported(scene, options.layer);
-    refuse_to_overwrite(options.output, options.overwrite);
-    defer_interrupts();
-    prove_writable(folder_of(options.output));
+int run_export(const CommandOptions& options, const ExportOptions& own) {
+    const std::string_view format = format_of_output(*options.output);
+    const bool encoded = is_encoded(own, format);
+    const std::int64_t count = count_of(own);
+    const double voxel_size = voxel_size_of(own, *options.output);
+    Scene scene = load_scene(options.input, assignments_of(options));
+    const double frame = frame_of(own, scene);
+    keep_exported(scene, own.layer);
+    const WriteTarget target = claim_output(options);
     ProgressReport progress(options.progress);
     Pipeline pipeline(scene, progress.begin_step("loading"), options.cache);
     const FrameScene now = pipeline.frame_scene(frame);
@@ -310,8 +269,7 @@ int run_export(const ExportOptions& options) {
     std::vector<ShadedSplats> reduced;
     const Progress baking = progress.begin_step("baking");
     if (count > 0) merge_splats(layers, reduced, camera, count, baking);
-    const WriteTarget target{options.output, existing_of(options.overwrite)};
-    if (kind == Kind::vdb) {
+    if (is_volume(format)) {
         const VolumeExport volume{gain, voxel_size, words_about(now, pipeline.input_credit()), target};
         if (!export_volume(layers, camera, volume, baking)) refuse_nothing(scene);
         return exit_done;
@@ -322,14 +280,48 @@ int run_export(const ExportOptions& options) {
     if (encoded && !fits) fit_to_view(baked.gaussians, wanted, camera, settings);
     finish_harmonics(baked.gaussians, camera, encoded);
     const Progress writing = progress.begin_step("writing");
-    if (kind == Kind::ply)
+    if (format == "ply")
         write_gaussian_ply(target, baked.gaussians, writing);
-    else if (kind == Kind::usda)
+    else if (format == "usda")
         write_gaussian_usda(target, baked.gaussians, writing);
     else
         write_gaussian_glb(target, baked.gaussians, encoded, writing);
-    report(options, baked);
+    report(target.file, baked);
     return exit_done;
+}
+
+/// With all that is approximated.
+constexpr const char* export_help =
+    "Writes the scene's splats for other programs, with the look and the exposure of one frame: as "
+    "Gaussians (3D Gaussian Splatting) in .ply, .glb and .usda, as a volume in .vdb (OpenVDB). "
+    "Approximated: other falloffs by the nearest Gaussian of the same integral; screen and hybrid by what "
+    "they hide (hybrid as seen from that frame's camera); dust by grey; Gaussians that were read keep "
+    "their shapes, and their harmonics up to the degree of their file: exact in the direction of that "
+    "frame's camera, in all others times what the look and the frame did to that one, channel by channel "
+    "(.vdb and splats merged by --count have the one colour that the camera sees). As Gaussians: add by "
+    "over, light above 1 by more opacity; of display colours the light is fitted to that frame, unless all "
+    "layers are mixed in display values (space = \"display\"). As a volume: float grid density (extinction "
+    "per scene unit), vector grids emission (linear light per scene unit) and Cd (straight colour); each "
+    "splat alone hides and shines through the grid what it does on the frame. Isolated layers lie among "
+    "the others. Left out: stars, environment, children of level of detail, near fade, the view transform. "
+    "Axes and units are the scene's, y up";
+
+}  // namespace
+
+void add_export(CLI::App& app, Invocation& call) {
+    auto [command, own] = add_command(app, call, "export", export_help, run_export);
+    add_input(command, call.options, "SCENE", "The scene");
+    add_output(command, call.options, "FILE.(ply|glb|usda|vdb)", "The file to write");
+    add_value(command, "--frame", own.frame, "N", "The frame (default: the scene's first)");
+    add_value(command, "--layer", own.layer, "NAME", "Only this layer (default: all that are visible)");
+    add_value(command, "--count", own.count, "N", "Merges splats until so many are left");
+    add_value(command, "--space", own.space, "display|linear",
+              "Of colours (default: display in .ply and .usda, linear in .glb and .vdb)");
+    add_value(command, "--voxel-size", own.voxel_size, "X",
+              "Side of the voxels of a .vdb, scene units (default: as the splats are wide, 128 to 512 along "
+              "the longest side)");
+    add_assignments(command, call.options);
+    add_progress(command, call.options);
 }
 
 }  // namespace astrosplat

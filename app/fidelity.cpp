@@ -6,13 +6,14 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "batch_plan.h"
-#include "commands.h"
+#include "cli.h"
 #include "core/atomic_file.h"
 #include "core/error.h"
 #include "core/image.h"
@@ -20,13 +21,12 @@
 #include "core/memory.h"
 #include "core/text.h"
 #include "estimate.h"
+#include "exit.h"
 #include "fidelity/display.h"
 #include "fidelity/front.h"
 #include "fidelity_table.h"
-#include "interrupt.h"
 #include "measure_fidelity.h"
 #include "output/format.h"
-#include "places.h"
 #include "scene/animate.h"
 #include "scene/check.h"
 #include "scene/frames.h"
@@ -205,19 +205,10 @@ w.addEventListener('pointermove', e => { const r = w.getBoundingClientRect();
 )js";
 
 std::string escaped(const std::string& text) {
+    static const std::map<char, std::string> entities{
+        {'&', "&amp;"}, {'<', "&lt;"}, {'>', "&gt;"}, {'"', "&quot;"}};
     std::string html;
-    for (const char c : printable(text)) {
-        if (c == '&')
-            html += "&amp;";
-        else if (c == '<')
-            html += "&lt;";
-        else if (c == '>')
-            html += "&gt;";
-        else if (c == '"')
-            html += "&quot;";
-        else
-            html += c;
-    }
+    for (const char c : printable(text)) html += entities.contains(c) ? entities.at(c) : std::string(1, c);
     return html;
 }
 
@@ -314,6 +305,10 @@ std::string fidelity_page(const FidelityReport& report, const std::string& scene
            side_section(report) + definitions + "<script>" + script + "</script>\n</body>\n</html>\n";
 }
 
+struct FidelityOptions {
+    std::optional<std::filesystem::path> reference;  // in place of the layer's own picture
+};
+
 bool ends_in_html(const std::filesystem::path& file) {
     const std::string ending = lower_case(file.extension().string());
     if (ending == ".html" || ending == ".htm") return true;
@@ -324,10 +319,8 @@ bool ends_in_html(const std::filesystem::path& file) {
 }
 
 /// The scene with the command line applied, as it stands at its first frame.
-Scene scene_to_measure(const FidelityOptions& options) {
-    std::vector<Assignment> assignments;
-    for (const std::string& text : options.assignments) assignments.push_back(parse_assignment(text));
-    const auto [scene, places] = load_placed(options.scene, assignments);
+Scene scene_to_measure(const CommandOptions& options) {
+    const auto [scene, places] = load_placed(options.input, assignments_of(options));
     Scene judged = scene;  // its cameras and its sky are not rendered
     judged.camera = {};
     judged.environment = {};
@@ -377,17 +370,13 @@ void print_rows(const std::vector<FidelityRow>& rows) {
     }
 }
 
-}  // namespace
-
-int run_fidelity(const FidelityOptions& options) {
-    const bool html = ends_in_html(options.output);
+int run_fidelity(const CommandOptions& options, const FidelityOptions& own) {
+    const bool html = ends_in_html(*options.output);
     const Scene now = scene_to_measure(options);
-    refuse_to_overwrite(options.output, options.overwrite);
-    defer_interrupts();
-    prove_writable(folder_of(options.output));
+    const WriteTarget target = claim_output(options);
     ProgressReport progress(options.progress);
     const FidelityReference reference =
-        fidelity_reference(now, options.reference, progress.begin_step("reading the picture"), options.cache);
+        fidelity_reference(now, own.reference, progress.begin_step("reading the picture"), options.cache);
     warn_of_other_layers(now, reference);
     FidelitySettings settings;
     settings.cache = options.cache;
@@ -398,10 +387,23 @@ int run_fidelity(const FidelityOptions& options) {
     const std::string text =
         html ? fidelity_page(report, name)
              : fidelity_json(report, name).dump(2, ' ', false, Report::error_handler_t::replace) + "\n";
-    write_file_atomically(options.output, text, options.overwrite ? Existing::replace : Existing::keep);
+    write_file_atomically(target.file, text, target.existing);
     print_rows(fidelity_rows(report));
-    fmt::print("{}\n", printable(options.output.string()));
+    fmt::print("{}\n", printable(target.file.string()));
     return exit_done;
+}
+
+}  // namespace
+
+void add_fidelity(CLI::App& app, Invocation& call) {
+    auto [command, own] =
+        add_command(app, call, "fidelity", "Measures how true a scene is to its picture", run_fidelity);
+    add_input(command, call.options, "SCENE", "The scene");
+    add_output(command, call.options, "REPORT.(html|json)", "The report to write");
+    add_value(command, "--reference", own.reference, "IMAGE",
+              "A picture to compare with, in place of the layer's own");
+    add_assignments(command, call.options);
+    add_progress(command, call.options);
 }
 
 }  // namespace astrosplat

@@ -27,26 +27,26 @@ std::string power_text(const std::vector<ScalePower>& power) {
 
 void add_front(std::vector<FidelityRow>& rows, const FrontFidelity& front, const FrontTargets& targets) {
     const std::string view = fmt::format("front at {} x {} px", front.width_px, front.height_px);
+    const auto add = [&](const char* measure, const std::string& value, const std::string& target, bool met) {
+        rows.push_back({view, measure, value, target, target.empty() ? Verdict::none : verdict(met)});
+    };
     const FluxRatios& flux = front.flux;
-    rows.push_back({view, "PSNR", fmt::format("{:.2f} dB", front.psnr_db),
-                    fmt::format("at least {:g} dB", targets.psnr_db),
-                    verdict(front.psnr_db >= targets.psnr_db)});
-    rows.push_back({view, "SSIM", fmt::format("{:.4f}", front.ssim),
-                    fmt::format("at least {:g}", targets.ssim), verdict(front.ssim >= targets.ssim)});
-    rows.push_back({view, "light, whole frame", percent_off(flux.frame), "within 0.5 %",
-                    verdict(std::fabs(flux.frame - 1.0) <= frame_off)});
-    rows.push_back({view, "light, red green blue",
-                    fmt::format("{}, {}, {}", percent_off(flux.channels[0]), percent_off(flux.channels[1]),
-                                percent_off(flux.channels[2])),
-                    "", Verdict::none});
-    rows.push_back({view, "light, cells 5 to 95 %",
-                    fmt::format("{} to {}", percent_off(flux.cells_5), percent_off(flux.cells_95)),
-                    "within 2 %",
-                    verdict(flux.cells_5 >= 1.0 - cells_off && flux.cells_95 <= 1.0 + cells_off)});
-    rows.push_back({view, "CIEDE2000, median, 95 %",
-                    fmt::format("{:.2f}, {:.2f}", front.ciede2000.median, front.ciede2000.percentile_95), "",
-                    Verdict::none});
-    rows.push_back({view, "power, fine to coarse", power_text(front.power), "", Verdict::none});
+    add("PSNR", fmt::format("{:.2f} dB", front.psnr_db), fmt::format("at least {:g} dB", targets.psnr_db),
+        front.psnr_db >= targets.psnr_db);
+    add("SSIM", fmt::format("{:.4f}", front.ssim), fmt::format("at least {:g}", targets.ssim),
+        front.ssim >= targets.ssim);
+    add("light, whole frame", percent_off(flux.frame), "within 0.5 %",
+        std::fabs(flux.frame - 1.0) <= frame_off);
+    add("light, red green blue",
+        fmt::format("{}, {}, {}", percent_off(flux.channels[0]), percent_off(flux.channels[1]),
+                    percent_off(flux.channels[2])),
+        "", true);
+    add("light, cells 5 to 95 %",
+        fmt::format("{} to {}", percent_off(flux.cells_5), percent_off(flux.cells_95)), "within 2 %",
+        flux.cells_5 >= 1.0 - cells_off && flux.cells_95 <= 1.0 + cells_off);
+    add("CIEDE2000, median, 95 %",
+        fmt::format("{:.2f}, {:.2f}", front.ciede2000.median, front.ciede2000.percentile_95), "", true);
+    add("power, fine to coarse", power_text(front.power), "", true);
 }
 
 // Targets of a disk say nothing of sheets and walls.

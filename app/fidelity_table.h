@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "command.h"
 #include "measure_fidelity.h"
-#include "report.h"
 
 namespace astrosplat {
 

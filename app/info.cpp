@@ -1,6 +1,4 @@
 // info: what any file the program reads holds.
-#include "commands.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,11 +7,12 @@
 #include <glm/vec3.hpp>
 #include <nlohmann/json.hpp>
 
+#include "cli.h"
 #include "core/file.h"
 #include "core/file_format.h"
 #include "core/text.h"
+#include "exit.h"
 #include "output/metadata.h"
-#include "report.h"
 #include "scene/check.h"
 #include "scene/frames.h"
 #include "scene/load.h"
@@ -34,10 +33,12 @@ Report to_report(const Bounds& box) {
     return {{"lo", to_report(box.lo)}, {"hi", to_report(box.hi)}};
 }
 
-Report smallest_and_largest(const Buffer<float>& values) {
+/// The smallest and the largest value.
+template <class Values>
+Report extremes(const Values& values) {
     if (values.empty()) return "none";
-    const auto [lo, hi] = std::minmax_element(values.begin(), values.end());
-    return {number(*lo), number(*hi)};
+    const auto [least, most] = std::ranges::minmax(values);
+    return {number(least), number(most)};
 }
 
 Report describe_splats(const fs::path& file) {
@@ -48,9 +49,9 @@ Report describe_splats(const fs::path& file) {
                      {"bounds", to_report(bounds(set))},
                      {"attributes", attributes}};
     for (const std::string& name : attributes) {
-        if (name == "alpha") report[name] = smallest_and_largest(set.alpha);
-        if (name == "distance") report[name] = smallest_and_largest(set.distance);
-        if (name == "radius") report[name] = smallest_and_largest(set.radius);
+        if (name == "alpha") report[name] = extremes(set.alpha);
+        if (name == "distance") report[name] = extremes(set.distance);
+        if (name == "radius") report[name] = extremes(set.radius);
     }
     report["max_distance"] = set.max_distance;
     report["spacing"] = to_report(set.spacing);
@@ -126,12 +127,6 @@ Report describe_image(const fs::path& file) {
     }
     report["metadata"] = metadata;
     return report;
-}
-
-// The smallest and the largest value.
-Report extremes(const std::vector<double>& values) {
-    const auto [least, most] = std::ranges::minmax(values);
-    return {number(least), number(most)};
 }
 
 Report describe_catalogue(const fs::path& file) {
@@ -218,15 +213,21 @@ Report describe(const fs::path& file) {
     }
 }
 
-}  // namespace
-
-int run_info(const InfoOptions& options) {
-    const fs::path& file = options.file;
+int run_info(const CommandOptions& options) {
+    const fs::path& file = options.input;
     require_readable(file);
     Report report = {{"file", file.string()}};
     report.update(describe(file));
     print_report(report, options.json);
     return exit_done;
+}
+
+}  // namespace
+
+void add_info(CLI::App& app, Invocation& call) {
+    CLI::App& command = add_command(app, call, "info", "Describes any file the program reads", run_info);
+    add_input(command, call.options, "FILE", "Scene, mesh, picture, frame or splat file");
+    add_json(command, call.options);
 }
 
 }  // namespace astrosplat

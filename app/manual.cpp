@@ -5,11 +5,14 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
 #include <regex>
 #include <sstream>
 #include <string_view>
 
-#include "exit_code.h"
+#include "cli.h"
+#include "core/error.h"
+#include "exit.h"
 #include "scene/describe.h"
 #include "scene/parameter.h"
 
@@ -22,34 +25,11 @@ namespace {
 
 // Text in which troff sees nothing but text. What is typed at a terminal keeps its hyphens and quotes.
 std::string plain(const std::string& text) {
+    static const std::map<char, std::string> escapes{{'\\', "\\e"},  {'-', "\\-"},   {'\'', "\\(aq"},
+                                                     {'`', "\\(ga"}, {'^', "\\(ha"}, {'~', "\\(ti"},
+                                                     {'"', "\\(dq"}};
     std::string escaped;
-    for (const char c : text) {
-        switch (c) {
-            case '\\':
-                escaped += "\\e";
-                break;
-            case '-':
-                escaped += "\\-";
-                break;
-            case '\'':
-                escaped += "\\(aq";
-                break;
-            case '`':
-                escaped += "\\(ga";
-                break;
-            case '^':
-                escaped += "\\(ha";
-                break;
-            case '~':
-                escaped += "\\(ti";
-                break;
-            case '"':
-                escaped += "\\(dq";
-                break;
-            default:
-                escaped += c;
-        }
-    }
+    for (const char c : text) escaped += escapes.contains(c) ? escapes.at(c) : std::string(1, c);
     return escaped.starts_with('.') ? "\\&" + escaped : escaped;
 }
 
@@ -188,8 +168,6 @@ std::string key_entry(const ParameterRow& row) {
                  plain(spec.help) + "\n" + plain(value_words(spec)));
 }
 
-}  // namespace
-
 std::string command_manual(const std::vector<CommandWords>& commands) {
     std::string text = title("ASTROSPLAT", 1, "User Commands");
     text +=
@@ -232,6 +210,20 @@ std::string scene_manual() {
         text += key_entry(row);
     }
     return text + ".SH SEE ALSO\n.BR astrosplat (1)\n";
+}
+
+}  // namespace
+
+void add_manual(CLI::App& app, Invocation& call) {
+    const auto run = [&app](const CommandOptions& options) {
+        const std::string section = options.input.string();
+        if (section != "1" && section != "5") bad_input("manual", "", "1 or 5", "'" + section + "'");
+        fmt::print("{}", section == "1" ? command_manual(command_words(app)) : scene_manual());
+        return exit_done;
+    };
+    CLI::App& command =
+        add_command(app, call, "manual", "Prints a manual page: 1 of the program, 5 of scene files", run);
+    add_input(command, call.options, "SECTION", "1: the program, 5: scene files");
 }
 
 }  // namespace astrosplat

@@ -1,7 +1,5 @@
 // parameters: every key of a scene file with default, range and meaning, from the one description in the
 // engine; of one scene also what they are there.
-#include "commands.h"
-
 #include <fmt/format.h>
 
 #include <array>
@@ -9,8 +7,9 @@
 #include <nlohmann/json.hpp>
 #include <variant>
 
+#include "cli.h"
 #include "core/file.h"
-#include "report.h"
+#include "exit.h"
 #include "scene/describe.h"
 #include "scene/load.h"
 
@@ -43,7 +42,7 @@ Report to_report(const ParameterSpec& spec, const char* value_name, const Value&
 }
 
 /// Keys as --set takes them, with their values; also of a scene on its way to becoming one.
-std::vector<ParameterRow> rows_of(const std::string& name) {
+std::vector<ParameterRow> rows_of(const std::filesystem::path& name) {
     const std::filesystem::path file = find_by_name("scenes", name);
     Scene scene = parse_unchecked(read_file(file), file);
     std::vector<ParameterRow> rows;
@@ -59,22 +58,36 @@ std::string value_table(const std::vector<ParameterRow>& rows) {
     return table;
 }
 
-}  // namespace
+struct ParametersOptions {
+    bool names = false;
+};
 
-int run_parameters(const ParametersOptions& options) {
-    const bool of_scene = !options.scene.empty();
-    const std::vector<ParameterRow> rows = of_scene ? rows_of(options.scene) : parameter_rows();
+/// `options.input`: a scene's file or short name; empty: keys as the manual has them.
+int run_parameters(const CommandOptions& options, const ParametersOptions& own) {
+    const bool of_scene = !options.input.empty();
+    const std::vector<ParameterRow> rows = of_scene ? rows_of(options.input) : parameter_rows();
     if (options.json) {
         Report report = Report::array();
         for (const ParameterRow& row : rows)
             report.push_back(to_report(row.spec, of_scene ? "value" : "default", row.value));
         print_report(report, true);
-    } else if (options.names) {
+    } else if (own.names) {
         for (const ParameterRow& row : rows) fmt::print("{}\n", row.spec.key);
     } else {
         fmt::print("{}", of_scene ? value_table(rows) : parameter_table());
     }
     return exit_done;
+}
+
+}  // namespace
+
+void add_parameters(CLI::App& app, Invocation& call) {
+    auto [command, own] =
+        add_command(app, call, "parameters", "Lists every key of a scene file", run_parameters);
+    add_value(command, "SCENE", call.options.input, "SCENE",
+              "Lists the keys of this scene as --set takes them, with their values");
+    command.add_flag("--names", own.names, "Prints only the keys");
+    add_json(command, call.options);
 }
 
 }  // namespace astrosplat

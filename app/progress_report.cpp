@@ -1,29 +1,68 @@
 #include "progress_report.h"
 
+#include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdio>
+#include <nlohmann/json.hpp>
+#include <utility>
 
 #include "core/log.h"
 #include "core/progress.h"
 #include "core/text.h"
-#include "interrupt.h"
-#include "json_log.h"
+#include "exit.h"
 
 namespace astrosplat {
 namespace {
 
+// JSON.
+
+using Json = nlohmann::ordered_json;
+
+bool as_json = false;  // set once, before anything runs beside it
+
+// UTC, as RFC 3339 has it.
+std::string time_now() {
+    const auto now =
+        std::chrono::time_point_cast<std::chrono::milliseconds>(std::chrono::system_clock::now());
+    const auto ms = now.time_since_epoch().count();
+    return fmt::format("{:%Y-%m-%dT%H:%M:%S}.{:03}Z", fmt::gmtime(std::chrono::system_clock::to_time_t(now)),
+                       ms % 1000);
+}
+
+Json event_of(const char* name) { return {{"time", time_now()}, {"event", name}}; }
+
+// Bytes of a file's name that are no UTF-8 are replaced.
+std::string line_of(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
+
+const char* name_of_level(LogLevel level) {
+    constexpr std::array names = {std::pair(LogLevel::error, "error"),
+                                  std::pair(LogLevel::warning, "warning"), std::pair(LogLevel::info, "info"),
+                                  std::pair(LogLevel::detail, "detail")};
+    return std::ranges::find(names, level, [](const auto& named) { return named.first; })->second;
+}
+
+std::string json_message(LogLevel level, const std::string& text) {
+    Json json = event_of("message");
+    json["level"] = name_of_level(level);
+    json["text"] = text;
+    return line_of(json);
+}
+
+// The bar and plain lines.
+
 constexpr auto bar_interval = std::chrono::milliseconds(100);
-// At the pace so far; negative while nothing is done yet.
+constexpr auto line_interval = std::chrono::seconds(5);  // at least every 10 s is promised
+
+/// At the pace so far; negative while nothing is done yet.
 double seconds_left(std::chrono::steady_clock::time_point start, double fraction) {
     return fraction > 0.0 ? seconds_since(start) * (1.0 - fraction) / fraction : -1.0;
 }
 
 int percent_of(double fraction) { return static_cast<int>(fraction * 100.0); }
-
-constexpr auto line_interval = std::chrono::seconds(5);  // at least every 10 s is promised
 
 std::string bar_text(double fraction) {
     constexpr int width = 30;
@@ -34,6 +73,11 @@ std::string bar_text(double fraction) {
 
 }  // namespace
 
+void log_as_json() {
+    as_json = true;
+    set_log_format(json_message);
+}
+
 std::string clock_text(double seconds) {
     if (!(seconds >= 0.0 && seconds < 360000.0)) return "--:--:--";
     const int whole = static_cast<int>(seconds + 0.5);
@@ -42,7 +86,7 @@ std::string clock_text(double seconds) {
 
 ProgressReport::Style ProgressReport::style_for(ProgressMode mode) {
     if (mode == ProgressMode::none) return Style::none;
-    if (logs_json()) return Style::json;
+    if (as_json) return Style::json;
     const bool terminal = isatty(STDERR_FILENO) != 0;
     return mode == ProgressMode::automatic && terminal ? Style::bar : Style::plain;
 }
@@ -95,10 +139,14 @@ void ProgressReport::saved(const std::filesystem::path& file, double seconds) {
     label_.clear();
     if (style_ == Style::none) return;
     clear_bar();
-    if (style_ == Style::json)
-        fmt::print(stderr, "{}\n", json_line_saved(file, seconds));
-    else
+    if (style_ != Style::json) {
         fmt::print(stderr, "saved {} {:.2f}s\n", printable(file.string()), seconds);
+        return;
+    }
+    Json json = event_of("saved");
+    json["file"] = file.string();
+    json["seconds"] = seconds;
+    fmt::print(stderr, "{}\n", line_of(json));
 }
 
 double ProgressReport::fraction_of_all(double fraction) const {
@@ -107,18 +155,21 @@ double ProgressReport::fraction_of_all(double fraction) const {
 
 void ProgressReport::print_json(double fraction) {
     const double all = fraction_of_all(fraction);
-    const auto known = [](double seconds) {
-        return seconds >= 0.0 ? std::optional<double>(seconds) : std::nullopt;
+    Json json = event_of("progress");
+    json["step"] = frame_ ? "frame" : label_;
+    if (frame_) {
+        json["frame"] = *frame_;
+        json["index"] = index_;
+        json["count"] = count_;
+    }
+    json["fraction"] = fraction;
+    json["fraction_of_all"] = all;
+    const auto add_known = [&](const char* name, double seconds) {
+        if (seconds >= 0.0) json[name] = seconds;
     };
-    const std::string line = json_line({.step = frame_ ? "frame" : label_,
-                                        .frame = frame_,
-                                        .index = index_,
-                                        .count = count_,
-                                        .fraction = fraction,
-                                        .fraction_of_all = all,
-                                        .seconds_left = known(seconds_left(frame_start_, fraction)),
-                                        .seconds_left_of_all = known(seconds_left(start_, all))});
-    fmt::print(stderr, "{}\n", line);
+    add_known("seconds_left", seconds_left(frame_start_, fraction));
+    add_known("seconds_left_of_all", seconds_left(start_, all));
+    fmt::print(stderr, "{}\n", line_of(json));
 }
 
 // Of a run of frames both are said: how far this frame is and how far all are.

@@ -1,6 +1,7 @@
-// Progress on stderr: a bar with the time left on a terminal, plain lines elsewhere, JSON with --log-json.
-// Work reports fractions through Progress values from any thread; one thread of its own prints, so that a
-// slow frame still gives a line in time.
+// Progress on stderr: a bar with the time left on a terminal, plain lines elsewhere; with --log-json all on
+// stderr is JSON, one object a line, for programs that watch a render: {"time":"2026-11-24T09:30:00.250Z",
+// "event":"message","level":"warning","text":"..."}. Work reports fractions through Progress values from any
+// thread; one thread of its own prints, so that a slow frame still gives a line in time.
 #pragma once
 
 #include <atomic>
@@ -16,6 +17,9 @@
 namespace astrosplat {
 
 enum class ProgressMode { automatic, plain, none };
+
+/// From now on messages are JSON, and so is progress.
+void log_as_json();
 
 /// "00:04:10"; "--:--:--" for what is not known (negative) or longer than 99 hours.
 std::string clock_text(double seconds);
@@ -52,8 +56,8 @@ class ProgressReport {
     std::string label_;                  // empty: nothing at hand
     std::optional<std::int64_t> frame_;  // none: a step
     std::int64_t index_ = 1, count_ = 1;
-    std::chrono::steady_clock::time_point start_,
-        frame_start_;  // of the first frame or the step; of this one
+    std::chrono::steady_clock::time_point start_;        // of the first frame, or of the step
+    std::chrono::steady_clock::time_point frame_start_;  // of this one
     std::chrono::steady_clock::time_point last_print_;
     Worker printer_;
 };

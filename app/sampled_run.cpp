@@ -8,7 +8,7 @@
 #include "core/error.h"
 #include "core/file.h"
 #include "core/progress.h"
-#include "interrupt.h"
+#include "exit.h"
 #include "output/write.h"
 #include "scene/animate.h"
 #include "scene/layer_setup.h"
@@ -21,8 +21,6 @@ namespace astrosplat {
 namespace {
 
 namespace fs = std::filesystem;
-
-Progress stoppable() { return {{}, &interrupted()}; }
 
 /// Some of the frames that are rendered, evenly spread: the first, the last, and what lies between.
 std::vector<const FramePlan*> some_frames(const BatchPlan& plan, std::size_t most) {

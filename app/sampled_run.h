@@ -35,7 +35,7 @@ class SampledRun {
         bool is_made = false;     // was not there
         bool has_radius = false;  // of every splat
     };
-    const std::vector<Layer>& layers() const { return layers_; }
+    /// Null: it was not sampled.
     const Layer* find(const std::string& name) const;
 
     /// Of all sets that are not there, about.

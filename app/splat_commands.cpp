@@ -1,10 +1,9 @@
-// generate and convert: splats into files, without rendering.
-#include "commands.h"
-
+// generate, convert and camera: splats and cameras into files, without rendering.
 #include <fmt/format.h>
 
 #include <algorithm>
 
+#include "cli.h"
 #include "core/error.h"
 #include "core/file.h"
 #include "core/file_format.h"
@@ -12,42 +11,32 @@
 #include "core/memory.h"
 #include "core/text.h"
 #include "estimate.h"
-#include "interrupt.h"
-#include "places.h"
+#include "exit.h"
 #include "progress_report.h"
+#include "scene/camera_file.h"
+#include "scene/frames.h"
 #include "scene/layer_setup.h"
 #include "scene/load.h"
-#include "scene/parameter_key.h"
 #include "sets/load_source.h"
 #include "splat_files/splat_file.h"
 
 namespace astrosplat {
+namespace fs = std::filesystem;
 namespace {
 
-const LayerParams& layer_named(const Scene& scene, const std::string& name) {
-    std::vector<std::string> names;
-    for (const LayerParams& layer : scene.layers) {
-        if (layer.name == name) return layer;
-        names.push_back(layer.name);
-    }
-    bad_input(scene.file.string(), "",
-              fmt::format("--layer to name one of its layers ({})", fmt::join(names, ", ")),
-              "'" + name + "'" + did_you_mean(name, names));
-}
-
-void check_splat_output(const std::filesystem::path& file, bool overwrite) {
+/// The output, once it is sure that it can be written.
+WriteTarget claim_splat_output(const CommandOptions& options) {
+    const fs::path& file = *options.output;
     const FileFormat* format = format_by_name(file);
     if (kind_of(format) != FileKind::splats || !includes(format->uses, FileUse::written))
         bad_input(file.string(), "",
                   fmt::format("a name ending in {}",
                               fmt::join(endings_of({FileKind::splats}, FileUse::written), " or ")),
                   "'" + file.extension().string() + "'");
-    refuse_to_overwrite(file, overwrite);
-    defer_interrupts();
-    prove_writable(folder_of(file));
+    return claim_output(options);
 }
 
-void report_file(const std::filesystem::path& file, std::int64_t splats) {
+void report_file(const fs::path& file, std::int64_t splats) {
     fmt::print("{}: {}\n", printable(file.string()), counted(splats, "splat"));
 }
 
@@ -67,19 +56,18 @@ void write_in_parts(const WriteTarget& target, const SourceParams& source, const
                 write_columns(target, plan_columns(source, layer_name, progress), layer_name, progress));
 }
 
-}  // namespace
+struct GenerateOptions {
+    std::string layer;
+};
 
-int run_generate(const GenerateOptions& options) {
-    std::vector<Assignment> assignments;
-    for (const std::string& text : options.assignments) assignments.push_back(parse_assignment(text));
-    const Scene scene = load_scene(options.scene, assignments);
-    LayerParams layer = layer_named(scene, options.layer);
+int run_generate(const CommandOptions& options, const GenerateOptions& own) {
+    const Scene scene = load_scene(options.input, assignments_of(options));
+    LayerParams layer = layer_named(scene, own.layer);
     const std::int64_t most_bytes = options.memory_gib ? parse_memory(*options.memory_gib) : 0;
-    check_splat_output(options.output, options.overwrite);
+    const WriteTarget target = claim_splat_output(options);
     ProgressReport report(options.progress);
     if (most_bytes > 0) limit_bodies(layer, most_bytes, options.cache);
     const SourceParams source = source_of(scene, layer);
-    const WriteTarget target{options.output, existing_of(options.overwrite)};
     const bool columns = makes_columns(source);
     if (columns && most_bytes > 0) limit_memory(most_bytes);
     try {
@@ -87,19 +75,67 @@ int run_generate(const GenerateOptions& options) {
             load_source(options.cache, source, layer.name, report.begin_step("generating " + layer.name)).set;
         write_and_report(target, set, report);
     } catch (const NotEnoughMemory&) {
-        if (!columns || format_by_name(options.output)->id != "splats") throw;
+        if (!columns || format_by_name(target.file)->id != "splats") throw;
         write_in_parts(target, source, layer.name, report);
     }
     return exit_done;
 }
 
-int run_convert(const ConvertOptions& options) {
+int run_convert(const CommandOptions& options) {
     require_readable(options.input);
-    check_splat_output(options.output, options.overwrite);
+    const WriteTarget target = claim_splat_output(options);
     ProgressReport report(options.progress);
-    const SplatSet set = read_splats(options.input, report.begin_step("reading"));
-    write_and_report({options.output, existing_of(options.overwrite)}, set, report);
+    write_and_report(target, read_splats(options.input, report.begin_step("reading")), report);
     return exit_done;
+}
+
+int run_camera(const CommandOptions& options) {
+    const Scene scene = load_scene(options.input, assignments_of(options));
+    const std::vector<std::int64_t> frames =
+        options.frames ? parse_frames(*options.frames, "--frames")
+                       : parse_frames(scene.output.frames, scene.file.string() + ": output.frames");
+    const fs::path& file = *options.output;
+    refuse_to_overwrite(file, options.overwrite);
+    write_file_atomically(file, camera_text(camera_track(scene, frames), scene, file), existing_of(options));
+    fmt::print("{}: {}\n", printable(file.string()), counted(std::ssize(frames), "frame"));
+    return exit_done;
+}
+
+}  // namespace
+
+void add_generate(CLI::App& app, Invocation& call) {
+    auto [command, own] =
+        add_command(app, call, "generate", "Generates a layer's splats into a file", run_generate);
+    add_input(command, call.options, "SCENE", "The scene");
+    add_value(command, "--layer", own.layer, "NAME", "Name of the layer")->required();
+    add_output(command, call.options, "FILE.(pda|ply|splats)", "The splat file to write");
+    add_assignments(command, call.options);
+    add_value(command, "--memory", call.options.memory_gib, "GiB",
+              "Limit of what is taken: pictures of bodies that would take more are reduced, columns written "
+              "in parts");
+    add_progress(command, call.options);
+}
+
+void add_convert(CLI::App& app, Invocation& call) {
+    const auto a_file = [](const std::vector<std::string>& endings) {
+        return "A " + alternatives(endings) + " file";
+    };
+    CLI::App& command = add_command(app, call, "convert", "Converts between splat files", run_convert);
+    add_input(command, call.options, "IN", a_file(endings_of({FileKind::splats})));
+    add_value(command, "OUT", call.options.output, "OUT",
+              a_file(endings_of({FileKind::splats}, FileUse::written)))
+        ->required();
+    command.add_flag("--overwrite", call.options.overwrite, "Replaces what is there already");
+    add_progress(command, call.options);
+}
+
+void add_camera(CLI::App& app, Invocation& call) {
+    CLI::App& command =
+        add_command(app, call, "camera", "Writes the scene's camera for other programs", run_camera);
+    add_input(command, call.options, "SCENE", "The scene");
+    add_output(command, call.options, "FILE.(chan|csv|gltf|usda)", "The camera file to write");
+    add_value(command, "-f,--frames", call.options.frames, "1-100,120,200-300x2", "Instead of output.frames");
+    add_assignments(command, call.options);
 }
 
 }  // namespace astrosplat

@@ -1,7 +1,5 @@
 // status: every frame that --batch would render, looked at where it belongs, and counted by what was found;
 // then the tasks that a farm has of them.
-#include "commands.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,12 +7,14 @@
 #include <cstdint>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <utility>
 #include <vector>
 
 #include "batch_plan.h"
+#include "cli.h"
 #include "core/text.h"
+#include "exit.h"
 #include "farm/submission.h"
-#include "report.h"
 #include "scene/frames.h"
 
 namespace astrosplat {
@@ -22,35 +22,27 @@ namespace {
 
 using Frames = std::vector<std::int64_t>;
 
-/// Of one eye, ascending.
-struct FramesFound {
-    std::map<Found, Frames> frames;
-    std::int64_t count = 0;
-
-    const Frames& of(Found found) { return frames[found]; }
-};
+using FramesFound = std::map<Found, Frames>;  // of one eye; ascending
 using Sequence = std::map<Eye, FramesFound>;
 
-struct Word {
-    Found found;
-    const char* name;
-};
-constexpr std::array words = {Word{Found::same, "done"}, Word{Found::nothing, "missing"},
-                              Word{Found::damaged, "damaged"}, Word{Found::other, "foreign"}};
+constexpr std::array words = {std::pair(Found::same, "done"), std::pair(Found::nothing, "missing"),
+                              std::pair(Found::damaged, "damaged"), std::pair(Found::other, "foreign")};
 
 Sequence look_at_frames(const BatchPlan& plan) {
     Sequence sequence;
-    for (const FramePlan& frame : plan.frames) {
-        FramesFound& found = sequence[frame.eye];
-        found.frames[found_at(frame)].push_back(frame.frame);
-        ++found.count;
-    }
+    for (const FramePlan& frame : plan.frames) sequence[frame.eye][found_at(frame)].push_back(frame.frame);
     return sequence;
 }
 
-bool is_complete(Sequence& sequence) {
+std::size_t count_of(const FramesFound& found) {
+    std::size_t count = 0;
+    for (const auto& [what, frames] : found) count += frames.size();
+    return count;
+}
+
+bool is_complete(const Sequence& sequence) {
     return std::ranges::all_of(
-        sequence, [](auto& eye) { return std::ssize(eye.second.of(Found::same)) == eye.second.count; });
+        sequence, [](const auto& eye) { return eye.second.size() == 1 && eye.second.contains(Found::same); });
 }
 
 /// Submissions to Slurm that have tasks in the queue, and the last one; and what all of them were made of.
@@ -110,36 +102,35 @@ Report to_report(const std::vector<SubmittedFrames>& submitted) {
     return all;
 }
 
-void print_for_people(const BatchPlan& plan, Sequence& sequence) {
+void print_for_people(const BatchPlan& plan, Sequence sequence) {
     fmt::print("scene {}\n", printable(plan.scene.file.string()));
     fmt::print("frames {}\n", printable(plan.scene.output.path));
     for (auto& [eye, found] : sequence) {
         const std::string whose = sequence.size() > 1 ? fmt::format("{} ", name_of(eye)) : "";
-        for (const Word& word : words) {
-            const Frames& frames = found.of(word.found);
-            if (frames.empty() && word.found != Found::same) continue;
-            fmt::print("{}{} {}", whose, word.name, frames.size());
-            if (word.found == Found::same) fmt::print(" of {}", found.count);
+        for (const auto& [what, word] : words) {
+            const Frames& frames = found[what];
+            if (frames.empty() && what != Found::same) continue;
+            fmt::print("{}{} {}", whose, word, frames.size());
+            if (what == Found::same) fmt::print(" of {}", count_of(found));
             if (!frames.empty()) fmt::print(": {}", frames_text(frames));
             fmt::print("\n");
         }
     }
 }
 
-void print_as_json(const BatchPlan& plan, Sequence& sequence) {
+void print_as_json(const BatchPlan& plan, Sequence sequence) {
+    const bool complete = is_complete(sequence);
     Report eyes = Report::array();
     for (auto& [eye, found] : sequence) {
-        Report one = {{"eye", name_of(eye)}, {"frames", found.count}};
-        for (const Word& word : words) {
-            const Frames& frames = found.of(word.found);
-            one[word.name] = {{"count", frames.size()}, {"frames", frames_text(frames)}};
-        }
+        Report one = {{"eye", name_of(eye)}, {"frames", count_of(found)}};
+        for (const auto& [what, word] : words)
+            one[word] = {{"count", found[what].size()}, {"frames", frames_text(found[what])}};
         eyes.push_back(one);
     }
     const Farm farm = ask_farm(plan);
     print_report({{"scene", plan.scene.file.string()},
                   {"output", plan.scene.output.path},
-                  {"complete", is_complete(sequence)},
+                  {"complete", complete},
                   {"eyes", eyes},
                   {"queue", to_report(farm)},
                   {"queue_problem", farm.problem},
@@ -147,11 +138,9 @@ void print_as_json(const BatchPlan& plan, Sequence& sequence) {
                  true);
 }
 
-}  // namespace
-
-int run_status(const StatusOptions& options) {
-    const BatchPlan plan = plan_frames(options.batch);
-    Sequence sequence = look_at_frames(plan);
+int run_status(const CommandOptions& options) {
+    const BatchPlan plan = plan_frames(options);
+    const Sequence sequence = look_at_frames(plan);
     if (options.json) {
         print_as_json(plan, sequence);
     } else {
@@ -159,6 +148,17 @@ int run_status(const StatusOptions& options) {
         print_farm(ask_farm(plan));
     }
     return is_complete(sequence) ? exit_done : exit_some_failed;
+}
+
+}  // namespace
+
+void add_status(CLI::App& app, Invocation& call) {
+    CLI::App& command =
+        add_command(app, call, "status", "Lists which frames are done, missing, damaged or of other settings",
+                    run_status);
+    add_input(command, call.options, "SCENE", "The scene");
+    add_frame_choice(command, call.options);
+    add_json(command, call.options);
 }
 
 }  // namespace astrosplat

@@ -1,34 +1,61 @@
-// verify: a frame's header says which frame, size, region and eye it is of. Where the scene gives the same
-// frame hash, the frame is rendered and written beside it, and the two files are compared; so what rounding,
-// views and compression do to both is the same.
-#include "commands.h"
-
+// compare: how far two images are apart, in linear premultiplied light. verify: frames rendered again and
+// compared with their files.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 
 #include "batch_plan.h"
+#include "cli.h"
 #include "core/error.h"
 #include "core/file.h"
 #include "core/log.h"
 #include "core/text.h"
 #include "estimate.h"
-#include "interrupt.h"
+#include "exit.h"
 #include "output/compare.h"
 #include "output/metadata.h"
 #include "output/write.h"
 #include "pipeline.h"
-#include "report.h"
 
 namespace astrosplat {
 namespace {
 
 namespace fs = std::filesystem;
 using Compression = OutputParams::Compression;
+
+struct CompareOptions {
+    fs::path b;
+    std::optional<std::string> max_difference;  // exit_some_failed where a channel differs by more
+};
+
+int run_compare(const CommandOptions& options, const CompareOptions& own) {
+    constexpr double any = std::numeric_limits<double>::infinity();
+    const double limit =
+        own.max_difference ? option_number("--max-difference", *own.max_difference, "a number >= 0", 0.0, any)
+                           : any;
+    const ImageComparison c = compare_files(options.input, own.b);
+    Report report;
+    report["identical"] = c.identical();
+    report["max_difference"] = number(c.max_difference);
+    report["max_at"] = {c.max_x, c.max_y};
+    report["max_channel"] = std::string(1, "RGBA"[c.max_channel]);
+    report["mean_difference"] = number(c.mean_difference);
+    report["percentile_999"] = number(c.percentile_999);
+    report["psnr_db"] = number(c.psnr_db);
+    report["differing_pixels"] = c.differing_pixels;
+    report["pixels"] = c.width * c.height;
+    print_report(report, options.json);
+    return c.max_difference > limit ? exit_some_failed : exit_done;
+}
+
+// verify: a frame's header says which frame, size, region and eye it is of. Where the scene gives the same
+// frame hash, the frame is rendered and written beside it, and the two files are compared; so what rounding,
+// views and compression do to both is the same.
 
 struct Verdict {
     enum class Kind { equal, different, other_scene, damaged } kind = Kind::equal;
@@ -65,8 +92,9 @@ void take_compression(OutputParams& output, bool dwaa) {
 
 class Verification {
   public:
-    explicit Verification(const VerifyOptions& options)
-        : options_(options), report_(options.batch.progress) {}
+    /// `count`: of the files that are asked for.
+    Verification(const CommandOptions& options, std::int64_t count)
+        : options_(options), count_(count), report_(options.progress) {}
 
     Verdict verdict(const fs::path& file, std::int64_t index) {
         const FrameHeader header = read_frame_header(file);
@@ -93,10 +121,10 @@ class Verification {
         const std::string region = region_text(header.region);
         if (job_ && job_->resolution == resolution && job_->region == region) return *job_;
         job_.reset();  // before the next one takes memory
-        BatchOptions batch = options_.batch;
+        CommandOptions batch = options_;
         batch.resolution = resolution;
         if (!region.empty()) batch.region = region;
-        batch.output = file.string();
+        batch.output = file;
         job_ = std::make_unique<VerifyJob>(VerifyJob{resolution, region, plan_scene(batch), 0, {}});
         return *job_;
     }
@@ -127,10 +155,10 @@ class Verification {
             job_->renderer_bytes = job.renderer_bytes;
             job_->pipeline = std::make_unique<Pipeline>(plan.scene, report_.begin_step("preparing"),
                                                         plan.cache, job.streamed);
-            check_unchanged(plan.hasher.files(), Progress{{}, &interrupted()});
+            check_unchanged(plan.hasher.files(), stoppable());
         }
         Pipeline& pipeline = *job_->pipeline;
-        const Progress progress = report_.begin_frame(*header.frame, index, std::ssize(options_.files));
+        const Progress progress = report_.begin_frame(*header.frame, index, count_);
         OutputParams output = now.scene.output;
         take_compression(output, header.dwaa);
         RenderSettings settings = render_settings(output);
@@ -144,7 +172,8 @@ class Verification {
         return pixel_hash(rendered.beauty);
     }
 
-    const VerifyOptions& options_;
+    const CommandOptions& options_;
+    std::int64_t count_;
     ProgressReport report_;
     TemporaryFolder folder_;
     std::unique_ptr<VerifyJob> job_;
@@ -214,35 +243,68 @@ std::string line_of(const Verdict& verdict) {
     return line;
 }
 
-void print_verdicts(const VerifyOptions& options, const std::vector<Verdict>& verdicts) {
+struct VerifyOptions {
+    std::vector<fs::path> files;  // frames in any order, each of any size, region and eye
+};
+
+void print_verdicts(const std::vector<fs::path>& files, const std::vector<Verdict>& verdicts, bool json) {
     Report list = Report::array();
     for (std::size_t i = 0; i < verdicts.size(); ++i) {
-        const fs::path& file = options.files[i];
-        if (options.json)
-            list.push_back(json_of(file, verdicts[i]));
+        if (json)
+            list.push_back(json_of(files[i], verdicts[i]));
         else
-            fmt::print("{}: {}\n", printable(file.string()), printable(line_of(verdicts[i])));
+            fmt::print("{}: {}\n", printable(files[i].string()), printable(line_of(verdicts[i])));
     }
-    if (options.json) print_report(list, true);
+    if (json) print_report(list, true);
+}
+
+/// exit_done when all are equal, else exit_some_failed.
+int run_verify(const CommandOptions& options, const VerifyOptions& own) {
+    for (const fs::path& file : own.files) require_readable(file);
+    defer_interrupts();
+    std::vector<Verdict> verdicts;
+    try {
+        Verification verification(options, std::ssize(own.files));
+        for (const fs::path& file : own.files)
+            verdicts.push_back(verification.verdict(file, std::ssize(verdicts) + 1));
+    } catch (const Cancelled&) {
+        print_verdicts(own.files, verdicts, options.json);  // each is true by itself
+        throw;
+    }
+    print_verdicts(own.files, verdicts, options.json);
+    const auto equal = [](const Verdict& verdict) { return verdict.kind == Verdict::Kind::equal; };
+    return std::ranges::all_of(verdicts, equal) ? exit_done : exit_some_failed;
 }
 
 }  // namespace
 
-int run_verify(const VerifyOptions& options) {
-    for (const fs::path& file : options.files) require_readable(file);
-    defer_interrupts();
-    std::vector<Verdict> verdicts;
-    try {
-        Verification verification(options);
-        for (const fs::path& file : options.files)
-            verdicts.push_back(verification.verdict(file, std::ssize(verdicts) + 1));
-    } catch (const Cancelled&) {
-        print_verdicts(options, verdicts);  // each is true by itself
-        throw;
-    }
-    print_verdicts(options, verdicts);
-    const auto equal = [](const Verdict& verdict) { return verdict.kind == Verdict::Kind::equal; };
-    return std::ranges::all_of(verdicts, equal) ? exit_done : exit_some_failed;
+void add_compare(CLI::App& app, Invocation& call) {
+    auto [command, own] =
+        add_command(app, call, "compare", "Compares the linear light of two images", run_compare);
+    add_input(command, call.options, "A", "An image");
+    add_value(command, "B", own.b, "B", "An image of the same size")->required();
+    add_json(command, call.options);
+    add_value(command, "--max-difference", own.max_difference, "X",
+              "Largest difference allowed in any channel; beyond it the exit code is 3");
+}
+
+void add_verify(CLI::App& app, Invocation& call) {
+    auto [command, own] =
+        add_command(app, call, "verify", "Renders frames again and says whether files hold them", run_verify);
+    add_input(command, call.options, "SCENE", "The scene");
+    const auto set = [&files = own.files](const std::vector<std::string>& names) {
+        files.assign(names.begin(), names.end());
+    };
+    command
+        .add_option_function<std::vector<std::string>>(
+            "FRAME", set, "Frame files; each says itself which frame, size, region and eye it holds")
+        ->option_text("FRAME...")
+        ->required();
+    add_assignments(command, call.options);
+    add_value(command, "--layers", call.options.layers, "A,B", "Where --batch had it too");
+    add_value(command, "--memory", call.options.memory_gib, "GiB", "Where --batch had it too");
+    add_json(command, call.options);
+    add_progress(command, call.options);
 }
 
 }  // namespace astrosplat

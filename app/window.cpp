@@ -1,12 +1,10 @@
-#include "window.h"
-
+// The window, or a screenshot of it.
+#include "cli.h"
 #include "core/error.h"
 #ifdef ASTROSPLAT_WINDOW
 #include "core/file.h"
+#include "exit.h"
 #include "farm/child_process.h"
-#include "interrupt.h"
-#include "places.h"
-#include "viewer/run_viewer.h"
 #endif
 
 namespace astrosplat {
@@ -26,15 +24,10 @@ void refuse_without_screenshot(const ScreenshotOptions& shot) {
 }  // namespace
 
 int run_window(Invocation& call) {
-    if (!call.input.empty()) call.input = find_by_name("scenes", call.input).string();
-    ViewerOptions viewer{call.input,
-                         {},
-                         call.batch_options.cache,
-                         own_program(),
-                         !call.common.threads.empty(),
-                         !call.common.cache.empty() || call.common.no_cache};
-    for (const std::string& text : call.batch_options.assignments)
-        viewer.assignments.push_back(parse_assignment(text));
+    CommandOptions& options = call.options;
+    if (!options.input.empty()) options.input = find_by_name("scenes", options.input);
+    const ViewerOptions viewer{options.input, assignments_of(options), options.cache,
+                               own_program(), !call.threads.empty(),   !call.cache.empty() || call.no_cache};
     ScreenshotOptions& shot = call.screenshot;
     if (shot.output.empty()) {
         refuse_without_screenshot(shot);

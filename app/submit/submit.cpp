@@ -1,6 +1,4 @@
 // A plan of the frames, chunks of those to be rendered, two scripts, two calls of sbatch.
-#include "commands.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,6 +9,7 @@
 #include <system_error>
 
 #include "batch_plan.h"
+#include "cli.h"
 #include "core/atomic_file.h"
 #include "core/error.h"
 #include "core/log.h"
@@ -18,10 +17,9 @@
 #include "core/text.h"
 #include "edit/command_lines.h"
 #include "estimate.h"
+#include "exit.h"
 #include "farm/child_process.h"
 #include "farm/submission.h"
-#include "interrupt.h"
-#include "places.h"
 #include "scene/frames.h"
 
 namespace astrosplat {
@@ -123,17 +121,34 @@ std::string frames_script(const SlurmJob& job, const std::vector<std::string>& c
 // Files and jobs of a submission before it is whole. Destructors take it back; keep() is the last thing that
 // is called.
 
+/// The first of 0001, 0002, ... that is free below `parent`.
+fs::path next_folder(const fs::path& parent) {
+    for (int number = 1;; ++number) {
+        std::error_code ignored;
+        const fs::path folder = parent / fmt::format("{:04}", number);
+        if (!fs::exists(fs::symlink_status(folder, ignored))) return folder;
+    }
+}
+
 /// A new folder, which goes with all that is in it unless it is kept.
 class DraftFolder {
   public:
     /// Below `parent`, which is made where it is missing. Throws OutputError.
-    explicit DraftFolder(const fs::path& parent);
-    ~DraftFolder();
+    explicit DraftFolder(const fs::path& parent) {
+        prove_writable(parent);
+        std::error_code error;
+        do folder_ = next_folder(parent);  // somebody else may take it
+        while (!fs::create_directory(folder_, error) && !error);
+        if (error) throw OutputError(folder_.string() + ": cannot create this folder: " + error.message());
+    }
+    ~DraftFolder() {
+        if (kept_) return;
+        std::error_code ignored;
+        fs::remove_all(folder_, ignored);
+        fs::remove(folder_.parent_path(), ignored);  // unless others lie in it
+    }
     DraftFolder(const DraftFolder&) = delete;
     DraftFolder& operator=(const DraftFolder&) = delete;
-
-    /// The first of 0001, 0002, ... that is free.
-    static fs::path next_name(const fs::path& parent);
 
     const fs::path& path() const { return folder_; }
     void keep() { kept_ = true; }
@@ -143,71 +158,43 @@ class DraftFolder {
     bool kept_ = false;
 };
 
-DraftFolder::DraftFolder(const fs::path& parent) {
-    prove_writable(parent);
-    std::error_code error;
-    do folder_ = next_name(parent);  // somebody else may take it
-    while (!fs::create_directory(folder_, error) && !error);
-    if (error) throw OutputError(folder_.string() + ": cannot create this folder: " + error.message());
-}
-
-DraftFolder::~DraftFolder() {
-    if (kept_) return;
-    std::error_code ignored;
-    fs::remove_all(folder_, ignored);
-    fs::remove(folder_.parent_path(), ignored);  // unless others lie in it
-}
-
-fs::path DraftFolder::next_name(const fs::path& parent) {
-    for (int number = 1;; ++number) {
-        std::error_code ignored;
-        const fs::path folder = parent / fmt::format("{:04}", number);
-        if (!fs::exists(fs::symlink_status(folder, ignored))) return folder;
-    }
-}
-
 /// Jobs in Slurm's queue, which are cancelled unless they are kept.
 class DraftJobs {
   public:
     DraftJobs() = default;
-    ~DraftJobs();
+    ~DraftJobs() {
+        for (const std::int64_t job : jobs_) {
+            const std::optional<ToolResult> result = run_tool({"scancel", std::to_string(job)});
+            if (!result || result->code != 0)
+                log_error(fmt::format("job {0} could not be taken back; end it with scancel {0}", job));
+        }
+    }
     DraftJobs(const DraftJobs&) = delete;
     DraftJobs& operator=(const DraftJobs&) = delete;
 
     /// Calls sbatch with these words in `folder`; the job's number. Throws InputError where sbatch is missing
     /// or refuses; Cancelled.
-    std::int64_t submit(const fs::path& folder, std::vector<std::string> words);
+    std::int64_t submit(const fs::path& folder, std::vector<std::string> words) {
+        words.insert(words.begin(), {"sbatch", "--parsable"});
+        const std::optional<ToolResult> result = run_tool(words, folder);
+        if (!result) throw InputError("--submit slurm: sbatch is not on the PATH");
+        if (result->code != 0) throw InputError("--submit slurm: sbatch: " + failure_of(*result));
+        // "17", and ";CLUSTER" where there are several.
+        const auto job = parse_int64(trim(std::string_view(result->out).substr(0, result->out.find(';'))));
+        if (!job) throw InputError("--submit slurm: sbatch named no job, but said: " + failure_of(*result));
+        jobs_.push_back(*job);
+        if (interrupted()) throw Cancelled();
+        return *job;
+    }
     void keep() { jobs_.clear(); }
 
   private:
     std::vector<std::int64_t> jobs_;
 };
 
-DraftJobs::~DraftJobs() {
-    for (const std::int64_t job : jobs_) {
-        const std::optional<ToolResult> result = run_tool({"scancel", std::to_string(job)});
-        if (!result || result->code != 0)
-            log_error(fmt::format("job {0} could not be taken back; end it with scancel {0}", job));
-    }
-}
-
-std::int64_t DraftJobs::submit(const fs::path& folder, std::vector<std::string> words) {
-    words.insert(words.begin(), {"sbatch", "--parsable"});
-    const std::optional<ToolResult> result = run_tool(words, folder);
-    if (!result) throw InputError("--submit slurm: sbatch is not on the PATH");
-    if (result->code != 0) throw InputError("--submit slurm: sbatch: " + failure_of(*result));
-    // "17", and ";CLUSTER" where there are several.
-    const auto job = parse_int64(trim(std::string_view(result->out).substr(0, result->out.find(';'))));
-    if (!job) throw InputError("--submit slurm: sbatch named no job, but said: " + failure_of(*result));
-    jobs_.push_back(*job);
-    if (interrupted()) throw Cancelled();
-    return *job;
-}
-
-constexpr std::int64_t default_chunk = 10;
 constexpr const char *sets_name = "sets.sh", *frames_name = "frames.sh";
 
-void check_options(const SubmitOptions& options, const BatchOptions& batch) {
+void check_options(const SubmitOptions& options, const CommandOptions& batch) {
     if (options.system != "slurm") bad_input("--submit", "", "slurm", "'" + options.system + "'");
     if (batch.stats)
         bad_input("--stats", "", "no --submit beside it, whose tasks would all write it", "both");
@@ -226,10 +213,10 @@ void check_options(const SubmitOptions& options, const BatchOptions& batch) {
 }
 
 std::size_t parse_chunk(const SubmitOptions& options) {
-    const auto chunk = options.chunk ? parse_int64(*options.chunk) : default_chunk;
-    if (!chunk || *chunk < 1 || *chunk > 1'000'000)
-        bad_input("--chunk", "", "a number of frames from 1", "'" + *options.chunk + "'");
-    return static_cast<std::size_t>(*chunk);
+    constexpr std::int64_t usual = 10, most = 1'000'000;  // frames of a task
+    if (!options.chunk) return usual;
+    return static_cast<std::size_t>(
+        option_count("--chunk", *options.chunk, "a number of frames from 1", 1, most));
 }
 
 /// Each once, whichever of its eyes are missing.
@@ -251,8 +238,8 @@ std::vector<std::string> chunks_of(const Frames& frames, std::size_t size) {
 
 /// The options that decide frames but for their numbers, as words of --batch. With = so that a value may
 /// begin with a minus.
-std::vector<std::string> frame_options(const BatchPlan& plan, const BatchOptions& batch) {
-    std::vector<std::string> words = {fs::absolute(batch.scene).string()};
+std::vector<std::string> frame_options(const BatchPlan& plan, const CommandOptions& batch) {
+    std::vector<std::string> words = {fs::absolute(batch.input).string()};
     if (batch.output) words.push_back("--output=" + plan.scene.output.path);
     if (batch.resolution) words.push_back("--resolution=" + *batch.resolution);
     if (batch.layers) words.push_back("--layers=" + *batch.layers);
@@ -297,7 +284,7 @@ struct Scripts {
     std::string sets, frames;
 };
 
-Scripts make_scripts(const BatchPlan& plan, const SubmitOptions& options, const BatchOptions& batch,
+Scripts make_scripts(const BatchPlan& plan, const SubmitOptions& options, const CommandOptions& batch,
                      const Submission& submission) {
     SlurmJob job;
     job.name = submission.name;
@@ -331,14 +318,14 @@ void submit(Submission& submission, const Scripts& scripts, DraftFolder& folder)
 
 }  // namespace
 
-int run_submit(const SubmitOptions& options, const BatchOptions& given) {
+int run_submit(const SubmitOptions& options, const CommandOptions& given) {
     check_options(options, given);
     const std::size_t chunk = parse_chunk(options);
-    BatchOptions batch = given;
+    CommandOptions batch = given;
     batch.resume = true;
     const BatchPlan plan = plan_batch(batch);
     Submission submission;
-    submission.name = job_name(batch.scene);
+    submission.name = job_name(batch.input);
     submission.output = comparable_output(plan.scene.output.path);
     submission.options = frame_options(plan, batch);
     Frames frames = frames_to_render(plan);
@@ -351,7 +338,7 @@ int run_submit(const SubmitOptions& options, const BatchOptions& given) {
     submission.chunks = chunks_of(frames, chunk);
     const fs::path parent = submissions_folder(submission.output);
     if (batch.dry_run) {
-        submission.folder = DraftFolder::next_name(parent);
+        submission.folder = next_folder(parent);
         const Scripts scripts = make_scripts(plan, options, batch, submission);
         fmt::print("{}\n{}", scripts.sets, scripts.frames);
         return exit_done;

@@ -1,4 +1,4 @@
-#include "interrupt.h"
+#include "exit.h"
 
 #include <unistd.h>
 
