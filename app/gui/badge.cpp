@@ -16,11 +16,12 @@ namespace {
 
 constexpr float height = 26, inset = 12, padding = 10, dot_radius = 4, gap = 8;
 
-const LayerStatus* loading_layer(const Status& status, std::size_t& index) {
-    for (index = 0; index < status.layers.size(); ++index)
-        if (status.layers[index].loading) return &status.layers[index];
-    return nullptr;
+/// Index of the first; that of none where none is.
+std::size_t loading_layer(const Status& status) {
+    const auto found = std::ranges::find(status.layers, true, &LayerStatus::loading);
+    return static_cast<std::size_t>(found - status.layers.begin());
 }
+bool loads(const Status& status) { return loading_layer(status) < status.layers.size(); }
 
 // A word at the badge's right end that can be clicked; `x` is where it begins.
 bool word_button(GuiFrame& frame, const char* word, float x, float y) {
@@ -48,15 +49,13 @@ std::string lacking(const Scene& scene, const Status& status) {
 
 // Words of the button that belongs to the state; nullptr: none.
 const char* button_word(const Status& status) {
-    std::size_t index = 0;
-    if (loading_layer(status, index)) return "Cancel";
+    if (loads(status)) return "Cancel";
     return status.view_frame.state == ViewFrameState::failed ? "Copy" : nullptr;
 }
 
 void press_button(GuiFrame& frame) {
-    std::size_t index = 0;
-    if (loading_layer(frame.status, index))
-        request(frame, Command::Kind::cancel_load, index);
+    if (loads(frame.status))
+        request(frame, Command::Kind::cancel_load, loading_layer(frame.status));
     else
         request_text(frame, Command::Kind::copy_text, frame.status.view_frame.error);
 }
@@ -65,6 +64,17 @@ void press_button(GuiFrame& frame) {
 std::string signed_percent(double share) {
     return fmt::format("{:+.1f} %", std::round(share * 1000.0) / 10.0 + 0.0);
 }
+
+/// What a badge stands on, at the bottom of the viewport.
+Rect draw_plate(const Rect& viewport, float x, float width) {
+    const Rect plate{x, viewport.y + viewport.height - px(inset) - px(height), width, px(height)};
+    fill_rect(plate, color::with_opacity(color::window, 0.86f), px(3));
+    return plate;
+}
+
+bool is_hovered(const Rect& plate) { return ImGui::IsMouseHoveringRect(plate.corner(), plate.end()); }
+
+float text_y(const Rect& plate) { return plate.y + std::floor((plate.height - ImGui::GetFontSize()) * 0.5f); }
 
 struct SideBadge {
     std::string text;
@@ -94,11 +104,11 @@ std::optional<SideBadge> side_badge(const Status& status) {
 BadgeText badge_text(const Scene& scene, const Status& status) {
     const ViewFrameStatus& shown = status.view_frame;
     if (!status.rendered_frame.empty()) return {"Rendered", status.rendered_frame, color::good};
-    std::size_t index = 0;
-    if (const LayerStatus* layer = loading_layer(status, index)) {
+    if (const std::size_t index = loading_layer(status); index < status.layers.size()) {
+        const LayerStatus& layer = status.layers[index];
         const std::string name = index < scene.layers.size() ? scene.layers[index].name : "layer";
-        return {fmt::format("Generating {} {:.0f} %", name, layer->progress * 100.0f),
-                layer->found > 0 ? splat_count(layer->found) : "", color::accent};
+        return {fmt::format("Generating {} {:.0f} %", name, layer.progress * 100.0f),
+                layer.found > 0 ? splat_count(layer.found) : "", color::accent};
     }
     const std::string total = splat_count(shown.total);
     switch (shown.state) {
@@ -139,19 +149,17 @@ float draw_badge(GuiFrame& frame, const Rect& area) {
     if (text_width + beside_width > room) beside_width = 0.0f;
 
     ImDrawList* list = ImGui::GetWindowDrawList();
-    const float x = area.x + px(inset), y = area.y + area.height - px(inset) - px(height);
+    const float x = area.x + px(inset);
     const float width = left + text_width + beside_width + word_width + px(padding);
-    fill_rect({x, y}, {x + width, y + px(height)}, color::with_opacity(color::window, 0.86f), px(3));
-    list->AddCircleFilled({x + px(padding) + px(dot_radius), y + px(height) * 0.5f}, px(dot_radius),
-                          badge.color, 16);
-    const float text_y = y + std::floor((px(height) - ImGui::GetFontSize()) * 0.5f);
-    draw_text({x + left, text_y}, color::text, badge.text);
+    const Rect plate = draw_plate(area, x, width);
+    list->AddCircleFilled({x + px(padding) + px(dot_radius), plate.middle().y}, px(dot_radius), badge.color,
+                          16);
+    draw_text({x + left, text_y(plate)}, color::text, badge.text);
     if (beside_width > 0)
-        draw_text({x + left + text_width + px(gap) * 1.5f, text_y}, color::dim, badge.beside);
-    if (word && word_button(frame, word, x + width - px(padding) - word_width + px(gap) * 2, y))
+        draw_text({x + left + text_width + px(gap) * 1.5f, text_y(plate)}, color::dim, badge.beside);
+    if (word && word_button(frame, word, x + width - px(padding) - word_width + px(gap) * 2, plate.y))
         press_button(frame);
-    if (badge.text != whole && ImGui::IsMouseHoveringRect({x, y}, {x + width, y + px(height)}))
-        ImGui::SetTooltip("%s", whole.c_str());
+    if (badge.text != whole && is_hovered(plate)) ImGui::SetTooltip("%s", whole.c_str());
     ImGui::PopFont();
     return x + width;
 }
@@ -181,12 +189,9 @@ void draw_side_badge(GuiFrame& frame, const Rect& area, float left) {
     const std::string text = badge->may_be_cut ? fitting(badge->text, room) : badge->text;
     const float width = ImGui::CalcTextSize(text.c_str()).x + 2 * px(padding);
     if (width <= room + 2 * px(padding)) {
-        const float y = area.y + area.height - px(inset) - px(height);
-        fill_rect({x, y}, {x + width, y + px(height)}, color::with_opacity(color::window, 0.86f), px(3));
-        draw_text({x + px(padding), y + std::floor((px(height) - ImGui::GetFontSize()) * 0.5f)}, badge->color,
-                  text);
-        if (ImGui::IsMouseHoveringRect({x, y}, {x + width, y + px(height)}))
-            ImGui::SetTooltip("%s\n%s", badge->text.c_str(), badge->tooltip);
+        const Rect plate = draw_plate(area, x, width);
+        draw_text({x + px(padding), text_y(plate)}, badge->color, text);
+        if (is_hovered(plate)) ImGui::SetTooltip("%s\n%s", badge->text.c_str(), badge->tooltip);
     }
     ImGui::PopFont();
 }

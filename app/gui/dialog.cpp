@@ -14,8 +14,8 @@ namespace {
 
 constexpr float least_button = 84;
 
-float button_width(const char* label) {
-    return std::max(px(least_button), ImGui::CalcTextSize(label).x + px(24));
+float button_width(const char* label, float least) {
+    return std::max(px(least), ImGui::CalcTextSize(label).x + px(24));
 }
 
 // The key press that opened a dialog does not answer it.
@@ -66,10 +66,20 @@ bool dialog_escape() {
     return pressed(key_code::escape) && ImGui::IsWindowFocused(ImGuiFocusedFlags_RootAndChildWindows);
 }
 
+bool dialog_button(const char* label, bool is_default, float least) {
+    if (is_default) {
+        ImGui::PushStyleColor(ImGuiCol_Button, color4(color::with_opacity(color::accent, 0.55f)));
+        ImGui::PushStyleColor(ImGuiCol_ButtonHovered, color4(color::with_opacity(color::accent, 0.75f)));
+    }
+    const bool clicked = ImGui::Button(label, {button_width(label, least), px(28)});
+    if (is_default) ImGui::PopStyleColor(2);
+    return clicked;
+}
+
 int dialog_buttons(GuiFrame& frame, const char* id, std::initializer_list<const char*> labels, int escape,
                    bool enter) {
     float width = -px(8);
-    for (const char* label : labels) width += button_width(label) + px(8);
+    for (const char* label : labels) width += button_width(label, least_button) + px(8);
     ImGui::SetCursorPosX(ImGui::GetWindowContentRegionMax().x - width);
     int chosen = dialog_escape() ? escape : -1, index = 0;
     for (const char* label : labels) {

@@ -20,8 +20,7 @@ namespace {
 bool wanted(const FileEntry& entry, const std::vector<std::string>& extensions) {
     if (entry.folder || extensions.empty()) return true;
     const std::string name = lower_case(entry.name);
-    return std::any_of(extensions.begin(), extensions.end(),
-                       [&](const std::string& ending) { return name.ends_with(ending); });
+    return std::ranges::any_of(extensions, [&](const std::string& ending) { return name.ends_with(ending); });
 }
 
 /// All but the name is missing where it may not be looked at.
@@ -31,16 +30,14 @@ FileEntry entry_at(const fs::path& path) {
     if (::stat(path.c_str(), &status) != 0) return entry;
     entry.folder = S_ISDIR(status.st_mode);
     if (!entry.folder) entry.bytes = static_cast<std::uintmax_t>(status.st_size);
-    const auto since_1970 =
-        std::chrono::seconds(status.st_mtim.tv_sec) + std::chrono::nanoseconds(status.st_mtim.tv_nsec);
-    entry.changed =
-        std::chrono::file_clock::from_sys(std::chrono::sys_time<std::chrono::nanoseconds>(since_1970));
+    const std::chrono::sys_time<std::chrono::nanoseconds> changed(
+        std::chrono::seconds(status.st_mtim.tv_sec) + std::chrono::nanoseconds(status.st_mtim.tv_nsec));
+    entry.changed = std::chrono::file_clock::from_sys(changed);
     return entry;
 }
 
 std::size_t common_length(const std::string& a, const std::string& b) {
-    std::size_t n = 0;
-    while (n < a.size() && n < b.size() && a[n] == b[n]) ++n;
+    auto n = static_cast<std::size_t>(std::ranges::mismatch(a, b).in1 - a.begin());
     // Not in the middle of a UTF-8 character.
     while (n > 0 && n < a.size() && (static_cast<unsigned char>(a[n]) & 0xC0) == 0x80) --n;
     return n;

@@ -32,7 +32,7 @@ class Gui {
     bool busy() const;
     /// An entry, a menu or a dialog is open in which nothing is typed: its focus may be on the way.
     bool opening() const;
-    /// Controls of the last draw(), those of the side panel excepted (Panel::rows).
+    /// Controls of the last draw(), the rows of the side panel excepted (Panel::rows).
     const std::vector<DrawnItem>& drawn_items() const;
     const Panel& panel() const;
 

@@ -3,9 +3,9 @@
 
 #include <fmt/format.h>
 #include <imgui.h>
+#include <imgui_stdlib.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "core/error.h"
@@ -30,12 +30,9 @@ void label(const char* text) {
 
 // True when it changed `text`.
 bool text_field(GuiFrame& frame, const char* name, std::string& text, float width) {
-    std::array<char, 4096> buffer{};
-    text.copy(buffer.data(), buffer.size() - 1);
     ImGui::SetNextItemWidth(width);
-    const bool changed = ImGui::InputText(fmt::format("##{}", name).c_str(), buffer.data(), buffer.size());
+    const bool changed = ImGui::InputText(fmt::format("##{}", name).c_str(), &text);
     note_item(frame, std::string("render/") + name);
-    if (changed) text = buffer.data();
     return changed;
 }
 

@@ -22,14 +22,19 @@ namespace {
 
 constexpr float name_width = 112, choice_height = 26, sheet_row = 20;
 
-void setting_row(GuiFrame& frame, const SettingRow& row) {
+// Returns where what is set comes.
+ImVec2 setting_name(const char* name, const char* hint) {
     const float left = ImGui::GetCursorScreenPos().x;
-    int& value = frame.view.settings.*row.value;
     ImGui::AlignTextToFramePadding();
-    ImGui::TextColored(color4(color::dim), "%s", row.label);
-    tooltip(row.hint);
+    ImGui::TextColored(color4(color::dim), "%s", name);
+    tooltip(hint);
     ImGui::SameLine();
-    const ImVec2 corner{left + px(name_width), ImGui::GetCursorScreenPos().y};
+    return {left + px(name_width), ImGui::GetCursorScreenPos().y};
+}
+
+void setting_row(GuiFrame& frame, const SettingRow& row) {
+    int& value = frame.view.settings.*row.value;
+    const ImVec2 corner = setting_name(row.label, row.hint);
     float x = corner.x;
     for (const SettingChoice& choice : row.choices) {
         const std::string id = std::string(row.name) + "/" + choice.label;
@@ -41,19 +46,15 @@ void setting_row(GuiFrame& frame, const SettingRow& row) {
         note_item(frame, "settings/" + id, {x + 0.5f * width, corner.y + 0.5f * px(choice_height)});
         x += width + px(2);
     }
-    ImGui::SetCursorScreenPos({left, corner.y + px(choice_height + 8)});
+    ImGui::SetCursorScreenPos({corner.x - px(name_width), corner.y + px(choice_height + 8)});
 }
 
 void cache_folder_row(GuiFrame& frame) {
-    const float left = ImGui::GetCursorScreenPos().x;
     std::string& folder = frame.view.settings.cache_folder;
     const char* const hint =
         "Where generated sets are kept, from the next start; --cache and $ASTROSPLAT_CACHE win";
-    ImGui::AlignTextToFramePadding();
-    ImGui::TextColored(color4(color::dim), "Cache folder");
-    tooltip(hint);
-    ImGui::SameLine();
-    ImGui::SetCursorScreenPos({left + px(name_width), ImGui::GetCursorScreenPos().y});
+    const ImVec2 corner = setting_name("Cache folder", hint);
+    ImGui::SetCursorScreenPos(corner);
     ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x);
     const std::string automatic = "Auto: " + default_cache_folder().string();
     ImGui::InputTextWithHint("##cache_folder", automatic.c_str(), &folder);
@@ -61,9 +62,9 @@ void cache_folder_row(GuiFrame& frame) {
     tooltip(hint);
     // As high whatever it says, or the button below would move.
     const std::string problem = problem_of_cache_folder(folder);
-    ImGui::SetCursorScreenPos({left + px(name_width), ImGui::GetCursorScreenPos().y});
+    ImGui::SetCursorScreenPos({corner.x, ImGui::GetCursorScreenPos().y});
     ImGui::TextColored(color4(color::error), "%s", problem.empty() ? " " : problem.c_str());
-    ImGui::SetCursorScreenPos({left, ImGui::GetCursorScreenPos().y});
+    ImGui::SetCursorScreenPos({corner.x - px(name_width), ImGui::GetCursorScreenPos().y});
 }
 
 struct SheetRow {

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 #include <imgui.h>
+#include <imgui_stdlib.h>
 
 #include <algorithm>
 #include <array>
@@ -18,6 +19,8 @@
 namespace astrosplat {
 
 namespace {
+
+using Drag = TimelineState::Drag;
 
 // First row: playing, the frames and their rate, the graph.
 
@@ -48,18 +51,17 @@ void frame_entry(GuiFrame& frame) {
 /// Frames as the scene has them; an entry that cannot be read is told and dropped.
 void range_entry(TimelineState& t, GuiFrame& frame) {
     const std::string& frames = frame.document.scene().output.frames;
-    std::array<char, 256> text{};
-    (t.typing_frames ? t.typed_frames : frames).copy(text.data(), text.size() - 1);
+    std::string text = t.typing_frames ? t.typed_frames : frames;
     ImGui::SameLine(0, px(entry_gap));
     ImGui::SetNextItemWidth(px(76));
     push_entry_padding();
-    ImGui::InputText("##range", text.data(), text.size());
+    ImGui::InputText("##range", &text);
     ImGui::PopStyleVar();
     note_item(frame, "range");
     tooltip("Frames of the scene: 1-240, 1-240x10 or 1,5,9");
     const bool done = ImGui::IsItemDeactivatedAfterEdit() && !key_pressed(key_code::escape);
     t.typing_frames = ImGui::IsItemActive();
-    t.typed_frames = text.data();
+    t.typed_frames = text;
     if (done && t.typed_frames != frames)
         try_edit([&] { frame.document.set("output.frames", t.typed_frames, frame.view.frame); });
 }
@@ -158,7 +160,6 @@ void draw_timeline_header(TimelineState& t, GuiFrame& frame, const Rect& area) {
 
 constexpr float header_height = 36, ruler_height = 22;
 constexpr float point_half = 3, point_reach = 5;  // tabs of in and out points
-constexpr double zoom_step = 1.25;
 
 /// Where the range has changed, the playhead comes along: undo may have taken its frame away.
 void refresh(TimelineState& t, const Document& document, ViewState& view) {
@@ -186,7 +187,7 @@ void zoom_with_wheel(TimelineState& t, const Rect& area) {
     const bool inside =
         ImGui::IsMouseHoveringRect({area.x, area.y}, {area.x + area.width, area.y + area.height});
     if (!inside || io.MouseWheel == 0.0f) return;
-    zoom_frames(t, t.scale.frame_at(io.MousePos.x), io.MouseWheel > 0 ? 1.0 / zoom_step : zoom_step);
+    zoom_frames(t, t.scale.frame_at(io.MousePos.x), zoom_of(io.MouseWheel));
 }
 
 double first_played(const TimelineState& t, const ViewState& view) {
@@ -197,21 +198,21 @@ double last_played(const TimelineState& t, const ViewState& view) {
 }
 
 /// A press on the tab of an in or out point takes that, any other the playhead.
-TimelineState::Drag drag_from_ruler(const TimelineState& t, const ViewState& view) {
+Drag drag_from_ruler(const TimelineState& t, const ViewState& view) {
     const float x = ImGui::GetIO().MousePos.x, reach = px(point_reach);
     if (view.play_first && std::fabs(t.scale.x_of(*view.play_first) - px(point_half) - x) <= reach)
-        return TimelineState::Drag::in_point;
+        return Drag::in_point;
     if (view.play_last && std::fabs(t.scale.x_of(*view.play_last) + px(point_half) - x) <= reach)
-        return TimelineState::Drag::out_point;
-    return TimelineState::Drag::scrub;
+        return Drag::out_point;
+    return Drag::scrub;
 }
 
 void drag_on_ruler(const TimelineState& t, ViewState& view) {
     const double at =
         std::clamp(std::round(t.scale.frame_at(ImGui::GetIO().MousePos.x)), t.fitted.first, t.fitted.last);
-    if (t.drag == TimelineState::Drag::scrub) view.frame = at;
-    if (t.drag == TimelineState::Drag::in_point) view.play_first = std::min(at, last_played(t, view));
-    if (t.drag == TimelineState::Drag::out_point) view.play_last = std::max(at, first_played(t, view));
+    if (t.drag == Drag::scrub) view.frame = at;
+    if (t.drag == Drag::in_point) view.play_first = std::min(at, last_played(t, view));
+    if (t.drag == Drag::out_point) view.play_last = std::max(at, first_played(t, view));
 }
 
 /// Frames that are not played are dimmed; a tab at either end that was set.
@@ -236,7 +237,7 @@ void draw_ruler(TimelineState& t, GuiFrame& frame, const Rect& area) {
     note_item(frame, "ruler");
     if (ImGui::IsItemActivated()) {
         t.drag = drag_from_ruler(t, frame.view);
-        if (t.drag == TimelineState::Drag::scrub) frame.view.playing = false;
+        if (t.drag == Drag::scrub) frame.view.playing = false;
     }
     if (ImGui::IsItemActive()) drag_on_ruler(t, frame.view);
     if (ImGui::IsItemHovered() && ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left)) t.zoomed = false;
@@ -273,9 +274,9 @@ void draw_playhead(const TimelineState& t, const GuiFrame& frame, const Rect& ru
 }
 
 void end_drag(TimelineState& t) {
-    if (t.drag == TimelineState::Drag::none || ImGui::IsMouseDown(ImGuiMouseButton_Left)) return;
-    if (t.drag == TimelineState::Drag::pan) return;  // by another button
-    t.drag = TimelineState::Drag::none;
+    if (t.drag == Drag::none || ImGui::IsMouseDown(ImGuiMouseButton_Left)) return;
+    if (t.drag == Drag::pan) return;  // by another button
+    t.drag = Drag::none;
 }
 
 }  // namespace
@@ -291,6 +292,8 @@ void select_keyframe(TimelineState& t, const KeyframePlace& place) {
         t.selected.push_back(place);
     }
 }
+
+double zoom_of(float wheel) { return wheel > 0 ? 1.0 / 1.25 : 1.25; }
 
 void zoom_frames(TimelineState& t, double middle, double factor) {
     const double least = 4.0, most = 4.0 * std::max(t.fitted.last - t.fitted.first, least);

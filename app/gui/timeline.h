@@ -17,6 +17,7 @@ namespace astrosplat {
 struct TimeScale {
     double first = 1.0, last = 240.0;
     float x0 = 0.0f, x1 = 1.0f;  // px
+    bool operator==(const TimeScale&) const = default;
 
     float x_of(double frame) const {
         return x0 + static_cast<float>((frame - first) / (last - first)) * (x1 - x0);
@@ -67,16 +68,19 @@ struct TimelineState {
     std::string typed_frames;
 
     struct Graph {
-        std::string key;
-        std::uint64_t revision = 0;
-        TimeScale scale;
+        struct Of {
+            std::string key;
+            std::uint64_t revision = 0;  // of the document
+            TimeScale scale;
+            std::vector<bool> hidden;  // channels that the samples' range leaves out
+            bool operator==(const Of&) const = default;
+        } of;
         std::vector<std::vector<double>> samples;  // [component][sample], evenly from scale.x0 to scale.x1
         double low = 0.0, high = 1.0;              // of the plot
         double grabbed_keyframe = 0.0;             // frame of the dragged keyframe
         std::size_t component = 0;
         HandleSide side = HandleSide::out;  // of the dragged handle
         bool zoomed = false;                // values by hand: they do not follow the curve
-        std::vector<bool> hidden;           // channels that the samples' range leaves out
     };
     Graph graph;
 };
@@ -97,6 +101,8 @@ double ruler_step(const TimeScale& scale, float least_px);
 /// "dust: Power", "Camera: Position".
 std::string track_label(const std::string& key, const ParameterSpec& spec);
 
+/// Of a move of the mouse's wheel: below 1 where less is to be shown.
+double zoom_of(float wheel);
 /// Frames zoomed about one of them; `factor` below 1 shows fewer.
 void zoom_frames(TimelineState& t, double middle, double factor);
 

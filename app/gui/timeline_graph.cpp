@@ -17,6 +17,7 @@ namespace astrosplat {
 
 namespace {
 
+using Drag = TimelineState::Drag;
 constexpr float key_reach = 7, sample_px = 3, margin_y = 10;
 
 std::string axis_text(double value, double span) {
@@ -36,7 +37,7 @@ double value_at(const TimelineState& t, float y, const Rect& area) {
 void fit_values(TimelineState& t) {
     double low = std::numeric_limits<double>::infinity(), high = -low;
     for (std::size_t c = 0; c < t.graph.samples.size(); ++c) {
-        if (t.graph.hidden[c]) continue;
+        if (t.graph.of.hidden[c]) continue;
         const auto [least, most] = std::ranges::minmax(t.graph.samples[c]);
         low = std::min(low, least);
         high = std::max(high, most);
@@ -50,18 +51,12 @@ void fit_values(TimelineState& t) {
 
 void sample_graph(TimelineState& t, const Track& track, const ParameterSpec& spec, const ViewState& view,
                   std::uint64_t revision) {
-    std::vector<bool> hidden;
+    TimelineState::Graph::Of of{track.key, revision, t.scale, {}};
     for (std::size_t c = 0; c < track.keyframes.front().value.size(); ++c)
-        hidden.push_back(channel_hidden(view, track, c));
-    const bool same_scale = t.graph.scale.first == t.scale.first && t.graph.scale.last == t.scale.last &&
-                            t.graph.scale.x0 == t.scale.x0 && t.graph.scale.x1 == t.scale.x1;
-    if (t.graph.key == track.key && t.graph.revision == revision && same_scale && t.graph.hidden == hidden)
-        return;
-    t.graph.zoomed = t.graph.zoomed && t.graph.key == track.key;
-    t.graph.hidden = hidden;
-    t.graph.key = track.key;
-    t.graph.revision = revision;
-    t.graph.scale = t.scale;
+        of.hidden.push_back(channel_hidden(view, track, c));
+    if (t.graph.of == of) return;
+    t.graph.zoomed = t.graph.zoomed && t.graph.of.key == of.key;
+    t.graph.of = of;
     t.graph.samples.assign(track.keyframes.front().value.size(), {});
     const int count = std::max(2, static_cast<int>((t.scale.x1 - t.scale.x0) / px(sample_px)));
     for (int i = 0; i <= count; ++i) {
@@ -69,14 +64,14 @@ void sample_graph(TimelineState& t, const Track& track, const ParameterSpec& spe
         const std::vector<double> numbers = track_at(track, spec, frame);
         for (std::size_t c = 0; c < t.graph.samples.size(); ++c) t.graph.samples[c].push_back(numbers[c]);
     }
-    const bool dragged = t.drag == TimelineState::Drag::value || t.drag == TimelineState::Drag::handle;
+    const bool dragged = t.drag == Drag::value || t.drag == Drag::handle;
     if (!dragged && !t.graph.zoomed) fit_values(t);  // the axis stands still under the mouse
 }
 
 void edit_by_drag(TimelineState& t, GuiFrame& frame, const std::string& name,
                   const std::function<void(Scene&)>& change) {
     if (t.edit.taken_back(frame))
-        t.drag = TimelineState::Drag::none;
+        t.drag = Drag::none;
     else
         try_edit([&] { frame.document.edit(name, change, t.edit.gesture()); });
 }
@@ -115,8 +110,7 @@ void drag_handle(TimelineState& t, GuiFrame& frame, const Track& track, const Re
     });
 }
 
-void grab(TimelineState& t, const GuiFrame& frame, TimelineState::Drag drag, double keyframe,
-          std::size_t component) {
+void grab(TimelineState& t, const GuiFrame& frame, Drag drag, double keyframe, std::size_t component) {
     t.drag = drag;
     t.edit.begin(frame.document);
     t.graph.grabbed_keyframe = keyframe;
@@ -139,7 +133,7 @@ void draw_handles(TimelineState& t, GuiFrame& frame, const Track& track, const R
             if (!has_handle(track, i, side)) continue;
             const Handle<std::vector<double>>& h = side == HandleSide::in ? handles[i].in : handles[i].out;
             for (std::size_t c = 0; c < keyframe.value.size(); ++c) {
-                if (t.graph.hidden[c]) continue;
+                if (t.graph.of.hidden[c]) continue;
                 const ImVec2 from{t.scale.x_of(keyframe.frame), y_of(t, keyframe.value[c], area)};
                 const ImVec2 at{t.scale.x_of(keyframe.frame + h.frames),
                                 y_of(t, keyframe.value[c] + h.value[c], area)};
@@ -151,9 +145,8 @@ void draw_handles(TimelineState& t, GuiFrame& frame, const Track& track, const R
                           fmt::format("handle {} {:g} {} {}", track.key, keyframe.frame, c,
                                       side == HandleSide::in ? "in" : "out"),
                           {at.x, at.y});
-                if (near && t.drag == TimelineState::Drag::none &&
-                    ImGui::IsMouseClicked(ImGuiMouseButton_Left)) {
-                    grab(t, frame, TimelineState::Drag::handle, keyframe.frame, c);
+                if (near && t.drag == Drag::none && ImGui::IsMouseClicked(ImGuiMouseButton_Left)) {
+                    grab(t, frame, Drag::handle, keyframe.frame, c);
                     t.graph.side = side;
                 }
             }
@@ -163,11 +156,10 @@ void draw_handles(TimelineState& t, GuiFrame& frame, const Track& track, const R
 
 /// Wheel: values; with Ctrl: frames. The middle button moves both, a double click shows all.
 void zoom_and_pan(TimelineState& t, const Rect& area) {
-    constexpr double notch = 1.25;
     const ImGuiIO& io = ImGui::GetIO();
     const bool hovered = ImGui::IsItemHovered();
     if (hovered && io.MouseWheel != 0.0f) {
-        const double factor = io.MouseWheel > 0 ? 1.0 / notch : notch;
+        const double factor = zoom_of(io.MouseWheel);
         const double middle = value_at(t, io.MousePos.y, area);
         if (io.KeyCtrl) {
             zoom_frames(t, t.scale.frame_at(io.MousePos.x), factor);
@@ -177,12 +169,12 @@ void zoom_and_pan(TimelineState& t, const Rect& area) {
             t.graph.zoomed = true;
         }
     }
-    if (hovered && t.drag == TimelineState::Drag::none && io.MouseDoubleClicked[ImGuiMouseButton_Left])
+    if (hovered && t.drag == Drag::none && io.MouseDoubleClicked[ImGuiMouseButton_Left])
         t.graph.zoomed = t.zoomed = false;
-    if (hovered && ImGui::IsMouseClicked(ImGuiMouseButton_Middle)) t.drag = TimelineState::Drag::pan;
-    if (t.drag != TimelineState::Drag::pan) return;
+    if (hovered && ImGui::IsMouseClicked(ImGuiMouseButton_Middle)) t.drag = Drag::pan;
+    if (t.drag != Drag::pan) return;
     if (!ImGui::IsMouseDown(ImGuiMouseButton_Middle)) {
-        t.drag = TimelineState::Drag::none;
+        t.drag = Drag::none;
         return;
     }
     const double values =
@@ -202,13 +194,13 @@ void draw_graph_keyframes(TimelineState& t, GuiFrame& frame, const Track& track,
         const KeyframePlace place{track.key, keyframe.frame};
         const bool selected = is_selected(t, place);
         for (std::size_t c = 0; c < keyframe.value.size(); ++c) {
-            if (t.graph.hidden[c]) continue;
+            if (t.graph.of.hidden[c]) continue;
             const ImVec2 at{t.scale.x_of(keyframe.frame), y_of(t, keyframe.value[c], area)};
-            const bool held = t.drag == TimelineState::Drag::value &&
-                              t.graph.grabbed_keyframe == keyframe.frame && t.graph.component == c;
+            const bool held =
+                t.drag == Drag::value && t.graph.grabbed_keyframe == keyframe.frame && t.graph.component == c;
             const bool near = hovered && is_near(at);
-            if (near && t.drag == TimelineState::Drag::none && ImGui::IsMouseClicked(ImGuiMouseButton_Left)) {
-                grab(t, frame, TimelineState::Drag::value, keyframe.frame, c);
+            if (near && t.drag == Drag::none && ImGui::IsMouseClicked(ImGuiMouseButton_Left)) {
+                grab(t, frame, Drag::value, keyframe.frame, c);
                 select_keyframe(t, place);
             }
             if (near && ImGui::IsMouseClicked(ImGuiMouseButton_Right)) {
@@ -219,7 +211,7 @@ void draw_graph_keyframes(TimelineState& t, GuiFrame& frame, const Track& track,
                                   16);
             list->AddCircleFilled(at, px(held || near ? 4.5f : 3.5f), color::attention, 16);
             note_item(frame, fmt::format("graph {} {:g} {}", track.key, keyframe.frame, c), {at.x, at.y});
-            if (near && t.drag == TimelineState::Drag::none)
+            if (near && t.drag == Drag::none)
                 tooltip(fmt::format("Frame {:g}: {:.4g}", keyframe.frame, keyframe.value[c]).c_str());
         }
     }
@@ -255,7 +247,7 @@ void draw_graph(TimelineState& t, GuiFrame& frame, const Rect& area) {
     zoom_and_pan(t, area);
     ImGui::PushClipRect(low, high, true);
     for (std::size_t c = 0; c < t.graph.samples.size(); ++c) {
-        if (t.graph.hidden[c]) continue;
+        if (t.graph.of.hidden[c]) continue;
         const std::vector<double>& samples = t.graph.samples[c];
         const auto last = static_cast<float>(samples.size() - 1);
         for (std::size_t i = 0; i < samples.size(); ++i)
@@ -266,8 +258,8 @@ void draw_graph(TimelineState& t, GuiFrame& frame, const Rect& area) {
     draw_handles(t, frame, track, area);
     draw_graph_keyframes(t, frame, track, area);
     ImGui::PopClipRect();
-    if (t.drag == TimelineState::Drag::value) drag_value(t, frame, track, area);
-    if (t.drag == TimelineState::Drag::handle) drag_handle(t, frame, track, area);
+    if (t.drag == Drag::value) drag_value(t, frame, track, area);
+    if (t.drag == Drag::handle) drag_handle(t, frame, track, area);
 }
 
 namespace {

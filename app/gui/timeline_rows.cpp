@@ -19,6 +19,8 @@ namespace astrosplat {
 
 namespace {
 
+using Drag = TimelineState::Drag;
+
 // The menu of the selected keyframes: changes of all of them at once.
 
 constexpr const char* menu_name = "keyframe menu";
@@ -174,7 +176,7 @@ std::optional<KeyframePlace> keyframe_under_mouse(const TimelineState& t, const 
 void press_keyframe(TimelineState& t, GuiFrame& frame, const KeyframePlace& place) {
     select_keyframe(t, place);
     frame.view.graph_parameter = place.key;
-    t.drag = TimelineState::Drag::keyframes;
+    t.drag = Drag::keyframes;
     t.edit.begin(frame.document);
     t.picked = t.selected;
     t.grabbed_frame = t.scale.frame_at(ImGui::GetIO().MousePos.x);
@@ -276,7 +278,7 @@ void handle_rows_mouse(TimelineState& t, GuiFrame& frame, const Rect& area) {
             press_keyframe(t, frame, *under);
         } else {
             t.selected.clear();
-            t.drag = TimelineState::Drag::box;
+            t.drag = Drag::box;
             t.box_x = ImGui::GetIO().MousePos.x;
             t.box_y = ImGui::GetIO().MousePos.y;
         }
@@ -285,9 +287,9 @@ void handle_rows_mouse(TimelineState& t, GuiFrame& frame, const Rect& area) {
         if (!is_selected(t, *under)) t.selected = {*under};
         ImGui::OpenPopup(menu_name);
     }
-    if (t.drag == TimelineState::Drag::keyframes) drag_keyframes(t, frame);
-    if (t.drag == TimelineState::Drag::box) select_in_box(t, scene, area.y);
-    if (under && t.drag == TimelineState::Drag::none) {
+    if (t.drag == Drag::keyframes) drag_keyframes(t, frame);
+    if (t.drag == Drag::box) select_in_box(t, scene, area.y);
+    if (under && t.drag == Drag::none) {
         ImGui::SetMouseCursor(ImGuiMouseCursor_Hand);
         const Track* track = find_track(scene, under->key);
         for (const auto& keyframe : track->keyframes)

@@ -26,26 +26,29 @@ int choice(GuiFrame& frame, const char* id, std::initializer_list<Segment> segme
 
 // A field that opens a list of choices.
 template <class Enum>
-void combo(const char* id, Enum& value, const std::vector<const char*>& names, float width) {
-    ImGui::SetNextItemWidth(width);
+void combo(GuiFrame& frame, const char* name, Enum& value, const std::vector<const char*>& names, float width,
+           const std::string& says) {
+    ImGui::SetNextItemWidth(px(width));
     const auto index = static_cast<std::size_t>(value);
     ImGui::PushStyleColor(ImGuiCol_Text, index == 0 ? color::dim : color::text);
-    const bool open = ImGui::BeginCombo(id, names[index], ImGuiComboFlags_NoArrowButton);
+    const bool open =
+        ImGui::BeginCombo((std::string("##") + name).c_str(), names[index], ImGuiComboFlags_NoArrowButton);
     ImGui::PopStyleColor();
-    if (!open) return;
-    for (std::size_t i = 0; i < names.size(); ++i)
-        if (ImGui::Selectable(names[i], i == index)) value = static_cast<Enum>(i);
-    close_on_escape();
-    ImGui::EndCombo();
+    if (open) {
+        for (std::size_t i = 0; i < names.size(); ++i)
+            if (ImGui::Selectable(names[i], i == index)) value = static_cast<Enum>(i);
+        close_on_escape();
+        ImGui::EndCombo();
+    }
+    note_item(frame, name);
+    tooltip(says.c_str());
 }
 
 // A field in a narrow row.
 void view_choice(GuiFrame& frame, bool is_narrow) {
-    if (is_narrow) {
-        combo("##view", frame.view.view, {"Camera", "Free", "Front", "Top", "Side"}, px(84));
-        note_item(frame, "view");
-        return tooltip("What is seen through (0, 1, 7, 3)");
-    }
+    if (is_narrow)
+        return combo(frame, "view", frame.view.view, {"Camera", "Free", "Front", "Top", "Side"}, 84,
+                     "What is seen through (0, 1, 7, 3)");
     const int clicked = choice(frame, "view",
                                {{"Camera", "Through the scene's camera (0)"},
                                 {"Free", "A camera of the window, the scene's stays (drag in the view)"},
@@ -85,9 +88,8 @@ void compare_settings(GuiFrame& frame) {
     ViewState& view = frame.view;
     if (!compares(view)) return;
     CompareWith with = view.compare_with;
-    combo("##with", with, {"with B", "with Ref"}, px(76));
-    note_item(frame, "compare with");
-    tooltip("What is compared with: the stored look B, or the reference picture (Shift+B)");
+    combo(frame, "compare with", with, {"with B", "with Ref"}, 76,
+          "What is compared with: the stored look B, or the reference picture (Shift+B)");
     if (with != view.compare_with) compare_with(frame, with);
     if (view.compare == CompareMode::difference) {
         ImGui::SameLine(0, px(small_gap));
@@ -117,9 +119,8 @@ float width_of_compare_settings(const GuiFrame& frame) {
 }
 
 void display_control(GuiFrame& frame) {
-    combo("##display", frame.view.display, {"As output", "Linear", "sRGB", "Soft"}, px(84));
-    note_item(frame, "display");
-    tooltip("How the frame's linear light is shown; rendered files follow the panel Output");
+    combo(frame, "display", frame.view.display, {"As output", "Linear", "sRGB", "Soft"}, 84,
+          "How the frame's linear light is shown; rendered files follow the panel Output");
 }
 
 void exposure_control(GuiFrame& frame) {
@@ -152,10 +153,8 @@ void preview_control(GuiFrame& frame) {
 }
 
 void engine_control(GuiFrame& frame) {
-    combo("##engine", frame.view.engine, {"Engine auto", "OpenGL", "Processor"}, px(96));
-    note_item(frame, "engine");
-    const std::string text = "What draws the preview. Now: " + frame.status.engine;
-    tooltip(text.c_str());
+    combo(frame, "engine", frame.view.engine, {"Engine auto", "OpenGL", "Processor"}, 96,
+          "What draws the preview. Now: " + frame.status.engine);
 }
 
 struct Tool {

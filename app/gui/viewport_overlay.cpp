@@ -22,9 +22,6 @@ namespace {
 
 constexpr float inset = 12;
 
-ImVec2 lo(const Rect& r) { return {r.x, r.y}; }
-ImVec2 hi(const Rect& r) { return {r.x + r.width, r.y + r.height}; }
-
 Rect shrunk(const Rect& r, float share) {
     const float w = r.width * share, h = r.height * share;
     return {r.x + (r.width - w) * 0.5f, r.y + (r.height - h) * 0.5f, w, h};
@@ -43,8 +40,9 @@ Rect gate_of(const Scene& scene, const Rect& frame_area) {
 // Dims the frame at the left and right of the gate.
 void dim_outside(const Rect& area, const Rect& gate) {
     const ImU32 shade = color::with_opacity(IM_COL32_BLACK, 0.55f);
-    if (gate.x > area.x) fill_rect(lo(area), {gate.x, area.y + area.height}, shade);
-    if (gate.x + gate.width < area.x + area.width) fill_rect({gate.x + gate.width, area.y}, hi(area), shade);
+    if (gate.x > area.x) fill_rect(area.corner(), {gate.x, area.y + area.height}, shade);
+    if (gate.x + gate.width < area.x + area.width)
+        fill_rect({gate.x + gate.width, area.y}, area.end(), shade);
 }
 
 // Text that can be read over black and over white.
@@ -90,13 +88,13 @@ void draw_gate(const GuiFrame& frame, const Rect& area, const Rect& frame_area) 
     const ImU32 grey = color::with_opacity(color::dim, 0.7f);
     if (view.gate) {
         dim_outside(area, gate);
-        list->AddRect(lo(gate), hi(gate), grey);
+        list->AddRect(gate.corner(), gate.end(), grey);
     }
     const CameraParams camera = scene_at(frame.document.scene(), view.frame).camera;
     const bool dome = camera.projection == Projection::fisheye;
     const float radius = 0.5f * std::min(gate.width, gate.height);
     const auto circle = [&](float share, ImU32 ink) {
-        list->AddCircle({gate.x + 0.5f * gate.width, gate.y + 0.5f * gate.height}, share * radius, ink, 256);
+        list->AddCircle(gate.middle(), share * radius, ink, 256);
     };
     if (view.gate && dome) circle(1.0f, grey);
     if (!view.safe_areas) return;
@@ -107,7 +105,7 @@ void draw_gate(const GuiFrame& frame, const Rect& area, const Rect& frame_area) 
         if (dome)
             circle(share, ink);
         else
-            list->AddRect(lo(safe), hi(safe), ink);
+            list->AddRect(safe.corner(), safe.end(), ink);
     }
 }
 

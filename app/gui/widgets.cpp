@@ -151,17 +151,6 @@ void end_menu_popup() {
     ImGui::EndPopup();
 }
 
-bool dialog_button(const char* label, bool is_default, float least) {
-    const float width = std::max(px(least), ImGui::CalcTextSize(label).x + px(24));
-    if (is_default) {
-        ImGui::PushStyleColor(ImGuiCol_Button, color4(color::with_opacity(color::accent, 0.55f)));
-        ImGui::PushStyleColor(ImGuiCol_ButtonHovered, color4(color::with_opacity(color::accent, 0.75f)));
-    }
-    const bool clicked = ImGui::Button(label, {width, px(28)});
-    if (is_default) ImGui::PopStyleColor(2);
-    return clicked;
-}
-
 std::string fitting(const std::string& text, float width) {
     if (ImGui::CalcTextSize(text.c_str()).x <= width) return text;
     std::vector<std::string> characters;

@@ -54,9 +54,6 @@ void picture_box(const Rect& area, ImTextureID texture, float aspect, float radi
 bool begin_menu_popup(const char* id);
 void end_menu_popup();
 
-/// A button as wide as its text and at least `least` px; the accent for what Enter would do.
-bool dialog_button(const char* label, bool is_default, float least);
-
 /// Shortened in its middle ("whirl...final.toml") to fit `width` px of the current font.
 std::string fitting(const std::string& text, float width);
 

@@ -165,6 +165,18 @@ TEST_F(MenusTest, CameraMoves) {
     EXPECT_EQ(commands[0].index, static_cast<std::size_t>(CameraMove::fly_in));
 }
 
+TEST_F(MenusTest, ThePanelsMovesAskTheSame) {
+    window.view.frame = 24;
+    window.view.tab = PanelTab::camera;
+    window.frame(2);
+    window.click("panel/Add move");
+    window.frame(2);
+    window.click("panel/Orbit");
+    window.frame(2);
+    EXPECT_TRUE(window.take_commands().empty());
+    EXPECT_EQ(window.view.asked_move, CameraMove::orbit);
+}
+
 TEST_F(MenusTest, AMoveAsksAboutLaterKeyframes) {
     window.view.frame = 24;
     choose_move(window, "Orbit");

@@ -82,16 +82,14 @@ std::size_t place_in_list(const ParameterKey& key) { return std::stoul(key.paren
 
 std::vector<Companion> companions(const Scene& scene, const ParameterKey& key, const Value& value) {
     const EnvironmentParams& environment = scene.environment;
-    std::vector<Companion> others;  // one picture at a time
-    const bool is_picture =
-        key == "environment.image" || key == "environment.cube" || key == "environment.tile";
-    if (is_picture && key != "environment.image" && !environment.image.empty())
-        others.push_back({"environment.image", ""});
-    if (is_picture && key != "environment.cube" && !environment.cube.empty())
-        others.push_back({"environment.cube", Value::List{}});
-    if (is_picture && key != "environment.tile" && !environment.tile.empty())
-        others.push_back({"environment.tile", ""});
-    if (is_picture) return others;
+    std::vector<Companion> others;
+    if (key == "environment.image" || key == "environment.cube" || key == "environment.tile") {
+        if (!environment.image.empty()) others.push_back({"environment.image", ""});
+        if (!environment.cube.empty()) others.push_back({"environment.cube", Value::List{}});
+        if (!environment.tile.empty()) others.push_back({"environment.tile", ""});
+        std::erase_if(others, [&](const Companion& other) { return other.key == key; });
+        return others;  // one picture at a time
+    }
     // Names of another configuration, or of another display, mean nothing.
     const OcioParams& ocio = scene.output.ocio;
     if (key == "output.ocio.config") {

@@ -68,7 +68,7 @@ struct Memory {
     std::map<std::pair<PanelTab, std::string>, bool> open;  // sections, by tab and title
     bool all_open = false;                                  // in the next frame every section unfolds
     bool after_open = false;                                // the section above is unfolded: leave some room
-    std::map<ParameterKey, glm::vec4> plots;                // by the key they edit: x, y, width, height
+    std::map<ParameterKey, Rect> plots;                     // by the key they edit
     ParameterKey selected_curve;                            // the one whose point is selected
     int selected_point = -1;
     PanelTab layer_tab = PanelTab::look, scene_tab = PanelTab::camera;  // seen last

@@ -238,13 +238,14 @@ bool text_button(const char* label, float width) {
     return clicked;
 }
 
-int button_line(std::initializer_list<const char*> labels) {
+int button_line(Context& context, std::initializer_list<const char*> labels) {
     const float gap = px(4), count = static_cast<float>(labels.size());
     const float width = std::floor((ImGui::GetContentRegionAvail().x - gap * (count - 1.0f)) / count);
     int clicked = -1, index = 0;
     for (const char* label : labels) {
         if (index > 0) ImGui::SameLine(0.0f, gap);
         if (text_button(label, width)) clicked = index;
+        note_item(context, std::string("panel/") + label);
         ++index;
     }
     return clicked;

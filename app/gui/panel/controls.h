@@ -61,8 +61,8 @@ void note(const std::string& text, ImU32 color);
 /// A button as wide as `width` (0: as its text). True when clicked.
 bool text_button(const char* label, float width = 0.0f);
 
-/// Buttons that share one line evenly: index of the one clicked, -1 none.
-int button_line(std::initializer_list<const char*> labels);
+/// Buttons that share one line evenly, remembered as "panel/LABEL": index of the one clicked, -1 none.
+int button_line(Context& context, std::initializer_list<const char*> labels);
 
 /// A quiet "+ label" that adds an element to a list; true when clicked.
 bool add_line(const char* label);

@@ -302,40 +302,37 @@ void color_field(Context& context, const Row& row) {
 
 bool value_field(Context& context, const Row& row) {
     switch (row.parameter.spec.type) {
+        case Type::words:
+            return words_field(context, row);
         case Type::boolean:
             boolean_field(context, row);
-            return false;
+            break;
         case Type::integer:
         case Type::number:
             number_field(context, row);
-            return false;
+            break;
         case Type::choice:
             choice_field(context, row);
-            return false;
-        case Type::words:
-            return words_field(context, row);
+            break;
         case Type::file:
         case Type::files:
             file_field(context, row);
-            return false;
+            break;
         case Type::vector:
         case Type::position:
         case Type::rotation:
             vector_field(context, row, row.layout.value);
-            return false;
+            break;
         case Type::color:
             color_field(context, row);
-            return false;
+            break;
         case Type::text:
-            if (const auto names = names_to_choose(context, row.parameter.spec)) {
-                name_field(context, row, *names, empty_in_words(context, row.parameter.spec));
-                return false;
-            }
-            [[fallthrough]];
         case Type::pattern:
         case Type::curve:
-            text_field(context, row, row.layout.value);
-            return false;
+            if (const auto names = names_to_choose(context, row.parameter.spec))
+                name_field(context, row, *names, empty_in_words(context, row.parameter.spec));
+            else
+                text_field(context, row, row.layout.value);
     }
     return false;
 }

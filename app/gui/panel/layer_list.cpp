@@ -15,6 +15,7 @@
 #include "gui/icons.h"
 #include "gui/key_codes.h"
 #include "gui/panel/controls.h"
+#include "gui/panel/tab_sections.h"
 #include "gui/panel/words.h"
 #include "gui/theme.h"
 #include "gui/widgets.h"

@@ -171,7 +171,8 @@ const std::vector<DrawnRow>& Panel::rows() const { return state_->rows; }
 
 glm::vec4 Panel::plot_area(const std::string& key) const {
     const auto found = state_->memory.plots.find(key);
-    return found == state_->memory.plots.end() ? glm::vec4(0.0f) : found->second;
+    const Rect area = found == state_->memory.plots.end() ? Rect() : found->second;
+    return {area.x, area.y, area.width, area.height};
 }
 
 const std::string& Panel::message() const { return state_->memory.error; }

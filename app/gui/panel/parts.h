@@ -52,13 +52,6 @@ bool suits_colors(const Context& context, const ParameterSpec& spec);
 /// At the head of the folded section of colour management: "Screen, Film".
 std::string colors_state(const Context& context);
 
-/// Below the rows of colour management: why the configuration cannot be used.
-void colors_note(Context& context);
-
-/// Commands on a layer's look as a whole, as buttons or as items of a menu.
-void look_buttons(Context& context);
-void look_menu(Context& context);
-
 /// The tab `name`, as ParameterSpec::tab has it. Layers' tabs show the selected layer; there must be one.
 void draw_tab(Context& context, std::string_view name);
 

@@ -207,7 +207,7 @@ void edit_curve(Context& context, const ParameterKey& key, const Rect& area, std
     float top = 1.0f;
     for (const glm::vec2& p : points) top = std::max(top, p.y);
     const Chart chart{area, top};
-    context.memory.plots[key] = {area.x, area.y, area.width, area.height};
+    context.memory.plots[key] = area;
     ImGui::PushID(key.text().c_str());
     ImGui::SetCursorScreenPos(area.corner());
     ImGui::InvisibleButton("curve", area.size());

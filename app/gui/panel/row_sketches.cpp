@@ -67,7 +67,7 @@ void edit_levels(Context& context, const ParameterSpec&) {
     double white = value_or(context, source / "white", values.white);
     const Rect area = begin_plot();
     const ImVec2 below = ImGui::GetCursorScreenPos();
-    context.memory.plots[source / "black"] = {area.x, area.y, area.width, area.height};
+    context.memory.plots[source / "black"] = area;
     draw_bars(area, values.share);
     const ImU32 shade = color::with_opacity(color::window, 0.6f);
     fill_rect(area.corner(), {place(area, values, black), area.end().y}, shade);

@@ -22,66 +22,6 @@ namespace astrosplat::panel {
 
 namespace {
 
-// The preparation of a picture: before and after, and the way to its files.
-
-constexpr float tallest = 320.0f;  // px at scale 1
-
-// As wide as the panel, or as tall as there is room for.
-Rect picture_area(float aspect) {
-    const float room = ImGui::GetContentRegionAvail().x;
-    const float height = std::floor(std::min(room / std::max(aspect, 0.01f), px(tallest)));
-    const float width = std::floor(std::min(room, height * aspect));
-    const ImVec2 corner = ImGui::GetCursorScreenPos();
-    return {{corner.x + std::floor((room - width) * 0.5f), corner.y}, {width, height}};
-}
-
-void drag_line(Context& context, const Rect& area) {
-    ImGui::SetCursorScreenPos(area.corner());
-    ImGui::InvisibleButton("before and after", area.size());
-    const bool active = ImGui::IsItemActive();
-    if (active || ImGui::IsItemHovered()) ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
-    if (active) context.memory.preparation_line = share_at_mouse(area);
-}
-
-void draw_both(Context& context, const PrepareStatus& status) {
-    const Rect area = picture_area(status.aspect);
-    context.memory.plots[context.layer_key() / "source.prepare"] = {area.x, area.y, area.width, area.height};
-    drag_line(context, area);
-    const float share = context.memory.preparation_line;
-    const float x = std::round(area.x + area.width * share);
-    ImDrawList* list = ImGui::GetWindowDrawList();
-    fill_rect(area, IM_COL32_BLACK);
-    if (status.before) list->AddImage(status.before, area.corner(), {x, area.end().y}, {0, 0}, {share, 1});
-    if (status.after) list->AddImage(status.after, {x, area.y}, area.end(), {share, 0}, {1, 1});
-    draw_line({x, area.y}, {x, area.end().y}, color::text, px(1));
-    captions("before", "after");
-}
-
-std::string what_was_done(const PrepareStatus& status, const PrepareParams& params) {
-    if (status.working) return "Preparing";
-    if (!prepares(params)) return "Nothing is prepared: the picture is used as it is.";
-    std::string text = "A quick look at reduced size";
-    if (params.stars == PrepareParams::Stars::remove)
-        text += ", " + counted(status.stars, "star") + " removed";
-    return text + ".";
-}
-
-/// Below the rows of the section: the two pictures with a line between them to drag, what was done, a button.
-void draw_preparation(Context& context) {
-    context.view.preparation_open = true;
-    const std::optional<PrepareStatus>& status = context.status.preparation;
-    if (!status) return;
-    ImGui::Dummy({0.0f, px(4)});
-    if (status->before && status->after) draw_both(context, *status);
-    if (status->error.empty())
-        note(what_was_done(*status, context.layer().source.texture.prepare));
-    else
-        note(status->error, color::error);
-    if (button_line({"Write to folder..."}) == 0)
-        request(context, Command::Kind::prepare_picture, context.view.layer);
-    ImGui::Dummy({0.0f, px(4)});
-}
-
 bool unfolded(const Context&) { return true; }
 
 bool is_fits(const Context& context) {
@@ -176,29 +116,6 @@ std::string length_of(const Context& context) {
     return length == 0 ? "off" : std::to_string(length);
 }
 
-/// Move, Rotate and Scale in one line: handles in the view that act on `target`.
-void handle_buttons(Context& context, HandleTarget target, std::size_t crop) {
-    const int clicked = button_line({"Move", "Rotate", "Scale"});
-    if (clicked < 0) return;
-    context.view.tool = static_cast<HandleTool>(clicked + 1);
-    context.view.handle_target = target;
-    context.view.handle_crop = crop;
-}
-
-void placement_buttons(Context& context) {
-    note("Handles in the view: W, E and R");
-    handle_buttons(context, HandleTarget::layer, 0);
-}
-
-void crop_buttons(Context& context) {
-    for (std::size_t i = 0; i < context.layer().look.crop.size(); ++i) {
-        ImGui::PushID(static_cast<int>(i));
-        note(fmt::format("Handles of crop {} in the view", i));
-        handle_buttons(context, HandleTarget::crop, i);
-        ImGui::PopID();
-    }
-}
-
 std::string thickness_state(const Context& context) {
     const Thickness& thickness = context.layer().look.thickness;
     return thickness.map.empty() && thickness.stops.empty() ? "off"
@@ -238,42 +155,6 @@ std::string environment_state(const Context& context) {
 std::string reference_state(const Context& context) {
     const ReferenceParams* reference = seen_reference(context.scene(), context.status);
     return reference ? reference->file.filename().string() : "none";
-}
-
-void change_references(Context& context, const std::string& name,
-                       const std::function<void(std::vector<ReferenceParams>&)>& change) {
-    edit(context, "reference", name, [&](Scene& scene) { change(scene.references); });
-}
-
-void reference_buttons(Context& context) {
-    const ReferenceParams* reference = seen_reference(context.scene(), context.status);
-    if (!reference) {
-        note("No picture to compare this view with.");
-        if (button_line({"Load a reference..."}) == 0) request(context, Command::Kind::set_reference);
-        return;
-    }
-    if (!context.status.reference->error.empty()) note(context.status.reference->error, color::error);
-    const char* const align = context.status.reference->aligning ? "Aligning..." : "Align to this view";
-    const int placed = button_line({"Place in the view", align});
-    if (placed == 0) {
-        context.view.placing = true;
-        show_reference(context.view);
-    }
-    if (placed == 1 && !context.status.reference->aligning) request(context, Command::Kind::align_reference);
-    const auto index = static_cast<std::ptrdiff_t>(context.status.reference->index);
-    const ReferenceParams::View view = reference_view(context.view.view);
-    const int clicked = button_line({"Replace...", "Another for this view", "Remove"});
-    if (clicked == 0) request(context, Command::Kind::set_reference);
-    if (clicked == 1)
-        change_references(context, "Another reference", [&](std::vector<ReferenceParams>& references) {
-            ReferenceParams another = references[static_cast<std::size_t>(index)];
-            another.view = view;
-            references.insert(references.begin(), another);
-        });
-    if (clicked == 2)
-        change_references(context, "Remove reference", [&](std::vector<ReferenceParams>& references) {
-            references.erase(references.begin() + index);
-        });
 }
 
 std::string stereo_state(const Context& context) { return std::string(name_of(context.scene().camera.eye)); }
@@ -388,21 +269,22 @@ void source_state(Context& context) {
 }
 
 void camera_buttons(Context& context) {
-    const int clicked = button_line({"Key camera here", "Add move"});
+    const int clicked = button_line(context, {"Key camera here", "Add move"});
     if (clicked == 0)
         edit(context, "camera.position", "Set camera keyframe",
              [&](Scene& scene) { set_keyframe_of_seen_camera(scene, context.view, context.status); });
     if (clicked == 1) ImGui::OpenPopup("moves");
     if (begin_popup("moves")) {
         for (std::size_t i = 0; i < camera_move_names.size(); ++i)
-            if (ImGui::MenuItem(camera_move_names[i])) begin_move(context, static_cast<CameraMove>(i));
+            if (noted_menu_item(context, "panel", camera_move_names[i]))
+                begin_move(context, static_cast<CameraMove>(i));
         end_popup();
     }
     ImGui::Dummy({0.0f, px(4)});
 }
 
 void output_buttons(Context& context) {
-    const int clicked = button_line({"Render frames...", "Copy batch command"});
+    const int clicked = button_line(context, {"Render frames...", "Copy batch command"});
     if (clicked == 0) open_render_dialog(context.document, context.view, RenderKind::range);
     if (clicked == 1) request(context, Command::Kind::copy_batch_command);
     ImGui::Dummy({0.0f, px(4)});

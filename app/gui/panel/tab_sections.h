@@ -29,6 +29,19 @@ std::size_t rank_in(const TabSection& section, const ParameterSpec& spec);
 /// and references of other views.
 bool suits_layer(const Context& context, const ParameterSpec& spec);
 
+// At the end of sections (section_ends.cpp).
+
+/// The two pictures with a line between them to drag, what was done, a button.
+void draw_preparation(Context& context);
+void placement_buttons(Context& context);
+void crop_buttons(Context& context);
+void reference_buttons(Context& context);
+/// Below the rows of colour management: why the configuration cannot be used.
+void colors_note(Context& context);
+/// Commands on a layer's look as a whole, as buttons or as items of a menu.
+void look_buttons(Context& context);
+void look_menu(Context& context);
+
 // At the top of tabs.
 void source_state(Context& context);
 void camera_buttons(Context& context);
