@@ -2,19 +2,16 @@
 #include "gui/viewport_overlay.h"
 
 #include <fmt/format.h>
-#include <imgui.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "gui/icons.h"
-#include "gui/theme.h"
 #include "gui/widgets.h"
 
 namespace astrosplat {
 namespace {
 
-constexpr float height = 26, inset = 12, padding = 10, dot_radius = 4, gap = 8;
+constexpr float badge_height = 26, badge_inset = 12, padding = 10, dot_radius = 4, word_gap = 8;
 
 /// Index of the first; that of none where none is.
 std::size_t loading_layer(const Status& status) {
@@ -27,11 +24,12 @@ bool loads(const Status& status) { return loading_layer(status) < status.layers.
 bool word_button(GuiFrame& frame, const char* word, float x, float y) {
     const ImVec2 size = ImGui::CalcTextSize(word);
     ImGui::SetCursorScreenPos({x, y});
-    const bool clicked = ImGui::InvisibleButton(word, {size.x, px(height)});
+    const bool clicked = ImGui::InvisibleButton(word, {size.x, px(badge_height)});
     note_item(frame, std::string("badge/") + word);
     const bool hovered = ImGui::IsItemHovered();
     if (hovered) ImGui::SetMouseCursor(ImGuiMouseCursor_Hand);
-    draw_text({x, y + std::floor((px(height) - size.y) * 0.5f)}, hovered ? color::text : color::accent, word);
+    draw_text({x, y + std::floor((px(badge_height) - size.y) * 0.5f)}, hovered ? color::text : color::accent,
+              word);
     return clicked;
 }
 
@@ -67,7 +65,8 @@ std::string signed_percent(double share) {
 
 /// What a badge stands on, at the bottom of the viewport.
 Rect draw_plate(const Rect& viewport, float x, float width) {
-    const Rect plate{x, viewport.y + viewport.height - px(inset) - px(height), width, px(height)};
+    const Rect plate{x, viewport.y + viewport.height - px(badge_inset) - px(badge_height), width,
+                     px(badge_height)};
     fill_rect(plate, color::with_opacity(color::window, 0.86f), px(3));
     return plate;
 }
@@ -138,26 +137,26 @@ float draw_badge(GuiFrame& frame, const Rect& area) {
     BadgeText badge = badge_text(frame.document.scene(), frame.status);
     const char* word = button_word(frame.status);
     ImGui::PushFont(small_font());
-    const float word_width = word ? ImGui::CalcTextSize(word).x + px(gap) * 2 : 0.0f;
-    const float left = px(padding) + px(dot_radius) * 2 + px(gap);
-    const float room = area.width - 2 * px(inset) - left - word_width - px(padding);
+    const float word_width = word ? ImGui::CalcTextSize(word).x + px(word_gap) * 2 : 0.0f;
+    const float left = px(padding) + px(dot_radius) * 2 + px(word_gap);
+    const float room = area.width - 2 * px(badge_inset) - left - word_width - px(padding);
     const std::string whole = badge.text;
     badge.text = fitting(badge.text, room);
     const float text_width = ImGui::CalcTextSize(badge.text.c_str()).x;
     float beside_width =
-        badge.beside.empty() ? 0.0f : ImGui::CalcTextSize(badge.beside.c_str()).x + px(gap) * 1.5f;
+        badge.beside.empty() ? 0.0f : ImGui::CalcTextSize(badge.beside.c_str()).x + px(word_gap) * 1.5f;
     if (text_width + beside_width > room) beside_width = 0.0f;
 
     ImDrawList* list = ImGui::GetWindowDrawList();
-    const float x = area.x + px(inset);
+    const float x = area.x + px(badge_inset);
     const float width = left + text_width + beside_width + word_width + px(padding);
     const Rect plate = draw_plate(area, x, width);
     list->AddCircleFilled({x + px(padding) + px(dot_radius), plate.middle().y}, px(dot_radius), badge.color,
                           16);
     draw_text({x + left, text_y(plate)}, color::text, badge.text);
     if (beside_width > 0)
-        draw_text({x + left + text_width + px(gap) * 1.5f, text_y(plate)}, color::dim, badge.beside);
-    if (word && word_button(frame, word, x + width - px(padding) - word_width + px(gap) * 2, plate.y))
+        draw_text({x + left + text_width + px(word_gap) * 1.5f, text_y(plate)}, color::dim, badge.beside);
+    if (word && word_button(frame, word, x + width - px(padding) - word_width + px(word_gap) * 2, plate.y))
         press_button(frame);
     if (badge.text != whole && is_hovered(plate)) ImGui::SetTooltip("%s", whole.c_str());
     ImGui::PopFont();
@@ -185,7 +184,7 @@ void draw_side_badge(GuiFrame& frame, const Rect& area, float left) {
     const std::optional<SideBadge> badge = side_badge(frame.status);
     if (!badge || badge->text.empty()) return;
     ImGui::PushFont(small_font());
-    const float x = left + px(gap), room = area.x + area.width - px(inset) - x - 2 * px(padding);
+    const float x = left + px(word_gap), room = area.x + area.width - px(badge_inset) - x - 2 * px(padding);
     const std::string text = badge->may_be_cut ? fitting(badge->text, room) : badge->text;
     const float width = ImGui::CalcTextSize(text.c_str()).x + 2 * px(padding);
     if (width <= room + 2 * px(padding)) {

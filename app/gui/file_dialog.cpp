@@ -2,19 +2,15 @@
 #include "gui/file_dialog.h"
 
 #include <fmt/format.h>
-#include <imgui.h>
 #include <imgui_stdlib.h>
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "core/file_format.h"
 #include "core/progress.h"
 #include "edit/preferences.h"
 #include "gui/dialog.h"
-#include "gui/key_codes.h"
-#include "gui/theme.h"
 #include "gui/widgets.h"
 
 namespace astrosplat {
@@ -26,6 +22,15 @@ constexpr std::size_t most_places = 12;
 
 bool is_picture(const FileEntry& entry) {
     return !entry.folder && kind_of(format_by_name(entry.name)) == FileKind::picture;
+}
+
+// "1.2 MB".
+std::string size_text(std::uintmax_t bytes) {
+    const double n = static_cast<double>(bytes);
+    if (n < 1e3) return fmt::format("{} B", bytes);
+    if (n < 1e6) return fmt::format("{:.0f} kB", n / 1e3);
+    if (n < 1e9) return fmt::format("{:.1f} MB", n / 1e6);
+    return fmt::format("{:.1f} GB", n / 1e9);
 }
 
 }  // namespace

@@ -8,15 +8,33 @@
 #include <string>
 #include <vector>
 
+#include "edit/commands.h"
+#include "edit/document.h"
 #include "edit/status.h"
 #include "gui/file_list.h"
-#include "gui/file_queries.h"
 #include "gui/gui_frame.h"
 #include "gui/icons.h"
+#include "scene/parameter_key.h"
 
 struct ImGuiInputTextCallbackData;
 
 namespace astrosplat {
+
+/// A file the person is to choose.
+struct FileQuery {
+    std::string title;                    // "Open a scene"
+    bool saving = false;                  // the file need not exist, and is asked for again where it does
+    std::string kind;                     // "Scenes", of the filter
+    std::vector<std::string> extensions;  // ".toml", lower case; empty: any
+    std::filesystem::path folder;         // to begin in
+    std::string name;                     // suggested, when saving
+    std::filesystem::path otherwise{};    // to begin in where there is no such folder; empty: home
+};
+
+/// The request where `kind` needs a path; nothing where it needs none.
+std::optional<FileQuery> query_for(Command::Kind kind, const Document& document);
+/// The request for the value of a parameter.
+FileQuery query_for(const ParameterKey& key, const Document& document);
 
 inline constexpr float file_row_height = 26, picture_row_height = 54;  // px at scale 1
 

@@ -1,7 +1,6 @@
 // Folders read and paths completed.
 #include "gui/file_list.h"
 
-#include <fmt/format.h>
 #include <sys/stat.h>
 
 #include <algorithm>
@@ -138,14 +137,6 @@ std::string time_text(fs::file_time_type time) {
     if (!localtime_r(&seconds, &local)) return {};
     char text[32];
     return std::string(text, std::strftime(text, sizeof text, "%Y-%m-%d %H:%M", &local));
-}
-
-std::string size_text(std::uintmax_t bytes) {
-    const double n = static_cast<double>(bytes);
-    if (n < 1e3) return fmt::format("{} B", bytes);
-    if (n < 1e6) return fmt::format("{:.0f} kB", n / 1e3);
-    if (n < 1e9) return fmt::format("{:.1f} MB", n / 1e6);
-    return fmt::format("{:.1f} GB", n / 1e9);
 }
 
 FolderContents read_folder(const fs::path& folder, const fs::path& otherwise,

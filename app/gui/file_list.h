@@ -46,8 +46,6 @@ std::optional<std::size_t> entry_beside(const std::vector<FileEntry>& entries, c
 
 /// "2026-03-01 18:30", on this machine's clock.
 std::string time_text(std::filesystem::file_time_type time);
-/// "1.2 MB".
-std::string size_text(std::uintmax_t bytes);
 
 /// `typed` as a path: "~/x" in the home folder, relative ones in `folder`.
 std::filesystem::path typed_path(const std::string& typed, const std::filesystem::path& folder);

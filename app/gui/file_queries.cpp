@@ -1,5 +1,5 @@
 // Titles, kinds and folders of the file dialogs.
-#include "gui/file_queries.h"
+#include "gui/file_dialog.h"
 
 #include <algorithm>
 #include <string_view>

@@ -1,19 +1,16 @@
 // The rows of the file dialog and the columns above them.
 #include <fmt/format.h>
-#include <imgui.h>
 
-#include <algorithm>
 #include <cmath>
 
 #include "gui/file_dialog.h"
-#include "gui/theme.h"
 #include "gui/widgets.h"
 
 namespace astrosplat {
 namespace {
 
 constexpr float time_width = 128, size_width = 76;
-constexpr float thumbnail_width = 72, thumbnail_height = 48;
+constexpr float row_picture_width = 72, row_picture_height = 48;
 
 struct FileColumn {
     const char* label;
@@ -42,7 +39,7 @@ bool draw_column(GuiFrame& frame, const FileColumn& column, const ImVec2& corner
 
 // As large as its frame allows; the sign of a file where it cannot be read.
 void draw_picture(ImVec2 corner, const ListedThumbnail* thumbnail) {
-    const Rect area(corner, {px(thumbnail_width), px(thumbnail_height)});
+    const Rect area(corner, {px(row_picture_width), px(row_picture_height)});
     if (!thumbnail || !thumbnail->texture) {
         picture_box(area, {}, 0.0f, 2);
         if (thumbnail) draw_icon(ImGui::GetWindowDrawList(), Icon::file, area.middle(), px(13), color::dim);
@@ -71,11 +68,11 @@ FileClick file_row(const char* id, const FileRow& row) {
     fill_rect(corner, {corner.x + room, corner.y + height}, back, px(3));
     const float middle = corner.y + height * 0.5f;
     if (row.picture)
-        draw_picture({corner.x + px(6), middle - px(0.5f * thumbnail_height)}, row.thumbnail);
+        draw_picture({corner.x + px(6), middle - px(0.5f * row_picture_height)}, row.thumbnail);
     else
-        draw_icon(list, row.icon, {corner.x + px(row.high ? 6 + 0.5f * thumbnail_width : 14), middle}, px(13),
-                  color::dim);
-    const float text_x = corner.x + px(row.high ? thumbnail_width + 16 : 28);
+        draw_icon(list, row.icon, {corner.x + px(row.high ? 6 + 0.5f * row_picture_width : 14), middle},
+                  px(13), color::dim);
+    const float text_x = corner.x + px(row.high ? row_picture_width + 16 : 28);
     const float beside = row.time.empty() ? 0.0f : px(time_width + size_width);
     const float text_room = corner.x + room - px(8) - beside - text_x;
     const float line = std::floor(ImGui::GetFontSize()), y = std::floor(middle - line * 0.5f);

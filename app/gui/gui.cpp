@@ -1,22 +1,18 @@
 // One frame of the window: parts in their places, then the dialogs, then what was asked for.
 #include "gui/gui.h"
 
-#include <imgui.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <optional>
 
 #include "gui/actions.h"
 #include "gui/dialog.h"
 #include "gui/file_dialog.h"
-#include "gui/file_queries.h"
 #include "gui/gui_frame.h"
 #include "gui/panel/panel.h"
 #include "gui/parts.h"
-#include "gui/theme.h"
 #include "gui/timeline.h"
 #include "gui/viewport.h"
 #include "gui/widgets.h"
@@ -302,10 +298,7 @@ std::string parameter_under_mouse(const Panel& panel, const Rect& area) {
     return "";
 }
 
-bool keyboard_is_free() {
-    return !ImGui::GetIO().WantTextInput && !ImGui::IsAnyItemActive() &&
-           !ImGui::IsPopupOpen(nullptr, ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel);
-}
+bool keyboard_is_free() { return !ImGui::GetIO().WantTextInput && !ImGui::IsAnyItemActive() && !any_popup(); }
 
 }  // namespace
 
@@ -367,7 +360,7 @@ void Gui::draw(Document& document, ViewState& view, const Status& status, Comman
     const Layout layout = make_layout(view, size.x, size.y, px(1));
     state.draw_parts(frame, layout, commands);
     ImGui::End();
-    state.popup = ImGui::IsPopupOpen(nullptr, ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel);
+    state.popup = any_popup();
 }
 
 const ViewportInput& Gui::viewport_input() const { return state_->viewport.input(); }

@@ -2,15 +2,13 @@
 #include "gui/gui_frame.h"
 
 #include <fmt/format.h>
-#include <imgui.h>
 
-#include <array>
+#include <cmath>
 
 #include "core/error.h"
 #include "core/log.h"
 #include "edit/edit_rules.h"
 #include "gui/key_codes.h"
-#include "gui/theme.h"
 #include "gui/widgets.h"
 #include "scene/frames.h"
 
@@ -70,15 +68,31 @@ bool noted_menu_item(GuiFrame& frame, const std::string& prefix, const char* lab
     return chosen;
 }
 
-int noted_segments(GuiFrame& frame, const char* id, const std::string& prefix,
-                   std::initializer_list<Segment> segments, int chosen, float height) {
-    std::array<ImVec2, 8> middles;
-    const int clicked = segmented(id, segments, chosen, px(height), middles.data());
-    std::size_t i = 0;
+int segmented(GuiFrame& frame, const std::string& prefix, std::initializer_list<Segment> segments, int chosen,
+              float height) {
+    ImGui::PushID(prefix.c_str());
+    Rect button(ImGui::GetCursorScreenPos(), {segmented_width(segments), px(height)});
+    const float radius = px(3);
+    fill_rect(button, color::field, radius);
+    int clicked = -1, index = 0;
     for (const Segment& segment : segments) {
-        note_item(frame, prefix + "/" + segment.label, {middles[i].x, middles[i].y});
-        ++i;
+        button.width = segmented_width({segment});
+        ImGui::SetCursorScreenPos(button.corner());
+        if (ImGui::InvisibleButton(segment.label, button.size())) clicked = index;
+        note_item(frame, prefix + "/" + segment.label);
+        if (index == chosen)
+            fill_rect(button, color::selection, radius);
+        else if (ImGui::IsItemHovered())
+            fill_rect(button, color::hover, radius);
+        tooltip(segment.tooltip);
+        const ImVec2 size = ImGui::CalcTextSize(segment.label);
+        draw_text({std::floor(button.x + (button.width - size.x) * 0.5f),
+                   std::floor(button.y + (button.height - size.y) * 0.5f)},
+                  index == chosen ? color::text : color::dim, segment.label);
+        button.x += button.width;
+        ++index;
     }
+    ImGui::PopID();
     return clicked;
 }
 

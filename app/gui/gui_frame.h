@@ -83,10 +83,10 @@ void note_item(GuiFrame& frame, const std::string& name, glm::vec2 middle_px);
 bool noted_menu_item(GuiFrame& frame, const std::string& prefix, const char* label, bool checked = false,
                      bool enabled = true);
 
-/// A segmented control `height` px high at scale 1, whose buttons are remembered as "PREFIX/label": the one
-/// clicked, else -1.
-int noted_segments(GuiFrame& frame, const char* id, const std::string& prefix,
-                   std::initializer_list<Segment> segments, int chosen, float height);
+/// Buttons joined to one row `height` px high at scale 1, of which one is lit, remembered as "PREFIX/label":
+/// returns the one clicked, else -1.
+int segmented(GuiFrame& frame, const std::string& prefix, std::initializer_list<Segment> segments, int chosen,
+              float height);
 
 /// Three digits at most, thousands as k, M, G: "340", "1.2 k", "12.4 M". `count` >= 0.
 std::string short_count(std::int64_t count);

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <iterator>
 
-#include "gui/theme.h"
 #include "gui/widgets.h"
 
 namespace astrosplat {

@@ -2,14 +2,12 @@
 #include "gui/parts.h"
 
 #include <fmt/format.h>
-#include <imgui.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "gui/dialog.h"
 #include "gui/icons.h"
-#include "gui/theme.h"
 #include "gui/widgets.h"
 
 namespace astrosplat {
@@ -26,21 +24,11 @@ const QueuedJob* chosen_job(const GuiFrame& frame) {
 }
 
 std::string state_text(const QueuedJob& job) {
-    switch (job.state) {
-        case JobState::waiting:
-            return "Waits";
-        case JobState::running:
-            return job.seconds_left ? fmt::format("{}, {} left", job.text, duration_text(*job.seconds_left))
-                                    : job.text;
-        case JobState::submitted:
-            return job.text;
-        case JobState::done:
-            return "Done";
-        case JobState::failed:
-            return job.text;
-        default:
-            return "Cancelled; finished files are kept";
-    }
+    if (job.state == JobState::waiting) return "Waits";
+    if (job.state == JobState::done) return "Done";
+    if (job.state == JobState::cancelled) return "Cancelled; finished files are kept";
+    const bool is_timed = job.state == JobState::running && job.seconds_left;
+    return is_timed ? fmt::format("{}, {} left", job.text, duration_text(*job.seconds_left)) : job.text;
 }
 
 ImU32 state_color(JobState state) {

@@ -2,7 +2,6 @@
 #include "gui/parts.h"
 
 #include <fmt/format.h>
-#include <imgui.h>
 #include <imgui_stdlib.h>
 
 #include <algorithm>
@@ -11,7 +10,6 @@
 #include "core/error.h"
 #include "gui/dialog.h"
 #include "gui/icons.h"
-#include "gui/theme.h"
 #include "gui/widgets.h"
 #include "scene/frames.h"
 
@@ -43,29 +41,21 @@ void side_field(GuiFrame& frame, const char* name, std::int64_t& side) {
     note_item(frame, std::string("render/") + name);
 }
 
-int render_choice(GuiFrame& frame, const char* id, std::initializer_list<Segment> segments, int chosen) {
-    return noted_segments(frame, id, "render", segments, chosen, field_height);
-}
-
 void kind_row(GuiFrame& frame) {
     RenderTask& render = frame.view.render;
     label("Render");
-    const int clicked = render_choice(
-        frame, "kind",
+    const int clicked = segmented(
+        frame, "render",
         {{"Frame", "The frame that is seen"},
          {"Frames", "Numbered files of the scene's frames, or of others"},
          {"Movie", frame.status.has_ffmpeg ? "A film of them" : "Needs ffmpeg, which is not installed"}},
-        static_cast<int>(render.kind));
+        static_cast<int>(render.kind), field_height);
     if (clicked < 0 || (clicked == 2 && !frame.status.has_ffmpeg)) return;
-    const RenderTask before = render;
-    render = make_render_task(frame.document, static_cast<RenderKind>(clicked), frame.view.frame);
-    render.width = before.width;
-    render.height = before.height;
-    render.folder = before.folder;
-    render.existing = before.existing;
-    render.by_slurm = before.by_slurm;
-    render.chunk = before.chunk;
-    render.partition = before.partition;
+    const auto kind = static_cast<RenderKind>(clicked);
+    const RenderTask usual = make_render_task(frame.document, kind, frame.view.frame);
+    render.kind = kind;
+    render.frames = usual.frames;
+    render.name = usual.name;
 }
 
 std::string count_of_frames(const RenderTask& render) {
@@ -147,11 +137,10 @@ void machine_row(GuiFrame& frame) {
     RenderTask& render = frame.view.render;
     if (!frame.status.has_slurm || render.kind == RenderKind::movie) return;
     label("On");
-    const int clicked =
-        render_choice(frame, "machine",
-                      {{"This machine", "In the background, one job after the other"},
-                       {"Slurm", "As tasks of the farm, which go on when the window is closed"}},
-                      render.by_slurm ? 1 : 0);
+    const int clicked = segmented(frame, "render",
+                                  {{"This machine", "In the background, one job after the other"},
+                                   {"Slurm", "As tasks of the farm, which go on when the window is closed"}},
+                                  render.by_slurm ? 1 : 0, field_height);
     if (clicked >= 0) render.by_slurm = clicked == 1;
     if (!render.by_slurm) return;
     const auto word = [](const char* text) {
@@ -172,13 +161,13 @@ void existing_row(GuiFrame& frame) {
     if (renders_by_slurm(frame.view.render))
         return ImGui::TextColored(color4(color::dim),
                                   "Finished frames of these settings stay, others are replaced");
-    const int clicked = render_choice(frame, "existing",
-                                      {{"Keep finished",
-                                        "Frames of these settings that are there already stay; "
-                                        "others are replaced"},
-                                       {"Render again", "All frames are rendered, whatever is there"},
-                                       {"Stop", "Nothing is rendered where a file is in the way"}},
-                                      static_cast<int>(frame.view.render.existing));
+    const int clicked = segmented(frame, "render",
+                                  {{"Keep finished",
+                                    "Frames of these settings that are there already stay; "
+                                    "others are replaced"},
+                                   {"Render again", "All frames are rendered, whatever is there"},
+                                   {"Stop", "Nothing is rendered where a file is in the way"}},
+                                  static_cast<int>(frame.view.render.existing), field_height);
     if (clicked >= 0) frame.view.render.existing = static_cast<ExistingFrames>(clicked);
 }
 

@@ -2,13 +2,9 @@
 #include "gui/parts.h"
 
 #include <fmt/format.h>
-#include <imgui.h>
 #include <imgui_stdlib.h>
 
-#include <cmath>
-
 #include "gui/icons.h"
-#include "gui/theme.h"
 #include "gui/widgets.h"
 
 namespace astrosplat {
@@ -32,9 +28,7 @@ void name_entry(GuiFrame& frame, std::size_t index, ImVec2 corner) {
     ViewState& view = frame.view;
     ImGui::SetCursorScreenPos(corner);
     ImGui::SetNextItemWidth(px(thumbnail_width));
-    const bool popup =
-        ImGui::IsPopupOpen(nullptr, ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel);
-    if (!popup && !ImGui::IsAnyItemActive()) ImGui::SetKeyboardFocusHere();
+    if (!any_popup() && !ImGui::IsAnyItemActive()) ImGui::SetKeyboardFocusHere();
     const bool entered = ImGui::InputText(
         "##name", &view.typed_name, ImGuiInputTextFlags_AutoSelectAll | ImGuiInputTextFlags_EnterReturnsTrue);
     note_item(frame, "snapshot name");

@@ -2,17 +2,14 @@
 #include "gui/timeline.h"
 
 #include <fmt/format.h>
-#include <imgui.h>
 #include <imgui_stdlib.h>
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
 
 #include "gui/icons.h"
 #include "gui/key_codes.h"
-#include "gui/theme.h"
 #include "gui/widgets.h"
 #include "scene/describe.h"
 
@@ -231,6 +228,15 @@ void draw_in_and_out(const TimelineState& t, GuiFrame& frame, const Rect& area) 
     if (view.play_last) tab("out point", last, px(2 * point_half));
 }
 
+/// Distance of ruler numbers in frames (1, 2, 5, 10, ...) that leaves them at least `least_px` apart.
+double ruler_step(const TimeScale& scale, float least_px) {
+    const double px_per_frame = static_cast<double>(scale.x1 - scale.x0) / (scale.last - scale.first);
+    double step = 1.0;
+    for (int i = 0; step * px_per_frame < static_cast<double>(least_px) && i < 30; ++i)
+        step *= i % 3 == 1 ? 2.5 : 2.0;  // 1 2 5 10 20 50 ...
+    return step;
+}
+
 void draw_ruler(TimelineState& t, GuiFrame& frame, const Rect& area) {
     ImGui::SetCursorScreenPos({t.scale.x0 - px(timeline_margin), area.y});
     ImGui::InvisibleButton("ruler", {t.scale.x1 - t.scale.x0 + 2 * px(timeline_margin), area.height});
@@ -302,23 +308,6 @@ void zoom_frames(TimelineState& t, double middle, double factor) {
     t.scale.first = middle - (middle - t.scale.first) * ratio;
     t.scale.last = t.scale.first + span;
     t.zoomed = true;
-}
-
-double ruler_step(const TimeScale& scale, float least_px) {
-    const double px_per_frame = static_cast<double>(scale.x1 - scale.x0) / (scale.last - scale.first);
-    double step = 1.0;
-    for (int i = 0; step * px_per_frame < static_cast<double>(least_px) && i < 30; ++i)
-        step *= i % 3 == 1 ? 2.5 : 2.0;  // 1 2 5 10 20 50 ...
-    return step;
-}
-
-std::string track_label(const std::string& key, const ParameterSpec& spec) {
-    std::string group = ParameterKey(key).layer();
-    if (group.empty() && !key.empty()) {
-        group = ParameterKey(key).parts().front();
-        group[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(group[0])));
-    }
-    return group + ": " + (spec.label.empty() ? key : spec.label);
 }
 
 void Timeline::draw(GuiFrame& frame, const Rect& area) {

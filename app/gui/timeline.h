@@ -95,12 +95,6 @@ class Timeline {
     TimelineState state_;
 };
 
-/// Distance of ruler numbers in frames (1, 2, 5, 10, ...) that leaves them at least `least_px` apart.
-double ruler_step(const TimeScale& scale, float least_px);
-
-/// "dust: Power", "Camera: Position".
-std::string track_label(const std::string& key, const ParameterSpec& spec);
-
 /// Of a move of the mouse's wheel: below 1 where less is to be shown.
 double zoom_of(float wheel);
 /// Frames zoomed about one of them; `factor` below 1 shows fewer.
@@ -116,8 +110,6 @@ void select_keyframe(TimelineState& t, const KeyframePlace& place);
 /// The graph of the parameter ViewState::graph_parameter, else of the first one animated.
 void draw_graph(TimelineState& t, GuiFrame& frame, const Rect& area);
 
-/// "X", "G"; numbered from 1 where they have no names.
-std::string channel_name(const ParameterSpec& spec, std::size_t channel);
 /// x, y, z, w or r, g, b: told apart, not shouting. A lone channel has the text's.
 unsigned channel_color(std::size_t channel, std::size_t count);
 bool channel_hidden(const ViewState& view, const Track& track, std::size_t channel);

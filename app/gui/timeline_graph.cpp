@@ -1,6 +1,5 @@
 // The graph: curves over the frames, keyframes and handles to drag, channels to hide.
 #include <fmt/format.h>
-#include <imgui.h>
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +7,6 @@
 #include <limits>
 
 #include "edit/keyframes.h"
-#include "gui/theme.h"
 #include "gui/timeline.h"
 #include "gui/widgets.h"
 #include "scene/animate.h"
@@ -273,6 +271,14 @@ std::string channel_key(const Track& track, std::size_t channel) {
 
 std::size_t letters(const Track& track) { return std::min(track.keyframes[0].value.size(), most_letters); }
 
+/// "X", "G"; numbered from 1 where they have no names.
+std::string channel_name(const ParameterSpec& spec, std::size_t channel) {
+    const char* const names = spec.type == ParameterType::color   ? "RGB"
+                              : spec.type == ParameterType::curve ? ""
+                                                                  : "XYZW";
+    return channel < std::string(names).size() ? std::string(1, names[channel]) : std::to_string(channel + 1);
+}
+
 void show_alone_or_all(ViewState& view, const Track& track, std::size_t channel) {
     bool alone = !channel_hidden(view, track, channel);
     for (std::size_t other = 0; other < track.keyframes[0].value.size(); ++other)
@@ -284,13 +290,6 @@ void show_alone_or_all(ViewState& view, const Track& track, std::size_t channel)
 }
 
 }  // namespace
-
-std::string channel_name(const ParameterSpec& spec, std::size_t channel) {
-    const char* const names = spec.type == ParameterType::color   ? "RGB"
-                              : spec.type == ParameterType::curve ? ""
-                                                                  : "XYZW";
-    return channel < std::string(names).size() ? std::string(1, names[channel]) : std::to_string(channel + 1);
-}
 
 unsigned channel_color(std::size_t channel, std::size_t count) {
     constexpr ImU32 colors[4] = {IM_COL32(0xC9, 0x84, 0x7C, 255), IM_COL32(0x84, 0xB3, 0x8A, 255),

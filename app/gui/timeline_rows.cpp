@@ -1,17 +1,15 @@
 // The rows of keyframes, their menu and their drags.
 #include <fmt/format.h>
-#include <imgui.h>
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <functional>
 #include <optional>
 
 #include "edit/keyframes.h"
-#include "gui/icons.h"
 #include "gui/key_codes.h"
-#include "gui/theme.h"
 #include "gui/timeline.h"
 #include "gui/widgets.h"
 
@@ -225,6 +223,16 @@ void select_in_box(TimelineState& t, const Scene& scene, float rows_y) {
     ImDrawList* list = ImGui::GetWindowDrawList();
     fill_rect(low, high, color::with_opacity(color::accent, 0.12f));
     list->AddRect(low, high, color::with_opacity(color::accent, 0.6f));
+}
+
+/// "dust: Power", "Camera: Position".
+std::string track_label(const std::string& key, const ParameterSpec& spec) {
+    std::string group = ParameterKey(key).layer();
+    if (group.empty() && !key.empty()) {
+        group = ParameterKey(key).parts().front();
+        group[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(group[0])));
+    }
+    return group + ": " + (spec.label.empty() ? key : spec.label);
 }
 
 void draw_name(TimelineState& t, GuiFrame& frame, const Track& track, float x, float y, float width) {

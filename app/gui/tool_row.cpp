@@ -2,17 +2,12 @@
 // too narrow for them.
 #include "gui/parts.h"
 
-#include <fmt/format.h>
-#include <imgui.h>
-
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <vector>
 
 #include "gui/actions.h"
 #include "gui/icons.h"
-#include "gui/theme.h"
 #include "gui/widgets.h"
 
 namespace astrosplat {
@@ -21,7 +16,7 @@ namespace {
 constexpr float control_height = 24, gap = 12, small_gap = 4;
 
 int choice(GuiFrame& frame, const char* id, std::initializer_list<Segment> segments, int chosen) {
-    return noted_segments(frame, id, id, segments, chosen, control_height);
+    return segmented(frame, id, segments, chosen, control_height);
 }
 
 // A field that opens a list of choices.

@@ -1,14 +1,11 @@
 // Draws the frame into the viewport and turns the mouse over it into drags and clicks.
 #include "gui/viewport.h"
 
-#include <imgui.h>
-
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
 
 #include "gui/key_codes.h"
-#include "gui/theme.h"
 #include "gui/viewport_overlay.h"
 #include "gui/widgets.h"
 

@@ -1,6 +1,5 @@
 // What the mouse drags in the view besides the camera: the reference picture, handles, points of the path.
 #include <fmt/format.h>
-#include <imgui.h>
 
 #include <array>
 #include <cmath>
@@ -10,7 +9,6 @@
 
 #include "camera/keyframe.h"
 #include "edit/placement.h"
-#include "gui/theme.h"
 #include "gui/viewport.h"
 #include "gui/viewport_overlay.h"
 #include "gui/widgets.h"

@@ -2,7 +2,6 @@
 #include "gui/viewport_overlay.h"
 
 #include <fmt/format.h>
-#include <imgui.h>
 
 #include <algorithm>
 #include <array>
@@ -11,8 +10,6 @@
 
 #include "edit/placement.h"
 #include "edit/view_camera.h"
-#include "gui/icons.h"
-#include "gui/theme.h"
 #include "gui/widgets.h"
 #include "scene/animate.h"
 

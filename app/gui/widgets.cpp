@@ -6,17 +6,12 @@
 #include <vector>
 
 #include "gui/key_codes.h"
-#include "gui/theme.h"
 
 namespace astrosplat {
 namespace {
 
 constexpr float segment_padding = 10.0f;
 constexpr float wait_s = 0.5f;  // before a tooltip
-
-float segment_width(const char* label) {
-    return std::round(ImGui::CalcTextSize(label).x + 2 * px(segment_padding));
-}
 
 // Length of the UTF-8 character that begins at `at`; bytes that begin none count as one.
 std::size_t character_length(const std::string& text, std::size_t at) {
@@ -50,39 +45,9 @@ void tooltip(const char* text) {
 
 float segmented_width(std::initializer_list<Segment> segments) {
     float width = 0.0f;
-    for (const Segment& segment : segments) width += segment_width(segment.label);
+    for (const Segment& segment : segments)
+        width += std::round(ImGui::CalcTextSize(segment.label).x + 2 * px(segment_padding));
     return width;
-}
-
-int segmented(const char* id, std::initializer_list<Segment> segments, int chosen, float height,
-              ImVec2* middles) {
-    ImGui::PushID(id);
-    ImDrawList* list = ImGui::GetWindowDrawList();
-    const ImVec2 corner = ImGui::GetCursorScreenPos();
-    const float total = segmented_width(segments), radius = px(3);
-    list->AddRectFilled(corner, {corner.x + total, corner.y + height}, color::field, radius);
-    int clicked = -1, index = 0;
-    float x = corner.x;
-    for (const Segment& segment : segments) {
-        const float width = segment_width(segment.label);
-        const ImVec2 lo{x, corner.y}, hi{x + width, corner.y + height};
-        ImGui::SetCursorScreenPos(lo);
-        if (ImGui::InvisibleButton(segment.label, {width, height})) clicked = index;
-        if (index == chosen)
-            list->AddRectFilled(lo, hi, color::selection, radius);
-        else if (ImGui::IsItemHovered())
-            list->AddRectFilled(lo, hi, color::hover, radius);
-        tooltip(segment.tooltip);
-        const ImVec2 size = ImGui::CalcTextSize(segment.label);
-        list->AddText(
-            {std::floor(x + (width - size.x) * 0.5f), std::floor(corner.y + (height - size.y) * 0.5f)},
-            index == chosen ? color::text : color::dim, segment.label);
-        if (middles) middles[index] = {x + width * 0.5f, corner.y + height * 0.5f};
-        x = hi.x;
-        ++index;
-    }
-    ImGui::PopID();
-    return clicked;
 }
 
 bool drag_field(const char* id, float& value, float speed, float lo, float hi, const char* format,
@@ -93,6 +58,10 @@ bool drag_field(const char* id, float& value, float speed, float lo, float hi, c
     ImGui::PopStyleColor();
     if (ImGui::IsItemHovered() && !ImGui::IsItemActive()) ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
     return changed;
+}
+
+bool any_popup() {
+    return ImGui::IsPopupOpen(nullptr, ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel);
 }
 
 void close_on_escape() {

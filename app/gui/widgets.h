@@ -1,12 +1,11 @@
 // Controls that several parts of the window share, in the theme's manner.
 #pragma once
 
-#include <imgui.h>
-
 #include <initializer_list>
 #include <string>
 
 #include "gui/layout.h"
+#include "gui/theme.h"
 
 namespace astrosplat {
 
@@ -16,19 +15,19 @@ bool begin_part(const char* name, const Rect& area, ImGuiWindowFlags flags = ImG
 /// A tooltip of the last item after a short wait.
 void tooltip(const char* text);
 
-/// Buttons joined to one row, of which one is chosen: returns the one clicked, else -1. The last item is then
-/// the whole row; `middles` (may be nullptr) receives the middle of every button.
 struct Segment {
     const char* label;
     const char* tooltip;
 };
-int segmented(const char* id, std::initializer_list<Segment> segments, int chosen, float height,
-              ImVec2* middles);
+/// Of the buttons of a segmented control (gui_frame.h).
 float segmented_width(std::initializer_list<Segment> segments);
 
 /// A field that is dragged, or typed into after a double click. True when it changed the value.
 bool drag_field(const char* id, float& value, float speed, float lo, float hi, const char* format,
                 float width, ImU32 text_color);
+
+/// A menu, a list or a dialog is open.
+bool any_popup();
 
 /// In an open menu: Escape closes it (ImGui does so only with keyboard navigation, which the arrow keys
 /// forbid).

@@ -6,7 +6,7 @@
 #include <sstream>
 
 #include "gui/file_list.h"
-#include "gui/file_queries.h"
+#include "gui/file_dialog.h"
 #include "gui/key_codes.h"
 #include "gui/reference_screens.h"
 #include "gui/test_window.h"

@@ -3,10 +3,8 @@
 
 #include <algorithm>
 
-#include "gui/panel/companions.h"
 #include "gui/panel/panel.h"
 #include "gui/panel/parts.h"
-#include "gui/panel/tab_sections.h"
 #include "gui/panel_driver.h"
 #include "gui/reference_screens.h"
 

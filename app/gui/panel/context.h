@@ -113,19 +113,28 @@ Gesture begin_gesture(Context& context);
 /// Runs an edit; a refusal becomes the message of the row `key`.
 void attempt(Context& context, const ParameterKey& key, const std::function<void()>& change);
 
-/// Document::set at the current frame, with what else must change for it to stand (companions.h), as one undo
-/// step; a refusal becomes the row's message. `gesture` 0: a step of its own.
-void set_value(Context& context, const ParameterKey& key, const Value& value, Gesture gesture = 0);
+// Rules between parameters (engine/scene/check.h) as a person meets them.
 
-/// Back to the default; a refusal becomes the row's message.
-void reset_value(Context& context, const ParameterKey& key);
+/// An edit that has to come first so that another one can stand.
+struct Companion {
+    ParameterKey key;
+    Value value;
+};
+
+/// To be set before `key` is set to `value`, in this order; empty where nothing else is concerned. `scene`
+/// as it stands at the frame.
+std::vector<Companion> companions(const Scene& scene, const ParameterKey& key, const Value& value);
+
+/// The place in its list of the element that a parameter is of: 2 of "look.noise.2.cull".
+std::size_t place_in_list(const ParameterKey& key);
+
+/// Document::set at the current frame, with what else must change for it to stand, as one undo step; a
+/// refusal becomes the row's message. `gesture` 0: a step of its own.
+void set_value(Context& context, const ParameterKey& key, const Value& value, Gesture gesture = 0);
 
 /// Document::edit; a refusal becomes the message of the row `key`.
 void edit(Context& context, const ParameterKey& key, const std::string& name,
           const std::function<void(Scene&)>& change, Gesture gesture = 0);
-
-/// Whether a widget that is drawn only while it matters should count as a wish for the next frame.
-bool busy(const Memory& memory);
 
 /// TOML, or a bare word: what a person may paste or type. Numbers may have a comma.
 Value value_from_text(const std::string& text, const ParameterSpec& spec);

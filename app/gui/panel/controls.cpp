@@ -11,7 +11,6 @@
 #include "edit/edit_rules.h"
 #include "gui/icons.h"
 #include "gui/key_codes.h"
-#include "gui/theme.h"
 #include "gui/widgets.h"
 
 namespace astrosplat::panel {
@@ -52,6 +51,19 @@ BoxEvent type_value(Context& context, const char* id, const Rect& area) {
 }
 
 float padding_of(const Rect& area) { return area.width < px(80) ? px(5) : px(8); }
+
+/// In the small font at the right edge; returns the room it took, 0 where there was not enough.
+float unit_text(const Rect& area, const std::string& unit, float needed) {
+    if (unit.empty()) return 0.0f;
+    ImGui::PushFont(small_font());
+    const float width = ImGui::CalcTextSize(unit.c_str()).x + px(8);
+    const bool fits = needed + width <= area.width;
+    if (fits)
+        draw_text({area.end().x - width, area.y + (area.height - ImGui::GetFontSize()) * 0.5f}, color::dim,
+                  unit);
+    ImGui::PopFont();
+    return fits ? width : 0.0f;
+}
 
 void draw_box(const Rect& area, const BoxContent& content, bool hovered, bool active) {
     ImDrawList* list = ImGui::GetWindowDrawList();
@@ -163,18 +175,6 @@ float clipped_text(const Rect& area, float padding, ImU32 color, const std::stri
                               text.c_str(), text.c_str() + text.size(), &size);
     ImGui::PopStyleColor();
     return std::min(size.x, right - from.x);
-}
-
-float unit_text(const Rect& area, const std::string& unit, float needed) {
-    if (unit.empty()) return 0.0f;
-    ImGui::PushFont(small_font());
-    const float width = ImGui::CalcTextSize(unit.c_str()).x + px(8);
-    const bool fits = needed + width <= area.width;
-    if (fits)
-        draw_text({area.end().x - width, area.y + (area.height - ImGui::GetFontSize()) * 0.5f}, color::dim,
-                  unit);
-    ImGui::PopFont();
-    return fits ? width : 0.0f;
 }
 
 bool section(Context& context, const char* title, const std::string& state, bool open_at_first) {

@@ -41,9 +41,6 @@ float share_at_mouse(const Rect& area);
 /// Text at the left, ended by "..." where it is too long; returns its width.
 float clipped_text(const Rect& area, float padding, ImU32 color, const std::string& text);
 
-/// The small font: unit at the right edge; returns the room it took, 0 where there was not enough.
-float unit_text(const Rect& area, const std::string& unit, float needed);
-
 /// Head of a folding section, with its state at the right while it is closed. True when open.
 bool section(Context& context, const char* title, const std::string& state, bool open_at_first = false);
 

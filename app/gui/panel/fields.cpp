@@ -8,7 +8,6 @@
 #include "gui/icons.h"
 #include "gui/panel/controls.h"
 #include "gui/panel/words.h"
-#include "gui/theme.h"
 #include "gui/widgets.h"
 #include "scene/describer.h"
 
@@ -155,9 +154,17 @@ void follow_data(const Context& context, const ParameterSpec& spec, BoxContent& 
     content.fill = static_cast<float>(filled(of_data, content.value));
 }
 
-Value as_number(const ParameterSpec& spec, double value) {
-    if (spec.type == Type::integer) return static_cast<std::int64_t>(std::llround(value));
-    return value;
+/// What a box was dragged or typed to; none: it stays. Typed texts are read as `spec` has them.
+std::optional<Value> changed_value(const BoxEvent& event, const BoxContent& content,
+                                   const ParameterSpec& spec, bool whole) {
+    if (event.kind == BoxEvent::Kind::dragged)
+        return whole ? Value(static_cast<std::int64_t>(std::llround(event.value))) : Value(event.value);
+    if (event.kind == BoxEvent::Kind::none || event.text == content.typed) return std::nullopt;
+    return value_from_text(event.text, spec);
+}
+
+Gesture gesture_of(const Context& context, const BoxEvent& event) {
+    return event.kind == BoxEvent::Kind::dragged ? context.memory.gesture : 0;
 }
 
 // A field that takes any text the parameter can be made of.
@@ -175,8 +182,7 @@ void text_field(Context& context, const Row& row, const Rect& area) {
     content.typed = text ? *text : empty ? "" : to_toml(row.value);
     content.unit = content.dimmed || text ? "" : spec.unit;
     const BoxEvent event = value_box(context, "text", area, content);
-    if (event.kind == BoxEvent::Kind::typed && event.text != content.typed)
-        set_value(context, row.key(), value_from_text(event.text, spec));
+    if (const auto value = changed_value(event, content, spec, false)) set_value(context, row.key(), *value);
 }
 
 void number_field(Context& context, const Row& row) {
@@ -193,10 +199,8 @@ void number_field(Context& context, const Row& row) {
         if (words == spec.zero) content.unit.clear();
     }
     const BoxEvent event = value_box(context, "number", row.layout.value, content);
-    if (event.kind == BoxEvent::Kind::dragged)
-        set_value(context, row.key(), as_number(spec, event.value), context.memory.gesture);
-    if (event.kind == BoxEvent::Kind::typed && event.text != content.typed)
-        set_value(context, row.key(), value_from_text(event.text, spec));
+    if (const auto value = changed_value(event, content, spec, spec.type == Type::integer))
+        set_value(context, row.key(), *value, gesture_of(context, event));
 }
 
 Rect part(const Rect& area, int index, int count) {
@@ -216,17 +220,12 @@ void component_field(Context& context, const Row& row, const Rect& area, std::si
             figures_that_fit(content.value, [&](const std::string& text) { return fits_box(area, text); });
     const BoxEvent event = value_box(context, "component", area, content);
     ImGui::PopID();
-    if (event.kind == BoxEvent::Kind::none) return;
-    const bool dragged = event.kind == BoxEvent::Kind::dragged;
-    if (!dragged && event.text == content.typed) return;
-    ParameterSpec number;  // one component, typed, is a number
+    const ParameterSpec number;  // one component, typed, is a number
     const bool whole = std::holds_alternative<std::int64_t>(values[index].data);
-    if (dragged)
-        values[index] =
-            whole ? Value(static_cast<std::int64_t>(std::llround(event.value))) : Value(event.value);
-    else
-        values[index] = value_from_text(event.text, number);
-    set_value(context, row.key(), values, dragged ? context.memory.gesture : 0);
+    const auto value = changed_value(event, content, number, whole);
+    if (!value) return;
+    values[index] = *value;
+    set_value(context, row.key(), values, gesture_of(context, event));
 }
 
 void vector_field(Context& context, const Row& row, const Rect& area) {

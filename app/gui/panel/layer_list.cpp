@@ -15,9 +15,6 @@
 #include "gui/icons.h"
 #include "gui/key_codes.h"
 #include "gui/panel/controls.h"
-#include "gui/panel/tab_sections.h"
-#include "gui/panel/words.h"
-#include "gui/theme.h"
 #include "gui/widgets.h"
 
 namespace astrosplat::panel {
@@ -269,15 +266,6 @@ void scroll_to_selected(Context& context, const std::vector<Rect>& rows) {
     if (row.y < top || row.end().y > top + ImGui::GetWindowHeight()) ImGui::SetScrollFromPosY(row.y - top);
 }
 
-void add_menu(Context& context) {
-    if (!begin_popup("add layer")) return;
-    if (ImGui::MenuItem("File...")) request(context, Command::Kind::import_file);
-    ImGui::Separator();
-    for (std::size_t i = 0; i < shape_names.size(); ++i)
-        if (ImGui::MenuItem(shape_labels[i])) request_text(context, Command::Kind::add_shape, shape_names[i]);
-    end_popup();
-}
-
 }  // namespace
 
 void load_line(Context& context, std::size_t i, float width, const std::string& loading,
@@ -293,7 +281,12 @@ void add_layer_button(Context& context) {
     if (icon_button("add", Icon::plus, {px(26), px(24)}, px(11), color::text,
                     "Add a picture, mesh or splat file, or a shape"))
         ImGui::OpenPopup("add layer");
-    add_menu(context);
+    if (!begin_popup("add layer")) return;
+    if (ImGui::MenuItem("File...")) request(context, Command::Kind::import_file);
+    ImGui::Separator();
+    for (std::size_t i = 0; i < shape_names.size(); ++i)
+        if (ImGui::MenuItem(shape_labels[i])) request_text(context, Command::Kind::add_shape, shape_names[i]);
+    end_popup();
 }
 
 float layer_list_height(const Context& context) {

@@ -6,8 +6,6 @@
 #include "gui/panel/context.h"
 #include "gui/panel/controls.h"
 #include "gui/panel/parts.h"
-#include "gui/panel/tab_sections.h"
-#include "gui/theme.h"
 #include "gui/widgets.h"
 
 namespace astrosplat::panel {
@@ -30,10 +28,10 @@ void head(Context& context) {
     (is_of_layer(tab) ? memory.layer_tab : memory.scene_tab) = tab;
     const ImVec2 corner = ImGui::GetCursorScreenPos();
     ImGui::SetCursorScreenPos({corner.x + px(12), corner.y + px(4)});
-    const int clicked = segmented("panels",
+    const int clicked = segmented(context, "panel",
                                   {{"Layers", "What is seen: the layers, their looks, how they mix"},
                                    {"Scene", "From where and how: camera, environment, frames and files"}},
-                                  is_of_layer(tab) ? 0 : 1, px(24), nullptr);
+                                  is_of_layer(tab) ? 0 : 1, 24);
     if (clicked >= 0) tab = clicked == 0 ? memory.layer_tab : memory.scene_tab;
     if (is_of_layer(tab)) {
         const float right = corner.x + ImGui::GetWindowContentRegionMax().x;
@@ -177,6 +175,10 @@ glm::vec4 Panel::plot_area(const std::string& key) const {
 
 const std::string& Panel::message() const { return state_->memory.error; }
 
-bool Panel::busy() const { return panel::busy(state_->memory); }
+bool Panel::busy() const {
+    const panel::Memory& memory = state_->memory;
+    return memory.touch.drag != 0 || memory.touch.entry != 0 || memory.dragged_layer >= 0 ||
+           !memory.renaming.empty();
+}
 
 }  // namespace astrosplat

@@ -3,33 +3,14 @@
 #include "gui/panel/plot.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "edit/edit_rules.h"
 #include "gui/key_codes.h"
-#include "gui/theme.h"
 #include "gui/widgets.h"
-#include "look/prepare.h"
-#include "look/shared_look.h"
 #include "look/shared_uniforms.h"
-#include "render/footprint.h"
 #include "scene/describer.h"
 
 namespace astrosplat::panel {
-namespace {
-
-constexpr int samples = 128;
-
-template <class Function>
-std::vector<float> sampled(Function function) {
-    std::vector<float> values(samples);
-    for (int i = 0; i < samples; ++i)
-        values[static_cast<std::size_t>(i)] = function(static_cast<float>(i) / float(samples - 1));
-    return values;
-}
-
-}  // namespace
-
 Rect begin_plot(float height) {
     const Rect area{ImGui::GetCursorScreenPos(), {ImGui::GetContentRegionAvail().x, px(height)}};
     fill_rect(area, color::window, px(3));
@@ -70,27 +51,6 @@ void captions(const std::string& left, const std::string& right) {
     draw_text({corner.x + width - ImGui::CalcTextSize(right.c_str()).x, corner.y}, color::dim, right);
     ImGui::Dummy({width, ImGui::GetFontSize() + px(4)});
     ImGui::PopFont();
-}
-
-std::vector<float> density_samples(const DensityCurve& pdf) {
-    if (pdf.points.size() > std::size_t(shared::LOOK_MAX_POINTS)) return {};  // the look says why
-    const LookProfile profile = density_profile(pdf, "points");
-    return sampled([&](float x) { return shared::look_profile(profile, x); });
-}
-
-std::vector<float> vertical_samples(const VerticalAlpha& vertical) {
-    if (vertical.points.size() > std::size_t(shared::LOOK_MAX_POINTS)) return {};
-    const LookProfile profile = vertical_profile(vertical);
-    return sampled([&](float x) { return shared::look_profile(profile, x); });
-}
-
-std::vector<float> alpha_samples(const HorizontalAlpha& alpha) {
-    const LookAlpha step = horizontal_step(alpha);
-    return sampled([&](float x) { return shared::look_horizontal(x, step); });
-}
-
-std::vector<float> falloff_samples(const Falloff& falloff) {
-    return sampled([&](float t) { return static_cast<float>(falloff_value(falloff, double(t))); });
 }
 
 namespace {

@@ -1,5 +1,5 @@
 // Plots: a field with a histogram and a curve in it, which may be dragged, captions below. Values in, lines
-// out; the profiles are those of the look and the renderer, not copies.
+// out.
 #pragma once
 
 #include <span>
@@ -28,11 +28,5 @@ void edit_curve(Context& context, const ParameterKey& key, const Rect& area, std
 
 /// Small texts below a plot, at its left and right edge. Leaves the cursor below.
 void captions(const std::string& left, const std::string& right);
-
-// Samples for draw_curve.
-std::vector<float> density_samples(const DensityCurve& pdf);
-std::vector<float> vertical_samples(const VerticalAlpha& vertical);
-std::vector<float> alpha_samples(const HorizontalAlpha& alpha);
-std::vector<float> falloff_samples(const Falloff& falloff);
 
 }  // namespace astrosplat::panel

@@ -7,7 +7,6 @@
 #include "gui/panel/panel.h"
 #include "gui/panel/parts.h"
 #include "gui/panel/words.h"
-#include "gui/theme.h"
 #include "gui/widgets.h"
 #include "scene/load.h"
 
@@ -112,7 +111,7 @@ void row_menu(Context& context, const Row& row) {
     if (mouse_over(row.layout.whole) && ImGui::IsMouseReleased(ImGuiMouseButton_Right))
         ImGui::OpenPopup("menu");
     if (!begin_popup("menu")) return;
-    if (ImGui::MenuItem("Reset")) reset_value(context, row.key());
+    if (ImGui::MenuItem("Reset")) attempt(context, row.key(), [&] { context.document.reset(row.key()); });
     ImGui::Separator();
     animation_menu(context, row);
     const std::string set = set_option(row.key(), row.value);

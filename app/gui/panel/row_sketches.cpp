@@ -10,12 +10,11 @@
 #include "core/color.h"
 #include "core/real.h"
 #include "generate/lattice.h"
-#include "gui/panel/companions.h"
 #include "gui/panel/controls.h"
 #include "gui/panel/plot.h"
 #include "gui/panel/words.h"
-#include "gui/theme.h"
 #include "gui/widgets.h"
+#include "look/prepare.h"
 #include "look/shared_look.h"
 #include "render/footprint.h"
 
@@ -79,6 +78,39 @@ void edit_levels(Context& context, const ParameterSpec&) {
         set_value(context, source / "white", std::max(white, black + least), context.memory.gesture);
     ImGui::SetCursorScreenPos(below);
     captions(figures(values.lo), figures(values.hi));
+}
+
+// Samples for draw_curve: of the look and the renderer, not copies.
+
+constexpr int samples = 128;
+
+template <class Function>
+std::vector<float> sampled(Function function) {
+    std::vector<float> values(samples);
+    for (int i = 0; i < samples; ++i)
+        values[static_cast<std::size_t>(i)] = function(static_cast<float>(i) / float(samples - 1));
+    return values;
+}
+
+std::vector<float> density_samples(const DensityCurve& pdf) {
+    if (pdf.points.size() > std::size_t(shared::LOOK_MAX_POINTS)) return {};  // the look says why
+    const LookProfile profile = density_profile(pdf, "points");
+    return sampled([&](float x) { return shared::look_profile(profile, x); });
+}
+
+std::vector<float> vertical_samples(const VerticalAlpha& vertical) {
+    if (vertical.points.size() > std::size_t(shared::LOOK_MAX_POINTS)) return {};
+    const LookProfile profile = vertical_profile(vertical);
+    return sampled([&](float x) { return shared::look_profile(profile, x); });
+}
+
+std::vector<float> alpha_samples(const HorizontalAlpha& alpha) {
+    const LookAlpha step = horizontal_step(alpha);
+    return sampled([&](float x) { return shared::look_horizontal(x, step); });
+}
+
+std::vector<float> falloff_samples(const Falloff& falloff) {
+    return sampled([&](float t) { return static_cast<float>(falloff_value(falloff, double(t))); });
 }
 
 // Sketches: a dot, the angles of a hybrid, a noise.

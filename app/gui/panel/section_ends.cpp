@@ -7,12 +7,12 @@
 #include "gui/panel/controls.h"
 #include "gui/panel/parts.h"
 #include "gui/panel/plot.h"
-#include "gui/panel/tab_sections.h"
-#include "gui/theme.h"
 #include "gui/widgets.h"
 
 namespace astrosplat::panel {
 namespace {
+
+// Colour management.
 
 constexpr const char *config_key = "output.ocio.config", *display_key = "output.ocio.display",
                      *view_key = "output.ocio.view", *space_key = "output.ocio.space";
@@ -32,6 +32,8 @@ const ColorDisplay* display_of(const Context& context) {
 std::string in_use(const std::string& name, const char* how) {
     return name.empty() ? "None" : name + " (" + how + ")";
 }
+
+// The preparation of a picture: before and after.
 
 constexpr float tallest = 320.0f;  // px at scale 1
 
@@ -84,18 +86,13 @@ void handle_buttons(Context& context, HandleTarget target, std::size_t crop) {
     context.view.handle_crop = crop;
 }
 
-void change_references(Context& context, const std::string& name,
-                       const std::function<void(std::vector<ReferenceParams>&)>& change) {
-    edit(context, "reference", name, [&](Scene& scene) { change(scene.references); });
-}
-
 CopiedLook look_of(const Context& context) { return {context.layer().look, context.layer().render}; }
 
-void give_look(Context& context, const std::string& name, const CopiedLook& copied,
-               const std::function<bool(std::size_t)>& to) {
+/// To so many layers from one on.
+void give_look(Context& context, const std::string& name, const CopiedLook& copied, std::size_t first,
+               std::size_t count) {
     edit(context, context.layer_key(), name, [&](Scene& scene) {
-        for (std::size_t i = 0; i < scene.layers.size(); ++i) {
-            if (!to(i)) continue;
+        for (std::size_t i = first; i < first + count; ++i) {
             scene.layers[i].look = copied.look;
             scene.layers[i].render = copied.render;
         }
@@ -103,13 +100,12 @@ void give_look(Context& context, const std::string& name, const CopiedLook& copi
 }
 
 void paste_look(Context& context) {
-    const std::size_t layer = context.view.layer;
-    give_look(context, "Paste look", *context.memory.copied, [&](std::size_t i) { return i == layer; });
+    give_look(context, "Paste look", *context.memory.copied, context.view.layer, 1);
 }
 
 void look_to_all(Context& context) {
-    give_look(context, "Look of " + context.layer().name + " to all layers", look_of(context),
-              [](std::size_t) { return true; });
+    give_look(context, "Look of " + context.layer().name + " to all layers", look_of(context), 0,
+              context.scene().layers.size());
 }
 
 }  // namespace
@@ -201,19 +197,17 @@ void reference_buttons(Context& context) {
     }
     if (placed == 1 && !context.status.reference->aligning) request(context, Command::Kind::align_reference);
     const auto index = static_cast<std::ptrdiff_t>(context.status.reference->index);
-    const ReferenceParams::View view = reference_view(context.view.view);
     const int clicked = button_line(context, {"Replace...", "Another for this view", "Remove"});
     if (clicked == 0) request(context, Command::Kind::set_reference);
     if (clicked == 1)
-        change_references(context, "Another reference", [&](std::vector<ReferenceParams>& references) {
-            ReferenceParams another = references[static_cast<std::size_t>(index)];
-            another.view = view;
-            references.insert(references.begin(), another);
+        edit(context, "reference", "Another reference", [&](Scene& scene) {
+            ReferenceParams another = scene.references[static_cast<std::size_t>(index)];
+            another.view = reference_view(context.view.view);
+            scene.references.insert(scene.references.begin(), another);
         });
     if (clicked == 2)
-        change_references(context, "Remove reference", [&](std::vector<ReferenceParams>& references) {
-            references.erase(references.begin() + index);
-        });
+        edit(context, "reference", "Remove reference",
+             [&](Scene& scene) { scene.references.erase(scene.references.begin() + index); });
 }
 
 void look_buttons(Context& context) {

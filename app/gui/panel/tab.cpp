@@ -11,7 +11,6 @@
 #include "core/text.h"
 #include "gui/panel/context.h"
 #include "gui/panel/controls.h"
-#include "gui/panel/tab_sections.h"
 #include "gui/panel/words.h"
 
 namespace astrosplat::panel {

@@ -1,9 +1,7 @@
-#include "gui/panel/tab_sections.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "core/file_format.h"
 #include "core/text.h"
@@ -12,10 +10,8 @@
 #include "gui/panel/context.h"
 #include "gui/panel/controls.h"
 #include "gui/panel/parts.h"
-#include "gui/panel/plot.h"
 #include "gui/panel/words.h"
 #include "gui/parts.h"
-#include "gui/theme.h"
 #include "gui/widgets.h"
 
 namespace astrosplat::panel {
@@ -48,12 +44,6 @@ std::string files_state(const Context& context) {
     return source.meshes.empty() ? "none" : source.meshes.front().mesh.filename().string();
 }
 
-std::string star_image_state(const Context& context) {
-    return fmt::format("{:.3g} px", context.layer().source.stars.psf);
-}
-
-std::string picture_state(const Context& context) { return is_fits(context) ? "FITS" : ""; }
-
 bool has_pictures(const Context& context) { return context.layer().source.kind == SourceKind::mesh; }
 
 std::string preparation_state(const Context& context) {
@@ -78,8 +68,6 @@ std::string placement_state(const Context& context) {
     const LayerTransform& transform = context.layer().transform;
     return transform == LayerTransform() ? "as it lies" : fmt::format("x {}", figures(transform.scale));
 }
-
-std::string layer_state(const Context& context) { return context.layer().name; }
 
 /// Of a set that is still growing the preview knows too little.
 std::string kept_state(const Context& context) {
@@ -126,8 +114,6 @@ std::string color_state(const Context& context) {
     return context.layer().look.grade == Grade() ? "off" : "changed";
 }
 
-std::string whole_look_state(const Context&) { return "export, apply, copy"; }
-
 void lighten_note(Context& context) {
     if (context.layer().render.blend == Blend::lighten)
         note("Lighten is always composited as a whole, in the order of the list.");
@@ -143,8 +129,6 @@ std::string place_state(const Context& context) {
     return context.scene().camera.position ? "" : "auto";
 }
 
-std::string lens_state(const Context& context) { return figures(context.scene().camera.fov) + " degrees"; }
-
 std::string environment_state(const Context& context) {
     const EnvironmentParams& environment = context.scene().environment;
     if (environment.image.empty() && environment.cube.empty() && environment.tile.empty()) return "none";
@@ -157,29 +141,24 @@ std::string reference_state(const Context& context) {
     return reference ? reference->file.filename().string() : "none";
 }
 
-std::string stereo_state(const Context& context) { return std::string(name_of(context.scene().camera.eye)); }
-
 std::string resolution_state(const Context& context) {
     const OutputParams& output = context.scene().output;
     return fmt::format("{} x {}", output.width, output.height);
 }
-
-std::string frames_state(const Context& context) { return context.scene().output.frames; }
 
 std::string format_state(const Context& context) {
     const std::string& path = context.scene().output.path;
     return path.substr(std::min(path.rfind('.'), path.size()));
 }
 
-std::string provenance_state(const Context& context) { return context.scene().provenance.title; }
-
 const TabSection sections[] = {
     {"Source", "Files", unfolded, files_state},
-    {"Source", "Star image", unfolded, star_image_state},
+    {"Source", "Star image", unfolded,
+     [](const Context& c) { return fmt::format("{:.3g} px", c.layer().source.stars.psf); }},
     {"Source",
      "Picture",
      is_fits,
-     picture_state,
+     [](const Context& c) -> std::string { return is_fits(c) ? "FITS" : ""; },
      {"layer.source.black", "layer.source.white", "layer.source.stretch", "layer.source.softening",
       "layer.source.hdu", "layer.source.plane"}},
     {"Source", "Prepare", nullptr, preparation_state, {}, draw_preparation, has_pictures},
@@ -191,7 +170,7 @@ const TabSection sections[] = {
      splats_state,
      {"layer.source.count", "layer.source.max_distance", "layer.source.voxels", "layer.source.voxel_size"}},
     {"Source", "Placement", nullptr, placement_state, {"layer.transform"}, placement_buttons},
-    {"Source", "Layer", nullptr, layer_state},
+    {"Source", "Layer", nullptr, [](const Context& c) -> std::string { return c.layer().name; }},
     {"Look", "Density with distance", unfolded, kept_state, {"layer.look.pdf"}, kept_note},
     {"Look",
      "Opacity at soft edges",
@@ -204,7 +183,12 @@ const TabSection sections[] = {
     {"Look", "Thickness map", nullptr, thickness_state},
     {"Look", "Crop", nullptr, length_of<&Look::crop>, {}, crop_buttons},
     {"Look", "Colour", nullptr, color_state},
-    {"Look", "Whole look", nullptr, whole_look_state, {}, look_buttons},
+    {"Look",
+     "Whole look",
+     nullptr,
+     [](const Context&) -> std::string { return "export, apply, copy"; },
+     {},
+     look_buttons},
     {"Mixing", "Dot profile", unfolded, value_of<falloff>},
     {"Mixing",
      "Blend",
@@ -214,15 +198,17 @@ const TabSection sections[] = {
      lighten_note},
     {"Mixing", "Level of detail", nullptr, detail_state},
     {"Camera", "Place", unfolded, place_state, {"camera.position", "camera.rotation"}},
-    {"Camera", "Lens", unfolded, lens_state},
-    {"Camera", "Stereo", nullptr, stereo_state},
+    {"Camera", "Lens", unfolded, [](const Context& c) { return figures(c.scene().camera.fov) + " degrees"; }},
+    {"Camera", "Stereo", nullptr,
+     [](const Context& c) { return std::string(name_of(c.scene().camera.eye)); }},
     {"Camera", "Reference", nullptr, reference_state, {}, reference_buttons},
     {"Environment", "Environment", unfolded, environment_state, {"environment.visible"}},
     {"Output", "Frame", unfolded, resolution_state},
     {"Output", "Colour management", nullptr, colors_state, {}, colors_note},
-    {"Output", "Frames", unfolded, frames_state},
+    {"Output", "Frames", unfolded, [](const Context& c) -> std::string { return c.scene().output.frames; }},
     {"Output", "File format", nullptr, format_state},
-    {"Output", "Provenance", nullptr, provenance_state}};
+    {"Output", "Provenance", nullptr,
+     [](const Context& c) -> std::string { return c.scene().provenance.title; }}};
 
 bool covers(const ParameterKey& group, const ParameterSpec& spec) {
     return spec.generic_key == group || spec.generic_key.is_below(group);
