@@ -304,7 +304,7 @@ bool keyboard_is_free() { return !ImGui::GetIO().WantTextInput && !ImGui::IsAnyI
 
 struct Gui::State {
     Viewport viewport;
-    Timeline timeline;
+    TimelineState timeline;
     StatusBar status_bar;
     Panel panel;
     CommandFlow flow;
@@ -324,7 +324,7 @@ void Gui::State::draw_parts(GuiFrame& frame, const Layout& layout, Commands& com
         ImGui::EndChild();
     }
     draw_snapshots(frame, layout.snapshots);
-    timeline.draw(frame, layout.timeline);
+    draw_timeline(timeline, frame, layout.timeline);
     if (begin_part("panel", layout.panel, still)) {
         panel.draw(frame);
         ImGui::EndChild();
@@ -369,7 +369,7 @@ void Gui::ask_to_quit(const Document&) { state_->flow.ask({Command::Kind::quit, 
 
 bool Gui::busy() const {
     return ImGui::IsAnyItemActive() || ImGui::GetIO().WantTextInput || state_->popup || state_->flow.busy() ||
-           state_->timeline.busy() || state_->panel.busy();
+           state_->timeline.drag != TimelineState::Drag::none || state_->panel.busy();
 }
 
 bool Gui::opening() const {

@@ -310,21 +310,21 @@ void zoom_frames(TimelineState& t, double middle, double factor) {
     t.zoomed = true;
 }
 
-void Timeline::draw(GuiFrame& frame, const Rect& area) {
+void draw_timeline(TimelineState& t, GuiFrame& frame, const Rect& area) {
     constexpr ImGuiWindowFlags still = ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse;
     if (!begin_part("timeline", area, still)) return;
-    refresh(state_, frame.document, frame.view);
-    end_drag(state_);
-    draw_timeline_header(state_, frame, area);
+    refresh(t, frame.document, frame.view);
+    end_drag(t);
+    draw_timeline_header(t, frame, area);
     const Rect ruler{area.x, area.y + px(header_height), area.width, px(ruler_height)};
     const float bottom = area.y + area.height;
     if (bottom > ruler.y + ruler.height) {
-        state_.scale.x0 = area.x + names_width(frame.view) + px(timeline_margin);
-        state_.scale.x1 = std::max(area.x + area.width - px(timeline_margin) * 1.5f, state_.scale.x0 + 1.0f);
-        draw_ruler(state_, frame, ruler);
+        t.scale.x0 = area.x + names_width(frame.view) + px(timeline_margin);
+        t.scale.x1 = std::max(area.x + area.width - px(timeline_margin) * 1.5f, t.scale.x0 + 1.0f);
+        draw_ruler(t, frame, ruler);
         const Rect rows{area.x, ruler.y + ruler.height, area.width, bottom - ruler.y - ruler.height};
-        draw_rows(state_, frame, rows);
-        draw_playhead(state_, frame, ruler);
+        draw_rows(t, frame, rows);
+        draw_playhead(t, frame, ruler);
     }
     ImGui::EndChild();
 }

@@ -85,15 +85,7 @@ struct TimelineState {
     Graph graph;
 };
 
-class Timeline {
-  public:
-    void draw(GuiFrame& frame, const Rect& area);
-    /// A keyframe or the playhead is being dragged.
-    bool busy() const { return state_.drag != TimelineState::Drag::none; }
-
-  private:
-    TimelineState state_;
-};
+void draw_timeline(TimelineState& t, GuiFrame& frame, const Rect& area);
 
 /// Of a move of the mouse's wheel: below 1 where less is to be shown.
 double zoom_of(float wheel);

@@ -146,6 +146,16 @@ TEST_F(PanelRowsTest, ADoubleClickTypesAValue) {
     EXPECT_FALSE(d.document.can_undo());
 }
 
+TEST_F(PanelRowsTest, EscapeClosesTheMenuOfARow) {
+    d.show(PanelTab::look);
+    d.click(d.row(power).label, 1);
+    d.frames(2);
+    const auto is_open = [] { return ImGui::IsPopupOpen(nullptr, ImGuiPopupFlags_AnyPopup); };
+    EXPECT_TRUE(is_open());
+    d.tap(ImGuiKey_Escape);
+    EXPECT_FALSE(is_open());
+}
+
 TEST_F(PanelRowsTest, EscapeDropsWhatWasTyped) {
     d.show(PanelTab::look);
     d.double_click(d.row(density).value);

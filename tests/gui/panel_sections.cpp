@@ -296,11 +296,10 @@ meshes = [ { mesh = "plane", texture = "dust.png" } ]
     const Status status;
     Commands commands;
     Memory memory;
-    std::vector<DrawnRow> rows;
     std::vector<DrawnItem> drawn;
     describe_current(memory, document, 1.0);
     const auto section = std::ranges::find(tab_sections(), title, &TabSection::title);
-    return section->state({{document, view, status, commands, drawn}, memory, rows});
+    return section->state({{document, view, status, commands, drawn}, memory});
 }
 
 TEST(PanelStates, SayWhatALookDoes) {
@@ -327,10 +326,9 @@ meshes = [ { mesh = "plane", texture = "dust.png" } ]
     status.layers = {layer};
     Commands commands;
     Memory memory;
-    std::vector<DrawnRow> rows;
     std::vector<DrawnItem> drawn;
     describe_current(memory, document, 1.0);
-    Context context{{document, view, status, commands, drawn}, memory, rows};
+    Context context{{document, view, status, commands, drawn}, memory};
     return zero_in_words(context, find(context, key)->spec);
 }
 

@@ -13,12 +13,8 @@
 #include <unordered_map>
 #include <vector>
 
-#include "gui/gui_frame.h"
+#include "gui/panel/panel.h"
 #include "scene/describe.h"
-
-namespace astrosplat {
-struct DrawnRow;  // panel.h
-}
 
 namespace astrosplat::panel {
 
@@ -59,6 +55,7 @@ struct NoiseSketch {
 
 struct Memory {
     Described described;
+    std::vector<DrawnRow> rows;              // of this frame
     std::map<ParameterKey, Value> defaults;  // by generic key
     Touch touch;
     Gesture gesture = 0;       // of the drag that runs; a new one for every press
@@ -87,7 +84,6 @@ struct Memory {
 
 struct Context : GuiFrame {
     Memory& memory;
-    std::vector<DrawnRow>& rows;
     const Scene& scene() const { return *memory.described.scene; }
     /// The selected layer at the current frame; there must be one.
     const LayerParams& layer() const { return scene().layers[view.layer]; }

@@ -213,11 +213,6 @@ bool begin_popup(const char* id) {
     return open;
 }
 
-void end_popup() {
-    ImGui::EndPopup();
-    ImGui::PopStyleVar();
-}
-
 void note(const std::string& text, ImU32 color) {
     ImGui::PushFont(small_font());
     ImGui::PushStyleColor(ImGuiCol_Text, color);

@@ -47,9 +47,8 @@ bool section(Context& context, const char* title, const std::string& state, bool
 /// Head of one element of a list; true when its cross was clicked.
 bool element_head(const char* title);
 
-/// ImGui's popup with the room of a menu between its items; end_popup only after true.
+/// ImGui's popup with the room of a menu between its items; end_menu_popup (widgets.h) only after true.
 bool begin_popup(const char* id);
-void end_popup();
 
 /// A line or more of small, quiet text.
 void note(const std::string& text);

@@ -58,6 +58,7 @@ void list_field(Context& context, const Row& row, const std::string& shown,
             const bool selected = row.value == value;
             if (ImGui::Selectable(label.c_str(), selected) && !selected) set_value(context, row.key(), value);
         }
+        close_on_escape();
         ImGui::PopStyleVar();
         ImGui::EndCombo();
     }
@@ -243,7 +244,7 @@ void shape_popup(Context& context, const Row& row) {
         if (ImGui::MenuItem(choice_label(choice).c_str())) set_value(context, row.key(), choice);
     ImGui::Separator();
     if (ImGui::MenuItem("File...")) context.memory.request = row.key();
-    end_popup();
+    end_menu_popup();
 }
 
 void file_field(Context& context, const Row& row) {
@@ -282,7 +283,7 @@ void color_picker(Context& context, const Row& row) {
         for (const float c : rgb) linear.emplace_back(rounded_to_step(real::srgb_to_linear(double(c)), 1e-4));
         set_value(context, row.key(), linear, context.memory.gesture);
     }
-    end_popup();
+    end_menu_popup();
 }
 
 void color_field(Context& context, const Row& row) {

@@ -148,7 +148,7 @@ void layer_menu(Context& context, std::size_t i) {
     if (ImGui::MenuItem("Regenerate")) request(context, Command::Kind::regenerate, i);
     ImGui::Separator();
     look_menu(context);
-    end_popup();
+    end_menu_popup();
 }
 
 // Layer into whose place the mouse would drop: rows may be 28 or 56 px high.
@@ -286,7 +286,7 @@ void add_layer_button(Context& context) {
     ImGui::Separator();
     for (std::size_t i = 0; i < shape_names.size(); ++i)
         if (ImGui::MenuItem(shape_labels[i])) request_text(context, Command::Kind::add_shape, shape_names[i]);
-    end_popup();
+    end_menu_popup();
 }
 
 float layer_list_height(const Context& context) {

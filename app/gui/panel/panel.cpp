@@ -134,49 +134,42 @@ void draw_all(Context& context) {
 
 namespace astrosplat {
 
-struct Panel::State {
-    panel::Memory memory;
-    std::vector<DrawnRow> rows;
-};
-
-Panel::Panel() : state_(std::make_unique<State>()) {}
+Panel::Panel() : memory_(std::make_unique<panel::Memory>()) {}
 Panel::~Panel() = default;
 
 void Panel::draw(const GuiFrame& frame) {
-    panel::Memory& memory = state_->memory;
+    panel::Memory& memory = *memory_;
     panel::describe_current(memory, frame.document, frame.view.frame);
-    state_->rows.clear();
+    memory.rows.clear();
     memory.plots.clear();
     memory.touch.seen = false;
     frame.view.preparation_open = false;
-    panel::Context context{frame, memory, state_->rows};
+    panel::Context context{frame, memory};
     panel::draw_all(context);
 }
 
-std::optional<ParameterKey> Panel::take_request() {
-    return std::exchange(state_->memory.request, std::nullopt);
-}
+std::optional<ParameterKey> Panel::take_request() { return std::exchange(memory_->request, std::nullopt); }
 
 void Panel::answer(const ParameterKey& key, const std::filesystem::path& file, const GuiFrame& frame) {
-    panel::describe_current(state_->memory, frame.document, frame.view.frame);
-    panel::Context context{frame, state_->memory, state_->rows};
+    panel::describe_current(*memory_, frame.document, frame.view.frame);
+    panel::Context context{frame, *memory_};
     panel::set_value(context, key, file.string());
 }
 
-void Panel::open_all() { state_->memory.all_open = true; }
+void Panel::open_all() { memory_->all_open = true; }
 
-const std::vector<DrawnRow>& Panel::rows() const { return state_->rows; }
+const std::vector<DrawnRow>& Panel::rows() const { return memory_->rows; }
 
 glm::vec4 Panel::plot_area(const std::string& key) const {
-    const auto found = state_->memory.plots.find(key);
-    const Rect area = found == state_->memory.plots.end() ? Rect() : found->second;
+    const auto found = memory_->plots.find(key);
+    const Rect area = found == memory_->plots.end() ? Rect() : found->second;
     return {area.x, area.y, area.width, area.height};
 }
 
-const std::string& Panel::message() const { return state_->memory.error; }
+const std::string& Panel::message() const { return memory_->error; }
 
 bool Panel::busy() const {
-    const panel::Memory& memory = state_->memory;
+    const panel::Memory& memory = *memory_;
     return memory.touch.drag != 0 || memory.touch.entry != 0 || memory.dragged_layer >= 0 ||
            !memory.renaming.empty();
 }

@@ -14,6 +14,10 @@
 
 namespace astrosplat {
 
+namespace panel {
+struct Memory;  // context.h
+}
+
 /// One parameter drawn by the last draw(): the middle of each of its parts, window px. For tests and for a
 /// driver that wants to reach a control by its key.
 struct DrawnRow {
@@ -46,8 +50,7 @@ class Panel {
     bool busy() const;
 
   private:
-    struct State;
-    std::unique_ptr<State> state_;
+    std::unique_ptr<panel::Memory> memory_;
 };
 
 }  // namespace astrosplat

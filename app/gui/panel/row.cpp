@@ -119,7 +119,7 @@ void row_menu(Context& context, const Row& row) {
     if (ImGui::MenuItem("Copy key path")) ImGui::SetClipboardText(row.key().text().c_str());
     if (ImGui::MenuItem("Copy --set")) ImGui::SetClipboardText(set.c_str());
     if (ImGui::MenuItem("Paste")) paste(context, row);
-    end_popup();
+    end_menu_popup();
 }
 
 void message_row(Context& context, const Row& row) {
@@ -146,7 +146,7 @@ void note_row(Context& context, const Row& row) {
     const auto point = [](ImVec2 p) { return glm::vec2(p.x, p.y); };
     DrawnRow drawn{row.key(), point(row.layout.label.middle()), point(row.layout.value.middle())};
     if (row.parameter.spec.animation != Animation::no) drawn.diamond = point(row.layout.diamond);
-    context.rows.push_back(drawn);
+    context.memory.rows.push_back(drawn);
 }
 
 void draw_diamond(Context& context, const Row& row) {

@@ -264,7 +264,7 @@ void camera_buttons(Context& context) {
         for (std::size_t i = 0; i < camera_move_names.size(); ++i)
             if (noted_menu_item(context, "panel", camera_move_names[i]))
                 begin_move(context, static_cast<CameraMove>(i));
-        end_popup();
+        end_menu_popup();
     }
     ImGui::Dummy({0.0f, px(4)});
 }
