@@ -65,8 +65,7 @@ std::string signed_percent(double share) {
 
 /// What a badge stands on, at the bottom of the viewport.
 Rect draw_plate(const Rect& viewport, float x, float width) {
-    const Rect plate{x, viewport.y + viewport.height - px(badge_inset) - px(badge_height), width,
-                     px(badge_height)};
+    const Rect plate{x, viewport.end().y - px(badge_inset) - px(badge_height), width, px(badge_height)};
     fill_rect(plate, color::with_opacity(color::window, 0.86f), px(3));
     return plate;
 }
@@ -184,7 +183,7 @@ void draw_side_badge(GuiFrame& frame, const Rect& area, float left) {
     const std::optional<SideBadge> badge = side_badge(frame.status);
     if (!badge || badge->text.empty()) return;
     ImGui::PushFont(small_font());
-    const float x = left + px(word_gap), room = area.x + area.width - px(badge_inset) - x - 2 * px(padding);
+    const float x = left + px(word_gap), room = area.end().x - px(badge_inset) - x - 2 * px(padding);
     const std::string text = badge->may_be_cut ? fitting(badge->text, room) : badge->text;
     const float width = ImGui::CalcTextSize(text.c_str()).x + 2 * px(padding);
     if (width <= room + 2 * px(padding)) {

@@ -108,12 +108,11 @@ void draw_title(const GuiFrame& frame, const Rect& area) {
 }  // namespace
 
 void draw_menu_bar(GuiFrame& frame, const Rect& area) {
-    const float padding = (area.height - ImGui::GetFontSize()) * 0.5f;
-    ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2(px(8), padding));
+    push_field_height(area.height);
     ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(px(16), px(4)));
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(px(8), 0));
-    ImGui::SetCursorScreenPos({area.x, area.y});
-    ImGui::BeginChild("menu", {area.width, area.height}, false, ImGuiWindowFlags_MenuBar);
+    ImGui::SetCursorScreenPos(area.corner());
+    ImGui::BeginChild("menu", area.size(), false, ImGuiWindowFlags_MenuBar);
     if (ImGui::BeginMenuBar()) {
         for (const char* menu : {"File", "Edit", "View", "Layer", "Camera", "Render", "Help"})
             draw_menu(frame, menu);
@@ -166,7 +165,7 @@ void draw_grey_notice(GuiFrame& frame, const Rect& area) {
 
 void draw_hint(GuiFrame& frame, const Rect& area) {
     row_text("Drop a picture, mesh or splat file here. F1 shows the keys.", area.height, color::text);
-    ImGui::SetCursorScreenPos({area.x + area.width - area.height - px(4), area.y});
+    ImGui::SetCursorScreenPos({area.end().x - area.height - px(4), area.y});
     if (icon_button("close hint", Icon::cross, {area.height, area.height}, px(10), color::dim, nullptr))
         frame.view.hint_open = false;
     note_item(frame, "close hint");
@@ -176,9 +175,9 @@ void draw_hint(GuiFrame& frame, const Rect& area) {
 
 void draw_notice(GuiFrame& frame, const Rect& area) {
     if (area.height <= 0) return;
-    ImGui::SetCursorScreenPos({area.x, area.y});
+    ImGui::SetCursorScreenPos(area.corner());
     ImGui::PushStyleColor(ImGuiCol_ChildBg, color4(color::window));
-    ImGui::BeginChild("notice", {area.width, area.height}, false, ImGuiWindowFlags_NoScrollbar);
+    ImGui::BeginChild("notice", area.size(), false, ImGuiWindowFlags_NoScrollbar);
     ImGui::SetCursorScreenPos({area.x + px(12), area.y});
     if (frame.view.changed_on_disk)
         draw_disk_notice(frame, area);
@@ -197,8 +196,7 @@ constexpr float bar_margin = 12, part_gap = 24, bar_width = 120;
 // Where the probe's numbers begin, after its left edge; the last is its width.
 constexpr float probe_columns[] = {0, 46, 100, 150, 200, 250, 300, 352};
 
-// ".214", "1.25", "12.5": as many digits as are read at a glance, always as wide as its neighbours of one
-// size.
+// ".214", "1.250": three decimals, so that numbers of one size have one width.
 std::string light_text(float value) {
     std::string text = fmt::format("{:.3f}", value);
     if (text.rfind("0.", 0) == 0) text.erase(0, 1);
@@ -280,8 +278,7 @@ void StatusBar::take_message(const Status& status) {
 void StatusBar::draw(GuiFrame& frame, const Rect& area) {
     take_message(frame.status);
     ImGui::PushFont(small_font());
-    float right =
-        right_text(machine_text(frame.status), area.x + area.width - px(bar_margin), area, color::dim);
+    float right = right_text(machine_text(frame.status), area.end().x - px(bar_margin), area, color::dim);
     right = draw_job(frame, right - px(part_gap), area);
     right = draw_probe(frame.status, right, area);
     const bool error = !unread_.empty();

@@ -1,6 +1,5 @@
 // The window's own file dialog: a path that completes with Tab, the folder's files of the wanted kind, places
-// to jump to, and a question before a file is replaced. It lists by name, time or size, pictures as they
-// look.
+// to jump to, and a question before a file is replaced. It lists by name, time or size, with thumbnails.
 #pragma once
 
 #include <filesystem>

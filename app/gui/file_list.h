@@ -80,7 +80,7 @@ FolderContents read_folder(const std::filesystem::path& folder, const std::files
 template <class Answer>
 class DiskQuestion {
   public:
-    /// The rest of an answer that nobody waits for any more may be left out.
+    /// Once `forgotten` the rest of the answer may be left out.
     using Ask = std::function<Answer(const std::atomic<bool>& forgotten)>;
 
     DiskQuestion() = default;

@@ -21,9 +21,9 @@ namespace astrosplat {
 
 namespace {
 
-// Between a wish and a command: asks for the file that is missing, and what to do with unsaved changes, or
-// with another program's in the same file, that would be lost. In: what the widgets requested. Out: complete
-// commands for the viewer.
+// From a request to a complete command: asks for the file that is missing, and what to do with unsaved
+// changes, or with another program's in the same file, that would be lost. In: what the widgets requested.
+// Out: commands for the viewer.
 
 class CommandFlow {
   public:
@@ -291,8 +291,7 @@ void begin_host() {
 std::string parameter_under_mouse(const Panel& panel, const Rect& area) {
     constexpr float half_row = 13;
     const ImVec2 mouse = ImGui::GetIO().MousePos;
-    const ImVec2 end{area.x + area.width, area.y + area.height};
-    if (!ImGui::IsMouseHoveringRect({area.x, area.y}, end, false)) return "";
+    if (!ImGui::IsMouseHoveringRect(area.corner(), area.end(), false)) return "";
     for (const DrawnRow& row : panel.rows())
         if (row.diamond.x >= 0 && std::fabs(mouse.y - row.value.y) <= px(half_row)) return row.key;
     return "";
@@ -365,7 +364,7 @@ void Gui::draw(Document& document, ViewState& view, const Status& status, Comman
 
 const ViewportInput& Gui::viewport_input() const { return state_->viewport.input(); }
 
-void Gui::ask_to_quit(const Document&) { state_->flow.ask({Command::Kind::quit, {}, {}, 0}); }
+void Gui::ask_to_quit() { state_->flow.ask({Command::Kind::quit, {}, {}, 0}); }
 
 bool Gui::busy() const {
     return ImGui::IsAnyItemActive() || ImGui::GetIO().WantTextInput || state_->popup || state_->flow.busy() ||

@@ -27,7 +27,7 @@ class Gui {
     /// Of the last draw().
     const ViewportInput& viewport_input() const;
     /// The person wants to leave: asks about unsaved changes where there are any, then sends Command::quit.
-    void ask_to_quit(const Document& document);
+    void ask_to_quit();
     /// Something moves or waits (a drag, a text cursor, an open dialog): the next frame must be drawn soon.
     bool busy() const;
     /// An entry, a menu or a dialog is open in which nothing is typed: its focus may be on the way.

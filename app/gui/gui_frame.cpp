@@ -68,6 +68,18 @@ bool noted_menu_item(GuiFrame& frame, const std::string& prefix, const char* lab
     return chosen;
 }
 
+bool drag_field(GuiFrame& frame, float& value, const DragField& field) {
+    ImGui::SetNextItemWidth(px(field.width));
+    ImGui::PushStyleColor(ImGuiCol_Text, field.ink);
+    const bool changed = ImGui::DragFloat((std::string("##") + field.name).c_str(), &value, field.speed,
+                                          field.low, field.high, field.format, ImGuiSliderFlags_AlwaysClamp);
+    ImGui::PopStyleColor();
+    if (ImGui::IsItemHovered() && !ImGui::IsItemActive()) ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
+    note_item(frame, field.name);
+    tooltip(field.says);
+    return changed;
+}
+
 int segmented(GuiFrame& frame, const std::string& prefix, std::initializer_list<Segment> segments, int chosen,
               float height) {
     ImGui::PushID(prefix.c_str());

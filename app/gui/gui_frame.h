@@ -42,6 +42,14 @@ struct DrawnItem {
     glm::vec2 middle;
 };
 
+/// One row of a parameter in the side panel of the last frame: the middle of each of its parts, window px.
+/// For tests and for a driver that wants to reach a control by its key.
+struct DrawnRow {
+    std::string key;           // full: "layer.dust.look.alpha.power"
+    glm::vec2 label, value;    // the first box of several
+    glm::vec2 diamond{-1.0f};  // (-1, -1) where it cannot be animated
+};
+
 struct GuiFrame {
     Document& document;
     ViewState& view;
@@ -82,6 +90,18 @@ void note_item(GuiFrame& frame, const std::string& name, glm::vec2 middle_px);
 /// An item of an open menu, remembered as "PREFIX/label". True when chosen.
 bool noted_menu_item(GuiFrame& frame, const std::string& prefix, const char* label, bool checked = false,
                      bool enabled = true);
+
+struct DragField {
+    const char* name;  // remembered
+    float speed;       // per px
+    float low, high;
+    const char* format;
+    float width;  // px at scale 1
+    unsigned ink;
+    const char* says;
+};
+/// A field that is dragged, or typed into after a double click. True when it changed the value.
+bool drag_field(GuiFrame& frame, float& value, const DragField& field);
 
 /// Buttons joined to one row `height` px high at scale 1, of which one is lit, remembered as "PREFIX/label":
 /// returns the one clicked, else -1.

@@ -22,12 +22,12 @@ Rect cut_top(Rect& rest, float height) {
 Rect cut_bottom(Rect& rest, float height) {
     height = std::min(height, rest.height);
     rest.height -= height;
-    return {rest.x, rest.y + rest.height, rest.width, height};
+    return {rest.x, rest.end().y, rest.width, height};
 }
 Rect cut_right(Rect& rest, float width) {
     width = std::min(width, rest.width);
     rest.width -= width;
-    return {rest.x + rest.width, rest.y, width, rest.height};
+    return {rest.end().x, rest.y, width, rest.height};
 }
 
 float timeline_size(const ViewState& view) {

@@ -208,8 +208,7 @@ void draw_render_dialog(GuiFrame& frame) {
     bool& open = frame.view.render_open;
     if (!begin_dialog("render", "Render to files", open, render_width, 0)) return;
     ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(px(row_gap), px(row_gap)));
-    ImGui::PushStyleVar(ImGuiStyleVar_FramePadding,
-                        ImVec2(px(8), (px(field_height) - ImGui::GetFontSize()) / 2));
+    push_field_height(px(field_height));
     kind_row(frame);
     frames_row(frame);
     size_row(frame);

@@ -18,11 +18,6 @@ std::string snapshot_line(const Snapshot& snapshot) {
                                 : splats + ", preview";
 }
 
-void begin_renaming(GuiFrame& frame, std::size_t index) {
-    frame.view.renamed_snapshot = static_cast<int>(index);
-    frame.view.typed_name = frame.status.snapshots[index].name;
-}
-
 // In place of the name: Enter takes what was typed, Escape or a click elsewhere drops it.
 void name_entry(GuiFrame& frame, std::size_t index, ImVec2 corner) {
     ViewState& view = frame.view;
@@ -45,7 +40,10 @@ void card_menu(GuiFrame& frame, std::size_t index) {
     if (entry("Compare as B")) request(frame, Command::Kind::compare_snapshot, index);
     if (entry("Restore")) request(frame, Command::Kind::restore_snapshot, index);
     ImGui::Separator();
-    if (entry("Rename")) begin_renaming(frame, index);
+    if (entry("Rename")) {
+        frame.view.renamed_snapshot = static_cast<int>(index);
+        frame.view.typed_name = frame.status.snapshots[index].name;
+    }
     if (entry("Delete")) request(frame, Command::Kind::delete_snapshot, index);
     end_menu_popup();
 }

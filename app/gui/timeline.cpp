@@ -23,11 +23,6 @@ using Drag = TimelineState::Drag;
 
 constexpr float header_control = 24, entry_gap = 8;
 
-void push_entry_padding() {
-    ImGui::PushStyleVar(ImGuiStyleVar_FramePadding,
-                        ImVec2(px(8), (px(header_control) - ImGui::GetFontSize()) * 0.5f));
-}
-
 std::string seconds_text(const Scene& scene, double frame) {
     const double fps = scene.output.fps > 0 ? scene.output.fps : 24.0;
     return fmt::format("{:.2f} s", (frame - frame_range(scene).first) / fps);
@@ -36,24 +31,19 @@ std::string seconds_text(const Scene& scene, double frame) {
 void frame_entry(GuiFrame& frame) {
     const FrameRange range = shown_range(frame.document.scene());
     auto value = static_cast<float>(frame.view.frame);
-    push_entry_padding();
-    const bool changed = drag_field("##frame", value, 0.25f, static_cast<float>(range.first),
-                                    static_cast<float>(range.last), "%.0f", px(56), color::text);
-    ImGui::PopStyleVar();
-    note_item(frame, "frame");
-    tooltip("Frame. Drag, or double click to type");
-    if (changed) frame.view.frame = std::round(static_cast<double>(value));
+    if (drag_field(frame, value,
+                   {"frame", 0.25f, static_cast<float>(range.first), static_cast<float>(range.last), "%.0f",
+                    56, color::text, "Frame. Drag, or double click to type"}))
+        frame.view.frame = std::round(static_cast<double>(value));
 }
 
-/// Frames as the scene has them; an entry that cannot be read is told and dropped.
+/// Frames as the scene has them; an entry that cannot be read is reported and dropped.
 void range_entry(TimelineState& t, GuiFrame& frame) {
     const std::string& frames = frame.document.scene().output.frames;
     std::string text = t.typing_frames ? t.typed_frames : frames;
     ImGui::SameLine(0, px(entry_gap));
     ImGui::SetNextItemWidth(px(76));
-    push_entry_padding();
     ImGui::InputText("##range", &text);
-    ImGui::PopStyleVar();
     note_item(frame, "range");
     tooltip("Frames of the scene: 1-240, 1-240x10 or 1,5,9");
     const bool done = ImGui::IsItemDeactivatedAfterEdit() && !key_pressed(key_code::escape);
@@ -66,18 +56,15 @@ void range_entry(TimelineState& t, GuiFrame& frame) {
 void rate_entry(TimelineState& t, GuiFrame& frame) {
     auto fps = static_cast<float>(frame.document.scene().output.fps);
     ImGui::SameLine(0, px(entry_gap));
-    push_entry_padding();
     const double reached = frame.status.played_fps;
     const std::string format = reached > 0.0 ? fmt::format("{:.1f}/%g fps", reached) : "%g fps";
     const bool slow = reached > 0.0 && reached < 0.9 * frame.document.scene().output.fps;
-    const bool changed = drag_field("##fps", fps, 0.1f, 1.0f, 240.0f, format.c_str(), px(96),
-                                    slow ? color::attention : color::text);
-    ImGui::PopStyleVar();
+    const bool changed = drag_field(
+        frame, fps,
+        {"fps", 0.1f, 1.0f, 240.0f, format.c_str(), 96, slow ? color::attention : color::text,
+         "Frames a second of playing and of movies, while it plays after those that are reached. Drag, or "
+         "double click to type"});
     if (ImGui::IsItemActivated()) t.rate_gesture = new_gesture();
-    note_item(frame, "fps");
-    tooltip(
-        "Frames a second of playing and of movies, while it plays after those that are reached. Drag, or "
-        "double click to type");
     if (changed)
         try_edit([&] {
             frame.document.set("output.fps", std::round(static_cast<double>(fps) * 1000.0) / 1000.0,
@@ -135,10 +122,12 @@ void draw_timeline_header(TimelineState& t, GuiFrame& frame, const Rect& area) {
         view.playing = !view.playing;
     note_item(frame, "play");
     ImGui::SameLine(0, px(8));
+    push_field_height(control);
     frame_entry(frame);
-    const float right = area.x + area.width - px(8);
+    const float right = area.end().x - px(8);
     range_entry(t, frame);
     rate_entry(t, frame);
+    ImGui::PopStyleVar();
     play_choices(frame);
     time_text(frame, right - 2 * control - px(12));
     ImGui::SetCursorScreenPos({right - 2 * control - px(4), y});
@@ -181,8 +170,7 @@ void refresh(TimelineState& t, const Document& document, ViewState& view) {
 
 void zoom_with_wheel(TimelineState& t, const Rect& area) {
     const ImGuiIO& io = ImGui::GetIO();
-    const bool inside =
-        ImGui::IsMouseHoveringRect({area.x, area.y}, {area.x + area.width, area.y + area.height});
+    const bool inside = ImGui::IsMouseHoveringRect(area.corner(), area.end());
     if (!inside || io.MouseWheel == 0.0f) return;
     zoom_frames(t, t.scale.frame_at(io.MousePos.x), zoom_of(io.MouseWheel));
 }
@@ -216,7 +204,7 @@ void drag_on_ruler(const TimelineState& t, ViewState& view) {
 void draw_in_and_out(const TimelineState& t, GuiFrame& frame, const Rect& area) {
     const ViewState& view = frame.view;
     if (!view.play_first && !view.play_last) return;
-    const float bottom = area.y + area.height;
+    const float bottom = area.end().y;
     const float first = t.scale.x_of(first_played(t, view)), last = t.scale.x_of(last_played(t, view));
     fill_rect({first, bottom - px(3)}, {last, bottom}, color::with_opacity(color::good, 0.8f));
     const auto tab = [&](const char* name, float x, float side) {
@@ -254,12 +242,12 @@ void draw_ruler(TimelineState& t, GuiFrame& frame, const Rect& area) {
     const double step = ruler_step(t.scale, px(56)), small = ruler_step(t.scale, px(8));
     for (double f = std::ceil(t.scale.first / small) * small; f <= t.scale.last; f += small) {
         const float x = std::floor(t.scale.x_of(f)) + 0.5f;
-        draw_line({x, area.y + area.height - px(4)}, {x, area.y + area.height}, color::hover);
+        draw_line({x, area.end().y - px(4)}, {x, area.end().y}, color::hover);
     }
     for (double f = std::ceil(t.scale.first / step) * step; f <= t.scale.last; f += step) {
         const float x = std::floor(t.scale.x_of(f)) + 0.5f;
         const std::string text = fmt::format("{:.0f}", f);
-        draw_line({x, area.y + area.height - px(7)}, {x, area.y + area.height}, color::dim);
+        draw_line({x, area.end().y - px(7)}, {x, area.end().y}, color::dim);
         draw_text({x - std::floor(ImGui::CalcTextSize(text.c_str()).x * 0.5f), area.y + px(1)}, color::dim,
                   text);
     }
@@ -274,7 +262,7 @@ void draw_playhead(const TimelineState& t, const GuiFrame& frame, const Rect& ru
     const std::string text = fmt::format("{:g}", std::round(frame.view.frame * 100.0) / 100.0);
     const ImVec2 size = ImGui::CalcTextSize(text.c_str());
     const float half = std::floor(size.x * 0.5f + px(6));
-    fill_rect({x - half, ruler.y + px(1)}, {x + half, ruler.y + ruler.height - px(2)}, color::accent, px(3));
+    fill_rect({x - half, ruler.y + px(1)}, {x + half, ruler.end().y - px(2)}, color::accent, px(3));
     draw_text({std::floor(x - size.x * 0.5f), ruler.y + px(2)}, IM_COL32(0x10, 0x14, 0x1A, 255), text);
     ImGui::PopFont();
 }
@@ -317,12 +305,12 @@ void draw_timeline(TimelineState& t, GuiFrame& frame, const Rect& area) {
     end_drag(t);
     draw_timeline_header(t, frame, area);
     const Rect ruler{area.x, area.y + px(header_height), area.width, px(ruler_height)};
-    const float bottom = area.y + area.height;
-    if (bottom > ruler.y + ruler.height) {
+    const float bottom = area.end().y;
+    if (bottom > ruler.end().y) {
         t.scale.x0 = area.x + names_width(frame.view) + px(timeline_margin);
-        t.scale.x1 = std::max(area.x + area.width - px(timeline_margin) * 1.5f, t.scale.x0 + 1.0f);
+        t.scale.x1 = std::max(area.end().x - px(timeline_margin) * 1.5f, t.scale.x0 + 1.0f);
         draw_ruler(t, frame, ruler);
-        const Rect rows{area.x, ruler.y + ruler.height, area.width, bottom - ruler.y - ruler.height};
+        const Rect rows{area.x, ruler.end().y, area.width, bottom - ruler.y - ruler.height};
         draw_rows(t, frame, rows);
         draw_playhead(t, frame, ruler);
     }

@@ -102,7 +102,7 @@ void select_keyframe(TimelineState& t, const KeyframePlace& place);
 /// The graph of the parameter ViewState::graph_parameter, else of the first one animated.
 void draw_graph(TimelineState& t, GuiFrame& frame, const Rect& area);
 
-/// x, y, z, w or r, g, b: told apart, not shouting. A lone channel has the text's.
+/// x, y, z, w or r, g, b: easily distinguished, but muted. A lone channel has the text's.
 unsigned channel_color(std::size_t channel, std::size_t count);
 bool channel_hidden(const ViewState& view, const Track& track, std::size_t channel);
 

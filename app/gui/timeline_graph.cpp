@@ -24,11 +24,11 @@ std::string axis_text(double value, double span) {
 
 float y_of(const TimelineState& t, double value, const Rect& area) {
     const double share = (value - t.graph.low) / (t.graph.high - t.graph.low);
-    return area.y + area.height - px(margin_y) - static_cast<float>(share) * (area.height - 2 * px(margin_y));
+    return area.end().y - px(margin_y) - static_cast<float>(share) * (area.height - 2 * px(margin_y));
 }
 
 double value_at(const TimelineState& t, float y, const Rect& area) {
-    const float share = (area.y + area.height - px(margin_y) - y) / (area.height - 2 * px(margin_y));
+    const float share = (area.end().y - px(margin_y) - y) / (area.height - 2 * px(margin_y));
     return t.graph.low + static_cast<double>(share) * (t.graph.high - t.graph.low);
 }
 
@@ -226,24 +226,23 @@ void draw_graph(TimelineState& t, GuiFrame& frame, const Rect& area) {
     if (spec == t.specs.end()) return;
     sample_graph(t, track, spec->second, frame.view, frame.document.revision());
     ImDrawList* list = ImGui::GetWindowDrawList();
-    const ImVec2 low{area.x, area.y}, high{area.x + area.width, area.y + area.height};
-    fill_rect(low, high, color::window);
+    fill_rect(area, color::window);
     ImGui::PushFont(small_font());
     for (const double value : {t.graph.low, 0.5 * (t.graph.low + t.graph.high), t.graph.high}) {
         const float y = std::floor(y_of(t, value, area)) + 0.5f;
         const std::string text = axis_text(value, t.graph.high - t.graph.low);
         const ImVec2 size = ImGui::CalcTextSize(text.c_str());
-        draw_line({area.x, y}, {high.x, y}, color::with_opacity(color::field, 0.8f));
+        draw_line({area.x, y}, {area.end().x, y}, color::with_opacity(color::field, 0.8f));
         draw_text({area.x - px(8) - size.x, std::floor(y - size.y * 0.5f)}, color::dim, text);
     }
     ImGui::PopFont();
-    ImGui::SetCursorScreenPos(low);
+    ImGui::SetCursorScreenPos(area.corner());
     ImGui::InvisibleButton("graph", {std::max(area.width, 1.0f), std::max(area.height, 1.0f)},
                            ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight |
                                ImGuiButtonFlags_MouseButtonMiddle);
     note_item(frame, "graph area");
     zoom_and_pan(t, area);
-    ImGui::PushClipRect(low, high, true);
+    ImGui::PushClipRect(area.corner(), area.end(), true);
     for (std::size_t c = 0; c < t.graph.samples.size(); ++c) {
         if (t.graph.of.hidden[c]) continue;
         const std::vector<double>& samples = t.graph.samples[c];

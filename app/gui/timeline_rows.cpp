@@ -67,7 +67,7 @@ void interpolation_items(const TimelineState& t, GuiFrame& frame) {
     }
 }
 
-/// Of keyframes beside a Bezier segment.
+/// Of keyframes next to a Bezier segment.
 void handle_items(const TimelineState& t, GuiFrame& frame) {
     constexpr std::array<const char*, 3> labels{"Auto handles", "Flat handles", "Free handles"};
     const bool enabled = all_selected(t, frame, [](const Track& track, std::size_t i) {
@@ -275,7 +275,7 @@ void draw_keyframes(TimelineState& t, GuiFrame& frame, const Track& track, float
 
 void handle_rows_mouse(TimelineState& t, GuiFrame& frame, const Rect& area) {
     const Scene& scene = frame.document.scene();
-    ImGui::SetCursorScreenPos({area.x, area.y});
+    ImGui::SetCursorScreenPos(area.corner());
     ImGui::InvisibleButton("keyframes", {std::max(area.width, 1.0f), std::max(area.height, 1.0f)},
                            ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight);
     const bool hovered = ImGui::IsItemHovered();
@@ -311,7 +311,7 @@ void handle_rows_mouse(TimelineState& t, GuiFrame& frame, const Rect& area) {
 void draw_playhead_line(const TimelineState& t, const GuiFrame& frame, const Rect& area) {
     const float x = std::floor(t.scale.x_of(frame.view.frame)) + 0.5f;
     if (x >= t.scale.x0 - px(timeline_margin) && x <= t.scale.x1 + px(timeline_margin))
-        draw_line({x, area.y}, {x, area.y + area.height}, color::accent);
+        draw_line({x, area.y}, {x, area.end().y}, color::accent);
 }
 
 }  // namespace
@@ -321,8 +321,8 @@ float names_width(const ViewState& view) {
 }
 
 void draw_rows(TimelineState& t, GuiFrame& frame, const Rect& area) {
-    ImGui::SetCursorScreenPos({area.x, area.y});
-    ImGui::BeginChild("rows", {area.width, area.height});
+    ImGui::SetCursorScreenPos(area.corner());
+    ImGui::BeginChild("rows", area.size());
     const float names = names_width(frame.view);
     const ImVec2 origin = ImGui::GetCursorScreenPos();  // moves while scrolled
     const std::vector<Track> tracks = frame.document.scene().animation;
@@ -349,8 +349,7 @@ void draw_rows(TimelineState& t, GuiFrame& frame, const Rect& area) {
             draw_line({origin.x, y + px(track_height) - 0.5f},
                       {origin.x + area.width, y + px(track_height) - 0.5f},
                       color::with_opacity(color::line, 0.6f));
-            ImGui::PushClipRect({origin.x + names, area.y}, {area.x + area.width, area.y + area.height},
-                                true);
+            ImGui::PushClipRect({origin.x + names, area.y}, area.end(), true);
             draw_keyframes(t, frame, track, y);
             ImGui::PopClipRect();
         }

@@ -88,15 +88,14 @@ void compare_settings(GuiFrame& frame) {
     if (with != view.compare_with) compare_with(frame, with);
     if (view.compare == CompareMode::difference) {
         ImGui::SameLine(0, px(small_gap));
-        drag_field("##gain", view.difference_gain, 0.02f, 0.1f, 100, "x %.1f", px(52), color::text);
-        note_item(frame, "difference gain");
-        tooltip("The difference is multiplied by this");
+        drag_field(frame, view.difference_gain,
+                   {"difference gain", 0.02f, 0.1f, 100, "x %.1f", 52, color::text,
+                    "The difference is multiplied by this"});
     }
     if (view.compare == CompareMode::blink) {
         ImGui::SameLine(0, px(small_gap));
-        drag_field("##hz", view.blink_hz, 0.02f, 0.25f, 10, "%.1f /s", px(52), color::text);
-        note_item(frame, "blink rate");
-        tooltip("Changes a second");
+        drag_field(frame, view.blink_hz,
+                   {"blink rate", 0.02f, 0.25f, 10, "%.1f /s", 52, color::text, "Changes a second"});
     }
     if (!has_reference(frame) || !compares_with_reference(frame)) return;
     ImGui::SameLine(0, px(small_gap));
@@ -120,11 +119,11 @@ void display_control(GuiFrame& frame) {
 
 void exposure_control(GuiFrame& frame) {
     float& stops = frame.view.inspect_exposure;
-    drag_field("##exposure", stops, 0.02f, -20, 20, "%+.1f EV", px(72),
-               stops != 0 ? color::attention : color::dim);
-    note_item(frame, "exposure");
+    drag_field(
+        frame, stops,
+        {"exposure", 0.02f, -20, 20, "%+.1f EV", 72, stops != 0 ? color::attention : color::dim,
+         "Exposure of this window only, to look into dark and bright parts. Never saved. Right click: 0"});
     if (ImGui::IsItemClicked(ImGuiMouseButton_Right)) stops = 0.0f;
-    tooltip("Exposure of this window only, to look into dark and bright parts. Never saved. Right click: 0");
 }
 
 // From as many dots as hold the frame rate to all splats.
@@ -174,7 +173,7 @@ void rest_of_tools(GuiFrame& frame, bool with_compare, std::size_t from) {
 
 void draw_right_tools(GuiFrame& frame, const Rect& area) {
     const float more = px(control_height) + px(small_gap);
-    const float right = area.x + area.width - px(8);
+    const float right = area.end().x - px(8);
     const float settings_end =
         ImGui::GetCursorScreenPos().x + px(small_gap + width_of_compare_settings(frame));
     const bool has_settings = settings_end + px(gap) + more <= right;
@@ -205,8 +204,7 @@ void draw_right_tools(GuiFrame& frame, const Rect& area) {
 
 void draw_tool_row(GuiFrame& frame, const Rect& area) {
     if (!begin_part("tools", area)) return;
-    ImGui::PushStyleVar(ImGuiStyleVar_FramePadding,
-                        ImVec2(px(8), (px(control_height) - ImGui::GetFontSize()) / 2));
+    push_field_height(px(control_height));
     ImGui::SetCursorScreenPos({area.x + px(8), area.y + px(4)});
     constexpr float narrow = 620;
     view_choice(frame, area.width < px(narrow));

@@ -30,8 +30,7 @@ void draw_frame_in_view(const GuiFrame& frame, const Rect& area) {
         return;
     }
     // The texture's first row is the lowest.
-    list->AddImage(frame.status.viewport_texture, {area.x, area.y},
-                   {area.x + area.width, area.y + area.height}, {0, 1}, {1, 0});
+    list->AddImage(frame.status.viewport_texture, area.corner(), area.end(), {0, 1}, {1, 0});
 }
 
 glm::dvec3 fly_direction() {
@@ -112,7 +111,7 @@ void Viewport::read_mouse(GuiFrame& frame, const Rect& area, const Rect& frame_a
     const ViewportInput::Drag before = input_.drag;
     const bool moved_before = moves_frame_;
     input_ = {};
-    ImGui::SetCursorScreenPos({area.x, area.y});
+    ImGui::SetCursorScreenPos(area.corner());
     ImGui::InvisibleButton("frame in view", {std::max(area.width, 1.0f), std::max(area.height, 1.0f)},
                            ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonMiddle |
                                ImGuiButtonFlags_MouseButtonRight);
@@ -159,7 +158,7 @@ void Viewport::draw(GuiFrame& frame, const Rect& area) {
     };
     read_mouse(frame, area, place());
     const Rect frame_area = place();
-    ImGui::PushClipRect({area.x, area.y}, {area.x + area.width, area.y + area.height}, true);
+    ImGui::PushClipRect(area.corner(), area.end(), true);
     draw_frame_in_view(frame, area);
     draw_view_marks(frame, area);
     draw_overlay_lines(frame, area);

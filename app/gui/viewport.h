@@ -58,8 +58,8 @@ struct PathGrip {
     bool operator==(const PathGrip&) const = default;
 };
 
-/// The keyframes of the camera's position as points on its path, in views beside the camera, with the handles
-/// of Bezier ones: dragged in the plane of the view, with Shift along its axis.
+/// The keyframes of the camera's position as points on its path, in views other than the camera's, with the
+/// handles of Bezier ones: dragged in the plane of the view, with Shift along its axis.
 class PathPoints {
   public:
     /// Takes the point or handle under the mouse, if there is one. `area` is the viewport's.

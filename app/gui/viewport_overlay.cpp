@@ -37,9 +37,8 @@ Rect gate_of(const Scene& scene, const Rect& frame_area) {
 // Dims the frame at the left and right of the gate.
 void dim_outside(const Rect& area, const Rect& gate) {
     const ImU32 shade = color::with_opacity(IM_COL32_BLACK, 0.55f);
-    if (gate.x > area.x) fill_rect(area.corner(), {gate.x, area.y + area.height}, shade);
-    if (gate.x + gate.width < area.x + area.width)
-        fill_rect({gate.x + gate.width, area.y}, area.end(), shade);
+    if (gate.x > area.x) fill_rect(area.corner(), {gate.x, area.end().y}, shade);
+    if (gate.end().x < area.end().x) fill_rect({gate.end().x, area.y}, area.end(), shade);
 }
 
 // Text that can be read over black and over white.
@@ -117,7 +116,7 @@ void draw_overlay_lines(const GuiFrame& frame, const Rect& area) {
 void draw_wipe(const GuiFrame& frame, const Rect& area, const Rect& frame_area) {
     if (frame.view.compare != CompareMode::wipe) return;
     const float x = std::round(frame_area.x + frame_area.width * frame.view.wipe) + 0.5f;
-    draw_line({x, area.y}, {x, area.y + area.height}, color::with_opacity(color::text, 0.8f));
+    draw_line({x, area.y}, {x, area.end().y}, color::with_opacity(color::text, 0.8f));
     const ImVec2 grip{x, area.y + area.height * 0.5f};
     fill_rect({grip.x - px(3), grip.y - px(18)}, {grip.x + px(3), grip.y + px(18)}, color::text, px(3));
     ImGui::PushFont(small_font());

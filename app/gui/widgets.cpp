@@ -24,9 +24,9 @@ std::size_t character_length(const std::string& text, std::size_t at) {
 
 bool begin_part(const char* name, const Rect& area, ImGuiWindowFlags flags) {
     if (area.width <= 0 || area.height <= 0) return false;
-    ImGui::SetCursorScreenPos({area.x, area.y});
+    ImGui::SetCursorScreenPos(area.corner());
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(0, 0));
-    ImGui::BeginChild(name, {area.width, area.height}, false, flags);
+    ImGui::BeginChild(name, area.size(), false, flags);
     ImGui::PopStyleVar();
     return true;
 }
@@ -50,14 +50,8 @@ float segmented_width(std::initializer_list<Segment> segments) {
     return width;
 }
 
-bool drag_field(const char* id, float& value, float speed, float lo, float hi, const char* format,
-                float width, ImU32 text_color) {
-    ImGui::SetNextItemWidth(width);
-    ImGui::PushStyleColor(ImGuiCol_Text, text_color);
-    const bool changed = ImGui::DragFloat(id, &value, speed, lo, hi, format, ImGuiSliderFlags_AlwaysClamp);
-    ImGui::PopStyleColor();
-    if (ImGui::IsItemHovered() && !ImGui::IsItemActive()) ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
-    return changed;
+void push_field_height(float height) {
+    ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2(px(8), (height - ImGui::GetFontSize()) * 0.5f));
 }
 
 bool any_popup() {

@@ -22,9 +22,8 @@ struct Segment {
 /// Of the buttons of a segmented control (gui_frame.h).
 float segmented_width(std::initializer_list<Segment> segments);
 
-/// A field that is dragged, or typed into after a double click. True when it changed the value.
-bool drag_field(const char* id, float& value, float speed, float lo, float hi, const char* format,
-                float width, ImU32 text_color);
+/// Makes fields and buttons so many px high, until ImGui::PopStyleVar.
+void push_field_height(float height);
 
 /// A menu, a list or a dialog is open.
 bool any_popup();

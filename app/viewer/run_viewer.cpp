@@ -98,7 +98,7 @@ class Loop {
 
     void frame() {
         if (interrupted_) interrupt(session_);
-        if (window_.close_requested()) gui_.ask_to_quit(session_.document);
+        if (window_.close_requested()) gui_.ask_to_quit();
         const std::vector<std::filesystem::path> dropped = window_.take_dropped();
         if (!dropped.empty()) drop(session_, dropped);
         const double now = seconds_now();

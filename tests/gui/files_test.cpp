@@ -5,8 +5,8 @@
 #include <set>
 #include <sstream>
 
-#include "gui/file_list.h"
 #include "gui/file_dialog.h"
+#include "gui/file_list.h"
 #include "gui/key_codes.h"
 #include "gui/reference_screens.h"
 #include "gui/test_window.h"

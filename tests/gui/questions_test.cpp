@@ -16,7 +16,7 @@ TEST_F(QuitTest, AsksOnlyAboutUnsavedChanges) {
     window.tap('Q', true);
     EXPECT_EQ(kinds(window.take_commands()), std::vector<Kind>{Kind::quit});
     make_edited(window);
-    window.gui.ask_to_quit(window.document);
+    window.gui.ask_to_quit();
     window.frame(2);
     EXPECT_TRUE(window.take_commands().empty());
     window.click("unsaved/Cancel");

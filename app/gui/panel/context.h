@@ -13,7 +13,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "gui/panel/panel.h"
+#include "gui/gui_frame.h"
 #include "scene/describe.h"
 
 namespace astrosplat::panel {

@@ -213,9 +213,9 @@ bool begin_popup(const char* id) {
     return open;
 }
 
-void note(const std::string& text, ImU32 color) {
+void note(const std::string& text, ImU32 ink) {
     ImGui::PushFont(small_font());
-    ImGui::PushStyleColor(ImGuiCol_Text, color);
+    ImGui::PushStyleColor(ImGuiCol_Text, ink);
     ImGui::PushTextWrapPos(0.0f);
     ImGui::TextUnformatted(text.c_str());
     ImGui::PopTextWrapPos();
@@ -223,11 +223,8 @@ void note(const std::string& text, ImU32 color) {
     ImGui::PopFont();
 }
 
-void note(const std::string& text) { note(text, color::dim); }
-
 bool text_button(const char* label, float width) {
-    ImGui::PushStyleVar(ImGuiStyleVar_FramePadding,
-                        ImVec2(px(8), (px(row_height) - ImGui::GetFontSize()) * 0.5f));
+    push_field_height(px(row_height));
     const bool clicked = ImGui::Button(label, {width, px(row_height)});
     ImGui::PopStyleVar();
     return clicked;

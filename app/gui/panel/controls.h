@@ -6,6 +6,7 @@
 #include <string>
 
 #include "gui/panel/context.h"
+#include "gui/theme.h"
 
 namespace astrosplat::panel {
 
@@ -51,8 +52,7 @@ bool element_head(const char* title);
 bool begin_popup(const char* id);
 
 /// A line or more of small, quiet text.
-void note(const std::string& text);
-void note(const std::string& text, ImU32 color);
+void note(const std::string& text, ImU32 ink = color::dim);
 
 /// A button as wide as `width` (0: as its text). True when clicked.
 bool text_button(const char* label, float width = 0.0f);

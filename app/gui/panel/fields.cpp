@@ -45,8 +45,7 @@ void list_field(Context& context, const Row& row, const std::string& shown,
     const Rect& area = row.layout.value;
     ImGui::SetCursorScreenPos(area.corner());
     ImGui::SetNextItemWidth(area.width);
-    ImGui::PushStyleVar(ImGuiStyleVar_FramePadding,
-                        ImVec2(px(8), (area.height - ImGui::GetFontSize()) * 0.5f));
+    push_field_height(area.height);
     const bool open = ImGui::BeginCombo("##choice", shown.c_str(),
                                         ImGuiComboFlags_NoArrowButton | ImGuiComboFlags_HeightLargest);
     if (!open)
@@ -158,8 +157,9 @@ void follow_data(const Context& context, const ParameterSpec& spec, BoxContent& 
 /// What a box was dragged or typed to; none: it stays. Typed texts are read as `spec` has them.
 std::optional<Value> changed_value(const BoxEvent& event, const BoxContent& content,
                                    const ParameterSpec& spec, bool whole) {
-    if (event.kind == BoxEvent::Kind::dragged)
-        return whole ? Value(static_cast<std::int64_t>(std::llround(event.value))) : Value(event.value);
+    const bool dragged = event.kind == BoxEvent::Kind::dragged;
+    if (dragged && whole) return static_cast<std::int64_t>(std::llround(event.value));
+    if (dragged) return event.value;
     if (event.kind == BoxEvent::Kind::none || event.text == content.typed) return std::nullopt;
     return value_from_text(event.text, spec);
 }

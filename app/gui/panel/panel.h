@@ -18,14 +18,6 @@ namespace panel {
 struct Memory;  // context.h
 }
 
-/// One parameter drawn by the last draw(): the middle of each of its parts, window px. For tests and for a
-/// driver that wants to reach a control by its key.
-struct DrawnRow {
-    std::string key;           // full: "layer.dust.look.alpha.power"
-    glm::vec2 label, value;    // the first box of several
-    glm::vec2 diamond{-1.0f};  // (-1, -1) where it cannot be animated
-};
-
 class Panel {
   public:
     Panel();

@@ -1,5 +1,5 @@
-// Plots: a field with a histogram and a curve in it, which may be dragged, captions below. Values in, lines
-// out.
+// Plots: a field with a histogram and a curve in it, which may be dragged, captions below. In: values.
+// Out: lines, and edits of a curve's points.
 #pragma once
 
 #include <span>

@@ -78,10 +78,8 @@ std::string choice_label(const std::string& choice) {
 }
 
 std::string in_words(const ParameterSpec& spec, const Value& value) {
-    if (value == spec.nothing && spec.type != ParameterType::words) {
-        const bool file = spec.type == ParameterType::file || spec.type == ParameterType::files;
-        if (!file) return "Auto";
-    }
+    const bool file = spec.type == ParameterType::file || spec.type == ParameterType::files;
+    if (value == spec.nothing && spec.type != ParameterType::words && !file) return "Auto";
     if (const Value::List* list = value.list()) {
         if (spec.type == ParameterType::curve) return fmt::format("{} points", list->size());
         std::string text;
@@ -91,7 +89,6 @@ std::string in_words(const ParameterSpec& spec, const Value& value) {
     if (const std::string* text = value.text()) {
         const bool named = std::find(spec.choices.begin(), spec.choices.end(), *text) != spec.choices.end();
         if (named || *text == "auto") return choice_label(*text);
-        const bool file = spec.type == ParameterType::file || spec.type == ParameterType::files;
         return file ? file_name(*text) : *text;
     }
     if (const bool* yes = std::get_if<bool>(&value.data)) return *yes ? "Yes" : "No";
