@@ -9,6 +9,7 @@
 #include "core/error.h"
 #include "core/real.h"
 #include "edit/keyframes.h"
+#include "edit/placement.h"
 #include "edit/view_camera.h"
 #include "scene/animate.h"
 #include "scene/describe.h"
