@@ -2,6 +2,7 @@
 #include "gui/software_draw.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <fstream>
 
