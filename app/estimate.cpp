@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "batch_plan.h"
-#include "bodies/picture_size.h"
+#include "bodies/bodies.h"
 #include "camera/camera.h"
 #include "command.h"
 #include "core/error.h"

@@ -25,6 +25,7 @@
 #include "fidelity/display.h"
 #include "fidelity/front.h"
 #include "fidelity_table.h"
+#include "image/channels.h"
 #include "measure_fidelity.h"
 #include "output/format.h"
 #include "scene/animate.h"
@@ -44,13 +45,6 @@ constexpr double full_colour = 0.1;  // share of light that is shown in full col
 
 std::string png_url(const Image& size, std::span<const unsigned char> rgb) {
     return "data:image/png;base64," + base64(png_bytes(size.width, size.height, rgb));
-}
-
-Image opaque(const Image& linear) {
-    Image image = make_image(linear.width, linear.height, 4, 1.0f);
-    for (std::int64_t i = 0; i < linear.width * linear.height; ++i)
-        std::copy_n(linear.pixels.data() + i * linear.channels, 3, image.pixels.data() + 4 * i);
-    return image;
 }
 
 /// -1 .. 1: how far light that is amiss is from none to full colour.

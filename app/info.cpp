@@ -18,7 +18,6 @@
 #include "scene/load.h"
 #include "source/fits.h"
 #include "source/mesh.h"
-#include "source/obj.h"
 #include "splat_files/splat_file.h"
 #include "stars/catalogue.h"
 

@@ -16,7 +16,6 @@
 #include "scene/new_scene.h"
 #include "scene/parameter.h"
 #include "source/mesh.h"
-#include "source/obj.h"
 #include "source/picture.h"
 #include "splat_files/splat_file.h"
 #include "splats/splat_set.h"

@@ -11,9 +11,7 @@
 #include "scene/layer_setup.h"
 #include "source/fits.h"
 #include "source/mesh.h"
-#include "source/obj.h"
 #include "source/picture.h"
-#include "source/stretch.h"
 #include "splats/splat_set.h"
 
 namespace astrosplat {

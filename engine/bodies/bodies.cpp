@@ -12,10 +12,9 @@
 #include "bodies/dust.h"
 #include "bodies/front_fit.h"
 #include "bodies/picture_light.h"
-#include "bodies/picture_size.h"
 #include "bodies/picture_splats.h"
-#include "bodies/picture_stars.h"
 #include "bodies/placement.h"
+#include "bodies/stars.h"
 #include "bodies/uv_surface.h"
 #include "core/error.h"
 #include "core/log.h"
@@ -33,34 +32,36 @@ constexpr int most_faces = 64;             // that show one dot: ids hold 6 bits
 constexpr float nearest_approach = 0.95f;  // of the way to the picture's camera that a dot comes at most
 
 glm::vec2 uv_of(const glm::vec3& texel, const Image& image) {
-    return {texel.x / static_cast<float>(image.width) + 0.5f,
-            texel.y / static_cast<float>(image.height) + 0.5f};
+    return {texel.x / float(image.width) + 0.5f, texel.y / float(image.height) + 0.5f};
 }
 
 // The light of the first picture begins the sum.
 void add(const Image& light, Image& sum) {
-    if (sum.pixels.empty()) {
+    if (sum.pixels.empty())
         sum = copied(light);
-        return;
-    }
-    parallel_chunks(light.height, 16, [&](std::int64_t begin, std::int64_t end, int) {
-        for (std::int64_t i = begin * light.width * 3; i < end * light.width * 3; ++i)
-            sum.pixels[static_cast<std::size_t>(i)] += light.pixels[static_cast<std::size_t>(i)];
-    });
+    else
+        parallel_each(sum.pixels.size(), 65536, [&](std::size_t i) { sum.pixels[i] += light.pixels[i]; });
 }
 
+// What bodies are made of, for all pictures of a layer; each has a seed of its own.
+struct BodiesTask {
+    const StructureParams& params;
+    std::uint32_t seed;
+    const std::string& layer_name;
+};
+
 // Adds all dots of a picture, with their colours as they would be if nothing hid anything.
-void add_dots(const PictureLight& picture, const UvSurface& surface, const StructureParams& params,
-              std::uint32_t seed, const std::string& layer_name, const Progress& progress,
-              PictureSplats& dots) {
+void add_dots(const PictureLight& picture, const UvSurface& surface, const BodiesTask& task,
+              const Progress& progress, PictureSplats& dots) {
+    const StructureParams& params = task.params;
     Image rest = copied(picture.light);
     const PictureStars stars = take_picture_stars(rest, params, picture.enlarged);
     progress.check();
     progress.at(0.1);
     const Image brightest = brightest_channel(picture.light), without_stars = brightest_channel(rest);
-    const Placement placement =
-        make_placement(without_stars, params, surface.texels_per_unit(), surface.flat(), seed, stars.all);
-    const Opacity opacity{static_cast<float>(params.opacity), static_cast<float>(params.density)};
+    const Placement placement = make_placement(without_stars, params, surface.texels_per_unit(),
+                                               surface.flat(), task.seed, stars.all);
+    const Opacity opacity{float(params.opacity), float(params.density)};
     const std::vector<Band> bands = make_bands(rest.width);
     const double dust = dust_of(params);
     Image emission;         // of all bands, where there is dust
@@ -68,18 +69,18 @@ void add_dots(const PictureLight& picture, const UvSurface& surface, const Struc
     split_bands(std::move(rest), bands, dust > 0.0, [&](const Band& band, const Image& light) {
         progress.check();
         if (dust > 0.0) add(light, emission);
-        const bool coarsest = band.index + 1 == static_cast<int>(bands.size());
+        const bool coarsest = band.index + 1 == int(bands.size());
         for (const BandDots& size : band_dots(band, coarsest, placement))
             add_band(light, size, brightest, picture.alpha, placement, opacity, dots);
-        progress.at(0.2 + 0.7 * (band.index + 1.0) / static_cast<double>(bands.size()));
+        progress.at(0.2 + 0.7 * (band.index + 1.0) / double(bands.size()));
     });
     if (dust > 0.0)
         add_dust(transmittance_of(without_stars, emission, picture.alpha), dust,
                  dust_exponents_of(picture.light), placement, dots);
     add_picture_stars(stars, placement, opacity, dots);
-    log_detail(fmt::format("layer '{}': {} dots and {} in {}", layer_name,
-                           human_count(static_cast<double>(dots.splats.size())), counted(stars.count, "star"),
-                           counted(static_cast<std::int64_t>(bands.size()), "band")));
+    log_detail(fmt::format("layer '{}': {} dots and {} in {}", task.layer_name,
+                           human_count(double(dots.splats.size())), counted(stars.count, "star"),
+                           counted(std::int64_t(bands.size()), "band")));
 }
 
 constexpr std::int64_t rows_per_task = 16384;
@@ -97,7 +98,7 @@ Buffer<std::uint8_t> faces_of(const PictureSplats& dots, const UvSurface& surfac
 // Every value as often as `first` has rows for it.
 template <class T>
 void repeat(Buffer<T>& values, const Buffer<std::int64_t>& first) {
-    Buffer<T> rows(static_cast<std::size_t>(first.back()));
+    Buffer<T> rows(std::size_t(first.back()));
     parallel_each(values.size(), rows_per_task, [&](std::size_t i) {
         std::fill(rows.begin() + first[i], rows.begin() + first[i + 1], values[i]);
     });
@@ -114,8 +115,7 @@ void repeat_by_faces(const Buffer<std::uint8_t>& faces, PictureSplats& dots) {
     repeat(dots.distance, first);
     parallel_each(faces.size(), rows_per_task, [&](std::size_t i) {
         for (std::int64_t n = 0; n < faces[i]; ++n)
-            dots.splats.id[static_cast<std::size_t>(first[i] + n)] |= static_cast<std::uint64_t>(n)
-                                                                      << instance_bit;
+            dots.splats.id[first[i] + n] |= std::uint64_t(n) << instance_bit;
     });
 }
 
@@ -186,14 +186,13 @@ struct MadeDots {
 constexpr double most_expected = 1.08;  // times as many dots as are expected
 
 // Takes the texture's pixels, unless they might be wanted again.
-MadeDots made_dots(Texture& texture, const UvSurface& surface, const StructureParams& params,
-                   std::uint32_t seed, double expected, bool once_more, const std::string& layer_name,
-                   const Progress& progress) {
-    PictureLight picture = picture_light(texture, params.border);
+MadeDots made_dots(Texture& texture, const UvSurface& surface, const BodiesTask& task, double expected,
+                   bool once_more, const Progress& progress) {
+    PictureLight picture = picture_light(texture, task.params.border);
     if (!once_more) texture.image.pixels = {};
     MadeDots made;
-    reserve_dots(made.dots, static_cast<std::int64_t>(most_expected * expected));
-    add_dots(picture, surface, params, seed, layer_name, progress, made.dots);
+    reserve_dots(made.dots, std::int64_t(most_expected * expected));
+    add_dots(picture, surface, task, progress, made.dots);
     made.faces = faces_of(made.dots, surface, texture.image);
     made.light = std::move(picture.light);
     return made;
@@ -202,41 +201,28 @@ MadeDots made_dots(Texture& texture, const UvSurface& surface, const StructurePa
 // The picture at `area` of its texels; one that is a line becomes a shorter line.
 Image smaller(const Image& image, double area) {
     if (std::min(image.width, image.height) > 1) return at_area(image, area, 1.0);
-    const auto length = std::max<std::int64_t>(1, static_cast<std::int64_t>(area));
+    const auto length = std::max<std::int64_t>(1, std::int64_t(area));
     return reduced_by_area(image, std::min(length, image.width), std::min(length, image.height));
-}
-
-UvSurface surface_of(const PictureOnMesh& picture) {
-    const Texture& texture = picture.texture();
-    return {picture.mesh->mesh,
-            picture.material,
-            texture.image.width,
-            texture.image.height,
-            texture.wrap == TextureSettings::Wrap::repeat,
-            picture.mesh->camera ? &*picture.mesh->camera : nullptr};
 }
 
 // A picture's dots on its mesh. While they are more than `most` (0: any number), the picture is reduced.
 SplatSet bodies_of(const PictureOnMesh& picture, std::size_t number, Texture& texture, double expected,
-                   std::int64_t most, const StructureParams& params, std::uint32_t seed,
-                   const std::string& layer_name, const Progress& progress) {
+                   std::int64_t most, const BodiesTask& task, const Progress& progress) {
     constexpr int most_tries = 8;
     constexpr double aimed_at = 0.97, made_share = 0.4;  // of the time, that making the dots takes
     for (int tries = 1;; ++tries) {
-        const UvSurface surface = surface_of(picture);
-        MadeDots made = made_dots(texture, surface, params, seed, expected, most > 0, layer_name,
-                                  progress.part(0.0, made_share));
+        const UvSurface surface = surface_of(*picture.mesh, picture.material);
+        MadeDots made = made_dots(texture, surface, task, expected, most > 0, progress.part(0.0, made_share));
         const std::int64_t rows = std::accumulate(made.faces.begin(), made.faces.end(), std::int64_t{0});
         if (most > 0 && rows > most) {
             if (tries == most_tries)
                 throw InputError(
                     fmt::format("source.splats: expected at least {} for a picture of {}x{} px, found {}",
                                 rows, texture.image.width, texture.image.height, most));
-            const double area = static_cast<double>(texels_of(texture)) * aimed_at *
-                                static_cast<double>(most) / static_cast<double>(rows);
+            const double area = double(texels_of(texture)) * aimed_at * double(most) / double(rows);
             texture.image = smaller(texture.image, area);
             log_detail(fmt::format("layer '{}': {} rows are more than {}, so its picture is reduced to {}x{}",
-                                   layer_name, rows, most, texture.image.width, texture.image.height));
+                                   task.layer_name, rows, most, texture.image.width, texture.image.height));
             continue;
         }
         texture.image.pixels = {};
@@ -244,7 +230,7 @@ SplatSet bodies_of(const PictureOnMesh& picture, std::size_t number, Texture& te
         const FrontFit fit =
             fit_front(made.dots, std::move(made.light), texture.times > 1, progress.part(made_share, 1.0));
         release_spare_pages();  // of the fit
-        log_detail(fmt::format("layer '{}': front view {:.1f} dB after {} steps of the fit", layer_name,
+        log_detail(fmt::format("layer '{}': front view {:.1f} dB after {} steps of the fit", task.layer_name,
                                fit.psnr_db, fit.steps));
         const std::int64_t dots = made.dots.splats.size();
         const bool absorbs = made.dots.absorbs;
@@ -264,26 +250,24 @@ SplatSet make_bodies(std::vector<TexturedMesh> meshes, const StructureParams& pa
     for (const PictureOnMesh& picture : pictures)
         expected.push_back(expected_dots(picture.texture(), params));
     const double all = std::accumulate(expected.begin(), expected.end(), 0.0);
-    claim_memory(bodies_memory_bytes(meshes, static_cast<std::int64_t>(all)),
+    claim_memory(bodies_memory_bytes(meshes, std::int64_t(all)),
                  fmt::format("making bodies for layer '{}'", layer_name));
     SplatSet set;
     for (std::size_t i = 0; i < pictures.size(); ++i) {
         const PictureOnMesh& picture = pictures[i];
         Texture& texture = meshes[picture.mesh_index].textures[picture.material];
-        const auto share = static_cast<std::int64_t>(static_cast<double>(most_dots) * expected[i] / all);
+        const auto share = std::int64_t(double(most_dots) * expected[i] / all);
+        const auto done = [&](std::size_t n) { return double(n) / double(pictures.size()); };
         SplatSet rows =
             bodies_of(picture, i, texture, expected[i], most_dots > 0 ? std::max<std::int64_t>(1, share) : 0,
-                      params, seed + static_cast<std::uint32_t>(i), layer_name,
-                      progress.part(static_cast<double>(i) / static_cast<double>(pictures.size()),
-                                    static_cast<double>(i + 1) / static_cast<double>(pictures.size())));
+                      {params, seed + std::uint32_t(i), layer_name}, progress.part(done(i), done(i + 1)));
         set.test_positions += rows.test_positions;
         set.absorbs = set.absorbs || rows.absorbs;
         append(std::move(rows), set);
         if (set.credit.empty()) set.credit = texture.credit;
     }
     sort_by_id(set);
-    for (const float distance : set.distance)
-        set.max_distance = std::max(set.max_distance, static_cast<double>(distance));
+    for (const float distance : set.distance) set.max_distance = std::max(set.max_distance, double(distance));
     set.divided = true;
     return set;
 }

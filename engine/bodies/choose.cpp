@@ -35,6 +35,22 @@ constexpr double as_red = 0.8, redder = 1.25, burnt_out = 0.45;
 // Differences between opposite sides: galaxies have .02 to .5, clouds .2 to .9. Grey ones have but these.
 constexpr double round = 0.1, even_sides = 0.25, lopsided = 0.56, lopsided_grey = 0.4;
 
+// Likewise. Parts, by distance from the brightest place, in half-light radii; and what is
+// compared with the opposite side of that place, which in the middle is itself.
+struct Zone {
+    double from, to;
+};
+constexpr Zone middle_zone{0.0, 0.35}, half_light_zone{0.8, 1.2}, outer_zone{0.9, 1.6}, object_zone{0.0, 1.6},
+    compared_zone{0.35, 1.5};
+constexpr double place_blur = 0.02;   // of the width: over how wide an area a place is bright
+constexpr double side_blur_px = 2.0;  // of what is compared: its details do not count
+constexpr double sky_share = 0.1;     // of a channel, that is its sky
+constexpr double grey_share = 0.01, grey_light = 1e-4;  // by which red and blue of a grey pixel differ
+
+// Red and blue over green, of stars' light; red of what has hardly any blue, behind dust; and their product.
+constexpr double least_red = 0.58, most_red = 1.66, most_red_in_dust = 2.1, least_blue_without_dust = 0.9;
+constexpr double least_pink = 0.42, most_pink = 2.3;
+
 constexpr double rim_share = 0.02;  // of the width
 constexpr float dark_rim = 0.001f;  // from aslant it shows several times as bright
 
@@ -59,37 +75,35 @@ struct Place {
     std::int64_t x, y;
 };
 Place brightest_place(const Image& light) {
-    const Image smooth = gaussian_blur(brightest_channel(light), 0.02 * static_cast<double>(light.width));
-    const auto top = std::max_element(smooth.pixels.begin(), smooth.pixels.end()) - smooth.pixels.begin();
+    const Image smooth = gaussian_blur(brightest_channel(light), place_blur * double(light.width));
+    const auto top = std::ranges::max_element(smooth.pixels) - smooth.pixels.begin();
     return {top % light.width, top / light.width};
 }
 
 double sky_of(const Image& channel) {
-    return percentile({channel.pixels.begin(), channel.pixels.end()}, 0.1);
+    return percentile({channel.pixels.begin(), channel.pixels.end()}, sky_share);
 }
 
 // The pixels by their distance from the brightest place, px.
 std::vector<Pixel> by_radius(const Image& light) {
     const Image brightest = brightest_channel(light);
     const Place middle = brightest_place(light);
-    const auto cx = static_cast<double>(middle.x), cy = static_cast<double>(middle.y);
+    const auto cx = double(middle.x), cy = double(middle.y);
     const double sky = sky_of(brightest);
     const glm::dvec3 skies(sky_of(channel_of(light, 0)), sky_of(channel_of(light, 1)),
                            sky_of(channel_of(light, 2)));
-    const auto edge = static_cast<std::int64_t>(edge_share * static_cast<double>(light.width));
+    const auto edge = std::int64_t(edge_share * double(light.width));
     std::vector<Pixel> pixels;
     for (std::int64_t y = 0; y < light.height; ++y) {
         for (std::int64_t x = 0; x < light.width; ++x) {
             const float* const p = light.at(x, y);
             const bool at_edge = x < edge || y < edge || x >= light.width - edge || y >= light.height - edge;
-            pixels.push_back({std::hypot(static_cast<double>(x) - cx, static_cast<double>(y) - cy),
-                              std::max(0.0, static_cast<double>(*brightest.at(x, y)) - sky),
-                              static_cast<double>(p[0]), static_cast<double>(p[2]),
+            pixels.push_back({std::hypot(double(x) - cx, double(y) - cy),
+                              std::max(0.0, double(*brightest.at(x, y)) - sky), double(p[0]), double(p[2]),
                               glm::max(glm::dvec3(p[0], p[1], p[2]) - skies, 0.0), at_edge});
         }
     }
-    std::stable_sort(pixels.begin(), pixels.end(),
-                     [](const Pixel& a, const Pixel& b) { return a.radius < b.radius; });
+    std::ranges::stable_sort(pixels, {}, &Pixel::radius);
     return pixels;
 }
 
@@ -102,27 +116,26 @@ double half_light_radius(const std::vector<Pixel>& pixels) {
 }
 
 bool is_grey(const std::vector<Pixel>& pixels) {
-    return std::all_of(pixels.begin(), pixels.end(), [](const Pixel& p) {
-        return std::fabs(p.red - p.blue) <= 1e-4 + 0.01 * std::max(p.red, p.blue);
+    return std::ranges::all_of(pixels, [](const Pixel& p) {
+        return std::fabs(p.red - p.blue) <= grey_light + grey_share * std::max(p.red, p.blue);
     });
 }
 
 // How far the light around the brightest place differs from that on the opposite side of it: 0 alike .. 1.
 double lopsidedness(const Image& light, double half) {
-    const Image brightest = gaussian_blur(brightest_channel(light), 2.0);
+    const Image brightest = gaussian_blur(brightest_channel(light), side_blur_px);
     const Place middle = brightest_place(light);
     const double sky = sky_of(brightest);
     const auto above_sky = [&](std::int64_t x, std::int64_t y) {
-        return std::max(0.0, static_cast<double>(*brightest.at(x, y)) - sky);
+        return std::max(0.0, double(*brightest.at(x, y)) - sky);
     };
     double difference = 0.0, sum = 0.0;
     for (std::int64_t y = 0; y < light.height; ++y) {
         for (std::int64_t x = 0; x < light.width; ++x) {
             const std::int64_t u = 2 * middle.x - x, v = 2 * middle.y - y;
-            const double radius =
-                std::hypot(static_cast<double>(x - middle.x), static_cast<double>(y - middle.y));
+            const double radius = std::hypot(double(x - middle.x), double(y - middle.y));
             const bool seen = u >= 0 && v >= 0 && u < light.width && v < light.height;
-            if (!seen || radius < 0.35 * half || radius > 1.5 * half) continue;
+            if (!seen || radius < compared_zone.from * half || radius > compared_zone.to * half) continue;
             difference += std::fabs(above_sky(x, y) - above_sky(u, v));
             sum += above_sky(x, y) + above_sky(u, v);
         }
@@ -134,13 +147,13 @@ double lopsidedness(const Image& light, double half) {
 double small_share(const Image& light) {
     const std::int64_t width = std::min(light.width, 2 * small_width);
     Image above = brightest_channel(of_width(light, width));
-    const auto sky = static_cast<float>(sky_of(above));
+    const auto sky = float(sky_of(above));
     for (float& value : above.pixels) value = std::max(0.0f, value - sky);
-    const Image wide = gaussian_blur(above, small_things * static_cast<double>(width));
+    const Image wide = gaussian_blur(above, small_things * double(width));
     double small = 0.0, all = 0.0;
     for (std::size_t i = 0; i < above.pixels.size(); ++i) {
-        small += static_cast<double>(std::max(0.0f, above.pixels[i] - wide.pixels[i]));
-        all += static_cast<double>(above.pixels[i]);
+        small += double(std::max(0.0f, above.pixels[i] - wide.pixels[i]));
+        all += double(above.pixels[i]);
     }
     return all > 0.0 ? small / all : 0.0;
 }
@@ -169,8 +182,8 @@ Part part_of(const std::vector<Pixel>& pixels, Wanted wanted) {
 // redder, or pink or green. Behind dust, stars are redder and have hardly any blue.
 bool of_stars(const glm::dvec3& color) {
     const double red = color.r / std::max(1e-12, color.g), blue = color.b / std::max(1e-12, color.g);
-    const double reddest = blue > 0.9 ? 1.66 : 2.1, pink = red * blue;
-    return red >= 0.58 && red <= reddest && pink >= 0.42 && pink <= 2.3;
+    const double reddest = blue > least_blue_without_dust ? most_red : most_red_in_dust, pink = red * blue;
+    return red >= least_red && red <= reddest && pink >= least_pink && pink <= most_pink;
 }
 
 bool is_too_small(const Image& light) { return light.width < 16 || light.height < 16; }
@@ -188,13 +201,14 @@ Impression impression_of(const Image& light) {
     const Image small = small_copy(light);
     const std::vector<Pixel> pixels = by_radius(small);
     const double half = half_light_radius(pixels);
-    const auto within = [&](double from, double to) {
-        return part_of(pixels,
-                       [&](const Pixel& p) { return p.radius >= from * half && p.radius <= to * half; });
+    const auto within = [&](const Zone& zone) {
+        return part_of(pixels, [&](const Pixel& p) {
+            return p.radius >= zone.from * half && p.radius <= zone.to * half;
+        });
     };
     const Part all = part_of(pixels, [](const Pixel&) { return true; });
     const Part edge = part_of(pixels, [](const Pixel& p) { return p.edge; });
-    const Part middle = within(0.0, 0.35), ring = within(0.8, 1.2), outside = within(0.9, 1.6);
+    const Part middle = within(middle_zone), ring = within(half_light_zone), outside = within(outer_zone);
     Impression seen;
     seen.lit = all.light > 0.0;
     if (!seen.lit) return seen;
@@ -203,7 +217,7 @@ Impression impression_of(const Image& light) {
     seen.edge = edge.light / all.light;
     seen.sides = lopsidedness(small, half);
     seen.grey = is_grey(pixels);
-    seen.stars = of_stars(within(0.0, 1.6).above_sky);
+    seen.stars = of_stars(within(object_zone).above_sky);
     return seen;
 }
 
@@ -264,22 +278,21 @@ glm::dvec2 subject_of(const Image& light) {
     if (is_too_small(light)) return middle;
     const Image small = small_copy(light);
     const Image brightest = brightest_channel(small);
-    if (!(*std::max_element(brightest.pixels.begin(), brightest.pixels.end()) > 0.0f)) return middle;
+    if (!(std::ranges::max(brightest.pixels) > 0.0f)) return middle;
     const Place place = brightest_place(small);
-    return {(static_cast<double>(place.x) + 0.5) / static_cast<double>(small.width),
-            (static_cast<double>(place.y) + 0.5) / static_cast<double>(small.height)};
+    return {(double(place.x) + 0.5) / double(small.width), (double(place.y) + 0.5) / double(small.height)};
 }
 
 double mean_light(const Image& light) {
     const Image brightest = brightest_channel(light);
     double sum = 0.0;
-    for (const float value : brightest.pixels) sum += std::clamp(static_cast<double>(value), 0.0, 1.0);
-    return sum / static_cast<double>(std::max<std::size_t>(1, brightest.pixels.size()));
+    for (const float value : brightest.pixels) sum += std::clamp(double(value), 0.0, 1.0);
+    return sum / double(std::max<std::size_t>(1, brightest.pixels.size()));
 }
 
 double lit_share_of_rim(const Image& light) {
     const Image brightest = brightest_channel(light);
-    const auto rim = static_cast<std::int64_t>(rim_share * static_cast<double>(light.width));
+    const auto rim = std::int64_t(rim_share * double(light.width));
     std::int64_t lit = 0, all = 0;
     for (std::int64_t y = 0; y < light.height; ++y) {
         const bool whole_row = y <= rim || y >= light.height - 1 - rim;
@@ -289,7 +302,7 @@ double lit_share_of_rim(const Image& light) {
             ++all;
         }
     }
-    return static_cast<double>(lit) / static_cast<double>(std::max<std::int64_t>(1, all));
+    return double(lit) / double(std::max<std::int64_t>(1, all));
 }
 
 }  // namespace astrosplat

@@ -109,9 +109,9 @@ ColumnNoise column_noise(const NoiseStack& noise, int octave, const DepthBlock& 
         column.lowest[i] = floor(lowest[i] * column.frequency + column.shift);
     Lane height;
     heights_above_lowest(column, highest, block.count, height);
-    column.planes.resize(static_cast<std::size_t>(cells_of(height, block.count).last) + 2);
+    column.planes.resize(std::size_t(cells_of(height, block.count).last) + 2);
     for (std::size_t n = 0; n < column.planes.size(); ++n)
-        fill_plane(noise, octave, block, static_cast<int>(n), column.lowest, column.planes[n]);
+        fill_plane(noise, octave, block, int(n), column.lowest, column.planes[n]);
     return column;
 }
 
@@ -128,10 +128,9 @@ void add_column(const ColumnNoise& column, const float* z, int count, float* sum
     Lane height;
     heights_above_lowest(column, z, count, height);
     const Cells cells = cells_of(height, count);
-    const int end = min(cells.last + 2, static_cast<int>(column.planes.size()));
+    const int end = min(cells.last + 2, int(column.planes.size()));
     for (int n = cells.first; n < end; ++n)
-        add_plane(column.planes[static_cast<std::size_t>(n)], static_cast<float>(n), column.gain, count,
-                  height, sum);
+        add_plane(column.planes[n], float(n), column.gain, count, height, sum);
 }
 
 ASTROSPLAT_DEPTH_LOOP clear(float* HWY_RESTRICT values, int count) {

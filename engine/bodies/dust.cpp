@@ -11,7 +11,6 @@
 
 #include "bodies/picture_splats.h"
 #include "core/parallel.h"
-#include "core/real.h"
 #include "core/shared_maths.h"
 #include "image/blur.h"
 #include "image/channels.h"
@@ -20,7 +19,7 @@
 namespace astrosplat {
 namespace {
 
-using shared::as_hash, shared::as_log, shared::as_uniform;
+using shared::as_log, shared::as_uniform;
 
 // As DEPTH 5 has them, but for the sheet, which is torn, and thinner.
 constexpr float least_transmittance = 0.1f;
@@ -32,22 +31,18 @@ constexpr std::int64_t share_cell_px = 8;
 constexpr double share_blur_cells = 4.0;
 constexpr std::size_t light_parts = 8;  // of the dots, whose light is added up at the same time
 constexpr float dot_sigma = 1.3f, dots_each_texel = 0.6f;
+constexpr float most_opaque = 0.9f;    // a dot's middle
+constexpr float least_kept = 1e-3f;    // share of dots: where fewer would be, there is none
 constexpr float certain_depth = 0.1f;  // optical depth from which no dot is left out
 
 // Optical depth of the sheet's middle line, and how far that stands out, bent by waves of its own so that
 // edge-on it is torn and not ruled.
 void bend(const Placement& placement, DepthBlock& block) {
-    DepthBlock waves = block;
-    NoiseStack noise;
-    noise.seed = shared::as_mix(placement.seed + 3);
-    for (const auto& [wave, gain] : {std::pair{160.0, 0.15f}, {70.0, 0.1f}, {30.0, 0.04f}}) {
-        noise.frequency[noise.count] = static_cast<float>(1.0 / (wave * placement.scale));
-        noise.gain[noise.count++] = gain;
-    }
-    noise_sum(noise, waves);
+    DepthBlock bent = block;
+    noise_sum(waves(placement, 3, {{160.0, 0.15}, {70.0, 0.1}, {30.0, 0.04}}), bent);
     for (int i = 0; i < block.count; ++i) {
         const float height = placement.scale_height(block.x[i], block.y[i]);
-        block.z[i] += height * (lane_height + waves.z[i]);
+        block.z[i] += height * (lane_height + bent.z[i]);
     }
 }
 
@@ -56,17 +51,16 @@ Image light_before(const Placement& placement, const PictureSplats& dots) {
     const Image none = make_image((placement.picture_width + share_cell_px - 1) / share_cell_px,
                                   (placement.picture_height + share_cell_px - 1) / share_cell_px, 2);
     std::vector<Image> parts(light_parts, none);
-    const float middle_x = 0.5f * static_cast<float>(placement.picture_width),
-                middle_y = 0.5f * static_cast<float>(placement.picture_height);
+    const float middle_x = 0.5f * float(placement.picture_width),
+                middle_y = 0.5f * float(placement.picture_height);
     const auto add = [&](std::size_t i, Image& cells) {
         const glm::vec3 p = dots.splats.position[i], color = dots.splats.color[i];
         const float x = p.x + middle_x, y = middle_y - p.y, radius = dots.splats.radius[i];
         const float light = std::max({color.x, color.y, color.z}) * dots.splats.alpha[i] * radius * radius;
-        const auto column =
-            std::clamp<std::int64_t>(static_cast<std::int64_t>(x) / share_cell_px, 0, cells.width - 1);
-        const auto row =
-            std::clamp<std::int64_t>(static_cast<std::int64_t>(y) / share_cell_px, 0, cells.height - 1);
-        float* const cell = cells.at(column, row);
+        const auto cell_along = [](float at, std::int64_t count) {
+            return std::clamp<std::int64_t>(std::int64_t(at) / share_cell_px, 0, count - 1);
+        };
+        float* const cell = cells.at(cell_along(x, cells.width), cell_along(y, cells.height));
         cell[1] += light;
         if (p.z - middle_plane(placement, x, y) > lane_height * placement.scale_height(x, y))
             cell[0] += light;
@@ -84,7 +78,7 @@ Image light_before(const Placement& placement, const PictureSplats& dots) {
 // Share of the dots that are kept.
 float kept_dust(float depth) {
     const float kept = std::min(1.0f, depth / certain_depth);
-    return kept > 1e-3f ? kept : 0.0f;
+    return kept > least_kept ? kept : 0.0f;
 }
 
 // Optical depth of a sheet that leaves `transmittance` of all light, with a share of it before the sheet.
@@ -93,36 +87,25 @@ float sheet_depth(float transmittance, float before) {
     return -as_log(std::clamp(behind, least_transmittance, 1.0f));
 }
 
-class DustDots {
-  public:
-    DustDots(const Image& transmittance, const Image& before, double amount, const glm::vec3& exponents,
-             const Placement& placement)
-        : transmittance_(transmittance),
-          before_(before),
-          amount_(static_cast<float>(amount)),
-          exponents_(exponents),
-          placement_(placement),
-          lattice_(transmittance.width, transmittance.height, spacing) {}
-
-    void add_to(PictureSplats& out) const {
-        add_lattice_dots(
-            lattice_, dot_sigma, [&](const DotCell& cell) { return candidate_of(cell).has_value(); },
-            [&](std::span<const DotCell> cells, std::size_t first) { make_dots(cells, first, out); }, out);
-    }
+struct DustDots {
+    const Image& transmittance;
+    const Image& before;
+    float amount;
+    glm::vec3 exponents;
+    const Placement& placement;
 
     static constexpr float footprint = footprint_share * 6.28318531f * dot_sigma * dot_sigma;
     static constexpr float spacing = 1.29099445f;  // of dots_each_texel
     static_assert(spacing * spacing * dots_each_texel > 0.999f &&
                   spacing * spacing * dots_each_texel < 1.001f);
+    DotLattice lattice{transmittance.width, transmittance.height, spacing};
 
-  private:
     // Of the sheet at a place, that dims what lies behind it so that the whole is dimmed as it is seen.
     float depth_at(float x, float y) const {
-        const float t = bilinear(transmittance_, 0, x, y);
-        const float cell_x = x / static_cast<float>(share_cell_px),
-                    cell_y = y / static_cast<float>(share_cell_px);
+        const float t = bilinear(transmittance, 0, x, y);
+        const float cell_x = x / float(share_cell_px), cell_y = y / float(share_cell_px);
         const float f =
-            bilinear(before_, 0, cell_x, cell_y) / std::max(1e-20f, bilinear(before_, 1, cell_x, cell_y));
+            bilinear(before, 0, cell_x, cell_y) / std::max(1e-20f, bilinear(before, 1, cell_x, cell_y));
         return sheet_depth(t, f);
     }
 
@@ -135,63 +118,45 @@ class DustDots {
     // A cell's dot, where there is dust and it is not thinned out.
     std::optional<Candidate> candidate_of(const DotCell& cell) const {
         Candidate dot;
-        dot.id = dust_band << 48 | lattice_.number(cell);
-        dot.x = (static_cast<float>(cell.column) + random(dot.id, shared::PURPOSE_JITTER_X)) * spacing;
-        dot.y = (static_cast<float>(cell.row) + random(dot.id, shared::PURPOSE_JITTER_Y)) * spacing;
-        if (dot.x >= static_cast<float>(transmittance_.width) ||
-            dot.y >= static_cast<float>(transmittance_.height))
-            return {};
-        const float depth = amount_ * depth_at(dot.x, dot.y), kept = kept_dust(depth);
+        dot.id = dust_band << 48 | lattice.number(cell);
+        dot.x = (float(cell.column) + random(dot.id, shared::PURPOSE_JITTER_X)) * spacing;
+        dot.y = (float(cell.row) + random(dot.id, shared::PURPOSE_JITTER_Y)) * spacing;
+        if (dot.x >= float(transmittance.width) || dot.y >= float(transmittance.height)) return {};
+        const float depth = amount * depth_at(dot.x, dot.y), kept = kept_dust(depth);
         if (!(kept > 0.0f) || random(dot.id, shared::PURPOSE_DENSITY) >= kept) return {};
         // The optical depth of a dot of Gaussian s is 2 pi sigma^2 Li2(s), of which s + s^2 / 4 is enough.
         const float share = depth / kept / (dots_each_texel * footprint);
-        dot.alpha = std::min(0.9f, 2.0f * (std::sqrt(1.0f + share) - 1.0f));
+        dot.alpha = std::min(most_opaque, 2.0f * (std::sqrt(1.0f + share) - 1.0f));
         return dot;
     }
 
-    std::uint32_t hash_of(std::uint64_t id, std::uint32_t purpose) const {
-        return as_hash(placement_.seed, static_cast<std::uint32_t>(id), static_cast<std::uint32_t>(id >> 32),
-                       purpose);
+    float random(std::uint64_t id, std::uint32_t purpose) const {
+        return as_uniform(placement.hash_of(id, purpose));
     }
-
-    float random(std::uint64_t id, std::uint32_t purpose) const { return as_uniform(hash_of(id, purpose)); }
 
     void make_dots(std::span<const DotCell> cells, std::size_t first, PictureSplats& out) const {
         DepthBlock block;
-        block.count = static_cast<int>(cells.size());
+        block.count = int(cells.size());
         for (std::size_t i = 0; i < cells.size(); ++i) {
             const Candidate dot = *candidate_of(cells[i]);
             block.x[i] = dot.x;
             block.y[i] = dot.y;
-            block.height[i] = lane_thickness * placement_.scale_height(dot.x, dot.y);
+            block.height[i] = lane_thickness * placement.scale_height(dot.x, dot.y);
             block.clumping[i] = 1.0f;
-            block.random[i] = hash_of(dot.id, shared::PURPOSE_DEPTH);
+            block.random[i] = placement.hash_of(dot.id, shared::PURPOSE_DEPTH);
             out.splats.alpha[first + i] = dot.alpha;
-            out.splats.color[first + i] = -exponents_;
+            out.splats.color[first + i] = -exponents;
             out.splats.id[first + i] = dot.id;
         }
-        NoiseStack noise;
-        noise.seed = placement_.seed;
-        noise.count = 1;
-        noise.frequency[0] = static_cast<float>(1.0 / (sheet_wave * placement_.scale));
-        noise.gain[0] = static_cast<float>(1.6 * placement_.clumps);
-        disk_depths(noise, block);
-        bend(placement_, block);
-        const float middle_x = 0.5f * static_cast<float>(transmittance_.width);
-        const float middle_y = 0.5f * static_cast<float>(transmittance_.height);
+        const double wave = sheet_wave * placement.scale;
+        disk_depths(stack(placement, wave, wave, whole_gain * placement.clumps, 1.0), block);
+        bend(placement, block);
         for (std::size_t i = 0; i < cells.size(); ++i) {
-            const float z = block.z[i] + middle_plane(placement_, block.x[i], block.y[i]);
-            out.splats.position[first + i] = {block.x[i] - middle_x, middle_y - block.y[i], z};
+            const float z = block.z[i] + middle_plane(placement, block.x[i], block.y[i]);
+            out.splats.position[first + i] = placement.among_dots(block.x[i], block.y[i], z);
             out.distance[first + i] = std::fabs(block.z[i]);
         }
     }
-
-    const Image& transmittance_;
-    const Image& before_;
-    float amount_;
-    glm::vec3 exponents_;
-    const Placement& placement_;
-    DotLattice lattice_;
 };
 
 }  // namespace
@@ -225,13 +190,13 @@ double dust_of(const StructureParams& params) {
 
 float expected_dust_dots(float transmittance, double amount) {
     constexpr float usual_before = 0.37f;  // .29 to .455 were measured
-    return dots_each_texel * kept_dust(static_cast<float>(amount) * sheet_depth(transmittance, usual_before));
+    return dots_each_texel * kept_dust(float(amount) * sheet_depth(transmittance, usual_before));
 }
 
 void add_dust(const Image& transmittance, double amount, const glm::vec3& exponents,
               const Placement& placement, PictureSplats& out) {
     const Image before = light_before(placement, out);
-    DustDots(transmittance, before, amount, exponents, placement).add_to(out);
+    add_lattice_dots(DustDots{transmittance, before, float(amount), exponents, placement}, dot_sigma, out);
     out.absorbs = true;
 }
 

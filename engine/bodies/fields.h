@@ -1,15 +1,9 @@
-// How thick a layer is and where its middle lies, as smooth fields over a picture, and the noise that depths
-// gather in (DEPTH 4). In: the picture's light without its stars; the size of a band's features. Out: one-
-// channel images, in texels, halved as often as their smoothness allows; stacks of octaves for
-// depth_kernel.h.
+// What the depths of a picture's dots follow (DEPTH 4), as smooth fields over it: how thick a layer is, where
+// its middle or the walls of a shell lie, and how much of a shell's light is on neither of its walls. In: the
+// picture's light without its stars. Out: one-channel images, in texels, halved as often as their smoothness
+// allows.
 #pragma once
 
-#include <cstdint>
-#include <initializer_list>
-#include <utility>
-
-#include "bodies/depth_kernel.h"
-#include "bodies/placement.h"
 #include "core/image.h"
 
 namespace astrosplat {
@@ -27,22 +21,24 @@ Image thickness_field(const Image& brightest, double height);
 /// sky. Nowhere steeper than `steepest`; what is steeper looks like drapery.
 Image relief_field(const Image& brightest, double depth, double steepest);
 
-/// Lowers what rises above a neighbour by more than `steepest` a px.
-void limit_slope(Image& image, double steepest);
+/// Half of the distance between the walls of a shell: the picture's silhouette blown up like a balloon. h
+/// solves the Poisson equation -laplace(h) = 1 inside of it and is 0 outside, and its root is an ellipsoid's
+/// height over an ellipse, a ridge's over a filament. At most `depth`, at the middle of the widest part;
+/// nowhere steeper than `steepest`. The silhouette is where the light of wide areas is above a twelfth of its
+/// range.
+Image shell_field(const Image& brightest, double depth, double steepest);
 
-/// Values for features of 2, 4, 8 ... 128 and 200 texels at a width of 1920; between them linear in the
-/// logarithm.
-double by_feature(const double (&values)[8], double feature);
+/// Light of a shell that is on neither of its walls: that of compact bright cores inside, and that of the
+/// dark sky around. On the walls a core would be seen twice, with a column between, and the sky would be a
+/// sheet with the picture's own straight edges.
+struct FilledLight {
+    Image core_share, sky_share;  // 0..1 of a column's light
+    Image core_reach;             // texels, half the depth
+};
 
-/// Gain of the first octave in a disk or between walls, for features of so many texels.
-double clump_gain(const Placement& placement, double feature);
-
-/// Octaves from `longest` on by halves, texels, as far down as a feature allows: small things float where
-/// their cloud floats. Each has `ratio` times the gain of the one before.
-NoiseStack stack(const Placement& placement, double longest, double feature, double first_gain, double ratio);
-
-/// These octaves, in texels at a width of 1920, of a field of their own.
-NoiseStack waves(const Placement& placement, std::uint32_t field,
-                 std::initializer_list<std::pair<double, double>> wave_and_gain);
+/// A core is what an opening by lines takes away, a fifth of the width long, in the best of twelve
+/// directions: filaments survive it. It is as deep as it is wide. The sky is what lies outside of the
+/// silhouette of shell_field().
+FilledLight find_filled_light(const Image& brightest);
 
 }  // namespace astrosplat

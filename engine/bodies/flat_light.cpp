@@ -1,17 +1,126 @@
 // Dots of one size are one blur: they are spread over the pixels about them, the widest first, on a grid as
 // coarse as their size allows, and blurred together with all wider ones. Corrections go the other way.
-#include "bodies/flat_light.h"
+// Spreading is compiled once per instruction set, with the same bits on each: weights are plain loops over a
+// few dots, which the compiler turns into vectors; then each dot adds nine vectors.
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "bodies/flat_light.cpp"
+#include <hwy/foreach_target.h>
+// after foreach_target
+#include <hwy/highway.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "bodies/spread_kernel.h"
+#include "bodies/front_fit.h"
 #include "core/parallel.h"
 #include "core/real.h"
 #include "image/blur.h"
 #include "image/channels.h"
 
+#ifndef ASTROSPLAT_SPREAD_DOTS  // the same for all targets
+#define ASTROSPLAT_SPREAD_DOTS
 namespace astrosplat {
+
+// Rows of a grid while light is added to them by quadratic B-splines. Pixels have four channels, so that each
+// is stored and loaded as one vector; and there are more of them all around, for what dots at the edges
+// spread.
+struct SpreadRows {
+    static constexpr std::int64_t margin = 2;
+    std::int64_t width, first, end;  // px; rows [first, end)
+    Image pixels = make_image(width + 2 * margin, end - first + 2 * margin, 4);
+};
+
+// Dots in the space of their picture, whose top left corner is at (-left, top).
+struct SpreadDots {
+    const glm::vec3* position;
+    const glm::vec3* color;
+    const float* alpha;
+    std::size_t count;
+    float left, top;  // texels
+    float scale;      // pixels a texel
+    float flux;       // pixels: the sum of the weights of a dot
+};
+
+}  // namespace astrosplat
+#endif
+
+HWY_BEFORE_NAMESPACE();
+namespace astrosplat::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+namespace {
+
+constexpr std::size_t block = 64;
+
+struct Block {
+    std::int32_t column[block], row[block];  // of the pixel that the dot lies in
+    float across[3][block], down[3][block];  // weights of that pixel and of its neighbours
+    alignas(16) float light[block][4];
+};
+
+// Quadratic B-spline weights of the step that a place >= 0 lies in and of its neighbours.
+HWY_FLATTEN void weigh(const float* HWY_RESTRICT place, std::size_t count, std::int32_t* HWY_RESTRICT middle,
+                       float (*HWY_RESTRICT weight)[block]) {
+    for (std::size_t i = 0; i < count; ++i) {
+        middle[i] = static_cast<std::int32_t>(place[i]);
+        const float t = place[i] - float(middle[i]) - 0.5f;
+        weight[0][i] = 0.5f * (0.5f - t) * (0.5f - t);
+        weight[1][i] = 0.75f - t * t;
+        weight[2][i] = 0.5f * (0.5f + t) * (0.5f + t);
+    }
+}
+
+HWY_FLATTEN void fill(const SpreadDots& dots, std::size_t first, std::size_t count, Block& out) {
+    float x[block], y[block];
+    for (std::size_t i = 0; i < count; ++i) {
+        x[i] = (dots.position[first + i].x + dots.left) * dots.scale;
+        y[i] = (dots.top - dots.position[first + i].y) * dots.scale;
+        const float share = dots.flux * dots.alpha[first + i];
+        for (int c = 0; c < 3; ++c) out.light[i][c] = dots.color[first + i][c] * share;
+        out.light[i][3] = 0.0f;
+    }
+    weigh(x, count, out.column, out.across);
+    weigh(y, count, out.row, out.down);
+}
+
+}  // namespace
+
+// Adds the light of dots, as far as it reaches the rows.
+HWY_FLATTEN void spread_dots(const SpreadDots& dots, SpreadRows& rows) {
+    const hn::CappedTag<float, 4> channels;
+    const std::int64_t next_row = 4 * rows.pixels.width;
+    Block now;
+    const auto spread = [&](std::size_t i, std::size_t channel) {
+        const auto light = hn::Load(channels, now.light[i] + channel);
+        const auto left = hn::Mul(light, hn::Set(channels, now.across[0][i])),
+                   middle = hn::Mul(light, hn::Set(channels, now.across[1][i])),
+                   right = hn::Mul(light, hn::Set(channels, now.across[2][i]));
+        float* to =
+            rows.pixels.at(now.column[i] + rows.margin - 1, now.row[i] - rows.first + rows.margin - 1) +
+            channel;
+        for (int j = 0; j < 3; ++j, to += next_row) {
+            const auto down = hn::Set(channels, now.down[j][i]);
+            hn::Store(hn::Add(hn::Load(channels, to), hn::Mul(left, down)), channels, to);
+            hn::Store(hn::Add(hn::Load(channels, to + 4), hn::Mul(middle, down)), channels, to + 4);
+            hn::Store(hn::Add(hn::Load(channels, to + 8), hn::Mul(right, down)), channels, to + 8);
+        }
+    };
+    for (std::size_t first = 0; first < dots.count; first += block) {
+        const std::size_t count = std::min(block, dots.count - first);
+        fill(dots, first, count, now);
+        for (std::size_t i = 0; i < count; ++i)
+            if (now.row[i] >= rows.first - 1 && now.row[i] <= rows.end)
+                for (std::size_t channel = 0; channel < 4; channel += hn::Lanes(channels)) spread(i, channel);
+    }
+}
+
+}  // namespace astrosplat::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace astrosplat {
+
+HWY_EXPORT(spread_dots);
+
 namespace {
 
 constexpr std::size_t dots_per_chunk = 4096;
@@ -64,6 +173,23 @@ Image sharpening_factor_of(const Fraction& fraction, double blur_px) {
     return factor;
 }
 
+// Beyond its edges a picture is mirrored.
+void add_rows(const SpreadRows& rows, Image& sum) {
+    for (std::int64_t row = rows.first - 1; row <= rows.end; ++row) {
+        const std::int64_t to = std::clamp<std::int64_t>(row, 0, sum.height - 1);
+        if (to < rows.first || to >= rows.end) continue;
+        const float* const here = rows.pixels.at(rows.margin, row - rows.first + rows.margin);
+        float* const there = sum.at(0, to);
+        const auto add = [&](std::int64_t column, std::int64_t to_column) {
+            for (int channel = 0; channel < 3; ++channel)
+                there[3 * to_column + channel] += here[4 * column + channel];
+        };
+        add(-1, 0);
+        for (std::int64_t column = 0; column < rows.width; ++column) add(column, column);
+        add(rows.width, rows.width - 1);
+    }
+}
+
 }  // namespace
 
 FlatLight::FlatLight(PictureSplats& dots, std::int64_t width, std::int64_t height, double filter_px)
@@ -78,13 +204,13 @@ FlatLight::FlatLight(PictureSplats& dots, std::int64_t width, std::int64_t heigh
 }
 
 void FlatLight::add_range(const DotRange& dots) {
-    const auto sigma = static_cast<double>(dots.sigma);
+    const auto sigma = double(dots.sigma);
     auto same = std::ranges::find_if(
         ranges_, [&](const Range& range) { return std::fabs(range.sigma - sigma) < same_sigma * sigma; });
     if (same == ranges_.end()) same = ranges_.insert(ranges_.end(), {sigma, {}});
     Range& range = *same;
-    const auto end = static_cast<std::size_t>(dots.end);
-    for (auto i = static_cast<std::size_t>(dots.begin); i < end; i += dots_per_chunk)
+    const auto end = std::size_t(dots.end);
+    for (auto i = std::size_t(dots.begin); i < end; i += dots_per_chunk)
         range.chunks.push_back({i, std::min(i + dots_per_chunk, end), texel(i).y, texel(i).y});
     parallel_each(range.chunks.size(), 16, [&](std::size_t c) {
         Chunk& chunk = range.chunks[c];
@@ -109,21 +235,21 @@ std::size_t FlatLight::grid_for(double variance) const {
 }
 
 void FlatLight::spread(const Range& range, double step, Image& sum) const {
-    const auto scale = static_cast<float>(1.0 / step);
-    const auto flux = static_cast<float>(static_cast<double>(footprint_share) * 2.0 * real::pi * range.sigma *
-                                         range.sigma / (step * step));
+    const auto scale = float(1.0 / step);
+    const auto flux =
+        float(double(footprint_share) * 2.0 * real::pi * range.sigma * range.sigma / (step * step));
     parallel_chunks(sum.height, rows_per_strip, [&](std::int64_t first_row, std::int64_t end_row, int) {
-        SpreadRows rows(sum.width, first_row, end_row);
-        const auto top = static_cast<float>(static_cast<double>(first_row - 1) * step),
-                   bottom = static_cast<float>(static_cast<double>(end_row + 1) * step);
+        SpreadRows rows{sum.width, first_row, end_row};
+        const auto top = float(double(first_row - 1) * step), bottom = float(double(end_row + 1) * step);
         for (const Chunk& chunk : range.chunks) {
             if (chunk.bottom < top || chunk.top > bottom) continue;
             const ShadedSplats& all = dots_.splats;
-            spread_dots({&all.position[chunk.begin], &all.color[chunk.begin], &all.alpha[chunk.begin],
-                         chunk.end - chunk.begin, middle_.x, middle_.y, scale, flux},
-                        rows);
+            HWY_DYNAMIC_DISPATCH(spread_dots)
+            ({&all.position[chunk.begin], &all.color[chunk.begin], &all.alpha[chunk.begin],
+              chunk.end - chunk.begin, middle_.x, middle_.y, scale, flux},
+             rows);
         }
-        rows.add_to(sum);
+        add_rows(rows, sum);
     });
 }
 
@@ -154,11 +280,11 @@ Image FlatLight::sum() const {
 bool FlatLight::has_few(const Range& range, const Grid& seen) const {
     std::size_t dots = 0;
     for (const Chunk& chunk : range.chunks) dots += chunk.end - chunk.begin;
-    return static_cast<double>(dots) < few_share * static_cast<double>(seen.width * seen.height);
+    return double(dots) < few_share * double(seen.width * seen.height);
 }
 
 void FlatLight::multiply(const Range& range, const Image& factor, double step) {
-    const auto scale = static_cast<float>(1.0 / step);
+    const auto scale = float(1.0 / step);
     parallel_each(range.chunks.size(), 16, [&](std::size_t c) {
         for (std::size_t i = range.chunks[c].begin; i < range.chunks[c].end; ++i) {
             const glm::vec2 at = texel(i) * scale;
@@ -205,3 +331,4 @@ void FlatLight::correct(Fraction fraction, bool overshoot) {
 }
 
 }  // namespace astrosplat
+#endif  // HWY_ONCE

@@ -11,7 +11,6 @@
 #include <numeric>
 #include <vector>
 
-#include "bodies/flat_light.h"
 #include "camera/camera.h"
 #include "core/color.h"
 #include "core/parallel.h"
@@ -24,6 +23,8 @@ namespace {
 
 constexpr double filter_px = 0.5;               // of the output's pixels, as scenes have it
 constexpr float sky = 0.002f;                   // added to both sides of a ratio
+constexpr float largest_ratio = 4.0f;           // of a step, and its inverse: DEPTH 5
+constexpr double largest_cell_ratio = 2.0;      // of a cell's flux, at the end
 constexpr int first_steps = 4, last_steps = 3;  // before the rendering and after it
 constexpr int last_steps_of_small = 6;          // pictures, which are all detail, and take no time
 constexpr double share_blur_px = 2.0;           // coarse pixels, of the share that is supposed
@@ -37,7 +38,7 @@ glm::dvec3 light_of_cell(const Image& image, std::int64_t column, std::int64_t r
     for (std::int64_t y = row * flux_cell_px; y < std::min((row + 1) * flux_cell_px, image.height); ++y)
         for (std::int64_t x = column * flux_cell_px; x < std::min((column + 1) * flux_cell_px, image.width);
              ++x)
-            for (int c = 0; c < 3; ++c) sum[c] += static_cast<double>(image.at(x, y)[c]);
+            for (int c = 0; c < 3; ++c) sum[c] += double(image.at(x, y)[c]);
     return sum;
 }
 
@@ -51,7 +52,9 @@ Image cell_ratio(const Image& wanted, const Image& seen) {
                              there = light_of_cell(wanted, column, row);
             for (int c = 0; c < 3; ++c)
                 cells.at(column, row)[c] =
-                    static_cast<float>(here[c] > 0.0 ? std::clamp(there[c] / here[c], 0.5, 2.0) : 1.0);
+                    float(here[c] > 0.0
+                              ? std::clamp(there[c] / here[c], 1.0 / largest_cell_ratio, largest_cell_ratio)
+                              : 1.0);
         }
     });
     return cells;
@@ -80,7 +83,7 @@ class FittedView {
   public:
     FittedView(PictureSplats& dots, const Image& picture, bool small)
         : target_(gaussian_blur(picture, filter_px)), flat_(dots, picture.width, picture.height, filter_px) {
-        settings_.pixel_filter = static_cast<float>(filter_px);
+        settings_.pixel_filter = float(filter_px);
         layer_.name = "front";
         layer_.splats = &dots.splats;
         layer_.absorbs = dots.absorbs;
@@ -89,16 +92,14 @@ class FittedView {
         const std::int64_t step = rendered_step(picture, small);
         settings_.width = (picture.width + step - 1) / step;
         settings_.height = (picture.height + step - 1) / step;
-        const auto width = static_cast<double>(step * settings_.width),
-                   height = static_cast<double>(step * settings_.height);  // texels
+        const auto width = double(step * settings_.width),
+                   height = double(step * settings_.height);  // texels
         CameraParams params;
         params.projection = Projection::orthographic;
-        params.target = 0.5 * glm::dvec3(width - static_cast<double>(picture.width),
-                                         static_cast<double>(picture.height) - height, 0.0);
-        params.position = params.target + glm::dvec3(0.0, 0.0, 2.0 * static_cast<double>(highest) + width);
+        params.target = 0.5 * glm::dvec3(width - double(picture.width), double(picture.height) - height, 0.0);
+        params.position = params.target + glm::dvec3(0.0, 0.0, 2.0 * double(highest) + width);
         params.height = height;
-        camera_ = make_camera(params, static_cast<double>(settings_.width),
-                              static_cast<double>(settings_.height), {});
+        camera_ = make_camera(params, double(settings_.width), double(settings_.height), {});
         settings_.memory_limit_bytes =
             std::max(least_projected_bytes, projected_bytes_a_texel * picture.width * picture.height);
     }
@@ -112,9 +113,7 @@ class FittedView {
     /// Takes the colours a step on from what is seen.
     void step_from(Image seen, bool overshoot) { flat_.correct(weighted_ratio(std::move(seen)), overshoot); }
     /// Takes them to the picture's flux, cell by cell.
-    void match_cells(const Image& seen) {
-        flat_.multiply(cell_ratio(target_, seen), static_cast<double>(flux_cell_px));
-    }
+    void match_cells(const Image& seen) { flat_.multiply(cell_ratio(target_, seen), double(flux_cell_px)); }
     /// On sRGB values of some rows.
     double psnr_db(const Image& seen) const;
 
@@ -165,8 +164,9 @@ Fraction FittedView::weighted_ratio(Image seen) {
     parallel_each(ratio.seen.pixels.size(), 65536, [&](std::size_t i) {
         float& here = ratio.seen.pixels[i];
         here += sky;
-        const float now = std::clamp((target_.pixels[i] + sky) / here, 0.25f, 4.0f);
-        const float step = first ? now : std::clamp(now * momentum_.pixels[i], 0.25f, 4.0f);
+        const auto held = [](float r) { return std::clamp(r, 1.0f / largest_ratio, largest_ratio); };
+        const float now = held((target_.pixels[i] + sky) / here);
+        const float step = first ? now : held(now * momentum_.pixels[i]);
         momentum_.pixels[i] = std::sqrt(step);
         ratio.wanted.pixels[i] = step * here;
     });
@@ -174,18 +174,17 @@ Fraction FittedView::weighted_ratio(Image seen) {
 }
 
 double FittedView::psnr_db(const Image& seen) const {
-    std::vector<double> rows(static_cast<std::size_t>((target_.height + psnr_step - 1) / psnr_step), 0.0);
+    std::vector<double> rows(std::size_t((target_.height + psnr_step - 1) / psnr_step), 0.0);
     parallel_each(rows.size(), 16, [&](std::size_t row) {
-        const float* const here = seen.at(0, static_cast<std::int64_t>(row) * psnr_step);
-        const float* const there = target_.at(0, static_cast<std::int64_t>(row) * psnr_step);
+        const float* const here = seen.at(0, std::int64_t(row) * psnr_step);
+        const float* const there = target_.at(0, std::int64_t(row) * psnr_step);
         for (std::int64_t i = 0; i < 3 * target_.width; ++i) {
-            const double difference =
-                static_cast<double>(display_srgb(here[i])) - static_cast<double>(display_srgb(there[i]));
+            const double difference = double(display_srgb(here[i])) - double(display_srgb(there[i]));
             rows[row] += difference * difference;
         }
     });
     const double error = std::accumulate(rows.begin(), rows.end(), 0.0);
-    const double mean = error / (3.0 * static_cast<double>(target_.width) * static_cast<double>(rows.size()));
+    const double mean = error / (3.0 * double(target_.width) * double(rows.size()));
     return -10.0 / real::log(10.0) * real::log(std::max(mean, 1e-12));
 }
 

@@ -8,20 +8,19 @@
 #include <utility>
 
 #include "core/log.h"
-#include "core/parallel.h"
 #include "core/real.h"
 #include "core/shared_maths.h"
 #include "image/channels.h"
 #include "image/resample.h"
-#include "source/textured_mesh.h"
 
 namespace astrosplat {
 namespace {
 
 // Found in films of W5, the Bubble, M42 and Sh2-106: no straight edge and no corner stands out.
-constexpr std::int64_t margin_rows = 16;
 constexpr std::int64_t local_px = 48;     // pixels along the longer side of the local brightness
 constexpr float brightest_detail = 1.6f;  // times the local brightness; what is brighter is a star
+constexpr float least_reach_of_disks = 0.2f, least_reach_of_clouds = 0.6f;  // of the margin: what is lit
+constexpr float dark_light = 0.004f, dark_share = 0.1f;  // light that is dark, and of the brightest rim
 constexpr std::uint32_t outline_seed = 0xed6eu;
 
 float fourth_root(float v) { return std::sqrt(std::sqrt(std::max(v, 0.0f))); }
@@ -29,16 +28,12 @@ float fourth_root(float v) { return std::sqrt(std::sqrt(std::max(v, 0.0f))); }
 // The mean of fourth roots, which a star hardly moves.
 Image local_brightness(const Image& image) {
     Image roots = unfilled_image(image.width, image.height, 3);
-    parallel_chunks(image.height, margin_rows, [&](std::int64_t begin, std::int64_t end, int) {
-        for (std::int64_t i = begin * image.width; i < end * image.width; ++i)
-            for (std::int64_t c = 0; c < 3; ++c)
-                roots.pixels[static_cast<std::size_t>(3 * i + c)] =
-                    fourth_root(image.pixels[static_cast<std::size_t>(image.channels * i + c)]);
+    for_each_pixel(image, [&](std::int64_t x, std::int64_t y) {
+        for (int c = 0; c < 3; ++c) roots.at(x, y)[c] = fourth_root(image.at(x, y)[c]);
     });
-    const double ratio = std::min(
-        1.0, static_cast<double>(local_px) / static_cast<double>(std::max(image.width, image.height)));
+    const double ratio = std::min(1.0, double(local_px) / double(std::max(image.width, image.height)));
     const auto side = [&](std::int64_t px) {
-        return std::max<std::int64_t>(1, std::llround(ratio * static_cast<double>(px)));
+        return std::max<std::int64_t>(1, std::llround(ratio * double(px)));
     };
     return reduced_by_area(roots, side(image.width), side(image.height));
 }
@@ -64,8 +59,7 @@ struct Surroundings {
     float nearer_at_corners = 0.0f;  // times; 0: corners are round
 
     glm::vec3 light_at(std::int64_t x, std::int64_t y) const {
-        const LinearSample near(local, (static_cast<float>(x) + 0.5f) * to_local,
-                                (static_cast<float>(y) + 0.5f) * to_local);
+        const LinearSample near(local, (float(x) + 0.5f) * to_local, (float(y) + 0.5f) * to_local);
         const glm::vec3 root(near.of(local, 0), near.of(local, 1), near.of(local, 2));
         return root * root * root * root;
     }
@@ -76,25 +70,24 @@ float brightest_of(const glm::vec3& light) { return std::max({light.r, light.g, 
 Surroundings surroundings_of(const Image& image, std::int64_t margin_px, StructureKind kind) {
     Surroundings around;
     const bool disk = kind == StructureKind::disk;
-    around.least_reach = disk ? 0.2f : 0.6f;
+    around.least_reach = disk ? least_reach_of_disks : least_reach_of_clouds;
     around.nearer_at_corners = disk ? 1.0f : 0.0f;
     around.local = local_brightness(image);
-    around.to_local = static_cast<float>(around.local.width) / static_cast<float>(image.width);
-    around.middle = 0.5f * glm::vec2(static_cast<float>(image.width), static_cast<float>(image.height));
-    around.margin_px = static_cast<float>(margin_px);
-    for (std::int64_t x = 0; x < image.width; ++x)
-        for (const std::int64_t y : {std::int64_t{0}, image.height - 1})
-            around.brightest = std::max(around.brightest, brightest_of(around.light_at(x, y)));
-    for (std::int64_t y = 0; y < image.height; ++y)
-        for (const std::int64_t x : {std::int64_t{0}, image.width - 1})
-            around.brightest = std::max(around.brightest, brightest_of(around.light_at(x, y)));
+    around.to_local = float(around.local.width) / float(image.width);
+    around.middle = 0.5f * glm::vec2(float(image.width), float(image.height));
+    around.margin_px = float(margin_px);
+    const auto see = [&](std::int64_t x, std::int64_t y) {
+        around.brightest = std::max(around.brightest, brightest_of(around.light_at(x, y)));
+    };
+    for (std::int64_t x = 0; x < image.width; ++x) see(x, 0), see(x, image.height - 1);
+    for (std::int64_t y = 0; y < image.height; ++y) see(0, y), see(image.width - 1, y);
     return around;
 }
 
 // How far light goes on from a place on the rim, as a share of the margin: as far as a disk whose light falls
 // exponentially takes to grow dark, so that outlines follow the galaxy and not the frame of its picture.
 float reach_of(float rim_light, float brightest_rim, float least) {
-    const float dark = std::min(0.004f, 0.1f * brightest_rim);
+    const float dark = std::min(dark_light, dark_share * brightest_rim);
     if (dark <= 0.0f) return least;
     const float share =
         shared::as_log(std::max(rim_light, dark) / dark) / shared::as_log(brightest_rim / dark);
@@ -105,8 +98,9 @@ float reach_of(float rim_light, float brightest_rim, float least) {
 // to the picture at its corners. In: px from the picture's upper left.
 float fade_at(const Surroundings& around, glm::vec2 px, float away_px, float reach_px) {
     constexpr float bays[] = {0.45f, 0.3f, 0.2f}, raggedness = 1.1f, steepness = 1.0f;
-    float noise = 0.0f, frequency = 0.5f / around.margin_px;
-    for (std::uint32_t octave = 0; octave < 3; ++octave, frequency *= 2.2f)
+    constexpr float widest_bay = 2.0f, bay_ratio = 2.2f;  // in margins; of each size to the next
+    float noise = 0.0f, frequency = 1.0f / widest_bay / around.margin_px;
+    for (std::uint32_t octave = 0; octave < 3; ++octave, frequency *= bay_ratio)
         noise +=
             bays[octave] * shared::as_noise(px.x * frequency, px.y * frequency, 0.5f, outline_seed + octave);
     const glm::vec2 from_middle = px / around.middle - 1.0f;
@@ -122,8 +116,7 @@ float fade_at(const Surroundings& around, glm::vec2 px, float away_px, float rea
 void continue_texel(const Surroundings& around, const Image& image, std::int64_t x, std::int64_t y,
                     float* to) {
     const std::int64_t from_x = mirrored(x, image.width), from_y = mirrored(y, image.height);
-    const auto dx = static_cast<float>(beyond(x, image.width)),
-               dy = static_cast<float>(beyond(y, image.height));
+    const auto dx = float(beyond(x, image.width)), dy = float(beyond(y, image.height));
     const glm::vec3 rim = around.light_at(std::clamp<std::int64_t>(x, 0, image.width - 1),
                                           std::clamp<std::int64_t>(y, 0, image.height - 1));
     const float reach_px =
@@ -134,7 +127,7 @@ void continue_texel(const Surroundings& around, const Image& image, std::int64_t
         return;
     }
     const glm::vec3 near = around.light_at(from_x, from_y);
-    const glm::vec2 px(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);
+    const glm::vec2 px(float(x) + 0.5f, float(y) + 0.5f);
     const float fade = fade_at(around, px, away_px, reach_px);
     for (int c = 0; c < 3; ++c) {
         const float level = std::min(rim[c], near[c]);
@@ -147,34 +140,26 @@ Image continued(const Texture& texture, std::int64_t margin_px, StructureKind ki
     const Image& image = texture.image;
     const Surroundings around = surroundings_of(image, margin_px, kind);
     Image out = unfilled_image(image.width + 2 * margin_px, image.height + 2 * margin_px, image.channels);
-    parallel_chunks(out.height, margin_rows, [&](std::int64_t begin, std::int64_t end, int) {
-        for (std::int64_t row = begin; row < end; ++row) {
-            for (std::int64_t column = 0; column < out.width; ++column) {
-                const std::int64_t x = column - margin_px, y = row - margin_px;
-                const bool inside = beyond(x, image.width) == 0 && beyond(y, image.height) == 0;
-                float* const to = out.at(column, row);
-                std::copy_n(image.at(mirrored(x, image.width), mirrored(y, image.height)), image.channels,
-                            to);
-                if (texture.alpha_from_light) to[3] = 1.0f;
-                if (!inside) continue_texel(around, image, x, y, to);
-            }
-        }
+    for_each_pixel(out, [&](std::int64_t column, std::int64_t row) {
+        const std::int64_t x = column - margin_px, y = row - margin_px;
+        const bool inside = beyond(x, image.width) == 0 && beyond(y, image.height) == 0;
+        float* const to = out.at(column, row);
+        std::copy_n(image.at(mirrored(x, image.width), mirrored(y, image.height)), image.channels, to);
+        if (texture.alpha_from_light) to[3] = 1.0f;
+        if (!inside) continue_texel(around, image, x, y, to);
     });
     return out;
 }
 
 glm::dvec2 add_margin(TexturedMesh& mesh, double margin, StructureKind kind) {
     Texture& texture = mesh.textures.front();
-    const auto width = static_cast<double>(texture.image.width),
-               height = static_cast<double>(texture.image.height);
+    const auto width = double(texture.image.width), height = double(texture.image.height);
     const std::int64_t margin_px = std::llround(margin * width);
     if (margin_px == 0) return {1.0, 1.0};
     texture.image = continued(texture, margin_px, kind);
     texture.alpha_from_light = false;
-    const glm::dvec2 times(static_cast<double>(texture.image.width) / width,
-                           static_cast<double>(texture.image.height) / height);
-    for (glm::vec3& p : mesh.mesh.positions)
-        p = {static_cast<float>(p.x * times.x), p.y, static_cast<float>(p.z * times.y)};
+    const glm::dvec2 times(double(texture.image.width) / width, double(texture.image.height) / height);
+    for (glm::vec3& p : mesh.mesh.positions) p = {float(p.x * times.x), p.y, float(p.z * times.y)};
     if (mesh.camera) mesh.camera = widened(*mesh.camera, times);
     if (mesh.camera) apply_camera_uv(mesh.mesh, *mesh.camera);
     return times;
@@ -183,15 +168,13 @@ glm::dvec2 add_margin(TexturedMesh& mesh, double margin, StructureKind kind) {
 }  // namespace
 
 Image mirrored_margin(const Image& image, double margin) {
-    const auto margin_px = std::llround(static_cast<double>(image.width) * margin / (1.0 + 2.0 * margin));
+    const auto margin_px = std::llround(double(image.width) * margin / (1.0 + 2.0 * margin));
     const std::int64_t width = image.width - 2 * margin_px, height = image.height - 2 * margin_px;
     Image out = unfilled_image(image.width, image.height, image.channels);
-    parallel_chunks(out.height, margin_rows, [&](std::int64_t begin, std::int64_t end, int) {
-        for (std::int64_t y = begin; y < end; ++y)
-            for (std::int64_t x = 0; x < out.width; ++x)
-                std::copy_n(image.at(margin_px + mirrored(x - margin_px, width),
-                                     margin_px + mirrored(y - margin_px, height)),
-                            image.channels, out.at(x, y));
+    for_each_pixel(out, [&](std::int64_t x, std::int64_t y) {
+        std::copy_n(
+            image.at(margin_px + mirrored(x - margin_px, width), margin_px + mirrored(y - margin_px, height)),
+            image.channels, out.at(x, y));
     });
     return out;
 }

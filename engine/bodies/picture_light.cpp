@@ -13,13 +13,11 @@
 namespace astrosplat {
 namespace {
 
-constexpr std::int64_t rows_per_chunk = 16;
-
 // 0 at the edge, 1 from `width` px inwards.
 float edge_fade(std::int64_t i, std::int64_t count, double width) {
     if (width <= 0.0) return 1.0f;
     const double inside = std::min(double(i) + 0.5, double(count - i) - 0.5) / width;
-    return static_cast<float>(real::smoothstep(std::clamp(inside, 0.0, 1.0)));
+    return float(real::smoothstep(std::clamp(inside, 0.0, 1.0)));
 }
 
 float finite_light(float value) { return value > 0.0f && std::isfinite(value) ? value : 0.0f; }
@@ -28,24 +26,17 @@ float finite_light(float value) { return value > 0.0f && std::isfinite(value) ? 
 
 PictureLight picture_light(const Texture& texture, double border) {
     const Image& image = texture.image;
-    const double width_px = border * static_cast<double>(image.width);
+    const double width_px = border * double(image.width);
     PictureLight result{unfilled_image(image.width, image.height, 3),
                         unfilled_image(image.width, image.height, 1), texture.times > 1};
-    parallel_chunks(image.height, rows_per_chunk, [&](std::int64_t begin, std::int64_t end, int) {
-        for (std::int64_t y = begin; y < end; ++y) {
-            const float fade_y = edge_fade(y, image.height, width_px);
-            for (std::int64_t x = 0; x < image.width; ++x) {
-                const float fade = fade_y * edge_fade(x, image.width, width_px);
-                const float* const in = image.at(x, y);
-                for (int c = 0; c < 3; ++c) result.light.at(x, y)[c] = fade * finite_light(in[c]);
-                *result.alpha.at(x, y) =
-                    texture.alpha_from_light ? fade : fade * std::clamp(finite_light(in[3]), 0.0f, 1.0f);
-            }
-        }
+    for_each_pixel(image, [&](std::int64_t x, std::int64_t y) {
+        const float fade = edge_fade(y, image.height, width_px) * edge_fade(x, image.width, width_px);
+        const float* const in = image.at(x, y);
+        for (int c = 0; c < 3; ++c) result.light.at(x, y)[c] = fade * finite_light(in[c]);
+        *result.alpha.at(x, y) =
+            texture.alpha_from_light ? fade : fade * std::clamp(finite_light(in[3]), 0.0f, 1.0f);
     });
-    if (std::all_of(result.alpha.pixels.begin(), result.alpha.pixels.end(),
-                    [](float a) { return a == 1.0f; }))
-        result.alpha = {};
+    if (std::ranges::all_of(result.alpha.pixels, [](float a) { return a == 1.0f; })) result.alpha = {};
     return result;
 }
 
@@ -98,7 +89,7 @@ Image take_band(Image& light, double blur, bool fill_holes) {
     const Image share = common_share(std::move(brightest), blur);
     Image band = unfilled_image(light.width, light.height, 3);
     for (std::size_t c = 0; c < 3; ++c) {
-        Image channel = channel_of(light, static_cast<int>(c));
+        Image channel = channel_of(light, int(c));
         multiply(channel, factor);
         const Image mean = gaussian_blur(channel, blur);
         parallel_each(mean.pixels.size(), 65536, [&](std::size_t i) {
@@ -116,11 +107,10 @@ Image take_band(Image& light, double blur, bool fill_holes) {
 
 std::vector<Band> make_bands(std::int64_t width_px) {
     std::vector<Band> bands;
-    const double coarsest = coarsest_blur_share * static_cast<double>(width_px);
+    const double coarsest = coarsest_blur_share * double(width_px);
     double blur = finest_blur_px;
-    for (; blur < 1.2 * coarsest; blur *= 2.0)
-        bands.push_back({static_cast<int>(bands.size()), blur, blur * 5.0 / 3.0});
-    bands.push_back({static_cast<int>(bands.size()), blur / 2.0, blur * 1.25});
+    for (; blur < 1.2 * coarsest; blur *= 2.0) bands.push_back({int(bands.size()), blur, blur * 5.0 / 3.0});
+    bands.push_back({int(bands.size()), blur / 2.0, blur * 1.25});
     return bands;
 }
 
@@ -128,7 +118,7 @@ void split_bands(Image light, const std::vector<Band>& bands, bool fill_holes,
                  const std::function<void(const Band&, const Image&)>& visit) {
     assert(light.channels == 3 && !bands.empty());
     for (const Band& band : bands) {
-        const bool last = band.index + 1 == static_cast<int>(bands.size());
+        const bool last = band.index + 1 == int(bands.size());
         visit(band, last ? light : take_band(light, band.blur, fill_holes && band.blur >= finest_hole_px));
     }
 }

@@ -1,7 +1,7 @@
 // Dots are counted on samples: squares spread evenly over the picture are split into bands, and the shares of
 // dots that are kept are added up pixel by pixel. Coarse bands differ there from the whole picture's, but
 // have few dots.
-#include "bodies/picture_size.h"
+#include "bodies/bodies.h"
 
 #include <fmt/format.h>
 
@@ -13,8 +13,8 @@
 #include "bodies/dust.h"
 #include "bodies/picture_light.h"
 #include "bodies/picture_splats.h"
-#include "bodies/picture_stars.h"
 #include "bodies/placement.h"
+#include "bodies/stars.h"
 #include "core/error.h"
 #include "core/log.h"
 #include "core/memory.h"
@@ -47,9 +47,8 @@ Texture part_of(const Texture& whole, std::int64_t x, std::int64_t y, std::int64
 template <class Value>
 double sum_inside(const Image& part, const Value& value) {
     double sum = 0.0;
-    for (std::int64_t y = margin_px; y < part.height - margin_px; ++y)
-        for (std::int64_t x = margin_px; x < part.width - margin_px; ++x)
-            sum += static_cast<double>(value(x, y));
+    for_each_between(part, margin_px, margin_px, part.width - margin_px - 1, part.height - margin_px - 1,
+                     [&](std::int64_t x, std::int64_t y) { sum += double(value(x, y)); });
     return sum;
 }
 
@@ -68,13 +67,13 @@ double dots_a_texel(const Texture& part, const StructureParams& params, const Pl
     double dots = 0.0;
     split_bands(std::move(rest), bands, dust_of(params) > 0.0, [&](const Band& band, const Image& light) {
         std::ranges::transform(emission.pixels, light.pixels, emission.pixels.begin(), std::plus());
-        const bool coarsest = band.index + 1 == static_cast<int>(bands.size());
+        const bool coarsest = band.index + 1 == int(bands.size());
         const BandDots size = band_dots(band, coarsest, placement)[0];
         const double kept = sum_inside(brightest, [&](std::int64_t x, std::int64_t y) {
             const float* const p = light.at(x, y);
             return shows(x, y) ? kept_share(std::max({p[0], p[1], p[2]}), *brightest.at(x, y), size) : 0.0f;
         });
-        dots += kept / static_cast<double>(size.spacing * size.spacing);
+        dots += kept / double(size.spacing * size.spacing);
     });
     if (dust_of(params) > 0.0) {
         const Image seen = transmittance_of(without_stars, emission, picture.alpha);
@@ -100,35 +99,33 @@ Samples samples_of(std::int64_t size) {
 
 double most_dots(std::int64_t width, std::int64_t height, const StructureParams& params) {
     const Placement placement = placement_without_fields(width, height, params, 0.0);
-    double each_texel = dust_of(params) > 0.0 ? static_cast<double>(expected_dust_dots(0.0f, 1.0)) : 0.0;
+    double each_texel = dust_of(params) > 0.0 ? double(expected_dust_dots(0.0f, 1.0)) : 0.0;
     const std::vector<Band> bands = make_bands(width);
     for (const Band& band : bands) {
-        const bool coarsest = band.index + 1 == static_cast<int>(bands.size());
+        const bool coarsest = band.index + 1 == int(bands.size());
         float spacing = std::numeric_limits<float>::infinity();  // a place has dots of one size
         for (const BandDots& size : band_dots(band, coarsest, placement))
             spacing = std::min(spacing, size.spacing);
-        each_texel += 1.0 / static_cast<double>(spacing * spacing);
+        each_texel += 1.0 / double(spacing * spacing);
     }
-    return each_texel * static_cast<double>(width * height);
+    return each_texel * double(width * height);
 }
 
 double expected_dots(const Texture& texture, const StructureParams& params) {
     const Image& image = texture.image;
-    if (std::min(image.width, image.height) <= 2 * margin_px)
-        return static_cast<double>(image.width * image.height);
+    if (std::min(image.width, image.height) <= 2 * margin_px) return double(image.width * image.height);
     const Placement placement = placement_without_fields(image.width, image.height, params, 0.0);
     const std::vector<Band> bands = make_bands(image.width);
     const Samples columns = samples_of(image.width), rows = samples_of(image.height);
-    std::vector<double> densities(static_cast<std::size_t>(columns.count * rows.count));
+    std::vector<double> densities(std::size_t(columns.count * rows.count));
     parallel_each(densities.size(), 1, [&](std::size_t i) {
-        const auto number = static_cast<std::int64_t>(i);
+        const auto number = std::int64_t(i);
         const Texture part = part_of(texture, columns.begin(number % columns.count),
                                      rows.begin(number / columns.count), columns.length, rows.length);
         densities[i] = dots_a_texel(part, params, placement, bands);
     });
-    const double mean =
-        std::accumulate(densities.begin(), densities.end(), 0.0) / static_cast<double>(densities.size());
-    return mean * static_cast<double>(image.width * image.height);
+    const double mean = std::accumulate(densities.begin(), densities.end(), 0.0) / double(densities.size());
+    return mean * double(image.width * image.height);
 }
 
 std::vector<PictureOnMesh> pictures_of(std::span<const TexturedMesh> meshes) {
@@ -150,7 +147,7 @@ Image at_area(const Image& image, double area, double smallest_px) {
 std::int64_t expected_dots(std::span<const TexturedMesh> meshes, const StructureParams& params) {
     double dots = 0.0;
     for (const PictureOnMesh& picture : pictures_of(meshes)) dots += expected_dots(picture.texture(), params);
-    return static_cast<std::int64_t>(dots);
+    return std::int64_t(dots);
 }
 
 std::int64_t most_texels_within(std::int64_t bytes) {
@@ -173,17 +170,17 @@ std::int64_t most_bytes(std::span<const TexturedMesh> meshes, const StructurePar
     double dots = 0.0;
     for (const PictureOnMesh& picture : pictures_of(meshes))
         dots += most_dots(picture.texture().image.width, picture.texture().image.height, params);
-    return bodies_memory_bytes(meshes, static_cast<std::int64_t>(dots));
+    return bodies_memory_bytes(meshes, std::int64_t(dots));
 }
 
 // How much of the limit is used; more than 1 is too much.
 double used_share(std::span<const TexturedMesh> meshes, const StructureParams& params,
                   const BodiesLimit& limit) {
     const std::int64_t dots = expected_dots(meshes, params);
-    const double memory = static_cast<double>(bodies_memory_bytes(meshes, dots)) /
-                          static_cast<double>(std::max<std::int64_t>(1, limit.room_bytes));
+    const double memory =
+        double(bodies_memory_bytes(meshes, dots)) / double(std::max<std::int64_t>(1, limit.room_bytes));
     if (limit.most_dots <= 0) return memory;
-    return std::max(memory, static_cast<double>(dots) / static_cast<double>(limit.most_dots));
+    return std::max(memory, double(dots) / double(limit.most_dots));
 }
 
 Texture* largest_texture(std::vector<TexturedMesh>& meshes) {
@@ -206,7 +203,7 @@ ImageSize size_within(const Texture& texture, std::int64_t most_texels) {
     const ImageSize whole =
         enlarged_before ? ImageSize{texture.image.width, texture.image.height} : size_in_file(texture);
     if (most_texels <= 0) return whole;
-    return size_of_area(whole.width, whole.height, static_cast<double>(most_texels), 1.0);
+    return size_of_area(whole.width, whole.height, double(most_texels), 1.0);
 }
 
 // Reduces one picture until the limit is just kept, as far as this one can do it.
@@ -214,9 +211,9 @@ void reduce(Texture& texture, double first_share, const std::function<double()>&
     constexpr int most_tries = 8;
     constexpr double aimed_at = 0.91, enough = 0.87;  // what is told may be too little by 8 %
     const Image whole = std::move(texture.image);
-    double area = static_cast<double>(whole.width * whole.height), share = first_share;
+    double area = double(whole.width * whole.height), share = first_share;
     for (int i = 0; i < most_tries && (share > 1.0 || share < enough); ++i) {
-        area = std::min(area * aimed_at / share, static_cast<double>(whole.width * whole.height));
+        area = std::min(area * aimed_at / share, double(whole.width * whole.height));
         texture.image = at_area(whole, area, 64.0);
         share = share_now();
     }
@@ -254,8 +251,7 @@ void reduce_pictures(std::vector<TexturedMesh>& meshes, const StructureParams& p
         reduced.push_back(largest);
         const bool few = limit.most_dots <= 0 || expected_dots(meshes, params) < limit.most_dots * 4 / 5;
         const std::string why =
-            few ? fmt::format("would not fit into {} of memory",
-                              human_bytes(static_cast<double>(limit.room_bytes)))
+            few ? fmt::format("would not fit into {} of memory", human_bytes(double(limit.room_bytes)))
                 : fmt::format("would be more than {}", human_count(limit.most_dots, "dot"));
         const std::string message =
             fmt::format("layer '{}': a picture of {}x{} px is reduced to {}x{}, for its bodies {}",

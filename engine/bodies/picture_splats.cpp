@@ -13,7 +13,7 @@
 namespace astrosplat {
 namespace {
 
-using shared::as_exp, shared::as_hash, shared::as_log, shared::as_pow, shared::as_uniform;
+using shared::as_exp, shared::as_log, shared::as_pow, shared::as_uniform;
 
 constexpr float cell_jitter = 0.5f;         // of the lattice's spacing
 constexpr float least_brightness = 0.002f;  // below which opacity falls to 0: empty sky hides nothing
@@ -59,112 +59,83 @@ void shade(const Candidate& dot, float footprint, const Opacity& opacity, std::s
 }
 
 // The dots of a band that are of one size.
-class DotsOfBand {
-  public:
-    DotsOfBand(const Image& band, const BandDots& dots, const Image& brightest, const Image& alpha,
-               const Placement& placement, const Opacity& opacity)
-        : band_(band),
-          dots_(dots),
-          brightest_(brightest),
-          alpha_(alpha),
-          placement_(placement),
-          opacity_(opacity),
-          lattice_(band.width, band.height, dots.spacing),
-          first_id_(static_cast<std::uint64_t>(dots.index) << 48 | static_cast<std::uint64_t>(dots.size)
-                                                                       << 40),
-          of_any_thickness_(dots.thickness_from <= 0.0f && std::isinf(dots.thickness_to)) {}
+struct DotsOfBand {
+    const Image& band;
+    const BandDots& dots;
+    const Image &brightest, &alpha;
+    const Placement& placement;
+    const Opacity& opacity;
+    DotLattice lattice{band.width, band.height, dots.spacing};
+    bool of_any_thickness = dots.thickness_from <= 0.0f && std::isinf(dots.thickness_to);
 
-    DotRange add_to(PictureSplats& out) const {
-        return add_lattice_dots(
-            lattice_, dots_.sigma, [&](const DotCell& cell) { return candidate_of(cell).has_value(); },
-            [&](std::span<const DotCell> cells, std::size_t first) { make_dots(cells, first, out); }, out);
-    }
-
-  private:
     // A cell's dot, where there is light and it is not thinned out.
     std::optional<Candidate> candidate_of(const DotCell& cell) const {
         Candidate dot;
-        dot.id = first_id_ + lattice_.number(cell);
+        dot.id = std::uint64_t(dots.index) << 48 | std::uint64_t(dots.size) << 40;
+        dot.id += lattice.number(cell);
         const auto place_in = [&](std::int64_t step, std::uint32_t purpose) {
-            const float random = as_uniform(hash_of(dot.id, purpose));
-            return (static_cast<float>(step) + 0.5f + cell_jitter * (random - 0.5f)) * dots_.spacing;
+            const float random = as_uniform(placement.hash_of(dot.id, purpose));
+            return (float(step) + 0.5f + cell_jitter * (random - 0.5f)) * dots.spacing;
         };
         dot.x = place_in(cell.column, shared::PURPOSE_JITTER_X);
         dot.y = place_in(cell.row, shared::PURPOSE_JITTER_Y);
-        if (dot.x >= static_cast<float>(band_.width) || dot.y >= static_cast<float>(band_.height)) return {};
-        if (!of_any_thickness_) {
-            const float thickness = placement_.thickness_at(dot.x, dot.y);
-            if (thickness < dots_.thickness_from || thickness >= dots_.thickness_to) return {};
+        if (dot.x >= float(band.width) || dot.y >= float(band.height)) return {};
+        if (!of_any_thickness) {
+            const float thickness = placement.thickness_at(dot.x, dot.y);
+            if (thickness < dots.thickness_from || thickness >= dots.thickness_to) return {};
         }
-        const LinearSample place(band_, dot.x, dot.y);
-        dot.light = {place.of(band_, 0), place.of(band_, 1), place.of(band_, 2)};
+        const LinearSample place(band, dot.x, dot.y);
+        dot.light = {place.of(band, 0), place.of(band, 1), place.of(band, 2)};
         dot.amplitude = std::max({dot.light.x, dot.light.y, dot.light.z});
         if (dot.amplitude <= 0.0f) return {};
-        dot.opacity_limit = alpha_.pixels.empty() ? 1.0f : place.of(alpha_);
+        dot.opacity_limit = alpha.pixels.empty() ? 1.0f : place.of(alpha);
         if (dot.opacity_limit <= 0.0f) return {};
-        dot.brightest = place.of(brightest_);
-        const float kept = kept_share(dot.amplitude, dot.brightest, dots_);
-        if (as_uniform(hash_of(dot.id, shared::PURPOSE_DENSITY)) >= kept) return {};
-        const float gain = dots_.spacing * dots_.spacing / kept;
+        dot.brightest = place.of(brightest);
+        const float kept = kept_share(dot.amplitude, dot.brightest, dots);
+        if (as_uniform(placement.hash_of(dot.id, shared::PURPOSE_DENSITY)) >= kept) return {};
+        const float gain = dots.spacing * dots.spacing / kept;
         dot.light *= gain;
         dot.amplitude *= gain;
         return dot;
     }
 
-    std::uint32_t hash_of(std::uint64_t id, std::uint32_t purpose) const {
-        return as_hash(placement_.seed, static_cast<std::uint32_t>(id), static_cast<std::uint32_t>(id >> 32),
-                       purpose);
-    }
-
     void make_dots(std::span<const DotCell> cells, std::size_t first, PictureSplats& out) const {
-        const float footprint =
-            footprint_share * static_cast<float>(2.0 * real::pi) * dots_.sigma * dots_.sigma;
+        const float footprint = footprint_share * float(2.0 * real::pi) * dots.sigma * dots.sigma;
         PlacedBlock block;
-        block.count = static_cast<int>(cells.size());
+        block.count = int(cells.size());
         for (std::size_t i = 0; i < cells.size(); ++i) {
             Candidate dot = *candidate_of(cells[i]);
-            dot.hiding = hiding_of(dots_, placement_, placement_.thickness_at(dot.x, dot.y));
+            dot.hiding = hiding_of(dots, placement, placement.thickness_at(dot.x, dot.y));
             block.x[i] = dot.x;
             block.y[i] = dot.y;
-            block.random[i] = hash_of(dot.id, shared::PURPOSE_DEPTH);
-            shade(dot, footprint, opacity_, first + i, out.splats);
+            block.random[i] = placement.hash_of(dot.id, shared::PURPOSE_DEPTH);
+            shade(dot, footprint, opacity, first + i, out.splats);
         }
-        place(placement_, dots_, block);
-        const float middle_x = 0.5f * static_cast<float>(band_.width);
-        const float middle_y = 0.5f * static_cast<float>(band_.height);
+        place(placement, dots, block);
         for (std::size_t i = 0; i < cells.size(); ++i) {
-            out.splats.position[first + i] = {block.x[i] - middle_x, middle_y - block.y[i], block.z[i]};
+            out.splats.position[first + i] = placement.among_dots(block.x[i], block.y[i], block.z[i]);
             out.distance[first + i] = block.distance[i];
         }
     }
-
-    const Image& band_;
-    const BandDots& dots_;
-    const Image& brightest_;
-    const Image& alpha_;
-    const Placement& placement_;
-    const Opacity& opacity_;
-    DotLattice lattice_;
-    std::uint64_t first_id_;
-    bool of_any_thickness_;
 };
 
 }  // namespace
 
 void reserve_dots(PictureSplats& set, std::int64_t count) {
-    const auto size = static_cast<std::size_t>(count);
+    const auto size = std::size_t(count);
     for_each_array(set.splats, [&](auto& values) { values.reserve(size); });
     set.distance.reserve(size);
 }
 
 void resize_dots(PictureSplats& set, std::int64_t count) {
-    const auto size = static_cast<std::size_t>(count);
+    const auto size = std::size_t(count);
     for_each_array(set.splats, [&](auto& values) { values.resize(size); });
     set.distance.resize(size);
 }
 
 float kept_share(float amplitude, float brightest, const BandDots& dots) {
-    return std::min(1.0f, amplitude / (dots.threshold * (brightest + 0.03f)));
+    constexpr float dark_sky = 0.03f;  // DEPTH 3
+    return std::min(1.0f, amplitude / (dots.threshold * (brightest + dark_sky)));
 }
 
 float Opacity::depth_of(float brightest, float alpha) const {
@@ -175,35 +146,49 @@ float Opacity::depth_of(float brightest, float alpha) const {
 
 void add_band(const Image& band, const BandDots& dots, const Image& brightest, const Image& alpha,
               const Placement& placement, const Opacity& opacity, PictureSplats& out) {
-    out.ranges.push_back(DotsOfBand(band, dots, brightest, alpha, placement, opacity).add_to(out));
+    out.ranges.push_back(
+        add_lattice_dots(DotsOfBand{band, dots, brightest, alpha, placement, opacity}, dots.sigma, out));
 }
 
-void add_stars(std::span<const Star> stars, std::uint32_t first_number, const Placement& placement,
+namespace {
+
+// Those of about one size. `first_number`: in ids.
+void add_stars(std::span<const Star> stars, std::size_t first_number, const Placement& placement,
                const Opacity& opacity, PictureSplats& out) {
     const std::int64_t begin = out.splats.size();
-    resize_dots(out, begin + static_cast<std::int64_t>(stars.size()));
-    const float middle_x = 0.5f * static_cast<float>(placement.picture_width),
-                middle_y = 0.5f * static_cast<float>(placement.picture_height);
+    resize_dots(out, begin + std::ssize(stars));
     double sigmas = 0.0;
     for (std::size_t i = 0; i < stars.size(); ++i) {
         const Star& star = stars[i];
-        const std::size_t at = static_cast<std::size_t>(begin) + i;
+        const std::size_t at = std::size_t(begin) + i;
         const float spread = star_height(placement, star);
         const float peak = std::max({star.peak.x, star.peak.y, star.peak.z, 1e-6f});
         const float alpha =
             std::clamp(star_opacity * opacity.depth_of(peak, 1.0f) / footprint_share, 1e-3f, 1.0f);
-        out.splats.position[at] = {star.x - middle_x, middle_y - star.y,
-                                   spread + middle_plane(placement, star.x, star.y)};
+        out.splats.position[at] =
+            placement.among_dots(star.x, star.y, spread + middle_plane(placement, star.x, star.y));
         out.splats.color[at] = star.peak / alpha;
         out.splats.alpha[at] = alpha;
         out.splats.radius[at] = radius_sigmas * star.sigma;
         out.splats.id[at] = star_band << 48 | (first_number + i);
         out.distance[at] = std::fabs(spread);
-        sigmas += static_cast<double>(star.sigma);
+        sigmas += double(star.sigma);
     }
-    if (!stars.empty())
-        out.ranges.push_back(
-            {begin, out.splats.size(), static_cast<float>(sigmas / static_cast<double>(stars.size()))});
+    out.ranges.push_back({begin, out.splats.size(), float(sigmas / double(stars.size()))});
+}
+
+}  // namespace
+
+void add_picture_stars(const PictureStars& stars, const Placement& placement, const Opacity& opacity,
+                       PictureSplats& out) {
+    constexpr float about_one_size = 1.4f;  // widest over narrowest: each more takes the front's fit longer
+    const std::span<const Star> all(stars.all);
+    for (std::size_t begin = 0, end = 0; begin < all.size(); begin = end) {
+        const bool ordinary = begin < stars.ordinary;
+        const float widest = ordinary ? about_one_size * all[begin].sigma : all[begin].sigma;
+        while (end < (ordinary ? stars.ordinary : all.size()) && all[end].sigma <= widest) ++end;
+        add_stars(all.subspan(begin, end - begin), begin, placement, opacity, out);
+    }
 }
 
 }  // namespace astrosplat

@@ -15,7 +15,6 @@
 #include "bodies/placement.h"
 #include "bodies/stars.h"
 #include "core/parallel.h"
-#include "core/progress.h"
 #include "splats/shaded_splats.h"
 
 namespace astrosplat {
@@ -62,9 +61,9 @@ float kept_share(float amplitude, float brightest, const BandDots& dots);
 void add_band(const Image& band, const BandDots& dots, const Image& brightest, const Image& alpha,
               const Placement& placement, const Opacity& opacity, PictureSplats& out);
 
-/// Adds one dot a star of about one size, at a depth of the layer's own distribution. `first_number`: in ids.
-void add_stars(std::span<const Star> stars, std::uint32_t first_number, const Placement& placement,
-               const Opacity& opacity, PictureSplats& out);
+/// Adds one dot for each Gaussian of a star, at a depth of the layer's own distribution.
+void add_picture_stars(const PictureStars& stars, const Placement& placement, const Opacity& opacity,
+                       PictureSplats& out);
 
 struct DotCell {
     std::int64_t column, row;
@@ -74,10 +73,10 @@ struct DotCell {
 struct DotLattice {
     std::int64_t columns, rows;
     DotLattice(std::int64_t width, std::int64_t height, float spacing)
-        : columns(static_cast<std::int64_t>(static_cast<float>(width) / spacing) + 1),
-          rows(static_cast<std::int64_t>(static_cast<float>(height) / spacing) + 1) {}
+        : columns(std::int64_t(float(width) / spacing) + 1),
+          rows(std::int64_t(float(height) / spacing) + 1) {}
     std::uint64_t number(const DotCell& cell) const {
-        return static_cast<std::uint64_t>(cell.row * columns + cell.column);
+        return std::uint64_t(cell.row * columns + cell.column);
     }
 };
 
@@ -94,7 +93,7 @@ struct DotRows {
         std::size_t found = 0;
         std::int64_t left = count;
         for (std::int64_t i = 0; left > 0; ++i) {
-            if (!dots[static_cast<std::size_t>(i)]) continue;
+            if (!dots[i]) continue;
             cells[found++] = {i % columns, begin + i / columns};
             if (--left > 0 && found < cells.size()) continue;
             visit(std::span<const DotCell>(cells.data(), found));
@@ -107,36 +106,36 @@ struct DotRows {
 template <class HasDot>
 std::vector<DotRows> find_dots(const DotLattice& lattice, const HasDot& has_dot) {
     constexpr std::int64_t rows_at_once = 16;
-    std::vector<DotRows> parts(static_cast<std::size_t>((lattice.rows + rows_at_once - 1) / rows_at_once));
+    std::vector<DotRows> parts(std::size_t((lattice.rows + rows_at_once - 1) / rows_at_once));
     parallel_chunks(lattice.rows, rows_at_once, [&](std::int64_t begin, std::int64_t end, int) {
         DotRows part{begin, lattice.columns, {}, 0};
-        part.dots.reserve(static_cast<std::size_t>((end - begin) * lattice.columns));
+        part.dots.reserve(std::size_t((end - begin) * lattice.columns));
         for (DotCell cell{0, begin}; cell.row < end; ++cell.row) {
             for (cell.column = 0; cell.column < lattice.columns; ++cell.column) {
                 part.dots.push_back(has_dot(cell));
                 part.count += part.dots.back() ? 1 : 0;
             }
         }
-        parts[static_cast<std::size_t>(begin / rows_at_once)] = std::move(part);
+        parts[begin / rows_at_once] = std::move(part);
     });
     return parts;
 }
 
-/// Appends a dot of that size for every cell for which has_dot(cell) is true. make_dots(cells, first) fills
-/// in the values of at most DepthBlock::size dots, from row `first` of the arrays on, but for their radii.
-/// Both are called on several threads.
-template <class HasDot, class MakeDots>
-DotRange add_lattice_dots(const DotLattice& lattice, float sigma, const HasDot& has_dot,
-                          const MakeDots& make_dots, PictureSplats& out) {
-    const std::vector<DotRows> parts = find_dots(lattice, has_dot);
+/// Appends a dot of that size for every cell of dots.lattice for which dots.candidate_of(cell), an optional,
+/// is one. dots.make_dots(cells, first, out) fills in the values of at most DepthBlock::size dots, from row
+/// `first` of the arrays on, but for their radii. Both are called on several threads.
+template <class Dots>
+DotRange add_lattice_dots(const Dots& dots, float sigma, PictureSplats& out) {
+    const std::vector<DotRows> parts =
+        find_dots(dots.lattice, [&](const DotCell& cell) { return dots.candidate_of(cell).has_value(); });
     std::vector<std::int64_t> first{out.splats.size()};
     for (const DotRows& part : parts) first.push_back(first.back() + part.count);
     resize_dots(out, first.back());
     parallel_each(parts.size(), 1, [&](std::size_t i) {
-        auto next = static_cast<std::size_t>(first[i]);
+        auto next = std::size_t(first[i]);
         std::fill_n(out.splats.radius.data() + next, parts[i].count, radius_sigmas * sigma);
         parts[i].for_each_block([&](std::span<const DotCell> cells) {
-            make_dots(cells, next);
+            dots.make_dots(cells, next, out);
             next += cells.size();
         });
     });

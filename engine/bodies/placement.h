@@ -3,16 +3,20 @@
 #pragma once
 
 #include <cstdint>
+#include <glm/vec3.hpp>
+#include <initializer_list>
 #include <limits>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "bodies/depth_kernel.h"
-#include "bodies/filled_light.h"
+#include "bodies/fields.h"
 #include "bodies/picture_light.h"
 #include "bodies/stars.h"
 #include "core/image.h"
-#include "detect/knots.h"
+#include "core/shared_maths.h"
+#include "detect/peaks.h"
 #include "source/source.h"
 
 namespace astrosplat {
@@ -53,10 +57,20 @@ struct Placement {
     /// Values of the fields at a place of the picture.
     float scale_height(float x, float y) const;
     float relief_at(float x, float y) const;
-    /// H(x, y) over H and without its flare: more than 1 where a disk is a bulge.
+    /// Texels, what the scale height of a disk would be there without its bulge: H and its flare.
+    float height_without_bulge(float x, float y) const;
+    /// The scale height over that: more than 1 where a disk is a bulge.
     float thickness_at(float x, float y) const;
     /// Of a dot, by the shares of its column's light; `glow`: of the light between the walls, not of details.
     DepthReach reach_at(float x, float y, std::uint32_t random, bool glow) const;
+    /// Where a place at this height is among dots: from the middle of the picture, y up.
+    glm::vec3 among_dots(float x, float y, float z) const {
+        return {x - 0.5f * float(picture_width), 0.5f * float(picture_height) - y, z};
+    }
+    /// A hash of a dot for one purpose.
+    std::uint32_t hash_of(std::uint64_t id, std::uint32_t purpose) const {
+        return shared::as_hash(seed, std::uint32_t(id), std::uint32_t(id >> 32), purpose);
+    }
 };
 
 /// `texels_per_unit`: of the surface that carries the picture; `flat`: it is a plane, so a sheet takes its
@@ -78,6 +92,18 @@ float middle_plane(const Placement& placement, float x, float y);
 float star_height(const Placement& placement, float x, float y, float u);
 /// The same of a star of the picture; its share is a random number of the pixel that it is in.
 float star_height(const Placement& placement, const Star& star);
+
+/// Octaves from `longest` on by halves, texels, as far down as a feature of so many texels allows: small
+/// things float where their cloud floats. Each has `ratio` times the gain of the one before.
+NoiseStack stack(const Placement& placement, double longest, double feature, double first_gain, double ratio);
+
+/// These octaves, in texels at a width of 1920, of a field of their own.
+NoiseStack waves(const Placement& placement, std::uint32_t field,
+                 std::initializer_list<std::pair<double, double>> wave_and_gain);
+
+/// Gain of the first octave of noise that depths in a disk or between walls gather in, where all of it counts
+/// (DEPTH 4).
+inline constexpr double whole_gain = 1.6;
 
 /// How the dots of one band are made (DEPTH 3), lengths in texels.
 struct BandDots {
@@ -103,5 +129,11 @@ struct PlacedBlock : DepthBlock {
 
 /// Fills z and distance from x, y and random; dots of fine bands that belong to a knot take its depth.
 void place(const Placement& placement, const BandDots& dots, PlacedBlock& block);
+
+/// The same without knots and without the relief or the walls that the depths are about.
+void place_freely(const Placement& placement, const BandDots& dots, PlacedBlock& block);
+
+/// Quantile `u` of sech^2(z / height) / (2 height).
+float logistic(float u, float height);
 
 }  // namespace astrosplat

@@ -39,40 +39,28 @@ std::optional<SurfacePlace> first_place(const UvSurface& surface, glm::vec2 uv) 
     return found;
 }
 
-// Heights of stars over the surface, texels.
-class Heights {
-  public:
-    Heights(const StarDepths& depths, const Texture& texture, const UvSurface& surface)
-        : slab_(depths.slab), width_(texture.image.width), height_(texture.image.height) {
-        if (slab_ > 0.0) return;
-        const Image light = picture_light(texture, depths.structure.border).light;
-        placement_ = make_placement(brightest_channel(light), depths.structure, surface.texels_per_unit(),
-                                    surface.flat(), depths.seed);
-    }
+// Heights of stars over the surface, texels; without a placement they fill the slab.
+struct Heights {
+    const Image& picture;
+    double slab;
+    std::optional<Placement> placement = {};
 
     /// From the middle of the layer.
     float from_middle(const SeenStar& star, float units_per_texel) const {
-        if (slab_ > 0.0) return (0.5f - star.before) * static_cast<float>(slab_) / units_per_texel;
-        return star_height(*placement_, x(star), y(star), 1.0f - star.before);
+        if (!placement) return (0.5f - star.before) * float(slab) / units_per_texel;
+        return star_height(*placement, x(star), y(star), 1.0f - star.before);
     }
     float middle(const SeenStar& star) const {
-        return placement_ ? middle_plane(*placement_, x(star), y(star)) : 0.0f;
+        return placement ? middle_plane(*placement, x(star), y(star)) : 0.0f;
     }
-
-  private:
-    float x(const SeenStar& star) const { return star.uv.x * static_cast<float>(width_); }
-    float y(const SeenStar& star) const { return (1.0f - star.uv.y) * static_cast<float>(height_); }
-
-    double slab_;
-    std::int64_t width_, height_;
-    std::optional<Placement> placement_;
+    float x(const SeenStar& star) const { return star.uv.x * float(picture.width); }
+    float y(const SeenStar& star) const { return (1.0f - star.uv.y) * float(picture.height); }
 };
 
 // From the front, with parallel rays, as high as the picture would be if it were flat.
 Camera front_camera(const PlacedStars& stars, const glm::dvec3& toward, double aspect) {
     glm::dvec3 middle(0.0);
-    for (const glm::vec3& p : stars.position)
-        middle += glm::dvec3(p) / static_cast<double>(stars.position.size());
+    for (const glm::vec3& p : stars.position) middle += glm::dvec3(p) / double(stars.position.size());
     UvCamera params;
     params.target = middle;
     params.height = stars.texel_side * stars.height_texels;
@@ -94,12 +82,14 @@ PlacedStars place_stars(const TexturedMesh& mesh, std::span<const SeenStar> star
     if (!material) return placed;
     const Texture& texture = mesh.textures[*material];
     const Image& picture = texture.image;
-    const UvSurface surface(mesh.mesh, *material, picture.width, picture.height,
-                            texture.wrap == TextureSettings::Wrap::repeat,
-                            mesh.camera ? &*mesh.camera : nullptr);
-    const Heights heights(depths, texture, surface);
-    placed.height_texels = static_cast<double>(picture.height);
-    const double aspect = static_cast<double>(picture.width) / static_cast<double>(picture.height);
+    const UvSurface surface = surface_of(mesh, *material);
+    Heights heights{picture, depths.slab};
+    if (!(depths.slab > 0.0))
+        heights.placement =
+            make_placement(brightest_channel(picture_light(texture, depths.structure.border).light),
+                           depths.structure, surface.texels_per_unit(), surface.flat(), depths.seed);
+    placed.height_texels = double(picture.height);
+    const double aspect = double(picture.width) / double(picture.height);
     glm::dvec3 toward(0.0);
     std::vector<double> sides;
     for (std::size_t i = 0; i < stars.size(); ++i) {
@@ -112,7 +102,7 @@ PlacedStars place_stars(const TexturedMesh& mesh, std::span<const SeenStar> star
         placed.position.push_back(place->position + place->rise * (z * place->units_per_texel));
         placed.distance.push_back(std::fabs(from_middle) * place->units_per_texel);
         toward += glm::dvec3(place->normal);
-        sides.push_back(static_cast<double>(place->units_per_texel));
+        sides.push_back(double(place->units_per_texel));
     }
     placed.texel_area.assign(placed.star.size(), 1.0f);
     if (placed.star.empty()) return placed;
@@ -123,8 +113,7 @@ PlacedStars place_stars(const TexturedMesh& mesh, std::span<const SeenStar> star
     }
     placed.texel_side = 1.0 / surface.texels_per_unit();
     for (std::size_t i = 0; i < sides.size(); ++i)
-        placed.texel_area[i] =
-            static_cast<float>(sides[i] * sides[i] / (placed.texel_side * placed.texel_side));
+        placed.texel_area[i] = float(sides[i] * sides[i] / (placed.texel_side * placed.texel_side));
     const double length = glm::length(toward);
     placed.camera = front_camera(placed, length > 0.0 ? toward / length : glm::dvec3(0.0, 1.0, 0.0), aspect);
     return placed;
@@ -156,16 +145,15 @@ std::optional<OnPicture> seen_by(const FrontView& view, const glm::dvec3& p) {
 class StarGrid {
   public:
     StarGrid(const FrontView& view, const std::vector<glm::vec3>& positions) {
-        width_ = std::max<std::int64_t>(
-            1, static_cast<std::int64_t>(view.camera.aspect * view.height_px / star_cell_px) + 1);
-        height_ = std::max<std::int64_t>(1, static_cast<std::int64_t>(view.height_px / star_cell_px) + 1);
-        cells_.resize(static_cast<std::size_t>(width_ * height_));
+        width_ =
+            std::max<std::int64_t>(1, std::int64_t(view.camera.aspect * view.height_px / star_cell_px) + 1);
+        height_ = std::max<std::int64_t>(1, std::int64_t(view.height_px / star_cell_px) + 1);
+        cells_.resize(std::size_t(width_ * height_));
         for (std::size_t i = 0; i < positions.size(); ++i) {
             const auto seen = seen_by(view, glm::dvec3(positions[i]));
             seen_.push_back(seen.value_or(OnPicture{-1e9, -1e9, 0.0, 1.0}));
             if (!seen) continue;
-            cells_[static_cast<std::size_t>(row(seen->y) * width_ + column(seen->x))].push_back(
-                static_cast<std::uint32_t>(i));
+            cells_[std::size_t(row(seen->y) * width_ + column(seen->x))].push_back(std::uint32_t(i));
         }
     }
 
@@ -175,7 +163,7 @@ class StarGrid {
     void near(const OnPicture& place, double reach_px, const Visit& visit) const {
         for (std::int64_t j = row(place.y - reach_px); j <= row(place.y + reach_px); ++j)
             for (std::int64_t i = column(place.x - reach_px); i <= column(place.x + reach_px); ++i)
-                for (const std::uint32_t star : cells_[static_cast<std::size_t>(j * width_ + i)]) {
+                for (const std::uint32_t star : cells_[j * width_ + i]) {
                     const double dx = seen_[star].x - place.x, dy = seen_[star].y - place.y;
                     if (dx * dx + dy * dy < reach_px * reach_px) visit(star, dx, dy);
                 }
@@ -183,7 +171,7 @@ class StarGrid {
 
   private:
     static std::int64_t cell(double px, std::int64_t count) {
-        return static_cast<std::int64_t>(std::clamp(px / star_cell_px, 0.0, static_cast<double>(count - 1)));
+        return std::int64_t(std::clamp(px / star_cell_px, 0.0, double(count - 1)));
     }
     std::int64_t row(double y) const { return cell(y, height_); }
     std::int64_t column(double x) const { return cell(x, width_); }
@@ -249,8 +237,7 @@ void find_hits(const FrontView& view, const SplatSet& splats, std::size_t index,
                   const double s = mean_hiding(footprint, double(splats.alpha[index]), dx, dy, view.star_px);
                   const double depth = -real::log(1.0 - s);
                   if (depth > least_depth)
-                      hits.push_back(
-                          {star, static_cast<float>(seen->distance), exponent * static_cast<float>(depth)});
+                      hits.push_back({star, float(seen->distance), exponent * float(depth)});
               });
 }
 
@@ -258,12 +245,12 @@ void find_hits(const FrontView& view, const SplatSet& splats, std::size_t index,
 std::vector<Hit> all_hits(const FrontView& view, const SplatSet& splats, const StarGrid& grid,
                           const Progress& progress) {
     const std::int64_t tasks = (splats.size() + splats_per_task - 1) / splats_per_task;
-    std::vector<std::vector<Hit>> parts(static_cast<std::size_t>(tasks));
+    std::vector<std::vector<Hit>> parts(tasks);
     parallel_for(tasks, [&](std::int64_t task, int) {
         progress.check();
         const std::int64_t end = std::min(splats.size(), (task + 1) * splats_per_task);
         for (std::int64_t i = task * splats_per_task; i < end; ++i)
-            find_hits(view, splats, static_cast<std::size_t>(i), grid, parts[static_cast<std::size_t>(task)]);
+            find_hits(view, splats, std::size_t(i), grid, parts[task]);
     });
     std::vector<Hit> hits;
     for (std::vector<Hit>& part : parts) {

@@ -8,7 +8,6 @@
 #include <optional>
 #include <span>
 
-#include "bodies/picture_light.h"
 #include "core/parallel.h"
 #include "core/real.h"
 #include "core/sorting.h"
@@ -28,8 +27,11 @@ constexpr double noise_blur_px = 12.0;
 constexpr float least_excess = 0.012f;  // of the displayed white
 constexpr float noise_factor = 4.5f;
 constexpr double widest_sigma = 2.2, narrowest_sigma = 0.6;
-constexpr float wing_share = 0.5f;    // of the peak, that the light at 2 to 3 px must stay below
-constexpr float least_level = 0.01f;  // of the displayed white, below which a pixel is left as it is
+constexpr double wing_radii[] = {2.0, 2.5, 3.0};  // px, where a star's wings are measured
+constexpr float wing_share = 0.5f;                // of the peak, that the light at 2 to 3 px must stay below
+constexpr float most_left = 1.15f;    // times the background, of what is beside a star's Gaussian,
+constexpr float least_level = 0.01f;  // and so much of the displayed white
+constexpr std::int64_t star_window_px = 6;
 constexpr float uneven_share = 0.3f;  // of the peak, that this light may differ by around the star
 constexpr double explained_sigmas = 2.5;
 constexpr double most_unseen = 0.1;  // share of a star's light that the picture may not have
@@ -38,13 +40,11 @@ constexpr double most_unseen = 0.1;  // share of a star's light that the picture
 Image local_noise(const Image& brightest) {
     Image noise = make_image((brightest.width + noise_step - 1) / noise_step,
                              (brightest.height + noise_step - 1) / noise_step, 1);
-    parallel_chunks(noise.height, 8, [&](std::int64_t begin, std::int64_t end, int) {
-        for (std::int64_t y = begin; y < end; ++y)
-            for (std::int64_t x = 0; x < noise.width; ++x)
-                *noise.at(x, y) = std::fabs(*brightest.at(x * noise_step, y * noise_step) -
-                                            median_about(brightest, x * noise_step, y * noise_step));
+    for_each_pixel(noise, [&](std::int64_t x, std::int64_t y) {
+        *noise.at(x, y) = std::fabs(*brightest.at(x * noise_step, y * noise_step) -
+                                    median_about(brightest, x * noise_step, y * noise_step));
     });
-    return gaussian_blur(noise, noise_blur_px / static_cast<double>(noise_step));
+    return gaussian_blur(noise, noise_blur_px / double(noise_step));
 }
 
 // Directions all around.
@@ -55,7 +55,7 @@ const std::array<Direction, 8>& directions() {
     static const std::array<Direction, 8> all = [] {
         std::array<Direction, 8> found;
         for (std::size_t i = 0; i < found.size(); ++i) {
-            const double angle = static_cast<double>(i) * real::pi / 4.0;
+            const double angle = double(i) * real::pi / 4.0;
             found[i] = {real::cos(angle), real::sin(angle)};
         }
         return found;
@@ -69,10 +69,8 @@ bool is_round(const Image& brightest, float x, float y, float sky, float excess)
     float lo = 1e30f, hi = -1e30f;
     for (const Direction& direction : directions()) {
         float wing = 0.0f;
-        for (const double r : {2.0, 2.5, 3.0})
-            wing += bilinear(brightest, 0, x + static_cast<float>(r * direction.x),
-                             y + static_cast<float>(r * direction.y)) /
-                    3.0f;
+        for (const double r : wing_radii)
+            wing += bilinear(brightest, 0, x + float(r * direction.x), y + float(r * direction.y)) / 3.0f;
         lo = std::min(lo, wing - sky);
         hi = std::max(hi, wing - sky);
     }
@@ -92,28 +90,17 @@ float ring_median(const Image& light, std::int64_t x, std::int64_t y, int channe
 // Whether the picture has the light that the star's Gaussian gives it. Among crowded stars a Gaussian may be
 // brighter beside its middle than all that is there: no fit of colours mends that.
 bool is_explained(const Image& light, const Star& star) {
-    const double reach = explained_sigmas * static_cast<double>(star.sigma);
-    const double width = 2.0 * static_cast<double>(star.sigma) * static_cast<double>(star.sigma);
-    const auto first = [&](float middle) {
-        return std::max<std::int64_t>(0, static_cast<std::int64_t>(static_cast<double>(middle) - reach));
-    };
-    const auto last = [&](float middle, std::int64_t size) {
-        return std::min(size - 1, static_cast<std::int64_t>(static_cast<double>(middle) + reach));
-    };
+    const auto sigma = double(star.sigma);
     double own = 0.0, unseen = 0.0;
-    for (std::int64_t y = first(star.y); y <= last(star.y, light.height); ++y) {
-        for (std::int64_t x = first(star.x); x <= last(star.x, light.width); ++x) {
-            const double dx = static_cast<double>(x) + 0.5 - static_cast<double>(star.x);
-            const double dy = static_cast<double>(y) + 0.5 - static_cast<double>(star.y);
-            if (dx * dx + dy * dy > reach * reach) continue;
-            const double g = real::exp(-(dx * dx + dy * dy) / width);
-            for (int c = 0; c < 3; ++c) {
-                const double here = g * static_cast<double>(star.peak[c]);
-                own += here;
-                unseen += std::max(0.0, here - static_cast<double>(light.at(x, y)[c]));
-            }
-        }
-    }
+    for_each_within(light, star.x, star.y, explained_sigmas * sigma,
+                    [&](std::int64_t x, std::int64_t y, double dx, double dy) {
+                        const double g = real::exp(-(dx * dx + dy * dy) / (2.0 * sigma * sigma));
+                        for (int c = 0; c < 3; ++c) {
+                            const double here = g * double(star.peak[c]);
+                            own += here;
+                            unseen += std::max(0.0, here - double(light.at(x, y)[c]));
+                        }
+                    });
     return unseen <= most_unseen * own;
 }
 
@@ -132,16 +119,15 @@ std::optional<StarInSky> star_at(const Image& light, const Image& brightest, std
     if (excess < least) return {};
     constexpr std::int64_t reach = 2;
     PointLight point = light_about(brightest, x, y, reach, sky);
-    if (const auto column = static_cast<std::int64_t>(point.x), row = static_cast<std::int64_t>(point.y);
-        column != x || row != y)
+    if (const auto column = std::int64_t(point.x), row = std::int64_t(point.y); column != x || row != y)
         point = light_about(brightest, column, row, reach, sky);
-    const double sigma = std::sqrt(point.sum / (2.0 * real::pi * static_cast<double>(excess)));
+    const double sigma = std::sqrt(point.sum / (2.0 * real::pi * double(excess)));
     if (sigma > widest_sigma || !is_round(brightest, point.x, point.y, sky, excess)) return {};
     StarInSky found;
     Star& star = found.star;
     star.x = point.x;
     star.y = point.y;
-    star.sigma = static_cast<float>(std::max(sigma, narrowest_sigma));
+    star.sigma = float(std::max(sigma, narrowest_sigma));
     for (int c = 0; c < 3; ++c) {
         found.around[c] = ring_median(light, x, y, c);
         star.peak[c] = std::max(0.0f, light.at(x, y)[c] - found.around[c]);
@@ -151,36 +137,35 @@ std::optional<StarInSky> star_at(const Image& light, const Image& brightest, std
 
 // Calls visit(pixel, x, y) for the pixels of rows [begin, end) within `reach` px of the star.
 template <class Visit>
-void for_each_pixel(Image& image, const Star& star, std::int64_t reach, std::int64_t begin, std::int64_t end,
-                    Visit visit) {
-    const auto cx = static_cast<std::int64_t>(star.x), cy = static_cast<std::int64_t>(star.y);
-    for (std::int64_t y = std::max(begin, cy - reach); y < std::min(end, cy + reach + 1); ++y)
-        for (std::int64_t x = std::max<std::int64_t>(0, cx - reach);
-             x <= std::min(image.width - 1, cx + reach); ++x)
-            visit(image.at(x, y), x, y);
+void for_each_of_star(Image& image, const Star& star, std::int64_t reach, std::int64_t begin,
+                      std::int64_t end, const Visit& visit) {
+    const auto cx = std::int64_t(star.x), cy = std::int64_t(star.y);
+    for_each_between(image, cx - reach, std::max(begin, cy - reach), cx + reach,
+                     std::min(end - 1, cy + reach),
+                     [&](std::int64_t x, std::int64_t y) { visit(image.at(x, y), x, y); });
 }
 
 void subtract(Image& light, const StarInSky& found, float least_left, std::int64_t begin, std::int64_t end) {
     const Star& star = found.star;
-    for_each_pixel(light, star, 6, begin, end, [&](float* pixel, std::int64_t x, std::int64_t y) {
-        const double dx = static_cast<double>(x) + 0.5 - static_cast<double>(star.x);
-        const double dy = static_cast<double>(y) + 0.5 - static_cast<double>(star.y);
-        const double width = 2.0 * static_cast<double>(star.sigma) * static_cast<double>(star.sigma);
-        const auto g = static_cast<float>(real::exp(-(dx * dx + dy * dy) / width));
-        for (int c = 0; c < 3; ++c)
-            pixel[c] =
-                std::max(pixel[c] - star.peak[c] * g, std::min(pixel[c], least_left * found.around[c]));
-    });
+    for_each_of_star(
+        light, star, star_window_px, begin, end, [&](float* pixel, std::int64_t x, std::int64_t y) {
+            const double dx = double(x) + 0.5 - double(star.x);
+            const double dy = double(y) + 0.5 - double(star.y);
+            const double width = 2.0 * double(star.sigma) * double(star.sigma);
+            const auto g = float(real::exp(-(dx * dx + dy * dy) / width));
+            for (int c = 0; c < 3; ++c)
+                pixel[c] =
+                    std::max(pixel[c] - star.peak[c] * g, std::min(pixel[c], least_left * found.around[c]));
+        });
 }
 
 // The rest of a star beside its Gaussian, wings and diffraction, is cut to a little above the background.
 void level(Image& light, const Image& before, const StarInSky& found, std::int64_t begin, std::int64_t end) {
     const Star& star = found.star;
-    const auto reach = static_cast<std::int64_t>(3.0f * star.sigma + 1.0f);
-    const float most =
-        1.15f * median_about(before, static_cast<std::int64_t>(star.x), static_cast<std::int64_t>(star.y)) +
-        least_level;
-    for_each_pixel(light, star, reach, begin, end, [&](float* pixel, std::int64_t, std::int64_t) {
+    const auto reach = std::int64_t(3.0f * star.sigma + 1.0f);
+    const float sky = median_about(before, std::int64_t(star.x), std::int64_t(star.y));
+    const float most = most_left * sky + least_level;
+    for_each_of_star(light, star, reach, begin, end, [&](float* pixel, std::int64_t, std::int64_t) {
         const float brightest = std::max({pixel[0], pixel[1], pixel[2]});
         if (brightest <= most) return;
         for (int c = 0; c < 3; ++c) pixel[c] *= most / brightest;
@@ -194,8 +179,7 @@ void for_each_strip(const Image& light, const std::vector<StarInSky>& stars, con
     constexpr float farthest = 12.0f;  // px that a change reaches
     parallel_chunks(light.height, rows, [&](std::int64_t begin, std::int64_t end, int) {
         for (const StarInSky& found : stars)
-            if (found.star.y > static_cast<float>(begin) - farthest &&
-                found.star.y < static_cast<float>(end) + farthest)
+            if (found.star.y > float(begin) - farthest && found.star.y < float(end) + farthest)
                 change(found, begin, end);
     });
 }
@@ -220,8 +204,28 @@ std::vector<Star> take_stars(Image& light, float least_left, StarsTaken taken) {
     std::vector<Star> stars;
     for (const StarInSky& each : found) {
         stars.push_back(each.star);
-        stars.back().body = static_cast<std::uint32_t>(stars.size() - 1);
+        stars.back().body = std::uint32_t(stars.size() - 1);
     }
+    return stars;
+}
+
+PictureStars take_picture_stars(Image& light, const StructureParams& params, bool enlarged) {
+    PictureStars stars;
+    if (params.stars == StructureParams::Stars::no) return stars;
+    std::vector<Star> bright;
+    const bool disk = params.kind == StructureKind::disk;
+    if (disk) bright = take_bright_stars(light);
+    const float least_left = disk ? least_left_in_dust : 0.0f;  // without dust a hole is nearer the front
+    stars.all = take_stars(light, least_left, enlarged ? StarsTaken::explained : StarsTaken::round);
+    std::ranges::stable_sort(stars.all, {}, &Star::sigma);
+    stars.ordinary = stars.all.size();
+    stars.count = std::int64_t(stars.ordinary);
+    for (Star& star : bright) {
+        star.body += std::uint32_t(stars.ordinary);
+        stars.count = std::max(stars.count, std::int64_t(star.body) + 1);
+    }
+    std::ranges::stable_sort(bright, {}, &Star::sigma);
+    stars.all.insert(stars.all.end(), bright.begin(), bright.end());
     return stars;
 }
 

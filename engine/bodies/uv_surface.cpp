@@ -7,8 +7,6 @@
 #include <optional>
 #include <utility>
 
-#include "source/textured_mesh.h"
-
 namespace astrosplat {
 namespace {
 
@@ -20,6 +18,13 @@ double cross(glm::dvec2 a, glm::dvec2 b) { return a.x * b.y - a.y * b.x; }
 /// Of a place on the edge itself: whether the face to the edge's left has it.
 bool owns(glm::dvec2 a, glm::dvec2 b) { return a.y < b.y || (a.y == b.y && a.x < b.x); }
 
+// The smallest that holds a face, of u and v.
+struct UvBox {
+    glm::dvec2 lo, hi;
+    explicit UvBox(const glm::dvec2 (&uv)[3])
+        : lo(glm::min(uv[0], glm::min(uv[1], uv[2]))), hi(glm::max(uv[0], glm::max(uv[1], uv[2]))) {}
+};
+
 bool shows(const Mesh::Triangle& triangle, const Mesh& mesh, std::uint32_t material) {
     return (mesh.maps.empty() || triangle.material == material) && triangle.uv[0] != Mesh::no_uv;
 }
@@ -29,9 +34,9 @@ bool shows(const Mesh::Triangle& triangle, const Mesh& mesh, std::uint32_t mater
 UvSurface::UvSurface(const Mesh& mesh, std::uint32_t material, std::int64_t width, std::int64_t height,
                      bool repeats, const Camera* camera)
     : mesh_(mesh), camera_(camera) {
-    measure(mesh, material, {static_cast<double>(width), static_cast<double>(height)});
+    measure(mesh, material, {double(width), double(height)});
     if (camera) {
-        texel_at_depth_1_ = picture_height_at(*camera, 1.0) / static_cast<double>(height);
+        texel_at_depth_1_ = picture_height_at(*camera, 1.0) / double(height);
         for (const glm::vec3& corner : mesh.positions)
             depths_.push_back(glm::dot(camera->world_from_camera[2], camera->eye - glm::dvec3(corner)));
     }
@@ -39,15 +44,13 @@ UvSurface::UvSurface(const Mesh& mesh, std::uint32_t material, std::int64_t widt
         const Mesh::Triangle& triangle = mesh.triangles[i];
         if (!shows(triangle, mesh, material)) continue;
         Face face{{}, i, {}};
-        for (int k = 0; k < 3; ++k)
-            face.uv[k] = glm::dvec2(mesh.uvs[triangle.uv[static_cast<std::size_t>(k)]]);
-        const glm::dvec2 lo = glm::min(face.uv[0], glm::min(face.uv[1], face.uv[2]));
-        const glm::dvec2 hi = glm::max(face.uv[0], glm::max(face.uv[1], face.uv[2]));
+        for (int k = 0; k < 3; ++k) face.uv[k] = glm::dvec2(mesh.uvs[triangle.uv[k]]);
         if (!repeats) {
             faces_.push_back(face);
             continue;
         }
-        const auto first = [](double v) { return static_cast<int>(std::clamp(std::floor(v), -1e6, 1e6)); };
+        const auto [lo, hi] = UvBox(face.uv);
+        const auto first = [](double v) { return int(std::clamp(std::floor(v), -1e6, 1e6)); };
         for (int u = first(lo.x); u <= std::min(first(hi.x), first(lo.x) + most_shift); ++u) {
             for (int v = first(lo.y); v <= std::min(first(hi.y), first(lo.y) + most_shift); ++v) {
                 Face shifted = face;
@@ -105,7 +108,7 @@ void UvSurface::measure(const Mesh& mesh, std::uint32_t material, glm::dvec2 tex
     for (std::size_t i = 0; i < normals.size(); ++i) {
         const double length = glm::length(normals[i]);
         if (length > 0.0) normals_[i] = glm::vec3(normals[i] / length);
-        if (weights[i] > 0.0) units_per_texel_[i] = static_cast<float>(scales[i] / weights[i]);
+        if (weights[i] > 0.0) units_per_texel_[i] = float(scales[i] / weights[i]);
     }
     texels_per_unit_ = area > 0.0 ? std::sqrt(texel_area / area) : 0.0;
     const double length = glm::length(total);
@@ -126,20 +129,20 @@ void UvSurface::measure(const Mesh& mesh, std::uint32_t material, glm::dvec2 tex
     flat_ = hi - lo <= most;
 }
 
+int UvSurface::cell_at(double v) const { return int(std::clamp(v * cells_, 0.0, cells_ - 1.0)); }
+
 template <class Visit>
 void UvSurface::for_each_cell(const Face& face, Visit visit) const {
-    const glm::dvec2 lo = glm::min(face.uv[0], glm::min(face.uv[1], face.uv[2]));
-    const glm::dvec2 hi = glm::max(face.uv[0], glm::max(face.uv[1], face.uv[2]));
+    const auto [lo, hi] = UvBox(face.uv);
     if (!(hi.x >= 0.0 && hi.y >= 0.0 && lo.x <= 1.0 && lo.y <= 1.0)) return;
-    const auto cell = [&](double v) { return static_cast<int>(std::clamp(v * cells_, 0.0, cells_ - 1.0)); };
-    for (int y = cell(lo.y); y <= cell(hi.y); ++y)
-        for (int x = cell(lo.x); x <= cell(hi.x); ++x) visit(static_cast<std::size_t>(y * cells_ + x));
+    for (int y = cell_at(lo.y); y <= cell_at(hi.y); ++y)
+        for (int x = cell_at(lo.x); x <= cell_at(hi.x); ++x) visit(std::size_t(y * cells_ + x));
 }
 
 void UvSurface::fill_grid() {
-    const double side = std::sqrt(static_cast<double>(faces_.size()));
-    cells_ = std::clamp(static_cast<int>(side), 1, most_cells);
-    first_face_.assign(static_cast<std::size_t>(cells_) * static_cast<std::size_t>(cells_) + 1, 0);
+    const double side = std::sqrt(double(faces_.size()));
+    cells_ = std::clamp(int(side), 1, most_cells);
+    first_face_.assign(std::size_t(cells_) * std::size_t(cells_) + 1, 0);
     for (const Face& face : faces_) for_each_cell(face, [&](std::size_t cell) { ++first_face_[cell + 1]; });
     for (std::size_t i = 1; i < first_face_.size(); ++i) first_face_[i] += first_face_[i - 1];
     cell_faces_.resize(first_face_.back());
@@ -151,13 +154,12 @@ void UvSurface::fill_grid() {
 template <class Visit>
 void UvSurface::for_each_face_at(glm::vec2 uv, Visit visit) const {
     const glm::dvec2 p(uv);
-    const auto cell = [&](double v) { return static_cast<int>(std::clamp(v * cells_, 0.0, cells_ - 1.0)); };
-    const auto here = static_cast<std::size_t>(cell(p.y) * cells_ + cell(p.x));
+    const auto here = std::size_t(cell_at(p.y) * cells_ + cell_at(p.x));
     for (std::uint32_t i = first_face_[here]; i < first_face_[here + 1]; ++i) {
         const Face& face = faces_[cell_faces_[i]];
         glm::dvec3 areas;
         const auto is_inside = [&](int k) {
-            const Edge& edge = face.edges[static_cast<std::size_t>(k)];
+            const Edge& edge = face.edges[k];
             areas[k] = edge.sign * cross(edge.along, p - edge.from);
             return areas[k] > 0.0 || (areas[k] == 0.0 && edge.owned && edge.sign != 0.0);
         };
@@ -189,16 +191,16 @@ SurfacePlace UvSurface::place_on(const Face& face, const glm::dvec3& weights) co
     double scale = 0.0;
     for (std::size_t k = 0; k < 3; ++k) {
         const std::uint32_t vertex = mesh_.triangles[face.triangle].position[k];
-        const double weight = weights[static_cast<int>(k)];
+        const double weight = weights[int(k)];
         position += weight * glm::dvec3(mesh_.positions[vertex]);
         normal += weight * glm::dvec3(normals_[vertex]);
-        scale += weight * static_cast<double>(units_per_texel_[vertex]);
+        scale += weight * double(units_per_texel_[vertex]);
     }
     const double length = glm::length(normal);
     SurfacePlace place;
     place.position = glm::vec3(position);
     place.normal = length > 0.0 ? glm::vec3(normal / length) : glm::vec3(0, 1, 0);
-    place.units_per_texel = static_cast<float>(scale);
+    place.units_per_texel = float(scale);
     place.rise = place.normal;
     return place;
 }
@@ -209,18 +211,28 @@ SurfacePlace UvSurface::seen_on(const Face& face, const glm::dvec3& weights) con
     const glm::dvec3& back = camera_->world_from_camera[2];
     glm::dvec3 on_face;
     for (int k = 0; k < 3; ++k) {
-        const auto vertex = mesh_.triangles[face.triangle].position[static_cast<std::size_t>(k)];
+        const auto vertex = mesh_.triangles[face.triangle].position[k];
         on_face[k] = parallel ? weights[k] : weights[k] / depths_[vertex];
     }
     SurfacePlace place = place_on(face, on_face / (on_face[0] + on_face[1] + on_face[2]));
     const glm::dvec3 to_eye = camera_->eye - glm::dvec3(place.position);
     const double depth = glm::dot(back, to_eye),
                  units_per_texel = parallel ? texel_at_depth_1_ : texel_at_depth_1_ * depth;
-    place.depth = static_cast<float>(depth);
-    place.units_per_texel = static_cast<float>(units_per_texel);
+    place.depth = float(depth);
+    place.units_per_texel = float(units_per_texel);
     place.rise = glm::vec3(parallel ? back : to_eye / depth);
-    place.approach = parallel ? 0.0f : static_cast<float>(units_per_texel / depth);
+    place.approach = parallel ? 0.0f : float(units_per_texel / depth);
     return place;
+}
+
+UvSurface surface_of(const TexturedMesh& mesh, std::uint32_t material) {
+    const Texture& texture = mesh.textures[material];
+    return {mesh.mesh,
+            material,
+            texture.image.width,
+            texture.image.height,
+            texture.wrap == TextureSettings::Wrap::repeat,
+            mesh.camera ? &*mesh.camera : nullptr};
 }
 
 }  // namespace astrosplat

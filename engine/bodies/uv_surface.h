@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "camera/camera.h"
-#include "source/mesh.h"
+#include "source/textured_mesh.h"
 
 namespace astrosplat {
 
@@ -27,7 +27,7 @@ class UvSurface {
   public:
     /// The faces of one material under a picture of width x height texels. `repeats`: the picture goes on
     /// beyond 0..1; else places beyond it belong to no texel. `camera`: that took the picture, by which the
-    /// mesh has its coordinates (textured_mesh.h).
+    /// mesh has its coordinates.
     UvSurface(const Mesh& mesh, std::uint32_t material, std::int64_t width, std::int64_t height, bool repeats,
               const Camera* camera = nullptr);
 
@@ -59,6 +59,7 @@ class UvSurface {
     void measure(const Mesh& mesh, std::uint32_t material, glm::dvec2 texels);
     static void set_edges(Face& face);
     void fill_grid();
+    int cell_at(double v) const;  // along either side
     template <class Visit>
     void for_each_cell(const Face& face, Visit visit) const;
 
@@ -82,5 +83,8 @@ class UvSurface {
     std::vector<std::uint32_t> first_face_;  // of each cell, in cell_faces_; one more at the end
     std::vector<std::uint32_t> cell_faces_;
 };
+
+/// The faces of a mesh under the picture of one of its materials.
+UvSurface surface_of(const TexturedMesh& mesh, std::uint32_t material);
 
 }  // namespace astrosplat

@@ -8,6 +8,7 @@
 
 #include "core/parallel.h"
 #include "core/sorting.h"
+#include "image/channels.h"
 
 namespace astrosplat {
 namespace {
@@ -21,7 +22,7 @@ Background clipped_background(std::vector<float> values) {
     Background found;
     for (int i = 0; i < most_clips && !values.empty(); ++i) {
         found = background_of(values);
-        const float most = static_cast<float>(clip) * found.noise();
+        const float most = float(clip) * found.noise();
         const auto far = [&](float value) { return std::fabs(value - found.level) > most; };
         const std::size_t before = values.size();
         if (found.noise() > 0.0f) std::erase_if(values, far);
@@ -41,19 +42,14 @@ std::vector<float> values_of(const Image& image, const Region& cell, int channel
 
 Image median_of_nine(const Image& cells) {
     Image out = make_image(cells.width, cells.height, cells.channels);
-    for (std::int64_t y = 0; y < cells.height; ++y) {
-        for (std::int64_t x = 0; x < cells.width; ++x) {
-            for (int c = 0; c < cells.channels; ++c) {
-                std::vector<float> around;
-                for (std::int64_t j = std::max<std::int64_t>(0, y - 1);
-                     j <= std::min(cells.height - 1, y + 1); ++j)
-                    for (std::int64_t i = std::max<std::int64_t>(0, x - 1);
-                         i <= std::min(cells.width - 1, x + 1); ++i)
-                        around.push_back(cells.at(i, j)[c]);
-                out.at(x, y)[c] = median(around);
-            }
+    for_each_pixel(cells, [&](std::int64_t x, std::int64_t y) {
+        for (int c = 0; c < cells.channels; ++c) {
+            std::vector<float> around;
+            for_each_about(cells, x, y, 1,
+                           [&](std::int64_t i, std::int64_t j) { around.push_back(cells.at(i, j)[c]); });
+            out.at(x, y)[c] = median(around);
         }
-    }
+    });
     return out;
 }
 
@@ -84,11 +80,9 @@ Background background_of(std::vector<float>& values) {
 float median_about(const Image& image, std::int64_t x, std::int64_t y) {
     std::array<std::int32_t, window_px> bits;
     std::size_t count = 0;
-    for (std::int64_t j = y - median_reach_px; j <= y + median_reach_px; ++j) {
-        if (j < 0 || j >= image.height) continue;
-        for (std::int64_t i = x - median_reach_px; i <= x + median_reach_px; ++i)
-            if (i >= 0 && i < image.width) bits[count++] = std::bit_cast<std::int32_t>(*image.at(i, j));
-    }
+    for_each_about(image, x, y, median_reach_px, [&](std::int64_t i, std::int64_t j) {
+        bits[count++] = std::bit_cast<std::int32_t>(*image.at(i, j));
+    });
     std::fill(bits.begin() + static_cast<std::ptrdiff_t>(count), bits.end(),
               std::numeric_limits<std::int32_t>::max());
     return value_of_rank(bits, static_cast<std::int32_t>(count / 2));
@@ -112,15 +106,13 @@ Cells measure_cells(const Image& image, std::int64_t cell_px) {
 
 double interpolated(const Image& cells, std::int64_t cell_px, double x, double y, int channel) {
     const auto place = [cell_px](double at, std::int64_t n) {
-        return std::clamp(at / static_cast<double>(cell_px) - 0.5, 0.0, static_cast<double>(n - 1));
+        return std::clamp(at / double(cell_px) - 0.5, 0.0, double(n - 1));
     };
     const double u = place(x, cells.width), v = place(y, cells.height);
-    const auto i = static_cast<std::int64_t>(u), j = static_cast<std::int64_t>(v);
+    const auto i = std::int64_t(u), j = std::int64_t(v);
     const std::int64_t right = std::min(i + 1, cells.width - 1), below = std::min(j + 1, cells.height - 1);
-    const double s = u - static_cast<double>(i), t = v - static_cast<double>(j);
-    const auto value = [&](std::int64_t a, std::int64_t b) {
-        return static_cast<double>(cells.at(a, b)[channel]);
-    };
+    const double s = u - double(i), t = v - double(j);
+    const auto value = [&](std::int64_t a, std::int64_t b) { return double(cells.at(a, b)[channel]); };
     return (value(i, j) * (1.0 - s) + value(right, j) * s) * (1.0 - t) +
            (value(i, below) * (1.0 - s) + value(right, below) * s) * t;
 }

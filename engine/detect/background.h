@@ -16,9 +16,7 @@ struct Background {
     float level = 0.0f;            // median
     float median_distance = 0.0f;  // of the values from it
     /// Standard deviation of a Gaussian that is as wide.
-    float noise() const {
-        return static_cast<float>(sigma_of_median_distance * static_cast<double>(median_distance));
-    }
+    float noise() const { return float(sigma_of_median_distance * double(median_distance)); }
 };
 
 /// Of values among which what stands out is rare; at least one. They are left in another order.

@@ -13,14 +13,6 @@
 namespace astrosplat {
 namespace {
 
-// Calls visit(x, y) for a pixel and those about it that the mask has.
-template <class Visit>
-void for_each_about(const PixelMask& mask, std::int64_t x, std::int64_t y, const Visit& visit) {
-    for (std::int64_t j = std::max<std::int64_t>(0, y - 1); j <= std::min(mask.height - 1, y + 1); ++j)
-        for (std::int64_t i = std::max<std::int64_t>(0, x - 1); i <= std::min(mask.width - 1, x + 1); ++i)
-            visit(i, j);
-}
-
 Region box_of(const std::vector<std::int64_t>& pixels, std::int64_t width) {
     std::int64_t left = width, top = pixels.front() / width, right = 0, bottom = 0;
     for (const std::int64_t i : pixels) {
@@ -36,21 +28,21 @@ Region box_of(const std::vector<std::int64_t>& pixels, std::int64_t width) {
 
 PixelMask make_mask(std::int64_t width, std::int64_t height) {
     PixelMask mask{width, height, {}};
-    mask.pixels.assign(static_cast<std::size_t>(width * height), 0);
+    mask.pixels.assign(std::size_t(width * height), 0);
     return mask;
 }
 
 PixelPart take_part(PixelMask& mask, std::int64_t first, Touching touching) {
     PixelPart part;
     const auto take = [&](std::int64_t i) {
-        unsigned char& there = mask.pixels[static_cast<std::size_t>(i)];
+        unsigned char& there = mask.pixels[i];
         if (there) part.pixels.push_back(i);
         there = 0;
     };
     take(first);
     for (std::size_t next = 0; next < part.pixels.size(); ++next) {
         const std::int64_t x = part.pixels[next] % mask.width, y = part.pixels[next] / mask.width;
-        for_each_about(mask, x, y, [&](std::int64_t i, std::int64_t j) {
+        for_each_about(mask, x, y, 1, [&](std::int64_t i, std::int64_t j) {
             if (touching == Touching::corners || i == x || j == y) take(j * mask.width + i);
         });
     }
@@ -61,16 +53,16 @@ PixelPart take_part(PixelMask& mask, std::int64_t first, Touching touching) {
 std::vector<PixelPart> connected_parts(PixelMask mask, Touching touching) {
     std::vector<PixelPart> parts;
     for (std::size_t i = 0; i < mask.pixels.size(); ++i)
-        if (mask.pixels[i]) parts.push_back(take_part(mask, static_cast<std::int64_t>(i), touching));
+        if (mask.pixels[i]) parts.push_back(take_part(mask, std::int64_t(i), touching));
     return parts;
 }
 
 PixelMask grown(const PixelMask& mask) {
     PixelMask wider = mask;
-    for (std::int64_t y = 0; y < mask.height; ++y)
-        for (std::int64_t x = 0; x < mask.width; ++x)
-            if (mask.at(x, y))
-                for_each_about(mask, x, y, [&](std::int64_t i, std::int64_t j) { wider.at(i, j) = 1; });
+    for_each_between(mask, 0, 0, mask.width - 1, mask.height - 1, [&](std::int64_t x, std::int64_t y) {
+        if (mask.at(x, y))
+            for_each_about(mask, x, y, 1, [&](std::int64_t i, std::int64_t j) { wider.at(i, j) = 1; });
+    });
     return wider;
 }
 
@@ -86,7 +78,7 @@ PixelMask bright_pixels(const Image& brightest) {
     std::vector<float> values(smooth.pixels.begin(), smooth.pixels.end());
     const Background sky = background_of(values);
     const float least =
-        sky.level + deviations * static_cast<float>(sigma_of_median_distance) * sky.median_distance + 1e-6f;
+        sky.level + deviations * float(sigma_of_median_distance) * sky.median_distance + 1e-6f;
     PixelMask bright = make_mask(smooth.width, smooth.height);
     std::ranges::transform(smooth.pixels, bright.pixels.begin(),
                            [&](float v) -> unsigned char { return v > least; });
@@ -101,8 +93,7 @@ PictureObject object_of(const std::vector<std::int64_t>& part, const Image& brig
     glm::dvec2 sum(0.0);
     double light = 0.0;
     for (const std::int64_t i : part) {
-        const double weight =
-            std::max(1e-9, static_cast<double>(brightest.pixels[static_cast<std::size_t>(i)] - sky));
+        const double weight = std::max(1e-9, double(brightest.pixels[i] - sky));
         sum += weight * (glm::dvec2(i % brightest.width, i / brightest.width) + 0.5);
         light += weight;
     }
@@ -121,11 +112,11 @@ void share_light(const Image& picture, PictureObjects& found) {
     for (int c = 0; c < 3; ++c) {
         const float sky = median_of(channel_of(picture, c));
         for (std::int64_t i = 0; i < picture.width * picture.height; ++i) {
-            const float whole = picture.pixels[static_cast<std::size_t>(i * picture.channels + c)];
-            const bool owned = found.owner[static_cast<std::size_t>(i)] >= 0;
+            const float whole = picture.pixels[i * picture.channels + c];
+            const bool owned = found.owner[i] >= 0;
             const float own = owned ? whole - std::min(whole, sky) : 0.0f;
-            found.light.pixels[static_cast<std::size_t>(3 * i + c)] = own;
-            found.sky.pixels[static_cast<std::size_t>(3 * i + c)] = whole - own;
+            found.light.pixels[3 * i + c] = own;
+            found.sky.pixels[3 * i + c] = whole - own;
         }
     }
 }
@@ -143,7 +134,7 @@ PictureObjects find_objects(const Image& picture, double longest_px) {
         const PictureObject object = object_of(part.pixels, brightest, dark);
         if (part.pixels.size() < least_px || double(object.reach) > longest_px) continue;
         for (const std::int64_t i : part.pixels)
-            found.owner[static_cast<std::size_t>(i)] = static_cast<std::int32_t>(found.objects.size());
+            found.owner[i] = static_cast<std::int32_t>(found.objects.size());
         found.objects.push_back(object);
     }
     share_light(picture, found);

@@ -17,12 +17,8 @@ struct PixelMask {
     std::int64_t width = 0, height = 0;  // px
     Buffer<unsigned char> pixels;        // width * height; 1: belongs to the mask, else 0
 
-    unsigned char& at(std::int64_t x, std::int64_t y) {
-        return pixels[static_cast<std::size_t>(y * width + x)];
-    }
-    bool at(std::int64_t x, std::int64_t y) const {
-        return pixels[static_cast<std::size_t>(y * width + x)] != 0;
-    }
+    unsigned char& at(std::int64_t x, std::int64_t y) { return pixels[y * width + x]; }
+    bool at(std::int64_t x, std::int64_t y) const { return pixels[y * width + x] != 0; }
 };
 
 PixelMask make_mask(std::int64_t width, std::int64_t height);

@@ -3,10 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <optional>
 
 #include "core/parallel.h"
 #include "core/real.h"
+#include "image/blur.h"
+#include "image/channels.h"
 
 namespace astrosplat {
 namespace {
@@ -25,16 +28,16 @@ struct Kernel {
         const auto radius = std::max<std::int64_t>(2, std::llround(std::ceil(2.0 * sigma)));
         double sum = 0.0, squares = 0.0;
         for (std::int64_t i = -radius; i <= radius; ++i) {
-            const double t = static_cast<double>(i) / sigma, w = real::exp(-0.5 * t * t);
-            weights.push_back(static_cast<float>(w));
+            const double t = double(i) / sigma, w = real::exp(-0.5 * t * t);
+            weights.push_back(float(w));
             sum += w;
             squares += w * w;
         }
-        const double count = static_cast<double>(weights.size() * weights.size());
+        const double count = double(weights.size() * weights.size());
         mean = sum * sum / count;
         variance = squares * squares - sum * sum * sum * sum / count;
     }
-    std::int64_t radius() const { return static_cast<std::int64_t>(weights.size() / 2); }
+    std::int64_t radius() const { return std::int64_t(weights.size() / 2); }
 };
 
 struct TwoSums {
@@ -46,14 +49,13 @@ Image row_sums(const Image& brightness, const Kernel& kernel) {
     Image sums = make_image(brightness.width, brightness.height, 2);
     const std::int64_t radius = kernel.radius(), width = brightness.width;
     parallel_each(brightness.height, rows_per_chunk, [&](std::int64_t y) {
-        std::vector<float> padded(static_cast<std::size_t>(width + 2 * radius));
+        std::vector<float> padded(std::size_t(width + 2 * radius));
         for (std::int64_t i = -radius; i < width + radius; ++i)
-            padded[static_cast<std::size_t>(i + radius)] =
-                *brightness.at(std::clamp<std::int64_t>(i, 0, width - 1), y);
+            padded[i + radius] = *brightness.at(std::clamp<std::int64_t>(i, 0, width - 1), y);
         for (std::int64_t x = 0; x < width; ++x) {
             TwoSums s;
             for (std::size_t k = 0; k < kernel.weights.size(); ++k) {
-                const float value = padded[static_cast<std::size_t>(x) + k];
+                const float value = padded[std::size_t(x) + k];
                 s.weighted += kernel.weights[k] * value;
                 s.plain += value;
             }
@@ -72,12 +74,12 @@ double peak_offset(double before, double here, double after) {
 
 StarCandidate candidate_at(const Image& heights, std::int64_t x, std::int64_t y, double noise) {
     const auto at = [&](std::int64_t i, std::int64_t j) {
-        return static_cast<double>(*heights.at(std::clamp<std::int64_t>(i, 0, heights.width - 1),
-                                               std::clamp<std::int64_t>(j, 0, heights.height - 1)));
+        return double(*heights.at(std::clamp<std::int64_t>(i, 0, heights.width - 1),
+                                  std::clamp<std::int64_t>(j, 0, heights.height - 1)));
     };
     const double height = at(x, y);
-    return {static_cast<double>(x) + 0.5 + peak_offset(at(x - 1, y), height, at(x + 1, y)),
-            static_cast<double>(y) + 0.5 + peak_offset(at(x, y - 1), height, at(x, y + 1)), height, noise};
+    return {double(x) + 0.5 + peak_offset(at(x - 1, y), height, at(x + 1, y)),
+            double(y) + 0.5 + peak_offset(at(x, y - 1), height, at(x, y + 1)), height, noise};
 }
 
 }  // namespace
@@ -104,13 +106,12 @@ PointLight light_about(const Image& brightest, std::int64_t x, std::int64_t y, s
         for (std::int64_t i = -reach_px; i <= reach_px; ++i) {
             const double light = std::max(0.0f, *brightest.at(x + i, y + j) - floor);
             sum += light;
-            sum_x += light * static_cast<double>(i);
-            sum_y += light * static_cast<double>(j);
+            sum_x += light * double(i);
+            sum_y += light * double(j);
         }
     }
     const double least = std::max(sum, 1e-12);
-    return {sum, static_cast<float>(static_cast<double>(x) + 0.5 + sum_x / least),
-            static_cast<float>(static_cast<double>(y) + 0.5 + sum_y / least)};
+    return {sum, float(double(x) + 0.5 + sum_x / least), float(double(y) + 0.5 + sum_y / least)};
 }
 
 Image matched_heights(const Image& brightness, double sigma_px) {
@@ -118,11 +119,11 @@ Image matched_heights(const Image& brightness, double sigma_px) {
     const Image sums = row_sums(brightness, kernel);
     Image heights = make_image(brightness.width, brightness.height, 1);
     const std::int64_t radius = kernel.radius();
-    const auto mean = static_cast<float>(kernel.mean), scale = static_cast<float>(1.0 / kernel.variance);
+    const auto mean = float(kernel.mean), scale = float(1.0 / kernel.variance);
     parallel_each(heights.height, rows_per_chunk, [&](std::int64_t y) {
         float* const row = heights.at(0, y);
         for (std::int64_t k = -radius; k <= radius; ++k) {
-            const float weight = kernel.weights[static_cast<std::size_t>(k + radius)];
+            const float weight = kernel.weights[k + radius];
             const float* const from = sums.at(0, std::clamp<std::int64_t>(y + k, 0, heights.height - 1));
             for (std::int64_t x = 0; x < heights.width; ++x)
                 row[x] += (weight * from[2 * x] - mean * from[2 * x + 1]) * scale;
@@ -135,7 +136,7 @@ double pixel_noise_over_height_noise(double sigma_px) { return std::sqrt(Kernel(
 
 Cells noise_of_heights(const Image& heights, double least) {
     Cells cells = measure_cells(heights, noise_cell_px);
-    for (float& noise : cells.noise.pixels) noise = std::max(noise, static_cast<float>(least));
+    for (float& noise : cells.noise.pixels) noise = std::max(noise, float(least));
     return cells;
 }
 
@@ -143,11 +144,112 @@ std::vector<StarCandidate> find_candidates(const Image& heights, const Cells& no
     return found_by_rows(heights, 0, [&](std::int64_t x, std::int64_t y) -> std::optional<StarCandidate> {
         const float height = *heights.at(x, y);
         if (!(height > 0.0f)) return {};
-        const double around = interpolated(noise.noise, noise.cell_px, static_cast<double>(x) + 0.5,
-                                           static_cast<double>(y) + 0.5, 0);
+        const double around = interpolated(noise.noise, noise.cell_px, double(x) + 0.5, double(y) + 0.5, 0);
         if (!(height > threshold * around) || !is_peak(heights, x, y, peak_reach_px)) return {};
         return candidate_at(heights, x, y, around);
     });
+}
+
+namespace {
+
+// Differences of Gaussians of such a ratio are nearly Laplacians (Marr and Hildreth 1980).
+constexpr double finest_sigma_px = 1.6;
+constexpr double sigma_ratio = 1.6;
+constexpr int scales = 4;
+constexpr float prominence = 1.5f;        // times the mean contrast around it
+constexpr float least_contrast = 0.006f;  // of the displayed white
+constexpr float reach_sigmas = 3.0f;
+constexpr float soft_rim = 0.4f;  // of the reach, over which the weight falls to 0
+
+struct Peak {
+    Knot knot;
+    float contrast;
+};
+
+Image difference(const Image& a, const Image& b) {
+    Image out = unfilled_image(a.width, a.height, 1);
+    parallel_each(out.pixels.size(), 65536,
+                  [&](std::size_t i) { out.pixels[i] = a.pixels[i] - b.pixels[i]; });
+    return out;
+}
+
+Image magnitude(Image image) {
+    parallel_each(image.pixels.size(), 65536,
+                  [&](std::size_t i) { image.pixels[i] = std::fabs(image.pixels[i]); });
+    return image;
+}
+
+// The curvature of the contrast along what is seen there over that across.
+float curvature_ratio(const Image& contrast, std::int64_t x, std::int64_t y, std::int64_t step) {
+    const auto at = [&](std::int64_t i, std::int64_t j) { return *contrast.at(x + i * step, y + j * step); };
+    const float xx = at(1, 0) + at(-1, 0) - 2.0f * at(0, 0), yy = at(0, 1) + at(0, -1) - 2.0f * at(0, 0);
+    const float xy = 0.25f * (at(1, 1) + at(-1, -1) - at(1, -1) - at(-1, 1));
+    const float mean = 0.5f * (xx + yy), apart = std::sqrt(0.25f * (xx - yy) * (xx - yy) + xy * xy);
+    return (mean + apart) / std::min(-1e-12f, mean - apart);
+}
+
+// Peaks of one scale, in order of rows.
+std::vector<Peak> peaks(const Image& contrast, double sigma) {
+    const Image common = gaussian_blur(magnitude(contrast), 12.0 + 4.0 * sigma);
+    const auto reach = std::int64_t(std::ceil(1.2 * sigma));
+    return found_by_rows(contrast, reach, [&](std::int64_t x, std::int64_t y) -> std::optional<Peak> {
+        const float here = *contrast.at(x, y);
+        if (here < least_contrast || here < prominence * *common.at(x, y)) return {};
+        if (!is_peak(contrast, x, y, reach, EqualPeaks::all)) return {};
+        const float ratio = curvature_ratio(contrast, x, y, std::max<std::int64_t>(1, reach / 2));
+        const Knot knot{float(x) + 0.5f, float(y) + 0.5f, float(sigma),
+                        std::clamp((ratio - 0.1f) / 0.2f, 0.0f, 1.0f),
+                        std::clamp((ratio - 0.5f) / 0.25f, 0.0f, 1.0f)};
+        return Peak{knot, here};
+    });
+}
+
+// Gives the knot the pixels within its reach, where no other has a greater claim.
+void claim(const Knot& knot, std::int32_t index, const Image& image, Knots& out) {
+    const float reach = reach_sigmas * knot.sigma;
+    const auto whole = [](float v) { return std::int64_t(std::floor(v)); };
+    const auto take = [&](std::int64_t x, std::int64_t y) {
+        const float dx = float(x) + 0.5f - knot.x, dy = float(y) + 0.5f - knot.y;
+        const float inside = 1.0f - std::sqrt(dx * dx + dy * dy) / reach;
+        const float weight = std::clamp(inside / soft_rim, 0.0f, 1.0f);
+        const std::int64_t at = y * image.width + x;
+        if (weight <= out.weight[at]) return;
+        out.weight[at] = weight;
+        out.owner[at] = index;
+    };
+    for_each_between(image, whole(knot.x - reach), whole(knot.y - reach), whole(knot.x + reach),
+                     whole(knot.y + reach), take);
+}
+
+}  // namespace
+
+Knots find_knots(const Image& brightest, const std::vector<Knot>& given) {
+    std::vector<Peak> peaks_found;
+    double sigma = finest_sigma_px;
+    Image finer = gaussian_blur(brightest, sigma);
+    for (int scale = 0; scale < scales; ++scale) {
+        Image coarser = gaussian_blur(finer, sigma * std::sqrt(sigma_ratio * sigma_ratio - 1.0));
+        const std::vector<Peak> found = peaks(difference(finer, coarser), sigma);
+        peaks_found.insert(peaks_found.end(), found.begin(), found.end());
+        finer = std::move(coarser);
+        sigma *= sigma_ratio;
+    }
+    std::ranges::stable_sort(peaks_found, std::greater(), &Peak::contrast);
+    Knots result;
+    const std::int64_t pixels = brightest.width * brightest.height;
+    result.owner.assign(pixels, -1);
+    result.weight.assign(pixels, 0.0f);
+    const auto add = [&](const Knot& knot) {
+        claim(knot, std::int32_t(result.knots.size()), brightest, result);
+        result.knots.push_back(knot);
+    };
+    for (const Knot& knot : given) add(knot);
+    for (const Peak& peak : peaks_found) {
+        const Knot& knot = peak.knot;
+        const std::int64_t at = std::int64_t(knot.y) * brightest.width + std::int64_t(knot.x);
+        if (!(result.weight[at] > 0.5f)) add(knot);
+    }
+    return result;
 }
 
 }  // namespace astrosplat

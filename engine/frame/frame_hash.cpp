@@ -14,7 +14,6 @@
 #include "scene/describe.h"
 #include "scene/layer_setup.h"
 #include "source/mesh.h"
-#include "source/obj.h"
 
 namespace astrosplat {
 namespace {

@@ -1,5 +1,5 @@
 // Lattice positions moved by their own random numbers.
-#include "generate/blocks.h"
+#include "generate/lattice_cull.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "generate/block_places.cpp"
@@ -27,7 +27,7 @@ HWY_FLATTEN void add_jitter(const uint* HWY_RESTRICT id_low, const uint* HWY_RES
                             double* HWY_RESTRICT at) {
     for (std::size_t s = 0; s < block_positions; ++s) {
         const float random = as_uniform(as_hash(seed, id_low[s], id_high[s], purpose));
-        at[s] = at[s] + half_range * (2.0 * static_cast<double>(random) - 1.0);
+        at[s] = at[s] + half_range * (2.0 * double(random) - 1.0);
     }
 }
 
@@ -53,7 +53,7 @@ void place_block(const Lattice& lattice, const CullSettings& settings, const Lat
     const glm::i64vec3 first = block.at * block_cells;
     const bool centres = kind == Positions::centres;
     const auto coordinate = [&](int axis, std::size_t i) {
-        const double cells = static_cast<double>(first[axis] + static_cast<std::int64_t>(i));
+        const double cells = double(first[axis] + std::int64_t(i));
         return lattice_coordinate(lattice, axis, cells + (centres ? 0.5 : 0.0));
     };
     std::array<double, block_cells> x;
@@ -67,8 +67,8 @@ void place_block(const Lattice& lattice, const CullSettings& settings, const Lat
             const std::uint64_t row = centres ? centre_id(lattice, at) : corner_id(lattice, at);
             for (std::size_t i = 0; i < block_cells; ++i) {
                 const std::size_t s = block_slot(i, j, k);
-                id_low[s] = static_cast<std::uint32_t>(row + i);
-                id_high[s] = static_cast<std::uint32_t>((row + i) >> 32);
+                id_low[s] = std::uint32_t(row + i);
+                id_high[s] = std::uint32_t((row + i) >> 32);
                 answers.x[s] = x[i], answers.y[s] = y, answers.z[s] = z;
             }
         }

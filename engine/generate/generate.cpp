@@ -14,12 +14,10 @@
 
 #include "core/memory.h"
 #include "core/parallel.h"
-#include "generate/blocks.h"
 #include "generate/kept_store.h"
 #include "generate/lattice_cull.h"
-#include "generate/surface.h"
 #include "generate/triangle_tree.h"
-#include "source/sample.h"
+#include "source/texture.h"
 #include "splat_files/native.h"
 #include "splats/row_order.h"
 #include "splats/splat_set.h"
@@ -31,8 +29,8 @@ constexpr std::int64_t rows_at_once = 1 << 14;
 
 /// Rows whose alpha is not 0, before each chunk of rows; the last is the number of all.
 std::vector<std::int64_t> lit_before_chunks(const Buffer<float>& alpha) {
-    const auto rows = static_cast<std::int64_t>(alpha.size());
-    std::vector<std::int64_t> before(static_cast<std::size_t>((rows + rows_at_once - 1) / rows_at_once) + 1);
+    const auto rows = std::int64_t(alpha.size());
+    std::vector<std::int64_t> before(std::size_t((rows + rows_at_once - 1) / rows_at_once) + 1);
     parallel_chunks(rows, rows_at_once, [&](std::int64_t begin, std::int64_t end, int) {
         std::int64_t lit = 0;
         for (std::int64_t i = begin; i < end; ++i) lit += alpha[i] > 0.0f;
@@ -45,13 +43,12 @@ std::vector<std::int64_t> lit_before_chunks(const Buffer<float>& alpha) {
 template <class T>
 Buffer<T> lit_rows(const Buffer<T>& all, const Buffer<float>& alpha,
                    const std::vector<std::int64_t>& before) {
-    Buffer<T> lit(static_cast<std::size_t>(before.back()));
-    parallel_chunks(static_cast<std::int64_t>(all.size()), rows_at_once,
-                    [&](std::int64_t begin, std::int64_t end, int) {
-                        std::int64_t to = before[begin / rows_at_once];
-                        for (std::int64_t i = begin; i < end; ++i)
-                            if (alpha[i] > 0.0f) lit[to++] = all[i];
-                    });
+    Buffer<T> lit(std::size_t(before.back()));
+    parallel_chunks(std::int64_t(all.size()), rows_at_once, [&](std::int64_t begin, std::int64_t end, int) {
+        std::int64_t to = before[begin / rows_at_once];
+        for (std::int64_t i = begin; i < end; ++i)
+            if (alpha[i] > 0.0f) lit[to++] = all[i];
+    });
     return lit;
 }
 
@@ -108,8 +105,8 @@ void run_cull(const LatticeCull& cull, const Progress& progress, KeptWatcher* wa
 double bytes_of_positions(double positions) {
     constexpr double most_in_batch =
         0.5 * LatticeCull::batch_blocks * block_positions;  // a surface keeps half of a block
-    return positions * static_cast<double>(bytes_per_splat(is_generated)) +
-           std::min(0.5 * positions, most_in_batch) * static_cast<double>(sizeof(KeptSplat));
+    return positions * double(bytes_per_splat(is_generated)) +
+           std::min(0.5 * positions, most_in_batch) * double(sizeof(KeptSplat));
 }
 
 // The facts of columns before any of them is made: zero_alpha is 0.
@@ -127,18 +124,18 @@ SplatSetFacts facts_of_columns(std::span<const TexturedMesh> meshes, const Latti
 }  // namespace
 
 std::int64_t columns_memory_bytes(std::int64_t positions) {
-    return static_cast<std::int64_t>(bytes_of_positions(static_cast<double>(positions)));
+    return std::int64_t(bytes_of_positions(double(positions)));
 }
 
 std::int64_t columns_memory_bytes(std::span<const TexturedMesh> meshes, const Lattice& lattice,
                                   double max_distance) {
     double triangles = 0.0;
-    for (const TexturedMesh& m : meshes) triangles += static_cast<double>(m.mesh.triangles.size());
+    for (const TexturedMesh& m : meshes) triangles += double(m.mesh.triangles.size());
     const double per_triangle =
         sizeof(TreeTriangle) + sizeof(SurfaceTriangle) + 6.9 * sizeof(float);  // 8/7 boxes
     const double bytes =
         bytes_of_positions(expected_positions(lattice, meshes, max_distance)) + triangles * per_triangle;
-    return static_cast<std::int64_t>(std::min(bytes, 9e18));
+    return std::int64_t(std::min(bytes, 9e18));
 }
 
 KeptCounts count_kept(std::span<const TexturedMesh> meshes, const Lattice& lattice, double max_distance) {
@@ -146,8 +143,8 @@ KeptCounts count_kept(std::span<const TexturedMesh> meshes, const Lattice& latti
     const LatticeCull cull(meshes, lattice, {max_distance, 1.0, 1});
     const std::int64_t unseen = cull.run(cull.blocks({}, {}), {}, [&](std::span<const KeptStore::Run> runs) {
         for (const KeptStore::Run& run : runs) {
-            counts.kept += static_cast<std::int64_t>(run.count);
-            counts.lit += static_cast<std::int64_t>(run.lit);
+            counts.kept += std::int64_t(run.count);
+            counts.lit += std::int64_t(run.lit);
         }
     });
     counts.kept += unseen;
@@ -183,17 +180,17 @@ struct Survey {
 constexpr std::int64_t runs_at_once = 64;
 
 void add_to(std::span<const KeptStore::Run> runs, const SpatialCells& cells, std::vector<Survey>& workers) {
-    parallel_chunks(static_cast<std::int64_t>(runs.size()), runs_at_once,
+    parallel_chunks(std::int64_t(runs.size()), runs_at_once,
                     [&](std::int64_t begin, std::int64_t end, int number) {
-                        Survey& own = workers[static_cast<std::size_t>(number)];
+                        Survey& own = workers[number];
                         for (std::int64_t i = begin; i < end; ++i) {
-                            const KeptStore::Run& run = runs[static_cast<std::size_t>(i)];
+                            const KeptStore::Run& run = runs[i];
                             for (const KeptSplat& splat : std::span(run.splats, run.count)) {
                                 ++own.kept[cells.of(splat.position)];
                                 if (splat.alpha > 0.0f) own.lit_box.add(glm::dvec3(splat.position));
                             }
-                            own.lit += static_cast<std::int64_t>(run.lit);
-                            own.dark += static_cast<std::int64_t>(run.count - run.lit);
+                            own.lit += std::int64_t(run.lit);
+                            own.dark += std::int64_t(run.count - run.lit);
                         }
                     });
 }
@@ -205,9 +202,9 @@ std::vector<CellRange> slabs_of(const Lattice& lattice, std::int64_t count) {
         if (lattice.n[other] > lattice.n[axis]) axis = other;
     const std::int64_t layers = lattice.n[axis] / block_cells + 1,
                        wanted = std::clamp<std::int64_t>(count, 1, layers);
-    std::vector<CellRange> slabs(static_cast<std::size_t>(wanted));
+    std::vector<CellRange> slabs(wanted);
     for (std::int64_t i = 0; i < wanted; ++i) {
-        CellRange& slab = slabs[static_cast<std::size_t>(i)];
+        CellRange& slab = slabs[i];
         slab.lo[axis] = i * layers / wanted * block_cells;
         slab.hi[axis] = (i + 1) * layers / wanted * block_cells;
     }
@@ -216,13 +213,11 @@ std::vector<CellRange> slabs_of(const Lattice& lattice, std::int64_t count) {
 
 Survey survey_of(const LatticeCull& cull, const std::vector<CellRange>& slabs, const SpatialCells& cells,
                  const Progress& progress) {
-    std::vector<Survey> workers(static_cast<std::size_t>(thread_count()));
+    std::vector<Survey> workers(thread_count());
     for (Survey& worker : workers) worker.kept.resize(SpatialCells::count);
     Survey survey;
     for (std::size_t i = 0; i < slabs.size(); ++i) {
-        const auto share = [&](std::size_t done) {
-            return static_cast<double>(done) / static_cast<double>(slabs.size());
-        };
+        const auto share = [&](std::size_t done) { return double(done) / double(slabs.size()); };
         survey.unseen +=
             cull.run(cull.blocks(slabs[i], progress), progress.part(share(i), share(i + 1)),
                      [&](std::span<const KeptStore::Run> runs) { add_to(runs, cells, workers); });
@@ -244,19 +239,16 @@ struct Part {
 };
 
 /// Halves space until parts hold no more than `most` positions.
-class PartList {
-  public:
-    PartList(const Survey& survey, const SpatialCells& surveyed, const SpatialCells& cells, std::int64_t most)
-        : survey_(survey), surveyed_(surveyed), cells_(cells), most_(most) {
-        add(0, SpatialCells::count);
-    }
-    std::vector<Part> parts;
+struct PartList {
+    const Survey& survey;
+    const SpatialCells &surveyed, &cells;
+    std::int64_t most;
+    std::vector<Part> parts = {};
 
-  private:
     void add(std::uint32_t first, std::uint32_t count) {
-        const std::int64_t kept = kept_about(cells_.cube(first, count));
+        const std::int64_t kept = kept_about(cells.cube(first, count));
         if (kept == 0) return;
-        if (kept <= most_ || count == 1 || !cells_.extended()) {
+        if (kept <= most || count == 1 || !cells.extended()) {
             parts.push_back({first, count, kept});
             return;
         }
@@ -266,18 +258,14 @@ class PartList {
     /// Positions in all surveyed cells that the cube reaches, and in its neighbourhood's.
     std::int64_t kept_about(const Bounds& cube) const {
         const glm::dvec3 margin(1e-6 * cube.extent().x);
-        const glm::uvec3 lo = surveyed_.place_of(cube.lo - margin), hi = surveyed_.place_of(cube.hi + margin);
+        const glm::uvec3 lo = surveyed.place_of(cube.lo - margin), hi = surveyed.place_of(cube.hi + margin);
         std::int64_t kept = 0;
         for (std::uint32_t z = lo.z; z <= hi.z; ++z)
             for (std::uint32_t y = lo.y; y <= hi.y; ++y)
                 for (std::uint32_t x = lo.x; x <= hi.x; ++x)
-                    kept += survey_.kept[SpatialCells::number_of({x, y, z})];
+                    kept += survey.kept[SpatialCells::number_of({x, y, z})];
         return kept;
     }
-
-    const Survey& survey_;
-    const SpatialCells &surveyed_, &cells_;
-    std::int64_t most_;
 };
 
 /// The cells of the lattice whose positions, moved by jitter and rounded, may lie in the cube.
@@ -289,9 +277,9 @@ CellRange cells_about(const Bounds& cube, const Lattice& lattice) {
     for (int axis = 0; axis < 3; ++axis) {
         const double lo = (cube.lo[axis] - rounding[axis] - lattice.box.lo[axis]) / spacing[axis];
         const double hi = (cube.hi[axis] + rounding[axis] - lattice.box.lo[axis]) / spacing[axis];
-        const auto last = static_cast<double>(lattice.n[axis]);
-        range.lo[axis] = static_cast<std::int64_t>(std::clamp(std::floor(lo) - 2.0, 0.0, last));
-        range.hi[axis] = static_cast<std::int64_t>(std::clamp(std::ceil(hi) + 2.0, 0.0, last) + 1.0);
+        const auto last = double(lattice.n[axis]);
+        range.lo[axis] = std::int64_t(std::clamp(std::floor(lo) - 2.0, 0.0, last));
+        range.hi[axis] = std::int64_t(std::clamp(std::ceil(hi) + 2.0, 0.0, last) + 1.0);
     }
     return range;
 }
@@ -309,7 +297,7 @@ void write_part(const LatticeCull& cull, const Lattice& lattice, const SpatialCe
         const std::uint32_t cell = cells.of(set.position[i]) - part.first;
         bins[i] = cell < part.cells && set.alpha[i] > 0.0f ? cell : part.cells;
     });
-    const auto others = static_cast<std::size_t>(std::ranges::count(bins, part.cells));
+    const auto others = std::size_t(std::ranges::count(bins, part.cells));
     const Buffer<std::uint32_t> rows = rows_by_bin<std::uint32_t>(bins, part.cells + 1, set.id);
     file.append(set, std::span(rows).first(rows.size() - others));
 }
@@ -332,21 +320,23 @@ std::int64_t write_columns(const WriteTarget& target, std::span<const TexturedMe
     const LatticeCull cull(meshes, lattice, {max_distance, jitter, seed});
     const SpatialCells surveyed(lattice.box);
     const double blocks = expected_positions(lattice, meshes, max_distance) / positions_of_block;
-    const double slabs = std::ceil(blocks * sizeof(LatticeBlock) / (0.25 * static_cast<double>(room_bytes)));
-    const Survey survey = survey_of(cull, slabs_of(lattice, static_cast<std::int64_t>(std::min(slabs, 1e9))),
-                                    surveyed, progress.part(0.0, 0.45));
+    const double slabs = std::ceil(blocks * sizeof(LatticeBlock) / (0.25 * double(room_bytes)));
+    const Survey survey = survey_of(cull, slabs_of(lattice, std::int64_t(std::min(slabs, 1e9))), surveyed,
+                                    progress.part(0.0, 0.45));
 
     SplatSetFacts facts = facts_of_columns(meshes, lattice, max_distance);
     facts.zero_alpha = survey.dark + survey.unseen;
     NativeStream file(target, facts, written_columns(survey.lit), survey.lit);
     if (survey.lit > 0) {
-        const std::int64_t bytes_per_row = static_cast<std::int64_t>(bytes_per_splat(is_generated)) +
-                                           2 * sizeof(std::uint32_t) + sizeof(LatticeBlock);
+        const std::int64_t bytes_per_row =
+            std::int64_t(bytes_per_splat(is_generated)) + 2 * sizeof(std::uint32_t) + sizeof(LatticeBlock);
         const SpatialCells cells(survey.lit_box);
-        const std::vector<Part> parts = PartList(survey, surveyed, cells, room_bytes / bytes_per_row).parts;
+        PartList list{survey, surveyed, cells, room_bytes / bytes_per_row};
+        list.add(0, SpatialCells::count);
+        const std::vector<Part>& parts = list.parts;
         for (std::size_t i = 0; i < parts.size(); ++i) {
             const auto share = [&](std::size_t done) {
-                return 0.45 + 0.55 * static_cast<double>(done) / static_cast<double>(parts.size());
+                return 0.45 + 0.55 * double(done) / double(parts.size());
             };
             claim_memory(parts[i].most * bytes_per_row, "a part of the splats");
             write_part(cull, lattice, cells, parts[i], progress.part(share(i), share(i + 1)), file);

@@ -33,20 +33,17 @@ double position_count(const glm::dvec3& n) {
 }
 
 glm::i64vec3 checked_counts(const glm::dvec3& n, const char* key) {
-    if (!(position_count(n) < most_positions)) {
+    if (!(position_count(n) < most_positions))
         bad_key(key, "a lattice of fewer than 2^62 positions",
                 fmt::format("{:.4g} x {:.4g} x {:.4g} voxels", n.x, n.y, n.z));
-    }
     return glm::i64vec3(n);
 }
 
 Bounds buffered_box(const SourceParams& source, std::span<const TexturedMesh> meshes, double max_distance) {
     const glm::dvec3 buffer = source.buffer.value_or(glm::dvec3(max_distance));
-    for (int axis = 0; axis < 3; ++axis) {
-        if (!(buffer[axis] >= 0.0 && std::isfinite(buffer[axis]))) {
+    for (int axis = 0; axis < 3; ++axis)
+        if (!(buffer[axis] >= 0.0 && std::isfinite(buffer[axis])))
             bad_key("buffer", "numbers of at least 0", fmt::format("{}", buffer[axis]));
-        }
-    }
     Bounds box = bounds(meshes);
     box.lo -= buffer;
     box.hi += buffer;
@@ -66,7 +63,7 @@ Lattice cubes(Bounds box, double size, const char* key) {
 
 // With two positions in each voxel, `count` of them fill a volume.
 double cube_side(double volume, std::int64_t count) {
-    return real::pow(2.0 * volume / static_cast<double>(count), 1.0 / 3.0);
+    return real::pow(2.0 * volume / double(count), 1.0 / 3.0);
 }
 
 // Whether volumes are alike enough for `count` to mean what it says.
@@ -95,15 +92,14 @@ double expected_in_band(const Lattice& lattice, std::span<const TexturedMesh> me
                         double share) {
     const glm::dvec3 voxel = lattice.spacing();
     const double band = 4.0 * total_area(meshes) * max_distance / (voxel.x * voxel.y * voxel.z) * share;
-    return std::min(static_cast<double>(lattice.positions()), band);  // also where band is 0 / 0
+    return std::min(double(lattice.positions()), band);  // also where band is 0 / 0
 }
 
 }  // namespace
 
 double resolved_max_distance(const SourceParams& source, const Bounds& meshes_box) {
-    if (!(source.max_distance >= 0.0 && std::isfinite(source.max_distance))) {
+    if (!(source.max_distance >= 0.0 && std::isfinite(source.max_distance)))
         bad_key("max_distance", "a number of at least 0", fmt::format("{}", source.max_distance));
-    }
     if (source.max_distance > 0.0) return source.max_distance;
     const glm::dvec3 extent = meshes_box.extent();
     return 0.02 * std::max({extent.x, extent.y, extent.z});
@@ -120,18 +116,16 @@ Lattice make_lattice(const SourceParams& source, std::span<const TexturedMesh> m
     const Bounds box = buffered_box(source, meshes, max_distance);
     if (source.voxels) {
         const glm::i64vec3 n = *source.voxels;
-        for (int axis = 0; axis < 3; ++axis) {
+        for (int axis = 0; axis < 3; ++axis)
             if (n[axis] < 1) bad_key("voxels", "at least 1 per axis", fmt::format("{}", n[axis]));
-        }
         Lattice lattice;
         lattice.n = n;
         lattice.box = box;
         checked_counts(glm::dvec3(n), "voxels");
         return lattice;
     }
-    if (!(source.voxel_size >= 0.0 && std::isfinite(source.voxel_size))) {
+    if (!(source.voxel_size >= 0.0 && std::isfinite(source.voxel_size)))
         bad_key("voxel_size", "a number above 0", fmt::format("{}", source.voxel_size));
-    }
     if (source.voxel_size > 0.0) return cubes(box, source.voxel_size, "voxel_size");
     return automatic_lattice(source, meshes, max_distance, box);
 }
@@ -146,7 +140,7 @@ double expected_kept(const Lattice& lattice, std::span<const TexturedMesh> meshe
 
 double expected_splats(const SourceParams& source, const Lattice& lattice,
                        std::span<const TexturedMesh> meshes, double max_distance) {
-    if (source.splats > 0 && has_automatic_voxels(source)) return static_cast<double>(source.splats);
+    if (source.splats > 0 && has_automatic_voxels(source)) return double(source.splats);
     return expected_kept(lattice, meshes, max_distance);
 }
 
@@ -173,10 +167,10 @@ Neighbourhood measure_neighbourhood(std::span<const TexturedMesh> meshes, const 
     while (2.0 * room / (side * side * side) < most_measured) {
         const Lattice lattice = coarse_lattice(box, side);
         const KeptCounts counts = count_kept(meshes, lattice, max_distance);
-        const auto kept = static_cast<double>(counts.kept);
+        const auto kept = double(counts.kept);
         const glm::dvec3 voxel = lattice.spacing();
         const double each = voxel.x * voxel.y * voxel.z / 2.0;
-        if (kept >= enough) return {kept * each, static_cast<double>(counts.lit) * each};
+        if (kept >= enough) return {kept * each, double(counts.lit) * each};
         side *= kept < few ? 0.5 : real::pow(kept / (1.2 * enough), 1.0 / 3.0);
     }
     return {};

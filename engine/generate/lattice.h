@@ -28,17 +28,17 @@ struct Lattice {
 
 /// Id of corner (i, j, k), 0..n per axis, and of the centre of cell (i, j, k), 0..n-1.
 inline std::uint64_t corner_id(const Lattice& lattice, const glm::i64vec3& at) {
-    return static_cast<std::uint64_t>((at.z * (lattice.n.y + 1) + at.y) * (lattice.n.x + 1) + at.x);
+    return std::uint64_t((at.z * (lattice.n.y + 1) + at.y) * (lattice.n.x + 1) + at.x);
 }
 inline std::uint64_t centre_id(const Lattice& lattice, const glm::i64vec3& at) {
-    return static_cast<std::uint64_t>(lattice.corners() + (at.z * lattice.n.y + at.y) * lattice.n.x + at.x);
+    return std::uint64_t(lattice.corners() + (at.z * lattice.n.y + at.y) * lattice.n.x + at.x);
 }
 
 /// Coordinate along one axis at `cells` voxels (whole for corners, half for centres) from the box's lower
 /// side.
 inline double lattice_coordinate(const Lattice& lattice, int axis, double cells) {
     return lattice.box.lo[axis] +
-           (lattice.box.hi[axis] - lattice.box.lo[axis]) * cells / static_cast<double>(lattice.n[axis]);
+           (lattice.box.hi[axis] - lattice.box.lo[axis]) * cells / double(lattice.n[axis]);
 }
 
 /// Whether `count` or `splats` chooses the lattice.

@@ -73,8 +73,6 @@ struct TriangleBox {
     glm::vec3 lo, hi;
 };
 
-double squared_length(const glm::dvec3& v) { return v.x * v.x + v.y * v.y + v.z * v.z; }
-
 // The middle of the smallest circle around a triangle, from its first corner: the circumcentre where all
 // angles are acute, else the middle of the longest side.
 glm::dvec3 circle_middle(const TriangleShape& s) {
@@ -98,7 +96,7 @@ double overshoot(const TriangleShape& s) {
 // Unit, or 0 for triangles that have no plane worth a bound.
 glm::dvec3 usable_normal(const TriangleShape& s) {
     const glm::dvec3 normal = glm::cross(s.ab, s.ac);
-    const double length = std::sqrt(squared_length(normal));
+    const double length = std::sqrt(squared(normal));
     return length > 0.0 && !is_narrow(s) ? normal / length : glm::dvec3(0.0);
 }
 
@@ -111,10 +109,10 @@ TriangleBox triangle_box(const TriangleShape& s, const glm::dvec3& origin) {
 
 TriangleDisc triangle_disc(const TriangleShape& s, const glm::dvec3& origin) {
     const glm::dvec3 middle = circle_middle(s);
-    const double radius = std::sqrt(
-        std::max({squared_length(middle), squared_length(middle - s.ab), squared_length(middle - s.ac)}));
+    const double radius =
+        std::sqrt(std::max({squared(middle), squared(middle - s.ab), squared(middle - s.ac)}));
     return {glm::vec3(s.a - origin + middle), glm::vec3(usable_normal(s)),
-            static_cast<float>(radius * (1.0 + overshoot(s)))};
+            float(radius * (1.0 + overshoot(s)))};
 }
 
 constexpr std::size_t fan = TriangleTree::fan;
@@ -178,11 +176,11 @@ Buffer<Middle> place_order(const Buffer<TriangleCorners>& corners, const Triangl
     parallel_each(corners.size(), triangles_per_chunk, [&](std::size_t i) {
         const auto& [a, b, c] = corners[i];
         const glm::dvec3 middle = (glm::dvec3(a) + glm::dvec3(b) + glm::dvec3(c)) / 3.0 - tree.origin;
-        order[i] = {glm::vec3(middle), static_cast<std::uint32_t>(i)};
+        order[i] = {glm::vec3(middle), std::uint32_t(i)};
     });
     std::vector<std::span<Middle>> parts;  // one task each
     cut(order, std::size_t{1} << 15, [&](std::span<Middle> part) { parts.push_back(part); });
-    parallel_for(static_cast<std::int64_t>(parts.size()),
+    parallel_for(std::int64_t(parts.size()),
                  [&](std::int64_t part, int) { cut(parts[part], fan, [](std::span<Middle>) {}); });
     return order;
 }
@@ -262,7 +260,7 @@ class PointSearch {
         }
         for (std::size_t i = 0; i < found && !(squared[order[i]] > limit_ * limit_); ++i) {
             const std::size_t child = first + order[i];
-            level == 0 ? offer(static_cast<std::uint32_t>(child)) : visit(level - 1, child);
+            level == 0 ? offer(std::uint32_t(child)) : visit(level - 1, child);
         }
     }
 

@@ -111,7 +111,7 @@ struct TriangleTree {
 };
 
 /// The radius of a search that is to find everything within `distance`, in spite of float.
-inline float widened(double distance, double slack) { return static_cast<float>(1.00001 * distance + slack); }
+inline float widened(double distance, double slack) { return float(1.00001 * distance + slack); }
 
 /// Meshes are numbered and concatenated in order. Throws InputError for more triangles than 32 bits count.
 TriangleTree make_triangle_tree(std::span<const Mesh* const> meshes);

@@ -23,6 +23,13 @@ Image mean_of_channels(const Image& image) {
                          [](const float* in, float* out) { *out = (in[0] + in[1] + in[2]) / 3.0f; });
 }
 
+Image opaque(const Image& image) {
+    Image rgba = make_image(image.width, image.height, 4, 1.0f);
+    for_each_pixel(image,
+                   [&](std::int64_t x, std::int64_t y) { std::copy_n(image.at(x, y), 3, rgba.at(x, y)); });
+    return rgba;
+}
+
 Image channel_of(const Image& image, int channel) {
     return made_by_pixel(image, 1, [=](const float* in, float* out) { *out = in[channel]; });
 }

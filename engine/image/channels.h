@@ -1,4 +1,5 @@
-// Channels of images. In: an image in memory. Out: one channel of it or all, or a value between its pixels.
+// Pixels of images and their channels. In: an image in memory. Out: one channel of it or all, a value between
+// its pixels, or a visit to all of them or to those about a place.
 #pragma once
 
 #include <algorithm>
@@ -26,6 +27,9 @@ Image brightest_channel(const Image& light);
 
 /// The mean of the first three channels.
 Image mean_of_channels(const Image& image);
+
+/// The first three channels, and an alpha of 1.
+Image opaque(const Image& image);
 
 /// One channel alone.
 Image channel_of(const Image& image, int channel);
@@ -61,6 +65,50 @@ class LinearSample {
 
 inline float bilinear(const Image& image, int channel, float x, float y) {
     return LinearSample(image, x, y).of(image, channel);
+}
+
+/// Calls visit(x, y) for every pixel, on all threads.
+template <class Visit>
+void for_each_pixel(const Image& image, const Visit& visit) {
+    parallel_each(image.height, 16, [&](std::int64_t y) {
+        for (std::int64_t x = 0; x < image.width; ++x) visit(x, y);
+    });
+}
+
+/// Calls change(p) with the channels of every pixel, on all threads.
+template <class Change>
+void change_pixels(Image& image, const Change& change) {
+    for_each_pixel(image, [&](std::int64_t x, std::int64_t y) { change(image.at(x, y)); });
+}
+
+/// Calls visit(x, y) for the pixels of the rectangle from one corner to the other, both included, that a
+/// picture (of any type with width and height) has: row by row, on this thread.
+template <class Picture, class Visit>
+void for_each_between(const Picture& picture, std::int64_t left, std::int64_t top, std::int64_t right,
+                      std::int64_t bottom, const Visit& visit) {
+    for (std::int64_t y = std::max<std::int64_t>(0, top); y <= std::min(picture.height - 1, bottom); ++y)
+        for (std::int64_t x = std::max<std::int64_t>(0, left); x <= std::min(picture.width - 1, right); ++x)
+            visit(x, y);
+}
+
+/// Those of the square of `reach_px` about a pixel.
+template <class Picture, class Visit>
+void for_each_about(const Picture& picture, std::int64_t x, std::int64_t y, std::int64_t reach_px,
+                    const Visit& visit) {
+    for_each_between(picture, x - reach_px, y - reach_px, x + reach_px, y + reach_px, visit);
+}
+
+/// visit(x, y, dx, dy) of those whose middles lie within `radius_px` of a place, px from the top left corner;
+/// dx and dy lead from there to the pixel's middle.
+template <class Picture, class Visit>
+void for_each_within(const Picture& picture, double at_x, double at_y, double radius_px, const Visit& visit) {
+    const auto whole = [](double v) { return static_cast<std::int64_t>(v); };
+    for_each_between(picture, whole(at_x - radius_px), whole(at_y - radius_px), whole(at_x + radius_px),
+                     whole(at_y + radius_px), [&](std::int64_t x, std::int64_t y) {
+                         const double dx = static_cast<double>(x) + 0.5 - at_x,
+                                      dy = static_cast<double>(y) + 0.5 - at_y;
+                         if (dx * dx + dy * dy <= radius_px * radius_px) visit(x, y, dx, dy);
+                     });
 }
 
 }  // namespace astrosplat

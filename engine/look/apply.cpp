@@ -159,7 +159,7 @@ Buffer<std::uint32_t> rows_of(const SplatSet& set, const ShadedSplats& shaded) {
     std::size_t row = 0;
     for (std::size_t i = 0; i < rows.size(); ++i, ++row) {
         while (set.id[row] != shaded.id[i]) ++row;
-        rows[i] = static_cast<std::uint32_t>(row);
+        rows[i] = std::uint32_t(row);
     }
     return rows;
 }
@@ -176,7 +176,7 @@ glm::mat3 shape_of(const SplatSet& set, std::size_t row) {
 
 Buffer<glm::vec3> seen_colors(const SplatSet& set, const SeenFrom& from, const Progress& progress) {
     assert(!set.harmonics.empty());
-    claim_memory(set.size() * static_cast<std::int64_t>(sizeof(glm::vec3)), "colours by direction");
+    claim_memory(set.size() * std::int64_t(sizeof(glm::vec3)), "colours by direction");
     Buffer<glm::vec3> colors(set.harmonics.size());
     parallel_chunks(set.size(), splats_per_chunk, [&](std::int64_t begin, std::int64_t end, int) {
         progress.check();
@@ -189,7 +189,7 @@ Buffer<glm::vec3> seen_colors(const SplatSet& set, const SeenFrom& from, const P
             }
             glm::vec3 color = color_towards(set.harmonics[i], glm::vec3(d));
             if (set.display_harmonics)
-                for (int k = 0; k < 3; ++k) color[k] = static_cast<float>(real::srgb_to_linear(color[k]));
+                for (int k = 0; k < 3; ++k) color[k] = float(real::srgb_to_linear(color[k]));
             colors[i] = color;
         }
     });
@@ -199,7 +199,7 @@ Buffer<glm::vec3> seen_colors(const SplatSet& set, const SeenFrom& from, const P
 void add_shapes(const SplatSet& set, ShadedSplats& shaded) {
     assert(holds_gaussians(set));
     if (shaded.stretch.capacity() < shaded.position.size())
-        claim_memory(shaded.size() * static_cast<std::int64_t>(sizeof(glm::mat3)), "shapes of splats");
+        claim_memory(shaded.size() * std::int64_t(sizeof(glm::mat3)), "shapes of splats");
     shaded.stretch.resize(shaded.position.size());
     if (shaded.size() == set.size()) {
         parallel_each(shaded.stretch.size(), splats_per_chunk,
@@ -213,8 +213,7 @@ void add_shapes(const SplatSet& set, ShadedSplats& shaded) {
 
 void encode_colors(ShadedSplats& shaded) {
     parallel_each(shaded.color.size(), splats_per_chunk, [&](std::size_t i) {
-        for (int k = 0; k < 3; ++k)
-            shaded.color[i][k] = static_cast<float>(real::linear_to_srgb(shaded.color[i][k]));
+        for (int k = 0; k < 3; ++k) shaded.color[i][k] = float(real::linear_to_srgb(shaded.color[i][k]));
     });
     shaded.encoded = true;
 }

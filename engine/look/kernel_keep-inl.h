@@ -1,5 +1,6 @@
-// Steps 1 to 3 of the look over a block: how thick the layer is there, which splats are kept and where they
-// move. Included once per instruction set.
+// A block of splats on its way through the look, what several steps use (reading, noise, profiles), and steps
+// 1 to 3: how thick the layer is there, which splats are kept and where they move. Included once per
+// instruction set.
 #if defined(ASTROSPLAT_LOOK_KERNEL_KEEP_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef ASTROSPLAT_LOOK_KERNEL_KEEP_INL_H
 #undef ASTROSPLAT_LOOK_KERNEL_KEEP_INL_H
@@ -7,12 +8,172 @@
 #define ASTROSPLAT_LOOK_KERNEL_KEEP_INL_H
 #endif
 
-#include "look/kernel_block-inl.h"
+#include <hwy/highway.h>
+
+#include "look/kernel.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace astrosplat {
 namespace HWY_NAMESPACE {
 namespace {
+
+using namespace astrosplat::shared_types;
+
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wunused-function"
+#include "maths.glsl"
+// after maths
+#include "noise.glsl"
+// after noise
+#include "look.glsl"
+#pragma GCC diagnostic pop
+
+// Every loop calls shared functions; flatten inlines them all, without which nothing becomes a vector.
+#undef ASTROSPLAT_LOOP
+#define ASTROSPLAT_LOOP HWY_FLATTEN void
+
+constexpr int block_size = 256;
+using Lane = float[block_size];
+
+// Splats on their way through the steps: first those read, from `compact` on those kept. 40 kB.
+struct Block {
+    int count;
+    int from[block_size];  // index within the block's part of the set
+    uint id_low[block_size], id_high[block_size];
+    Lane px, py, pz;  // position; read where noise is used
+    Lane distance, x, reach, column;
+    Lane n[LOOK_MAX_NOISES];           // noise values
+    Lane weight[LOOK_MAX_STOPS], sum;  // of the thickness stops
+    Lane r, g, b;                      // map value, later colour
+    Lane probability, bites;
+    Lane cropped;  // what the crops leave of alpha; read where there are any
+    Lane alpha, alpha_factor, color_factor, radius_factor, radius, f;
+    int keep[block_size];
+};
+
+bool any(const LookUniforms& u, float LookNoise::*amount) {
+    for (int j = 0; j < u.noise_count; ++j)
+        if (u.noises[j].*amount != 0.0f) return true;
+    return false;
+}
+
+ASTROSPLAT_LOOP fill(float* HWY_RESTRICT y, float value, int count) {
+    for (int i = 0; i < count; ++i) y[i] = value;
+}
+
+// --- reading ---
+
+ASTROSPLAT_LOOP read_ids(const std::uint64_t* HWY_RESTRICT id, Block& b) {
+    for (int i = 0; i < b.count; ++i) {
+        b.id_low[i] = uint(id[i]);
+        b.id_high[i] = uint(id[i] >> 32);
+    }
+}
+
+ASTROSPLAT_LOOP read_positions(const glm::vec3* HWY_RESTRICT position, Block& b) {
+    for (int i = 0; i < b.count; ++i) {
+        b.px[i] = position[i].x;
+        b.py[i] = position[i].y;
+        b.pz[i] = position[i].z;
+    }
+}
+
+// One channel, or the first three; what lies beyond the third is not read.
+void read_map(const Image& map, const glm::vec2* uv, Block& b) {
+    const int width = int(map.width), height = int(map.height);
+    const int green = map.channels >= 3 ? 1 : 0, blue = map.channels >= 3 ? 2 : 0;
+    for (int i = 0; i < b.count; ++i) {
+        const float x = look_texel(uv[i].x, width), y = look_texel(1.0f - uv[i].y, height);
+        const int x0 = int(x), y0 = int(y);
+        const int x1 = min(x0 + 1, width - 1), y1 = min(y0 + 1, height - 1);
+        const float tx = x - floor(x), ty = y - floor(y);
+        const float *c00 = map.at(x0, y0), *c10 = map.at(x1, y0), *c01 = map.at(x0, y1),
+                    *c11 = map.at(x1, y1);
+        b.r[i] = look_bilinear(c00[0], c10[0], c01[0], c11[0], tx, ty);
+        b.g[i] = look_bilinear(c00[green], c10[green], c01[green], c11[green], tx, ty);
+        b.b[i] = look_bilinear(c00[blue], c10[blue], c01[blue], c11[blue], tx, ty);
+    }
+}
+
+// --- noise ---
+
+ASTROSPLAT_LOOP add_octave(const float* HWY_RESTRICT x, const float* HWY_RESTRICT y,
+                           const float* HWY_RESTRICT z, float* HWY_RESTRICT sum, float amplitude,
+                           float frequency, uint seed, int octave, int count) {
+    for (int i = 0; i < count; ++i)
+        sum[i] = sum[i] + amplitude * as_noise_octave(x[i], y[i], z[i], frequency, seed, octave);
+}
+
+// as_fbm with its two loops exchanged.
+void fbm(const LookNoise& noise, const float* x, const float* y, const float* z, float* sum, int count) {
+    float amplitude = noise.scale, frequency = noise.frequency;
+    fill(sum, 0.0f, count);
+    for (int i = 0; i < noise.octaves; ++i) {
+        add_octave(x, y, z, sum, amplitude, frequency, noise.seed, i, count);
+        amplitude = amplitude * noise.gain;
+        frequency = frequency * noise.lacunarity;
+    }
+}
+
+ASTROSPLAT_LOOP positions_across(const Block& b, vec3 axis, float* HWY_RESTRICT x, float* HWY_RESTRICT y,
+                                 float* HWY_RESTRICT z) {
+    for (int i = 0; i < b.count; ++i) {
+        const vec3 p = look_across(vec3(b.px[i], b.py[i], b.pz[i]), axis);
+        x[i] = p.x;
+        y[i] = p.y;
+        z[i] = p.z;
+    }
+}
+
+ASTROSPLAT_LOOP bite(float amount, const float* HWY_RESTRICT n, float* HWY_RESTRICT factor, int count) {
+    for (int i = 0; i < count; ++i) factor[i] = factor[i] * look_bite(amount, n[i]);
+}
+
+ASTROSPLAT_LOOP vary(float amount, const float* HWY_RESTRICT n, float* HWY_RESTRICT factor, int count) {
+    for (int i = 0; i < count; ++i) factor[i] = factor[i] * look_vary(amount, n[i]);
+}
+
+// --- profiles ---
+
+template <int shape>
+ASTROSPLAT_LOOP formula(float rate, const float* HWY_RESTRICT x, float* HWY_RESTRICT y, int count) {
+    for (int i = 0; i < count; ++i) y[i] = look_formula(shape, rate, x[i]);
+}
+
+// look_curve with its two loops exchanged.
+ASTROSPLAT_LOOP curve_piece(vec4 first, vec4 second, const float* HWY_RESTRICT x, float* HWY_RESTRICT y,
+                            int count) {
+    for (int i = 0; i < count; ++i) {
+        const float value = look_curve_piece(first, second, x[i]);
+        y[i] = x[i] >= first.x ? value : y[i];
+    }
+}
+
+void curve(const LookCurve& c, const float* x, float* y, int count) {
+    fill(y, c.knots[0].y, count);
+    for (int k = 0; k + 1 < c.count; ++k) curve_piece(c.knots[k], c.knots[k + 1], x, y, count);
+}
+
+void profile(const LookProfile& p, const float* x, float* y, int count) {
+    switch (p.shape) {
+        case PROFILE_CONSTANT:
+            return formula<PROFILE_CONSTANT>(p.rate, x, y, count);
+        case PROFILE_LINEAR:
+            return formula<PROFILE_LINEAR>(p.rate, x, y, count);
+        case PROFILE_QUADRATIC:
+            return formula<PROFILE_QUADRATIC>(p.rate, x, y, count);
+        case PROFILE_EXPONENTIAL:
+            return formula<PROFILE_EXPONENTIAL>(p.rate, x, y, count);
+        case PROFILE_GAUSSIAN:
+            return formula<PROFILE_GAUSSIAN>(p.rate, x, y, count);
+        case PROFILE_SMOOTH:
+            return formula<PROFILE_SMOOTH>(p.rate, x, y, count);
+        case PROFILE_S106:
+            return formula<PROFILE_S106>(p.rate, x, y, count);
+        default:
+            return curve(p.curve, x, y, count);
+    }
+}
 
 // --- 1: thickness ---
 

@@ -1,7 +1,7 @@
 // A least-squares plane says how places follow from u and v; its metric turns a width into steps of u and v.
 // A sample of the set says for each block and its neighbours how places follow from u and v, and so how many
 // cells a footprint is wide.
-#include "look/picture_chart.h"
+#include "look/picture_fit.h"
 
 #include <algorithm>
 #include <cmath>
@@ -30,9 +30,9 @@ struct SurfaceMetric {
 
 // A map's value as the kernel and the preview read it.
 glm::vec3 map_value(const Image& map, const glm::vec2& uv) {
-    const int width = static_cast<int>(map.width), height = static_cast<int>(map.height);
+    const int width = int(map.width), height = int(map.height);
     const float x = shared::look_texel(uv.x, width), y = shared::look_texel(1.0f - uv.y, height);
-    const int x0 = static_cast<int>(x), y0 = static_cast<int>(y);
+    const int x0 = int(x), y0 = int(y);
     const int x1 = std::min(x0 + 1, width - 1), y1 = std::min(y0 + 1, height - 1);
     glm::vec3 value;
     for (int c = 0; c < 3; ++c) {
@@ -54,8 +54,8 @@ OneSplat look_at(const LookRun& run, const LookUniforms& uniforms, std::int64_t 
     s.from_surface = in.distance[i];
     s.radius = uniforms.radius.own ? in.radius[i] : 0.0f;
     s.map_value = uniforms.stop_count > 1 ? map_value(*run.map, in.uv[i]) : glm::vec3(0.0f);
-    s.id_low = static_cast<std::uint32_t>(in.id[i]);
-    s.id_high = static_cast<std::uint32_t>(in.id[i] >> 32);
+    s.id_low = std::uint32_t(in.id[i]);
+    s.id_high = std::uint32_t(in.id[i] >> 32);
     const shared::LookOutput look = shared::look_splat(uniforms, s);
     return {look.keep, look.probability, look.color, look.alpha, look.radius};
 }
@@ -75,7 +75,7 @@ struct Plane {
 
 void fit_slopes(const SurfaceSamples& samples, std::size_t count, Plane& plane) {
     for (std::size_t i = 0; i < count; ++i) plane.middle += samples[i].at, plane.place += samples[i].place;
-    plane.middle /= static_cast<double>(count), plane.place /= static_cast<double>(count);
+    plane.middle /= double(count), plane.place /= double(count);
     double uu = 0.0, uv = 0.0, vv = 0.0;
     glm::dvec3 pu(0.0), pv(0.0);
     for (std::size_t i = 0; i < count; ++i) {
@@ -118,7 +118,7 @@ void find_normal(const SurfaceSamples& samples, std::size_t count, Plane& plane)
 
 Plane plane_through(const SurfaceSamples& samples, std::size_t count) {
     Plane plane;
-    if (static_cast<double>(count) < least_samples) return plane;
+    if (double(count) < least_samples) return plane;
     fit_slopes(samples, count, plane);
     if (plane.known) find_normal(samples, count, plane);
     return plane;
@@ -135,9 +135,8 @@ double astray(const Plane& plane, const SurfaceSample& sample) {
 // that are most astray are left out: positions beyond the edge of a mesh have the edge's u and v.
 Plane surface_plane(SurfaceSamples& samples, const glm::dvec2& middle) {
     const auto first = [&](double share) {
-        const double part = static_cast<double>(samples.size()) * share;
-        return static_cast<std::ptrdiff_t>(
-            std::min(static_cast<double>(samples.size()), std::max(part, least_part)));
+        const double part = double(samples.size()) * share;
+        return static_cast<std::ptrdiff_t>(std::min(double(samples.size()), std::max(part, least_part)));
     };
     if (samples.empty()) return {};
     const auto off = [](const auto& d) { return glm::dot(d, d); };
@@ -147,11 +146,11 @@ Plane surface_plane(SurfaceSamples& samples, const glm::dvec2& middle) {
     const std::ptrdiff_t near = first(share_about_one), kept = first(share_about_one * share_on_surface);
     std::ranges::nth_element(samples, samples.begin() + near, {},
                              [&](const SurfaceSample& s) { return off(s.place - about); });
-    Plane plane = plane_through(samples, static_cast<std::size_t>(near));
+    Plane plane = plane_through(samples, std::size_t(near));
     for (int round = 0; round < 2 && plane.known; ++round) {
         std::ranges::nth_element(samples.begin(), samples.begin() + kept, samples.begin() + near, {},
                                  [&](const SurfaceSample& s) { return astray(plane, s); });
-        plane = plane_through(samples, static_cast<std::size_t>(kept));
+        plane = plane_through(samples, std::size_t(kept));
     }
     return plane;
 }
@@ -186,25 +185,25 @@ float part_of(float x) {
 std::int64_t mesh_of(const SplatSet& set, std::int64_t i) { return set.mesh.empty() ? 0 : set.mesh[i]; }
 
 std::int64_t place_along(float x, std::int64_t size) {
-    return std::min(size - 1, static_cast<std::int64_t>(part_of(x) * static_cast<float>(size)));
+    return std::min(size - 1, std::int64_t(part_of(x) * float(size)));
 }
 
 // A sample of the set, by blocks.
 std::vector<SurfaceSamples> sampled(const LookRun& run, const SplatSet& set, std::int64_t meshes) {
-    std::vector<SurfaceSamples> samples(static_cast<std::size_t>(meshes * chart_side * chart_side));
+    std::vector<SurfaceSamples> samples(std::size_t(meshes * chart_side * chart_side));
     const std::int64_t step = std::max<std::int64_t>(1, set.size() / most_sampled);
     for (std::int64_t from = 0; from + step <= set.size(); from += step) {
         // Anywhere in the step, since a set is in rows.
-        const auto low = static_cast<std::uint32_t>(from), high = static_cast<std::uint32_t>(from >> 32);
+        const auto low = std::uint32_t(from), high = std::uint32_t(from >> 32);
         const std::int64_t i = from + shared::as_hash(1u, low, high, purpose_sample) % step;
         if (PictureChart::on_edge(set, i)) continue;
         const OneSplat look = look_at(run, run.uniforms, i);
         const glm::vec2 uv = set.uv[i];
         const std::int64_t row = place_along(uv.y, chart_side), column = place_along(uv.x, chart_side);
-        const double r2 = static_cast<double>(look.radius) * static_cast<double>(look.radius);
-        const double light = static_cast<double>(look.probability) * static_cast<double>(look.alpha) * r2;
-        samples[static_cast<std::size_t>((mesh_of(set, i) * chart_side + row) * chart_side + column)]
-            .push_back({{part_of(uv.x), part_of(uv.y)}, set.position[i], light, r2});
+        const double r2 = double(look.radius) * double(look.radius);
+        const double light = double(look.probability) * double(look.alpha) * r2;
+        samples[std::size_t((mesh_of(set, i) * chart_side + row) * chart_side + column)].push_back(
+            {{part_of(uv.x), part_of(uv.y)}, set.position[i], light, r2});
     }
     return samples;
 }
@@ -216,17 +215,16 @@ SurfaceSamples around(const std::vector<SurfaceSamples>& samples, std::int64_t b
     for (std::int64_t y = std::max<std::int64_t>(0, row - 1); y <= std::min(chart_side - 1, row + 1); ++y)
         for (std::int64_t x = std::max<std::int64_t>(0, column - 1);
              x <= std::min(chart_side - 1, column + 1); ++x) {
-            const SurfaceSamples& own =
-                samples[static_cast<std::size_t>(block + (y - row) * chart_side + x - column)];
+            const SurfaceSamples& own = samples[std::size_t(block + (y - row) * chart_side + x - column)];
             result.insert(result.end(), own.begin(), own.end());
         }
     return result;
 }
 
 glm::dvec2 middle_of(std::int64_t block) {
-    const auto side = static_cast<double>(chart_side);
-    return {(static_cast<double>(block % chart_side) + 0.5) / side,
-            (static_cast<double>(block / chart_side % chart_side) + 0.5) / side};
+    const auto side = double(chart_side);
+    return {(double(block % chart_side) + 0.5) / side,
+            (double(block / chart_side % chart_side) + 0.5) / side};
 }
 
 // Cells as wide as a footprint's standard deviation in the mean, if there may be so many.
@@ -238,15 +236,14 @@ void choose_cells(const std::vector<SurfaceMetric>& metrics, std::int64_t positi
     }
     if (known == 0.0) return;
     columns /= known, rows /= known;
-    const auto most =
-        static_cast<double>(std::min(positions, most_cells)) / static_cast<double>(chart.meshes);
+    const auto most = double(std::min(positions, most_cells)) / double(chart.meshes);
     const double less = std::min(1.0, std::sqrt(most / (columns * rows)));
     columns = std::clamp(columns * less, 1.0, most), rows = std::clamp(rows * less, 1.0, most / columns);
-    chart.columns = static_cast<std::int64_t>(columns), chart.rows = static_cast<std::int64_t>(rows);
+    chart.columns = std::int64_t(columns), chart.rows = std::int64_t(rows);
 }
 
 ChartBlock block_of(const SurfaceMetric& m, const PictureChart& chart) {
-    const auto columns = static_cast<double>(chart.columns), rows = static_cast<double>(chart.rows);
+    const auto columns = double(chart.columns), rows = double(chart.rows);
     return {std::min(widest_sigma, m.sigma_u * columns), std::min(widest_sigma, m.sigma_v * rows),
             m.area / (columns * rows)};
 }
@@ -278,13 +275,12 @@ bool PictureChart::on_edge(const SplatSet& set, std::int64_t i) {
 
 PictureChart picture_chart(const LookRun& run, const SplatSet& set, double falloff_variance) {
     PictureChart chart;
-    const std::int64_t meshes =
-        set.mesh.empty() ? 1 : static_cast<std::int64_t>(*std::ranges::max_element(set.mesh)) + 1;
+    const std::int64_t meshes = set.mesh.empty() ? 1 : std::int64_t(*std::ranges::max_element(set.mesh)) + 1;
     const std::vector<SurfaceSamples> samples = sampled(run, set, meshes);
     std::vector<SurfaceMetric> metrics(samples.size());
-    parallel_for(static_cast<std::int64_t>(samples.size()), [&](std::int64_t block, int) {
+    parallel_for(std::int64_t(samples.size()), [&](std::int64_t block, int) {
         SurfaceSamples about = around(samples, block);
-        metrics[static_cast<std::size_t>(block)] = surface_metric(about, middle_of(block), falloff_variance);
+        metrics[block] = surface_metric(about, middle_of(block), falloff_variance);
     });
     chart.meshes = meshes;
     choose_cells(metrics, set.size(), chart);

@@ -9,7 +9,7 @@
 
 #include "core/memory.h"
 #include "core/parallel.h"
-#include "look/picture_chart.h"
+#include "image/channels.h"
 #include "look/shared_look.h"
 
 namespace astrosplat {
@@ -42,24 +42,23 @@ void each_of_band(const PictureChart& chart, std::int64_t band, const Body& body
     const std::int64_t end = PictureChart::block_begin(band % chart_side + 1, rows);
     for (std::int64_t y = mesh * rows + begin; y < mesh * rows + end; ++y)
         for (std::int64_t x = 0; x < chart.columns; ++x)
-            body(static_cast<std::size_t>(y * chart.columns + x),
-                 static_cast<std::size_t>(band * chart_side + PictureChart::block_at(x, chart.columns)));
+            body(std::size_t(y * chart.columns + x),
+                 std::size_t(band * chart_side + PictureChart::block_at(x, chart.columns)));
 }
 
 // 1 where a cell or one of the eight about it has positions.
 CellValues filled(const PictureChart& chart, const CellValues& positions) {
     CellValues result(positions.size(), 0.0f);
     const std::int64_t columns = chart.columns, rows = chart.rows;
+    const Region grid{0, 0, columns, rows};
     parallel_each(chart.meshes * rows, 16, [&](std::int64_t y) {
-        const std::int64_t mesh = y / rows;
-        const std::int64_t y0 = std::max(mesh * rows, y - 1), y1 = std::min((mesh + 1) * rows - 1, y + 1);
+        const std::int64_t first = y / rows * rows;  // of the mesh
         for (std::int64_t x = 0; x < columns; ++x) {
             float sum = 0.0f;
-            for (std::int64_t ny = y0; ny <= y1; ++ny)
-                for (std::int64_t nx = std::max<std::int64_t>(0, x - 1); nx <= std::min(columns - 1, x + 1);
-                     ++nx)
-                    sum += positions[static_cast<std::size_t>(ny * columns + nx)];
-            result[static_cast<std::size_t>(y * columns + x)] = sum > 0.0f ? 1.0f : 0.0f;
+            for_each_about(grid, x, y - first, 1, [&](std::int64_t nx, std::int64_t ny) {
+                sum += positions[(first + ny) * columns + nx];
+            });
+            result[y * columns + x] = sum > 0.0f ? 1.0f : 0.0f;
         }
     });
     return result;
@@ -71,20 +70,18 @@ std::vector<BlockSums> sums_around(const PictureChart& chart, const PictureCells
     std::vector<BlockSums> own(chart.blocks.size()), around(chart.blocks.size());
     parallel_for(chart.meshes * chart_side, [&](std::int64_t band, int) {
         each_of_band(chart, band, [&](std::size_t cell, std::size_t block) {
-            own[block].positions += static_cast<double>(cells.positions[cell]);
-            own[block].cells += static_cast<double>(inside[cell]);
+            own[block].positions += double(cells.positions[cell]);
+            own[block].cells += double(inside[cell]);
         });
     });
     for (std::size_t b = 0; b < own.size(); ++b)
         own[b].due = cells.cover[b].due, own[b].unclamped = cells.cover[b].unclamped;
-    for (std::int64_t b = 0; b < static_cast<std::int64_t>(own.size()); ++b) {
-        const std::int64_t mesh = b / (chart_side * chart_side), row = b / chart_side % chart_side,
-                           column = b % chart_side;
-        for (std::int64_t y = std::max<std::int64_t>(0, row - 1); y <= std::min(chart_side - 1, row + 1); ++y)
-            for (std::int64_t x = std::max<std::int64_t>(0, column - 1);
-                 x <= std::min(chart_side - 1, column + 1); ++x)
-                around[static_cast<std::size_t>(b)].add(
-                    own[static_cast<std::size_t>((mesh * chart_side + y) * chart_side + x)]);
+    const Region grid{0, 0, chart_side, chart_side};
+    for (std::int64_t b = 0; b < std::ssize(own); ++b) {
+        const std::int64_t in_mesh = b % (chart_side * chart_side), first = b - in_mesh;
+        for_each_about(
+            grid, in_mesh % chart_side, in_mesh / chart_side, 1,
+            [&](std::int64_t x, std::int64_t y) { around[b].add(own[first + y * chart_side + x]); });
     }
     return around;
 }
@@ -93,8 +90,7 @@ std::vector<BlockSums> sums_around(const PictureChart& chart, const PictureCells
 float covered(const BlockSums& s) {
     if (!(s.unclamped > 0.0) || !(s.cells > 0.0)) return 1.0f;
     const double estimate = s.due / s.unclamped * (s.positions / s.cells);
-    return static_cast<float>(estimate < sampled_below ? estimate
-                                                       : std::max(1.0, std::floor(estimate + 0.5)));
+    return float(estimate < sampled_below ? estimate : std::max(1.0, std::floor(estimate + 0.5)));
 }
 
 void empty_cell(PictureCells& cells, std::size_t i) {
@@ -110,12 +106,12 @@ PictureCover cover_once(const PictureChart& chart, PictureCells& cells, double p
     PictureCover cover{filled(chart, cells.positions), std::vector<float>(chart.blocks.size())};
     const std::vector<BlockSums> around = sums_around(chart, cells, cover.inside);
     for (std::size_t b = 0; b < around.size(); ++b)
-        cover.whole[b] = static_cast<float>(positions_due * chart.blocks[b].cell_area) * covered(around[b]);
+        cover.whole[b] = float(positions_due * chart.blocks[b].cell_area) * covered(around[b]);
     parallel_for(chart.meshes * chart_side, [&](std::int64_t band, int) {
         each_of_band(chart, band, [&](std::size_t i, std::size_t block) {
             const BlockSums& s = around[block];
             const double mean = s.cells > 0.0 ? s.positions / s.cells : 0.0;
-            if (static_cast<double>(cells.positions[i]) > mean + piled_up * std::sqrt(mean) + never_piled) {
+            if (double(cells.positions[i]) > mean + piled_up * std::sqrt(mean) + never_piled) {
                 empty_cell(cells, i);
                 cover.inside[i] = 0.0f;
             }
@@ -188,7 +184,7 @@ void Fit::count_black() {
     CellValues about = cells_.positions;
     for (int n = 0; n < neighbourhood; ++n) average(about);
     each_cell(about, [&](std::size_t i) {
-        const float whole = whole_[chart_.block_of_cell(static_cast<std::int64_t>(i))];
+        const float whole = whole_[chart_.block_of_cell(std::int64_t(i))];
         float& count = cells_.positions[i];
         if (about[i] > 0.0f && about[i] < all_there * whole)
             count = std::clamp(count * (all_there * whole / about[i]), count, std::max(count, whole));
@@ -305,8 +301,8 @@ ChannelValues picture_fit(const PictureChart& chart, PictureCells& cells, int ma
 
 // Memory that it takes beside the sums at its peak, bytes.
 std::int64_t picture_fit_bytes(const PictureChart& chart) {
-    constexpr std::int64_t values = static_cast<std::int64_t>(picture_channels) + 8;
-    return chart.cells() * values * static_cast<std::int64_t>(sizeof(float));
+    constexpr std::int64_t values = std::int64_t(picture_channels) + 8;
+    return chart.cells() * values * std::int64_t(sizeof(float));
 }
 
 // On both sides of a square scene unit, of a lattice and the one between its corners.
@@ -322,7 +318,7 @@ LookUniforms without_jitter(LookUniforms u) {
         return n.cull != 0.0f || n.silhouette != 0.0f || n.alpha != 0.0f || n.brightness != 0.0f;
     };
     LookNoise* const end = std::stable_partition(u.noises, u.noises + u.noise_count, shows);
-    u.noise_count = static_cast<int>(end - u.noises);
+    u.noise_count = int(end - u.noises);
     return u;
 }
 
@@ -350,8 +346,7 @@ void apply_factors(const PictureFactors& factors, ShadedSplats& shaded) {
         if (cell == beyond_cells) return;
         const float opacity = factors.of_cell[0][cell];
         shaded.alpha[i] = std::min(1.0f, shaded.alpha[i] * opacity);
-        for (int c = 0; c < 3; ++c)
-            shaded.color[i][c] *= factors.of_cell[static_cast<std::size_t>(c) + 1][cell] / opacity;
+        for (int c = 0; c < 3; ++c) shaded.color[i][c] *= factors.of_cell[std::size_t(c) + 1][cell] / opacity;
     });
 }
 

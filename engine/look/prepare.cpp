@@ -13,7 +13,6 @@
 #include "core/log.h"
 #include "core/parallel.h"
 #include "core/rotation.h"
-#include "look/profiles.h"
 #include "look/shared_look.h"
 
 namespace astrosplat {
@@ -184,6 +183,12 @@ double own_mean_square(const Buffer<float>& radius) {
     return count > 0 ? sum / double(count) : 0.0;
 }
 
+// automatic is resolved: coverage for generated sets, none for files.
+Match resolved_match(const SplatSet& set, const VerticalAlpha& vertical) {
+    if (vertical.match != Match::automatic) return vertical.match;
+    return set.generated ? Match::coverage : Match::none;
+}
+
 int match_kind(Match match, ColumnLaw law) {
     if (match == Match::none) return MATCH_NONE;
     if (match == Match::sum) return MATCH_PLANES;
@@ -230,7 +235,7 @@ void prepare_match(const SplatSet& set, const Look& look, const LookInputs& inpu
 
 LookProfile density_profile(const DensityCurve& pdf, const std::string& key) {
     LookProfile profile{};
-    profile.shape = static_cast<int>(pdf.shape);
+    profile.shape = int(pdf.shape);
     profile.rate = pdf.rate;
     if (pdf.shape == DensityCurve::Shape::gaussian) {
         const double sigma = std::max(double(pdf.sigma), 1e-6);
@@ -250,11 +255,6 @@ LookProfile vertical_profile(const VerticalAlpha& vertical) {
 
 LookAlpha horizontal_step(const HorizontalAlpha& alpha) {
     return {alpha.threshold, alpha.power, alpha.gain, alpha.unpremultiply ? 1 : 0};
-}
-
-VerticalAlpha::Match resolved_match(const SplatSet& set, const VerticalAlpha& vertical) {
-    if (vertical.match != Match::automatic) return vertical.match;
-    return set.generated ? Match::coverage : Match::none;
 }
 
 LookUniforms prepare_look(const SplatSet& set, const Look& look, const LookInputs& inputs) {

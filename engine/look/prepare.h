@@ -1,8 +1,12 @@
 // From the look's keys to the numbers its arithmetic needs: curves become knots, defaults are resolved,
 // matching becomes a factor per thickness stop. Costs microseconds, so animation and sliders may call it
-// every frame.
+// every frame. Curves are the points an artist drags in, as a monotone cubic, evaluated by look_curve in
+// shaders/shared/look.glsl; matching needs the light of a front view through a layer with such profiles: the
+// integrals of DESIGN 5, step 5.
 #pragma once
 
+#include <glm/vec2.hpp>
+#include <span>
 #include <string>
 
 #include "look/apply.h"
@@ -18,7 +22,24 @@ LookProfile density_profile(const DensityCurve& pdf, const std::string& key);
 LookProfile vertical_profile(const VerticalAlpha& vertical);
 LookAlpha horizontal_step(const HorizontalAlpha& alpha);
 
-/// automatic is resolved: coverage for generated sets, none for files.
-VerticalAlpha::Match resolved_match(const SplatSet& set, const VerticalAlpha& vertical);
+/// Tangents after Fritsch and Carlson (Monotone Piecewise Cubic Interpolation, SIAM J. Numer. Anal. 17,
+/// 1980): the curve passes through every point and never leaves the range of the two points around it. No
+/// points: constant 1. Throws InputError, naming `key`, for more than 16 points or x that does not ascend.
+LookCurve make_curve(std::span<const glm::vec2> points, const std::string& key);
+
+/// Profiles and lengths of one column, on one side of the surface.
+struct ColumnProfile {
+    LookProfile pdf;              // p(x)
+    LookProfile vertical;         // f(x)
+    double density = 1.0;         // positions kept: min(1, density * p(x))
+    double end = 1.0;             // x up to which there are positions, 0..1
+    double vertical_ratio = 1.0;  // f is read at x * this
+};
+
+/// Integral over x in [0, end] of min(1, density p(x)) f(x vertical_ratio) lerp(1, vertical_scale, x)^2.
+double column_integral(const ColumnProfile& column, double vertical_scale);
+
+/// Mean of the square of a radius uniform in [min, max].
+double mean_square(double min, double max);
 
 }  // namespace astrosplat

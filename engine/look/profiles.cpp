@@ -1,7 +1,7 @@
 // Fritsch-Carlson tangents: averages of the neighbouring slopes, cut back where the cubic would not be
 // monotone. Gauss-Legendre over pieces that end where a profile has a corner. The profiles are the shared
 // float functions, so that what is integrated is what is drawn; sums are in double.
-#include "look/profiles.h"
+#include "look/prepare.h"
 
 #include <fmt/format.h>
 

@@ -2,7 +2,7 @@
 // pixel, then back up, each level starting from the coarser one and relaxed a few times. Texture is cloned
 // seamlessly: the difference of the two rims is solved for instead (Perez et al. 2003, "Poisson image
 // editing").
-#include "prepare/fill.h"
+#include "prepare/stages.h"
 
 #include <algorithm>
 #include <array>
@@ -26,14 +26,11 @@ struct Patch {
     Image image;
     std::vector<unsigned char> known;
 
-    bool is_known(std::int64_t x, std::int64_t y) const {
-        return known[static_cast<std::size_t>(y * image.width + x)] != 0;
-    }
+    bool is_known(std::int64_t x, std::int64_t y) const { return known[y * image.width + x] != 0; }
 };
 
 Patch make_patch(std::int64_t width, std::int64_t height, int channels) {
-    return {make_image(width, height, channels),
-            std::vector<unsigned char>(static_cast<std::size_t>(width * height))};
+    return {make_image(width, height, channels), std::vector<unsigned char>(std::size_t(width * height))};
 }
 
 // A pixel is the mean of what is known of its four, and known where any of them is.
@@ -45,13 +42,13 @@ Patch half_size(const Patch& fine) {
             if (!fine.is_known(x, y)) continue;
             float* const to = coarse.image.at(x / 2, y / 2);
             for (int c = 0; c < channels; ++c) to[c] += fine.image.at(x, y)[c];
-            ++coarse.known[static_cast<std::size_t>(y / 2 * coarse.image.width + x / 2)];
+            ++coarse.known[y / 2 * coarse.image.width + x / 2];
         }
     }
     for (std::size_t i = 0; i < coarse.known.size(); ++i) {
         if (coarse.known[i] == 0) continue;
-        float* const to = coarse.image.pixels.data() + i * static_cast<std::size_t>(channels);
-        for (int c = 0; c < channels; ++c) to[c] /= static_cast<float>(coarse.known[i]);
+        float* const to = coarse.image.pixels.data() + i * std::size_t(channels);
+        for (int c = 0; c < channels; ++c) to[c] /= float(coarse.known[i]);
         coarse.known[i] = 1;
     }
     return coarse;
@@ -83,14 +80,14 @@ void relax(Image& image, std::int64_t x, std::int64_t y) {
         float sum = 0.0f;
         for (std::size_t i = 0; i < count; ++i) sum += around[i][c];
         float& value = image.at(x, y)[c];
-        value += over_relaxation * (sum / static_cast<float>(count) - value);
+        value += over_relaxation * (sum / float(count) - value);
     }
 }
 
 void solve_membrane(Patch& patch) {
     std::vector<std::int64_t> unknown;
     for (std::size_t i = 0; i < patch.known.size(); ++i)
-        if (patch.known[i] == 0) unknown.push_back(static_cast<std::int64_t>(i));
+        if (patch.known[i] == 0) unknown.push_back(std::int64_t(i));
     if (unknown.empty() || patch.known.size() == 1) return;
     Patch coarse = half_size(patch);
     solve_membrane(coarse);
@@ -114,7 +111,7 @@ Patch patch_of(const Image& image, const PixelMask& holes, const Region& box) {
         for (std::int64_t x = 0; x < box.width; ++x) {
             if (holes.at(box.x + x, box.y + y)) continue;
             std::copy_n(image.at(box.x + x, box.y + y), image.channels, patch.image.at(x, y));
-            patch.known[static_cast<std::size_t>(y * box.width + x)] = 1;
+            patch.known[y * box.width + x] = 1;
         }
     }
     return patch;
@@ -135,8 +132,7 @@ std::optional<double> unlikeness(const Image& image, const PixelMask& holes, con
         for (std::int64_t x = 0; x < box.width; ++x) {
             if (holes.at(left + x, top + y)) return {};
             for (int c = 0; c < image.channels; ++c) {
-                const double d =
-                    static_cast<double>(image.at(left + x, top + y)[c] - membrane.image.at(x, y)[c]);
+                const double d = double(image.at(left + x, top + y)[c] - membrane.image.at(x, y)[c]);
                 sum += d * d;
             }
         }
@@ -146,7 +142,7 @@ std::optional<double> unlikeness(const Image& image, const PixelMask& holes, con
 
 std::optional<Offset> best_offset(const Image& image, const PixelMask& holes, const Region& box,
                                   const Patch& membrane) {
-    const double size = std::hypot(static_cast<double>(box.width), static_cast<double>(box.height));
+    const double size = std::hypot(double(box.width), double(box.height));
     std::optional<Offset> best;
     double least = 0.0;
     for (const double distance : distances) {
@@ -166,10 +162,10 @@ std::optional<Offset> best_offset(const Image& image, const PixelMask& holes, co
 // The piece at an offset, and upon it the membrane of what the rims differ by.
 void clone(const Image& image, const Region& box, const Offset& offset, Patch& patch) {
     const auto piece = [&](std::size_t i) {
-        const auto at = static_cast<std::int64_t>(i);
+        const auto at = std::int64_t(i);
         return image.at(box.x + offset.x + at % box.width, box.y + offset.y + at / box.width);
     };
-    const auto channels = static_cast<std::size_t>(image.channels);
+    const auto channels = std::size_t(image.channels);
     for (std::size_t i = 0; i < patch.known.size(); ++i)
         for (std::size_t c = 0; c < channels && patch.known[i]; ++c)
             patch.image.pixels[i * channels + c] -= piece(i)[c];

@@ -1,6 +1,6 @@
 // Sky to plane and back, with a blur before sampling where pixels grow. Of Lupton's stretch one factor a
 // pixel for all three channels.
-#include "prepare/filters.h"
+#include "prepare/stages.h"
 
 #include <algorithm>
 #include <array>
@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "core/color.h"
-#include "core/parallel.h"
 #include "core/real.h"
 #include "image/blur.h"
+#include "image/channels.h"
 
 namespace astrosplat {
 namespace {
@@ -35,10 +35,10 @@ struct Weights {
 };
 
 Weights weights_at(double place) {
-    Weights w{static_cast<std::int64_t>(std::floor(place)) - lobes + 1, {}};
+    Weights w{std::int64_t(std::floor(place)) - lobes + 1, {}};
     double sum = 0.0;
     for (std::size_t i = 0; i < w.of.size(); ++i) {
-        w.of[i] = lanczos(place - static_cast<double>(w.first + static_cast<std::int64_t>(i)));
+        w.of[i] = lanczos(place - double(w.first + std::int64_t(i)));
         sum += w.of[i];
     }
     for (double& weight : w.of) weight /= sum;
@@ -51,15 +51,13 @@ void sample(const Image& image, double x, double y, float* out) {
     for (int c = 0; c < image.channels; ++c) {
         double sum = 0.0;
         for (std::size_t j = 0; j < down.of.size(); ++j) {
-            const auto v =
-                std::clamp<std::int64_t>(down.first + static_cast<std::int64_t>(j), 0, image.height - 1);
+            const auto v = std::clamp<std::int64_t>(down.first + std::int64_t(j), 0, image.height - 1);
             for (std::size_t i = 0; i < across.of.size(); ++i) {
-                const auto u =
-                    std::clamp<std::int64_t>(across.first + static_cast<std::int64_t>(i), 0, image.width - 1);
-                sum += down.of[j] * across.of[i] * static_cast<double>(image.at(u, v)[c]);
+                const auto u = std::clamp<std::int64_t>(across.first + std::int64_t(i), 0, image.width - 1);
+                sum += down.of[j] * across.of[i] * double(image.at(u, v)[c]);
             }
         }
-        out[c] = static_cast<float>(sum);
+        out[c] = float(sum);
     }
 }
 
@@ -98,40 +96,32 @@ Image regridded(const Image& image, const TanGrid& own, const TanGrid& target, s
     const Image source = texels > 1.0 ? gaussian_blur(image, 0.5 * std::sqrt(texels * texels - 1.0)) : image;
     Image out = make_image(width, height, image.channels);
     outside = make_mask(width, height);
-    parallel_each(height, 8, [&](std::int64_t y) {
-        for (std::int64_t x = 0; x < width; ++x) {
-            const glm::dvec2 px(static_cast<double>(x) + 1.0, static_cast<double>(height - y));
-            const std::optional<glm::dvec2> place = place_of(own, sky_at(target, px));
-            const double u = place ? place->x - 0.5 : -1.0;
-            const double v = place ? static_cast<double>(image.height) + 0.5 - place->y : -1.0;
-            const bool within = u >= 0.0 && v >= 0.0 && u <= static_cast<double>(image.width) &&
-                                v <= static_cast<double>(image.height);
-            if (within)
-                sample(source, u, v, out.at(x, y));
-            else
-                outside.at(x, y) = 1;
-        }
+    for_each_pixel(out, [&](std::int64_t x, std::int64_t y) {
+        const std::optional<glm::dvec2> place =
+            place_of(own, sky_at(target, glm::dvec2(double(x) + 1.0, double(height - y))));
+        const double u = place ? place->x - 0.5 : -1.0;
+        const double v = place ? double(image.height) + 0.5 - place->y : -1.0;
+        if (u >= 0.0 && v >= 0.0 && u <= double(image.width) && v <= double(image.height))
+            sample(source, u, v, out.at(x, y));
+        else
+            outside.at(x, y) = 1;
     });
     return out;
 }
 
 void apply_lupton(Image& image, const LuptonSettings& settings) {
     const double tenth = 0.1 / real::asinh(0.1 * settings.q);
-    parallel_each(image.height, 16, [&](std::int64_t y) {
-        for (std::int64_t x = 0; x < image.width; ++x) {
-            float* const p = image.at(x, y);
-            std::array<double, 3> light;
-            for (std::size_t c = 0; c < 3; ++c) light[c] = std::max(0.0, static_cast<double>(p[c]));
-            const double mean = (light[0] + light[1] + light[2]) / 3.0;
-            if (!(mean > 0.0)) {
-                std::fill_n(p, 3, 0.0f);
-                continue;
-            }
-            double factor = tenth * real::asinh(settings.q * mean / settings.stretch) / mean;
-            factor /= std::max(1.0, factor * *std::max_element(light.begin(), light.end()));
-            for (std::size_t c = 0; c < 3; ++c)
-                p[c] = static_cast<float>(real::srgb_to_linear(factor * light[c]));
+    change_pixels(image, [&](float* p) {
+        std::array<double, 3> light;
+        for (std::size_t c = 0; c < 3; ++c) light[c] = std::max(0.0, double(p[c]));
+        const double mean = (light[0] + light[1] + light[2]) / 3.0;
+        if (!(mean > 0.0)) {
+            std::fill_n(p, 3, 0.0f);
+            return;
         }
+        double factor = tenth * real::asinh(settings.q * mean / settings.stretch) / mean;
+        factor /= std::max(1.0, factor * std::ranges::max(light));
+        for (std::size_t c = 0; c < 3; ++c) p[c] = float(real::srgb_to_linear(factor * light[c]));
     });
 }
 

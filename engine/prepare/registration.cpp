@@ -28,15 +28,14 @@ struct ComplexGrid {
         : side(side_), re(std::size_t(side_) * std::size_t(side_)), im(re.size()) {}
     int side;
     std::vector<float> re, im;
+
+    std::size_t row(int y) const { return std::size_t(y) * std::size_t(side); }
 };
 
 void swap_rows(ComplexGrid& grid, int a, int b) {
-    const std::size_t side = std::size_t(grid.side), first = std::size_t(a) * side,
-                      second = std::size_t(b) * side;
-    for (std::size_t x = 0; x < side; ++x) {
-        std::swap(grid.re[first + x], grid.re[second + x]);
-        std::swap(grid.im[first + x], grid.im[second + x]);
-    }
+    for (std::vector<float>* part : {&grid.re, &grid.im})
+        std::swap_ranges(part->begin() + grid.row(a), part->begin() + grid.row(a + 1),
+                         part->begin() + grid.row(b));
 }
 
 void reverse_bits_of_rows(ComplexGrid& grid) {
@@ -51,10 +50,8 @@ void reverse_bits_of_rows(ComplexGrid& grid) {
 /// Row a becomes a + w b, row b a - w b.
 void butterfly(ComplexGrid& grid, int a, int b, float w_re, float w_im) {
     const std::size_t side = std::size_t(grid.side);
-    float *const a_re = grid.re.data() + std::size_t(a) * side, *const a_im =
-                                                                    grid.im.data() + std::size_t(a) * side;
-    float *const b_re = grid.re.data() + std::size_t(b) * side, *const b_im =
-                                                                    grid.im.data() + std::size_t(b) * side;
+    float *const a_re = &grid.re[grid.row(a)], *const a_im = &grid.im[grid.row(a)];
+    float *const b_re = &grid.re[grid.row(b)], *const b_im = &grid.im[grid.row(b)];
     for (std::size_t x = 0; x < side; ++x) {
         const float re = w_re * b_re[x] - w_im * b_im[x], im = w_re * b_im[x] + w_im * b_re[x];
         b_re[x] = a_re[x] - re;
@@ -70,8 +67,7 @@ void transform_columns(ComplexGrid& grid, double sign) {
     for (int half = 1; half < grid.side; half *= 2)
         for (int k = 0; k < half; ++k) {
             const double angle = sign * real::pi * k / half;
-            const auto w_re = static_cast<float>(real::cos(angle)),
-                       w_im = static_cast<float>(real::sin(angle));
+            const auto w_re = float(real::cos(angle)), w_im = float(real::sin(angle));
             for (int block = 0; block < grid.side; block += 2 * half)
                 butterfly(grid, block + k, block + k + half, w_re, w_im);
         }
@@ -82,20 +78,18 @@ void transpose(std::vector<float>& values, std::size_t side) {
         for (std::size_t x = 0; x < y; ++x) std::swap(values[y * side + x], values[x * side + y]);
 }
 
-void transform_both(ComplexGrid& grid, double sign) {
+/// To the spectrum with its two axes exchanged.
+void transform(ComplexGrid& grid, double sign = -1.0) {
     transform_columns(grid, sign);
     transpose(grid.re, std::size_t(grid.side));
     transpose(grid.im, std::size_t(grid.side));
     transform_columns(grid, sign);
 }
 
-/// To the spectrum with its two axes exchanged.
-void transform(ComplexGrid& grid) { transform_both(grid, -1.0); }
-
 /// From such a spectrum back, scaled by 1 / side^2.
 void transform_back(ComplexGrid& grid) {
-    transform_both(grid, 1.0);
-    const auto scale = static_cast<float>(1.0 / (double(grid.side) * double(grid.side)));
+    transform(grid, 1.0);
+    const auto scale = float(1.0 / (double(grid.side) * double(grid.side)));
     for (std::size_t i = 0; i < grid.re.size(); ++i) {
         grid.re[i] *= scale;
         grid.im[i] *= scale;
@@ -118,9 +112,7 @@ Pyramid pyramid_of(const Image& image, std::int64_t least_px) {
     return levels;
 }
 
-glm::dvec2 size_of(const Image& image) {
-    return {static_cast<double>(image.width), static_cast<double>(image.height)};
-}
+glm::dvec2 size_of(const Image& image) { return {double(image.width), double(image.height)}; }
 
 /// The same place where `fixed` is `factor` times as large.
 PictureOnPicture zoomed(PictureOnPicture place, double factor) {
@@ -137,9 +129,9 @@ struct Laid {
 /// Of the pyramid the level is read whose pixels are about as large as the grid's.
 Laid laid(const Pyramid& moving, const PictureOnPicture& place, std::int64_t width, std::int64_t height) {
     const double reduction = std::max(0.0, real::log(1.0 / place.scale) / real::log(2.0));
-    const auto level = std::min(static_cast<std::size_t>(std::lround(reduction)), moving.size() - 1);
+    const auto level = std::min(std::size_t(std::lround(reduction)), moving.size() - 1);
     const Image& image = moving[level];
-    const double reduced = std::ldexp(1.0, -static_cast<int>(level)),
+    const double reduced = std::ldexp(1.0, -int(level)),
                  texels = reduced / place.scale;  // per px
     const glm::dvec2 middle = 0.5 * reduced * size_of(moving[0]);
     const double angle = real::radians(place.turn_deg), c = real::cos(angle) * texels,
@@ -150,7 +142,7 @@ Laid laid(const Pyramid& moving, const PictureOnPicture& place, std::int64_t wid
             const double dx = double(x) + 0.5 - place.middle.x, dy = double(y) + 0.5 - place.middle.y;
             const double u = middle.x + c * dx - s * dy, v = middle.y + s * dx + c * dy;
             if (u < 0.0 || v < 0.0 || u > size_of(image).x || v > size_of(image).y) continue;
-            *result.values.at(x, y) = bilinear(image, 0, static_cast<float>(u), static_cast<float>(v));
+            *result.values.at(x, y) = bilinear(image, 0, float(u), float(v));
             *result.mask.at(x, y) = 1.0f;
         }
     return result;
@@ -159,6 +151,14 @@ Laid laid(const Pyramid& moving, const PictureOnPicture& place, std::int64_t wid
 /// Sums over the pixels that two pictures share.
 struct Sums {
     double count = 0.0, f = 0.0, t = 0.0, ff = 0.0, tt = 0.0, ft = 0.0;
+    void add(double here, double there) {
+        count += 1.0;
+        f += here;
+        t += there;
+        ff += here * here;
+        tt += there * there;
+        ft += here * there;
+    }
     double correlation() const {
         const double spread_f = ff - f * f / count, spread_t = tt - t * t / count;
         const double least = count * double(least_spread) * double(least_spread);
@@ -171,14 +171,7 @@ struct Sums {
 double likeness_of(const Image& fixed, const Laid& moving) {
     Sums sums;
     for (std::size_t i = 0; i < fixed.pixels.size(); ++i) {
-        if (moving.mask.pixels[i] == 0.0f) continue;
-        const double f = fixed.pixels[i], t = moving.values.pixels[i];
-        sums.count += 1.0;
-        sums.f += f;
-        sums.t += t;
-        sums.ff += f * f;
-        sums.tt += t * t;
-        sums.ft += f * t;
+        if (moving.mask.pixels[i] != 0.0f) sums.add(fixed.pixels[i], moving.values.pixels[i]);
     }
     return sums.correlation();
 }
@@ -241,7 +234,7 @@ Found best_shift(const FixedSpectra& fixed, const Pyramid& moving, PictureOnPict
     const ComplexGrid counts = correlated(fixed.place, mask, fixed.value, mask);
     const ComplexGrid squares = correlated(fixed.square, mask, fixed.place, square);
     const ComplexGrid products = correlated(fixed.value, value, fixed.place, value);
-    const double smaller = std::min(area, static_cast<double>(fixed.width * fixed.height));
+    const double smaller = std::min(area, double(fixed.width * fixed.height));
     Found best;
     for (int y = 0; y < side; ++y)
         for (int x = 0; x < side; ++x) {
@@ -307,16 +300,17 @@ std::optional<PictureOnPicture> stepped(const Image& fixed, const Laid& moving, 
     // A turn of something round, or a shift along an edge, stays: each costs a little.
     constexpr double damping = 1e-3;
     const double shifts = damping * (system.squares[0][0] + system.squares[1][1]);
-    const double quarter = 0.25 * static_cast<double>(longest_side(fixed));
+    const double quarter = 0.25 * double(longest_side(fixed));
     for (std::size_t i = 0; i < 4; ++i) system.squares[i][i] += i < 2 ? shifts : shifts * quarter * quarter;
     const std::optional<Vector<unknowns>> solution = solved(system.squares, system.products);
     if (!solution || !((*solution)[4] > 1e-3)) return std::nullopt;
     const auto change = [&](std::size_t i, double most) {
         return std::clamp((*solution)[i] / (*solution)[4], -most, most);
     };
-    place.middle += glm::dvec2(change(0, 3.0), change(1, 3.0));
-    place.scale *= real::exp(change(2, 0.1));
-    place.turn_deg += real::degrees(change(3, 0.1));
+    constexpr double most_px = 3.0, most_scaled = 0.1, most_turned = 0.1;  // in one step; logarithm, radians
+    place.middle += glm::dvec2(change(0, most_px), change(1, most_px));
+    place.scale *= real::exp(change(2, most_scaled));
+    place.turn_deg += real::degrees(change(3, most_turned));
     return place;
 }
 
@@ -348,11 +342,7 @@ double overlap_of(const Image& fixed, const Pyramid& moving, const PictureOnPict
 
 bool is_flat(const Image& image) {
     Sums sums;
-    for (const float value : image.pixels) {
-        sums.count += 1.0;
-        sums.f += double(value);
-        sums.ff += double(value) * double(value);
-    }
+    for (const float value : image.pixels) sums.add(value, value);
     return sums.ff / sums.count - sums.f * sums.f / (sums.count * sums.count) <
            double(least_spread) * double(least_spread);
 }
@@ -365,8 +355,8 @@ std::optional<Registration> registered(const Image& fixed, const Image& moving, 
                                        const Progress& progress) {
     if (is_flat(fixed) || is_flat(moving)) return std::nullopt;
     const Pyramid views = pyramid_of(fixed, searched_px), pictures = pyramid_of(moving, smallest_px);
-    std::size_t level = views.size() - 1, kept = 12;
-    const PictureOnPicture small_start = zoomed(start, std::ldexp(1.0, -static_cast<int>(level)));
+    std::size_t level = views.size() - 1, kept = 12;  // places; of them a third goes on at each level
+    const PictureOnPicture small_start = zoomed(start, std::ldexp(1.0, -int(level)));
     std::vector<Found> found = searched(views[level], pictures, small_start, progress);
     found.resize(std::min(found.size(), kept));
     found.insert(found.begin(), {small_start});
@@ -375,8 +365,7 @@ std::optional<Registration> registered(const Image& fixed, const Image& moving, 
             progress.check();
             each = refined(views[level], pictures, each.place);
         }
-        std::stable_sort(found.begin() + 1, found.end(),
-                         [](const Found& a, const Found& b) { return a.score > b.score; });
+        std::ranges::stable_sort(found.begin() + 1, found.end(), std::greater(), &Found::score);
         kept = std::max<std::size_t>(1, kept / 3);
         found.resize(std::min(found.size(), kept + 1));
         if (level == 0 || longest_side(views[level]) * 2 > refined_px) break;
@@ -385,7 +374,7 @@ std::optional<Registration> registered(const Image& fixed, const Image& moving, 
     const Found& best = found[1].score > found[0].score + noticeable ? found[1] : found[0];
     if (best.score < least_likeness || overlap_of(views[level], pictures, best.place) < least_overlap)
         return std::nullopt;
-    Registration result{zoomed(best.place, std::ldexp(1.0, static_cast<int>(level))), best.score};
+    Registration result{zoomed(best.place, std::ldexp(1.0, int(level))), best.score};
     result.place.turn_deg = turn_within_half(result.place.turn_deg);
     return result;
 }

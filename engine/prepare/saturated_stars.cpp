@@ -1,5 +1,5 @@
 // Patches of saturated pixels, judged by shape and by the fall of the light around them.
-#include "prepare/saturated_stars.h"
+#include "prepare/star_removal.h"
 
 #include <algorithm>
 #include <array>
@@ -8,6 +8,7 @@
 
 #include "core/real.h"
 #include "core/sorting.h"
+#include "image/channels.h"
 
 namespace astrosplat {
 namespace {
@@ -20,14 +21,22 @@ constexpr double misfit_share = 0.15;    // of the saturation, that the fit of t
 constexpr double highest = 300.0;        // of a core, over the saturation
 constexpr double spike_strength = 4.0;   // of a ray, over the usual one
 constexpr double farthest_spike = 10.0;  // over the core's radius
+// Places around a core, in its radii and px more: beside it and far from it; where spikes begin, and over how
+// long they are looked for.
+struct Away {
+    double radii, px;
+    double from(const PictureStar& star) const { return radii * star.core_px + px; }
+};
+constexpr Away beside_core{2.0, 3.0}, far_from_core{4.0, 8.0}, spike_start{1.3, 2.0}, spike_length{2.0, 4.0};
+constexpr Away spike_end{farthest_spike, 15.0};
 constexpr int rays = 72;
 constexpr int narrow = 3;  // rays to either side that a spike stands out of
 
 double brightness(const Image& image, double x, double y) {
-    const auto i = std::clamp<std::int64_t>(static_cast<std::int64_t>(x), 0, image.width - 1);
-    const auto j = std::clamp<std::int64_t>(static_cast<std::int64_t>(y), 0, image.height - 1);
+    const auto i = std::clamp<std::int64_t>(std::int64_t(x), 0, image.width - 1);
+    const auto j = std::clamp<std::int64_t>(std::int64_t(y), 0, image.height - 1);
     const float* const p = image.at(i, j);
-    return static_cast<double>(p[0] + p[1] + p[2]) / 3.0;
+    return double(p[0] + p[1] + p[2]) / 3.0;
 }
 
 // Brightness around a place, a value a ray.
@@ -43,10 +52,10 @@ std::vector<double> ring(const Image& image, double x, double y, double radius) 
 PictureStar core_of(const PixelPart& part, std::int64_t width, double noise) {
     PictureStar star;
     for (const std::int64_t i : part.pixels) {
-        star.x += static_cast<double>(i % width) + 0.5;
-        star.y += static_cast<double>(i / width) + 0.5;
+        star.x += double(i % width) + 0.5;
+        star.y += double(i / width) + 0.5;
     }
-    const auto count = static_cast<double>(part.pixels.size());
+    const auto count = double(part.pixels.size());
     star.x = star.seen_x = star.x / count;
     star.y = star.seen_y = star.y / count;
     star.core_px = std::sqrt(count / real::pi);
@@ -56,15 +65,15 @@ PictureStar core_of(const PixelPart& part, std::int64_t width, double noise) {
 }
 
 bool is_round_patch(const PixelPart& part, const PictureStar& star) {
-    const auto w = static_cast<double>(part.box.width), h = static_cast<double>(part.box.height);
+    const auto w = double(part.box.width), h = double(part.box.height);
     return part.pixels.size() >= fewest_pixels && star.core_px <= widest_core_px &&
            std::max(w, h) <= longest * std::min(w, h);
 }
 
 bool falls_off(const Image& image, const PictureStar& star) {
     const std::vector<double> at = ring(image, star.x, star.y, star.core_px);
-    const std::vector<double> beside = ring(image, star.x, star.y, 2.0 * star.core_px + 3.0);
-    const double far = percentile(ring(image, star.x, star.y, 4.0 * star.core_px + 8.0), 0.5);
+    const std::vector<double> beside = ring(image, star.x, star.y, beside_core.from(star));
+    const double far = percentile(ring(image, star.x, star.y, far_from_core.from(star)), 0.5);
     const double level = percentile(at, 0.5) - far;
     return level > 0.0 && percentile(beside, 0.7) - far < fallen_share * level;
 }
@@ -89,21 +98,15 @@ bool fit_wings(const Image& image, const PixelMask& saturated, PictureStar& star
 }
 
 void mark_disc(PixelMask& mask, double x, double y, double radius) {
-    const auto reach = static_cast<std::int64_t>(radius) + 1;
-    const auto cx = static_cast<std::int64_t>(x), cy = static_cast<std::int64_t>(y);
-    for (std::int64_t j = std::max<std::int64_t>(0, cy - reach); j <= std::min(mask.height - 1, cy + reach);
-         ++j)
-        for (std::int64_t i = std::max<std::int64_t>(0, cx - reach);
-             i <= std::min(mask.width - 1, cx + reach); ++i)
-            if (std::hypot(static_cast<double>(i) + 0.5 - x, static_cast<double>(j) + 0.5 - y) <= radius)
-                mask.at(i, j) = 1;
+    for_each_within(mask, x, y, radius,
+                    [&](std::int64_t i, std::int64_t j, double, double) { mask.at(i, j) = 1; });
 }
 
 // How much each ray stands out of those a little to its sides at one distance.
 std::vector<double> excess(const std::vector<double>& around) {
     std::vector<double> out;
     for (int i = 0; i < rays; ++i) {
-        const auto at = [&](int k) { return around[static_cast<std::size_t>((i + k + rays) % rays)]; };
+        const auto at = [&](int k) { return around[std::size_t((i + k + rays) % rays)]; };
         out.push_back(at(0) - std::max(at(-narrow), at(narrow)));
     }
     return out;
@@ -119,7 +122,7 @@ void mark_spike(const Image& without, const PictureStar& star, int ray, double s
                 PixelMask& mask) {
     const double angle = 2.0 * real::pi * ray / rays, c = real::cos(angle), s = real::sin(angle);
     int faint = 0;
-    const double end = farthest_spike * star.core_px + 15.0;
+    const double end = spike_end.from(star);
     for (double radius = start; radius < end && faint < 4; radius += 1.0) {
         const double x = star.x + radius * c, y = star.y + radius * s, side = 4.0;
         const double beside = std::max(brightness(without, x - side * s, y + side * c),
@@ -135,8 +138,8 @@ PixelMask saturated_pixels(const Image& image, double level) {
     PixelMask mask = make_mask(image.width, image.height);
     if (!std::isfinite(level)) return mask;
     for (std::size_t i = 0; i < mask.pixels.size(); ++i) {
-        const float* const p = image.pixels.data() + i * static_cast<std::size_t>(image.channels);
-        mask.pixels[i] = static_cast<double>(std::max({p[0], p[1], p[2]})) >= level;
+        const float* const p = image.pixels.data() + i * std::size_t(image.channels);
+        mask.pixels[i] = double(std::max({p[0], p[1], p[2]})) >= level;
     }
     return mask;
 }
@@ -153,16 +156,16 @@ std::vector<PictureStar> take_saturated_stars(Image& image, const PixelMask& sat
 }
 
 void mark_core_and_spikes(const Image& without, const PictureStar& star, PixelMask& mask) {
-    mark_disc(mask, star.x, star.y, 1.3 * star.core_px + 2.0);
+    mark_disc(mask, star.x, star.y, spike_start.from(star));
     std::vector<double> strength(rays, 0.0);
-    const double start = 1.3 * star.core_px + 2.0, length = 2.0 * star.core_px + 4.0;
+    const double start = spike_start.from(star), length = spike_length.from(star);
     for (double step = 0.0; step < length; step += 1.0) {
         const std::vector<double> out = excess(ring(without, star.x, star.y, start + 2.0 + step));
         for (std::size_t i = 0; i < strength.size(); ++i) strength[i] += out[i] / length;
     }
     const double least = spike_strength * median_size(strength);
     for (int i = 0; i < rays; ++i) {
-        const auto at = [&](int k) { return strength[static_cast<std::size_t>((i + k + rays) % rays)]; };
+        const auto at = [&](int k) { return strength[std::size_t((i + k + rays) % rays)]; };
         const double opposite = std::max({at(rays / 2 - 1), at(rays / 2), at(rays / 2 + 1)});
         if (at(0) > least && opposite > 0.5 * least)
             mark_spike(without, star, i, start, std::max(2.0 * star.noise, 0.2 * at(0)), mask);

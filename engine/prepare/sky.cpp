@@ -1,5 +1,5 @@
 // Least squares over cells, and a clip that forgets what stands above the sky.
-#include "prepare/sky.h"
+#include "prepare/stages.h"
 
 #include <algorithm>
 #include <cassert>
@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "core/color.h"
-#include "core/parallel.h"
 #include "core/real.h"
 #include "core/sorting.h"
 #include "detect/background.h"
+#include "image/channels.h"
 #include "prepare/least_squares.h"
 
 namespace astrosplat {
@@ -18,6 +18,8 @@ namespace {
 
 constexpr std::int64_t most_cells_a_side = 48;  // enough for a surface of six numbers
 constexpr int most_sky_clips = 20;
+constexpr std::size_t fewest_cells = 12;  // twice the numbers of a surface
+constexpr std::int64_t least_cell_px = 8;
 constexpr double above = 1.5, below = 4.0;  // times the scatter of the cells, that are left out
 
 Vector<6> terms(double u, double v) { return {1.0, u, v, u * u, u * v, v * v}; }
@@ -28,16 +30,16 @@ struct SkyCell {
 };
 
 // -1 .. 1 over n px.
-double across(double px, std::int64_t n) { return 2.0 * px / static_cast<double>(n) - 1.0; }
+double across(double px, std::int64_t n) { return 2.0 * px / double(n) - 1.0; }
 
 std::vector<SkyCell> sky_cells(const Image& image, const Cells& cells, int channel) {
     std::vector<SkyCell> found;
-    const auto half = 0.5 * static_cast<double>(cells.cell_px);
+    const auto half = 0.5 * double(cells.cell_px);
     for (std::int64_t j = 0; j < cells.level.height; ++j)
         for (std::int64_t i = 0; i < cells.level.width; ++i)
-            found.push_back({across(static_cast<double>(i * cells.cell_px) + half, image.width),
-                             across(static_cast<double>(j * cells.cell_px) + half, image.height),
-                             static_cast<double>(cells.level.at(i, j)[channel])});
+            found.push_back({across(double(i * cells.cell_px) + half, image.width),
+                             across(double(j * cells.cell_px) + half, image.height),
+                             double(cells.level.at(i, j)[channel])});
     return found;
 }
 
@@ -78,7 +80,7 @@ Vector<6> fit_channel(std::vector<SkyCell> cells, int degree) {
         std::vector<SkyCell> left;
         for (std::size_t k = 0; k < cells.size(); ++k)
             if (away[k] <= above * scatter && away[k] >= -below * scatter) left.push_back(cells[k]);
-        if (left.size() == cells.size() || left.size() < 12) break;
+        if (left.size() == cells.size() || left.size() < fewest_cells) break;
         cells = std::move(left);
         surface = surface_through(cells, degree);
     }
@@ -87,29 +89,23 @@ Vector<6> fit_channel(std::vector<SkyCell> cells, int degree) {
 
 }  // namespace
 
-double SkySurface::at(double u, double v, int channel) const {
-    return value_of(coefficients[static_cast<std::size_t>(channel)], u, v);
-}
+double SkySurface::at(double u, double v, int channel) const { return value_of(coefficients[channel], u, v); }
 
 SkySurface fit_sky(const Image& image, int degree) {
     assert(image.channels >= 3 && degree >= 0 && degree <= 2);
     const std::int64_t longest = std::max(image.width, image.height);
-    const Cells cells = measure_cells(image, std::max<std::int64_t>(8, longest / most_cells_a_side));
+    const Cells cells = measure_cells(image, std::max(least_cell_px, longest / most_cells_a_side));
     SkySurface sky;
-    for (int c = 0; c < 3; ++c)
-        sky.coefficients[static_cast<std::size_t>(c)] = fit_channel(sky_cells(image, cells, c), degree);
+    for (int c = 0; c < 3; ++c) sky.coefficients[c] = fit_channel(sky_cells(image, cells, c), degree);
     return sky;
 }
 
 void subtract_sky(Image& image, const SkySurface& sky) {
-    parallel_each(image.height, 16, [&](std::int64_t y) {
-        for (std::int64_t x = 0; x < image.width; ++x) {
-            float* const p = image.at(x, y);
-            const double u = across(static_cast<double>(x) + 0.5, image.width);
-            const double v = across(static_cast<double>(y) + 0.5, image.height);
-            const float alpha = image.channels > 3 ? p[3] : 1.0f;
-            for (int c = 0; c < 3; ++c) p[c] -= alpha * static_cast<float>(sky.at(u, v, c));
-        }
+    for_each_pixel(image, [&](std::int64_t x, std::int64_t y) {
+        float* const p = image.at(x, y);
+        const double u = across(double(x) + 0.5, image.width), v = across(double(y) + 0.5, image.height);
+        const float alpha = image.channels > 3 ? p[3] : 1.0f;
+        for (int c = 0; c < 3; ++c) p[c] -= alpha * float(sky.at(u, v, c));
     });
 }
 
@@ -118,11 +114,9 @@ namespace {
 // Multiplies all channels of every pixel by factor(x, y).
 template <class Factor>
 void fade(Image& image, const Factor& factor) {
-    parallel_each(image.height, 16, [&](std::int64_t y) {
-        for (std::int64_t x = 0; x < image.width; ++x) {
-            const float f = factor(x, y);
-            for (int c = 0; c < image.channels; ++c) image.at(x, y)[c] *= f;
-        }
+    for_each_pixel(image, [&](std::int64_t x, std::int64_t y) {
+        const float f = factor(x, y);
+        for (int c = 0; c < image.channels; ++c) image.at(x, y)[c] *= f;
     });
 }
 
@@ -139,8 +133,7 @@ double inside(const CutEllipse& ellipse, double x, double y) {
 
 void cut_ellipse(Image& image, const CutEllipse& ellipse) {
     fade(image, [&](std::int64_t x, std::int64_t y) {
-        return static_cast<float>(
-            inside(ellipse, static_cast<double>(x) + 0.5, static_cast<double>(y) + 0.5));
+        return float(inside(ellipse, double(x) + 0.5, double(y) + 0.5));
     });
 }
 
@@ -154,13 +147,9 @@ void cut_with_mask(Image& image, const Image& mask) {
 
 void alpha_from_luminance(Image& image, double low, double high) {
     assert(image.channels == 4 && low < high);
-    parallel_each(image.height, 16, [&](std::int64_t y) {
-        for (std::int64_t x = 0; x < image.width; ++x) {
-            float* const p = image.at(x, y);
-            const auto light = static_cast<double>(luminance(p[0], p[1], p[2]));
-            p[3] *= static_cast<float>(std::clamp((light - low) / (high - low), 0.0, 1.0));
-            if (p[3] == 0.0f) std::fill_n(p, 3, 0.0f);
-        }
+    change_pixels(image, [&](float* p) {
+        p[3] *= float(std::clamp((double(luminance(p[0], p[1], p[2])) - low) / (high - low), 0.0, 1.0));
+        if (p[3] == 0.0f) std::fill_n(p, 3, 0.0f);
     });
 }
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/real.h"
+#include "image/channels.h"
 #include "prepare/least_squares.h"
 
 namespace astrosplat {
@@ -39,7 +40,7 @@ double half_unit(int shape) {
         for (std::size_t i = 1; i < u.size(); ++i) u[i] = real::pow(2.0, 1.0 / betas[i]) - 1.0;
         return u;
     }();
-    return units[static_cast<std::size_t>(shape)];
+    return units[shape];
 }
 
 }  // namespace
@@ -55,17 +56,17 @@ ProfileValue profile_at(int shape, double u) {
         return {value, -value};
     }
     const double q = 1.0 + u, value = inverse_power(shape, q);
-    return {value, -betas[static_cast<std::size_t>(shape)] * value / q};
+    return {value, -betas[shape] * value / q};
 }
 
 double integral_of(const StarProfile& profile) {
     const double gaussian = real::pi / unit_of(profile);
-    return profile.shape == 0 ? gaussian : gaussian / (betas[static_cast<std::size_t>(profile.shape)] - 1.0);
+    return profile.shape == 0 ? gaussian : gaussian / (betas[profile.shape] - 1.0);
 }
 
 double reach_of(const StarProfile& profile, double share) {
     if (!(share < 1.0)) return 0.0;
-    const double beta = betas[static_cast<std::size_t>(profile.shape)];
+    const double beta = betas[profile.shape];
     const double u = profile.shape == 0 ? -real::log(share) : real::pow(share, -1.0 / beta) - 1.0;
     return std::sqrt(u / unit_of(profile));
 }
@@ -75,6 +76,8 @@ namespace {
 constexpr int most_steps = 12;
 constexpr double damping = 1e-3;          // of the diagonal
 constexpr double farthest_step_px = 0.5;  // in one step
+constexpr double most_widened = 0.3;      // of the width's logarithm, in one step
+constexpr std::size_t fewest_samples = 12;
 constexpr double farthest_move_px = 1.2;  // from where the star was seen
 constexpr double other_width = 3.0;       // times the spread: the field's width counts ever less beyond
 constexpr double faintest_share = 0.1;    // of the noise: add_star ends there
@@ -90,21 +93,10 @@ struct Sample {
 std::vector<Sample> samples_near(const Image& image, const PixelMask& unusable, double x, double y,
                                  double radius) {
     std::vector<Sample> samples;
-    const auto first = [&](double at) {
-        return std::max<std::int64_t>(0, static_cast<std::int64_t>(at - radius));
-    };
-    const auto last = [&](double at, std::int64_t n) {
-        return std::min(n - 1, static_cast<std::int64_t>(at + radius));
-    };
-    for (std::int64_t j = first(y); j <= last(y, image.height); ++j) {
-        for (std::int64_t i = first(x); i <= last(x, image.width); ++i) {
-            const double dx = static_cast<double>(i) + 0.5 - x, dy = static_cast<double>(j) + 0.5 - y;
-            if (dx * dx + dy * dy > radius * radius || unusable.at(i, j)) continue;
-            const float* const p = image.at(i, j);
-            samples.push_back(
-                {static_cast<double>(i) + 0.5, static_cast<double>(j) + 0.5, {p[0], p[1], p[2]}});
-        }
-    }
+    for_each_within(image, x, y, radius, [&](std::int64_t i, std::int64_t j, double, double) {
+        const float* const p = image.at(i, j);
+        if (!unusable.at(i, j)) samples.push_back({double(i) + 0.5, double(j) + 0.5, {p[0], p[1], p[2]}});
+    });
     return samples;
 }
 
@@ -153,7 +145,7 @@ std::optional<Vector<7>> next_step(const Trial& trial, const std::vector<Sample>
 bool take_step(Trial& trial, const Vector<7>& step) {
     const double dx = std::clamp(step[1], -farthest_step_px, farthest_step_px);
     const double dy = std::clamp(step[2], -farthest_step_px, farthest_step_px);
-    const double wider = std::clamp(step[3], -0.3, 0.3);
+    const double wider = std::clamp(step[3], -most_widened, most_widened);
     trial.height += step[0];
     trial.star.x += dx;
     trial.star.y += dy;
@@ -162,14 +154,19 @@ bool take_step(Trial& trial, const Vector<7>& step) {
     return std::fabs(dx) + std::fabs(dy) + std::fabs(wider) < 1e-4;
 }
 
+// By height and plane: of a star whose place and width are known.
+Vector<4> height_row(const PictureStar& star, double unit, const Sample& sample) {
+    const double dx = sample.x - star.x, dy = sample.y - star.y;
+    return {profile_at(star.profile.shape, unit * (dx * dx + dy * dy)).value, 1.0, dx, dy};
+}
+
 // The height in each channel, and the misfit of their mean.
 bool fit_heights(PictureStar& star, const std::vector<Sample>& samples) {
     std::array<LeastSquares<4>, 3> sums;
     std::vector<Vector<4>> rows;
     const double unit = unit_of(star.profile);
     for (const Sample& sample : samples) {
-        const double dx = sample.x - star.x, dy = sample.y - star.y;
-        rows.push_back({profile_at(star.profile.shape, unit * (dx * dx + dy * dy)).value, 1.0, dx, dy});
+        rows.push_back(height_row(star, unit, sample));
         for (std::size_t c = 0; c < 3; ++c) sums[c].add(rows.back(), sample.light[c]);
     }
     Vector<4> mean{};
@@ -196,11 +193,7 @@ bool fit_heights(PictureStar& star, const std::vector<Sample>& samples) {
 bool start_trial(Trial& trial, const std::vector<Sample>& samples) {
     LeastSquares<4> sums;
     const double unit = unit_of(trial.star.profile);
-    for (const Sample& sample : samples) {
-        const double dx = sample.x - trial.star.x, dy = sample.y - trial.star.y;
-        sums.add({profile_at(trial.star.profile.shape, unit * (dx * dx + dy * dy)).value, 1.0, dx, dy},
-                 sample.mean());
-    }
+    for (const Sample& sample : samples) sums.add(height_row(trial.star, unit, sample), sample.mean());
     const auto solution = solved(sums.squares, sums.products);
     if (!solution || !((*solution)[0] > 0.0)) return false;
     trial.height = (*solution)[0];
@@ -215,7 +208,7 @@ bool fit_star(const Image& image, const PixelMask& unusable, const StarWidths& w
     Trial trial{star};
     const double radius = fit_radius(star.profile, star.core_px);
     const std::vector<Sample> samples = samples_near(image, unusable, star.x, star.y, radius);
-    if (samples.size() < 12 || !start_trial(trial, samples)) return false;
+    if (samples.size() < fewest_samples || !start_trial(trial, samples)) return false;
     const double widest = 4.0 * (widths.fwhm_px + 2.0 * star.core_px);
     for (int step = 0; step < most_steps; ++step) {
         const auto found = next_step(trial, samples, widths, star.pixel_noise);
@@ -277,23 +270,13 @@ double reach_px(const PictureStar& star) {
 }
 
 void add_star(Image& image, const PictureStar& star, float sign) {
-    const double reach = reach_px(star), unit = unit_of(star.profile);
-    const auto begin = [&](double at) {
-        return std::max<std::int64_t>(0, static_cast<std::int64_t>(at - reach));
-    };
-    const auto end = [&](double at, std::int64_t n) {
-        return std::min(n, static_cast<std::int64_t>(at + reach) + 1);
-    };
-    for (std::int64_t j = begin(star.y); j < end(star.y, image.height); ++j) {
-        for (std::int64_t i = begin(star.x); i < end(star.x, image.width); ++i) {
-            const double dx = static_cast<double>(i) + 0.5 - star.x,
-                         dy = static_cast<double>(j) + 0.5 - star.y;
-            if (dx * dx + dy * dy > reach * reach) continue;
-            const double value = profile_at(star.profile.shape, unit * (dx * dx + dy * dy)).value;
-            float* const p = image.at(i, j);
-            for (std::size_t c = 0; c < 3; ++c) p[c] += sign * static_cast<float>(star.amplitude[c] * value);
-        }
-    }
+    const double unit = unit_of(star.profile);
+    for_each_within(image, star.x, star.y, reach_px(star),
+                    [&](std::int64_t i, std::int64_t j, double dx, double dy) {
+                        const double value = profile_at(star.profile.shape, unit * (dx * dx + dy * dy)).value;
+                        float* const p = image.at(i, j);
+                        for (std::size_t c = 0; c < 3; ++c) p[c] += sign * float(star.amplitude[c] * value);
+                    });
 }
 
 }  // namespace astrosplat

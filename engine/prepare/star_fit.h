@@ -47,9 +47,7 @@ struct PictureStar {
     double mean_amplitude() const { return (amplitude[0] + amplitude[1] + amplitude[2]) / 3.0; }
     double signal_to_noise() const { return mean_amplitude() / noise; }
     /// Sum over all pixels.
-    double flux(int channel) const {
-        return amplitude[static_cast<std::size_t>(channel)] * integral_of(profile);
-    }
+    double flux(int channel) const { return amplitude[channel] * integral_of(profile); }
     /// Width of the Gaussian that is as wide at half of its height, px.
     double sigma_px() const { return profile.fwhm_px / fwhm_of_sigma; }
 };

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <optional>
 
 #include "core/parallel.h"
@@ -15,7 +16,8 @@
 #include "core/sorting.h"
 #include "detect/background.h"
 #include "detect/peaks.h"
-#include "prepare/saturated_stars.h"
+#include "image/channels.h"
+#include "prepare/stages.h"
 
 namespace astrosplat {
 namespace {
@@ -33,7 +35,9 @@ constexpr double shaped = 20.0;                // signal to noise of stars that 
 constexpr double clearly_worse = 6.0;          // misfit from which a star has no more to say
 constexpr double clearly_better = 2.0;         // by which a shape's misfit must be less than the field's
 constexpr double least_share_of_others = 0.1;  // of the light taken away before, that a later find must have
-constexpr double widest_fwhm_px = 5.2;
+constexpr double least_width_spread = 0.05, most_width_spread = 0.4;  // of widths' logarithms
+constexpr double widest_fwhm_px = 5.2, widest_of_field = 1.8;  // px, or times the field's, whichever is more
+constexpr double kept_threshold = 0.8;  // times the search's, that a fitted height must have
 constexpr double misfit_of_noise = 3.0, misfit_of_height = 0.15;  // that a star's fit may leave
 constexpr double saturated_noise = 1e-3;  // of white, in which the wings of the brightest stars are lost
 constexpr double least_noise = 1e-4;      // of the brightest lights: black skies without any noise
@@ -62,14 +66,13 @@ template <class Visit>
 void for_each_by_tiles(const Search& search, std::size_t first, const Progress& progress,
                        const Visit& visit) {
     const std::int64_t columns = search.image.width / tile_px + 1, rows = search.image.height / tile_px + 1;
-    std::vector<std::vector<std::size_t>> tiles(static_cast<std::size_t>(columns * rows));
+    std::vector<std::vector<std::size_t>> tiles(std::size_t(columns * rows));
     for (std::size_t i = first; i < search.stars.size(); ++i) {
         if (search.lost[i]) continue;
-        const auto x = static_cast<std::int64_t>(search.stars[i].x) / tile_px;
-        const auto y = static_cast<std::int64_t>(search.stars[i].y) / tile_px;
-        tiles[static_cast<std::size_t>(std::clamp<std::int64_t>(y, 0, rows - 1) * columns +
-                                       std::clamp<std::int64_t>(x, 0, columns - 1))]
-            .push_back(i);
+        const auto tile = [](double at, std::int64_t count) {
+            return std::clamp<std::int64_t>(std::int64_t(at) / tile_px, 0, count - 1);
+        };
+        tiles[tile(search.stars[i].y, rows) * columns + tile(search.stars[i].x, columns)].push_back(i);
     }
     const auto brighter = [&](std::size_t a, std::size_t b) {
         const double p = search.stars[a].mean_amplitude(), q = search.stars[b].mean_amplitude();
@@ -80,7 +83,7 @@ void for_each_by_tiles(const Search& search, std::size_t first, const Progress& 
         parallel_each(across * down, 1, [&](std::int64_t i) {
             progress.check();
             const std::int64_t x = 2 * (i % across) + color % 2, y = 2 * (i / across) + color / 2;
-            std::vector<std::size_t>& tile = tiles[static_cast<std::size_t>(y * columns + x)];
+            std::vector<std::size_t>& tile = tiles[y * columns + x];
             std::sort(tile.begin(), tile.end(), brighter);
             for (const std::size_t star : tile) visit(star);
         });
@@ -109,9 +112,8 @@ std::vector<std::size_t> telling_stars(const Search& search, double least_fwhm_p
             star.profile.fwhm_px > least_fwhm_px)
             best.push_back(i);
     }
-    std::stable_sort(best.begin(), best.end(), [&](std::size_t a, std::size_t b) {
-        return search.stars[a].signal_to_noise() > search.stars[b].signal_to_noise();
-    });
+    std::ranges::stable_sort(best, std::greater(),
+                             [&](std::size_t i) { return search.stars[i].signal_to_noise(); });
     if (best.size() > most) best.resize(most);
     return best;
 }
@@ -140,7 +142,7 @@ StarProfile elected(const Search& search, const std::vector<std::size_t>& stars,
         const double best = *std::min_element(misfit.begin(), misfit.end());
         for (std::size_t p = 0; p < sums.size(); ++p) sums[p] += std::min(misfit[p] - best, clearly_worse);
     }
-    return profiles[static_cast<std::size_t>(std::min_element(sums.begin(), sums.end()) - sums.begin())];
+    return profiles[std::size_t(std::min_element(sums.begin(), sums.end()) - sums.begin())];
 }
 
 // How far the widths of these stars scatter beyond what noise does, as logarithms.
@@ -152,7 +154,8 @@ double spread_of(const Search& search, const std::vector<std::size_t>& stars, do
     }
     const double spread = sigma_of_median_distance * percentile(std::move(away), 0.5),
                  error = percentile(std::move(errors), 0.5);
-    return std::clamp(std::sqrt(std::max(0.0, spread * spread - error * error)), 0.05, 0.4);
+    return std::clamp(std::sqrt(std::max(0.0, spread * spread - error * error)), least_width_spread,
+                      most_width_spread);
 }
 
 // The shape and width that describe these stars best.
@@ -161,9 +164,10 @@ StarWidths widths_of(const Search& search, const std::vector<std::size_t>& stars
     for (const std::size_t i : stars) widths.push_back(search.stars[i].profile.fwhm_px);
     const double middle = percentile(std::move(widths), 0.5);
     std::vector<StarProfile> profiles;
+    constexpr double width_step = 0.06;  // of the logarithm: from 26 % narrower than the median to 52 % wider
     for (int shape = 0; shape < star_shapes; ++shape)
         for (int step = -5; step <= 7; ++step)
-            profiles.push_back({std::max(narrowest_fwhm_px, middle * real::exp(0.06 * step)), shape});
+            profiles.push_back({std::max(narrowest_fwhm_px, middle * real::exp(width_step * step)), shape});
     const StarProfile best = elected(search, stars, profiles);
     return {best.shape, best.fwhm_px, spread_of(search, stars, best.fwhm_px)};
 }
@@ -226,9 +230,9 @@ void search_once(Search& search, const StarSettings& settings, const Progress& p
     const Image heights = matched_heights(brightness, kernel_sigma_px);
     const std::size_t first = search.stars.size();
     for (const StarCandidate& candidate : find_candidates(heights, search.noise, settings.threshold)) {
-        const auto x = static_cast<std::int64_t>(candidate.x), y = static_cast<std::int64_t>(candidate.y);
+        const auto x = std::int64_t(candidate.x), y = std::int64_t(candidate.y);
         if (x < 0 || y < 0 || x >= brightness.width || y >= brightness.height) continue;
-        const double taken = static_cast<double>(*search.before.at(x, y) - *brightness.at(x, y));
+        const double taken = double(*search.before.at(x, y) - *brightness.at(x, y));
         if (search.covered.at(x, y) || candidate.height < least_share_of_others * taken) continue;
         search.stars.push_back(star_of(candidate, search.widths));
         search.stars.back().saturated = search.unusable.at(x, y);
@@ -238,8 +242,8 @@ void search_once(Search& search, const StarSettings& settings, const Progress& p
 }
 
 bool is_star(const PictureStar& star, const StarWidths& widths, double threshold) {
-    return star.profile.fwhm_px < std::max(widest_fwhm_px, 1.8 * widths.fwhm_px) &&
-           star.signal_to_noise() > 0.8 * threshold &&
+    return star.profile.fwhm_px < std::max(widest_fwhm_px, widest_of_field * widths.fwhm_px) &&
+           star.signal_to_noise() > kept_threshold * threshold &&
            star.misfit < misfit_of_noise * star.noise + misfit_of_height * star.mean_amplitude();
 }
 
@@ -258,8 +262,8 @@ Search begin_search(const Image& image, const StarSettings& settings) {
     search.image = image;
     search.before = mean_of_channels(image);
     const float brightest = *std::max_element(search.before.pixels.begin(), search.before.pixels.end());
-    search.noise = noise_of_heights(matched_heights(search.before, kernel_sigma_px),
-                                    least_noise * static_cast<double>(brightest));
+    search.noise =
+        noise_of_heights(matched_heights(search.before, kernel_sigma_px), least_noise * double(brightest));
     search.unusable = saturated_pixels(image, settings.saturation);
     return search;
 }
@@ -306,29 +310,13 @@ constexpr double too_dark = 2.0;        // times the noise: profiles were wider 
 constexpr double too_bright = 4.0;      // or narrower, near the star's middle
 constexpr std::int64_t cell_px = 24;
 
-// Pixels within `radius` of a star.
-template <class Visit>
-void for_each_near(const PictureStar& star, const PixelMask& mask, double radius, const Visit& visit) {
-    const auto reach = static_cast<std::int64_t>(radius) + 1;
-    const auto x = static_cast<std::int64_t>(star.x), y = static_cast<std::int64_t>(star.y);
-    for (std::int64_t j = std::max<std::int64_t>(0, y - reach); j <= std::min(mask.height - 1, y + reach);
-         ++j) {
-        for (std::int64_t i = std::max<std::int64_t>(0, x - reach); i <= std::min(mask.width - 1, x + reach);
-             ++i) {
-            const double dx = static_cast<double>(i) + 0.5 - star.x,
-                         dy = static_cast<double>(j) + 0.5 - star.y;
-            if (dx * dx + dy * dy < radius * radius) visit(i, j, dx * dx + dy * dy);
-        }
-    }
-}
-
 // A pixel that the star's profile did not leave as its surroundings are.
 bool stands_out(const Image& without, const Cells& cells, std::int64_t x, std::int64_t y, bool near) {
     for (int c = 0; c < 3; ++c) {
-        const double u = static_cast<double>(x) + 0.5, v = static_cast<double>(y) + 0.5;
+        const double u = double(x) + 0.5, v = double(y) + 0.5;
         const double level = interpolated(cells.level, cells.cell_px, u, v, c);
         const double noise = interpolated(cells.noise, cells.cell_px, u, v, c);
-        const double away = static_cast<double>(without.at(x, y)[c]) - level;
+        const double away = double(without.at(x, y)[c]) - level;
         if (away < -too_dark * noise || (near && away > too_bright * noise)) return true;
     }
     return false;
@@ -338,17 +326,19 @@ void mark_distrusted(const Image& without, const Cells& cells, const PictureStar
     const double share = star.pixel_noise / star.mean_amplitude();
     const double core = reach_of(star.profile, trusted_height * share);
     const double whole = std::min(reach_px(star), reach_of(star.profile, least_trusted * share));
-    for_each_near(star, mask, std::max(core, whole), [&](std::int64_t x, std::int64_t y, double squared) {
-        const bool near = squared < star.profile.fwhm_px * star.profile.fwhm_px;
-        if (squared < core * core || stands_out(without, cells, x, y, near)) mask.at(x, y) = 1;
-    });
+    for_each_within(
+        mask, star.x, star.y, std::max(core, whole),
+        [&](std::int64_t x, std::int64_t y, double dx, double dy) {
+            const double squared = dx * dx + dy * dy, width = star.profile.fwhm_px;
+            if (squared < core * core || stands_out(without, cells, x, y, squared < width * width))
+                mask.at(x, y) = 1;
+        });
 }
 
 void keep_above_zero(const Image& before, Image& after) {
-    parallel_each(before.height, 16, [&](std::int64_t y) {
-        for (std::int64_t x = 0; x < before.width; ++x)
-            for (int c = 0; c < 3; ++c)
-                after.at(x, y)[c] = std::max(after.at(x, y)[c], std::min(0.0f, before.at(x, y)[c]));
+    for_each_pixel(before, [&](std::int64_t x, std::int64_t y) {
+        for (int c = 0; c < 3; ++c)
+            after.at(x, y)[c] = std::max(after.at(x, y)[c], std::min(0.0f, before.at(x, y)[c]));
     });
 }
 
@@ -363,25 +353,22 @@ StarRemoval remove_stars(const Image& image, const StarSettings& settings, const
     for (const PictureStar& star : field.stars) mark_distrusted(field.image, cells, star, cores);
     fill(field.image, cores, FillKind::texture, progress);
     keep_above_zero(image, field.image);
-    std::stable_sort(field.stars.begin(), field.stars.end(), [](const PictureStar& a, const PictureStar& b) {
-        return whole_flux(a) > whole_flux(b);
-    });
+    std::ranges::stable_sort(field.stars, std::greater(), whole_flux);
     progress.at(1.0);
     return {std::move(field.image), std::move(field.stars)};
 }
 
 std::int64_t star_removal_bytes(const Image& image) {
     const std::int64_t floats = image.channels + 1 + 3 + 1;  // the result, brightness, sums and heights
-    return image.width * image.height * (floats * static_cast<std::int64_t>(sizeof(float)) + 3);
+    return image.width * image.height * (floats * std::int64_t(sizeof(float)) + 3);
 }
 
 std::string star_table(std::span<const PictureStar> stars, std::int64_t width, std::int64_t height) {
     std::string text = fmt::format("{}\nx,y,u,v,flux_r,flux_g,flux_b,sigma_px,saturated\n", star_table_mark);
     for (const PictureStar& star : stars) {
-        text +=
-            fmt::format("{:.3f},{:.3f},{:.7f},{:.7f},{:.6g},{:.6g},{:.6g},{:.4f},{}\n", star.x, star.y,
-                        star.x / static_cast<double>(width), 1.0 - star.y / static_cast<double>(height),
-                        star.flux(0), star.flux(1), star.flux(2), star.sigma_px(), star.saturated ? 1 : 0);
+        text += fmt::format("{:.3f},{:.3f},{:.7f},{:.7f},{:.6g},{:.6g},{:.6g},{:.4f},{}\n", star.x, star.y,
+                            star.x / double(width), 1.0 - star.y / double(height), star.flux(0), star.flux(1),
+                            star.flux(2), star.sigma_px(), star.saturated ? 1 : 0);
     }
     return text;
 }

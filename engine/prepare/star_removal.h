@@ -1,6 +1,6 @@
 // A picture without its stars. In: linear light. Out: a list of stars, as such or as a table, and the picture
 // less their profiles; in the end with its surroundings continued where stars were. Whatever is in one is not
-// in the other.
+// in the other. Of stars too bright for the picture what can be seen is fitted: their wings.
 #pragma once
 
 #include <limits>
@@ -31,6 +31,18 @@ struct StarField {
 /// in three rounds with all others taken away, and kept when they are as wide as the field's stars and look
 /// like a star's profile. The same bits with any number of threads. Throws Cancelled.
 StarField find_stars(const Image& image, const StarSettings& settings, const Progress& progress = {});
+
+/// The pixels where a channel reaches `level`.
+PixelMask saturated_pixels(const Image& image, double level);
+
+/// Round saturated patches from which the light falls off steeply all around; `noise` is that of a height,
+/// for all of them. Patches of less than 9 pixels are left to the ordinary search. Subtracts the stars'
+/// profiles from the picture.
+std::vector<PictureStar> take_saturated_stars(Image& image, const PixelMask& saturated, double noise);
+
+/// The pixels of a star that its profile does not describe: its core and diffraction spikes, found in the
+/// picture less the star as rays that stand out of the ring they cross.
+void mark_core_and_spikes(const Image& without, const PictureStar& star, PixelMask& mask);
 
 struct StarRemoval {
     Image starless;                  // channels as the picture's; those behind the third are unchanged

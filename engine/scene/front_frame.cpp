@@ -12,7 +12,7 @@
 #include "core/error.h"
 #include "core/memory.h"
 #include "core/parallel.h"
-#include "source/sample.h"
+#include "source/texture.h"
 
 namespace astrosplat {
 

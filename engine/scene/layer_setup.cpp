@@ -12,7 +12,6 @@
 #include "render/footprint.h"
 #include "scene/animate.h"
 #include "source/mesh.h"
-#include "source/obj.h"
 #include "stars/star_set.h"
 
 namespace astrosplat {

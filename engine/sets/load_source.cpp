@@ -13,7 +13,6 @@
 
 #include "bodies/bodies.h"
 #include "bodies/margin.h"
-#include "bodies/picture_size.h"
 #include "bodies/placement.h"
 #include "bodies/uv_surface.h"
 #include "core/error.h"

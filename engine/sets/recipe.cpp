@@ -12,7 +12,6 @@
 #include "core/hash.h"
 #include "generate/lattice.h"
 #include "source/mesh.h"
-#include "source/obj.h"
 
 namespace astrosplat {
 namespace {

@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "bodies/bodies.h"
-#include "bodies/picture_size.h"
 #include "core/error.h"
 #include "core/file_format.h"
 #include "core/progress.h"

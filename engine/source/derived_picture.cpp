@@ -1,4 +1,4 @@
-#include "source/derived_picture.h"
+#include "source/texture.h"
 
 #include <algorithm>
 #include <array>
@@ -11,7 +11,7 @@
 #include "core/real.h"
 #include "core/sorting.h"
 #include "image/blur.h"
-#include "source/sample.h"
+#include "image/channels.h"
 
 namespace astrosplat {
 namespace {
@@ -20,13 +20,10 @@ constexpr float noise = 0.002f;  // of white: what is as faint gets no say
 constexpr double finest_blur_px = 1.2;
 constexpr double coarsest_blur = 80.0 / 1920.0;  // of the width
 constexpr float least_transmission = 0.1f;
-constexpr std::int64_t map_rows_per_chunk = 16;
 
 template <class PerPixel>
 void over_pixels(const Image& image, const PerPixel& work) {
-    parallel_chunks(image.height, map_rows_per_chunk, [&](std::int64_t begin, std::int64_t end, int) {
-        for (std::int64_t i = begin * image.width; i < end * image.width; ++i) work(i);
-    });
+    parallel_each(image.width * image.height, 1 << 14, work);
 }
 
 float brightest(const float* p) { return std::max({p[0], p[1], p[2]}); }
@@ -59,7 +56,7 @@ Image coarse_band(const Image& of_light, double blur) {
 Image dust_map(const Image& light) {
     const Image of_light = moments(light);
     Image filled = make_image(light.width, light.height, 3), finer = of_light;
-    const double coarsest = coarsest_blur * static_cast<double>(light.width);
+    const double coarsest = coarsest_blur * double(light.width);
     const auto add = [&](const Image& coarser) {
         over_pixels(filled, [&](std::int64_t i) {
             for (int c = 0; c < 3; ++c) {
@@ -95,9 +92,9 @@ Image excess_map(const Image& light, const Split& split) {
     std::vector<double> ratios;
     for (std::int64_t i = 0; i < pixels; i += step) {
         const Excess e = split(light.pixels.data() + i * light.channels);
-        if (e.others > 10.0f * noise) ratios.push_back(static_cast<double>(e.own / e.others));
+        if (e.others > 10.0f * noise) ratios.push_back(double(e.own / e.others));
     }
-    const auto scale = static_cast<float>(percentile(std::move(ratios), 0.5));
+    const auto scale = float(percentile(std::move(ratios), 0.5));
     Image map = make_image(light.width, light.height, 1);
     over_pixels(map, [&](std::int64_t i) {
         const Excess e = split(light.pixels.data() + i * light.channels);
@@ -118,12 +115,10 @@ Image derived_picture(const Image& light, Derived kind) {
 
 namespace {
 
-constexpr std::int64_t mask_rows_per_chunk = 16;
-
 // 1 well inside, 0 well outside; `inside` is the distance to the border.
 float ramp(double inside, double feather) {
     if (!(feather > 0.0)) return inside >= 0.0 ? 1.0f : 0.0f;
-    return static_cast<float>(std::clamp(0.5 + inside / feather, 0.0, 1.0));
+    return float(std::clamp(0.5 + inside / feather, 0.0, 1.0));
 }
 
 // In a range whose ends at 0 and 1 are open: beyond them there is nothing to keep out.
@@ -179,10 +174,7 @@ class Terms {
           turn_{real::cos(real::radians(terms.turn)), real::sin(real::radians(terms.turn))} {
         if (terms.derive != Derived::none) derived_ = derived_picture(light, terms.derive);
         if (terms.image.empty()) return;
-        const Image raw = load_raw_image(terms.image);
-        picture_.image = make_image(raw.width, raw.height, 4, 1.0f);
-        for (std::int64_t i = 0; i < raw.width * raw.height; ++i)
-            std::copy_n(raw.pixels.data() + 3 * i, 3, picture_.image.pixels.data() + 4 * i);
+        picture_.image = opaque(load_raw_image(terms.image));
     }
 
     bool inverts() const { return terms_.invert; }
@@ -211,17 +203,17 @@ class Terms {
     }
 
     float ellipse_weight(std::int64_t x, std::int64_t y) const {
-        const auto width = static_cast<double>(light_.width), height = static_cast<double>(light_.height);
+        const auto width = double(light_.width), height = double(light_.height);
         const glm::dvec4& e = *terms_.ellipse;
-        const glm::dvec2 off((static_cast<double>(x) + 0.5) / width - e.x,
-                             (height - static_cast<double>(y) - 0.5 - e.y * height) / width);
+        const glm::dvec2 off((double(x) + 0.5) / width - e.x,
+                             (height - double(y) - 0.5 - e.y * height) / width);
         const glm::dvec2 turned(off.x * turn_.x + off.y * turn_.y, off.y * turn_.x - off.x * turn_.y);
         return in_ellipse(turned, {e.z, e.w}, terms_.feather);
     }
 
     float image_weight(std::int64_t x, std::int64_t y) const {
-        const double u = (static_cast<double>(x) + 0.5) / static_cast<double>(light_.width);
-        const double v = 1.0 - (static_cast<double>(y) + 0.5) / static_cast<double>(light_.height);
+        const double u = (double(x) + 0.5) / double(light_.width);
+        const double v = 1.0 - (double(y) + 0.5) / double(light_.height);
         const glm::vec3 c = sample(picture_, glm::vec2(u, v)).color;
         return std::clamp((c.x + c.y + c.z) / 3.0f, 0.0f, 1.0f);
     }
@@ -258,9 +250,8 @@ Image mask_weights(const Image& light, std::span<const MaskParams> masks) {
         ready.push_back(std::move(mask));
     }
     Image weights = make_image(light.width, light.height, 1, 1.0f);
-    parallel_each(light.height, mask_rows_per_chunk, [&](std::int64_t y) {
-        for (std::int64_t x = 0; x < light.width; ++x)
-            for (const Mask& mask : ready) *weights.at(x, y) *= mask.weight(x, y);
+    for_each_pixel(weights, [&](std::int64_t x, std::int64_t y) {
+        for (const Mask& mask : ready) *weights.at(x, y) *= mask.weight(x, y);
     });
     return weights;
 }

@@ -3,6 +3,7 @@
 
 #include <fitsio.h>
 #include <fmt/format.h>
+#include <zlib.h>
 
 #include <algorithm>
 #include <array>
@@ -10,6 +11,8 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <string_view>
+#include <vector>
 
 #include "core/error.h"
 #include "core/file.h"
@@ -17,7 +20,6 @@
 #include "core/memory.h"
 #include "core/real.h"
 #include "core/text.h"
-#include "source/fits_headers.h"
 
 namespace astrosplat {
 namespace {
@@ -32,7 +34,9 @@ struct Close {
 };
 using Handle = std::unique_ptr<fitsfile, Close>;
 
-[[noreturn]] void fail(const fs::path& file, std::string_view doing, int status) {
+// Throws where CFITSIO did not succeed.
+void check(const fs::path& file, std::string_view doing, int status) {
+    if (status == 0) return;
     std::array<char, FLEN_ERRMSG> reason{};
     fits_get_errstatus(status, reason.data());
     fits_clear_errmsg();
@@ -46,22 +50,27 @@ Handle open_fits(const fs::path& file) {
     fitsfile* handle = nullptr;
     int status = 0;
     fits_open_diskfile(&handle, file.c_str(), READONLY, &status);
-    if (status != 0) fail(file, "opening", status);
+    check(file, "opening", status);
     return Handle(handle);
+}
+
+// False where the header has none.
+bool read_keyword(fitsfile* in, int type, const char* keyword, void* value) {
+    int status = 0;
+    fits_read_key(in, type, keyword, value, nullptr, &status);
+    fits_clear_errmsg();
+    return status == 0;
 }
 
 std::string text_keyword(fitsfile* in, const char* keyword) {
     std::array<char, FLEN_VALUE> value{};
-    int status = 0;
-    fits_read_key(in, TSTRING, keyword, value.data(), nullptr, &status);
-    fits_clear_errmsg();
-    return status == 0 ? std::string(trim(value.data())) : std::string();
+    return read_keyword(in, TSTRING, keyword, value.data()) ? std::string(trim(value.data())) : "";
 }
 
 int hdu_count(const fs::path& file, fitsfile* in) {
     int count = 0, status = 0;
     fits_get_num_hdus(in, &count, &status);
-    if (status != 0) fail(file, "reading the headers", status);
+    check(file, "reading the headers", status);
     return count;
 }
 
@@ -78,14 +87,14 @@ FitsHdu go_to_hdu(const fs::path& file, fitsfile* in, int number) {
     hdu.number = number;
     int type = 0, status = 0;
     fits_movabs_hdu(in, number + 1, &type, &status);
-    if (status != 0) fail(file, fmt::format("moving to HDU {}", number), status);
+    check(file, fmt::format("moving to HDU {}", number), status);
     hdu.name = text_keyword(in, "EXTNAME");
     hdu.kind = "table";
     if (type != IMAGE_HDU) return hdu;
     int naxis = 0;
     std::array<LONGLONG, 99> axes{};
-    fits_get_img_paramll(in, static_cast<int>(axes.size()), &hdu.bitpix, &naxis, axes.data(), &status);
-    if (status != 0) fail(file, fmt::format("reading the header of HDU {}", number), status);
+    fits_get_img_paramll(in, int(axes.size()), &hdu.bitpix, &naxis, axes.data(), &status);
+    check(file, fmt::format("reading the header of HDU {}", number), status);
     hdu.axes.assign(axes.begin(), axes.begin() + naxis);
     const bool empty = naxis == 0 || std::ranges::find(hdu.axes, 0) != hdu.axes.end();
     int ignored = 0;
@@ -113,7 +122,73 @@ void read_into(const fs::path& file, fitsfile* in, std::int64_t first, std::int6
         fits_read_img(in, TDOUBLE, first + done + 1, std::min(portion, count - done), &undefined,
                       values + done, &any_undefined, &status);
     }
-    if (status != 0) fail(file, "reading the pixels", status);
+    check(file, "reading the pixels", status);
+}
+
+constexpr std::int64_t most_bytes_a_pixel = 8;
+
+// Of one tile, as the header says.
+std::int64_t tile_pixels(fitsfile* in) {
+    int axes = 0;
+    read_keyword(in, TINT, "ZNAXIS", &axes);
+    std::int64_t pixels = 1;
+    for (int i = 1; i <= axes; ++i) {
+        LONGLONG side = 1;
+        const bool told = read_keyword(in, TLONGLONG, fmt::format("ZTILE{}", i).c_str(), &side);
+        if (!told && i == 1) read_keyword(in, TLONGLONG, "ZNAXIS1", &side);  // rows of the picture
+        pixels *= side;
+    }
+    return pixels;
+}
+
+// Whether `bytes` are one gzip stream of at most `most` bytes.
+bool inflates(std::vector<unsigned char>& bytes, std::int64_t most) {
+    z_stream stream{};
+    if (inflateInit2(&stream, 15 + 32) != Z_OK) return false;
+    const std::unique_ptr<z_stream, int (*)(z_stream*)> end(&stream, inflateEnd);
+    stream.next_in = bytes.data();
+    stream.avail_in = static_cast<uInt>(bytes.size());
+    std::array<unsigned char, 1 << 16> out;
+    int result = Z_OK;
+    while (result == Z_OK && std::int64_t(stream.total_out) <= most) {
+        stream.next_out = out.data();
+        stream.avail_out = out.size();
+        result = inflate(&stream, Z_NO_FLUSH);
+    }
+    return result == Z_STREAM_END && std::int64_t(stream.total_out) <= most;
+}
+
+void check_column(const fs::path& file, fitsfile* in, const char* name, std::int64_t most) {
+    int column = 0, status = 0;
+    char* const wanted = const_cast<char*>(name);  // CFITSIO reads it only
+    if (fits_get_colnum(in, CASEINSEN, wanted, &column, &status) != 0) return fits_clear_errmsg();
+    LONGLONG rows = 0;
+    fits_get_num_rowsll(in, &rows, &status);
+    std::vector<unsigned char> bytes;
+    for (LONGLONG row = 1; row <= rows && status == 0; ++row) {
+        LONGLONG length = 0, offset = 0;
+        fits_read_descriptll(in, column, row, &length, &offset, &status);
+        if (status != 0 || length == 0) continue;
+        const bool possible = length > 0 && length <= 2 * most + 1024;  // gzip itself adds a few bytes
+        if (possible) {
+            bytes.resize(std::size_t(length));
+            fits_read_col(in, TBYTE, column, row, 1, length, nullptr, bytes.data(), nullptr, &status);
+        }
+        if (!possible || status != 0 || !inflates(bytes, most)) {
+            fits_clear_errmsg();
+            bad_input(file.string(), fmt::format("tile {}", row),
+                      fmt::format("gzip data of at most {} bytes", most), "something else");
+        }
+    }
+}
+
+// Inflates every gzip tile of the current HDU into nothing: on a damaged one CFITSIO asks for more and more
+// memory without end. Throws InputError "FILE: tile n: expected ..." for one that ends early, holds anything
+// else or more than its pixels. Pictures compressed otherwise pass.
+void check_gzip_tiles(const fs::path& file, fitsfile* in) {
+    const std::int64_t most = most_bytes_a_pixel * tile_pixels(in);
+    if (text_keyword(in, "ZCMPTYPE").starts_with("GZIP")) check_column(file, in, "COMPRESSED_DATA", most);
+    check_column(file, in, "GZIP_COMPRESSED_DATA", most);  // where another method would have lost something
 }
 
 void check_tiles(const fs::path& file, fitsfile* in) {
@@ -126,7 +201,7 @@ Buffer<double> room_for(const fs::path& file, std::int64_t count) {
     if (count > std::numeric_limits<std::int64_t>::max() / 64)
         bad_input(file.string(), "", "a picture that fits into memory", fmt::format("{} values", count));
     claim_memory(count * 8, fmt::format("reading {}", file.string()));
-    return Buffer<double>(static_cast<std::size_t>(count));
+    return Buffer<double>(std::size_t(count));
 }
 
 FitsHdu find_hdu(const fs::path& file, fitsfile* in, const std::string& wanted) {
@@ -157,23 +232,19 @@ void swap_rows(std::int64_t width, std::int64_t rows, double* values) {
         std::swap_ranges(values + y * width, values + (y + 1) * width, values + (rows - 1 - y) * width);
 }
 
-std::optional<double> number_keyword(fitsfile* in, const char* keyword) {
+std::optional<double> number_keyword(fitsfile* in, const std::string& keyword) {
     double value = 0.0;
-    int status = 0;
-    fits_read_key(in, TDOUBLE, keyword, &value, nullptr, &status);
-    fits_clear_errmsg();
-    if (status != 0 || !std::isfinite(value)) return {};
+    if (!read_keyword(in, TDOUBLE, keyword.c_str(), &value) || !std::isfinite(value)) return {};
     return value;
 }
 
 // CD, or CDELT with PC or CROTA2 (Greisen and Calabretta 2002, A&A 395, 1061).
 std::optional<std::array<double, 4>> degrees_per_pixel(fitsfile* in) {
-    const std::array<const char*, 4> cd_names{"CD1_1", "CD1_2", "CD2_1", "CD2_2"};
-    const std::array<const char*, 4> pc_names{"PC1_1", "PC1_2", "PC2_1", "PC2_2"};
+    constexpr std::array axes{"1_1", "1_2", "2_1", "2_2"};
     std::array<double, 4> cd{};
     bool any = false;
     for (std::size_t i = 0; i < 4; ++i) {
-        const std::optional<double> value = number_keyword(in, cd_names[i]);
+        const std::optional<double> value = number_keyword(in, fmt::format("CD{}", axes[i]));
         any = any || value;
         cd[i] = value.value_or(0.0);
     }
@@ -184,7 +255,8 @@ std::optional<std::array<double, 4>> degrees_per_pixel(fitsfile* in) {
     const std::array<double, 4> turned{real::cos(turn), -real::sin(turn) * *up / *across,
                                        real::sin(turn) * *across / *up, real::cos(turn)};
     for (std::size_t i = 0; i < 4; ++i)
-        cd[i] = (i < 2 ? *across : *up) * number_keyword(in, pc_names[i]).value_or(turned[i]);
+        cd[i] =
+            (i < 2 ? *across : *up) * number_keyword(in, fmt::format("PC{}", axes[i])).value_or(turned[i]);
     return cd;
 }
 

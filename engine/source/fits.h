@@ -1,5 +1,6 @@
-// FITS through CFITSIO. In: a path. Out: one plane of data values, or what the file holds. (OpenImageIO 2.4's
-// own FITS reader shifts the rows and forgets BSCALE.)
+// FITS through CFITSIO. In: a path. Out: one plane of data values, or what the file holds; of data values
+// numbers from 0 (black) to 1 (white). (OpenImageIO 2.4's own FITS reader shifts the rows and forgets
+// BSCALE.)
 #pragma once
 
 #include <array>
@@ -7,14 +8,60 @@
 #include <filesystem>
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "core/buffer.h"
 #include "core/progress.h"
-#include "source/stretch.h"
+#include "source/source.h"
 
 namespace astrosplat {
+
+/// Of the finite ones among the values. All zero when there are none.
+struct ValueRange {
+    double min = 0.0, max = 0.0;
+    double black = 0.0;  // 0.25 percentile
+    double white = 0.0;  // 99.75 percentile
+};
+
+/// Percentiles are exact, interpolated linearly between ranks p (n - 1) as numpy does.
+ValueRange value_range(std::span<const double> values);
+
+/// The same of values that need not be held: `hand_out` gives all of them to its argument, in parts. It is
+/// called five times.
+using ValueTaker = std::function<void(std::span<const double>)>;
+ValueRange value_range(const std::function<void(const ValueTaker& take)>& hand_out);
+
+struct Limits {
+    double black = 0.0;
+    double white = 1.0;
+};
+
+/// The limits settings ask for, the percentiles where they leave them open. Both are finite and black <
+/// white: a picture of one value gets white = black + 1. Throws InputError, naming `file`, when set limits
+/// contradict that.
+Limits choose_limits(const ValueRange& range, const TextureSettings& settings, const std::string& file);
+
+/// x = (value - black) / (white - black) cut to [0, 1]; then linear x, asinh(x / softening) / asinh(1 /
+/// softening) or log(1000 x + 1) / log(1001) (ds9's). NaN stays NaN. `stretch` is not automatic.
+class StretchCurve {
+  public:
+    StretchCurve(const Limits& limits, TextureSettings::Stretch stretch, double softening);
+    double operator()(double value) const;
+
+  private:
+    Limits limits_;
+    TextureSettings::Stretch stretch_;
+    double softening_;
+    double of_white_ = 1.0;  // what the curve makes of 1 before it is scaled
+};
+
+/// A look at a file before CFITSIO sees it, which trusts what is checked here: all HDUs, also of a gzip file,
+/// the cards of the tile compression convention (FITS 4.0, section 10.1) and the sizes of tables. Throws
+/// InputError "FILE:HDU n: expected ..." for one that cannot be. Headers that are damaged otherwise are left
+/// to CFITSIO.
+void check_fits_headers(const std::filesystem::path& file);
 
 /// By content, or a gzip file by its name.
 bool is_fits(const std::filesystem::path& file);

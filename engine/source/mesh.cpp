@@ -80,7 +80,7 @@ Mesh sphere_mesh() {
     std::vector<glm::dvec2> outline;
     std::vector<double> v;
     for (int j = 0; j <= rows; ++j) {
-        v.push_back(static_cast<double>(j) / rows);
+        v.push_back(double(j) / rows);
         const double y = -real::cos(v.back() * real::pi);
         outline.emplace_back(j == 0 || j == rows ? 0.0 : real::sin(v.back() * real::pi), y);
     }
@@ -120,7 +120,7 @@ Mesh revolved(std::span<const glm::dvec2> outline, std::span<const double> v, do
     for (std::size_t j = 0; j < outline.size(); ++j) {
         const double r = outline[j].x, y = outline[j].y;
         for (std::uint32_t i = 0; i <= columns; ++i) {
-            const double u = static_cast<double>(i) / columns;
+            const double u = double(i) / columns;
             const double longitude = (u - 0.5) * 2.0 * real::pi;
             const bool seam = i == 0 || i == columns;
             const double x = seam ? 0.0 : r * real::sin(longitude);
@@ -130,7 +130,7 @@ Mesh revolved(std::span<const glm::dvec2> outline, std::span<const double> v, do
     }
     for (std::size_t j = 0; j + 1 < outline.size(); ++j) {
         for (std::uint32_t i = 0; i < columns; ++i) {
-            const auto a = static_cast<std::uint32_t>(j) * (columns + 1) + i, d = a + columns + 1;
+            const auto a = std::uint32_t(j) * (columns + 1) + i, d = a + columns + 1;
             if (outline[j].x > 0.0) mesh.triangles.push_back({{a, a + 1, d + 1}, {a, a + 1, d + 1}, 0});
             if (outline[j + 1].x > 0.0) mesh.triangles.push_back({{a, d + 1, d}, {a, d + 1, d}, 0});
         }

@@ -1,5 +1,5 @@
-// Triangle meshes: their measures, planar projections and three built-in shapes; polygons split into
-// triangles. In: a name, a mesh, or corners. Out: a mesh, or numbers.
+// Triangle meshes: read from Wavefront OBJ files, three built-in shapes, their measures, planar projections;
+// polygons split into triangles. In: a file or a name, a mesh, or corners. Out: a mesh, or numbers.
 #pragma once
 
 #include <array>
@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "core/bounds.h"
+#include "core/progress.h"
 #include "source/source.h"
 
 namespace astrosplat {
@@ -59,7 +60,7 @@ bool is_builtin_mesh(const std::filesystem::path& name);
 /// "plane": in xz, centred, longer side 10, `aspect` = width / height of the picture, u to +x, v to -z.
 /// "disk": radius 5 in xz, uv as the plane's, and the largest circle around the middle of the picture.
 /// "sphere": radius 5, equirectangular uv, seen from outside right way round. (The others are
-/// in shapes.h.)
+/// in textured_mesh.h.)
 Mesh builtin_mesh(const std::string& name, double aspect);
 
 /// The most corners a polygon that is not convex may have: clipping takes cubic time at worst.
@@ -70,5 +71,16 @@ inline constexpr std::size_t max_concave_corners = 4096;
 /// normal (Newell's) is closest to. A polygon that crosses itself becomes some n - 2 triangles of its
 /// corners. Empty when it is concave and has more than max_concave_corners.
 std::vector<std::array<std::uint32_t, 3>> triangulate(std::span<const glm::vec3> corners);
+
+/// Reads an OBJ: several objects, quads and polygons, negative indices, map_Kd. Faces keep the file's order.
+/// A missing MTL is a warning. Throws InputError (file, line where known) for unreadable, truncated or empty
+/// files, indices out of range, coordinates that are not finite; Cancelled.
+Mesh load_obj(const std::filesystem::path& file, const Progress& progress = {});
+
+/// The files besides the OBJ itself that its map_Kd pictures come from: the material libraries that it names
+/// and the pictures that those name, as far as they exist. Reads no geometry. Throws InputError,
+/// Cancelled.
+std::vector<std::filesystem::path> obj_materials(const std::filesystem::path& file,
+                                                 const Progress& progress = {});
 
 }  // namespace astrosplat

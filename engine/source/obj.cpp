@@ -1,7 +1,7 @@
 // Wavefront OBJ. In: a file. Out: Mesh. tinyobjloader reads the materials; the geometry is read here, because
 // version 2.0.0rc10 refuses whole files for "1//" (which exporters write), and takes an incomplete vertex, a
 // face of two corners and an index out of range without a word. (Its numbers agree with ours.)
-#include "source/obj.h"
+#include "source/mesh.h"
 
 #include <fmt/format.h>
 #include <tiny_obj_loader.h>
@@ -15,7 +15,6 @@
 #include "core/file.h"
 #include "core/log.h"
 #include "core/text.h"
-#include "source/mesh.h"
 
 namespace astrosplat {
 namespace {
@@ -76,9 +75,8 @@ void split(std::string_view text, Words& words) {
 
 float coordinate(const Reader& r, std::string_view word) {
     const std::optional<double> value = parse_double(word);
-    if (!value || !std::isfinite(static_cast<float>(*value)))
-        bad_line(r, "a finite number", fmt::format("'{}'", word));
-    return static_cast<float>(*value);
+    if (!value || !std::isfinite(float(*value))) bad_line(r, "a finite number", fmt::format("'{}'", word));
+    return float(*value);
 }
 
 void read_position(Reader& r, const Words& words) {
@@ -100,7 +98,7 @@ std::int64_t resolve(const Reader& r, std::string_view text, std::size_t count, 
     if (!index || *index == 0 || *index > max_elements)
         bad_line(r, fmt::format("the number of a {}", what), fmt::format("'{}'", text));
     if (*index > 0) return *index - 1;
-    const std::int64_t resolved = static_cast<std::int64_t>(count) + *index;
+    const std::int64_t resolved = std::int64_t(count) + *index;
     if (resolved < 0)
         bad_line(r, fmt::format("one of the {} {} so far", count, plural(what)), fmt::format("{}", *index));
     return resolved;
@@ -127,13 +125,13 @@ Corner read_corner(Reader& r, std::string_view word) {
 }
 
 Mesh::Triangle triangle_of(const Reader& r, const Corner& a, const Corner& b, const Corner& c) {
-    const auto uv = [](const Corner& k) { return k.uv < 0 ? Mesh::no_uv : static_cast<std::uint32_t>(k.uv); };
-    const auto position = [](const Corner& k) { return static_cast<std::uint32_t>(k.position); };
+    const auto uv = [](const Corner& k) { return k.uv < 0 ? Mesh::no_uv : std::uint32_t(k.uv); };
+    const auto position = [](const Corner& k) { return std::uint32_t(k.position); };
     return {{position(a), position(b), position(c)}, {uv(a), uv(b), uv(c)}, r.material};
 }
 
 std::uint32_t index_of_map(Reader& r, const fs::path& map) {
-    const auto [found, fresh] = r.map_index.try_emplace(map, static_cast<std::uint32_t>(r.mesh.maps.size()));
+    const auto [found, fresh] = r.map_index.try_emplace(map, std::uint32_t(r.mesh.maps.size()));
     if (fresh) r.mesh.maps.push_back(map);
     return found->second;
 }
@@ -158,8 +156,7 @@ void read_face(Reader& r, const Words& words) {
 
 // The rest of a line behind its first word.
 std::string rest_of(std::string_view text, const Words& words) {
-    return std::string(
-        trim(text.substr(static_cast<std::size_t>(words[0].data() - text.data()) + words[0].size())));
+    return std::string(trim(text.substr(std::size_t(words[0].data() - text.data()) + words[0].size())));
 }
 
 fs::path native(std::string name) {
@@ -234,7 +231,7 @@ std::string_view next_line(std::string_view& text, std::string& joined, std::int
 }
 
 void check_range(Reader& r, const Highest& highest, std::size_t count, const char* what) {
-    if (highest.index < static_cast<std::int64_t>(count)) return;
+    if (highest.index < std::int64_t(count)) return;
     r.line = highest.line;
     bad_line(r, fmt::format("one of the file's {} {}", count, plural(what)),
              fmt::format("number {}", highest.index + 1));
@@ -265,7 +262,7 @@ void check_whole(Reader& r) {
     if (r.mesh.positions.empty()) bad_input(name, "", "an OBJ mesh with vertices ('v x y z')", "none");
     if (r.mesh.triangles.empty()) bad_input(name, "", "an OBJ mesh with faces ('f')", "none");
     const std::size_t most = std::max({r.mesh.positions.size(), r.mesh.uvs.size(), r.mesh.triangles.size()});
-    if (most > static_cast<std::size_t>(max_elements))
+    if (most > std::size_t(max_elements))
         bad_input(name, "", fmt::format("at most {} vertices and triangles", max_elements),
                   fmt::format("{}", most));
     check_range(r, r.position, r.mesh.positions.size(), "vertex");
@@ -275,7 +272,7 @@ void check_whole(Reader& r) {
 // Calls read(line) for every logical line; r.line is the number of its first.
 template <class Read>
 void for_each_line(Reader& r, std::string_view text, const Progress& progress, Read&& read) {
-    const auto size = static_cast<double>(text.size());
+    const auto size = double(text.size());
     if (text.substr(0, 3) == "\xef\xbb\xbf") text.remove_prefix(3);  // byte order mark
     for (std::string joined; !text.empty();) {
         std::int64_t lines = 0;
@@ -285,7 +282,7 @@ void for_each_line(Reader& r, std::string_view text, const Progress& progress, R
         r.line += lines - 1;
         if (r.line % 4096 != 0) continue;
         progress.check();
-        progress.at(1.0 - static_cast<double>(text.size()) / size);
+        progress.at(1.0 - double(text.size()) / size);
     }
 }
 

@@ -15,9 +15,9 @@
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "core/text.h"
+#include "image/channels.h"
 #include "source/fits.h"
 #include "source/picture.h"
-#include "source/picture_bytes.h"
 
 namespace astrosplat {
 namespace {
@@ -34,9 +34,8 @@ struct Channels {
 };
 
 int find_channel(const ImageSpec& spec, const char* name) {
-    for (int c = 0; c < spec.nchannels; ++c) {
+    for (int c = 0; c < spec.nchannels; ++c)
         if (OIIO::Strutil::iequals(spec.channel_name(c), name)) return c;
-    }
     return -1;
 }
 
@@ -133,11 +132,10 @@ class Bands {
         begin_ = y / rows_ * rows_;
         band_ = {spec_.width, std::min<std::int64_t>(rows_, spec_.height - begin_), spec_.nchannels,
                  std::move(band_.pixels)};
-        band_.pixels.resize(static_cast<std::size_t>(band_.width * band_.height * band_.channels));
+        band_.pixels.resize(std::size_t(band_.width * band_.height * band_.channels));
         const QuietStderr quiet;
-        if (!read_rows(spec_.y + static_cast<int>(begin_), spec_.y + static_cast<int>(end())))
-            fail_picture(file_, in_->geterror());
-        progress_.at(static_cast<double>(end()) / spec_.height);
+        if (!read_rows(spec_.y + int(begin_), spec_.y + int(end()))) fail_picture(file_, in_->geterror());
+        progress_.at(double(end()) / spec_.height);
         progress_.check();
     }
 
@@ -205,9 +203,8 @@ ImageRows rows_of_file(const std::shared_ptr<Bands>& bands, const Channels& chan
 }
 
 Image all_rows(const ImageRows& rows, const fs::path& file) {
-    const double bytes =
-        4.0 * rows.channels * static_cast<double>(rows.width) * static_cast<double>(rows.height);
-    claim_memory(static_cast<std::int64_t>(std::min(bytes, 9e18)), fmt::format("reading {}", file.string()));
+    const double bytes = 4.0 * rows.channels * double(rows.width) * double(rows.height);
+    claim_memory(std::int64_t(std::min(bytes, 9e18)), fmt::format("reading {}", file.string()));
     Image image = unfilled_image(rows.width, rows.height, rows.channels);
     rows.read(0, rows.height, image.pixels.data());
     return image;
@@ -215,15 +212,17 @@ Image all_rows(const ImageRows& rows, const fs::path& file) {
 
 // The eight values of EXIF's and TIFF's tag Orientation, from 1: what has to be done to see the picture as it
 // was meant.
-constexpr std::array<const char*, 9> orientations = {"",
-                                                     "nothing",
-                                                     "mirrored left to right",
-                                                     "turned by 180 degrees",
-                                                     "mirrored top to bottom",
-                                                     "mirrored along its falling diagonal",
-                                                     "turned by 90 degrees clockwise",
-                                                     "mirrored along its rising diagonal",
-                                                     "turned by 90 degrees anticlockwise"};
+constexpr std::array orientations = {
+    "",
+    "nothing",
+    "mirrored left to right",
+    "turned by 180 degrees",
+    "mirrored top to bottom",
+    "mirrored along its falling diagonal",
+    "turned by 90 degrees clockwise",
+    "mirrored along its rising diagonal",
+    "turned by 90 degrees anticlockwise",
+};
 
 int orientation_of(const ImageSpec& spec) {
     const int orientation = spec.get_int_attribute("Orientation", 1);
@@ -236,27 +235,18 @@ Image turned(const Image& image, int orientation) {
     const bool from_below = orientation == 3 || orientation == 4 || orientation == 6 || orientation == 7;
     Image result =
         make_image(swaps ? image.height : image.width, swaps ? image.width : image.height, image.channels);
-    parallel_each(result.height, 64, [&](std::int64_t y) {
-        for (std::int64_t x = 0; x < result.width; ++x) {
-            const std::int64_t column = swaps ? y : x, row = swaps ? x : y;
-            std::copy_n(image.at(from_right ? image.width - 1 - column : column,
-                                 from_below ? image.height - 1 - row : row),
-                        image.channels, result.at(x, y));
-        }
+    for_each_pixel(result, [&](std::int64_t x, std::int64_t y) {
+        const std::int64_t column = swaps ? y : x, row = swaps ? x : y;
+        std::copy_n(image.at(from_right ? image.width - 1 - column : column,
+                             from_below ? image.height - 1 - row : row),
+                    image.channels, result.at(x, y));
     });
     return result;
 }
 
 double largest_integer(const ImageSpec& spec) {
     if (spec.format.is_floating_point()) return 0.0;
-    switch (spec.format.size()) {
-        case 1:
-            return 255.0;
-        case 2:
-            return 65535.0;
-        default:
-            return 4294967295.0;
-    }
+    return spec.format.size() == 1 ? 255.0 : spec.format.size() == 2 ? 65535.0 : 4294967295.0;
 }
 
 std::string find_credit(const fs::path& file, const ImageSpec& spec) {

@@ -13,17 +13,14 @@
 #include "core/error.h"
 #include "core/log.h"
 #include "core/memory.h"
-#include "core/parallel.h"
 #include "core/text.h"
 #include "image/blur.h"
-#include "prepare/fill.h"
-#include "prepare/filters.h"
-#include "prepare/sky.h"
+#include "image/channels.h"
+#include "prepare/stages.h"
 #include "prepare/star_removal.h"
 #include "source/fits.h"
 #include "source/picture.h"
 #include "source/stored_picture.h"
-#include "source/stretch.h"
 #include "source/texture.h"
 
 namespace astrosplat {
@@ -59,7 +56,7 @@ PrepareInput read_fits_input(const std::filesystem::path& file, const TextureSet
         const double value = (plane.values[i] - limits.black) / (limits.white - limits.black);
         float* const p = input.image.pixels.data() + 4 * i;
         input.empty.pixels[i] = std::isfinite(value) ? 0 : 1;
-        std::fill_n(p, 3, std::isfinite(value) ? static_cast<float>(value) : 0.0f);
+        std::fill_n(p, 3, std::isfinite(value) ? float(value) : 0.0f);
         p[3] = std::isfinite(value) ? 1.0f : 0.0f;
     }
     input.stretch = stretch_of(settings);
@@ -114,7 +111,7 @@ void put_on_grid(PrepareInput& input, const TanGrid& grid, std::int64_t width, s
 void put_channel(const PrepareInput& filter, int channel, PrepareInput& rgb) {
     for (std::size_t i = 0; i < rgb.empty.pixels.size(); ++i) {
         const float* const p = filter.image.pixels.data() + 4 * i;
-        rgb.image.pixels[4 * i + static_cast<std::size_t>(channel)] = (p[0] + p[1] + p[2]) / 3.0f;
+        rgb.image.pixels[4 * i + std::size_t(channel)] = (p[0] + p[1] + p[2]) / 3.0f;
         if (filter.empty.pixels[i]) rgb.empty.pixels[i] = 1;
     }
 }
@@ -148,7 +145,7 @@ PrepareInput read_three_filters(const std::array<std::filesystem::path, 3>& file
                       fmt::format("{}x{} px", filter.image.width, filter.image.height));
         if (known && !(same_size && same_grid(*filter.grid, *first.grid)))
             put_on_grid(filter, *first.grid, rgb.image.width, rgb.image.height);
-        put_channel(filter, static_cast<int>(c), rgb);
+        put_channel(filter, int(c), rgb);
         rgb.credit = joined_once({rgb.credit, filter.credit});
     }
     return rgb;
@@ -172,51 +169,48 @@ void align_to(const std::filesystem::path& reference, const TextureSettings& set
 // light.
 void apply_stretch(Image& image, TextureSettings::Stretch stretch, double softening) {
     if (stretch == TextureSettings::Stretch::linear) return;
-    parallel_each(image.height, 16, [&](std::int64_t y) {
-        for (std::int64_t x = 0; x < image.width; ++x)
-            for (int c = 0; c < 3; ++c) {
-                float& value = image.at(x, y)[c];
-                value = static_cast<float>(real::srgb_to_linear(
-                    stretched(static_cast<double>(value), {0.0, 1.0}, stretch, softening)));
-            }
+    const StretchCurve curve({0.0, 1.0}, stretch, softening);
+    change_pixels(image, [&](float* p) {
+        for (int c = 0; c < 3; ++c) p[c] = float(real::srgb_to_linear(curve(double(p[c]))));
     });
 }
 
 // The stages, on a picture that may have been halved, as often as its masks are then.
-class Preparation {
-  public:
-    Preparation(PrepareInput input, const TextureSettings& settings, const Progress& progress)
-        : input_(std::move(input)), settings_(settings), params_(settings.prepare), progress_(progress) {}
+struct Preparation {
+    PrepareInput input;
+    const TextureSettings& settings;
+    const Progress& progress;
+    const PrepareParams& params = settings.prepare;
+    Image full = {input.image.width, input.image.height, 4, {}};  // of the size of masks; without pixels
+    int halvings = 0;
 
     void halve_to(std::int64_t most_px) {
-        full_ = {input_.image.width, input_.image.height, 4, {}};
-        while (most_px > 0 && std::max(input_.image.width, input_.image.height) > most_px) {
-            input_.image = halved(input_.image);
-            ++halvings_;
+        while (most_px > 0 && std::max(input.image.width, input.image.height) > most_px) {
+            input.image = halved(input.image);
+            ++halvings;
         }
-        if (halvings_ > 0) input_.empty = empty_pixels(input_.image);
+        if (halvings > 0) input.empty = empty_pixels(input.image);
     }
 
     PreparedPicture run() {
         PreparedPicture result;
-        if (!params_.fill.empty())
-            fill(input_.image, bright_pixels(mask("fill", params_.fill)), FillKind::texture, progress_);
-        if (params_.stars == PrepareParams::Stars::remove) take_stars_away(result);
-        if (params_.background != PrepareParams::Background::keep) {
-            result.sky = fit_sky(input_.image, static_cast<int>(params_.background) - 1);
-            subtract_sky(input_.image, *result.sky);
+        if (!params.fill.empty())
+            fill(input.image, bright_pixels(mask("fill", params.fill)), FillKind::texture, progress);
+        if (params.stars == PrepareParams::Stars::remove) take_stars_away(result);
+        if (params.background != PrepareParams::Background::keep) {
+            result.sky = fit_sky(input.image, int(params.background) - 1);
+            subtract_sky(input.image, *result.sky);
         }
-        if (params_.lupton)
-            apply_lupton(input_.image, {params_.q, params_.lupton_stretch});
+        if (params.lupton)
+            apply_lupton(input.image, {params.q, params.lupton_stretch});
         else
-            apply_stretch(input_.image, input_.stretch, settings_.softening);
+            apply_stretch(input.image, input.stretch, settings.softening);
         cut();
-        result.image = std::move(input_.image);
-        result.credit = std::move(input_.credit);
+        result.image = std::move(input.image);
+        result.credit = std::move(input.credit);
         return result;
     }
 
-  private:
     static PixelMask empty_pixels(const Image& image) {
         PixelMask empty = make_mask(image.width, image.height);
         for (std::size_t i = 0; i < empty.pixels.size(); ++i)
@@ -225,37 +219,30 @@ class Preparation {
     }
 
     Image mask(const char* key, const fs::path& file) const {
-        Image picture = read_mask_like(full_, std::string("prepare.") + key, file);
-        for (int i = 0; i < halvings_; ++i) picture = halved(picture);
+        Image picture = read_mask_like(full, std::string("prepare.") + key, file);
+        for (int i = 0; i < halvings; ++i) picture = halved(picture);
         return picture;
     }
 
     void take_stars_away(PreparedPicture& result) {
-        claim_memory(star_removal_bytes(input_.image), "star removal");
+        claim_memory(star_removal_bytes(input.image), "star removal");
         StarRemoval removal = remove_stars(
-            input_.image, {params_.threshold, params_.saturation.value_or(input_.saturation)}, progress_);
-        input_.image = std::move(removal.starless);
+            input.image, {params.threshold, params.saturation.value_or(input.saturation)}, progress);
+        input.image = std::move(removal.starless);
         result.stars = std::move(removal.stars);
     }
 
     void cut() {
-        Image& image = input_.image;
-        if (params_.ellipse) {
-            const glm::dvec4 e = *params_.ellipse / std::exp2(halvings_);
-            cut_ellipse(image, {{e.x, e.y}, {e.z, e.w}, -params_.turn, params_.feather});
+        Image& image = input.image;
+        if (params.ellipse) {
+            const glm::dvec4 e = *params.ellipse / std::exp2(halvings);
+            cut_ellipse(image, {{e.x, e.y}, {e.z, e.w}, -params.turn, params.feather});
         }
-        if (!params_.mask.empty()) cut_with_mask(image, mask("mask", params_.mask));
-        if (params_.alpha) alpha_from_luminance(image, params_.alpha->x, params_.alpha->y);
-        for (std::size_t i = 0; i < input_.empty.pixels.size(); ++i)
-            if (input_.empty.pixels[i]) std::fill_n(image.pixels.data() + 4 * i, 4, 0.0f);
+        if (!params.mask.empty()) cut_with_mask(image, mask("mask", params.mask));
+        if (params.alpha) alpha_from_luminance(image, params.alpha->x, params.alpha->y);
+        for (std::size_t i = 0; i < input.empty.pixels.size(); ++i)
+            if (input.empty.pixels[i]) std::fill_n(image.pixels.data() + 4 * i, 4, 0.0f);
     }
-
-    PrepareInput input_;
-    const TextureSettings& settings_;
-    const PrepareParams& params_;
-    const Progress& progress_;
-    Image full_;  // of the size of the masks; without pixels
-    int halvings_ = 0;
 };
 
 }  // namespace
@@ -266,7 +253,7 @@ PreparedPicture prepare_picture(const std::vector<fs::path>& files, const Textur
                              ? read_prepare_input(files[0], settings, progress)
                              : read_three_filters({files[0], files[1], files[2]}, settings, progress);
     if (!settings.prepare.align.empty()) align_to(settings.prepare.align, settings, input, progress);
-    Preparation preparation(std::move(input), settings, progress);
+    Preparation preparation{std::move(input), settings, progress};
     preparation.halve_to(most_px);
     return preparation.run();
 }
@@ -281,8 +268,7 @@ Image without_plain_alpha(Image image) {
     for (std::int64_t i = 0; i < pixels; ++i)
         if (image.pixels[4 * i + 3] != 1.0f) return image;
     Image colors = make_image(image.width, image.height, 3);
-    for (std::int64_t i = 0; i < pixels; ++i)
-        std::copy_n(image.pixels.data() + 4 * i, 3, colors.pixels.data() + 3 * i);
+    for (std::int64_t i = 0; i < 3 * pixels; ++i) colors.pixels[i] = image.pixels[i / 3 * 4 + i % 3];
     return colors;
 }
 

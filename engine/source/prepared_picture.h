@@ -12,9 +12,7 @@
 
 #include "core/image.h"
 #include "core/progress.h"
-#include "prepare/fill.h"
-#include "prepare/filters.h"
-#include "prepare/sky.h"
+#include "prepare/stages.h"
 #include "prepare/star_fit.h"
 #include "source/source.h"
 

@@ -1,5 +1,5 @@
 // Filtered lookup in a texture: premultiplied texels are weighted, then the colour is divided by alpha once.
-#include "source/sample.h"
+#include "source/texture.h"
 
 #include <algorithm>
 #include <cmath>
@@ -28,17 +28,16 @@ glm::vec4 texel(const Texture& texture, std::int64_t x, std::int64_t y) {
 
 // floor for |x| < 2^63, without the library call that processors before SSE4.1 need.
 std::int64_t whole(double x) {
-    const auto truncated = static_cast<std::int64_t>(x);
-    return truncated - (static_cast<double>(truncated) > x ? 1 : 0);
+    const auto truncated = std::int64_t(x);
+    return truncated - (double(truncated) > x ? 1 : 0);
 }
 
 // Position along an axis of n texels, whose edges are integers; kept within reach of 64-bit indices.
 double place(double coordinate, std::int64_t n, Wrap wrap) {
     constexpr double all_whole = 4503599627370496.0;  // 2^52, from where on doubles have no fraction
     if (wrap == Wrap::repeat)
-        coordinate =
-            std::fabs(coordinate) < all_whole ? coordinate - static_cast<double>(whole(coordinate)) : 0.0;
-    return std::clamp(coordinate, -2.0, 3.0) * static_cast<double>(n);
+        coordinate = std::fabs(coordinate) < all_whole ? coordinate - double(whole(coordinate)) : 0.0;
+    return std::clamp(coordinate, -2.0, 3.0) * double(n);
 }
 
 struct Texel {
@@ -65,8 +64,7 @@ glm::vec4 mix4(const float* c00, const float* c10, const float* c01, const float
 
 glm::vec4 bilinear(const Texture& texture, double x, double y) {
     const std::int64_t i = whole(x - 0.5), j = whole(y - 0.5);
-    const auto s = static_cast<float>(x - 0.5 - static_cast<double>(i)),
-               t = static_cast<float>(y - 0.5 - static_cast<double>(j));
+    const auto s = float(x - 0.5 - double(i)), t = float(y - 0.5 - double(j));
     const Image& image = texture.image;
     if (i >= 0 && j >= 0 && i + 1 < image.width && j + 1 < image.height) {  // nearly always
         const float* p = image.at(i, j);
@@ -80,20 +78,20 @@ glm::vec4 bilinear(const Texture& texture, double x, double y) {
 
 // How much of texel i (from i to i + 1) lies between lo and hi.
 double overlap(std::int64_t i, double lo, double hi) {
-    const auto left = static_cast<double>(i);
+    const auto left = double(i);
     return std::max(0.0, std::min(left + 1.0, hi) - std::max(left, lo));
 }
 
 // Mean over a box centred at (x, y), partly covered texels by their share. At least one texel wide, at most
 // the picture.
 glm::vec4 box_mean(const Texture& texture, double x, double y, glm::vec2 box) {
-    const double w = std::clamp<double>(box.x, 1.0, static_cast<double>(texture.image.width));
-    const double h = std::clamp<double>(box.y, 1.0, static_cast<double>(texture.image.height));
+    const double w = std::clamp<double>(box.x, 1.0, double(texture.image.width));
+    const double h = std::clamp<double>(box.y, 1.0, double(texture.image.height));
     const double x0 = x - 0.5 * w, x1 = x + 0.5 * w, y0 = y - 0.5 * h, y1 = y + 0.5 * h;
     glm::dvec4 sum(0.0);
-    for (auto j = static_cast<std::int64_t>(std::floor(y0)); static_cast<double>(j) < y1; ++j) {
+    for (auto j = std::int64_t(std::floor(y0)); double(j) < y1; ++j) {
         glm::dvec4 row(0.0);
-        for (auto i = static_cast<std::int64_t>(std::floor(x0)); static_cast<double>(i) < x1; ++i)
+        for (auto i = std::int64_t(std::floor(x0)); double(i) < x1; ++i)
             row += glm::dvec4(texel(texture, i, j)) * overlap(i, x0, x1);
         sum += row * overlap(j, y0, y1);
     }
@@ -106,7 +104,7 @@ TextureSample sample(const Texture& texture, glm::vec2 uv, glm::vec2 box_texels)
     if (!std::isfinite(uv.x) || !std::isfinite(uv.y) || texture.image.pixels.empty())
         return {glm::vec3(0.0f), 0.0f};
     const double x = place(uv.x, texture.image.width, texture.wrap);
-    const double y = place(1.0 - static_cast<double>(uv.y), texture.image.height, texture.wrap);
+    const double y = place(1.0 - double(uv.y), texture.image.height, texture.wrap);
     glm::vec4 p;
     if (texture.filter == TextureSettings::Filter::nearest)
         p = texel(texture, whole(x), whole(y));

@@ -1,4 +1,4 @@
-#include "source/shapes.h"
+#include "source/textured_mesh.h"
 
 #include <fmt/format.h>
 
@@ -12,7 +12,8 @@
 #include "core/error.h"
 #include "core/real.h"
 #include "image/blur.h"
-#include "source/sample.h"
+#include "image/channels.h"
+#include "source/texture.h"
 
 namespace astrosplat {
 namespace {
@@ -32,7 +33,7 @@ struct Outline {
 };
 
 void append(Mesh& mesh, const Mesh& other) {
-    const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+    const auto first = std::uint32_t(mesh.positions.size());
     mesh.positions.insert(mesh.positions.end(), other.positions.begin(), other.positions.end());
     mesh.uvs.insert(mesh.uvs.end(), other.uvs.begin(), other.uvs.end());
     for (Mesh::Triangle triangle : other.triangles) {
@@ -44,7 +45,7 @@ void append(Mesh& mesh, const Mesh& other) {
 
 // From `first` to `last` degrees of latitude + 90, its poles exactly on the axis.
 Outline arc(double last_degrees, double height) {
-    const int rows = std::max(2, static_cast<int>(std::ceil(64.0 * last_degrees / 180.0)));
+    const int rows = std::max(2, int(std::ceil(64.0 * last_degrees / 180.0)));
     Outline outline;
     for (int j = 0; j <= rows; ++j) {
         const double degrees = last_degrees * j / rows;
@@ -67,9 +68,9 @@ Outline divided(const std::vector<glm::dvec2>& points) {
     for (std::size_t i = 1; i < points.size(); ++i) {
         const double length = at[i] - at[i - 1];
         if (!(length > 0.0)) continue;
-        const int pieces = std::max(1, static_cast<int>(std::ceil(outline_pieces * length / whole)));
+        const int pieces = std::max(1, int(std::ceil(outline_pieces * length / whole)));
         for (int k = 0; k < pieces; ++k) {
-            const double share = static_cast<double>(k) / pieces;
+            const double share = double(k) / pieces;
             const glm::dvec2 p = points[i - 1] + (points[i] - points[i - 1]) * share;
             outline.add(p.x, p.y, (at[i - 1] + length * share) / whole);
         }
@@ -95,7 +96,7 @@ Mesh hourglass(const ShapeParams& shape) {
         const bool pole = j == 0 || j == rows;
         const double lobes = std::fabs(real::sin(2.0 * t)), spheroid = real::sin(t);
         const double r = shape.width * (shape.waist * spheroid + (1.0 - shape.waist) * lobes);
-        outline.add(pole ? 0.0 : r, -real::cos(t), static_cast<double>(j) / rows);
+        outline.add(pole ? 0.0 : r, -real::cos(t), double(j) / rows);
     }
     return turned(outline, shape_radius);
 }
@@ -111,7 +112,7 @@ Mesh shell(const ShapeParams& shape) {
 
 // Radii whose number per length falls as e^(-c r), r = 1 the last.
 double nested_radius(int index, int count, double concentration) {
-    const double share = static_cast<double>(index + 1) / count;
+    const double share = double(index + 1) / count;
     if (concentration < 1e-6 || index + 1 == count) return share;
     return -real::log(1.0 - share * (1.0 - real::exp(-concentration))) / concentration;
 }
@@ -130,7 +131,7 @@ Mesh ring(const ShapeParams& shape) {
     for (int j = 0; j <= rows; ++j) {
         const double t = 2.0 * real::pi * (j % rows) / rows;  // the seam is one circle
         outline.add(1.0 - shape.tube - shape.tube * real::cos(t), -shape.tube * real::sin(t),
-                    static_cast<double>(j) / rows);
+                    double(j) / rows);
     }
     return turned(outline, shape_radius);
 }
@@ -184,13 +185,12 @@ Heights sampled(const Texture& texture, std::int64_t columns, std::int64_t rows,
     lookup.image = texture.image;
     lookup.filter = TextureSettings::Filter::area;
     lookup.wrap = TextureSettings::Wrap::clamp;
-    const glm::vec2 box(static_cast<float>(texture.image.width) / static_cast<float>(columns - 1),
-                        static_cast<float>(texture.image.height) / static_cast<float>(rows - 1));
+    const glm::vec2 box(float(texture.image.width) / float(columns - 1),
+                        float(texture.image.height) / float(rows - 1));
     Heights heights{columns, rows, std::vector<double>(columns * rows)};
     for (std::int64_t y = 0; y < rows; ++y) {
         for (std::int64_t x = 0; x < columns; ++x) {
-            const glm::vec2 uv(static_cast<float>(x) / static_cast<float>(columns - 1),
-                               1.0f - static_cast<float>(y) / static_cast<float>(rows - 1));
+            const glm::vec2 uv(float(x) / float(columns - 1), 1.0f - float(y) / float(rows - 1));
             heights.at(x, y) = value_of(sample(lookup, uv, box));
         }
     }
@@ -207,11 +207,11 @@ Heights brightness(const Texture& texture, std::int64_t columns, std::int64_t ro
 
 // One pass of a separable gaussian; the edge values continue outside.
 void blur(Heights& heights, double sigma, bool along_x) {
-    const auto reach = static_cast<std::int64_t>(std::ceil(3.0 * sigma));
+    const auto reach = std::int64_t(std::ceil(3.0 * sigma));
     std::vector<double> weight;
     double total = 0.0;
     for (std::int64_t k = -reach; k <= reach; ++k) {
-        weight.push_back(real::exp(-0.5 * static_cast<double>(k * k) / (sigma * sigma)));
+        weight.push_back(real::exp(-0.5 * double(k * k) / (sigma * sigma)));
         total += weight.back();
     }
     Heights from = heights;
@@ -243,10 +243,10 @@ struct Grid {
 
 Grid grid_over(const Image& image, std::int64_t cells_of_longer) {
     assert(image.width > 0 && image.height > 0);
-    const double aspect = static_cast<double>(image.width) / static_cast<double>(image.height);
+    const double aspect = double(image.width) / double(image.height);
     const auto along = [&](double part_of_longer) {
-        const double rounded = std::floor(static_cast<double>(cells_of_longer) * part_of_longer + 0.5);
-        return std::max<std::int64_t>(1, static_cast<std::int64_t>(rounded)) + 1;
+        const double rounded = std::floor(double(cells_of_longer) * part_of_longer + 0.5);
+        return std::max<std::int64_t>(1, std::int64_t(rounded)) + 1;
     };
     const double width = aspect >= 1.0 ? 10.0 : 10.0 * aspect;
     return {width, width / aspect, along(std::min(1.0, aspect)), along(std::min(1.0, 1.0 / aspect))};
@@ -258,16 +258,15 @@ Mesh lifted_plane(const Grid& grid, const Height& height) {
     Mesh mesh;
     for (std::int64_t y = 0; y < grid.rows; ++y) {
         for (std::int64_t x = 0; x < grid.columns; ++x) {
-            const double u = static_cast<double>(x) / static_cast<double>(grid.columns - 1);
-            const double down = static_cast<double>(y) / static_cast<double>(grid.rows - 1);
+            const double u = double(x) / double(grid.columns - 1);
+            const double down = double(y) / double(grid.rows - 1);
             mesh.positions.emplace_back((u - 0.5) * grid.width, height(x, y), (down - 0.5) * grid.depth);
             mesh.uvs.emplace_back(u, 1.0 - down);
         }
     }
     for (std::int64_t y = 0; y + 1 < grid.rows; ++y) {
         for (std::int64_t x = 0; x + 1 < grid.columns; ++x) {
-            const auto d = static_cast<std::uint32_t>(y * grid.columns + x),
-                       a = static_cast<std::uint32_t>(d + grid.columns);
+            const auto d = std::uint32_t(y * grid.columns + x), a = std::uint32_t(d + grid.columns);
             mesh.triangles.push_back({{a, a + 1, d + 1}, {a, a + 1, d + 1}, 0});
             mesh.triangles.push_back({{a, d + 1, d}, {a, d + 1, d}, 0});
         }
@@ -277,13 +276,9 @@ Mesh lifted_plane(const Grid& grid, const Height& height) {
 
 // The mean of a map's channels at every vertex, each averaging the texels of one cell.
 Heights map_values(const fs::path& file, const Grid& grid) {
-    const Image raw = load_raw_image(file);
     Texture grey;
-    grey.image = make_image(raw.width, raw.height, 4, 1.0f);
-    for (std::int64_t i = 0; i < raw.width * raw.height; ++i) {
-        const float* const p = raw.pixels.data() + 3 * i;
-        std::fill_n(grey.image.pixels.data() + 4 * i, 3, (p[0] + p[1] + p[2]) / 3.0f);
-    }
+    grey.image = opaque(load_raw_image(file));
+    change_pixels(grey.image, [](float* p) { std::fill_n(p, 3, (p[0] + p[1] + p[2]) / 3.0f); });
     return sampled(grey, grid.columns, grid.rows, [](const TextureSample& s) { return s.color.x; });
 }
 
@@ -315,11 +310,11 @@ Mesh sheet_mesh(const Texture& texture, const ShapeParams& shape) {
     const Heights raw = shape.depth_map.empty() ? brightness(texture, grid.columns, grid.rows)
                                                 : map_values(shape.depth_map, grid);
     Image heights = make_image(grid.columns, grid.rows, 1);
-    for (std::size_t i = 0; i < raw.values.size(); ++i) heights.pixels[i] = static_cast<float>(raw.values[i]);
-    heights = gaussian_blur(heights, shape.blur * static_cast<double>(sheet_cells));
+    for (std::size_t i = 0; i < raw.values.size(); ++i) heights.pixels[i] = float(raw.values[i]);
+    heights = gaussian_blur(heights, shape.blur * double(sheet_cells));
     stretch(heights);
     Mesh mesh = lifted_plane(grid, [&](std::int64_t x, std::int64_t y) {
-        return (static_cast<double>(*heights.at(x, y)) - 0.5) * shape.depth * grid.width;
+        return (double(*heights.at(x, y)) - 0.5) * shape.depth * grid.width;
     });
     mesh.name = "sheet";
     return mesh;

@@ -17,7 +17,7 @@ namespace astrosplat {
 enum class SourceKind { mesh, splats, stars };
 constexpr auto names_of(SourceKind) { return names_up_to<SourceKind::stars>("mesh", "splats", "stars"); }
 
-/// A map made of a picture's own light, 0..1: see derived_picture.h.
+/// A map made of a picture's own light, 0..1: derived_picture() in texture.h.
 enum class Derived { none, dust, h_alpha, young_stars };
 constexpr auto names_of(Derived) {
     return names_up_to<Derived::young_stars>("none", "dust", "h_alpha", "young_stars");
@@ -120,7 +120,7 @@ struct TextureSettings {
     bool operator==(const TextureSettings&) const = default;
 };
 
-/// Measures of the built-in shapes (shapes.h), each of the shapes it names.
+/// Measures of the built-in shapes (textured_mesh.h), each of the shapes it names.
 struct ShapeParams {
     std::vector<glm::vec2> outline;   // revolution: (r, y) from end to end, scene units
     double width = 0.5;               // hourglass: radius of a lobe without its share of the waist, of 5

@@ -8,25 +8,14 @@
 
 #include "core/color.h"
 #include "core/parallel.h"
-#include "core/real.h"
+#include "image/channels.h"
 #include "source/fits.h"
-#include "source/stretch.h"
 
 namespace astrosplat {
-
 namespace {
 
 namespace fs = std::filesystem;
 using Settings = TextureSettings;
-
-constexpr std::int64_t stored_rows_per_chunk = 32;
-
-template <class PerPixel>
-void for_each_stored(Image& image, const PerPixel& change) {
-    parallel_chunks(image.height, stored_rows_per_chunk, [&](std::int64_t begin, std::int64_t end, int) {
-        for (float* p = image.at(0, begin); p != image.at(0, end); p += image.channels) change(p);
-    });
-}
 
 // Facts about a plane's picture, known before its pixels.
 Stored stored_without_pixels(const FitsPlane& plane, const Limits& limits, Settings::Stretch stretch) {
@@ -43,7 +32,7 @@ Stored stored_without_pixels(const FitsPlane& plane, const Limits& limits, Setti
 // As r = g = b.
 void stretch_values(std::span<const double> values, const StretchCurve& curve, float* rgb) {
     parallel_each(values.size(), 1 << 13,
-                  [&](std::size_t i) { std::fill_n(rgb + 3 * i, 3, static_cast<float>(curve(values[i]))); });
+                  [&](std::size_t i) { std::fill_n(rgb + 3 * i, 3, float(curve(values[i]))); });
 }
 
 Stored stretched_plane(const FitsPlane& plane, const ValueRange& range, const Settings& settings,
@@ -62,11 +51,11 @@ void hand_out(const FitsRows& rows, const ValueTaker& take) {
     constexpr std::int64_t values_at_once = std::int64_t{1} << 22;
     const std::int64_t width = rows.plane.width, height = rows.plane.height;
     const std::int64_t at_once = std::clamp<std::int64_t>(values_at_once / width, 1, height);
-    Buffer<double> values(static_cast<std::size_t>(at_once * width));
+    Buffer<double> values(std::size_t(at_once * width));
     for (std::int64_t begin = 0; begin < height; begin += at_once) {
         const std::int64_t end = std::min(height, begin + at_once);
         rows.read(begin, end, values.data());
-        take({values.data(), static_cast<std::size_t>((end - begin) * width)});
+        take({values.data(), std::size_t((end - begin) * width)});
     }
 }
 
@@ -80,7 +69,7 @@ StoredRows stretched_rows(const FitsRows& plane, const Settings& settings, const
     result.stored = stored_without_pixels(plane.plane, limits, stretch_of(settings));
     result.rows = {plane.plane.width, plane.plane.height, 3,
                    [=](std::int64_t begin, std::int64_t end, float* rgb) {
-                       Buffer<double> values(static_cast<std::size_t>((end - begin) * plane.plane.width));
+                       Buffer<double> values(std::size_t((end - begin) * plane.plane.width));
                        plane.read(begin, end, values.data());
                        stretch_values(values, curve, rgb);
                    }};
@@ -89,9 +78,9 @@ StoredRows stretched_rows(const FitsRows& plane, const Settings& settings, const
 
 // Linear light of each of an integer file's values.
 std::vector<float> linear_table(double max_integer) {
-    std::vector<float> table(static_cast<std::size_t>(max_integer) + 1);
+    std::vector<float> table(std::size_t(max_integer) + 1);
     for (std::size_t i = 0; i < table.size(); ++i)
-        table[i] = static_cast<float>(real::srgb_to_linear(static_cast<double>(i) / max_integer));
+        table[i] = float(real::srgb_to_linear(double(i) / max_integer));
     return table;
 }
 
@@ -100,14 +89,14 @@ void linearise(Image& image, double max_integer) {
     static const std::vector<float> of_bytes = linear_table(255.0), of_words = linear_table(65535.0);
     const bool tabled = max_integer == 255.0 || max_integer == 65535.0;
     const std::vector<float>& table = max_integer == 255.0 ? of_bytes : of_words;
-    const float scale = static_cast<float>(max_integer);
-    for_each_stored(image, [&](float* p) {
+    const float scale = float(max_integer);
+    change_pixels(image, [&](float* p) {
         const bool grey = p[0] == p[1] && p[1] == p[2];
         for (int c = 0; c < 3; ++c) {
             if (tabled)
-                p[c] = table[static_cast<std::size_t>(std::clamp(p[c], 0.0f, 1.0f) * scale + 0.5f)];
+                p[c] = table[std::size_t(std::clamp(p[c], 0.0f, 1.0f) * scale + 0.5f)];
             else
-                p[c] = c > 0 && grey ? p[0] : static_cast<float>(real::srgb_to_linear(p[c]));
+                p[c] = c > 0 && grey ? p[0] : float(real::srgb_to_linear(p[c]));
         }
     });
 }
@@ -115,10 +104,10 @@ void linearise(Image& image, double max_integer) {
 // Files with associated alpha and encoded colours multiplied the encoded values: undo that before decoding,
 // redo it in linear light. (Dividing linear values instead darkens soft edges.)
 void linearise_associated(Image& image) {
-    for_each_stored(image, [](float* p) {
+    change_pixels(image, [](float* p) {
         const float a = p[3];
         if (!(a > 0.0f)) return;
-        for (int c = 0; c < 3; ++c) p[c] = a * static_cast<float>(real::srgb_to_linear(p[c] / a));
+        for (int c = 0; c < 3; ++c) p[c] = a * float(real::srgb_to_linear(p[c] / a));
     });
 }
 
@@ -191,12 +180,12 @@ Image linear_image(Stored stored, Settings::Colorspace colorspace) {
     make_linear(stored, colorspace, premultiplied);
     const Image& from = stored.picture.image;
     Image image = make_image(from.width, from.height, 4, 1.0f);
-    for (std::int64_t i = 0; i < image.width * image.height; ++i) {
-        const float* p = from.pixels.data() + i * from.channels;
-        float* to = image.pixels.data() + i * 4;
+    for_each_pixel(image, [&](std::int64_t x, std::int64_t y) {
+        const float* const p = from.at(x, y);
+        float* const to = image.at(x, y);
         to[3] = alpha ? p[3] : 1.0f;
         for (int c = 0; c < 3; ++c) to[c] = alpha && !premultiplied ? p[c] * p[3] : p[c];
-    }
+    });
     return image;
 }
 

@@ -1,5 +1,5 @@
 // Percentiles by counting digits, and the three curves with the engine's own functions.
-#include "source/stretch.h"
+#include "source/fits.h"
 
 #include <fmt/format.h>
 
@@ -61,9 +61,9 @@ class RankSearch {
 // A place between two ranks.
 struct Percentile {
     Percentile(double fraction, std::int64_t count)
-        : rank(fraction * static_cast<double>(count - 1)),
-          below(static_cast<std::int64_t>(rank)),
-          above(std::min(static_cast<std::int64_t>(rank) + 1, count - 1)) {}
+        : rank(fraction * double(count - 1)),
+          below(std::int64_t(rank)),
+          above(std::min(std::int64_t(rank) + 1, count - 1)) {}
 
     double value() const {
         const double part = rank - std::floor(rank);
@@ -97,14 +97,13 @@ ValueRange value_range(const std::function<void(const ValueTaker&)>& hand_out) {
     });
     if (count == 0) return {};
     Percentile black(0.0025, count), white(0.9975, count);
+    RankSearch* const searches[] = {&black.below, &black.above, &white.below, &white.above};
     for (int digit = 0; digit < digits; ++digit) {
         each_finite([&](double value) {
             const std::uint64_t key = key_of(value);
-            for (RankSearch* search : {&black.below, &black.above, &white.below, &white.above})
-                search->count(key);
+            for (RankSearch* search : searches) search->count(key);
         });
-        for (RankSearch* search : {&black.below, &black.above, &white.below, &white.above})
-            search->next_digit();
+        for (RankSearch* search : searches) search->next_digit();
     }
     range.black = black.value();
     range.white = white.value();
@@ -134,10 +133,6 @@ double StretchCurve::operator()(double value) const {
     if (stretch_ == TextureSettings::Stretch::asinh) return real::asinh(x / softening_) / of_white_;
     if (stretch_ == TextureSettings::Stretch::log) return real::log(1000.0 * x + 1.0) / of_white_;
     return x;
-}
-
-double stretched(double value, const Limits& limits, TextureSettings::Stretch stretch, double softening) {
-    return StretchCurve(limits, stretch, softening)(value);
 }
 
 }  // namespace astrosplat

@@ -15,7 +15,7 @@
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "image/blur.h"
-#include "source/derived_picture.h"
+#include "image/channels.h"
 #include "source/fits.h"
 #include "source/picture.h"
 
@@ -27,13 +27,6 @@ using Settings = TextureSettings;
 
 constexpr std::int64_t rows_per_chunk = 32;
 constexpr float half_max = 65504.0f;  // what an infinite pixel becomes: it overflowed a half float
-
-template <class PerPixel>
-void for_each_pixel(Image& image, const PerPixel& change) {
-    parallel_chunks(image.height, rows_per_chunk, [&](std::int64_t begin, std::int64_t end, int) {
-        for (float* p = image.at(0, begin); p != image.at(0, end); p += image.channels) change(p);
-    });
-}
 
 // Red of the first, green of the second, blue of the third.
 StoredRows combine(const std::vector<fs::path>& files,
@@ -63,7 +56,7 @@ StoredRows combine(const std::vector<fs::path>& files,
             Image strip = unfilled_image(from.width, end - begin, from.channels);
             from.read(begin, end, strip.pixels.data());
             for (std::int64_t i = 0; i < strip.width * strip.height; ++i)
-                rows[3 * i + static_cast<std::int64_t>(c)] = strip.pixels[i * strip.channels];
+                rows[3 * i + std::int64_t(c)] = strip.pixels[i * strip.channels];
         }
     };
     rgb.rows = {picture.image.width, picture.image.height, 3, read};
@@ -78,25 +71,22 @@ bool make_sane(float* p, int channels) {
     return true;
 }
 
+bool is_made_of_light(Settings::Alpha alpha) {
+    return alpha == Settings::Alpha::max || alpha == Settings::Alpha::luminance;
+}
+
 // Whether the stored colours are to be taken as already multiplied by the alpha chosen.
 bool colors_are_premultiplied(const Picture& picture, const Settings& settings, Settings::Alpha alpha) {
     if (settings.unpremultiply != Settings::Unpremultiply::automatic)
         return settings.unpremultiply == Settings::Unpremultiply::yes;
     if (alpha == Settings::Alpha::file) return picture.associated;
-    return alpha == Settings::Alpha::max || alpha == Settings::Alpha::luminance;
+    return is_made_of_light(alpha);
 }
 
 float alpha_of(const float* p, Settings::Alpha alpha) {
-    switch (alpha) {
-        case Settings::Alpha::file:
-            return p[3];
-        case Settings::Alpha::luminance:
-            return luminance(p[0], p[1], p[2]);
-        case Settings::Alpha::max:
-            return std::max({p[0], p[1], p[2]});
-        default:
-            return 1.0f;
-    }
+    if (alpha == Settings::Alpha::file) return p[3];
+    if (alpha == Settings::Alpha::luminance) return luminance(p[0], p[1], p[2]);
+    return alpha == Settings::Alpha::max ? std::max({p[0], p[1], p[2]}) : 1.0f;
 }
 
 Settings::Alpha choose_alpha(const fs::path& file, const Picture& picture, Settings::Alpha wanted) {
@@ -152,34 +142,31 @@ Image linear_picture(const StoredRows& from, const Settings& settings, Settings:
 // A picture after reading.
 ImageSize size_to_read(const ImageRows& rows, std::int64_t most_texels) {
     if (most_texels <= 0 || rows.width * rows.height <= texels_read_whole) return {rows.width, rows.height};
-    return size_of_area(rows.width, rows.height, static_cast<double>(most_texels), 1.0);
+    return size_of_area(rows.width, rows.height, double(most_texels), 1.0);
 }
 
 // Alpha that was made of the light follows what became of it; a file's alpha stays.
 void retake_alpha(Image& image, Settings::Alpha alpha) {
-    if (alpha != Settings::Alpha::max && alpha != Settings::Alpha::luminance) return;
-    for_each_pixel(image, [&](float* p) { p[3] = std::clamp(alpha_of(p, alpha), 0.0f, 1.0f); });
+    if (is_made_of_light(alpha))
+        change_pixels(image, [&](float* p) { p[3] = std::clamp(alpha_of(p, alpha), 0.0f, 1.0f); });
 }
 
 // The map as a grey picture, under the alpha rules of a picture from a file.
 void show_derived(Image& image, Derived kind, Settings::Alpha alpha, bool premultiplied) {
     const Image map = derived_picture(image, kind);
-    parallel_each(image.height, rows_per_chunk, [&](std::int64_t y) {
-        for (std::int64_t x = 0; x < image.width; ++x) {
-            float* const p = image.at(x, y);
-            const bool made = alpha == Settings::Alpha::max || alpha == Settings::Alpha::luminance;
-            if (made) p[3] = *map.at(x, y);
-            std::fill_n(p, 3, made && premultiplied ? *map.at(x, y) : *map.at(x, y) * p[3]);
-        }
+    const bool made = is_made_of_light(alpha);
+    for_each_pixel(image, [&](std::int64_t x, std::int64_t y) {
+        float* const p = image.at(x, y);
+        if (made) p[3] = *map.at(x, y);
+        std::fill_n(p, 3, made && premultiplied ? *map.at(x, y) : *map.at(x, y) * p[3]);
     });
 }
 
 // Leaves what a blur takes away; where that is negative, nothing.
 void keep_detail(Image& image, const Image& blurred) {
-    parallel_each(image.height, rows_per_chunk, [&](std::int64_t y) {
-        for (std::int64_t x = 0; x < image.width; ++x)
-            for (int c = 0; c < 3; ++c)
-                image.at(x, y)[c] = std::max(0.0f, image.at(x, y)[c] - blurred.at(x, y)[c]);
+    for_each_pixel(image, [&](std::int64_t x, std::int64_t y) {
+        for (int c = 0; c < 3; ++c)
+            image.at(x, y)[c] = std::max(0.0f, image.at(x, y)[c] - blurred.at(x, y)[c]);
     });
 }
 
@@ -189,7 +176,7 @@ void rework(Texture& texture, const Settings& settings, Settings::Alpha alpha) {
     if (!settings.mask.empty()) texture.mask = mask_weights(image, settings.mask);
     if (settings.derive != Derived::none) show_derived(image, settings.derive, alpha, texture.divided);
     if (settings.smooth == 0.0 && settings.detail == 0.0) return;
-    const auto width = static_cast<double>(image.width);
+    const auto width = double(image.width);
     Image blurred;
     if (settings.detail > 0.0) blurred = gaussian_blur(image, settings.detail * width);
     if (settings.smooth > 0.0) image = gaussian_blur(image, settings.smooth * width);
@@ -197,18 +184,9 @@ void rework(Texture& texture, const Settings& settings, Settings::Alpha alpha) {
     if (texture.divided) retake_alpha(image, alpha);
 }
 
-const char* alpha_name(Settings::Alpha alpha) {
-    switch (alpha) {
-        case Settings::Alpha::file:
-            return "the file's alpha";
-        case Settings::Alpha::luminance:
-            return "alpha from luminance";
-        case Settings::Alpha::max:
-            return "alpha from the brightest channel";
-        default:
-            return "no alpha";
-    }
-}
+// By Settings::Alpha.
+constexpr const char* alpha_names[] = {"", "the file's alpha", "alpha from luminance",
+                                       "alpha from the brightest channel", "no alpha"};
 
 // A prepared picture as if it came from a file of linear light.
 Stored as_stored(PreparedPicture prepared) {
@@ -254,8 +232,7 @@ Texture load_texture(const std::vector<fs::path>& files, const TextureSettings& 
         texture.file_width = rows.rows.width;
         texture.file_height = rows.rows.height;
     }
-    claim_memory(static_cast<std::int64_t>(std::min(
-                     16.0 * static_cast<double>(size.width) * static_cast<double>(size.height), 9e18)),
+    claim_memory(std::int64_t(std::min(16.0 * double(size.width) * double(size.height), 9e18)),
                  fmt::format("reading {}", files[0].string()));
     texture.image = linear_picture(rows, settings, alpha, premultiplied, size);
     rows = {};
@@ -267,7 +244,7 @@ Texture load_texture(const std::vector<fs::path>& files, const TextureSettings& 
     texture.credit = stored.picture.credit;
     texture.summary =
         fmt::format("{}, {}, {}", stored.picture.summary,
-                    is_encoded(stored, settings.colorspace) ? "sRGB" : "linear", alpha_name(alpha));
+                    is_encoded(stored, settings.colorspace) ? "sRGB" : "linear", alpha_names[int(alpha)]);
     return texture;
 }
 
@@ -285,16 +262,14 @@ Image load_raw_image(const fs::path& file) {
     if (is_fits(file)) {
         const FitsPlane plane = read_fits(file, "auto", 0);
         image = make_image(plane.width, plane.height, 3);
-        for (std::size_t i = 0; i < image.pixels.size(); ++i) {
-            const double value = plane.values[i / 3];
-            image.pixels[i] = std::isnan(value) ? 0.0f : static_cast<float>(value);
-        }
+        for (std::size_t i = 0; i < image.pixels.size(); ++i)
+            image.pixels[i] = std::isnan(plane.values[i / 3]) ? 0.0f : float(plane.values[i / 3]);
         return image;
     }
     const Image stored = read_picture(file).image;
     image = make_image(stored.width, stored.height, 3);
-    for (std::int64_t i = 0; i < image.width * image.height; ++i)
-        std::copy_n(stored.pixels.data() + i * stored.channels, 3, image.pixels.data() + i * 3);
+    for_each_pixel(image,
+                   [&](std::int64_t x, std::int64_t y) { std::copy_n(stored.at(x, y), 3, image.at(x, y)); });
     return image;
 }
 
@@ -317,9 +292,9 @@ std::vector<Image> load_environment_pictures(const fs::path& file, int border, c
     const bool premultiplied = alpha && from.stored.picture.associated;
     const std::int64_t width = from.rows.width;
     const std::int64_t height = from.stored.picture.cube ? width : from.rows.height;  // of a picture
-    const double texels = static_cast<double>(width + 2 * border) * static_cast<double>(height + 2 * border);
+    const double texels = double(width + 2 * border) * double(height + 2 * border);
     const std::size_t count = from.stored.picture.cube ? 6 : 1;
-    claim_memory(static_cast<std::int64_t>(std::min(16.0 * static_cast<double>(count) * texels, 9e18)),
+    claim_memory(std::int64_t(std::min(16.0 * double(count) * texels, 9e18)),
                  fmt::format("{} and its mip levels", file.string()));
     std::vector<Image> pictures;
     for (std::size_t n = 0; n < count; ++n)
@@ -334,7 +309,7 @@ std::vector<Image> load_environment_pictures(const fs::path& file, int border, c
         make_linear(strip, {}, premultiplied);
         parallel_each(end - begin, rows_per_chunk / 4, [&](std::int64_t row) {
             const std::int64_t y = begin + row;
-            float* to = pictures[static_cast<std::size_t>(y / height)].at(border, y % height + border);
+            float* to = pictures[y / height].at(border, y % height + border);
             for (std::int64_t x = 0; x < width; ++x, to += 3) {
                 const float* const p = image.at(x, row);
                 for (int c = 0; c < 3; ++c) to[c] = alpha && !premultiplied ? p[c] * p[3] : p[c];

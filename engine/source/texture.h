@@ -1,11 +1,14 @@
 // Pictures as splat colours: any file OpenImageIO reads, and FITS through CFITSIO. In: one path, or three for
 // r, g, b. Out: Texture, linear light, premultiplied, filtered premultiplied and divided by alpha after
-// filtering.
+// filtering. Also pictures of one channel made from a picture's own light: maps of where dust absorbs it and
+// where it is redder or bluer than the rest, and masks of where it is to show, told by brightness and colour,
+// by an ellipse or by another picture.
 #pragma once
 
 #include <filesystem>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -56,7 +59,7 @@ void apply_mask(Texture& texture);
 /// Reads a picture without any colour or alpha treatment, for thickness maps: RGB as stored (0..1 for
 /// integers), row 0 on top. Throws InputError.
 Image load_raw_image(const std::filesystem::path& file);
-/// The same, or in its place the map made of the picture's light (derived_picture.h), grey.
+/// load_raw_image(), or in its place the map made of the picture's light (derived_picture), grey.
 Image load_map(const std::filesystem::path& file, Derived derive);
 
 /// Reads a picture as linear light, premultiplied RGBA, for comparisons. Throws InputError, Cancelled.
@@ -67,5 +70,33 @@ Image load_linear_image(const std::filesystem::path& file, const Progress& progr
 /// memory of mip levels too. Throws InputError, Cancelled.
 std::vector<Image> load_environment_pictures(const std::filesystem::path& file, int border,
                                              const Progress& progress = {});
+
+/// Straight colour and alpha at one place of a picture.
+struct TextureSample {
+    glm::vec3 color;  // linear, straight; 0 where alpha is 0
+    float alpha;      // 0..1
+};
+
+/// Filtered lookup at uv (v = 0 is the bottom row). `box_texels` is the side, in texels along u and v, of the
+/// box averaged by Filter::area; the other filters ignore it. Alpha of exactly 0 comes back as exactly 0.
+TextureSample sample(const Texture& texture, glm::vec2 uv, glm::vec2 box_texels = glm::vec2(0.0f));
+
+/// One channel of the picture's size, 0..1, of `light` (RGB first, linear, premultiplied, >= 0); not for
+/// none.
+/// - dust: what an absorbing layer takes away, 1 - T. T = max(R, G, B) over that of a picture whose dark
+///   details are filled: the sum of max(0, P_k - P_k+1) over bands P_k = mu_k clamp(1 - sd_k / (2 mean_k),
+///   1/4, 1), P_0 = light, with blurs of 1.2, 2.4 ... px up to 80 px at a width of 1920. T is 0.1 at least.
+/// - h_alpha: the share of red light beyond s (G + B) / 2, s the median of R over (G + B) / 2 where the
+///   picture is lit: the continuum is taken off.
+/// - young_stars: the share of blue light beyond s (R + G) / 2 in the same way.
+/// Light of 0.002 of white counts as noise in all of them. The same bits with any number of threads.
+Image derived_picture(const Image& light, Derived kind);
+
+/// One channel of the picture's size, 0..1: the product over masks of the product of their terms and the
+/// largest of their alternatives; `invert` makes 1 - w of a mask, or of an alternative. `light` is RGBA,
+/// linear, premultiplied: colours are those seen over black. Edges are linear ramps of the width `feather`
+/// about the border. Hue and saturation as in HSV, of display values; grey has no hue and is outside.
+/// Throws InputError where an image cannot be read.
+Image mask_weights(const Image& light, std::span<const MaskParams> masks);
 
 }  // namespace astrosplat

@@ -13,8 +13,7 @@
 #include "core/log.h"
 #include "core/real.h"
 #include "core/shared_maths.h"
-#include "source/obj.h"
-#include "source/shapes.h"
+#include "source/mesh.h"
 
 namespace astrosplat {
 namespace {
@@ -38,7 +37,7 @@ void vary(Mesh& mesh, int axis, const Bounds& box) {
     for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
         const glm::dvec3 p(mesh.positions[i]);
         const double t = backness(p, axis, box);
-        const auto fade = static_cast<float>(real::smoothstep(t));
+        const auto fade = float(real::smoothstep(t));
         const glm::vec3 at((p - box.lo) * frequency);
         mesh.uvs[i].x += displacement * fade * shared::as_noise(at.x, at.y, at.z, noise_seed);
         mesh.uvs[i].y += displacement * fade * shared::as_noise(at.x, at.y, at.z, noise_seed + 1);
@@ -46,7 +45,7 @@ void vary(Mesh& mesh, int axis, const Bounds& box) {
 }
 
 void mirror(Mesh& mesh, int axis, const Bounds& box) {
-    const auto count = static_cast<std::uint32_t>(mesh.uvs.size());
+    const auto count = std::uint32_t(mesh.uvs.size());
     for (std::uint32_t i = 0; i < count; ++i) mesh.uvs.emplace_back(1.0f - mesh.uvs[i].x, mesh.uvs[i].y);
     for (Mesh::Triangle& triangle : mesh.triangles) {
         glm::dvec3 middle(0.0);
@@ -166,9 +165,7 @@ Wrap default_wrap(const SourceParams& source, Wrap of_own_uv) {
 // Of a mesh's own uv.
 Wrap own_wrap(const MeshInput& input) { return is_builtin_mesh(input.mesh) ? Wrap::clamp : Wrap::repeat; }
 
-double aspect_of(const Image& image) {
-    return static_cast<double>(image.width) / static_cast<double>(image.height);
-}
+double aspect_of(const Image& image) { return double(image.width) / double(image.height); }
 
 // Of the first of its pictures that it uses.
 double aspect_of(const TexturedMesh& mesh) {
@@ -224,10 +221,8 @@ std::vector<Texture> load_maps(const Mesh& mesh, Wrap wrap, const PictureLoader&
     std::vector<bool> used(std::max<std::size_t>(1, mesh.maps.size()), false);
     for (const Mesh::Triangle& face : mesh.triangles) used[mesh.maps.empty() ? 0 : face.material] = true;
     std::vector<Texture> textures(used.size());
-    for (std::size_t i = 0; i < used.size(); ++i) {
-        if (!used[i]) continue;
-        textures[i] = load(map_of(mesh, i), wrap);
-    }
+    for (std::size_t i = 0; i < used.size(); ++i)
+        if (used[i]) textures[i] = load(map_of(mesh, i), wrap);
     return textures;
 }
 
@@ -236,11 +231,10 @@ TexturedMesh load_file(const MeshInput& input, const SourceParams& source, const
     const Wrap wrap = default_wrap(source, own_wrap(input));
     TexturedMesh loaded;
     loaded.mesh = load_obj(input.mesh, progress);
-    if (input.texture.empty()) {
+    if (input.texture.empty())
         loaded.textures = load_maps(loaded.mesh, wrap, load);
-    } else {
+    else
         loaded.textures.push_back(load(input.texture, wrap));
-    }
     return loaded;
 }
 
@@ -259,10 +253,9 @@ std::vector<TexturedMesh> load_meshes(const SourceParams& source, const Progress
         return load_picture(files, source, wrap, progress, readers);
     };
     std::vector<TexturedMesh> meshes;
-    for (const MeshInput& input : source.meshes) {
+    for (const MeshInput& input : source.meshes)
         meshes.push_back(is_builtin_mesh(input.mesh) ? load_builtin(input, source, load)
                                                      : load_file(input, source, load, progress));
-    }
     for (const TexturedMesh& m : meshes)
         if (std::ranges::any_of(m.textures, is_neutral))
             log_warning(m.mesh.name + " has no picture, for which neutral grey stands");

@@ -1,12 +1,15 @@
 // A mesh together with the pictures that colour it, as generation reads it. Its texture coordinates may be
 // projections: planar ones beyond the stretch over a mesh's own box (pictures in scene units, back walls that
 // differ from the front), or from the camera that took a picture, back onto the mesh before it (uv =
-// "camera"). In: a source's keys. Out: meshes; where points are seen in a picture.
+// "camera"). Built-in shapes beyond plane, disk and sphere are about the origin, 10 scene units across or
+// along, normals outward, with texture coordinates. In: a source's keys. Out: meshes; where points are seen
+// in a picture.
 #pragma once
 
 #include <glm/vec2.hpp>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "camera/camera.h"
@@ -63,5 +66,26 @@ void reload_pictures(const SourceParams& source, std::vector<TexturedMesh>& mesh
 
 /// Bounds of all vertices of all meshes.
 Bounds bounds(std::span<const TexturedMesh> meshes);
+
+/// "revolution": the outline of `shape`, from its lower end, v by its length, straight between its points.
+/// "hourglass": two closed lobes along y with r = width (waist sin t + (1 - waist) |sin 2t|), y = -5 cos t.
+/// "shell": the walls of a hollow ball, radius 5 and 5 (1 - thickness); the inner one looks inward.
+/// "bubble": a sphere that is open around +y, up to `opening` degrees from it; v as on the whole sphere.
+/// "spheroid": spheres flattened along y, nested at radii whose number per length falls as
+/// e^(-concentration r / 5); the outermost has radius 5.
+/// "ring": a torus about y, 5 to its outer rim; v around its tube from the inner side.
+/// Throws InputError for an outline of fewer than two points.
+Mesh turned_shape(const std::string& name, const ShapeParams& shape);
+bool is_turned_shape(const std::string& name);
+
+/// The built-in "relief": the plane of the texture's aspect, lifted towards +y by the smoothed brightness of
+/// the picture; `height` is a fraction of the plane's width. 256 cells along the longer side.
+Mesh relief_mesh(const Texture& texture, double height);
+
+/// "sheet": the same plane, displaced along y by `shape.depth_map`, whose mean channel is the height as
+/// stored, or without one by the picture's displayed brightness. Blurred, then stretched to `shape.depth` of
+/// the width, half of it on either side. 512 cells along the longer side. Throws InputError where the map
+/// cannot be read.
+Mesh sheet_mesh(const Texture& texture, const ShapeParams& shape);
 
 }  // namespace astrosplat

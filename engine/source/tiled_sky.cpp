@@ -25,8 +25,8 @@ constexpr int choices = 12;             // parts of the picture that are tried
 constexpr double golden_angle = 2.399963229728653;
 
 double random(std::uint32_t seed, std::size_t patch, std::uint32_t what) {
-    return double(shared::as_uniform(
-        shared::as_hash(seed, static_cast<std::uint32_t>(patch), what, shared::PURPOSE_SKY_PATCH)));
+    return double(
+        shared::as_uniform(shared::as_hash(seed, std::uint32_t(patch), what, shared::PURPOSE_SKY_PATCH)));
 }
 
 // Any two directions square to `middle` and to each other.
@@ -64,12 +64,12 @@ SkyPatches::SkyPatches(glm::dvec2 size, double reach_px, double beyond_px, doubl
 // As sunflowers place their seeds, and a little off.
 void SkyPatches::place(std::uint32_t seed) {
     const double wanted = 4.0 * real::pi / (spacing_ * spacing_);
-    const auto count = static_cast<std::size_t>(std::clamp(wanted, 12.0, 4e6));
+    const auto count = std::size_t(std::clamp(wanted, 12.0, 4e6));
     patches_.resize(count);
     for (std::size_t i = 0; i < count; ++i) {
-        const double y = 1.0 - (2.0 * static_cast<double>(i) + 1.0) / static_cast<double>(count);
+        const double y = 1.0 - (2.0 * double(i) + 1.0) / double(count);
         const double r = std::sqrt(1.0 - y * y);
-        const double angle = std::fmod(golden_angle * static_cast<double>(i), 2.0 * real::pi);
+        const double angle = std::fmod(golden_angle * double(i), 2.0 * real::pi);
         SkyPatch& patch = patches_[i];
         patch.middle = {r * real::cos(angle), y, r * real::sin(angle)};
         set_axes(patch, 0.0, false);
@@ -83,25 +83,23 @@ void SkyPatches::place(std::uint32_t seed) {
 std::size_t SkyPatches::cell_of(const glm::dvec3& d) const {
     const glm::dvec3 a = glm::abs(d);
     const std::size_t axis = a.x >= a.y && a.x >= a.z ? 0 : a.y >= a.z ? 1 : 2;
-    const double along = d[static_cast<int>(axis)];
+    const double along = d[int(axis)];
     const CubeAxes& face = cube_axes[2 * axis + (along < 0.0 ? 1 : 0)];
     const double scale = 0.5 / std::fabs(along);
     const auto cell = [&](double v) {
-        return std::clamp<std::int64_t>(static_cast<std::int64_t>(v * static_cast<double>(cells_)), 0,
-                                        cells_ - 1);
+        return std::clamp<std::int64_t>(std::int64_t(v * double(cells_)), 0, cells_ - 1);
     };
     const std::int64_t x = cell(0.5 + glm::dot(face.right, d) * scale),
                        y = cell(0.5 - glm::dot(face.up, d) * scale);
-    return (2 * axis + (along < 0.0 ? 1 : 0)) * static_cast<std::size_t>(cells_ * cells_) +
-           static_cast<std::size_t>(y * cells_ + x);
+    return (2 * axis + (along < 0.0 ? 1 : 0)) * std::size_t(cells_ * cells_) + std::size_t(y * cells_ + x);
 }
 
 // A patch is written into every cell that anything within its reach lies in: a cell and two more around the
 // one of its middle, where cells are as wide as the reach.
 void SkyPatches::fill_cells() {
-    cells_ = std::clamp<std::int64_t>(static_cast<std::int64_t>(1.0 / reach_), 1, 32);
-    near_.resize(static_cast<std::size_t>(6 * cells_ * cells_));
-    const double step = 1.0 / static_cast<double>(cells_);
+    cells_ = std::clamp<std::int64_t>(std::int64_t(1.0 / reach_), 1, 32);
+    near_.resize(std::size_t(6 * cells_ * cells_));
+    const double step = 1.0 / double(cells_);
     std::vector<std::vector<std::uint32_t>> inside(near_.size());
     for (std::uint32_t i = 0; i < patches_.size(); ++i) inside[cell_of(patches_[i].middle)].push_back(i);
     const double cell_reach = std::sqrt(2.0) * step;  // from its middle to its corner, at most
@@ -109,8 +107,7 @@ void SkyPatches::fill_cells() {
     for (const CubeAxes& face : cube_axes)
         for (std::int64_t y = 0; y < cells_; ++y)
             for (std::int64_t x = 0; x < cells_; ++x)
-                middles.push_back(cube_direction(face, (static_cast<double>(x) + 0.5) * step,
-                                                 (static_cast<double>(y) + 0.5) * step));
+                middles.push_back(cube_direction(face, (double(x) + 0.5) * step, (double(y) + 0.5) * step));
     const double most = reach_ + beyond_ + cell_reach;
     for (std::size_t cell = 0; cell < near_.size(); ++cell)
         for (std::size_t other = 0; other < near_.size(); ++other) {
@@ -128,7 +125,7 @@ void SkyPatches::choose_parts(glm::dvec2 size, double reach_px, std::uint32_t se
         double best = -1.0;
         glm::dvec2 chosen = lo;
         for (int k = 0; k < choices; ++k) {
-            const auto what = static_cast<std::uint32_t>(4 + 2 * k);
+            const auto what = std::uint32_t(4 + 2 * k);
             const glm::dvec2 part = lo + room * glm::dvec2(random(seed, i, what), random(seed, i, what + 1));
             double nearest = 1e300;
             for (const std::uint32_t j : near(patches_[i].middle))
@@ -163,9 +160,8 @@ constexpr std::int64_t least_px = 32;
 glm::dvec3 mean_of(const Image& image) {
     glm::dvec3 sum(0.0);
     for (std::int64_t i = 0; i < image.width * image.height; ++i)
-        for (int c = 0; c < 3; ++c)
-            sum[c] += double(image.pixels[static_cast<std::size_t>(i * image.channels + c)]);
-    return sum / static_cast<double>(image.width * image.height);
+        for (int c = 0; c < 3; ++c) sum[c] += double(image.pixels[i * image.channels + c]);
+    return sum / double(image.width * image.height);
 }
 
 // Four pixels around a place with their weights; those beyond the rim are the rim's.
@@ -173,17 +169,16 @@ struct Around {
     std::size_t pixel[4];
     float weight[4];
     Around(const Image& image, glm::dvec2 p) {
-        const double fx = std::clamp(p.x - 0.5, 0.0, static_cast<double>(image.width - 1)),
-                     fy = std::clamp(p.y - 0.5, 0.0, static_cast<double>(image.height - 1));
-        const auto x = static_cast<std::int64_t>(fx), y = static_cast<std::int64_t>(fy);
+        const double fx = std::clamp(p.x - 0.5, 0.0, double(image.width - 1)),
+                     fy = std::clamp(p.y - 0.5, 0.0, double(image.height - 1));
+        const auto x = std::int64_t(fx), y = std::int64_t(fy);
         const std::int64_t right = std::min(x + 1, image.width - 1),
                            below = std::min(y + 1, image.height - 1);
-        const auto u = static_cast<float>(fx - static_cast<double>(x)),
-                   v = static_cast<float>(fy - static_cast<double>(y));
-        pixel[0] = static_cast<std::size_t>(y * image.width + x), weight[0] = (1 - u) * (1 - v);
-        pixel[1] = static_cast<std::size_t>(y * image.width + right), weight[1] = u * (1 - v);
-        pixel[2] = static_cast<std::size_t>(below * image.width + x), weight[2] = (1 - u) * v;
-        pixel[3] = static_cast<std::size_t>(below * image.width + right), weight[3] = u * v;
+        const auto u = float(fx - double(x)), v = float(fy - double(y));
+        pixel[0] = std::size_t(y * image.width + x), weight[0] = (1 - u) * (1 - v);
+        pixel[1] = std::size_t(y * image.width + right), weight[1] = u * (1 - v);
+        pixel[2] = std::size_t(below * image.width + x), weight[2] = (1 - u) * v;
+        pixel[3] = std::size_t(below * image.width + right), weight[3] = u * v;
     }
 };
 
@@ -195,7 +190,7 @@ glm::vec3 pixel_of(const Image& image, std::size_t pixel) {
 class Sky {
   public:
     Sky(const Image& picture, double px_per_radian, std::uint32_t seed)
-        : reach_px_(patch_share * static_cast<double>(std::min(picture.width, picture.height))),
+        : reach_px_(patch_share * double(std::min(picture.width, picture.height))),
           px_per_radian_(px_per_radian),
           objects_(find_objects(picture, object_share * reach_px_)),
           patches_(glm::dvec2(picture.width, picture.height), reach_px_, object_share * reach_px_,
@@ -216,8 +211,7 @@ class Sky {
             if (away >= (1.0 + object_share) * patches_.reach()) continue;
             const Around around(objects_.sky, patch.place(direction, px_per_radian_));
             light += object_light(around, i);
-            const auto behind =
-                static_cast<float>(1.0 - (away - nearest) / (blend_share * patches_.spacing()));
+            const auto behind = float(1.0 - (away - nearest) / (blend_share * patches_.spacing()));
             if (behind <= 0.0f || away >= patches_.reach()) continue;
             const float weight = real::smoothstep(behind);
             weights += weight;
@@ -271,8 +265,8 @@ void keep_light(const glm::dvec3& wanted, std::array<Image, 6>& faces) {
     for (const Image& face : faces)
         for (std::int64_t y = 0; y < face.height; ++y)
             for (std::int64_t x = 0; x < face.width; ++x) {
-                const double share = solid_angle((static_cast<double>(x) + 0.5) / double(face.width),
-                                                 (static_cast<double>(y) + 0.5) / double(face.height));
+                const double share = solid_angle((double(x) + 0.5) / double(face.width),
+                                                 (double(y) + 0.5) / double(face.height));
                 const float* const p = face.at(x, y);
                 sum += share * glm::dvec3(p[0], p[1], p[2]);
                 all += share;
@@ -280,10 +274,9 @@ void keep_light(const glm::dvec3& wanted, std::array<Image, 6>& faces) {
     const glm::dvec3 mean = sum / all;
     glm::vec3 factor(1.0f);
     for (int c = 0; c < 3; ++c)
-        if (mean[c] > 0.0) factor[c] = static_cast<float>(wanted[c] / mean[c]);
+        if (mean[c] > 0.0) factor[c] = float(wanted[c] / mean[c]);
     for (Image& face : faces)
-        for (std::size_t i = 0; i < face.pixels.size(); ++i)
-            face.pixels[i] *= factor[static_cast<int>(i % 3)];
+        for (std::size_t i = 0; i < face.pixels.size(); ++i) face.pixels[i] *= factor[int(i % 3)];
 }
 
 }  // namespace
@@ -293,28 +286,27 @@ std::array<Image, 6> tiled_sky(const Image& picture, const SkyTiling& tiling, co
     if (shorter < least_px)
         throw InputError(fmt::format(
             "environment.tile: expected a picture of at least {} px a side, found {}", least_px, shorter));
-    claim_memory(6 * n * n * 3 * static_cast<std::int64_t>(sizeof(float)), "a sky of cut-outs");
+    claim_memory(6 * n * n * 3 * std::int64_t(sizeof(float)), "a sky of cut-outs");
     const glm::dvec3 wanted = mean_of(picture);
     // No finer than the faces, whose texels are smallest in their corners.
     const double height = real::radians(tiling.height_deg);
-    const double finest = 0.5 * static_cast<double>(n) * 1.5 * height;
-    const bool finer = static_cast<double>(shorter) > finest;
-    const double ratio = finer ? std::fmax(finest, double(least_px)) / static_cast<double>(shorter) : 1.0;
+    const double finest = 0.5 * double(n) * 1.5 * height;
+    const bool finer = double(shorter) > finest;
+    const double ratio = finer ? std::fmax(finest, double(least_px)) / double(shorter) : 1.0;
     const auto reduced = [&](std::int64_t px) {
-        return std::max<std::int64_t>(least_px, std::llround(ratio * static_cast<double>(px)));
+        return std::max<std::int64_t>(least_px, std::llround(ratio * double(px)));
     };
     const Image own =
         finer ? reduced_by_area(picture, reduced(picture.width), reduced(picture.height)) : picture;
-    const Sky sky(own, static_cast<double>(std::min(own.width, own.height)) / height, tiling.seed);
+    const Sky sky(own, double(std::min(own.width, own.height)) / height, tiling.seed);
     std::array<Image, 6> faces;
     for (std::size_t f = 0; f < faces.size(); ++f) {
         faces[f] = make_image(n, n, 3);
         parallel_for(n, [&](std::int64_t y, int) {
             progress.check();
             for (std::int64_t x = 0; x < n; ++x) {
-                const glm::vec3 light =
-                    sky.at(cube_direction(cube_axes[f], (static_cast<double>(x) + 0.5) / double(n),
-                                          (static_cast<double>(y) + 0.5) / double(n)));
+                const glm::vec3 light = sky.at(cube_direction(cube_axes[f], (double(x) + 0.5) / double(n),
+                                                              (double(y) + 0.5) / double(n)));
                 std::copy_n(&light[0], 3, faces[f].at(x, y));
             }
         });

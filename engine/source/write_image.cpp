@@ -26,82 +26,67 @@ class PictureFile {
     /// Writes the header of a picture in the `format` that OpenImageIO knows under this name or ending
     /// ("tiff", "x.png"). Throws OutputError, as all functions here.
     PictureFile(const std::filesystem::path& file, const std::string& format, const OIIO::ImageSpec& spec,
-                Existing existing = Existing::replace);
+                Existing existing = Existing::replace)
+        : sink_(file, existing), out_(OIIO::ImageOutput::create(format)) {
+        check(out_ && out_->set_ioproxy(&sink_) && out_->open(file.string(), spec));
+    }
 
     /// All rows, from memory where a pixel takes x_stride bytes.
-    void write_all(OIIO::TypeDesc type, const void* pixels, OIIO::stride_t x_stride = OIIO::AutoStride);
+    void write_all(OIIO::TypeDesc type, const void* pixels, OIIO::stride_t x_stride = OIIO::AutoStride) {
+        check(out_->write_image(type, pixels, x_stride));
+    }
 
     /// Finishes the file, which then appears under its name.
-    void commit();
+    void commit() {
+        check(out_->close());
+        sink_.file.commit();
+    }
 
   private:
     /// Takes the plug-in's bytes, and remembers what went wrong: plug-ins need not report it.
-    class Sink : public OIIO::Filesystem::IOProxy {
-      public:
-        Sink(const std::filesystem::path& file, Existing existing);
+    struct Sink : OIIO::Filesystem::IOProxy {
+        Sink(const std::filesystem::path& path, Existing existing)
+            : IOProxy(path.string(), Write), file(path, existing), guarded(file) {}
         const char* proxytype() const override { return "astrosplat"; }
-        std::size_t write(const void* bytes, std::size_t size) override;
-        std::size_t pwrite(const void* bytes, std::size_t size, std::int64_t offset) override;
-        std::size_t size() const override { return static_cast<std::size_t>(file.size()); }
+        std::size_t write(const void* bytes, std::size_t size) override {
+            const std::size_t written = pwrite(bytes, size, m_pos);
+            m_pos += std::int64_t(written);
+            return written;
+        }
+        std::size_t pwrite(const void* bytes, std::size_t size, std::int64_t offset) override {
+            return guarded.write_at(offset, bytes, size) ? size : 0;
+        }
+        std::size_t size() const override { return std::size_t(file.size()); }
 
         AtomicFile file;
         GuardedFile guarded;
     };
+
     /// Throws the sink's failure, else the plug-in's where it is not `done`.
-    void check(bool done);
+    void check(bool done) {
+        if (done && !sink_.guarded.failed()) return;
+        std::string reason = out_ ? out_->geterror() : OIIO::geterror();
+        if (out_) {
+            const QuietStderr quiet;  // libpng says that pixels are missing
+            out_->close();
+            (void)out_->geterror();  // a message left behind would be printed
+        }
+        sink_.guarded.rethrow_failure();
+        std::ranges::replace(reason, '\n', ' ');
+        if (reason.empty()) reason = "unknown reason";
+        throw OutputError(fmt::format("{}: cannot be written: {}", sink_.file.target().string(), reason));
+    }
 
     Sink sink_;  // outlives out_, which may write at its end
     std::unique_ptr<OIIO::ImageOutput> out_;
 };
 
-PictureFile::Sink::Sink(const std::filesystem::path& path, Existing existing)
-    : IOProxy(path.string(), Write), file(path, existing), guarded(file) {}
-
-std::size_t PictureFile::Sink::write(const void* bytes, std::size_t size) {
-    const std::size_t written = pwrite(bytes, size, m_pos);
-    m_pos += static_cast<std::int64_t>(written);
-    return written;
-}
-
-std::size_t PictureFile::Sink::pwrite(const void* bytes, std::size_t size, std::int64_t offset) {
-    return guarded.write_at(offset, bytes, size) ? size : 0;
-}
-
-PictureFile::PictureFile(const std::filesystem::path& file, const std::string& format,
-                         const OIIO::ImageSpec& spec, Existing existing)
-    : sink_(file, existing), out_(OIIO::ImageOutput::create(format)) {
-    check(out_ && out_->set_ioproxy(&sink_) && out_->open(file.string(), spec));
-}
-
-void PictureFile::write_all(OIIO::TypeDesc type, const void* pixels, OIIO::stride_t x_stride) {
-    check(out_->write_image(type, pixels, x_stride));
-}
-
-void PictureFile::commit() {
-    check(out_->close());
-    sink_.file.commit();
-}
-
-void PictureFile::check(bool done) {
-    if (done && !sink_.guarded.failed()) return;
-    std::string reason = out_ ? out_->geterror() : OIIO::geterror();
-    if (out_) {
-        const QuietStderr quiet;  // libpng says that pixels are missing
-        out_->close();
-        (void)out_->geterror();  // a message left behind would be printed
-    }
-    sink_.guarded.rethrow_failure();
-    std::ranges::replace(reason, '\n', ' ');
-    if (reason.empty()) reason = "unknown reason";
-    throw OutputError(fmt::format("{}: cannot be written: {}", sink_.file.target().string(), reason));
-}
-
 }  // namespace
 
 void write_image(const std::filesystem::path& file, std::int64_t width, std::int64_t height,
                  std::span<const unsigned char> rgba) {
-    assert(static_cast<std::int64_t>(rgba.size()) == width * height * 4);
-    OIIO::ImageSpec spec(static_cast<int>(width), static_cast<int>(height), 3, OIIO::TypeDesc::UINT8);
+    assert(std::int64_t(rgba.size()) == width * height * 4);
+    OIIO::ImageSpec spec(int(width), int(height), 3, OIIO::TypeDesc::UINT8);
     spec.attribute("DateTime", "");  // OpenImageIO would write the time
     PictureFile picture(file, file.string(), spec);
     picture.write_all(OIIO::TypeDesc::UINT8, rgba.data(), 4);
@@ -111,8 +96,7 @@ void write_image(const std::filesystem::path& file, std::int64_t width, std::int
 void write_linear_image(const std::filesystem::path& file, const Image& image, const std::string& credit,
                         Existing existing) {
     assert(image.channels == 3 || image.channels == 4);
-    OIIO::ImageSpec spec(static_cast<int>(image.width), static_cast<int>(image.height), image.channels,
-                         OIIO::TypeDesc::FLOAT);
+    OIIO::ImageSpec spec(int(image.width), int(image.height), image.channels, OIIO::TypeDesc::FLOAT);
     spec.attribute("compression", "zip");
     spec.attribute("DateTime", "");
     if (!credit.empty()) spec.attribute("Copyright", credit);
@@ -122,8 +106,8 @@ void write_linear_image(const std::filesystem::path& file, const Image& image, c
 }
 
 std::string png_bytes(std::int64_t width, std::int64_t height, std::span<const unsigned char> rgb) {
-    assert(static_cast<std::int64_t>(rgb.size()) == width * height * 3);
-    OIIO::ImageSpec spec(static_cast<int>(width), static_cast<int>(height), 3, OIIO::TypeDesc::UINT8);
+    assert(std::int64_t(rgb.size()) == width * height * 3);
+    OIIO::ImageSpec spec(int(width), int(height), 3, OIIO::TypeDesc::UINT8);
     OIIO::Filesystem::IOVecOutput memory;
     const auto png = OIIO::ImageOutput::create("png");
     const bool written = png && png->set_ioproxy(&memory) && png->open("memory.png", spec) &&

@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "bodies/bodies.h"
-#include "bodies/picture_size.h"
 #include "core/buffer.h"
 #include "measure.h"
 #include "support/painted_picture.h"

@@ -5,7 +5,7 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
-#include "prepare/filters.h"
+#include "prepare/stages.h"
 #include "scene_fixture.h"
 #include "source/texture.h"
 #include "support/fits_text.h"

@@ -12,7 +12,6 @@
 #include "core/hash.h"
 #include "fuzz/seeds.h"
 #include "source/mesh.h"
-#include "source/obj.h"
 #include "source/texture.h"
 #include "splat_files/formats.h"
 #include "splat_files/native.h"

@@ -1,6 +1,5 @@
 // Whole pictures on meshes, and what carries them.
 #include "bodies/bodies.h"
-#include "bodies/picture_size.h"
 
 #include <gtest/gtest.h>
 

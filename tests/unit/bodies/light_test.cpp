@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "bodies/filled_light.h"
-#include "bodies/flat_light.h"
+#include "bodies/fields.h"
+#include "bodies/front_fit.h"
 #include "bodies/placement.h"
 #include "core/real.h"
 #include "core/shared_maths.h"

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "bodies/bodies.h"
+#include "bodies/fields.h"
 #include "bodies/placement.h"
-#include "bodies/surfaces.h"
 #include "camera/camera.h"
 #include "core/shared_maths.h"
 #include "image/channels.h"

@@ -9,10 +9,10 @@
 
 #include "bodies/bodies.h"
 #include "bodies/picture_light.h"
-#include "bodies/picture_stars.h"
+#include "bodies/picture_splats.h"
 #include "bodies/star_places.h"
 #include "bodies/stars.h"
-#include "detect/knots.h"
+#include "detect/peaks.h"
 #include "image/channels.h"
 #include "source/mesh.h"
 #include "splats/splat_set.h"

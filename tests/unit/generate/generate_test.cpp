@@ -9,7 +9,7 @@
 
 #include "core/error.h"
 #include "core/parallel.h"
-#include "source/sample.h"
+#include "source/texture.h"
 #include "source/textured_mesh.h"
 #include "unit/generate/generate_support.h"
 

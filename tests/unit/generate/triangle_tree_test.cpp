@@ -9,10 +9,10 @@
 
 #include "core/parallel.h"
 #include "core/shared_maths.h"
-#include "generate/blocks.h"
 #include "generate/lattice.h"
+#include "generate/lattice_cull.h"
 #include "generate/triangle_tree.h"
-#include "source/obj.h"
+#include "source/mesh.h"
 #include "support/test_data.h"
 #include "unit/generate/generate_support.h"
 

@@ -7,7 +7,7 @@
 
 #include "core/error.h"
 #include "core/real.h"
-#include "look/profiles.h"
+#include "look/prepare.h"
 #include "support/errors.h"
 #include "unit/look/sets.h"
 

@@ -7,10 +7,8 @@
 #include "core/color.h"
 #include "core/real.h"
 #include "core/shared_maths.h"
-#include "prepare/fill.h"
-#include "prepare/filters.h"
 #include "prepare/registration.h"
-#include "prepare/sky.h"
+#include "prepare/stages.h"
 #include "unit/prepare/painted.h"
 
 namespace astrosplat {

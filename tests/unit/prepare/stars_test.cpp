@@ -5,7 +5,6 @@
 
 #include "core/real.h"
 #include "image/channels.h"
-#include "prepare/saturated_stars.h"
 #include "prepare/star_removal.h"
 #include "source/texture.h"
 #include "support/test_data.h"

@@ -7,10 +7,9 @@
 #include <map>
 
 #include "bodies/bodies.h"
-#include "bodies/flat_light.h"
+#include "bodies/front_fit.h"
 #include "bodies/margin.h"
 #include "bodies/picture_light.h"
-#include "bodies/picture_stars.h"
 #include "bodies/stars.h"
 #include "fidelity/front.h"
 #include "generate/generate.h"
@@ -18,7 +17,7 @@
 #include "image/channels.h"
 #include "image/resample.h"
 #include "output/write.h"
-#include "prepare/fill.h"
+#include "prepare/stages.h"
 #include "prepare/star_removal.h"
 #include "scene/front_frame.h"
 #include "source/tiled_sky.h"

@@ -5,7 +5,7 @@
 #include <map>
 #include <set>
 
-#include "look/picture_chart.h"
+#include "look/picture_fit.h"
 #include "look/prepare.h"
 #include "scene/describe.h"
 #include "scene_texts.h"

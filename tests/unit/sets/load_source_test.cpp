@@ -1,7 +1,7 @@
 // The front door: built-in meshes, a mesh's own pictures, splat files, and its messages.
 #include <gtest/gtest.h>
 
-#include "bodies/picture_size.h"
+#include "bodies/bodies.h"
 #include "core/log.h"
 #include "sets/load_source.h"
 #include "source/textured_mesh.h"

@@ -13,7 +13,6 @@
 #include "core/error.h"
 #include "core/log.h"
 #include "core/real.h"
-#include "source/obj.h"
 #include "support/errors.h"
 #include "support/quiet.h"
 #include "support/temp_folder.h"

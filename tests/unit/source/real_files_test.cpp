@@ -7,7 +7,6 @@
 #include "core/log.h"
 #include "source/fits.h"
 #include "source/mesh.h"
-#include "source/obj.h"
 #include "source/picture.h"
 #include "source/texture.h"
 #include "support/errors.h"

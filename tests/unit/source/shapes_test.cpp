@@ -8,7 +8,6 @@
 
 #include "core/error.h"
 #include "core/real.h"
-#include "source/shapes.h"
 #include "source/textured_mesh.h"
 #include "support/errors.h"
 #include "support/temp_folder.h"

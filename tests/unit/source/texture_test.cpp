@@ -13,9 +13,8 @@
 #include "core/error.h"
 #include "core/real.h"
 #include "source/fits.h"
+#include "source/open_picture.h"
 #include "source/picture.h"
-#include "source/picture_bytes.h"
-#include "source/sample.h"
 #include "source/texture.h"
 #include "support/errors.h"
 #include "support/temp_folder.h"
@@ -330,12 +329,12 @@ TEST(Picture, ACutJpegIsAnError) {
 
 TEST(Stretch, CurvesAtKnownPlaces) {
     const Limits limits{10.0, 20.0};
-    EXPECT_EQ(stretched(15.0, limits, Stretch::linear, 0.1), 0.5);
-    EXPECT_EQ(stretched(5.0, limits, Stretch::linear, 0.1), 0.0);
-    EXPECT_EQ(stretched(25.0, limits, Stretch::asinh, 0.1), 1.0);
-    EXPECT_NEAR(stretched(15.0, limits, Stretch::asinh, 0.1), std::asinh(5.0) / std::asinh(10.0), 1e-15);
-    EXPECT_NEAR(stretched(15.0, limits, Stretch::log, 0.1), std::log(501.0) / std::log(1001.0), 1e-15);
-    EXPECT_TRUE(std::isnan(stretched(std::nan(""), limits, Stretch::asinh, 0.1)));
+    EXPECT_EQ(StretchCurve(limits, Stretch::linear, 0.1)(15.0), 0.5);
+    EXPECT_EQ(StretchCurve(limits, Stretch::linear, 0.1)(5.0), 0.0);
+    EXPECT_EQ(StretchCurve(limits, Stretch::asinh, 0.1)(25.0), 1.0);
+    EXPECT_NEAR(StretchCurve(limits, Stretch::asinh, 0.1)(15.0), std::asinh(5.0) / std::asinh(10.0), 1e-15);
+    EXPECT_NEAR(StretchCurve(limits, Stretch::log, 0.1)(15.0), std::log(501.0) / std::log(1001.0), 1e-15);
+    EXPECT_TRUE(std::isnan(StretchCurve(limits, Stretch::asinh, 0.1)(std::nan(""))));
 }
 
 TEST(Stretch, AsinhIsADisplayValueLinearIsLight) {

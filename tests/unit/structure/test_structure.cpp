@@ -158,7 +158,7 @@ TEST(Structure, LibrariesStayBehindTheFilesThatWrapThem) {
         {std::regex("^png\\.h"), std::regex("^engine/output/png_frame\\.cpp$")},
         {std::regex("^tiffio"), std::regex("^engine/output/tiff_frame\\.cpp$")},
         {std::regex("^OpenColorIO/"), std::regex("^engine/ocio/display_transform\\.cpp$")},
-        {std::regex("^fitsio"), std::regex("^engine/source/([^/]*\\.cpp|fits_headers\\.h)$")},
+        {std::regex("^fitsio"), std::regex("^engine/source/[^/]*\\.cpp$")},
         {std::regex("^openssl/"), std::regex("^engine/core/hash\\.cpp$")},
         {std::regex("^openvdb/"), std::regex("^engine/volumes/openvdb/[^/]*\\.cpp$")},
         {std::regex("^toml"), std::regex("^engine/scene/")},
@@ -222,7 +222,7 @@ TEST(Structure, NoTwoTypesHaveOneName) {
 
 // What one file alone needs stands in that file. The number of the others may only fall.
 TEST(Structure, AHeaderHasTwoUsersOrATest) {
-    constexpr std::size_t allowed = 5;
+    constexpr std::size_t allowed = 2;
     std::map<std::string, std::set<std::string>> users;  // of each header, by its path
     for (const char* const folder : {"engine", "app", "tests"})
         for (const Include& include : includes_below(folder))

@@ -1,15 +1,12 @@
-// Stars are looked for in the picture and in its halves, quarters and so on, so that rings of a few pixels
-// measure any of them. Medians around each ring leave out spikes and neighbours.
-#include "bodies/picture_stars.h"
-
+// Bright stars are looked for in the picture and in its halves, quarters and so on, so that rings of a few
+// pixels measure any of them. Medians around each ring leave out spikes and neighbours.
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdint>
 #include <optional>
-#include <span>
 #include <utility>
 
+#include "bodies/stars.h"
 #include "core/parallel.h"
 #include "core/real.h"
 #include "detect/peaks.h"
@@ -39,8 +36,7 @@ Ring ring_at(const Image& image, int channel, float x, float y, float r) {
         std::array<std::pair<float, float>, ring_places> found;
         for (int i = 0; i < ring_places; ++i) {
             const double angle = 2.0 * real::pi * (i + 0.5) / ring_places;  // between spikes
-            found[static_cast<std::size_t>(i)] = {static_cast<float>(real::cos(angle)),
-                                                  static_cast<float>(real::sin(angle))};
+            found[i] = {float(real::cos(angle)), float(real::sin(angle))};
         }
         return found;
     }();
@@ -60,15 +56,15 @@ struct Found {
 
 std::optional<Found> bright_star_at(const Image& brightest, std::int64_t column, std::int64_t row,
                                     float peak) {
-    const auto x0 = static_cast<float>(column) + 0.5f, y0 = static_cast<float>(row) + 0.5f;
-    const float far = ring_at(brightest, 0, x0, y0, static_cast<float>(rings - 1)).median;
+    const auto x0 = float(column) + 0.5f, y0 = float(row) + 0.5f;
+    const float far = ring_at(brightest, 0, x0, y0, float(rings - 1)).median;
     if (peak - far < least_bright) return {};
     const PointLight above_half = light_about(brightest, column, row, 4, 0.5f * (far + peak));
     Found star{above_half.x, above_half.y};
     std::array<Ring, rings> ring;
     float sky = peak;
     for (std::size_t r = 0; r < ring.size(); ++r) {
-        ring[r] = ring_at(brightest, 0, star.x, star.y, static_cast<float>(r));
+        ring[r] = ring_at(brightest, 0, star.x, star.y, float(r));
         sky = std::min(sky, ring[r].median);
     }
     const float excess = ring[0].median - sky;
@@ -76,14 +72,13 @@ std::optional<Found> bright_star_at(const Image& brightest, std::int64_t column,
     const auto share = [&](std::size_t r) { return (ring[r].median - sky) / excess; };
     std::size_t below = 1;
     while (below + 1 < ring.size() && share(below) >= 0.5f) ++below;
-    star.half_width =
-        static_cast<float>(below) - (0.5f - share(below)) / std::max(1e-6f, share(below - 1) - share(below));
+    star.half_width = float(below) - (0.5f - share(below)) / std::max(1e-6f, share(below - 1) - share(below));
     if (star.half_width < narrowest_px || star.half_width >= widest_px) return {};
     const auto share_at = [&](float r) {
         return (ring_at(brightest, 0, star.x, star.y, r).median - sky) / excess;
     };
     if (share_at(2.0f * star.half_width) > at_two || share_at(3.0f * star.half_width) > at_three) return {};
-    for (std::size_t r = 1; static_cast<float>(r) <= 1.5f * star.half_width; ++r)
+    for (std::size_t r = 1; float(r) <= 1.5f * star.half_width; ++r)
         if (ring[r].quartiles_apart > most_uneven * excess) return {};
     return star;
 }
@@ -102,7 +97,7 @@ bool is_smooth(const Image& brightest, const Found& star) {
     const float peak = bilinear(brightest, 0, star.x, star.y);
     const float sky = ring_at(brightest, 0, star.x, star.y, 4.0f * star.half_width).median;
     for (int i = 1; i <= samples; ++i)
-        if (ring_at(brightest, 0, star.x, star.y, 1.5f * star.half_width * static_cast<float>(i) / samples)
+        if (ring_at(brightest, 0, star.x, star.y, 1.5f * star.half_width * float(i) / samples)
                 .quartiles_apart > most_uneven * (peak - sky))
             return false;
     return true;
@@ -110,7 +105,7 @@ bool is_smooth(const Image& brightest, const Found& star) {
 
 // The widest first, of which each keeps narrower ones away.
 std::vector<Found> all_stars(const Image& light) {
-    const float widest = widest_share * static_cast<float>(std::max<std::int64_t>(1920, light.width));
+    const float widest = widest_share * float(std::max<std::int64_t>(1920, light.width));
     std::vector<std::vector<Found>> levels;
     const Image whole = brightest_channel(light);
     Image brightest = copied(whole);
@@ -156,7 +151,7 @@ struct Taken {
 std::array<double, widths> gaussians_at(double r, const std::array<Star, widths>& parts) {
     std::array<double, widths> values;
     for (std::size_t k = 0; k < widths; ++k) {
-        const double t = r / static_cast<double>(parts[k].sigma);
+        const double t = r / double(parts[k].sigma);
         values[k] = real::exp(-0.5 * t * t);
     }
     return values;
@@ -200,7 +195,7 @@ void fit_peaks(const Profile& profile, int channel, std::array<Star, widths>& pa
         scale = std::min(scale, (value + negligible * profile.front().second) /
                                     std::max(sum_of(gaussians_at(r, parts), peak), 1e-12));
     for (std::size_t k = 0; k < widths; ++k)
-        parts[k].peak[channel] = static_cast<float>(std::max(scale, least_scale) * peak[k]);
+        parts[k].peak[channel] = float(std::max(scale, least_scale) * peak[k]);
 }
 
 Taken taken(const Found& star, const Image& light) {
@@ -214,9 +209,9 @@ Taken taken(const Found& star, const Image& light) {
         out.around[c] = ring_at(light, c, star.x, star.y, farthest * star.half_width).median;
         Profile profile;
         for (int i = 0; i < samples; ++i) {
-            const float r = farthest * star.half_width * (static_cast<float>(i) + 0.5f) / samples;
+            const float r = farthest * star.half_width * (float(i) + 0.5f) / samples;
             const float value = ring_at(light, c, star.x, star.y, r).median - out.around[c];
-            profile.emplace_back(static_cast<double>(r), static_cast<double>(std::max(0.0f, value)));
+            profile.emplace_back(double(r), double(std::max(0.0f, value)));
         }
         fit_peaks(profile, c, out.parts);
     }
@@ -227,26 +222,24 @@ glm::vec3 light_of(const Taken& star, float x, float y) {
     const float dx = x - star.star.x, dy = y - star.star.y;
     glm::vec3 sum(0.0f);
     for (const Star& part : star.parts) {
-        const double t =
-            static_cast<double>(dx * dx + dy * dy) / static_cast<double>(2.0f * part.sigma * part.sigma);
-        if (t < 12.0) sum += part.peak * static_cast<float>(real::exp(-t));
+        const double t = double(dx * dx + dy * dy) / double(2.0f * part.sigma * part.sigma);
+        if (t < 12.0) sum += part.peak * float(real::exp(-t));
     }
     return sum;
 }
 
 // From the pixels of rows [begin, end).
 void take_away(const Taken& star, std::int64_t begin, std::int64_t end, Image& light) {
-    const auto first = [&](float at) { return static_cast<std::int64_t>(at - star.reach()); };
-    const auto last = [&](float at) { return static_cast<std::int64_t>(at + star.reach()); };
-    for (std::int64_t y = std::max(begin, first(star.star.y)); y <= std::min(end - 1, last(star.star.y)); ++y)
-        for (std::int64_t x = std::max<std::int64_t>(0, first(star.star.x));
-             x <= std::min(light.width - 1, last(star.star.x)); ++x) {
-            const glm::vec3 own = light_of(star, static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);
-            float* const pixel = light.at(x, y);
-            for (int c = 0; c < 3; ++c)
-                pixel[c] =
-                    std::max(pixel[c] - own[c], std::min(pixel[c], least_left_in_dust * star.around[c]));
-        }
+    const auto first = [&](float at) { return std::int64_t(at - star.reach()); };
+    const auto last = [&](float at) { return std::int64_t(at + star.reach()); };
+    const auto [x, y, half_width] = star.star;
+    const auto take = [&](std::int64_t i, std::int64_t j) {
+        const glm::vec3 own = light_of(star, float(i) + 0.5f, float(j) + 0.5f);
+        float* const pixel = light.at(i, j);
+        for (int c = 0; c < 3; ++c)
+            pixel[c] = std::max(pixel[c] - own[c], std::min(pixel[c], least_left_in_dust * star.around[c]));
+    };
+    for_each_between(light, first(x), std::max(begin, first(y)), last(x), std::min(end - 1, last(y)), take);
 }
 
 }  // namespace
@@ -262,45 +255,10 @@ std::vector<Star> take_bright_stars(Image& light) {
     std::vector<Star> stars;
     for (std::size_t i = 0; i < all.size(); ++i)
         for (Star part : all[i].parts) {
-            part.body = static_cast<std::uint32_t>(i);
+            part.body = std::uint32_t(i);
             if (part.peak != glm::vec3(0.0f)) stars.push_back(part);
         }
     return stars;
-}
-
-PictureStars take_picture_stars(Image& light, const StructureParams& params, bool enlarged) {
-    PictureStars stars;
-    if (params.stars == StructureParams::Stars::no) return stars;
-    std::vector<Star> bright;
-    const bool disk = params.kind == StructureKind::disk;
-    if (disk) bright = take_bright_stars(light);
-    const float least_left = disk ? least_left_in_dust : 0.0f;  // without dust a hole is nearer the front
-    stars.all = take_stars(light, least_left, enlarged ? StarsTaken::explained : StarsTaken::round);
-    std::ranges::stable_sort(stars.all, {}, &Star::sigma);
-    stars.ordinary = stars.all.size();
-    stars.count = static_cast<std::int64_t>(stars.ordinary);
-    for (Star& star : bright) {
-        star.body += static_cast<std::uint32_t>(stars.ordinary);
-        stars.count = std::max(stars.count, static_cast<std::int64_t>(star.body) + 1);
-    }
-    std::ranges::stable_sort(bright, {}, &Star::sigma);
-    stars.all.insert(stars.all.end(), bright.begin(), bright.end());
-    return stars;
-}
-
-void add_picture_stars(const PictureStars& stars, const Placement& placement, const Opacity& opacity,
-                       PictureSplats& out) {
-    constexpr float about_one_size = 1.4f;  // widest over narrowest: each more takes the front's fit longer
-    const std::span<const Star> all(stars.all);
-    for (std::size_t begin = 0; begin < all.size();) {
-        const bool ordinary = begin < stars.ordinary;
-        const float widest = ordinary ? about_one_size * all[begin].sigma : all[begin].sigma;
-        std::size_t end = begin;
-        while (end < (ordinary ? stars.ordinary : all.size()) && all[end].sigma <= widest) ++end;
-        add_stars(all.subspan(begin, end - begin), static_cast<std::uint32_t>(begin), placement, opacity,
-                  out);
-        begin = end;
-    }
 }
 
 }  // namespace astrosplat

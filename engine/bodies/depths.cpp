@@ -1,0 +1,307 @@
+// Depths are drawn for a block of dots at a time, by the kind of the structure: about a disk's plane, on or
+// between two walls, or about a sheet.
+#include <algorithm>
+#include <cmath>
+
+#include "bodies/placement.h"
+#include "core/real.h"
+#include "core/shared_maths.h"
+
+namespace astrosplat {
+namespace {
+
+using shared::as_exp, shared::as_hash, shared::as_log, shared::as_mix, shared::as_uniform;
+
+// Values for features of 2, 4, 8 ... 128 and 200 texels at a width of 1920, as DEPTH 3 and 4 have them, but
+// for its 40, 64 and 100 of the widest dots.
+using ByFeature = double[8];
+constexpr ByFeature dots_each = {2.4, 4, 9, 16, 24, 24, 24, 24};  // within 2 pi sigma^2
+constexpr ByFeature clumpiness = {3, 3, 2.6, 2.2, 1.7, 0.8, 0.3, 0.05};
+
+// Between them linear in the logarithm.
+double by_feature(const ByFeature& values, double feature) {
+    constexpr double last = 0.644;  // octaves from 128 to 200
+    const double k = std::clamp(real::log(feature / 2.0) / real::log(2.0), 0.0, 6.0 + last);
+    const int i = std::min(6, int(k));
+    const double t = i == 6 ? (k - 6.0) / last : k - i;
+    return values[i] * (1.0 - t) + values[i + 1] * t;
+}
+
+// Gain of the first octave in a disk or between walls, for features of so many texels.
+double clump_gain(const Placement& placement, double feature) {
+    return whole_gain * by_feature(clumpiness, feature / placement.scale) * placement.clumps;
+}
+
+constexpr double octave_deviation = 0.26;  // of an octave's values; what is added up has 1 (depth_kernel.h)
+constexpr double steady_ratio = 0.75;      // of gains of a disk's octaves and those between walls: DEPTH 4
+
+}  // namespace
+
+NoiseStack stack(const Placement& placement, double longest, double feature, double first_gain,
+                 double ratio) {
+    constexpr double shortest_wave = 5.0, waves_a_feature = 2.2;  // DEPTH 4; texels at a width of 1920
+    NoiseStack noise;
+    noise.seed = placement.seed;
+    const double shortest = std::max(waves_a_feature * feature, shortest_wave * placement.scale);
+    double gain = first_gain;
+    for (double wave = longest; noise.count < NoiseStack::most; wave /= 2.0, gain *= ratio) {
+        if (noise.count > 0 && wave < shortest) break;
+        noise.frequency[noise.count] = float(1.0 / wave);
+        noise.gain[noise.count++] = float(gain);
+    }
+    return noise;
+}
+
+NoiseStack waves(const Placement& placement, std::uint32_t field,
+                 std::initializer_list<std::pair<double, double>> wave_and_gain) {
+    NoiseStack noise;
+    noise.seed = as_mix(placement.seed + field);
+    for (const auto& [wave, gain] : wave_and_gain) {
+        noise.frequency[noise.count] = float(1.0 / (wave * placement.scale));
+        noise.gain[noise.count++] = float(gain);
+    }
+    return noise;
+}
+
+float logistic(float u, float height) {
+    const float inside = std::clamp(u, 1e-5f, 1.0f - 1e-5f);
+    return 0.5f * height * as_log(inside / (1.0f - inside));
+}
+
+namespace {
+
+constexpr float least_sigma = 0.45f;      // texels; .62 as published ends 2 dB below
+constexpr double widest_filament = 45.0;  // texels at a width of 1920; what is wider is glow
+constexpr double crowd_in_bulges = 32.0;  // times as many wide dots there, or its outline would be ragged
+// Amplitude over brightness below which dots are thinned out: of fine bands, and of others over how many
+// there are (DEPTH 3).
+constexpr double fine_threshold = 0.05, threshold_of_one = 0.25;
+// About a sheet, of a feature: half of DEPTH 4's, which made a quarter more needles of the Bubble.
+constexpr float sheet_spread = 0.25f;
+
+BandDots dots_of_size(const Band& band, bool glow, double sigma, double each) {
+    BandDots dots;
+    dots.index = band.index;
+    dots.feature = float(band.feature);
+    dots.spread = sheet_spread * dots.feature;
+    dots.glow = glow;
+    dots.sigma = band.index == 0 ? least_sigma : std::max(least_sigma, float(sigma));
+    const double s = double(dots.sigma), area = 2.0 * real::pi * s * s;
+    dots.spacing = float(std::sqrt(std::max(1.0, area / each)));
+    dots.threshold = float(band.index <= 1 ? fine_threshold : threshold_of_one / each);
+    return dots;
+}
+
+}  // namespace
+
+std::vector<BandDots> band_dots(const Band& band, bool coarsest, const Placement& placement) {
+    const bool glow =
+        placement.kind == StructureKind::walls && band.feature > widest_filament * placement.scale;
+    const double widest =
+        std::max(widest_sigma_share * placement.height, glow ? widest_glow_share * placement.depth : 0.0);
+    const double natural = coarsest ? 4.0 * widest : band.feature / 4.0;
+    const double usual =
+        by_feature(dots_each, band.index == 0 ? 2.0 : std::max(4.0, band.feature / placement.scale));
+    std::vector<BandDots> sizes{dots_of_size(band, glow, std::min(natural, widest), usual)};
+    if (placement.kind != StructureKind::disk) return sizes;
+    for (const float thickness : wider_in_bulges) {
+        const double sigma = std::min(natural, double(thickness) * widest);
+        if (float(sigma) <= sizes.back().sigma) break;
+        sizes.back().thickness_to = thickness;
+        sizes.push_back(dots_of_size(band, glow, sigma, crowd_in_bulges * usual));
+        sizes.back().thickness_from = thickness;
+        sizes.back().size = int(sizes.size()) - 1;
+    }
+    return sizes;
+}
+
+namespace {
+
+// DEPTH 4: the scale height of the finest band, of H(x, y), and what is added up to the sixth; the least
+// square of it that is left when the dots' own thickness is taken off.
+struct BandHeights {
+    float finest, rise;
+};
+constexpr BandHeights heights_in_disks{0.45f, 0.55f}, heights_elsewhere{0.6f, 0.4f};
+constexpr float least_square = 0.09f;       // of H(x, y)
+constexpr float dots_own_thickness = 1.2f;  // square of it, of that of their sigma
+
+// Of a dot in a bulge, where the disk alone would be `disk` thick: most are near the plane and few high up,
+// as in a ball of stars. All as high as the bulge would be a tower.
+float height_in_bulge(float disk, float bulge, std::uint32_t random) {
+    return disk + (bulge - disk) * as_uniform(as_mix(random ^ 0x1b56c4e9u));
+}
+
+// Scale heights of a band's dots: fine bands are thinner, and wide dots bring a thickness of their own.
+void set_heights(const Placement& placement, const BandDots& dots, DepthBlock& block) {
+    const bool bulges = placement.kind == StructureKind::disk;
+    const BandHeights& heights = bulges ? heights_in_disks : heights_elsewhere;
+    const float share = heights.finest + heights.rise * std::min(1.0f, float(dots.index) / 5.0f);
+    const float own = dots.index > 2 ? dots_own_thickness * dots.sigma * dots.sigma : 0.0f;
+    for (int i = 0; i < block.count; ++i) {
+        const float whole = placement.scale_height(block.x[i], block.y[i]);
+        const float disk = placement.height_without_bulge(block.x[i], block.y[i]);
+        const float height = bulges && whole > disk ? height_in_bulge(disk, whole, block.random[i]) : whole;
+        const float h = height * share, flat = std::min(1.0f, disk / whole);
+        block.clumping[i] = flat * flat * flat * flat;  // a bulge is smooth
+        block.height[i] = std::sqrt(std::max(h * h - own, least_square * height * height));
+    }
+}
+
+// Depths within the reach of each column, which is its height here: all are as likely, and they gather in
+// clouds as a disk's do.
+void spread_in_clouds(const Placement& placement, double feature, DepthBlock& block) {
+    std::fill_n(block.clumping, block.count, 1.0f);
+    disk_depths(stack(placement, placement.depth, feature, clump_gain(placement, feature), steady_ratio),
+                block);
+    for (int i = 0; i < block.count; ++i)  // sech^2 becomes even
+        block.z[i] = block.height[i] * (1.0f - 2.0f / (1.0f + as_exp(2.0f * block.z[i] / block.height[i])));
+}
+
+// Glow fills what is between two walls, or one would look through the holes of one wall into a hollow. Spread
+// evenly in every column it would be curtains.
+void fill_between_walls(const Placement& placement, double feature, PlacedBlock& block) {
+    for (int i = 0; i < block.count; ++i)
+        block.height[i] = std::max(block.height[i],
+                                   placement.reach_at(block.x[i], block.y[i], block.random[i], true).texels);
+    spread_in_clouds(placement, feature, block);
+}
+
+}  // namespace
+
+void place_freely(const Placement& placement, const BandDots& dots, PlacedBlock& block) {
+    constexpr double disk_wave = 4.0, sheet_wave = 7.0;      // of H, the longest of the noise: DEPTH 4
+    constexpr double sheet_folds = 0.22, sheet_ratio = 0.5;  // of that wave, their height; DEPTH 4
+    set_heights(placement, dots, block);
+    const double feature = dots.feature, h = placement.height;
+    if (placement.kind == StructureKind::disk) {
+        const double gain = clump_gain(placement, feature);
+        disk_depths(stack(placement, disk_wave * h, feature, gain, steady_ratio), block);
+    } else if (dots.glow) {
+        fill_between_walls(placement, feature, block);
+    } else {
+        const double gain = sheet_folds * octave_deviation * sheet_wave * h * placement.clumps;
+        sheet_depths(stack(placement, sheet_wave * h, feature, gain, sheet_ratio), dots.spread, block);
+    }
+    for (int i = 0; i < block.count; ++i) {
+        block.distance[i] = std::fabs(block.z[i]);
+        block.z[i] += middle_plane(placement, block.x[i], block.y[i]);
+    }
+}
+
+namespace {
+
+// Scale height of a knot, of its sigma. On a sheet those along a rim that runs up the picture lie one before
+// the other from aslant: each taller, they are one needle. Found by the needles of the Bubble and the
+// Pillars: below .2 knots are lenses.
+constexpr float knot_depth = 0.6f, knot_depth_on_sheets = 0.35f;
+constexpr float widest_in_knots = 5.0f;  // texels, sigma of the largest dots that follow their knot
+constexpr float side_sharpness = 8.0f;   // of the change from one wall to the other
+constexpr float least_side = 0.15f;  // share of a filament's dots on the other one: no part of a wall is bare
+
+const Knot& knot_of(const Placement& placement, std::int32_t knot) { return placement.knots.knots[knot]; }
+
+// On walls pieces of filaments are no knots, or these would be strings of beads.
+void follow_knots(const Placement& placement, PlacedBlock& block) {
+    const bool walls = placement.kind == StructureKind::walls;
+    const float depth = placement.kind == StructureKind::sheet ? knot_depth_on_sheets : knot_depth;
+    for (int i = 0; i < block.count; ++i) {
+        const auto x = std::min(std::int64_t(block.x[i]), placement.picture_width - 1);
+        const auto y = std::min(std::int64_t(block.y[i]), placement.picture_height - 1);
+        const auto at = std::size_t(y * placement.picture_width + x);
+        const std::int32_t owner = placement.knots.owner[at];
+        if (owner < 0) continue;
+        const Knot& knot = knot_of(placement, owner);
+        const std::uint32_t random = as_mix(block.random[i] ^ 0x2c1b3c6du);
+        if (as_uniform(random) >= placement.knots.weight[at] * (walls ? knot.ballness : 1.0f)) continue;
+        block.knot[i] = owner;
+        block.z[i] = placement.knot_z[owner] + logistic(as_uniform(as_mix(random)), depth * knot.sigma);
+    }
+}
+
+float sheet_at(const Placement& placement, float x, float y) {
+    return 2.0f * placement.relief_at(x, y) - float(placement.depth);
+}
+
+// Lifts dots onto the relief of a sheet, where there is one. Under a round knot it is level, but not under a
+// piece of a filament, which would become a flight of steps.
+void add_relief(const Placement& placement, PlacedBlock& block) {
+    if (placement.relief.pixels.empty()) return;
+    for (int i = 0; i < block.count; ++i) {
+        const float own = sheet_at(placement, block.x[i], block.y[i]);
+        if (block.knot[i] < 0) {
+            block.z[i] += own;
+        } else {
+            const Knot& knot = knot_of(placement, block.knot[i]);
+            block.z[i] += own + knot.roundness * (sheet_at(placement, knot.x, knot.y) - own);
+        }
+    }
+}
+
+// -1..1 of any value.
+float between(float value) { return 2.0f / (1.0f + as_exp(-2.0f * value)) - 1.0f; }
+
+// Those of the sky that belong to no knot.
+void spread_in_sky(const Placement& placement, double feature, const DepthReach* reaches,
+                   PlacedBlock& block) {
+    DepthBlock sky;
+    int dots[PlacedBlock::size];
+    for (int i = 0; i < block.count; ++i) {
+        if (reaches[i].of != DepthReach::Of::sky || block.knot[i] >= 0) continue;
+        dots[sky.count] = i;
+        sky.x[sky.count] = block.x[i];
+        sky.y[sky.count] = block.y[i];
+        sky.random[sky.count] = block.random[i];
+        sky.height[sky.count++] = reaches[i].texels;
+    }
+    if (sky.count == 0) return;
+    spread_in_clouds(placement, feature, sky);
+    for (int k = 0; k < sky.count; ++k) block.z[dots[k]] = sky.z[k];
+}
+
+// Puts dots onto one of two walls, front or back, and bends these. A filament stays on one wall for as long
+// as it can; what belongs to a knot is where its middle is. Light of a core or of the sky is anywhere within
+// its reach. Waves in texels at a width of 1920, as DEPTH 4 has them but for shorter ones of the sides.
+void add_walls(const Placement& placement, double feature, PlacedBlock& block) {
+    DepthBlock side = block;
+    for (int i = 0; i < block.count; ++i) {
+        if (block.knot[i] < 0) continue;
+        const Knot& knot = knot_of(placement, block.knot[i]);
+        side.x[i] = knot.x;
+        side.y[i] = knot.y;
+    }
+    DepthBlock bend = side, within = side;
+    const double unit = octave_deviation * placement.depth;
+    noise_sum(waves(placement, 1, {{220.0, 1.0}, {90.0, 0.6}}), side);
+    noise_sum(waves(placement, 2, {{520.0, 0.22 * unit}, {210.0, 0.07 * unit}}), bend);
+    noise_sum(waves(placement, 3, {{640.0, 1.0}, {260.0, 0.3}}), within);
+    DepthReach reaches[PlacedBlock::size];
+    for (int i = 0; i < block.count; ++i) {
+        const float front =
+            least_side + (1.0f - 2.0f * least_side) / (1.0f + as_exp(-side_sharpness * side.z[i]));
+        const std::uint32_t random = block.knot[i] < 0 ? block.random[i]
+                                                       : as_hash(placement.seed, std::uint32_t(block.knot[i]),
+                                                                 1u, shared::PURPOSE_KNOT);
+        const bool in_front = as_uniform(as_mix(random ^ 0x5bd1e995u)) < front;
+        const float anywhere = 2.0f * as_uniform(as_mix(random ^ 0x27d4eb2fu)) - 1.0f;
+        reaches[i] = placement.reach_at(bend.x[i], bend.y[i], random, false);
+        const float at = reaches[i].of == DepthReach::Of::walls  ? (in_front ? 1.0f : -1.0f)
+                         : reaches[i].of == DepthReach::Of::core ? between(within.z[i])
+                                                                 : anywhere;
+        block.z[i] += at * reaches[i].texels + bend.z[i];
+    }
+    spread_in_sky(placement, feature, reaches, block);
+}
+
+}  // namespace
+
+void place(const Placement& placement, const BandDots& dots, PlacedBlock& block) {
+    place_freely(placement, dots, block);
+    std::fill_n(block.knot, block.count, -1);
+    if (dots.sigma <= widest_in_knots && !placement.knots.knots.empty()) follow_knots(placement, block);
+    if (placement.kind == StructureKind::sheet) add_relief(placement, block);
+    if (placement.kind == StructureKind::walls && !dots.glow)
+        add_walls(placement, double(dots.feature), block);
+}
+
+}  // namespace astrosplat
