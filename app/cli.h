@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "command.h"
-#include "viewer/run_viewer.h"
+#include "viewer/viewer.h"
 
 namespace astrosplat {
 

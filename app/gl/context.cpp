@@ -8,11 +8,11 @@
 #include <glad/gl.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cstring>
 #include <stdexcept>
 
 #include "core/log.h"
+#include "core/text.h"
 
 namespace astrosplat {
 namespace {
@@ -97,12 +97,11 @@ void GLAD_API_PTR on_driver_message(GLenum, GLenum type, GLuint, GLenum severity
 }
 #endif
 
-bool is_software(std::string renderer) {
-    std::transform(renderer.begin(), renderer.end(), renderer.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    for (const char* name : {"llvmpipe", "softpipe", "swiftshader", "software rasterizer", "swr"})
-        if (renderer.find(name) != std::string::npos) return true;
-    return false;
+bool is_software(const std::string& renderer) {
+    constexpr const char* names[] = {"llvmpipe", "softpipe", "swiftshader", "software rasterizer", "swr"};
+    return std::ranges::any_of(names, [text = lower_case(renderer)](const char* name) {
+        return text.find(name) != std::string::npos;
+    });
 }
 
 }  // namespace

@@ -33,8 +33,8 @@ class OcioTables {
     /// GLSL of "vec4 ocio_display(vec4)".
     const std::string& text() const { return text_; }
     /// Texture units from `first` on.
-    void name_samplers(const GlProgram& program, int first) const {
-        for (const Table& table : tables_) program.set_sampler(table.sampler.c_str(), first++);
+    void add_samplers(ProgramSource& source, int first) const {
+        for (const Table& table : tables_) source.samplers.emplace_back(table.sampler, first++);
     }
     void bind(int first) const {
         for (const Table& table : tables_) bind_texture(first++, table.target, table.texture.name());
@@ -109,10 +109,10 @@ int view_number(const DisplaySettings& settings, bool holds_display) {
 }
 
 ProgramSource source_of(const DisplayVariant& v, const OcioTables& ocio) {
-    ProgramSource source{{fmt::format("VIEW {}", v.view_a), fmt::format("TAPS_A {}", v.taps_a)},
-                         {"screen_vertex.glsl"},
-                         {"display_fragment.glsl"},
-                         {}};
+    ProgramSource source{.defines = {fmt::format("VIEW {}", v.view_a), fmt::format("TAPS_A {}", v.taps_a)},
+                         .vertex = {"screen_vertex.glsl"},
+                         .fragment = {"display_fragment.glsl"},
+                         .samplers = {{"image_a", 0}, {"image_b", 1}}};
     if (v.mix != Mix::alone) {
         const char* mix = v.mix == Mix::over ? "OVER" : "DIFFERENCE";
         source.defines.insert(source.defines.end(),
@@ -123,6 +123,7 @@ ProgramSource source_of(const DisplayVariant& v, const OcioTables& ocio) {
     if (v.managed()) {
         source.defines.push_back("WITH_OCIO");
         source.fragment_head = ocio.text();
+        ocio.add_samplers(source, ocio_unit);
     }
     return source;
 }
@@ -154,12 +155,7 @@ const GlProgram& DisplayPrograms::use(const DisplayVariant& variant,
                                       const std::shared_ptr<const DisplayTransform>& ocio) {
     if (variant.managed()) use_ocio(ocio);
     std::unique_ptr<GlProgram>& entry = programs_[variant];
-    if (!entry) {
-        entry = std::make_unique<GlProgram>(source_of(variant, ocio_));
-        entry->set_sampler("image_a", 0);
-        entry->set_sampler("image_b", 1);
-        if (variant.managed()) ocio_.name_samplers(*entry, ocio_unit);
-    }
+    if (!entry) entry = std::make_unique<GlProgram>(source_of(variant, ocio_));
     entry->use();
     return *entry;
 }
@@ -173,7 +169,7 @@ struct ShownImage {
 };
 
 ShownImage image_of(GLuint texture, float shown_width) {
-    constexpr int most_taps = 4;
+    constexpr int most_taps = 4;  // reads per axis
     GLint width = 0;
     glBindTexture(GL_TEXTURE_2D, texture);
     glGetTexLevelParameteriv(GL_TEXTURE_2D, 0, GL_TEXTURE_WIDTH, &width);
@@ -190,10 +186,6 @@ ShownImage image_b_of(const DisplaySettings& s) {
     ShownImage image = image_of(s.b, static_cast<float>(glm::length(s.b_place->right)));
     if (s.b_place->right.y != 0.0) image.filter = GL_LINEAR;
     return image;
-}
-
-PicturePlace place_of_b(const DisplaySettings& s) {
-    return s.b_place.value_or(PicturePlace{{s.x, s.y}, {s.width, 0.0}, {0.0, s.height}});
 }
 
 void bind(int unit, const ShownImage& image) {
@@ -260,7 +252,8 @@ struct Display::State {
     }
 
     static void set_b(const GlProgram& p, const DisplaySettings& s) {
-        const PicturePlace place = place_of_b(s);
+        const PicturePlace place =
+            s.b_place.value_or(PicturePlace{{s.x, s.y}, {s.width, 0.0}, {0.0, s.height}});
         const glm::dmat2 b_from_px = glm::inverse(glm::dmat2(place.right, place.down));
         const glm::vec2 origin = b_from_px * (glm::dvec2(s.x, s.y) - place.corner);
         glUniform2f(p.uniform("b_origin"), origin.x, origin.y);

@@ -5,12 +5,14 @@
 #include <cmath>
 #include <cstddef>
 #include <cstring>
+#include <glm/gtc/type_ptr.hpp>
 #include <glm/matrix.hpp>
 #include <glm/vec4.hpp>
 #include <string>
 
 #include "core/parallel.h"
 #include "core/real.h"
+#include "gl/preview_layer.h"
 
 namespace astrosplat {
 namespace {
@@ -48,6 +50,57 @@ NodeTexels node_texels(const FootprintTable& table, int node) {
     const double wanted = double(table.integral) * radius_px * radius_px;
     return {{float(mass / wanted), n.ripple[0], n.ripple[1], n.ripple[2]},
             {float(edge / wanted), n.edge_ripple[0], n.edge_ripple[1], n.edge_ripple[2]}};
+}
+
+// DrawBlock of splat_vertex.glsl; sixteens of bytes, so that std140 is how C++ lays it out.
+struct LayerBlock {
+    glm::vec4 right, up, back, eye_low, axis, blend, falloff, absorb;
+};
+struct Block {
+    Lens lens;
+    float to_sixteens[3];
+    glm::vec4 target;
+    std::int32_t layers_used[4];
+    std::int32_t first_splat[DrawPass::most_layers];
+    LayerBlock layers[DrawPass::most_layers];
+};
+static_assert(sizeof(LayerBlock) == 8 * 16 && sizeof(Lens) == 36 && offsetof(Block, target) == 3 * 16 &&
+              sizeof(Block) == 5 * 16 + 64 * 4 + 64 * 8 * 16);
+
+constexpr int profiles_unit = 0, nodes_unit = 1, places_unit = 2;  // and 3: colours
+constexpr float widest_useful_px = 512.0f;                         // of a point: wider splats are squares
+
+/// The eye in layer space, as two floats a coordinate: what is left of a splat's float position after
+/// subtracting both is as exact as the double arithmetic of the engine.
+LayerBlock layer_block(const DrawLayer& layer) {
+    const LayerProjection& p = layer.projection;
+    const glm::dmat3 rows = glm::transpose(p.camera_from_layer);
+    const glm::dvec3 eye = -(glm::inverse(p.camera_from_layer) * p.origin_in_camera);
+    const glm::vec3 eye_high(eye);
+    const glm::vec3 eye_low(eye - glm::dvec3(eye_high));
+    const auto row = [&](int i) { return glm::vec4(glm::vec3(rows[i]), eye_high[i]); };
+    return {row(0),
+            row(1),
+            row(2),
+            glm::vec4(eye_low, p.radius_scale),
+            glm::vec4(p.axis_in_camera, p.opacity),
+            {static_cast<float>(p.render.blend), p.render.hybrid_from_deg, p.render.hybrid_to_deg,
+             p.render.holdout ? 1.0f : 0.0f},
+            {static_cast<float>(layer.footprint.table), layer.footprint.reach, layer.footprint.core,
+             layer.footprint.flat_core ? 1.0f : 0.0f},
+            glm::vec4(p.render.absorb, 0.0f)};
+}
+
+constexpr int fine_unit = 0, coarse_unit = 1;
+
+/// Mip level, with its fraction, for pixels `spread` radians apart; as sample_environment.
+double level_of(const Environment& environment, double spread) {
+    const Image& first = (*environment.faces)[0][0];
+    const double w = double(first.width - 2), h = double(first.height - 2);
+    const double texels =
+        spread * (environment.faces->size() == 1 ? std::fmax(w / (2.0 * real::pi), h / real::pi) : 0.5 * w);
+    const auto last = static_cast<double>((*environment.faces)[0].size() - 1);
+    return texels > 1.0 ? std::fmin(real::log(texels) / real::log(2.0), last) : 0.0;
 }
 
 }  // namespace
@@ -107,49 +160,6 @@ void FootprintTextures::bind(int profiles_unit, int nodes_unit) const {
     bind_texture(nodes_unit, GL_TEXTURE_2D, nodes_.name());
 }
 
-namespace {
-
-// DrawBlock of splat_vertex.glsl; sixteens of bytes, so that std140 is how C++ lays it out.
-struct LayerBlock {
-    glm::vec4 right, up, back, eye_low, axis, blend, falloff, absorb;
-};
-struct Block {
-    Lens lens;
-    float to_sixteens[3];
-    glm::vec4 target;
-    std::int32_t layers_used[4];
-    std::int32_t first_splat[DrawPass::most_layers];
-    LayerBlock layers[DrawPass::most_layers];
-};
-static_assert(sizeof(LayerBlock) == 8 * 16 && sizeof(Lens) == 36 && offsetof(Block, target) == 3 * 16 &&
-              sizeof(Block) == 5 * 16 + 64 * 4 + 64 * 8 * 16);
-
-constexpr int profiles_unit = 0, nodes_unit = 1, places_unit = 2;  // and 3: colours
-constexpr float widest_useful_px = 512.0f;
-
-/// The eye in layer space, as two floats a coordinate: what is left of a splat's float position after
-/// subtracting both is as exact as the double arithmetic of the engine.
-LayerBlock layer_block(const DrawLayer& layer) {
-    const LayerProjection& p = layer.projection;
-    const glm::dmat3 rows = glm::transpose(p.camera_from_layer);
-    const glm::dvec3 eye = -(glm::inverse(p.camera_from_layer) * p.origin_in_camera);
-    const glm::vec3 eye_high(eye);
-    const glm::vec3 eye_low(eye - glm::dvec3(eye_high));
-    const auto row = [&](int i) { return glm::vec4(glm::vec3(rows[i]), eye_high[i]); };
-    return {row(0),
-            row(1),
-            row(2),
-            glm::vec4(eye_low, p.radius_scale),
-            glm::vec4(p.axis_in_camera, p.opacity),
-            {static_cast<float>(p.render.blend), p.render.hybrid_from_deg, p.render.hybrid_to_deg,
-             p.render.holdout ? 1.0f : 0.0f},
-            {static_cast<float>(layer.footprint.table), layer.footprint.reach, layer.footprint.core,
-             layer.footprint.flat_core ? 1.0f : 0.0f},
-            glm::vec4(p.render.absorb, 0.0f)};
-}
-
-}  // namespace
-
 void begin_blending(FoldKind kind) {
     glEnable(GL_BLEND);
     glBlendEquation(GL_FUNC_ADD);
@@ -187,12 +197,14 @@ const GlProgram& DrawPass::program(FoldKind kind, bool quads) {
     std::vector<std::string> defines = {"KIND " + std::to_string(static_cast<int>(kind))};
     if (quads) defines.push_back("QUADS");
     entry = std::make_unique<GlProgram>(
-        ProgramSource{defines, splat_vertex_files, {"maths.glsl", "blend.glsl", "splat_fragment.glsl"}, {}});
-    entry->set_block("DrawBlock", 0);
-    entry->set_sampler("footprint_profiles", profiles_unit);
-    entry->set_sampler("footprint_nodes", nodes_unit);
-    entry->set_sampler("places", places_unit);
-    entry->set_sampler("colors", places_unit + 1);
+        ProgramSource{.defines = defines,
+                      .vertex = splat_vertex_files,
+                      .fragment = {"maths.glsl", "blend.glsl", "splat_fragment.glsl"},
+                      .samplers = {{"footprint_profiles", profiles_unit},
+                                   {"footprint_nodes", nodes_unit},
+                                   {"places", places_unit},
+                                   {"colors", places_unit + 1}},
+                      .block = "DrawBlock"});
     return *entry;
 }
 
@@ -233,6 +245,56 @@ void DrawPass::draw(const DrawInput& input, ShadedBuffers& splats, const Footpri
     end_blending();
     glDisable(GL_PROGRAM_POINT_SIZE);
     glViewport(0, 0, input.width, input.height);
+}
+
+void EnvironmentPass::Level::hold(const Environment& environment, std::size_t level) {
+    const Image& first = (*environment.faces)[0][level];
+    const float found = content_probe(first);
+    if (texture.name() != 0 && pixels == first.pixels.data() && probe == found) return;
+    pixels = first.pixels.data();
+    probe = found;
+    glBindTexture(GL_TEXTURE_2D_ARRAY, texture.get());
+    glTexImage3D(GL_TEXTURE_2D_ARRAY, 0, GL_RGB32F, static_cast<GLsizei>(first.width),
+                 static_cast<GLsizei>(first.height), static_cast<GLsizei>(environment.faces->size()), 0,
+                 GL_RGB, GL_FLOAT, nullptr);
+    for (std::size_t face = 0; face < environment.faces->size(); ++face)
+        glTexSubImage3D(GL_TEXTURE_2D_ARRAY, 0, 0, 0, static_cast<GLint>(face),
+                        static_cast<GLsizei>(first.width), static_cast<GLsizei>(first.height), 1, GL_RGB,
+                        GL_FLOAT, (*environment.faces)[face][level].pixels.data());
+    set_sampling(GL_TEXTURE_2D_ARRAY, GL_LINEAR);
+}
+
+EnvironmentPass::EnvironmentPass()
+    : program_({.vertex = {"screen_vertex.glsl"},
+                .fragment = environment_fragment_files,
+                .samplers = {{"fine_level", fine_unit}, {"coarse_level", coarse_unit}}}) {}
+
+void EnvironmentPass::draw(const Environment& environment, const Camera& camera) {
+    const double level = level_of(environment, pixel_spread(camera));
+    const auto fine = static_cast<std::size_t>(level);
+    const std::size_t coarse = std::min(fine + 1, (*environment.faces)[0].size() - 1);
+    fine_.hold(environment, fine);
+    coarse_.hold(environment, coarse);
+    bind_texture(fine_unit, GL_TEXTURE_2D_ARRAY, fine_.texture.name());
+    bind_texture(coarse_unit, GL_TEXTURE_2D_ARRAY, coarse_.texture.name());
+    program_.use();
+    const glm::mat3 rotation(environment.environment_from_world);
+    glUniformMatrix3fv(program_.uniform("environment_from_world"), 1, GL_FALSE, glm::value_ptr(rotation));
+    const glm::vec3 eye(environment.behind > 0.0 ? camera.eye / environment.behind : glm::dvec3(0.0));
+    glUniform1i(program_.uniform("is_near"), environment.behind > 0.0);
+    glUniform3fv(program_.uniform("eye"), 1, glm::value_ptr(eye));
+    const glm::mat3 from_camera(camera.world_from_camera);
+    glUniformMatrix3fv(program_.uniform("world_from_camera"), 1, GL_FALSE, glm::value_ptr(from_camera));
+    const Lens lens = make_lens(camera);
+    glUniform1i(program_.uniform("lens.projection"), lens.projection);
+    glUniform1f(program_.uniform("lens.focal_px"), lens.focal_px);
+    glUniform1f(program_.uniform("lens.center_x_px"), lens.center_x_px);
+    glUniform1f(program_.uniform("lens.center_y_px"), lens.center_y_px);
+    glUniform1f(program_.uniform("lens.edge"), lens.edge);
+    glUniform1f(program_.uniform("coarse_share"), float(level - double(fine)));
+    glUniform1f(program_.uniform("gain"), environment.gain);
+    glDisable(GL_BLEND);
+    triangle_.draw();
 }
 
 }  // namespace astrosplat

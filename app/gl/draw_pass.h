@@ -1,6 +1,7 @@
-// Draws the splats of one blend group into the bound target, blended as the engine folds them. In: shaded
-// splats and the engine's footprint tables (render/footprint.h), here as textures. Out: linear premultiplied
-// light.
+// The passes that draw into the bound target. In: the environment, of which the two mip levels that a camera
+// needs become textures, as the bottom of the frame; the shaded splats of one blend group, blended as the
+// engine folds them, and its footprint tables (render/footprint.h), here as textures. Out: linear
+// premultiplied light.
 #pragma once
 
 #include <map>
@@ -8,9 +9,11 @@
 #include <string>
 #include <vector>
 
+#include "camera/camera.h"
 #include "gl/objects.h"
 #include "gl/program.h"
 #include "gl/splat_buffers.h"
+#include "render/environment.h"
 #include "render/fold.h"
 #include "render/footprint.h"
 #include "render/project.h"
@@ -84,5 +87,28 @@ class DrawPass {
 /// How the bound target takes what a group's shaders give, until end_blending().
 void begin_blending(FoldKind kind);
 void end_blending();
+
+/// The fragment stage of what draws the environment.
+inline const std::vector<std::string> environment_fragment_files =
+    after_projections({"environment_fragment.glsl"});
+
+class EnvironmentPass {
+  public:
+    EnvironmentPass();
+    /// Fills the bound target: colour of the environment, alpha 1.
+    void draw(const Environment& environment, const Camera& camera);
+
+  private:
+    /// One mip level of all faces, uploaded where it is not the one already there.
+    struct Level {
+        GlTexture texture;
+        const float* pixels = nullptr;  // of the first face, and some of what they held
+        float probe = 0.0f;
+        void hold(const Environment& environment, std::size_t level);
+    };
+    GlProgram program_;
+    WholeTarget triangle_;
+    Level fine_, coarse_;
+};
 
 }  // namespace astrosplat

@@ -15,6 +15,14 @@ int step_up(int value, std::initializer_list<int> steps) {
     return value;
 }
 
+/// No splat of the set is larger, whatever its random numbers and alpha are.
+float radius_bound(const SplatSet& set, const LookUniforms& u) {
+    float radius = std::max(u.radius.smallest, u.radius.largest);
+    if (u.radius.own)
+        for (const float own : set.radius) radius = std::max(radius, own);
+    return radius * std::max(1.0f, u.radius.horizontal_scale) * std::max(1.0f, u.radius.vertical_scale);
+}
+
 }  // namespace
 
 LookLimits limits_for(const LookUniforms& look) {
@@ -29,15 +37,15 @@ LookLimits limits_for(const LookUniforms& look) {
 }
 
 ProgramSource LookPass::source_for(const LookLimits& limits) {
-    return {{},
-            {"maths.glsl", "noise.glsl", "look_uniforms.glsl", "look.glsl", "look_pass.glsl"},
-            {},
-            {"shaded_place", "shaded_color"},
-            {{"LOOK_STOPS", limits.stops},
-             {"LOOK_NOISES", limits.noises},
-             {"LOOK_POINTS", limits.points},
-             {"LOOK_CROPS", limits.crops},
-             {"AS_NOISE_MAX_OCTAVES", limits.octaves}}};
+    return {.vertex = {"maths.glsl", "noise.glsl", "look_uniforms.glsl", "look.glsl", "look_pass.glsl"},
+            .feedback = {"shaded_place", "shaded_color"},
+            .constants = {{"LOOK_STOPS", limits.stops},
+                          {"LOOK_NOISES", limits.noises},
+                          {"LOOK_POINTS", limits.points},
+                          {"LOOK_CROPS", limits.crops},
+                          {"AS_NOISE_MAX_OCTAVES", limits.octaves}},
+            .samplers = {{"thickness_map", 0}},
+            .block = "LookBlock"};
 }
 
 LookPass::LookPass() { upload_map(make_image(1, 1, 3)); }
@@ -45,11 +53,7 @@ LookPass::LookPass() { upload_map(make_image(1, 1, 3)); }
 // Loops in a shader cost what they could do at most: software rasterisers run every step of them.
 const GlProgram& LookPass::program(const LookLimits& limits) {
     std::unique_ptr<GlProgram>& entry = programs_[limits];
-    if (!entry) {
-        entry = std::make_unique<GlProgram>(source_for(limits));
-        entry->set_block("LookBlock", 0);
-        entry->set_sampler("thickness_map", 0);
-    }
+    if (!entry) entry = std::make_unique<GlProgram>(source_for(limits));
     return *entry;
 }
 
@@ -94,18 +98,6 @@ void LookPass::run(const RawSplats& raw, const LookPassInput& input, ShadedBuffe
     glBindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, 1, 0);
 }
 
-namespace {
-
-/// No splat of the set is larger, whatever its random numbers and alpha are.
-float radius_bound(const SplatSet& set, const LookUniforms& u) {
-    float radius = std::max(u.radius.smallest, u.radius.largest);
-    if (u.radius.own)
-        for (const float own : set.radius) radius = std::max(radius, own);
-    return radius * std::max(1.0f, u.radius.horizontal_scale) * std::max(1.0f, u.radius.vertical_scale);
-}
-
-}  // namespace
-
 RawSplats& RawSplatStore::of(const std::shared_ptr<const SplatSet>& set) {
     Entry& entry = entries_[set.get()];
     if (!entry.splats) entry.splats = std::make_unique<RawSplats>(set);
@@ -114,10 +106,8 @@ RawSplats& RawSplatStore::of(const std::shared_ptr<const SplatSet>& set) {
 }
 
 void RawSplatStore::drop_unused() {
-    for (auto entry = entries_.begin(); entry != entries_.end();) {
-        const bool used = std::exchange(entry->second.used, false);
-        entry = used ? std::next(entry) : entries_.erase(entry);
-    }
+    std::erase_if(entries_, [](const auto& entry) { return !entry.second.used; });
+    for (auto& entry : entries_) entry.second.used = false;
 }
 
 bool GroupSplats::lay_out(const std::vector<const PreviewLayer*>& layers) {
@@ -135,14 +125,8 @@ bool GroupSplats::lay_out(const std::vector<const PreviewLayer*>& layers) {
         first += parts_[l].count;
     }
     buffers_.resize(first);
-    order_valid_ = false;
     first_version_ = 0;
     return true;
-}
-
-void GroupSplats::upload(Part& part, const ShadedSplats& splats) {
-    part.largest_radius = *std::max_element(splats.radius.begin(), splats.radius.end());
-    buffers_.upload(splats, part.first);
 }
 
 bool GroupSplats::shade(Part& part, const PreviewLayer& layer, RawSplatStore& raw, LookPass& pass) {
@@ -157,46 +141,37 @@ bool GroupSplats::shade(Part& part, const PreviewLayer& layer, RawSplatStore& ra
     return true;
 }
 
-void GroupSplats::read_places() {
-    places_ = std::make_shared<const Buffer<glm::vec4>>(buffers_.read_places());
-    ++places_version_;
-}
-
 void GroupSplats::update(const std::vector<const PreviewLayer*>& layers, RawSplatStore& raw, LookPass& pass,
                          bool ordered) {
     bool changed = lay_out(layers);
     for (std::size_t l = 0; l < layers.size(); ++l) {
         if (parts_[l].count == 0) continue;
-        if (layers[l]->layer.splats)
-            upload(parts_[l], *layers[l]->layer.splats);
-        else
+        if (const ShadedSplats* const splats = layers[l]->layer.splats) {
+            parts_[l].largest_radius = *std::ranges::max_element(splats->radius);
+            buffers_.upload(*splats, parts_[l].first);
+        } else {
             changed = shade(parts_[l], *layers[l], raw, pass) || changed;
+        }
     }
-    if (changed) places_.reset();
-    if (ordered && !places_) read_places();
+    if (changed) {
+        places_.reset();
+        requested_.places.reset();
+    }
+    if (ordered && !places_) places_ = std::make_shared<const Buffer<glm::vec4>>(buffers_.read_places());
 }
 
-bool GroupSplats::request_order(const std::vector<LayerProjection>& projections, double far_from,
+void GroupSplats::request_order(const std::vector<LayerProjection>& projections, double far_from,
                                 OrderThread& thread, std::size_t slot) {
-    View view;
-    for (const LayerProjection& p : projections) {
-        view.camera_from_layer.push_back(p.camera_from_layer);
-        view.origin.push_back(p.origin_in_camera);
-    }
-    if (!projections.empty()) view.projection = projections[0].lens.projection;
-    view.far_from = far_from;
-    view.places_version = places_version_;
-    if (view == requested_ && first_version_ != 0) return false;
-    requested_ = view;
-    requested_version_ = thread.next_version();
-    if (first_version_ == 0) first_version_ = requested_version_;
-    OrderJob job{places_, {}, {}, far_from, requested_version_};
-    job.lens.projection = view.projection;
+    OrderJob job{places_, {}, {}, far_from, 0};
+    if (!projections.empty()) job.lens.projection = projections[0].lens.projection;
     for (std::size_t l = 0; l < parts_.size(); ++l)
-        job.layers.push_back(
-            {parts_[l].first, parts_[l].count, view.camera_from_layer[l], view.origin[l], parts_[l].set});
+        job.layers.push_back({parts_[l].first, parts_[l].count, projections[l].camera_from_layer,
+                              projections[l].origin_in_camera, parts_[l].set});
+    if (job.is_as(requested_) && first_version_ != 0) return;
+    job.version = thread.next_version();
+    if (first_version_ == 0) first_version_ = job.version;
+    requested_ = job;
     thread.submit(slot, std::move(job));
-    return true;
 }
 
 void GroupSplats::take_order(OrderThread& thread, std::size_t slot) {
@@ -206,7 +181,6 @@ void GroupSplats::take_order(OrderThread& thread, std::size_t slot) {
     ordered_count_ = static_cast<std::int64_t>(order->splats.size());
     far_count_ = order->far_count;
     order_version_ = order->version;
-    order_valid_ = true;
 }
 
 }  // namespace astrosplat

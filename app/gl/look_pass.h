@@ -12,7 +12,6 @@
 #include "core/image.h"
 #include "gl/draw_pass.h"
 #include "gl/objects.h"
-#include "gl/order.h"
 #include "gl/preview_layer.h"
 #include "gl/program.h"
 #include "gl/splat_buffers.h"
@@ -79,15 +78,14 @@ class GroupSplats {
     /// Brings the shaded splats of these layers up to date. Throws InputError as prepare_look does.
     void update(const std::vector<const PreviewLayer*>& layers, RawSplatStore& raw, LookPass& pass,
                 bool ordered);
-    /// Asks for the order seen by these projections if it is not the one there or on its way. True when it
-    /// was asked for now.
-    bool request_order(const std::vector<LayerProjection>& projections, double far_from, OrderThread& thread,
+    /// Asks for the order seen by these projections if it is not the one there or on its way.
+    void request_order(const std::vector<LayerProjection>& projections, double far_from, OrderThread& thread,
                        std::size_t slot);
     /// Takes the order if it has come.
     void take_order(OrderThread& thread, std::size_t slot);
     /// The order there is was made for these splats, perhaps seen from elsewhere.
-    bool has_order() const { return order_valid_; }
-    bool order_is_current() const { return order_version_ == requested_version_; }
+    bool has_order() const { return first_version_ != 0 && order_version_ >= first_version_; }
+    bool order_is_current() const { return order_version_ == requested_.version; }
 
     std::int64_t first_of(std::size_t layer) const { return parts_[layer].first; }
     std::int64_t shown() const { return buffers_.size(); }
@@ -106,30 +104,17 @@ class GroupSplats {
         LookUniforms uniforms;
         float largest_radius = 0.0f;
     };
-    /// The inputs of an order.
-    struct View {
-        std::vector<glm::dmat3> camera_from_layer;
-        std::vector<glm::dvec3> origin;
-        int projection = 0;
-        double far_from = 0.0;
-        std::uint64_t places_version = 0;
-        bool operator==(const View&) const = default;
-    };
 
     bool lay_out(const std::vector<const PreviewLayer*>& layers);
-    void upload(Part& part, const ShadedSplats& splats);
     bool shade(Part& part, const PreviewLayer& layer, RawSplatStore& raw, LookPass& pass);
-    void read_places();
 
     std::vector<Part> parts_;
     ShadedBuffers buffers_;
     std::shared_ptr<const Buffer<glm::vec4>> places_;
-    std::uint64_t places_version_ = 0;
-    View requested_;
-    std::uint64_t requested_version_ = 0, order_version_ = 0;
+    OrderJob requested_;
+    std::uint64_t order_version_ = 0;
     /// Asked for since the layout last changed; older orders are for other splats.
     std::uint64_t first_version_ = 0;
-    bool order_valid_ = false;
     std::int64_t ordered_count_ = 0, far_count_ = 0;
 };
 

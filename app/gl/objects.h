@@ -1,17 +1,23 @@
 // OpenGL's objects as values that own them: each is created where it is first needed, moves, and goes with
-// its owner. They know nothing but their name; what is done with them stays plain OpenGL.
+// its owner. They know nothing but their name; what is done with them stays plain OpenGL. Among them images
+// that the processor fills: images in, textures out.
 #pragma once
 
 #include <glad/gl.h>
 
 #include <cstdint>
+#include <functional>
+#include <glm/vec2.hpp>
+#include <memory>
 #include <utility>
 #include <vector>
 
+#include "core/image.h"
+
 namespace astrosplat {
 
-/// Kind has static create(GLuint*) and destroy(GLuint*).
-template <class Kind>
+/// One object of the kind that these two of OpenGL's functions, as glad has loaded them, make and delete.
+template <auto* generate, auto* destroy>
 class GlObject {
   public:
     GlObject() = default;
@@ -27,13 +33,13 @@ class GlObject {
 
     /// The object's name; made at the first call.
     GLuint get() {
-        if (name_ == 0) Kind::create(&name_);
+        if (name_ == 0) (*generate)(1, &name_);
         return name_;
     }
     /// 0 before the first get().
     GLuint name() const { return name_; }
     void reset() {
-        if (name_ != 0) Kind::destroy(&name_);
+        if (name_ != 0) (*destroy)(1, &name_);
         name_ = 0;
     }
 
@@ -41,27 +47,10 @@ class GlObject {
     GLuint name_ = 0;
 };
 
-struct TextureKind {
-    static void create(GLuint* name) { glGenTextures(1, name); }
-    static void destroy(GLuint* name) { glDeleteTextures(1, name); }
-};
-struct BufferKind {
-    static void create(GLuint* name) { glGenBuffers(1, name); }
-    static void destroy(GLuint* name) { glDeleteBuffers(1, name); }
-};
-struct VertexArrayKind {
-    static void create(GLuint* name) { glGenVertexArrays(1, name); }
-    static void destroy(GLuint* name) { glDeleteVertexArrays(1, name); }
-};
-struct FramebufferKind {
-    static void create(GLuint* name) { glGenFramebuffers(1, name); }
-    static void destroy(GLuint* name) { glDeleteFramebuffers(1, name); }
-};
-
-using GlTexture = GlObject<TextureKind>;
-using GlBuffer = GlObject<BufferKind>;
-using GlVertexArray = GlObject<VertexArrayKind>;
-using GlFramebuffer = GlObject<FramebufferKind>;
+using GlTexture = GlObject<&glGenTextures, &glDeleteTextures>;
+using GlBuffer = GlObject<&glGenBuffers, &glDeleteBuffers>;
+using GlVertexArray = GlObject<&glGenVertexArrays, &glDeleteVertexArrays>;
+using GlFramebuffer = GlObject<&glGenFramebuffers, &glDeleteFramebuffers>;
 
 /// Of the bound texture: filter, no mip levels, edges clamped.
 void set_sampling(GLenum target, GLenum filter);
@@ -99,5 +88,55 @@ std::vector<unsigned char> read_rgba8(GLuint framebuffer, int width, int height)
 
 /// Binds a texture to a unit.
 void bind_texture(int unit, GLenum target, GLuint texture);
+
+/// Filled whole or tile by tile. RGBA32F, top row first.
+class ImageTexture {
+  public:
+    void upload(const Image& rgba);
+    /// Only this part of `rgba` (whose size is that of the last upload).
+    void upload(const Image& rgba, const Region& part);
+    /// The same, shown between its pixels where it is drawn at another size.
+    void upload_smooth(const Image& rgba);
+    GLuint handle() const { return texture_.name(); }  // 0 before the first upload
+    glm::vec2 size_px() const { return {static_cast<float>(width_), static_cast<float>(height_)}; }
+
+  private:
+    GlTexture texture_;
+    std::int64_t width_ = 0, height_ = 0;
+};
+
+/// Something that was found, with its picture on the GPU, where it goes once.
+template <class Found>
+class ShownPicture {
+  public:
+    /// Shows the picture `image_of(*found)`, a function's or a member, unless it is what is shown; null:
+    /// nothing is shown.
+    template <class ImageOf>
+    void show(std::shared_ptr<const Found> found, const ImageOf& image_of) {
+        if (found == found_) return;
+        found_ = std::move(found);
+        ++version_;
+        if (found_) texture_.upload_smooth(std::invoke(image_of, *found_));
+    }
+    void clear() { found_.reset(); }
+
+    /// Null: nothing is shown.
+    const Found* found() const { return found_.get(); }
+    GLuint texture() const { return found_ ? texture_.handle() : 0; }
+    glm::vec2 size_px() const { return texture_.size_px(); }
+    float aspect() const { return size_px().x / size_px().y; }  // width / height
+    /// Grows whenever another picture is shown.
+    std::uint64_t version() const { return version_; }
+
+  private:
+    std::shared_ptr<const Found> found_;
+    ImageTexture texture_;
+    std::uint64_t version_ = 0;
+};
+
+/// A texture as the widgets name it.
+inline void* to_handle(GLuint texture) {
+    return reinterpret_cast<void*>(static_cast<std::uintptr_t>(texture));
+}
 
 }  // namespace astrosplat

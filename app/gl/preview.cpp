@@ -12,9 +12,8 @@
 #include "camera/projection.h"
 #include "core/log.h"
 #include "gl/draw_pass.h"
-#include "gl/environment_pass.h"
-#include "gl/image_texture.h"
 #include "gl/look_pass.h"
+#include "gl/objects.h"
 #include "render/resolve.h"
 
 namespace astrosplat {
@@ -88,19 +87,11 @@ struct GlPreview::State {
     std::map<std::size_t, GroupSplats> groups;  // by place in the frame
     OrderThread orders;
     GlTarget frame, own_target;
-    GlProgram composite_covering{{{"BLEND 0"}, {"screen_vertex.glsl"}, {"composite_fragment.glsl"}, {}}};
-    GlProgram composite_screen{{{"BLEND 2"}, {"screen_vertex.glsl"}, {"composite_fragment.glsl"}, {}}};
+    GlProgram composite_covering{{{"BLEND 0"}, {"screen_vertex.glsl"}, {"composite_fragment.glsl"}}};
+    GlProgram composite_screen{{{"BLEND 2"}, {"screen_vertex.glsl"}, {"composite_fragment.glsl"}}};
     WholeTarget triangle;
-    std::map<const SplatSet*, std::pair<std::weak_ptr<const SplatSet>, Bounds>> boxes;
     std::int64_t shown = 0;
     bool sorting = false;
-
-    const Bounds& box_of(const std::shared_ptr<const SplatSet>& set) {
-        std::erase_if(boxes, [](const auto& box) { return box.second.first.expired(); });
-        auto& entry = boxes[set.get()];
-        if (entry.first.lock() != set) entry = {set, bounds(*set)};
-        return entry.second;
-    }
 
     std::vector<FrameGroup> make_frame(const std::vector<PreviewLayer>& layers, const PreviewView& view);
     void update(std::vector<FrameGroup>& frame_groups, int width, int height);
@@ -147,8 +138,8 @@ void GlPreview::State::update(std::vector<FrameGroup>& frame_groups, int width, 
             if (!group.layers[l]->set) continue;
             double jitter = 0.0;
             for (const Noise& noise : group.layers[l]->look.noise) jitter += std::fabs(double(noise.jitter));
-            const double nearest =
-                std::max(0.0, distance_to(p, box_of(group.layers[l]->set)) - jitter * double(p.radius_scale));
+            const double nearest = std::max(
+                0.0, distance_to(p, raw.of(group.layers[l]->set).box()) - jitter * double(p.radius_scale));
             group.all_far = group.all_far && nearest > far_from;
         }
         if (group.ordered) splats.request_order(group.projections, group.far_from, orders, g);

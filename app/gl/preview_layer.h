@@ -1,6 +1,7 @@
 // The input of previews: layers, and the frame in which they are seen.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -25,7 +26,19 @@ struct PreviewLayer {
 };
 
 /// Splats of a layer that are drawn, before its look drops any.
-std::int64_t shown_count(const PreviewLayer& layer);
+inline std::int64_t shown_count(const PreviewLayer& layer) {
+    if (layer.layer.splats) return layer.layer.splats->size();
+    return layer.set ? layer.set->size() : 0;
+}
+
+/// A number that differs, most likely, from that of another image at the same address.
+inline float content_probe(const Image& image) {
+    constexpr std::size_t looks = 97;  // at pixels, about
+    auto sum = static_cast<float>(image.width);
+    const std::size_t step = std::max<std::size_t>(1, image.pixels.size() / looks);
+    for (std::size_t i = 0; i < image.pixels.size(); i += step) sum = 0.75f * sum + image.pixels[i];
+    return sum;
+}
 
 /// All that a layer's splats are shaded with, beside its set: while it stays equal, they stay.
 struct Shading {
@@ -34,7 +47,10 @@ struct Shading {
     float map_probe = 0.0f;  // tells another map at the address of an old one
     bool operator==(const Shading&) const = default;
 };
-Shading shading_of(const PreviewLayer& layer);
+inline Shading shading_of(const PreviewLayer& layer) {
+    const Image* map = layer.inputs.thickness_map;
+    return {layer.look, layer.inputs, map ? content_probe(*map) : 0.0f};
+}
 
 /// A frame as previews draw it.
 struct PreviewView {
@@ -45,6 +61,12 @@ struct PreviewView {
 };
 
 /// For the renderer's projections.
-RenderSettings settings_of(const PreviewView& view);
+inline RenderSettings settings_of(const PreviewView& view) {
+    RenderSettings settings;
+    settings.width = view.width;
+    settings.height = view.height;
+    settings.pixel_filter = view.pixel_filter;
+    return settings;
+}
 
 }  // namespace astrosplat

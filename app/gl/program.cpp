@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <regex>
+#include <sstream>
 #include <stdexcept>
 
 namespace astrosplat {
@@ -71,39 +71,25 @@ struct Stage {
     Stage& operator=(const Stage&) = delete;
 };
 
-std::size_t digits_at(const std::string& line, std::size_t i) {
-    std::size_t end = i;
-    while (end < line.size() && std::isdigit(static_cast<unsigned char>(line[end]))) ++end;
-    return end;
-}
-
+/// Mesa writes "0:117(5): error", NVIDIA "0(117) : error": the number of a string, then of a line.
 std::string readable_line(const std::string& line, const std::vector<FileStart>& files) {
-    const std::size_t string_end = digits_at(line, 0);
-    if (string_end == 0 || string_end >= line.size()) return line;
-    const bool in_brackets = line[string_end] == '(';
-    if (line[string_end] != ':' && !in_brackets) return line;
-    const std::size_t begin = string_end + 1, end = digits_at(line, begin);
-    if (end == begin || end - begin > 6) return line;
-    const int number = std::stoi(line.substr(begin, end - begin));
+    static const std::regex head(R"(\d+(?::(\d{1,6})|\((\d{1,6})\)?)(?!\d)(.*))");
+    std::smatch parts;
+    if (!std::regex_match(line, parts, head)) return line;
+    const int number = std::stoi(parts[1].matched ? parts[1] : parts[2]);
     const FileStart* file = nullptr;
     for (const FileStart& candidate : files)
         if (candidate.line <= number) file = &candidate;
-    if (!file) return line;
-    const bool closes = in_brackets && end < line.size() && line[end] == ')';
-    return fmt::format("{}:{}{}", file->name, number - file->line + 1, line.substr(end + (closes ? 1 : 0)));
+    return file ? fmt::format("{}:{}{}", file->name, number - file->line + 1, parts[3].str()) : line;
 }
 
 }  // namespace
 
 std::string readable_log(const std::string& log, const std::vector<FileStart>& files) {
     std::string result;
-    for (std::size_t begin = 0; begin < log.size();) {
-        std::size_t end = log.find('\n', begin);
-        if (end == std::string::npos) end = log.size();
-        if (!result.empty()) result += "; ";
-        result += readable_line(log.substr(begin, end - begin), files);
-        begin = end + 1;
-    }
+    std::istringstream lines(log);
+    for (std::string line; std::getline(lines, line);)
+        result += (result.empty() ? "" : "; ") + readable_line(line, files);
     return result;
 }
 
@@ -133,22 +119,17 @@ GlProgram::GlProgram(const ProgramSource& source) {
     glLinkProgram(program_);
     GLint linked = GL_FALSE;
     glGetProgramiv(program_, GL_LINK_STATUS, &linked);
-    if (linked) return;
-    const std::string log = log_of(program_, glGetProgramiv, glGetProgramInfoLog);
-    glDeleteProgram(program_);
-    throw std::runtime_error("OpenGL does not link the shaders of " + source.vertex.back() + ": " + log);
+    if (!linked) {
+        const std::string log = log_of(program_, glGetProgramiv, glGetProgramInfoLog);
+        glDeleteProgram(program_);
+        throw std::runtime_error("OpenGL does not link the shaders of " + source.vertex.back() + ": " + log);
+    }
+    glUseProgram(program_);
+    for (const auto& [sampler, unit] : source.samplers) glUniform1i(uniform(sampler.c_str()), unit);
+    const GLuint block = glGetUniformBlockIndex(program_, source.block.c_str());
+    if (block != GL_INVALID_INDEX) glUniformBlockBinding(program_, block, 0);
 }
 
 GlProgram::~GlProgram() { glDeleteProgram(program_); }
-
-void GlProgram::set_sampler(const char* sampler, int unit) const {
-    glUseProgram(program_);
-    glUniform1i(uniform(sampler), unit);
-}
-
-void GlProgram::set_block(const char* block, GLuint binding) const {
-    const GLuint index = glGetUniformBlockIndex(program_, block);
-    if (index != GL_INVALID_INDEX) glUniformBlockBinding(program_, index, binding);
-}
 
 }  // namespace astrosplat

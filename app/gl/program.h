@@ -16,13 +16,15 @@ std::string shader_text(const std::string& name);
 
 /// The parts of a program. Each stage is "#version 410 core", the defines and its files one after the other.
 struct ProgramSource {
-    std::vector<std::string> defines;   // "QUADS" or "KIND 2"
-    std::vector<std::string> vertex;    // names for shader_text()
-    std::vector<std::string> fragment;  // empty: no fragment stage
-    std::vector<std::string> feedback;  // vertex outputs to capture, each into its own buffer
+    std::vector<std::string> defines = {};   // "QUADS" or "KIND 2"
+    std::vector<std::string> vertex = {};    // names for shader_text()
+    std::vector<std::string> fragment = {};  // empty: no fragment stage
+    std::vector<std::string> feedback = {};  // vertex outputs to capture, each into its own buffer
     /// Values instead of those in the texts, for lines "const int NAME = 8;".
     std::vector<std::pair<std::string, int>> constants = {};
     std::string fragment_head = {};  // GLSL before the files of the fragment stage, from elsewhere
+    std::vector<std::pair<std::string, int>> samplers = {};  // and the texture unit that each reads
+    std::string block = {};                                  // of uniforms, read from binding point 0
 };
 
 /// The files of projection.glsl and what it needs, followed by `more`.
@@ -40,10 +42,6 @@ class GlProgram {
     GLuint name() const { return program_; }
     /// -1 where the program does not use it, which OpenGL's glUniform calls ignore.
     GLint uniform(const char* name) const { return glGetUniformLocation(program_, name); }
-    /// The sampler reads texture unit `unit`.
-    void set_sampler(const char* name, int unit) const;
-    /// The uniform block is read from binding point `binding`.
-    void set_block(const char* name, GLuint binding) const;
 
   private:
     GLuint program_ = 0;

@@ -19,6 +19,20 @@
 
 namespace astrosplat {
 
+/// What `work` finds, or its error; null once it was cancelled.
+template <class Found, class Work>
+std::shared_ptr<Found> found_or_error(const Work& work, const std::atomic<bool>& cancelled) {
+    auto found = std::make_shared<Found>();
+    try {
+        *found = work(Progress{{}, &cancelled});
+    } catch (const Cancelled&) {
+        return nullptr;
+    } catch (const std::exception& error) {
+        found->error = error.what();
+    }
+    return found;
+}
+
 /// The last thing asked for, each in place of the one before. `Found` has a member `error`, which says in one
 /// line why there is nothing else in it.
 template <class Request, class Found>
@@ -87,14 +101,7 @@ class LatestWork {
     }
 
     void run(const Request& request, const std::atomic<bool>& cancelled) {
-        auto found = std::make_shared<Found>();
-        try {
-            *found = work_(request, Progress{{}, &cancelled});
-        } catch (const Cancelled&) {
-            return;
-        } catch (const std::exception& error) {
-            found->error = error.what();
-        }
+        auto found = found_or_error<Found>([&](const Progress& p) { return work_(request, p); }, cancelled);
         const auto held = worker_.lock();
         if (!cancelled) found_ = std::move(found);
     }
@@ -108,14 +115,13 @@ class LatestWork {
 };
 
 /// Things that are read and kept in memory, so that they are there when they are looked at. Keys are ordered;
-/// a Value has a member bytes(), the memory that it takes.
+/// a Value has a member bytes(), the memory that it takes, and `error` as above.
 template <class Key, class Value>
 class ReadAhead {
   public:
     using Read = std::function<Value(const Key&, const Progress&)>;
 
-    /// `read` may throw Cancelled, once it was asked to stop, and nothing else. About `most_bytes` are kept,
-    /// of what was wanted last.
+    /// `read` may throw as the work above. About `most_bytes` are kept, of what was wanted last.
     ReadAhead(Read read, std::size_t most_bytes) : read_(std::move(read)), most_bytes_(most_bytes) {}
     ~ReadAhead() { want({}); }
 
@@ -167,11 +173,8 @@ class ReadAhead {
     }
 
     void run(const Key& key, const std::atomic<bool>& cancelled) {
-        std::shared_ptr<const Value> value;
-        try {
-            value = std::make_shared<const Value>(read_(key, Progress{{}, &cancelled}));
-        } catch (const Cancelled&) {  // nobody wants it any more
-        }
+        std::shared_ptr<const Value> value =
+            found_or_error<Value>([&](const Progress& p) { return read_(key, p); }, cancelled);
         const auto held = worker_.lock();
         reading_.reset();
         if (value) kept_[key] = {std::move(value), calls_};

@@ -40,22 +40,49 @@ Image read_thumbnail(const fs::path& file) {
     }
 }
 
+DisplaySettings::Mode mode_of(CompareMode compare, bool blink_shows_other) {
+    using Mode = DisplaySettings::Mode;
+    if (compare == CompareMode::wipe) return Mode::wipe;
+    if (compare == CompareMode::difference) return Mode::difference;
+    return compare == CompareMode::blink && !blink_shows_other ? Mode::a : Mode::b;
+}
+
+/// Linear light of display values, from a table: 3e-7 of white off at most.
+class LightTable {
+  public:
+    LightTable() {
+        for (std::size_t i = 0; i < light_.size(); ++i)
+            light_[i] = real::srgb_to_linear(std::min(1.0, double(i) / steps));
+    }
+    double operator()(float displayed) const {
+        const double at = std::clamp(double(displayed), 0.0, 1.0) * steps;
+        const auto i = static_cast<std::size_t>(at);
+        return light_[i] + (light_[i + 1] - light_[i]) * (at - double(i));
+    }
+
+  private:
+    static constexpr int steps = 1024;
+    std::array<double, steps + 2> light_;
+};
+
 }  // namespace
 
 void SnapshotList::open(const fs::path& scene_file, std::vector<std::string>& problems) {
     snapshots_.clear();
+    b_ = no_b;
     folder_ = scene_file.empty() ? fs::path() : snapshot_folder(scene_file);
     if (folder_.empty()) return;
-    for (KeptSnapshot& kept : read_snapshots(folder_, problems)) {
-        StoredView view;
-        view.look = {kept.facts.name, std::make_shared<const Scene>(std::move(kept.scene)), kept.facts.frame};
-        view.picture = read_thumbnail(snapshot_picture(kept.file));
-        view.thumbnail.upload(view.picture);
-        view.splats = kept.facts.splats;
-        view.seconds = kept.facts.seconds;
-        view.file = kept.file;
-        snapshots_.push_back(std::move(view));
-    }
+    for (KeptSnapshot& kept : read_snapshots(folder_, problems))
+        push({{kept.facts.name, std::make_shared<const Scene>(std::move(kept.scene)), kept.facts.frame},
+              read_thumbnail(snapshot_picture(kept.file)),
+              kept.facts.splats,
+              kept.facts.seconds,
+              kept.file});
+}
+
+SnapshotList::StoredView& SnapshotList::push(StoredView view) {
+    view.thumbnail.upload(view.picture);
+    return snapshots_.emplace_back(std::move(view));
 }
 
 void SnapshotList::keep(StoredView& view) const {
@@ -70,13 +97,7 @@ void SnapshotList::move_to(const fs::path& scene_file) {
 }
 
 void SnapshotList::add(StoredLook look, Image picture, std::int64_t splats, double seconds) {
-    StoredView& view = snapshots_.emplace_back();
-    view.look = std::move(look);
-    view.picture = std::move(picture);
-    view.thumbnail.upload(view.picture);
-    view.splats = splats;
-    view.seconds = seconds;
-    keep(view);
+    keep(push({std::move(look), std::move(picture), splats, seconds, {}}));
 }
 
 void SnapshotList::rename(std::size_t index, const std::string& name) {
@@ -90,6 +111,8 @@ void SnapshotList::remove(std::size_t index) {
     if (index >= snapshots_.size()) return;
     if (const fs::path& file = snapshots_[index].file; !file.empty()) remove_snapshot(file);
     snapshots_.erase(snapshots_.begin() + static_cast<std::ptrdiff_t>(index));
+    if (b_ == index) b_ = no_b;
+    if (b_ != no_b && b_ > index) --b_;
 }
 
 std::string SnapshotList::next_name() const {
@@ -103,32 +126,16 @@ std::string SnapshotList::next_name() const {
     return name;
 }
 
-std::vector<Snapshot> SnapshotList::cards() const {
-    std::vector<Snapshot> cards;
+void SnapshotList::fill(Status& status) const {
+    status.snapshots.clear();
     for (const StoredView& view : snapshots_)
-        cards.push_back({view.look.name, to_handle(view.thumbnail.handle()),
-                         static_cast<float>(view.picture.width) / static_cast<float>(view.picture.height),
-                         view.splats, view.seconds});
-    return cards;
+        status.snapshots.push_back(
+            {view.look.name, to_handle(view.thumbnail.handle()),
+             static_cast<float>(view.picture.width) / static_cast<float>(view.picture.height), view.splats,
+             view.seconds});
+    status.b_snapshot = b() ? static_cast<int>(b_) : -1;
+    status.b_name = b() ? b()->name : "";
 }
-
-namespace {
-
-DisplaySettings::Mode mode_of(CompareMode compare, bool blink_shows_other) {
-    using Mode = DisplaySettings::Mode;
-    switch (compare) {
-        case CompareMode::wipe:
-            return Mode::wipe;
-        case CompareMode::blink:
-            return blink_shows_other ? Mode::b : Mode::a;
-        case CompareMode::difference:
-            return Mode::difference;
-        default:
-            return Mode::b;
-    }
-}
-
-}  // namespace
 
 Image thumbnail_of(const std::vector<unsigned char>& rgba, int width, int height, int most) {
     const int factor = std::max(1, (width + most - 1) / most);
@@ -145,21 +152,6 @@ Image thumbnail_of(const std::vector<unsigned char>& rgba, int width, int height
                 small.at(x, y)[c] = static_cast<float>(sum) / (255.0f * static_cast<float>(factor * rows));
             }
     return small;
-}
-
-void Comparison::open_snapshots(const std::filesystem::path& scene_file, std::vector<std::string>& problems) {
-    snapshots_.open(scene_file, problems);
-    b_snapshot_ = -1;
-}
-
-void Comparison::delete_snapshot(std::size_t index) {
-    snapshots_.remove(index);
-    if (b_snapshot_ == static_cast<int>(index)) b_snapshot_ = -1;
-    if (b_snapshot_ > static_cast<int>(index)) --b_snapshot_;
-}
-
-void Comparison::set_b(std::size_t index) {
-    if (index < snapshots_.size()) b_snapshot_ = static_cast<int>(index);
 }
 
 void Comparison::find_reference(const Scene& scene, const ViewState& view, Status& status) {
@@ -186,11 +178,10 @@ void Comparison::show(const Scene& scene, const ViewState& view, const ViewOfB& 
         shown.b_place = place_of(reference, reference_.aspect(), how.frame);
         shown.b_opacity = static_cast<float>(reference.opacity);
     } else {
-        if (b_snapshot_ < 0) return;
-        const StoredLook& look = snapshots_.look(static_cast<std::size_t>(b_snapshot_));
+        if (!how.look) return;
         PreviewChoice choice = how.choice;
         choice.refined = false;  // two sums of whole sets would take twice the memory
-        b_.show(how.request_for(with_look_of(scene, *look.scene)), choice, how.may_settle, how.now);
+        b_.show(how.request_for(with_look_of(scene, *how.look->scene)), choice, how.may_settle, how.now);
         shown.b = b_.texture();
     }
     shown.mode = mode_of(view.compare, blink_shows_other_);
@@ -200,34 +191,6 @@ void Comparison::show(const Scene& scene, const ViewState& view, const ViewOfB& 
 const ViewFrameStatus* Comparison::refining() const {
     return comparing_ && b_.status().state == ViewFrameState::refining ? &b_.status() : nullptr;
 }
-
-void Comparison::fill(Status& status) const {
-    status.snapshots = snapshots_.cards();
-    status.b_snapshot = b_snapshot_;
-    status.b_name = b_snapshot_ >= 0 ? snapshots_.look(static_cast<std::size_t>(b_snapshot_)).name : "";
-}
-
-namespace {
-
-/// Linear light of display values, from a table: 3e-7 of white off at most.
-class LightTable {
-  public:
-    LightTable() {
-        for (std::size_t i = 0; i < light_.size(); ++i)
-            light_[i] = real::srgb_to_linear(std::min(1.0, double(i) / steps));
-    }
-    double operator()(float displayed) const {
-        const double at = std::clamp(double(displayed), 0.0, 1.0) * steps;
-        const auto i = static_cast<std::size_t>(at);
-        return light_[i] + (light_[i + 1] - light_[i]) * (at - double(i));
-    }
-
-  private:
-    static constexpr int steps = 1024;
-    std::array<double, steps + 2> light_;
-};
-
-}  // namespace
 
 std::optional<DifferenceStatus> difference_of(const Image& a, const Image& b) {
     static const LightTable light;

@@ -1,6 +1,6 @@
 // The comparison of the frame, A, with B: the look of a snapshot seen by the same camera, or a reference
-// picture. In: the looks to keep, the file to read, requests for B's frame. Out: B for the display, cards
-// for the widgets, and the difference in numbers.
+// picture. In: the looks to keep, the file to read, requests for B's frame. Out: cards for the widgets, B for
+// the display, and the difference in numbers.
 #pragma once
 
 #include <cstdint>
@@ -14,14 +14,14 @@
 #include "edit/snapshots.h"
 #include "edit/status.h"
 #include "gl/display.h"
-#include "gl/image_texture.h"
-#include "viewer/reference_picture.h"
+#include "gl/objects.h"
+#include "viewer/compared_pictures.h"
 #include "viewer/view_frame.h"
 
 namespace astrosplat {
 
 /// The snapshots of the open scene: looks with a thumbnail each, kept beside the scene as soon as they are
-/// taken.
+/// taken. One of them may be B.
 class SnapshotList {
   public:
     /// Those kept beside this scene in place of all there are; none of a scene without a file. What cannot be
@@ -38,23 +38,35 @@ class SnapshotList {
     void remove(std::size_t index);
 
     std::size_t size() const { return snapshots_.size(); }
-    const StoredLook& look(std::size_t index) const { return snapshots_[index].look; }
+    /// Null: there is none with this number.
+    const StoredLook* look(std::size_t index) const {
+        return index < snapshots_.size() ? &snapshots_[index].look : nullptr;
+    }
+    /// A number that there is not changes nothing.
+    void set_b(std::size_t index) {
+        if (index < snapshots_.size()) b_ = index;
+    }
+    /// Null: none is B.
+    const StoredLook* b() const { return look(b_); }
     /// "Look 3", which none has yet.
     std::string next_name() const;
-    std::vector<Snapshot> cards() const;
+    void fill(Status& status) const;
 
   private:
+    static constexpr std::size_t no_b = ~std::size_t{0};
     struct StoredView {
         StoredLook look;
         Image picture;
-        ImageTexture thumbnail;
         std::int64_t splats = 0;
         double seconds = 0.0;
         std::filesystem::path file;  // empty: not kept
+        ImageTexture thumbnail = {};
     };
+    StoredView& push(StoredView view);
     void keep(StoredView& view) const;
 
     std::vector<StoredView> snapshots_;
+    std::size_t b_ = no_b;
     std::filesystem::path folder_;  // empty: the scene has no file yet
 };
 
@@ -65,15 +77,6 @@ class Comparison {
   public:
     explicit Comparison(std::shared_ptr<PictureFiles> files) : b_(std::move(files)) {}
 
-    SnapshotList& snapshots() { return snapshots_; }
-    const SnapshotList& snapshots() const { return snapshots_; }
-    /// Those of another scene; what cannot be read becomes a line of `problems`.
-    void open_snapshots(const std::filesystem::path& scene_file, std::vector<std::string>& problems);
-    /// Throws as SnapshotList::remove() does.
-    void delete_snapshot(std::size_t index);
-    /// Makes a snapshot B; numbers that there are not change nothing.
-    void set_b(std::size_t index);
-
     /// Chooses the reference of the view, reads its picture in the background, and says in `status` which it
     /// is. Call it every frame.
     void find_reference(const Scene& scene, const ViewState& view, Status& status);
@@ -83,6 +86,7 @@ class Comparison {
     /// How what is compared with is made: B's request for any scene as A's is made, how it is drawn; and the
     /// frame that the reference lies over, px of the display.
     struct ViewOfB {
+        const StoredLook* look = nullptr;  // null: there is none
         std::function<ViewRequest(const Scene&)> request_for;
         PreviewChoice choice;
         bool may_settle = false;
@@ -100,12 +104,9 @@ class Comparison {
     const ViewFrameStatus* refining() const;
     /// Grows whenever the pixels of B or the reference change.
     std::uint64_t version() const { return b_.version() + reference_.version(); }
-    void fill(Status& status) const;
 
   private:
     ViewFrame b_;
-    SnapshotList snapshots_;
-    int b_snapshot_ = -1;
     bool comparing_ = false;  // the last show() showed more than A
     bool blink_shows_other_ = false;
     ReferencePicture reference_;

@@ -31,7 +31,7 @@ class CpuPreview {
 std::vector<float> light_of_layers(const std::vector<PreviewLayer>& layers, const PreviewView& view,
                                    std::int64_t x, std::int64_t y);
 
-/// Places of the layers that can be told from black beside the brightest, brightest first.
+/// Indices of the layers whose light is more than a fiftieth of the brightest one's, brightest first.
 std::vector<std::size_t> seen_layers(const std::vector<float>& light);
 
 /// The layer that a click selects: the brightest, or `behind` the next one after the selected layer, after

@@ -3,9 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <nlohmann/json.hpp>
-#include <string_view>
+#include <regex>
 #include <utility>
 
 #include "core/error.h"
@@ -41,6 +40,23 @@ std::string queue_text(const Json& status) {
     return parts.empty() ? "" : fmt::format(", in the queue: {}", fmt::join(parts, ", "));
 }
 
+constexpr double pause_s = 3.0;  // between questions, and the longer the more frames there are to look at:
+constexpr double pause_share = 5.0;  // times what the last question took
+
+std::string last_line(const std::string& text) {
+    const std::string whole(trim(text));
+    const std::size_t end = whole.rfind('\n');
+    return without_prefix(end == std::string::npos ? whole : whole.substr(end + 1));
+}
+
+/// Of pairs those of the left eye.
+std::vector<fs::path> files_of(const std::string& output, const std::vector<std::int64_t>& frames) {
+    const OutputPattern pattern = output_pattern({}, output);
+    std::vector<fs::path> files;
+    for (const std::int64_t frame : frames) files.push_back(pattern.resolve(frame, Eye::left));
+    return files;
+}
+
 }  // namespace
 
 std::optional<FarmReport> read_farm_report(const std::string& output) try {
@@ -69,41 +85,11 @@ std::optional<FarmReport> read_farm_report(const std::string& output) try {
 }
 
 std::vector<std::int64_t> submitted_jobs(const std::string& output) {
-    constexpr std::string_view before[] = {" submitted as job ", ", which waits for the sets of job "};
-    std::vector<std::int64_t> jobs;
-    std::size_t at = 0;
-    for (const std::string_view words : before) {
-        at = output.find(words, at);
-        if (at == std::string::npos) return {};
-        at += words.size();
-        std::int64_t job = 0;
-        if (std::from_chars(output.data() + at, output.data() + output.size(), job).ec != std::errc{})
-            return {};
-        jobs.push_back(job);
-    }
-    return jobs;
+    static const std::regex words(R"( submitted as job (\d+), which waits for the sets of job (\d+))");
+    std::smatch jobs;
+    if (!std::regex_search(output, jobs, words)) return {};
+    return {std::stoll(jobs[1]), std::stoll(jobs[2])};
 }
-
-namespace {
-
-constexpr double pause_s = 3.0;  // between questions, and the longer the more frames there are to look at:
-constexpr double pause_share = 5.0;  // times what the last question took
-
-std::string last_line(const std::string& text) {
-    const std::string whole(trim(text));
-    const std::size_t end = whole.rfind('\n');
-    return without_prefix(end == std::string::npos ? whole : whole.substr(end + 1));
-}
-
-/// Of pairs those of the left eye.
-std::vector<fs::path> files_of(const std::string& output, const std::vector<std::int64_t>& frames) {
-    const OutputPattern pattern = output_pattern({}, output);
-    std::vector<fs::path> files;
-    for (const std::int64_t frame : frames) files.push_back(pattern.resolve(frame, Eye::left));
-    return files;
-}
-
-}  // namespace
 
 FarmJob::FarmJob(FarmCommands commands) : commands_(std::move(commands)) {
     const bool submitted = commands_.submit.empty();

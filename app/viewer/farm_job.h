@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "edit/status.h"
 #include "farm/child_process.h"
 #include "farm/submission.h"
 
@@ -18,7 +19,7 @@ namespace astrosplat {
 /// The state of the frames that a farm was given.
 struct FarmReport {
     bool complete = false;  // every frame is there
-    bool active = false;    // a task waits or runs, or nobody knows
+    bool active = false;    // a task waits or runs, or that is not known
     std::int64_t frames = 0, done = 0;
     std::vector<std::int64_t> done_frames;   // their numbers, ascending; of pairs those of the first eye
     std::vector<std::int64_t> jobs;          // in Slurm's queue, of submissions that are not over
@@ -50,7 +51,7 @@ class FarmJob {
     /// Takes the tasks out of the queue; finished frames stay.
     void cancel();
 
-    enum class State { running, done, failed, cancelled };
+    using State = QueuedJob::State;  // running, done, failed or cancelled
     State state() const { return state_; }
     const std::string& text() const { return text_; }  // one line
     float progress() const;                            // 0..1, of frames

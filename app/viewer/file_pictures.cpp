@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <exception>
 #include <glm/gtc/packing.hpp>
 #include <optional>
+#include <sstream>
 #include <utility>
 
 #include "core/color.h"
@@ -50,11 +50,9 @@ std::optional<Chromaticities> chromaticities_of(const fs::path& file) {
     for (const auto& [name, text] : read_image_info(file).metadata) {
         if (name != "chromaticities") continue;
         std::vector<double> n;
-        for (std::size_t begin = 0; begin < text.size();) {
-            const std::size_t end = std::min(text.find(',', begin), text.size());
-            n.push_back(parse_double(trim(text.substr(begin, end - begin))).value_or(0.0));
-            begin = end + 1;
-        }
+        std::istringstream words(text);
+        for (std::string word; std::getline(words, word, ',');)
+            n.push_back(parse_double(trim(word)).value_or(0.0));
         if (n.size() != 8 || std::ranges::any_of(n, [](double x) { return !(x > 0.0 && x < 1.0); })) break;
         return Chromaticities{{n[0], n[1]}, {n[2], n[3]}, {n[4], n[5]}, {n[6], n[7]}};
     }
@@ -103,7 +101,7 @@ std::uint8_t code_of(float value) {
 }
 
 std::uint16_t half_of(float value) {
-    constexpr float largest = 65504.0f;
+    constexpr float largest = 65504.0f;  // that a half float can be
     return glm::packHalf1x16(std::clamp(value, -largest, largest));
 }
 
@@ -117,18 +115,6 @@ std::vector<Packed> packed(const Image& rgba, const Pack& pack) {
 
 PackedPicture size_of(const SmallPicture& small) {
     return {small.image.width, small.image.height, small.width, small.height, {}, {}, {}};
-}
-
-/// The picture, or why it cannot be read. Throws Cancelled.
-template <class ReadFile>
-PackedPicture picture_or_error(const ReadFile& read) try {
-    return read();
-} catch (const Cancelled&) {
-    throw;
-} catch (const std::exception& error) {
-    PackedPicture none;
-    none.error = error.what();
-    return none;
 }
 
 PackedPicture frame_of_file(const fs::path& file, std::int64_t most_px, const Progress& progress) {
@@ -164,7 +150,7 @@ Thumbnails::Thumbnails(std::int64_t most_px, std::size_t most_bytes)
     : ReadAhead(
           [most_px](const ListedPicture& picture, const Progress& progress) {
               const QuietLog quiet;  // whoever opens it is told why it cannot be read
-              return picture_or_error([&] { return thumbnail_of_file(picture.file, most_px, progress); });
+              return thumbnail_of_file(picture.file, most_px, progress);
           },
           most_bytes) {}
 
@@ -174,11 +160,9 @@ void Thumbnails::want(std::vector<ListedPicture> pictures) {
 }
 
 RenderedFrames::RenderedFrames(std::int64_t most_px, std::size_t most_bytes)
-    : frames_(
-          [most_px](const Key& key, const Progress& progress) {
-              return picture_or_error([&] { return frame_of_file(key.file, most_px, progress); });
-          },
-          most_bytes) {}
+    : frames_([most_px](const Key& key,
+                        const Progress& progress) { return frame_of_file(key.file, most_px, progress); },
+              most_bytes) {}
 
 void RenderedFrames::want(const std::vector<fs::path>& files) {
     wanted_.clear();
@@ -200,21 +184,20 @@ std::shared_ptr<const PackedPicture> RenderedFrames::found(const fs::path& file)
 
 FinishedView finished_view(const FinishedRequest& request, std::int64_t most_px) {
     SmallPicture small = read_small_picture(request.file, most_px);
-    FinishedView view{std::move(small.image), {}};
-    if (small.light) {
-        FrameFormat format;
-        format.kind = FrameKind::png;
-        format.depth = OutputParams::Depth::uint8;
-        format.alpha = OutputParams::Alpha::none;
-        format.view = request.view;
-        format.exposure = request.exposure;
-        format.ocio = request.ocio;
-        const std::vector<std::uint8_t> codes = encode_8bit(format, view.image, 0, 0);
-        for (std::size_t i = 0; i < codes.size(); ++i)
-            view.image.pixels[i / 3 * 4 + i % 3] = static_cast<float>(codes[i]) * (1.0f / 255.0f);
+    if (!small.light) {
+        for (float& value : small.image.pixels) value = std::clamp(value, 0.0f, 1.0f);
+        return {std::move(small.image), {}};
     }
-    for (float& value : view.image.pixels) value = std::clamp(value, 0.0f, 1.0f);
-    return view;
+    FrameFormat format;
+    format.kind = FrameKind::png;
+    format.depth = OutputParams::Depth::uint8;
+    format.alpha = OutputParams::Alpha::none;
+    format.view = request.view;
+    format.exposure = request.exposure;
+    format.ocio = request.ocio;
+    PackedPicture seen = size_of(small);
+    seen.codes = encode_8bit(format, small.image, 0, 0);
+    return {to_image(seen), {}};
 }
 
 FinishedFrames::Work finished_frames(std::int64_t most_px) {

@@ -1,28 +1,22 @@
-// One thread with one pipeline. Each request is a Run of its own, so that what a cancelled one still writes
-// reaches nobody; tiles are copied into the run's canvas without a lock, since each is written once. The
-// thread has the window's priority: the window sleeps between events, which serves it first, while a lower
-// one would hold up the pool's threads at the end of every loop on a busy machine.
+// One pipeline, used by the thread alone. Each request is a Run of its own, so that what a cancelled one
+// still writes reaches nobody; tiles are copied into the run's canvas without a lock, since each is written
+// once. The thread has the window's priority: the window sleeps between events, which serves it first, while
+// a lower one would hold up the pool's threads at the end of every loop on a busy machine.
 #include "viewer/final_frame.h"
 
 #include <algorithm>
 #include <atomic>
 #include <cstring>
-#include <exception>
 #include <mutex>
 #include <new>
+#include <stdexcept>
 #include <utility>
 
-#include "core/error.h"
 #include "core/progress.h"
 #include "pipeline.h"
 
 namespace astrosplat {
 namespace {
-
-Region whole_region(const FinalRequest& request) {
-    const Region& r = request.region;
-    return r.width > 0 && r.height > 0 ? r : Region{0, 0, request.width, request.height};
-}
 
 void copy_tile(const Image& from, const Region& tile, Image& to) {
     const auto bytes = static_cast<std::size_t>(tile.width * from.channels) * sizeof(float);
@@ -32,31 +26,20 @@ void copy_tile(const Image& from, const Region& tile, Image& to) {
 
 }  // namespace
 
-/// One request and what has come of it.
+/// One request and its tiles.
 struct FinalFrame::Run {
     FinalRequest request;
-    std::atomic<bool> cancelled{false};
     std::atomic<float> progress{0.0f};
-    Image canvas;  // region-sized RGBA; a tile is whole before it appears in `fresh`
-
-    std::mutex mutex;           // for all below
+    Image canvas;               // region-sized RGBA; a tile is whole before it appears in `fresh`
+    std::mutex mutex;           // for `fresh`
     std::vector<Region> fresh;  // px of the canvas
-    Outcome outcome{State::running, {}, 0.0, {}};
-
-    void end(Outcome how) {
-        const std::lock_guard lock(mutex);
-        outcome = std::move(how);
-    }
 };
 
-FinalFrame::FinalFrame() = default;
-FinalFrame::~FinalFrame() { cancel(); }
-
-void FinalFrame::render(Pipeline& pipeline, Run& run) {
+FinalFrame::Found FinalFrame::render(Pipeline& pipeline, Run& run, Progress progress) {
     const auto start = Clock::now();
     const FinalRequest& request = run.request;
-    Progress progress;
-    progress.cancelled = &run.cancelled;
+    const Region region = request.part();
+    run.canvas = unfilled_image(region.width, region.height, 4);
     pipeline.set_scene(request.scene, request.sets, request.environment.get(), progress);
     const FrameScene now = pipeline.frame_scene(request.frame);
     RenderSettings settings = render_settings(now.scene.output);
@@ -66,7 +49,6 @@ void FinalFrame::render(Pipeline& pipeline, Run& run) {
     settings.aov_depth = request.depth;
     settings.memory_limit_bytes = RenderSettings::what_is_free;
     settings.aov_coverage = settings.aov_count = settings.aov_layers = false;
-    const Region region = whole_region(request);
     progress.report = [&run](double fraction) { run.progress = static_cast<float>(fraction); };
     const TileDone tile_done = [&run, region](const Region& tile, const RenderedFrame& frame) {
         const Region here{tile.x - region.x, tile.y - region.y, tile.width, tile.height};
@@ -74,79 +56,54 @@ void FinalFrame::render(Pipeline& pipeline, Run& run) {
         const std::lock_guard lock(run.mutex);
         run.fresh.push_back(here);
     };
-    auto frame = std::make_shared<RenderedFrame>(pipeline.frame(now, settings, progress, tile_done));
-    run.end({State::done, {}, seconds_since(start), std::move(frame)});
+    auto frame = std::make_shared<const RenderedFrame>(pipeline.frame(now, settings, progress, tile_done));
     run.progress = 1.0f;
+    return {seconds_since(start), std::move(frame), {}};
 }
 
-void FinalFrame::work(Run& run) {
-    try {
-        const Region region = whole_region(run.request);
-        run.canvas = {region.width, region.height, 4, {}};
-        run.canvas.pixels.resize(static_cast<std::size_t>(region.width * region.height * 4));
-        const bool other_files = std::exchange(files_, run.request.files) != files_;
-        if (!pipeline_ || other_files) pipeline_ = std::make_unique<Pipeline>();
-        render(*pipeline_, run);
-    } catch (const Cancelled&) {
-        run.end({});
-    } catch (const std::bad_alloc&) {
-        run.end({State::failed, "not enough memory for the final frame", 0.0, {}});
-    } catch (const std::exception& error) {
-        run.end({State::failed, error.what(), 0.0, {}});
-    }
-}
-
-void FinalFrame::replace(std::shared_ptr<Run> run) {
-    {
-        const auto held = worker_.lock();
-        if (current_) current_->cancelled = true;
-        current_ = next_ = std::move(run);
-    }
-    worker_.wake();
-}
-
-std::shared_ptr<FinalFrame::Run> FinalFrame::latest() const {
-    const auto held = worker_.lock();
-    return current_;
-}
-
-Worker::Task FinalFrame::next_run() {
-    if (!next_) return {};
-    return [this, run = std::exchange(next_, nullptr)] { work(*run); };
+FinalFrame::Work::Work FinalFrame::renderer() {
+    return [pipeline = std::make_shared<Pipeline>(), files = std::uint64_t{0}](
+               const std::shared_ptr<Run>& run, const Progress& progress) mutable {
+        if (std::exchange(files, run->request.files) != files) pipeline = std::make_shared<Pipeline>();
+        try {
+            return render(*pipeline, *run, progress);
+        } catch (const std::bad_alloc&) {
+            throw std::runtime_error("not enough memory for the final frame");
+        }
+    };
 }
 
 void FinalFrame::start(FinalRequest request) {
-    auto run = std::make_shared<Run>();
-    run->request = std::move(request);
-    replace(std::move(run));
+    run_ = std::make_shared<Run>();
+    run_->request = std::move(request);
+    work_.want(run_);
+}
+
+void FinalFrame::cancel() {
+    work_.forget();
+    run_.reset();
 }
 
 FinalFrame::Outcome FinalFrame::outcome() const {
-    const std::shared_ptr<Run> run = latest();
-    if (!run) return {};
-    const std::lock_guard lock(run->mutex);
-    return run->outcome;
+    if (!run_) return {};
+    const std::shared_ptr<const Found> found = work_.found(run_);
+    if (!found) return {State::running, {}, 0.0, {}};
+    return {found->error.empty() ? State::done : State::failed, found->error, found->seconds, found->frame};
 }
 
-float FinalFrame::progress() const {
-    const std::shared_ptr<Run> run = latest();
-    return run ? run->progress.load() : 0.0f;
-}
+float FinalFrame::progress() const { return run_ ? run_->progress.load() : 0.0f; }
 
-std::vector<Region> FinalFrame::take_tiles(Image& image, Outcome* outcome) {
-    const std::shared_ptr<Run> run = latest();
-    if (outcome) *outcome = {};
-    if (!run) return {};
-    const Region region = whole_region(run->request);
+std::vector<Region> FinalFrame::take_tiles(Image& image) {
+    if (!run_) return {};
+    const Region region = run_->request.part();
     if (image.width != region.width || image.height != region.height || image.channels != 4)
         image = make_image(region.width, region.height, 4);
     std::vector<Region> tiles;
     {
-        const std::lock_guard lock(run->mutex);
-        tiles.swap(run->fresh);
-        if (outcome) *outcome = run->outcome;
+        const std::lock_guard lock(run_->mutex);
+        tiles.swap(run_->fresh);
     }
-    for (const Region& tile : tiles) copy_tile(run->canvas, tile, image);
+    for (const Region& tile : tiles) copy_tile(run_->canvas, tile, image);
     return tiles;
 }
 

@@ -29,7 +29,7 @@ constexpr std::string_view magic = "\x89TREE\r\n\x1a";
 constexpr std::uint32_t version = 2;
 constexpr std::int64_t rows_a_chunk = 1 << 16;
 constexpr std::int64_t largest_share =
-    8;  // of the cache a tree takes at most an eighth: none drives out its set
+    8;  // a tree takes at most an eighth of the cache: none drives out its set
 
 struct Header {
     char magic[8];

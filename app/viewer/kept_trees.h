@@ -3,7 +3,7 @@
 // removed and built again; a folder that cannot be written costs a warning.
 //
 // NAME.tree; the name says of which positions, ids and absorbing splats the tree is, wherever the set came
-// from, so that sets that differ in the rest share theirs. Format version 1, in the machine's byte order:
+// from, so that sets that differ in the rest share theirs. Format version 2, in the machine's byte order:
 //   header  8 bytes  89 'T' 'R' 'E' 'E' 0d 0a 1a, u32 version, u32 levels (ends of them, with the first 0),
 //           u64 rows, u64 nodes
 //   levels (i64), rows (i64), nodes (three i64 each)

@@ -1,29 +1,83 @@
 // One layer as the viewer keeps it, from the first sample of a set that is being generated to the whole set
-// with its histograms. In: sets, samples and the source they came from. Out: LoadedLayer.
+// with its histograms. In: splats as threads keep them, of which a fair sample is shown that never reaches
+// the set itself; sets and the source they came from. Out: LoadedLayer.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <filesystem>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <memory>
+#include <mutex>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "edit/status.h"
+#include "generate/kept_store.h"
 #include "merge/tree.h"
 #include "sets/load_source.h"
 #include "source/source.h"
 #include "splats/splat_set.h"
-#include "viewer/growing_set.h"
 
 namespace astrosplat {
+
+/// Some of the positions of columns, those of alpha 0 among them.
+struct ColumnSample {
+    std::shared_ptr<const SplatSet> set;  // with faces
+    std::int64_t of = 0;                  // positions that there are
+};
+
+/// A set while it is generated, thinned out.
+class GrowingSet : public KeptWatcher {
+  public:
+    /// A sample has at most `limit` splats, and about a half of that or more once as many are kept; that of
+    /// finished columns at most `column_limit` positions.
+    explicit GrowingSet(std::int64_t limit, std::int64_t column_limit = 0)
+        : limit_(static_cast<std::size_t>(limit)), column_limit_(column_limit) {}
+
+    void begins(const SplatSet& empty, const Bounds& box) override;
+    void keeps(std::span<const KeptStore::Run> runs) override;
+    std::int64_t sample_limit() const override { return column_limit_; }
+    void ends(Columns sample, std::int64_t of) override;
+
+    /// Splats kept so far.
+    std::int64_t kept() const { return kept_; }
+
+    struct Sample {
+        std::shared_ptr<const SplatSet> set;  // any prefix is a fair sample too, as a preview needs it
+        std::int64_t kept = 0;                // what it is a sample of
+        Bounds box;                           // that the whole set will have, about; layer space
+    };
+    /// Positions of finished columns, spread evenly over them; without a set where there are none.
+    ColumnSample columns() const;
+
+    /// The sample so far; a set of none before the first splat. A splat drawn by chance: the same splats come
+    /// first in every sample, so that frames of one after the other do not flicker.
+    Sample sample() const;
+
+  private:
+    using Ranked = std::pair<std::uint32_t, KeptSplat>;  // by chance; the lowest ranks stay
+
+    void take(const std::vector<Ranked>& found);
+
+    std::size_t limit_;
+    std::int64_t column_limit_;
+    std::atomic<std::int64_t> kept_{0};
+    std::atomic<std::uint32_t> highest_rank_{~std::uint32_t{0}};
+    mutable std::mutex mutex_;  // for all below
+    std::vector<Ranked> splats_;
+    SplatSet empty_;
+    Bounds box_;
+    ColumnSample columns_;
+};
 
 struct LoadedLayer {
     std::shared_ptr<const SplatSet> set;  // for the final frame; null while it grows
     MergeSource sample;  // of it, for a preview at once; where that suffices, the set itself; stars: no tree
     MergeSource whole;   // for previews at rest; comes a little later, where `sample` is not all
-    ColumnSample columns;     // of which live_texels.h makes a preview under other levels
+    ColumnSample columns;     // of which set_wishes.h makes a preview under other levels
     std::int64_t splats = 0;  // of the whole set; while it grows those there are so far
     bool arranged = false;    // nothing of the above is on its way
     std::shared_ptr<const LayerHistograms> histograms;  // come a little later than the rest
@@ -45,7 +99,7 @@ MergeSource source_of(std::shared_ptr<const SplatSet> set, std::int64_t stands_f
 LoadedLayer whole_layer(std::shared_ptr<const SplatSet> set, const SourceParams& source,
                         const std::string& name, std::int64_t sample_limit,
                         const MergeSource* sample = nullptr);
-/// A set of which there is a sample as yet.
+/// A set that is being generated or read, of which there is a sample.
 LoadedLayer growing_layer(const GrowingSet::Sample& sample, const SourceParams& source,
                           const std::string& name);
 /// The same with the tree of the whole, and a sixteenth of it, taken evenly over space, as the sample.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <regex>
 #include <system_error>
 #include <utility>
 
@@ -16,139 +17,23 @@
 #include "scene/frames.h"
 
 namespace astrosplat {
-
 namespace {
 
 namespace fs = std::filesystem;
 
 /// "frame 12 (3/10)" of "frame 12 (3/10) 37% eta 00:04:10".
 std::string without_share(const std::string& line) {
-    const std::size_t percent = line.find("% eta ");
-    if (percent == std::string::npos) return line;
-    const std::size_t blank = line.rfind(' ', percent);
-    return blank == std::string::npos ? line : line.substr(0, blank);
+    static const std::regex share(" [^ ]*% eta .*");
+    return std::regex_replace(line, share, "");
 }
 
 /// Of "saved FILE 3.59s".
 std::optional<fs::path> file_of_line(const std::string& line) {
-    constexpr std::string_view begin = "saved ";
-    const std::size_t end = line.rfind(' ');
-    if (line.rfind(begin, 0) != 0 || end < begin.size()) return std::nullopt;
-    return line.substr(begin.size(), end - begin.size());
+    static const std::regex saved("saved (.*) [^ ]*");
+    std::smatch parts;
+    return std::regex_match(line, parts, saved) ? std::optional<fs::path>(parts[1].str()) : std::nullopt;
 }
 
-}  // namespace
-
-std::optional<float> share_of_line(const std::string& line) {
-    const std::size_t percent = line.find("% ");
-    if (percent == std::string::npos) return std::nullopt;
-    const std::size_t blank = line.rfind(' ', percent);
-    if (blank == std::string::npos) return std::nullopt;
-    const auto part = parse_int64(line.substr(blank + 1, percent - blank - 1));
-    if (!part) return std::nullopt;
-    double done = 0.01 * static_cast<double>(*part);
-    const std::size_t open = line.find('('), slash = line.find('/', open), shut = line.find(')', slash);
-    if (open == std::string::npos || slash == std::string::npos || shut == std::string::npos)
-        return static_cast<float>(done);
-    const auto index = parse_int64(line.substr(open + 1, slash - open - 1));
-    const auto count = parse_int64(line.substr(slash + 1, shut - slash - 1));
-    if (index && count && *count > 0)
-        done = (static_cast<double>(*index - 1) + done) / static_cast<double>(*count);
-    return static_cast<float>(std::clamp(done, 0.0, 1.0));
-}
-
-RenderJob::~RenderJob() {
-    process_.reset();
-    clean();
-}
-
-void RenderJob::begin_step() {
-    partial_.clear();
-    process_.emplace(plan_.steps[step_].arguments);
-}
-
-void RenderJob::take_line(const std::string& line) {
-    if (trim(line).empty()) return;
-    last_line_ = without_share(without_prefix(line));
-    if (const auto file = file_of_line(last_line_)) saved_.push_back(*file);
-    if (const auto share = share_of_line(line)) progress_ = *share;
-    // Short frames are saved faster than progress is reported.
-    if (plan_.frames > 0)
-        progress_ = std::max(progress_, static_cast<float>(saved_.size()) / static_cast<float>(plan_.frames));
-}
-
-void RenderJob::read_output() {
-    partial_ += process_->output();
-    for (std::size_t end; (end = partial_.find_first_of("\r\n")) != std::string::npos;) {
-        take_line(partial_.substr(0, end));
-        partial_.erase(0, end + 1);
-    }
-}
-
-void RenderJob::finish_step(bool good) {
-    take_line(partial_);
-    process_.reset();
-    if (state_ == State::running && good && ++step_ < plan_.steps.size()) return begin_step();
-    if (state_ == State::running) state_ = good ? State::done : State::failed;
-    clean();
-}
-
-void RenderJob::clean() {
-    std::error_code ignored;
-    if (!plan_.folder.empty()) fs::remove_all(plan_.folder, ignored);
-    plan_.folder.clear();
-}
-
-void RenderJob::start(JobPlan plan) {
-    if (process_) throw InputError("a rendering is under way: cancel it first, or wait");
-    plan_ = std::move(plan);
-    step_ = 0;
-    last_line_.clear();
-    progress_ = 0.0f;
-    saved_.clear();
-    try {
-        if (!plan_.folder.empty()) write_file_atomically(plan_.folder / "scene.toml", plan_.scene_text);
-        begin_step();
-        state_ = State::running;
-    } catch (...) {
-        clean();
-        throw;
-    }
-}
-
-void RenderJob::cancel() {
-    if (!process_) return;
-    state_ = State::cancelled;
-    process_->terminate();
-}
-
-void RenderJob::poll() {
-    if (!process_) return;
-    const std::optional<int> code = process_->exit_code();
-    read_output();  // after the question, so that nothing written before the end is lost
-    if (!code) return;
-    try {
-        finish_step(*code == 0);
-    } catch (const OutputError& error) {  // the next step did not start
-        last_line_ = error.what();
-        state_ = State::failed;
-        clean();
-    }
-}
-
-std::string RenderJob::text() const {
-    if (state_ == State::running && step_ > 0) return plan_.steps[step_].name;
-    return last_line_.empty() ? "Rendering" : last_line_;
-}
-
-RenderJob::State RenderJob::take_result() {
-    if (state_ == State::running || process_) return State::none;
-    return std::exchange(state_, State::none);
-}
-
-namespace {
-
-namespace fs = std::filesystem;
 using JobState = QueuedJob::State;
 
 constexpr const char* cancelled_text = "Cancelled; finished files are kept";
@@ -177,19 +62,99 @@ void append(std::vector<std::string>& words, const std::vector<std::string>& mor
 
 }  // namespace
 
-void RenderQueue::push(QueuedJob job, Work work) {
-    job.number = ++last_number_;
-    jobs_.push_back(std::move(job));
-    work_.push_back(std::move(work));
+std::optional<float> share_of_line(const std::string& line) {
+    static const std::regex share(R"( (?:\((\d+)/([1-9]\d*)\) )?(\d+)% )");
+    std::smatch parts;
+    if (!std::regex_search(line, parts, share)) return std::nullopt;
+    double done = 0.01 * std::stod(parts[3]);
+    if (parts[1].matched) done = (std::stod(parts[1]) - 1.0 + done) / std::stod(parts[2]);
+    return static_cast<float>(std::clamp(done, 0.0, 1.0));
 }
 
-void RenderQueue::add_farm_job(FarmCommands commands, const std::string& title, fs::path target,
-                               bool is_news) {
-    QueuedJob job;
-    job.state = JobState::submitted;
-    job.title = title + ", Slurm";
+RenderJob::RenderJob(JobPlan plan) : plan_(std::move(plan)) {
+    try {
+        if (!plan_.folder.empty()) write_file_atomically(plan_.folder / "scene.toml", plan_.scene_text);
+        begin_step();
+    } catch (...) {
+        remove_folder(plan_.folder);
+        throw;
+    }
+}
+
+RenderJob::~RenderJob() {
+    process_.reset();
+    remove_folder(plan_.folder);
+}
+
+void RenderJob::begin_step() {
+    partial_.clear();
+    process_.emplace(plan_.steps[step_].arguments);
+}
+
+void RenderJob::take_line(const std::string& line) {
+    if (trim(line).empty()) return;
+    last_line_ = without_share(without_prefix(line));
+    if (const auto file = file_of_line(last_line_)) saved_.push_back(*file);
+    if (const auto share = share_of_line(line)) progress_ = *share;
+    // Short frames are saved faster than progress is reported.
+    if (plan_.frames > 0)
+        progress_ = std::max(progress_, static_cast<float>(saved_.size()) / static_cast<float>(plan_.frames));
+}
+
+void RenderJob::read_output() {
+    partial_ += process_->output();
+    for (std::size_t end; (end = partial_.find_first_of("\r\n")) != std::string::npos;) {
+        take_line(partial_.substr(0, end));
+        partial_.erase(0, end + 1);
+    }
+}
+
+void RenderJob::finish_step(bool good) {
+    take_line(partial_);
+    process_.reset();
+    if (end_ == State::cancelled) return;
+    if (good && ++step_ < plan_.steps.size()) return begin_step();
+    end_ = good ? State::done : State::failed;
+}
+
+void RenderJob::cancel() {
+    end_ = State::cancelled;
+    if (process_) process_->terminate();
+}
+
+void RenderJob::poll() {
+    if (!process_) return;
+    const std::optional<int> code = process_->exit_code();
+    read_output();  // after the question, so that nothing written before the end is lost
+    if (!code) return;
+    try {
+        finish_step(*code == 0);
+    } catch (const OutputError& error) {  // the next step did not start
+        last_line_ = error.what();
+        end_ = State::failed;
+    }
+}
+
+std::string RenderJob::text() const {
+    if (process_ && step_ > 0) return plan_.steps[step_].name;
+    return last_line_.empty() ? "Rendering" : last_line_;
+}
+
+RenderQueue::Job& RenderQueue::push(std::string title, fs::path target) {
+    Job& job = jobs_.emplace_back();
+    job.number = ++last_number_;
+    job.title = std::move(title);
     job.target = std::move(target);
-    push(std::move(job), {{}, std::make_unique<FarmJob>(std::move(commands)), is_news});
+    return job;
+}
+
+RenderQueue::Job& RenderQueue::add_farm_job(FarmCommands commands, const std::string& title,
+                                            fs::path target) {
+    auto farm = std::make_unique<FarmJob>(std::move(commands));
+    Job& job = push(title + ", Slurm", std::move(target));
+    job.state = JobState::submitted;
+    job.farm = std::move(farm);
+    return job;
 }
 
 /// Tasks read the scene until the last of them has run, whatever becomes of the document meanwhile. The same
@@ -210,7 +175,7 @@ void RenderQueue::add_to_farm(const RenderTask& task, const Document& document) 
     append(commands.submit, submit_arguments(task));
     append(commands.status, frame_arguments(task));
     if (!cache_.folder.empty()) append(commands.submit, {"--cache", cache_.folder.string()});
-    add_farm_job(std::move(commands), document.name() + ": " + render_title(task), render_target(task), true);
+    add_farm_job(std::move(commands), document.name() + ": " + render_title(task), render_target(task));
 }
 
 /// Looks at a single frame: the answer tells of the others' submissions, too.
@@ -245,11 +210,10 @@ void RenderQueue::add_earlier(const SubmittedFrames& submitted, const std::strin
     commands.status = {program_, "status"};
     append(commands.status, submitted.options);
     append(commands.status, {"--frames=" + submitted.frames, "--json"});
-    const auto is_known = [&](const Work& work) {
-        return work.farm && is_same(work.farm->commands(), commands);
-    };
-    if (std::ranges::none_of(work_, is_known))
-        add_farm_job(std::move(commands), lookup_->title + ": Frames " + submitted.frames, output, false);
+    const auto is_known = [&](const Job& job) { return job.farm && is_same(job.farm->commands(), commands); };
+    if (std::ranges::any_of(jobs_, is_known)) return;
+    add_farm_job(std::move(commands), lookup_->title + ": Frames " + submitted.frames, output).is_news =
+        false;
 }
 
 void RenderQueue::add(const RenderTask& task, const Document& document) {
@@ -257,9 +221,7 @@ void RenderQueue::add(const RenderTask& task, const Document& document) {
     if (!problem.empty()) throw InputError(problem);
     if (renders_by_slurm(task)) return add_to_farm(task, document);
     expect_no_movie(task);
-    QueuedJob job;
-    job.title = document.name() + ": " + render_title(task);
-    job.target = render_target(task);
+    const fs::path target = render_target(task);
     JobPlan plan;
     plan.frames = static_cast<std::int64_t>(parse_frames(task.frames, "frames").size());
     plan.folder = make_temporary_folder();
@@ -269,64 +231,62 @@ void RenderQueue::add(const RenderTask& task, const Document& document) {
     append(render.arguments, batch_arguments(task, limits_));
     if (!cache_.folder.empty()) append(render.arguments, {"--cache", cache_.folder.string()});
     if (task.kind == RenderKind::movie)
-        plan.steps.push_back({"Writing the movie", movie_command(job.target, document.scene().output.fps)});
+        plan.steps.push_back({"Writing the movie", movie_command(target, document.scene().output.fps)});
     try {
         plan.scene_text = document.text_for(scene);
     } catch (...) {
         remove_folder(plan.folder);
         throw;
     }
-    push(std::move(job), {std::move(plan), nullptr, true});
+    push(document.name() + ": " + render_title(task), target).plan = std::move(plan);
 }
 
 void RenderQueue::add_preparation(const SourceParams& source, const fs::path& folder) {
-    QueuedJob job;
-    job.title = "Prepared picture";
-    job.target = folder;
-    JobPlan plan;
-    plan.steps = {{"Preparing", {program_}}};
-    append(plan.steps[0].arguments, prepare_command(source, folder));
-    append(plan.steps[0].arguments, limit_arguments({.threads = limits_.threads}));
-    append(plan.steps[0].arguments, {"--progress", "plain"});
-    push(std::move(job), {std::move(plan), nullptr, true});
-}
-
-QueuedJob* RenderQueue::running_job() {
-    const auto found = std::ranges::find(jobs_, JobState::running, &QueuedJob::state);
-    return found == jobs_.end() ? nullptr : &*found;
+    ProcessStep step{"Preparing", {program_}};
+    append(step.arguments, prepare_command(source, folder));
+    append(step.arguments, limit_arguments({.threads = limits_.threads}));
+    append(step.arguments, {"--progress", "plain"});
+    push("Prepared picture", folder).plan.steps = {std::move(step)};
 }
 
 RenderQueue::~RenderQueue() {
-    for (std::size_t i = 0; i < jobs_.size(); ++i)
-        if (jobs_[i].state == JobState::waiting) remove_folder(work_[i].plan.folder);
+    for (const Job& job : jobs_)
+        if (job.state == JobState::waiting) remove_folder(job.plan.folder);
 }
 
 void RenderQueue::cancel(std::uint64_t number) {
-    const auto job = std::ranges::find(jobs_, number, &QueuedJob::number);
+    const auto job = std::ranges::find(jobs_, number, &Job::number);
     if (job == jobs_.end()) return;
-    const Work& work = work_[static_cast<std::size_t>(job - jobs_.begin())];
-    if (job->state == JobState::running) job_.cancel();
-    if (job->state == JobState::submitted) work.farm->cancel();
+    if (job->state == JobState::running) job->run->cancel();
+    if (job->state == JobState::submitted) job->farm->cancel();
     if (job->state != JobState::waiting) return;
     job->state = JobState::cancelled;
-    remove_folder(work.plan.folder);
+    remove_folder(job->plan.folder);
 }
 
 void RenderQueue::remove(std::uint64_t number) {
     cancel(number);
-    const auto job = std::ranges::find(jobs_, number, &QueuedJob::number);
-    if (job == jobs_.end() || job->state == JobState::running || job->state == JobState::submitted) return;
-    work_.erase(work_.begin() + (job - jobs_.begin()));
-    jobs_.erase(job);
+    std::erase_if(jobs_, [&](const Job& job) {
+        return job.number == number && job.state != JobState::running && job.state != JobState::submitted;
+    });
+}
+
+bool RenderQueue::running() const {
+    return std::ranges::find(jobs_, JobState::running, &Job::state) != jobs_.end();
+}
+
+void RenderQueue::cancel_running() {
+    for (Job& job : jobs_)
+        if (job.state == JobState::running) job.run->cancel();
 }
 
 void RenderQueue::begin_next(double now) {
-    const auto next = std::ranges::find(jobs_, JobState::waiting, &QueuedJob::state);
+    const auto next = std::ranges::find(jobs_, JobState::waiting, &Job::state);
     if (next == jobs_.end()) return;
     next->state = JobState::running;
     began_ = now;
     try {
-        job_.start(work_[static_cast<std::size_t>(next - jobs_.begin())].plan);
+        next->run = std::make_unique<RenderJob>(next->plan);
     } catch (const std::exception& error) {
         next->state = JobState::failed;
         next->text = error.what();
@@ -334,74 +294,54 @@ void RenderQueue::begin_next(double now) {
     }
 }
 
-std::optional<RenderQueue::News> RenderQueue::take_end(QueuedJob& job) {
-    const std::string last = job_.text();
-    switch (job_.take_result()) {
-        case RenderJob::State::done: {
-            const bool movie = work_[static_cast<std::size_t>(&job - jobs_.data())].plan.steps.size() > 1;
-            std::error_code ignored;
-            if (movie) fs::remove_all(movie_folder(job.target), ignored);
-            if (movie) job.files.clear();
-            job.state = JobState::done;
-            job.progress = 1.0f;
-            return News{"Saved " + job.target.string()};
-        }
-        case RenderJob::State::failed:
-            job.state = JobState::failed;
-            job.text = last;
-            return News{last, true};
-        case RenderJob::State::cancelled:
-            job.state = JobState::cancelled;
-            return News{cancelled_text};
-        default:
-            return std::nullopt;
-    }
+/// Nothing while the job has not ended.
+std::optional<Message> RenderQueue::take_end(Job& job, JobState end) {
+    if (end != JobState::done && end != JobState::failed && end != JobState::cancelled) return std::nullopt;
+    job.state = end;
+    if (end == JobState::failed) return Message{job.text, true};
+    return Message{end == JobState::done ? "Saved " + job.target.string() : cancelled_text};
 }
 
-std::optional<RenderQueue::News> RenderQueue::poll_farm(QueuedJob& job, Work& work, double now) {
-    FarmJob& farm = *work.farm;
+std::optional<Message> RenderQueue::poll_farm(Job& job, double now) {
+    FarmJob& farm = *job.farm;
     farm.poll(now);
-    work.is_news = work.is_news || farm.is_active();
-    const auto news = [&](News told) { return work.is_news ? std::optional(std::move(told)) : std::nullopt; };
+    job.is_news = job.is_news || farm.is_active() || farm.state() == JobState::cancelled;
     job.text = farm.text();
     job.progress = farm.progress();
     job.files = farm.files();
-    switch (farm.state()) {
-        case FarmJob::State::done:
-            job.state = JobState::done;
-            return news({"Saved " + job.target.string()});
-        case FarmJob::State::failed:
-            job.state = JobState::failed;
-            return news({job.text, true});
-        case FarmJob::State::cancelled:
-            job.state = JobState::cancelled;
-            return News{cancelled_text};
-        default:
-            return std::nullopt;
-    }
+    const std::optional<Message> news = take_end(job, farm.state());
+    return job.is_news ? news : std::nullopt;
 }
 
-std::optional<RenderQueue::News> RenderQueue::poll(double now) {
+std::optional<Message> RenderQueue::poll(double now) {
     constexpr float enough = 0.02f;  // of the work, to tell how long the rest takes
     if (lookup_) take_earlier();
-    for (std::size_t i = 0; i < jobs_.size(); ++i)
-        if (jobs_[i].state == JobState::submitted)
-            if (auto news = poll_farm(jobs_[i], work_[i], now)) return news;
-    job_.poll();
-    QueuedJob* const job = running_job();
-    if (!job) {
+    for (Job& job : jobs_)
+        if (job.state == JobState::submitted)
+            if (auto news = poll_farm(job, now)) return news;
+    const auto job = std::ranges::find(jobs_, JobState::running, &Job::state);
+    if (job == jobs_.end()) {
         begin_next(now);
         return std::nullopt;
     }
-    job->text = job_.text();
-    job->progress = job_.progress();
-    job->files = job_.saved_files();
+    job->run->poll();
+    job->text = job->run->text();
+    job->progress = job->run->progress();
+    job->files = job->run->files();
     job->seconds_left.reset();
-    if (job->progress >= enough)
-        job->seconds_left = (now - began_) * static_cast<double>(1.0f / job->progress - 1.0f);
-    if (running()) return std::nullopt;
-    job->seconds_left.reset();
-    return take_end(*job);
+    const JobState state = job->run->state();
+    if (state == JobState::running) {
+        if (job->progress >= enough)
+            job->seconds_left = (now - began_) * static_cast<double>(1.0f / job->progress - 1.0f);
+        return std::nullopt;
+    }
+    job->run.reset();
+    if (state == JobState::done) job->progress = 1.0f;
+    if (state == JobState::done && job->plan.steps.size() > 1) {  // a movie: its frames go
+        remove_folder(movie_folder(job->target));
+        job->files.clear();
+    }
+    return take_end(*job, state);
 }
 
 }  // namespace astrosplat

@@ -1,8 +1,7 @@
-// Rendering to files while the window stays usable: the program itself as a child process with --batch, on a
-// copy of the scene as it stands. So a frame of the viewer is a frame of the farm, and a cancelled or crashed
-// job harms nothing.
-// Jobs that write files for the window: renderings and prepared pictures, one after the other, and renderings
-// that a farm has. In: a request and the document as it stood then. Out: each job's progress and its result.
+// Jobs that write files while the window stays usable: renderings and prepared pictures, one after the other,
+// by the program itself as a child process, and renderings that a farm has. A copy of the scene as it stands
+// is rendered with --batch: so a frame of the viewer is a frame of the farm, and a cancelled or crashed job
+// harms nothing. In: a request and the document as it stood then. Out: each job's progress and its result.
 #pragma once
 
 #include <cstdint>
@@ -39,35 +38,32 @@ struct JobPlan {
 /// "astrosplat: frame 12 (3/10) 37% eta 00:04:10"; nothing for other lines.
 std::optional<float> share_of_line(const std::string& line);
 
+/// A job of this machine at work.
 class RenderJob {
   public:
-    RenderJob() = default;
+    /// Throws OutputError.
+    explicit RenderJob(JobPlan plan);
     ~RenderJob();  // cancels and waits
-
-    /// Throws OutputError, and InputError while a job runs.
-    void start(JobPlan plan);
     void cancel();
 
-    enum class State { none, running, done, failed, cancelled };
-    State state() const { return state_; }
+    using State = QueuedJob::State;  // running, done, failed or cancelled
+    /// Running until the last process has ended.
+    State state() const { return process_ ? State::running : end_; }
     /// Takes what the process has said since the last call. Cheap; call every frame.
     void poll();
     std::string text() const;                     // "frame 12 (3/10)", or the last line of a job that failed
     float progress() const { return progress_; }  // 0..1
     /// Frames it has saved, in the order in which they came.
-    const std::vector<std::filesystem::path>& saved_files() const { return saved_; }
-    /// done, failed or cancelled: seen once, then none.
-    State take_result();
+    const std::vector<std::filesystem::path>& files() const { return saved_; }
 
   private:
     void begin_step();
     void take_line(const std::string& line);
     void read_output();
     void finish_step(bool good);
-    void clean();
 
     JobPlan plan_;
-    State state_ = State::none;
+    State end_ = State::running;  // cancelled as soon as that was asked for
     std::size_t step_ = 0;
     std::optional<ChildProcess> process_;
     std::string partial_, last_line_;
@@ -94,26 +90,22 @@ class RenderQueue {
 
     /// A job that waits never begins; one that runs, here or on a farm, ends, and its finished files stay.
     void cancel(std::uint64_t number);
-    void cancel_running() { job_.cancel(); }
+    void cancel_running();
     /// Takes a job that has ended, or waits, off the list.
     void remove(std::uint64_t number);
-    bool running() const { return job_.state() == RenderJob::State::running; }
+    bool running() const;
 
-    struct News {
-        std::string text;
-        bool error = false;
-    };
     /// Takes what the running job has said and begins the next; news where one has ended. `now` in seconds.
-    std::optional<News> poll(double now);
+    std::optional<Message> poll(double now);
     /// Oldest first.
-    const std::vector<QueuedJob>& jobs() const { return jobs_; }
+    std::vector<QueuedJob> jobs() const { return {jobs_.begin(), jobs_.end()}; }
 
   private:
-    /// Arguments of a new job.
-    struct Work {
+    struct Job : QueuedJob {
         JobPlan plan;
-        std::unique_ptr<FarmJob> farm;  // null: this machine does it
-        bool is_news = true;            // what becomes of it
+        std::unique_ptr<RenderJob> run;  // while this machine does it
+        std::unique_ptr<FarmJob> farm;   // null: a farm does not
+        bool is_news = true;             // what becomes of it
     };
     /// The question about earlier jobs.
     struct Lookup {
@@ -123,24 +115,20 @@ class RenderQueue {
         std::string answer;
     };
 
-    void push(QueuedJob job, Work work);
+    Job& push(std::string title, std::filesystem::path target);
     void begin_next(double now);
-    QueuedJob* running_job();
-    std::optional<News> take_end(QueuedJob& job);
+    static std::optional<Message> take_end(Job& job, QueuedJob::State end);
     void add_to_farm(const RenderTask& task, const Document& document);
-    void add_farm_job(FarmCommands commands, const std::string& title, std::filesystem::path target,
-                      bool is_news);
+    Job& add_farm_job(FarmCommands commands, const std::string& title, std::filesystem::path target);
     void take_earlier();
     void add_earlier(const SubmittedFrames& submitted, const std::string& output);
-    std::optional<News> poll_farm(QueuedJob& job, Work& work, double now);
+    static std::optional<Message> poll_farm(Job& job, double now);
 
     SetCache cache_;
     std::string program_;
     MachineLimits limits_;
     std::optional<Lookup> lookup_;
-    RenderJob job_;
-    std::vector<QueuedJob> jobs_;
-    std::vector<Work> work_;  // of each
+    std::vector<Job> jobs_;
     std::uint64_t last_number_ = 0;
     double began_ = 0.0;  // seconds
 };

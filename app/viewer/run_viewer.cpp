@@ -1,5 +1,5 @@
 // The window's loop: wait for events, advance the session, draw widgets and viewport, show them.
-#include "viewer/run_viewer.h"
+#include "viewer/viewer.h"
 
 #include <fmt/format.h>
 #include <imgui.h>

@@ -38,24 +38,23 @@ std::shared_ptr<const Environment> PictureFiles::environment(const EnvironmentPa
     constexpr std::size_t most_skies = 3;
     const bool seen = has_environment(params) && params.visible;
     const EnvironmentParams files = pictures_of(params);
-    bool is_new = false;
     {
         const auto held = worker_.lock();
         wanted_ = seen ? std::optional(files) : std::nullopt;
-        is_new = seen && !skies_.count(files);
-        if (is_new && skies_.size() >= most_skies)
-            std::erase_if(skies_, [](const auto& sky) { return sky.second.rests(); });
-        if (seen && !is_new) {
-            const Sky& sky = skies_[files];
+        if (!seen) return nullptr;
+        if (const auto known = skies_.find(files); known != skies_.end()) {
+            const Sky& sky = known->second;
             if (sky.error) std::rethrow_exception(sky.error);
             if (!sky.loaded) return nullptr;
             Environment environment = *sky.loaded;
             set_environment_params(environment, params);
             return std::make_shared<const Environment>(std::move(environment));
         }
-        if (is_new) skies_[files];
+        if (skies_.size() >= most_skies)
+            std::erase_if(skies_, [](const auto& sky) { return sky.second.rests(); });
+        skies_[files];
     }
-    if (is_new) worker_.wake();
+    worker_.wake();
     return nullptr;
 }
 
@@ -67,17 +66,11 @@ bool PictureFiles::loading() const {
 
 void PictureFiles::forget(const std::vector<fs::path>& files) {
     const auto is_changed = [&](const fs::path& file) {
-        return std::find(files.begin(), files.end(), file) != files.end();
+        return std::ranges::find(files, file) != files.end();
     };
     old_maps_.clear();
-    for (auto map = maps_.begin(); map != maps_.end();) {
-        if (is_changed(map->first.first)) {
-            old_maps_.push_back(std::move(map->second));
-            map = maps_.erase(map);
-        } else {
-            ++map;
-        }
-    }
+    for (auto& [of, image] : maps_)
+        if (is_changed(of.first)) old_maps_.push_back(std::move(image));
     {
         const auto held = worker_.lock();
         for (auto& [of, sky] : skies_)

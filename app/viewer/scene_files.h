@@ -51,7 +51,7 @@ class PictureFiles {
     Worker::Task next_sky();
     void load(const EnvironmentParams& params);
 
-    std::map<std::pair<std::filesystem::path, Derived>, std::unique_ptr<Image>> maps_;
+    std::map<std::pair<std::filesystem::path, Derived>, std::unique_ptr<Image>> maps_;  // null: to be read
     std::vector<std::unique_ptr<Image>> old_maps_;  // so that new ones do not get their addresses
     /// The comparison may have another one; with the worker's lock.
     std::map<EnvironmentParams, Sky, ByPictures> skies_;
@@ -68,7 +68,7 @@ class ColorManagement {
     void update(const OcioParams& params, bool seen);
     /// Null: the scene wants none, or it cannot be made.
     const std::shared_ptr<const DisplayTransform>& transform() const { return transform_; }
-    /// None: there is no configuration, or nobody looks.
+    /// None: there is no configuration, or its words are not seen.
     const std::optional<ColorStatus>& status() const { return status_; }
 
   private:

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <glm/vec2.hpp>
 #include <thread>
 
 #include "core/error.h"
@@ -13,8 +14,8 @@
 #include "output/write.h"
 #include "scene/check.h"
 #include "source/write_image.h"
-#include "viewer/run_viewer.h"
 #include "viewer/session.h"
+#include "viewer/viewer.h"
 #include "viewer/window.h"
 
 namespace astrosplat {
@@ -38,11 +39,8 @@ void wait_for_frame(Session& session, bool final, const DrawFrame& draw_frame) {
     }
 }
 
-struct Size {
-    int width = 960, height = 540;  // px
-};
-
-Size parse_size(const std::string& text) {
+/// Px.
+glm::ivec2 parse_size(const std::string& text) {
     const std::size_t x = text.find('x');
     const auto width = parse_int64(text.substr(0, x));
     const auto height = x == std::string::npos ? std::nullopt : parse_int64(text.substr(x + 1));
@@ -58,7 +56,7 @@ double parse_frame(const std::string& text) {
     return *frame;
 }
 
-void write_exr(const ScreenshotOptions& options, const Size& size, Session& session) {
+void write_exr(const ScreenshotOptions& options, glm::ivec2 size, Session& session) {
     RenderedFrame preview;
     OutputParams output = session.document.scene().output;
     if (!options.settled) {
@@ -77,28 +75,26 @@ void write_exr(const ScreenshotOptions& options, const Size& size, Session& sess
     metadata.fps = output.fps;
     metadata.pixel_hash = pixel_hash(frame.beauty);
     metadata.provenance = session.document.scene().provenance;
-    write_frame({options.output, output, size.width, size.height}, frame, metadata);
+    write_frame({options.output, output, size.x, size.y}, frame, metadata);
 }
 
 /// The viewport alone.
-void take_viewport(const ScreenshotOptions& options, const Size& size, bool exr, Session& session) {
-    wait_for_frame(session, options.settled, [&](double now) {
-        draw_viewport(session, {size.width, size.height}, now, true);
-    });
+void take_viewport(const ScreenshotOptions& options, glm::ivec2 size, bool exr, Session& session) {
+    wait_for_frame(session, options.settled, [&](double now) { draw_viewport(session, size, now, true); });
     if (exr) return write_exr(options, size, session);
-    write_image(options.output, size.width, size.height, session.display.read());
+    write_image(options.output, size.x, size.y, session.display.read());
 }
 
 /// The window with its panels.
-void take_window(const ScreenshotOptions& options, const Size& size, Session& session) {
-    WidgetTarget target(size.width, size.height);
+void take_window(const ScreenshotOptions& options, glm::ivec2 size, Session& session) {
+    WidgetTarget target(size.x, size.y);
     Gui gui;
     const auto draw_frame = [&](double now) {
         target.begin();
         Commands commands;
         gui.draw(session.document, session.view, session.status, commands);
         const Layout layout =
-            make_layout(session.view, static_cast<float>(size.width), static_cast<float>(size.height), 1.0f);
+            make_layout(session.view, static_cast<float>(size.x), static_cast<float>(size.y), 1.0f);
         draw_viewport(session,
                       {static_cast<int>(layout.viewport.width), static_cast<int>(layout.viewport.height)},
                       now, true);
@@ -109,11 +105,11 @@ void take_window(const ScreenshotOptions& options, const Size& size, Session& se
         advance(session, seconds_now());
         draw_frame(seconds_now());
     }
-    write_image(options.output, size.width, size.height, target.read());
+    write_image(options.output, size.x, size.y, target.read());
 }
 
 void take(const ScreenshotOptions& options, const GlInfo& gl) {
-    const Size size = options.size ? parse_size(*options.size) : Size{};
+    const glm::ivec2 size = options.size ? parse_size(*options.size) : glm::ivec2(960, 540);
     const FileFormat* const format = format_by_name(options.output);
     const bool exr = format && format->id == "openexr";
     if (!exr && !(format && format->id == "png"))

@@ -12,9 +12,9 @@
 #include "core/text.h"
 #include "edit/new_from_file.h"
 #include "source/write_image.h"
-#include "viewer/session_parts.h"
 
 namespace astrosplat {
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -89,9 +89,9 @@ void want_sets(Session& session, double now) {
 
 void open_snapshots(Session& session) {
     std::vector<std::string> problems;
-    session.comparison.open_snapshots(session.document.file(), problems);
+    session.snapshots.open(session.document.file(), problems);
     for (const std::string& problem : problems) say(session.status, problem, true);
-    const auto count = static_cast<std::int64_t>(session.comparison.snapshots().size());
+    const auto count = static_cast<std::int64_t>(session.snapshots.size());
     if (count > 0 && problems.empty() && !session.view.snapshots_open)
         say(session.status, counted(count, "snapshot") + " of this scene: View > Snapshots shows them");
 }
@@ -154,7 +154,7 @@ Session::Session(const ViewerOptions& options, const GlInfo& gl_info)
 }
 
 void say(Status& status, const std::string& text, bool error) {
-    constexpr std::size_t most = 500;
+    constexpr std::size_t most = 500;  // lines of the log
     status.message = {text, error, status.message.number + 1};
     status.log.push_back(status.message);
     if (status.log.size() > most) status.log.erase(status.log.begin());

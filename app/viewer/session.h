@@ -1,14 +1,19 @@
 // Everything of the viewer but the window: the document, its sets, the frames and jobs, brought forward
-// once per frame. The window and the screenshot both drive it. Needs a current OpenGL context.
+// once per frame. The window and the screenshot both drive it; behind what they call come the functions that
+// the session's source files share. In: the session. Out: its changed state, above all Status for the
+// widgets. Needs a current OpenGL context.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <glm/vec2.hpp>
 #include <map>
 #include <memory>
 #include <optional>
 #include <set>
+#include <span>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -21,29 +26,20 @@
 #include "farm/child_process.h"
 #include "gl/context.h"
 #include "gl/display.h"
-#include "gl/image_texture.h"
+#include "gl/objects.h"
 #include "gui/gui.h"
 #include "output/metadata.h"
+#include "viewer/compared_pictures.h"
 #include "viewer/comparison.h"
 #include "viewer/file_pictures.h"
-#include "viewer/layer_picture.h"
-#include "viewer/playback.h"
 #include "viewer/render_queue.h"
 #include "viewer/scene_files.h"
 #include "viewer/set_wishes.h"
 #include "viewer/view_frame.h"
-#include "viewer/viewer_options.h"
-#include "viewer/viewport_camera.h"
+#include "viewer/view_motion.h"
+#include "viewer/viewer.h"
 
 namespace astrosplat {
-
-/// The inputs of a command of the render dialog.
-struct CommandSource {
-    std::uint64_t revision = 0;
-    std::filesystem::path file;
-    RenderTask task;
-    bool operator==(const CommandSource&) const = default;
-};
 
 /// The message that is seen, and since when.
 struct MessageAge {
@@ -65,6 +61,7 @@ struct Session {
     SetWishes sets;
     std::shared_ptr<PictureFiles> files = std::make_shared<PictureFiles>();
     ViewFrame view_frame{files};  // A
+    SnapshotList snapshots;
     Comparison comparison{files};
     DifferenceMeter difference;
     ReferenceAlignment alignment;
@@ -79,7 +76,8 @@ struct Session {
     Playback playback;
     DiskWatch disk;
     RenderQueue jobs;
-    std::optional<CommandSource> command_source;  // of the command in the status
+    /// Revision and file of the document, and the task, that the command in the status is of.
+    std::optional<std::tuple<std::uint64_t, std::filesystem::path, RenderTask>> command_source;
     FinishedFrames finished{finished_frames()};
     std::pair<std::filesystem::path, FrameHeader> finished_header;  // of the file looked at
     ShownPicture<FinishedView> finished_picture;
@@ -145,5 +143,70 @@ void save_screenshot(Session& session, const std::filesystem::path& file, int wi
 [[noreturn]] void interrupt(Session& session);
 /// A clean end: autosaves of this session are removed, preferences written.
 void close(Session& session, int window_width, int window_height);
+
+// session.cpp
+
+/// Another document in place of the one that is open.
+void take_document(Session& session, Document next);
+/// The demo as an untitled scene. Throws InputError where it is not installed.
+Document demo_document(std::span<const Assignment> assignments = {});
+/// Offers to choose a picture for a layer whose mesh has none; takes an older offer back.
+void offer_picture(Session& session, std::size_t layer);
+/// The first of File > Open recent.
+void note_recent(Session& session, const std::filesystem::path& file);
+/// Fills Status::recoveries.
+void find_recoveries(Status& status);
+/// Says in the message line why the frame or a layer failed; `said` holds what was said of those that still
+/// do.
+void say_new_errors(Status& status, std::set<std::string>& said);
+/// Messages that are no errors leave the message line after a while; they stay in the log. `now` in seconds.
+void forget_old_message(Status& status, MessageAge& age, double now);
+
+// session_commands.cpp
+
+/// Throws InputError, OutputError.
+void carry_out(Session& session, const Command& command);
+
+// session_view.cpp
+
+/// Where the whole of the request's frame lies in the viewport, px.
+Rect frame_in_viewport(const Session& session);
+/// The transform to display values in the viewport: the one chosen, else the scene's. Never automatic.
+OutputParams::View display_view(OutputParams::View chosen, OutputParams::View of_scene);
+/// Fills Status but for what commands, jobs and the disk say.
+void fill_status(Session& session);
+/// Fills Status::probe with the linear pixel under the mouse, px of the viewport.
+void probe(Session& session, glm::dvec2 mouse_px);
+/// The pixel x, y of a whole frame of which `pixels` is the region. The depth is that of `depth`, the final
+/// frame's, where there is one and the pixel holds something. None outside of the region.
+std::optional<PixelProbe> probe_of(const Image& pixels, const Image* depth, const Region& region,
+                                   std::int64_t x, std::int64_t y);
+/// Selects the layer with the most light at a place of the viewport, px; `behind`: of the others there, the
+/// next one after the selected layer. Shows its box and says which one of how many it is. Where no layer
+/// is seen the box goes.
+void select_layer_at(Session& session, glm::dvec2 mouse_px, bool behind);
+
+// session_pictures.cpp: pictures in place of the frame or beside it. All need OpenGL's context.
+
+/// The frames on disk in place of the preview (ViewState::show_rendered), while scrubbing and playing: reads
+/// the one that is looked at and those after it, and fills Status::rendered_frame and missing_frame. True:
+/// `shown` now shows a file's frame within `place`.
+bool show_rendered_frame(Session& session, const Rect& place, DisplaySettings& shown);
+/// Compares the front of `now`, the scene as it stands, with its picture while A is at rest, and fills
+/// Status::front; shows the signed difference in place of all else where that is looked at.
+void show_front(Session& session, const Scene& now, DisplaySettings& shown);
+/// The prepared picture of the selected layer, small, while the panel's section of that name is open: fills
+/// Status::preparation.
+void show_preparation(Session& session);
+/// Fills Status::thumbnails with those of view.listed_pictures that are read; the others' textures go.
+void show_thumbnails(Session& session);
+/// Starts to align the reference with what the view shows now. Throws InputError where there is nothing to
+/// align yet.
+void begin_alignment(Session& session);
+/// Places the reference where that was found, or says that it was not.
+void take_alignment(Session& session);
+/// Brings the jobs forward and fills their part of the status. `now` in seconds. Throws what a job throws
+/// that cannot begin.
+void show_renderings(Session& session, double now);
 
 }  // namespace astrosplat

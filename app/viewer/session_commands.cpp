@@ -19,7 +19,7 @@
 #include "scene/reference_place.h"
 #include "scene/save.h"
 #include "source/write_image.h"
-#include "viewer/session_parts.h"
+#include "viewer/session.h"
 
 namespace astrosplat {
 namespace {
@@ -32,8 +32,6 @@ const LayerParams* layer_at(const State& s, std::size_t index) {
     const std::vector<LayerParams>& layers = s.document.scene().layers;
     return layers.empty() ? nullptr : &layers[std::min(index, layers.size() - 1)];
 }
-
-void open_path(State& s, const Command& c) { open_file(s, c.path); }
 
 void open_demo(State& s, const Command&) {
     take_document(s, demo_document());
@@ -54,15 +52,8 @@ void save_as(State& s, const Command& c) {
     s.document.save_as(c.path);
     note_recent(s, s.document.file());
     note_saved(s);
-    s.comparison.snapshots().move_to(s.document.file());
+    s.snapshots.move_to(s.document.file());
 }
-
-void reload(State& s, const Command&) {
-    s.document.reload();
-    say(s.status, "Read again: " + s.document.file().string());
-}
-
-void keep(State& s, const Command&) { s.document.ignore_change_on_disk(); }
 
 void recover_autosave(State& s, const Command& c) {
     take_document(s, recover(c.path));
@@ -71,13 +62,6 @@ void recover_autosave(State& s, const Command& c) {
     find_recoveries(s.status);
     say(s.status, "Recovered; save to keep it");
 }
-
-void discard(State& s, const Command& c) {
-    discard_recovery(c.path);
-    find_recoveries(s.status);
-}
-
-void quit(State& s, const Command&) { s.quitting = true; }
 
 void new_scene(State& s, const Command& c) {
     const std::string text = c.text.empty() ? empty_scene_text() : shape_scene_text(c.text);
@@ -112,8 +96,6 @@ void set_reference(State& s, const Command& c) {
     });
     show_reference(s.view);
 }
-
-void align_reference(State& s, const Command&) { begin_alignment(s); }
 
 /// "frame 5", "frames 5 to 9".
 std::string frames_in_words(const Track& track) {
@@ -150,41 +132,25 @@ void apply_look_file(State& s, const Command& c) {
     });
 }
 
-void regenerate(State& s, const Command& c) {
-    if (const LayerParams* layer = layer_at(s, c.index)) s.sets.loader().retry(layer->name);
-}
-
-void cancel_load(State& s, const Command& c) {
-    if (const LayerParams* layer = layer_at(s, c.index)) s.sets.loader().cancel(layer->name);
-}
-
 void render_files(State& s, const Command&) {
     s.jobs.add(s.view.render, s.document);
     if (s.jobs.jobs().size() > 1) s.view.queue_open = true;
 }
+
 void choose_target(State& s, const Command& c) {
     s.view.render.folder = c.path.parent_path();
     s.view.render.name = c.path.filename().string();
     s.view.render_open = true;
 }
-void prepare_files(State& s, const Command& c) {
-    if (const LayerParams* layer = layer_at(s, c.index)) s.jobs.add_preparation(layer->source, c.path);
-}
-void cancel_render(State& s, const Command&) { s.jobs.cancel_running(); }
-void cancel_job(State& s, const Command& c) { s.jobs.cancel(c.index); }
-void remove_job(State& s, const Command& c) { s.jobs.remove(c.index); }
-void open_folder(State& s, const Command& c) {
-    s.file_manager.emplace(std::vector<std::string>{"xdg-open", c.path.string()});
-}
 
 /// The part of the viewport that shows the frame, without its surroundings.
 void save_view(State& s, const Command& c) {
-    const glm::vec2 port(s.viewport_px);
-    const Rect whole = place_frame(s.view, {0, 0, port.x, port.y}, s.request.width, s.request.height);
-    const int x0 = std::max(0, static_cast<int>(std::lround(whole.x))),
-              y0 = std::max(0, static_cast<int>(std::lround(whole.y)));
-    const int x1 = std::min(s.viewport_px.x, static_cast<int>(std::lround(whole.x + whole.width))),
-              y1 = std::min(s.viewport_px.y, static_cast<int>(std::lround(whole.y + whole.height)));
+    const Rect whole = frame_in_viewport(s);
+    const auto edge = [](float px, int most) {
+        return std::clamp(static_cast<int>(std::lround(px)), 0, most);
+    };
+    const int x0 = edge(whole.x, s.viewport_px.x), x1 = edge(whole.x + whole.width, s.viewport_px.x),
+              y0 = edge(whole.y, s.viewport_px.y), y1 = edge(whole.y + whole.height, s.viewport_px.y);
     if (x1 <= x0 || y1 <= y0) throw InputError("there is no frame to save yet");
     const std::vector<unsigned char> all = s.display.read();
     std::vector<unsigned char> part;
@@ -195,12 +161,11 @@ void save_view(State& s, const Command& c) {
     write_image(c.path, x1 - x0, y1 - y0, part);
     say(s.status, "Saved " + c.path.string());
 }
-void take_screenshot(State& s, const Command& c) { s.screenshot = c.path; }
 
 /// With a thumbnail of A, whatever it is compared with, and the facts of that picture.
 void snapshot(State& s, const Command&) {
     constexpr int thumbnail_px = 192;
-    SnapshotList& snapshots = s.comparison.snapshots();
+    SnapshotList& snapshots = s.snapshots;
     const ViewFrameStatus& shown = s.view_frame.status();
     const bool final = shown.state == ViewFrameState::final;
     DisplaySettings alone = s.displayed;
@@ -212,7 +177,7 @@ void snapshot(State& s, const Command&) {
 }
 
 void store_b(State& s, const Command& c) {
-    const std::size_t index = s.comparison.snapshots().size();
+    const std::size_t index = s.snapshots.size();
     say(s.status,
         std::string("B is the look as it is now; ") +
             (s.view.compare_with == CompareWith::b ? "Tab shows A or B" : "Shift+B compares with it"));
@@ -221,19 +186,15 @@ void store_b(State& s, const Command& c) {
     } catch (const OutputError& error) {
         say(s.status, error.what(), true);
     }
-    s.comparison.set_b(index);
+    s.snapshots.set_b(index);
 }
 
 void restore_snapshot(State& s, const Command& c) {
-    if (c.index < s.comparison.snapshots().size())
-        restore_look(s.document, s.comparison.snapshots().look(c.index));
+    if (const StoredLook* look = s.snapshots.look(c.index)) restore_look(s.document, *look);
 }
 
-void rename_snapshot(State& s, const Command& c) { s.comparison.snapshots().rename(c.index, c.text); }
-void delete_snapshot(State& s, const Command& c) { s.comparison.delete_snapshot(c.index); }
-void compare_snapshot(State& s, const Command& c) { s.comparison.set_b(c.index); }
 void show_snapshot(State& s, const Command& c) {
-    s.comparison.set_b(c.index);
+    s.snapshots.set_b(c.index);
     s.view.compare_with = CompareWith::b;
     s.view.compare = CompareMode::other;
 }
@@ -252,9 +213,6 @@ void copy_batch_command(State& s, const Command&) {
     say(s.status, "Copied: " + command.text);
 }
 
-void copy_text(State& s, const Command& c) { s.clipboard = c.text; }
-void say_text(State& s, const Command& c) { say(s.status, c.text); }
-
 void frame_box_in_view(State& s, const Bounds& box) {
     if (frame_in_view(s.view, box, s.shown())) say(s.status, left_camera_message);
 }
@@ -269,8 +227,6 @@ void frame_layer(State& s, const Command&) {
     }
     frame_box_in_view(s, box);
 }
-
-void frame_all(State& s, const Command&) { frame_box_in_view(s, s.status.box); }
 
 void add_move(State& s, const Command& c) {
     s.document.edit("Add camera move", [&](Scene& scene) {
@@ -294,51 +250,72 @@ struct Entry {
     void (*function)(State&, const Command&);
 };
 
-constexpr Entry entries[] = {{Kind::new_from_file, open_path},
-                             {Kind::new_scene, new_scene},
-                             {Kind::open, open_path},
-                             {Kind::open_demo, open_demo},
-                             {Kind::save, save},
-                             {Kind::save_as, save_as},
-                             {Kind::reload, reload},
-                             {Kind::keep, keep},
-                             {Kind::recover, recover_autosave},
-                             {Kind::discard_recovery, discard},
-                             {Kind::quit, quit},
-                             {Kind::import_file, import_file},
-                             {Kind::add_shape, add_shape_layer},
-                             {Kind::choose_picture, choose_picture},
-                             {Kind::set_reference, set_reference},
-                             {Kind::align_reference, align_reference},
-                             {Kind::import_camera, import_camera},
-                             {Kind::export_camera, export_camera},
-                             {Kind::save_look, save_look},
-                             {Kind::apply_look, apply_look_file},
-                             {Kind::regenerate, regenerate},
-                             {Kind::cancel_load, cancel_load},
-                             {Kind::render, render_files},
-                             {Kind::choose_target, choose_target},
-                             {Kind::prepare_picture, prepare_files},
-                             {Kind::cancel_render, cancel_render},
-                             {Kind::cancel_job, cancel_job},
-                             {Kind::remove_job, remove_job},
-                             {Kind::open_folder, open_folder},
-                             {Kind::save_view, save_view},
-                             {Kind::screenshot, take_screenshot},
-                             {Kind::store_b, store_b},
-                             {Kind::take_snapshot, snapshot},
-                             {Kind::restore_snapshot, restore_snapshot},
-                             {Kind::rename_snapshot, rename_snapshot},
-                             {Kind::delete_snapshot, delete_snapshot},
-                             {Kind::compare_snapshot, compare_snapshot},
-                             {Kind::show_snapshot, show_snapshot},
-                             {Kind::copy_batch_command, copy_batch_command},
-                             {Kind::copy_text, copy_text},
-                             {Kind::say, say_text},
-                             {Kind::frame_layer, frame_layer},
-                             {Kind::frame_all, frame_all},
-                             {Kind::add_move, add_move},
-                             {Kind::keep_settings, keep_settings}};
+constexpr Entry entries[] = {
+    {Kind::new_from_file, [](State& s, const Command& c) { open_file(s, c.path); }},
+    {Kind::new_scene, new_scene},
+    {Kind::open, [](State& s, const Command& c) { open_file(s, c.path); }},
+    {Kind::open_demo, open_demo},
+    {Kind::save, save},
+    {Kind::save_as, save_as},
+    {Kind::reload,
+     [](State& s, const Command&) {
+         s.document.reload();
+         say(s.status, "Read again: " + s.document.file().string());
+     }},
+    {Kind::keep, [](State& s, const Command&) { s.document.ignore_change_on_disk(); }},
+    {Kind::recover, recover_autosave},
+    {Kind::discard_recovery,
+     [](State& s, const Command& c) {
+         discard_recovery(c.path);
+         find_recoveries(s.status);
+     }},
+    {Kind::quit, [](State& s, const Command&) { s.quitting = true; }},
+    {Kind::import_file, import_file},
+    {Kind::add_shape, add_shape_layer},
+    {Kind::choose_picture, choose_picture},
+    {Kind::set_reference, set_reference},
+    {Kind::align_reference, [](State& s, const Command&) { begin_alignment(s); }},
+    {Kind::import_camera, import_camera},
+    {Kind::export_camera, export_camera},
+    {Kind::save_look, save_look},
+    {Kind::apply_look, apply_look_file},
+    {Kind::regenerate,
+     [](State& s, const Command& c) {
+         if (const LayerParams* layer = layer_at(s, c.index)) s.sets.loader().retry(layer->name);
+     }},
+    {Kind::cancel_load,
+     [](State& s, const Command& c) {
+         if (const LayerParams* layer = layer_at(s, c.index)) s.sets.loader().cancel(layer->name);
+     }},
+    {Kind::render, render_files},
+    {Kind::choose_target, choose_target},
+    {Kind::prepare_picture,
+     [](State& s, const Command& c) {
+         if (const LayerParams* layer = layer_at(s, c.index)) s.jobs.add_preparation(layer->source, c.path);
+     }},
+    {Kind::cancel_render, [](State& s, const Command&) { s.jobs.cancel_running(); }},
+    {Kind::cancel_job, [](State& s, const Command& c) { s.jobs.cancel(c.index); }},
+    {Kind::remove_job, [](State& s, const Command& c) { s.jobs.remove(c.index); }},
+    {Kind::open_folder,
+     [](State& s, const Command& c) {
+         s.file_manager.emplace(std::vector<std::string>{"xdg-open", c.path.string()});
+     }},
+    {Kind::save_view, save_view},
+    {Kind::screenshot, [](State& s, const Command& c) { s.screenshot = c.path; }},
+    {Kind::store_b, store_b},
+    {Kind::take_snapshot, snapshot},
+    {Kind::restore_snapshot, restore_snapshot},
+    {Kind::rename_snapshot, [](State& s, const Command& c) { s.snapshots.rename(c.index, c.text); }},
+    {Kind::delete_snapshot, [](State& s, const Command& c) { s.snapshots.remove(c.index); }},
+    {Kind::compare_snapshot, [](State& s, const Command& c) { s.snapshots.set_b(c.index); }},
+    {Kind::show_snapshot, show_snapshot},
+    {Kind::copy_batch_command, copy_batch_command},
+    {Kind::copy_text, [](State& s, const Command& c) { s.clipboard = c.text; }},
+    {Kind::say, [](State& s, const Command& c) { say(s.status, c.text); }},
+    {Kind::frame_layer, frame_layer},
+    {Kind::frame_all, [](State& s, const Command&) { frame_box_in_view(s, s.status.box); }},
+    {Kind::add_move, add_move},
+    {Kind::keep_settings, keep_settings}};
 
 static_assert(std::size(entries) == static_cast<std::size_t>(Kind::keep_settings) + 1);
 

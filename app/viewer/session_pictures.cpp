@@ -1,5 +1,6 @@
-// Pictures that a session shows besides its frame: rendered frames, the front check, the preparation,
-// thumbnails, and the reference's alignment. Each is made in a background thread and uploaded once.
+// What a session shows besides its frame: rendered frames, the front check, the preparation, thumbnails, the
+// reference's alignment, and the jobs that render to files, with a finished frame. Each picture is made in a
+// background thread and uploaded once.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,10 +11,11 @@
 #include <vector>
 
 #include "core/error.h"
+#include "edit/command_lines.h"
 #include "frame/output_pattern.h"
 #include "scene/animate.h"
 #include "scene/frames.h"
-#include "viewer/session_parts.h"
+#include "viewer/session.h"
 
 namespace astrosplat {
 namespace {
@@ -51,7 +53,7 @@ std::optional<FrameFiles> frame_files(const Scene& scene) try {
 
 /// From the frame that is looked at on, as they are played.
 std::vector<fs::path> files_ahead(const Session& session, const FrameFiles& files) {
-    constexpr double most = 24.0;
+    constexpr double most = 24.0;  // files: a second of film
     const std::vector<std::int64_t> frames =
         parse_frames(session.document.scene().output.frames, "output.frames");
     const double first = session.view.play_first.value_or(static_cast<double>(frames.front())),
@@ -118,6 +120,60 @@ Image view_pixels(Session& session, unsigned texture) {
     return view;
 }
 
+void fill_command(Session& session) {
+    if (!session.view.render_open) return;
+    const std::tuple source(session.document.revision(), session.document.file(), session.view.render);
+    if (session.command_source == source) return;
+    session.command_source = source;
+    // A name is enough where every shell finds the program.
+    const std::string program = has_program("astrosplat") ? "astrosplat" : own_program();
+    const BatchCommand command = render_command(session.document, session.view.render, program);
+    session.status.render_command = command.text;
+    session.status.no_render_command = command.reason;
+}
+
+const QueuedJob* job_looked_at(const Session& session) {
+    const std::vector<QueuedJob>& jobs = session.status.jobs;
+    const auto chosen = std::ranges::find(jobs, session.view.queue_job, &QueuedJob::number);
+    if (chosen != jobs.end()) return &*chosen;
+    return jobs.empty() ? nullptr : &jobs.back();
+}
+
+/// As the viewport shows that frame of the scene that is open.
+FinishedRequest request_for(Session& session, const fs::path& file) {
+    if (session.finished_header.first != file) session.finished_header = {file, read_frame_header(file)};
+    const Scene& scene = session.document.scene();
+    const std::optional<std::int64_t> number = session.finished_header.second.frame;
+    const double frame = number ? static_cast<double>(*number) : session.view.frame;
+    FinishedRequest request;
+    request.file = file;
+    request.view = display_view(session.view.display, scene.output.view);
+    if (session.view.display == OutputParams::View::automatic) request.ocio = session.color.transform();
+    request.exposure = scene_at(scene, frame).output.exposure;
+    return request;
+}
+
+void show_finished_frame(Session& session) {
+    FinishedFrame& shown = session.status.finished;
+    const QueuedJob* const job = session.view.queue_open ? job_looked_at(session) : nullptr;
+    if (!job || job->files.empty()) {
+        shown = {};
+        return session.finished.cancel();
+    }
+    const auto last = static_cast<int>(job->files.size()) - 1;
+    const int index = session.view.queue_frame < 0 ? last : std::min(session.view.queue_frame, last);
+    const FinishedRequest request = request_for(session, job->files[static_cast<std::size_t>(index)]);
+    session.finished.want(request);
+    const auto found = session.finished.found(request);
+    if (!found) return;  // while it is read, the last one stays
+    shown.error = found->error;
+    if (!found->error.empty()) return;
+    ShownPicture<FinishedView>& picture = session.finished_picture;
+    picture.show(found, &FinishedView::image);
+    shown.texture = to_handle(picture.texture());
+    shown.aspect = picture.aspect();
+}
+
 }  // namespace
 
 bool show_rendered_frame(Session& session, const Rect& place, DisplaySettings& shown) {
@@ -155,7 +211,7 @@ void show_front(Session& session, const Scene& now, DisplaySettings& shown) {
     const std::shared_ptr<const FrontFound> found = check_front(session, now);
     if (!found || session.view.compare != CompareMode::front) return;
     ShownPicture<FrontFound>& picture = session.front_picture;
-    picture.show(found, [](const FrontFound& front) -> const Image& { return front.difference; });
+    picture.show(found, &FrontFound::difference);
     const glm::vec2 port(session.viewport_px);
     show_alone(picture.texture(), true, picture.size_px(), {0, 0, port.x, port.y}, shown);
     shown.width = std::round(shown.width);
@@ -179,8 +235,8 @@ void show_preparation(Session& session) {
     const auto found = session.preparation.found(*request);
     if (found) status->error = found->error;
     if (found && found->error.empty()) {
-        before.show(found, [](const PreparedView& view) -> const Image& { return view.before; });
-        after.show(found, [](const PreparedView& view) -> const Image& { return view.after; });
+        before.show(found, &PreparedView::before);
+        after.show(found, &PreparedView::after);
     }
     // While another is worked out, the last one stays.
     if (!after.found() || after.found()->files != request->files || !status->error.empty()) return;
@@ -220,9 +276,7 @@ void begin_alignment(Session& session) {
     request.view = view_pixels(session, session.comparison.reference().texture());
     if (request.view.pixels.empty()) throw InputError("there is no frame to align to yet");
     request.picture = *picture;
-    const glm::vec2 port(session.viewport_px);
-    request.frame = frame_on_screen(
-        place_frame(session.view, {0, 0, port.x, port.y}, session.request.width, session.request.height));
+    request.frame = frame_on_screen(frame_in_viewport(session));
     request.frame.middle -= glm::dvec2(std::max(0.0f, std::round(session.displayed.x)),
                                        std::max(0.0f, std::round(session.displayed.y)));
     request.reference = *reference;
@@ -247,6 +301,14 @@ void take_alignment(Session& session) {
                           [&](Scene& scene) { scene.references[index] = *found->reference; });
     show_reference(session.view);
     say(session.status, fmt::format("Aligned {}, likeness {:.2f}", name, found->likeness));
+}
+
+void show_renderings(Session& session, double now) {
+    const auto news = session.jobs.poll(now);
+    if (news) say(session.status, news->text, news->error);
+    session.status.jobs = session.jobs.jobs();
+    fill_command(session);
+    show_finished_frame(session);
 }
 
 }  // namespace astrosplat

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/gtc/type_precision.hpp>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -17,7 +18,7 @@
 #include "scene/animate.h"
 #include "scene/layer_setup.h"
 #include "viewer/cpu_preview.h"
-#include "viewer/session_parts.h"
+#include "viewer/session.h"
 
 namespace astrosplat {
 namespace {
@@ -183,12 +184,11 @@ bool settles(const Session& session) { return session.view.settle && !session.vi
 /// Asks for the frame as the view sees it, with the lines beside it; returns where all of it lies in the
 /// viewport.
 Rect place_of_frame(Session& session, const Scene& now) {
-    const glm::vec2 port_px(session.viewport_px);
-    session.status.viewport_aspect = static_cast<double>(port_px.x) / static_cast<double>(port_px.y);
+    session.status.viewport_aspect =
+        static_cast<double>(session.viewport_px.x) / static_cast<double>(session.viewport_px.y);
     session.request = make_request(session, now);
     keep_free_camera(session.view, session.shown());
-    const Rect whole = place_frame(session.view, {0, 0, port_px.x, port_px.y}, session.request.width,
-                                   session.request.height);
+    const Rect whole = frame_in_viewport(session);
     session.status.viewport_camera = camera_in_viewport(session.request, whole);
     session.status.overlay_lines.clear();
     if (session.view.view != ViewKind::camera && session.view.camera_path)
@@ -218,9 +218,10 @@ void compare_a(Session& session, const Rect& whole, const Drawing& how, DisplayS
     };
     session.comparison.find_reference(session.document.scene(), session.view, session.status);
     if (session.status.reference) session.status.reference->aligning = session.alignment.working();
-    session.comparison.show(
-        session.document.scene(), session.view,
-        {request_for, how.choice, how.may_settle && a_is_done, how.now, frame_on_screen(whole)}, shown);
+    session.comparison.show(session.document.scene(), session.view,
+                            {session.snapshots.b(), request_for, how.choice, how.may_settle && a_is_done,
+                             how.now, frame_on_screen(whole)},
+                            shown);
 }
 
 void fill_layers(Session& session, const Scene& now) {
@@ -242,18 +243,13 @@ void fill_layers(Session& session, const Scene& now) {
 }
 
 /// The pixel of the whole frame at a place of the viewport, px; outside of the frame where that is.
-struct FramePixel {
-    std::int64_t x = 0, y = 0;
-};
-FramePixel frame_pixel(const Session& session, glm::dvec2 mouse_px) {
-    const ViewRequest& request = session.request;
-    const glm::vec2 port(session.viewport_px);
-    const Rect place = place_frame(session.view, {0, 0, port.x, port.y}, request.width, request.height);
+glm::i64vec2 frame_pixel(const Session& session, glm::dvec2 mouse_px) {
+    const Rect place = frame_in_viewport(session);
     const auto pixel = [](double px, float begin, float size, int count) {
         return static_cast<std::int64_t>(std::floor((px - begin) / size * count));
     };
-    return {pixel(mouse_px.x, place.x, place.width, request.width),
-            pixel(mouse_px.y, place.y, place.height, request.height)};
+    return {pixel(mouse_px.x, place.x, place.width, session.request.width),
+            pixel(mouse_px.y, place.y, place.height, session.request.height)};
 }
 
 }  // namespace
@@ -261,6 +257,11 @@ FramePixel frame_pixel(const Session& session, glm::dvec2 mouse_px) {
 OutputParams::View display_view(OutputParams::View chosen, OutputParams::View of_scene) {
     const OutputParams::View view = chosen == OutputParams::View::automatic ? of_scene : chosen;
     return view == OutputParams::View::automatic ? OutputParams::View::srgb : view;
+}
+
+Rect frame_in_viewport(const Session& session) {
+    const glm::vec2 port(session.viewport_px);
+    return place_frame(session.view, {0, 0, port.x, port.y}, session.request.width, session.request.height);
 }
 
 void draw_viewport(Session& session, glm::ivec2 viewport_px, double now, bool hurry) {
@@ -306,7 +307,7 @@ void fill_status(Session& session) {
     session.status.engine = draws_by_opengl(session)
                                 ? fmt::format("OpenGL {}.{}, {}", gl.major, gl.minor, gl.renderer)
                                 : "processor";
-    session.comparison.fill(session.status);
+    session.snapshots.fill(session.status);
     session.status.blink_shows_other =
         session.view.compare == CompareMode::blink && session.comparison.blink_shows_other();
     say_new_errors(session.status, session.said_errors);
@@ -317,7 +318,7 @@ void probe(Session& session, glm::dvec2 mouse_px) {
     session.status.probe.reset();
     if (request.width <= 0 || session.view_frame.texture() == 0) return;
     if (!session.status.rendered_frame.empty()) return;  // another picture is seen
-    const FramePixel at = frame_pixel(session, mouse_px);
+    const glm::i64vec2 at = frame_pixel(session, mouse_px);
     const Image* pixels = session.view_frame.pixels();
     if (!pixels) return;
     const std::shared_ptr<const RenderedFrame> final = session.view_frame.final_frame();
@@ -340,7 +341,7 @@ std::optional<PixelProbe> probe_of(const Image& pixels, const Image* depth, cons
 void select_layer_at(Session& session, glm::dvec2 mouse_px, bool behind) {
     const CompareMode compare = session.view.compare;
     if (compare == CompareMode::front || compare == CompareMode::other) return;  // no layers of A are seen
-    const FramePixel at = frame_pixel(session, mouse_px);
+    const glm::i64vec2 at = frame_pixel(session, mouse_px);
     const std::vector<std::size_t> seen = seen_layers(session.view_frame.layer_light(at.x, at.y));
     const std::optional<std::size_t> clicked = clicked_layer(seen, session.view.layer, behind);
     const std::vector<LayerParams>& layers = session.document.scene().layers;

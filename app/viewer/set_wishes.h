@@ -1,16 +1,58 @@
 // Which sets the scene wants of the loader, and when: a source that is being edited waits until the hand has
-// rested, while a preview follows its levels; and a set that grows is shown as often as takes it a few
-// percent of its time. In: the document, once a frame. Out: the loader's sets.
+// rested; and a set that grows is shown as often as takes it a few percent of its time. Meanwhile a preview
+// follows levels, colours and alpha that are dragged: a sample of the layer's splats with new colours, which
+// columns read from the pictures, while structures are multiplied by what became of the picture. In: the
+// document, once a frame. Out: the loader's sets, or a LoadedLayer without a set until that is made again.
 #pragma once
 
 #include <cstdint>
+#include <memory>
+#include <string>
 #include <vector>
 
 #include "edit/document.h"
-#include "viewer/live_texels.h"
+#include "viewer/background_work.h"
+#include "viewer/loaded_layer.h"
 #include "viewer/set_loader.h"
 
 namespace astrosplat {
+
+/// Whether a set of `now` has the geometry of one of `before`: of how pictures are read only that differs
+/// which a preview can follow, and no picture is prepared.
+bool only_texels_differ(const SourceParams& before, const SourceParams& now);
+
+struct LiveRequest {
+    std::shared_ptr<const LoadedLayer> loaded;
+    SourceParams source;
+    bool operator==(const LiveRequest& other) const;
+};
+
+struct LiveFound {
+    std::shared_ptr<const LoadedLayer> layer;
+    std::string error;
+};
+
+/// Keeps meshes, thinned pictures and the sample's tree from one drag step to the next. Throws InputError,
+/// Cancelled.
+LatestWork<LiveRequest, LiveFound>::Work live_maker();
+
+class LiveTexels {
+  public:
+    /// Works towards a layer under this source; what is under way is finished first, so that a hand that
+    /// never rests sees something. Returns at once.
+    void want(const LiveRequest& request);
+    /// The latest of that loaded layer, which may lag behind; null: there is none yet.
+    std::shared_ptr<const LoadedLayer> layer(const std::shared_ptr<const LoadedLayer>& loaded) const;
+    /// There may be a newer one soon.
+    bool working() const { return work_.working(); }
+    void forget();
+
+  private:
+    LatestWork<LiveRequest, LiveFound> work_{live_maker()};
+    LiveRequest asked_;
+    std::shared_ptr<const LoadedLayer> found_;
+    std::shared_ptr<const SplatSet> base_;  // whose preview found_ is
+};
 
 class SetWishes {
   public:

@@ -18,27 +18,23 @@ bool same_set(const std::shared_ptr<const LoadedLayer>& a, const std::shared_ptr
     return (a ? set_of(*a) : nullptr) == (b ? set_of(*b) : nullptr);
 }
 
+bool have_same_sets(const ViewRequest& a, const ViewRequest& b) {
+    return std::ranges::equal(a.layers, b.layers, same_set);
+}
+
+/// They ask for the same, whatever sets there are.
+bool ask_the_same(const ViewRequest& a, const ViewRequest& b) {
+    return a.width == b.width && a.height == b.height && a.files == b.files && a.frame == b.frame &&
+           a.region.x == b.region.x && a.region.y == b.region.y && a.region.width == b.region.width &&
+           a.region.height == b.region.height && a.scene == b.scene;
+}
+
 constexpr double rest_s = 0.15;       // without a touch, before the final frame begins
 constexpr double step_rest_s = 0.06;  // and before the first finer preview does
 
 double milliseconds_since(Clock::time_point start) { return 1e3 * seconds_since(start); }
 
-Region whole(const ViewRequest& request) {
-    if (request.region.width > 0) return request.region;
-    return {0, 0, request.width, request.height};
-}
-
 }  // namespace
-
-bool ViewRequest::asks_as(const ViewRequest& other) const {
-    return width == other.width && height == other.height && files == other.files && frame == other.frame &&
-           region.x == other.region.x && region.y == other.region.y && region.width == other.region.width &&
-           region.height == other.region.height && scene == other.scene;
-}
-
-bool ViewRequest::has_sets_of(const ViewRequest& other) const {
-    return std::equal(layers.begin(), layers.end(), other.layers.begin(), other.layers.end(), same_set);
-}
 
 Camera camera_of(const ViewRequest& request) {
     return make_camera(request.scene.camera, request.width, request.height, request.box);
@@ -152,13 +148,12 @@ bool ViewFrame::environment_arrived() {
     }
 }
 
-/// There is more to be shown of the same sets. Once the final frame has begun nobody needs it.
+/// There is more to be shown of the same sets. Once the final frame has begun it is not needed.
 bool ViewFrame::previews_arrived(const ViewRequest& now) const {
     const auto same_preview = [](const auto& a, const auto& b) {
         return (a ? a->sample : MergeSource()) == (b ? b->sample : MergeSource());
     };
-    return !std::equal(request_->layers.begin(), request_->layers.end(), now.layers.begin(), now.layers.end(),
-                       same_preview);
+    return !std::ranges::equal(request_->layers, now.layers, same_preview);
 }
 
 /// Sums of whole sets, while nothing more urgent needs the processor.
@@ -169,7 +164,7 @@ bool ViewFrame::refine(double now) {
 /// The part of the frame that is seen, as a frame of its own.
 PreviewView ViewFrame::preview_view() const {
     PreviewView view;
-    const Region part = whole(*request_);
+    const Region part = request_->part();
     view.camera = camera_of(*request_);
     view.camera.center_x_px -= static_cast<double>(part.x);
     view.camera.center_y_px -= static_cast<double>(part.y);
@@ -261,19 +256,11 @@ bool ViewFrame::take_step() {
 }
 
 void ViewFrame::begin_final() {
-    FinalRequest wanted;
-    wanted.scene = request_->scene;
+    FinalRequest wanted{*request_, {}, environment_, !request_->scene.output.aovs.empty()};
     for (std::size_t i = 0; i < request_->layers.size(); ++i) {
         const std::shared_ptr<const LoadedLayer>& loaded = request_->layers[i];
         wanted.sets.push_back(loaded && request_->scene.layers[i].visible ? loaded->set : nullptr);
     }
-    wanted.environment = environment_;
-    wanted.files = request_->files;
-    wanted.frame = request_->frame;
-    wanted.width = request_->width;
-    wanted.height = request_->height;
-    wanted.region = request_->region;
-    wanted.depth = !request_->scene.output.aovs.empty();
     canvas_ = drawn_ ? *drawn_ : gl_->read();  // which the tiles replace
     if (!drawn_) canvas_texture_.upload(canvas_);
     texture_ = canvas_texture_.handle();
@@ -284,8 +271,8 @@ void ViewFrame::begin_final() {
 }
 
 void ViewFrame::take_final(double now) {
-    FinalFrame::Outcome outcome;
-    for (const Region& tile : final_.take_tiles(canvas_, &outcome)) {
+    const FinalFrame::Outcome outcome = final_.outcome();  // before the tiles, so that none is missing
+    for (const Region& tile : final_.take_tiles(canvas_)) {
         canvas_texture_.upload(canvas_, tile);
         ++version_;
     }
@@ -324,9 +311,9 @@ void ViewFrame::come_closer(bool settle, double now, bool hurry) {
 
 void ViewFrame::show(const ViewRequest& request, const PreviewChoice& choice, bool settle, double now,
                      bool hurry) {
-    const bool touched = !request_ || !request_->asks_as(request) || choice_.opengl != choice.opengl ||
+    const bool touched = !request_ || !ask_the_same(*request_, request) || choice_.opengl != choice.opengl ||
                          choice_.share != choice.share;
-    const bool changed = touched || !request_->has_sets_of(request) || environment_arrived();
+    const bool changed = touched || !have_same_sets(*request_, request) || environment_arrived();
     const bool refined = request_ && refine(now);
     const bool fuller = !changed && stage_ <= Stage::finer && (refined || previews_arrived(request));
     if (changed || fuller || (gl_ && gl_->sorting())) {
@@ -370,7 +357,7 @@ std::vector<float> ViewFrame::layer_light(std::int64_t x, std::int64_t y) {
     const PreviewView view = preview_view();
     std::vector<PreviewLayer> layers = layers_;
     if (draws_whole_sets()) cut(layers, view);
-    const Region part = whole(*request_);
+    const Region part = request_->part();
     const std::vector<float> drawn = light_of_layers(layers, view, x - part.x, y - part.y);
     for (std::size_t n = 0; n < drawn.size(); ++n) light[places_[n]] = drawn[n];
     return light;

@@ -11,29 +11,20 @@
 
 #include "edit/status.h"
 #include "edit/view_state.h"
-#include "gl/image_texture.h"
+#include "gl/objects.h"
 #include "gl/preview.h"
 #include "scene/scene.h"
 #include "viewer/final_frame.h"
-#include "viewer/preview_budget.h"
 #include "viewer/preview_dots.h"
 #include "viewer/scene_files.h"
 
 namespace astrosplat {
 
-/// A frame to be shown. Requests that ask for the same and have the same sets show equal frames.
-struct ViewRequest {
-    Scene scene;  // as it stands at the frame, with the view's camera; layers that are not to be seen are
-                  // invisible
+/// A frame to be shown: the scene as it stands, with the view's camera; layers that are not to be seen are
+/// invisible. Requests that ask for the same and have the same sets show equal frames.
+struct ViewRequest : FrameRequest {
     std::vector<std::shared_ptr<const LoadedLayer>> layers;  // as in the scene; null: not loaded
     Bounds box;                                              // of the visible layers, world space
-    int width = 0, height = 0;                               // px of the whole frame
-    std::uint64_t files = 0;                                 // another number: pictures were changed on disk
-    double frame = 1.0;  // at which the scene's animation, if it has kept any, is evaluated
-    Region region;       // the part to be seen; empty: all
-    /// Nobody asks for anything else, whatever sets there are.
-    bool asks_as(const ViewRequest& other) const;
-    bool has_sets_of(const ViewRequest& other) const;
 };
 
 /// The camera of a request, for its whole frame. Throws InputError.
@@ -54,14 +45,14 @@ class ViewFrame {
     explicit ViewFrame(std::shared_ptr<PictureFiles> files) : files_(std::move(files)) {}
 
     /// Shows `request`: draws a preview where it differs from the last one, else goes on towards the final
-    /// frame once nobody has touched anything for 0.15 s (`settle`; `hurry`: at once). `now` in seconds.
+    /// frame once nothing has been touched for 0.15 s (`settle`; `hurry`: at once). `now` in seconds.
     void show(const ViewRequest& request, const PreviewChoice& choice, bool settle, double now,
               bool hurry = false);
     unsigned texture() const { return texture_; }
     /// Grows whenever the texture's pixels change.
     std::uint64_t version() const { return version_; }
     const ViewFrameStatus& status() const { return status_; }
-    /// show() should be called again soon although nobody did anything.
+    /// show() should be called again soon although nothing was touched.
     bool waiting() const { return Stage::preview <= stage_ && stage_ <= Stage::refining; }
     /// Preview splats of each layer in the last preview.
     const std::vector<std::int64_t>& shown() const { return shown_; }
@@ -88,7 +79,7 @@ class ViewFrame {
     enum class Stage {
         empty,     // nothing has been asked for
         preview,   // drawn
-        finer,     // and one of more dots is on its way, while nobody touches anything
+        finer,     // and one of more dots is on its way, while nothing is touched
         refining,  // tiles of the final frame replace the preview
         final,     // all have
         failed     // the status says why; until something else is to be seen

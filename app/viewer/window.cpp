@@ -8,6 +8,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/vec2.hpp>
+#include <initializer_list>
 #include <iterator>
 #include <utility>
 
@@ -19,8 +21,55 @@
 // glad before GLFW, which would bring the system's OpenGL header.
 
 namespace astrosplat {
-
 namespace {
+
+using EventKind = InputEvent::Kind;
+
+bool has(const std::vector<InputEvent>& frame, std::initializer_list<EventKind> kinds) {
+    return std::ranges::any_of(
+        frame, [&](const InputEvent& event) { return std::ranges::find(kinds, event.kind) != kinds.end(); });
+}
+
+bool is_typed(EventKind kind) { return kind == EventKind::key_down || kind == EventKind::character; }
+
+/// A key that a text field takes no notice of, for it has the character.
+bool writes(const InputEvent& event) {
+    constexpr int shift = 1;
+    return (event.kind == EventKind::key_down || event.kind == EventKind::key_up) &&
+           event.modifiers <= shift && event.code >= ' ' && event.code <= '~';
+}
+
+/// A frame can take another character, or the key it is of, into a text: only Left, Enter and the like change
+/// where it would go.
+bool fits_in_text(const std::vector<InputEvent>& frame) {
+    return std::ranges::none_of(frame, [](const InputEvent& event) {
+        return event.kind == EventKind::press || event.kind == EventKind::release ||
+               (event.kind == EventKind::key_down && !writes(event));
+    });
+}
+
+/// A frame that has taken `frame` can take `next` too: none of those would be seen at the wrong place or in
+/// the wrong order.
+bool fits(const std::vector<InputEvent>& frame, const InputEvent& next) {
+    if (has(frame, {EventKind::press, EventKind::release})) return false;
+    switch (next.kind) {
+        case EventKind::move:
+            return !has(frame,
+                        {EventKind::wheel, EventKind::key_down, EventKind::key_up, EventKind::character});
+        case EventKind::wheel:
+            return !has(frame, {EventKind::key_down, EventKind::key_up, EventKind::character});
+        case EventKind::press:    // widgets below others are hovered for a frame before they can be pressed
+        case EventKind::release:  // what is dragged is not moved any more by the frame in which it is let go
+            return frame.empty();
+        case EventKind::key_down:  // with keys held, such as Ctrl, only from the frames before
+            return !has(frame, {EventKind::key_down, EventKind::character});
+        case EventKind::key_up:  // also of Ctrl after S
+            return !has(frame, {EventKind::key_down});
+        case EventKind::character:  // of the key before it
+            return !has(frame, {EventKind::character});
+    }
+    return true;
+}
 
 std::string glfw_reason(const char* fallback) {
     const char* text = nullptr;
@@ -34,13 +83,18 @@ void mix(std::uint64_t& hash, const void* bytes, std::size_t size) {
     hash = hash * odd + xxh64({static_cast<const char*>(bytes), size});
 }
 
+/// Into the bound target.
+void draw_widgets() {
+    glClearColor(0.0f, 0.0f, 0.0f, 1.0f);
+    glClear(GL_COLOR_BUFFER_BIT);
+    ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+}
+
 /// Into the buffer that is not shown yet.
 void draw_widgets(int width, int height) {
     glBindFramebuffer(GL_FRAMEBUFFER, 0);
     glViewport(0, 0, width, height);
-    glClearColor(0.0f, 0.0f, 0.0f, 1.0f);
-    glClear(GL_COLOR_BUFFER_BIT);
-    ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+    draw_widgets();
 }
 
 /// Of all that the widgets draw: shapes, and with which texture and within which rectangle.
@@ -62,14 +116,10 @@ std::uint64_t hash_of(const ImDrawData& data) {
     return hash;
 }
 
-constexpr int smallest_width = 1100, smallest_height = 680;  // px at scale 1
-
-struct WindowSize {
-    int width, height;
-};
+constexpr glm::ivec2 smallest_px(1100, 680);  // at scale 1
 
 /// A size at scale 1 on the first monitor, no larger than that has room for.
-WindowSize on_monitor(WindowSize size) {
+glm::ivec2 on_monitor(glm::ivec2 size) {
     GLFWmonitor* const monitor = glfwGetPrimaryMonitor();
     if (!monitor) return size;
     float scale = 1.0f, vertical = 1.0f;
@@ -79,10 +129,24 @@ WindowSize on_monitor(WindowSize size) {
     const auto scaled = [&](int px) {
         return static_cast<int>(std::lround(float(px) * std::max(1.0f, scale)));
     };
-    return {std::min(scaled(size.width), width), std::min(scaled(size.height), height)};
+    return {std::min(scaled(size.x), width), std::min(scaled(size.y), height)};
 }
 
 }  // namespace
+
+std::vector<InputEvent> InputQueue::take(Typing typing) {
+    const auto can_take = [&](const std::vector<InputEvent>& frame, const InputEvent& next) {
+        if (typing == Typing::later && is_typed(next.kind)) return false;
+        const bool text = typing == Typing::text && (next.kind == EventKind::character || writes(next));
+        return text ? fits_in_text(frame) : fits(frame, next);
+    };
+    std::vector<InputEvent> frame;
+    while (!events_.empty() && can_take(frame, events_.front())) {
+        frame.push_back(events_.front());
+        events_.pop_front();
+    }
+    return frame;
+}
 
 Window::Window(int width, int height, const std::string& title) {
     if (!glfwInit()) throw NoContext(glfw_reason("no display"));
@@ -90,15 +154,14 @@ Window::Window(int width, int height, const std::string& title) {
     glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 1);
     glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
     glfwWindowHint(GLFW_OPENGL_FORWARD_COMPAT, GLFW_TRUE);
-    const WindowSize size = on_monitor({width, height}),
-                     least = on_monitor({smallest_width, smallest_height});
-    window_ = glfwCreateWindow(size.width, size.height, title.c_str(), nullptr, nullptr);
+    const glm::ivec2 size = on_monitor({width, height}), least = on_monitor(smallest_px);
+    window_ = glfwCreateWindow(size.x, size.y, title.c_str(), nullptr, nullptr);
     if (!window_) {
         const std::string reason = glfw_reason("no OpenGL 4.1");
         glfwTerminate();
         throw NoContext(reason);
     }
-    glfwSetWindowSizeLimits(window_, least.width, least.height, GLFW_DONT_CARE, GLFW_DONT_CARE);
+    glfwSetWindowSizeLimits(window_, least.x, least.y, GLFW_DONT_CARE, GLFW_DONT_CARE);
     glfwMakeContextCurrent(window_);
     gl_ = load_gl(reinterpret_cast<GlLoader>(glfwGetProcAddress));
     glfwSwapInterval(1);
@@ -166,32 +229,32 @@ bool Window::end_frame(std::uint64_t frames) {
 
 /// The events of mouse and keyboard go into the queue rather than to Dear ImGui's backend.
 void Window::listen() {
-    using Kind = InputEvent::Kind;
     static const auto self = [](GLFWwindow* w) { return static_cast<Window*>(glfwGetWindowUserPointer(w)); };
     glfwSetWindowFocusCallback(window_, ImGui_ImplGlfw_WindowFocusCallback);
     glfwSetCursorEnterCallback(window_, [](GLFWwindow* window, int entered) {
         ImGui_ImplGlfw_CursorEnterCallback(window, entered);
         double x = 0.0, y = 0.0;
         glfwGetCursorPos(window, &x, &y);
-        self(window)->push({Kind::move, 0, 0, x, y, 0.0});
+        self(window)->push({EventKind::move, 0, 0, x, y, 0.0});
     });
     glfwSetCursorPosCallback(window_, [](GLFWwindow* window, double x, double y) {
-        self(window)->push({Kind::move, 0, 0, x, y, 0.0});
+        self(window)->push({EventKind::move, 0, 0, x, y, 0.0});
     });
     glfwSetMouseButtonCallback(window_, [](GLFWwindow* window, int button, int action, int) {
         if (button >= 0 && button < static_cast<int>(std::size(self(window)->button_down_)))
-            self(window)->push({action == GLFW_PRESS ? Kind::press : Kind::release, button, 0, 0, 0, 0.0});
+            self(window)->push(
+                {action == GLFW_PRESS ? EventKind::press : EventKind::release, button, 0, 0, 0, 0.0});
     });
     glfwSetScrollCallback(window_, [](GLFWwindow* window, double x, double y) {
-        self(window)->push({Kind::wheel, 0, 0, x, y, 0.0});
+        self(window)->push({EventKind::wheel, 0, 0, x, y, 0.0});
     });
     glfwSetKeyCallback(window_, [](GLFWwindow* window, int code, int, int action, int modifiers) {
         if (action != GLFW_REPEAT && code >= 0)
             self(window)->push(
-                {action == GLFW_PRESS ? Kind::key_down : Kind::key_up, code, modifiers, 0, 0, 0.0});
+                {action == GLFW_PRESS ? EventKind::key_down : EventKind::key_up, code, modifiers, 0, 0, 0.0});
     });
     glfwSetCharCallback(window_, [](GLFWwindow* window, unsigned character) {
-        self(window)->push({Kind::character, static_cast<int>(character), 0, 0, 0, 0.0});
+        self(window)->push({EventKind::character, static_cast<int>(character), 0, 0, 0, 0.0});
     });
 }
 
@@ -201,30 +264,29 @@ void Window::push(InputEvent event) {
 }
 
 void Window::feed(const InputEvent& event) {
-    using Kind = InputEvent::Kind;
     ImGuiIO& io = ImGui::GetIO();
     switch (event.kind) {
-        case Kind::move:
+        case EventKind::move:
             mouse_x_ = event.x;
             mouse_y_ = event.y;
             mouse_known_ = true;
             return;
-        case Kind::press:
-        case Kind::release:
-            button_down_[event.code] = event.kind == Kind::press;
+        case EventKind::press:
+        case EventKind::release:
+            button_down_[event.code] = event.kind == EventKind::press;
             return;
-        case Kind::wheel:
+        case EventKind::wheel:
             return ImGui_ImplGlfw_ScrollCallback(window_, event.x, event.y);
-        case Kind::key_down:
+        case EventKind::key_down:
             ImGui_ImplGlfw_KeyCallback(window_, event.code, 0, GLFW_PRESS, event.modifiers);
             // Also those that were held before the window had the keyboard.
             io.KeyCtrl |= (event.modifiers & GLFW_MOD_CONTROL) != 0;
             io.KeyShift |= (event.modifiers & GLFW_MOD_SHIFT) != 0;
             io.KeyAlt |= (event.modifiers & GLFW_MOD_ALT) != 0;
             return;
-        case Kind::key_up:
+        case EventKind::key_up:
             return ImGui_ImplGlfw_KeyCallback(window_, event.code, 0, GLFW_RELEASE, event.modifiers);
-        case Kind::character:
+        case EventKind::character:
             return ImGui_ImplGlfw_CharCallback(window_, static_cast<unsigned>(event.code));
     }
 }
@@ -309,9 +371,7 @@ void WidgetTarget::begin() {
 void WidgetTarget::end() {
     ImGui::Render();
     target_.bind();
-    glClearColor(0.0f, 0.0f, 0.0f, 1.0f);
-    glClear(GL_COLOR_BUFFER_BIT);
-    ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+    draw_widgets();
 }
 
 std::vector<unsigned char> WidgetTarget::read() const {

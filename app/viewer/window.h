@@ -1,8 +1,10 @@
 // Targets of the widgets: the window, or without a display a frame of their own, for screenshots and
-// measurements. In: the widgets of a frame. Out: pixels, and the input of mouse and keyboard.
+// measurements. In: the widgets of a frame. Out: pixels, and the input of mouse and keyboard in its order,
+// given out in portions that one frame of widgets can take.
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -11,11 +13,39 @@
 
 #include "gl/context.h"
 #include "gl/objects.h"
-#include "viewer/input_queue.h"
 
 struct GLFWwindow;
 
 namespace astrosplat {
+
+struct InputEvent {
+    enum class Kind { move, press, release, wheel, key_down, key_up, character };
+    Kind kind = Kind::move;
+    int code = 0;             // mouse button, key code, or character
+    int modifiers = 0;        // with a key
+    double x = 0.0, y = 0.0;  // position, or notches of the wheel
+    double time_s = 0.0;      // when it was seen
+    bool operator==(const InputEvent&) const = default;
+};
+
+/// The use of the keyboard by the widgets now: nothing yet, act, or write.
+enum class Typing { later, shortcuts, text };
+
+/// Knows neither window nor widgets. Dear ImGui looks at mouse and keyboard once a frame. Where a frame takes
+/// long, a click, a drag or a word falls between two frames: what it cannot tell apart waits for the frame
+/// after.
+class InputQueue {
+  public:
+    void push(const InputEvent& event) { events_.push_back(event); }
+    bool empty() const { return events_.empty(); }
+    /// The longest beginning of what waits in which nothing hides what came before: no button or key is
+    /// changed twice, a button is pressed and let go where the mouse was last seen, and no key or character
+    /// comes before another that was meant to be first. In a text all characters may come at once.
+    std::vector<InputEvent> take(Typing typing = Typing::shortcuts);
+
+  private:
+    std::deque<InputEvent> events_;
+};
 
 /// GLFW, an OpenGL context and Dear ImGui's backends, owned for as long as the viewer runs.
 class Window {

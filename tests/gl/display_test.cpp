@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "gl/gl_fixture.h"
-#include "gl/image_texture.h"
+#include "gl/objects.h"
 #include "output/format.h"
 #include "support/color_config.h"
 #include "support/temp_folder.h"

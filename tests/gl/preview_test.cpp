@@ -6,9 +6,9 @@
 #include "camera/camera.h"
 #include "core/rotation.h"
 #include "gl/gl_fixture.h"
-#include "gl/order.h"
 #include "gl/picture_scenes.h"
 #include "gl/preview.h"
+#include "gl/splat_buffers.h"
 #include "merge/cut.h"
 #include "unit/render/scenes.h"
 

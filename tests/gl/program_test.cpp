@@ -7,7 +7,6 @@
 
 #include "gl/context.h"
 #include "gl/draw_pass.h"
-#include "gl/environment_pass.h"
 #include "gl/gl_fixture.h"
 #include "gl/program.h"
 #include "support/temp_folder.h"

@@ -8,10 +8,10 @@
 #include "core/color.h"
 #include "support/dots.h"
 #include "support/temp_folder.h"
+#include "viewer/compared_pictures.h"
 #include "viewer/comparison.h"
 #include "viewer/cpu_preview.h"
 #include "viewer/loaded_layer.h"
-#include "viewer/reference_picture.h"
 
 namespace astrosplat {
 namespace {

@@ -133,8 +133,10 @@ TEST_F(FinalFrameTest, IsWholeWhenItIsDone) {
     for (int round = 0; round < 200; ++round) {
         Image tiles;
         FinalFrame::Outcome outcome;
-        for (picture.start(wanted); outcome.state != State::done; std::this_thread::yield())
-            picture.take_tiles(tiles, &outcome);
+        for (picture.start(wanted); outcome.state != State::done; std::this_thread::yield()) {
+            outcome = picture.outcome();
+            picture.take_tiles(tiles);
+        }
         ASSERT_EQ(pixel_hash(tiles), hash) << "round " << round;
     }
 }

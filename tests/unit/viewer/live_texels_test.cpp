@@ -1,6 +1,6 @@
 // Previews under other levels than the set was made with: what needs a set and what does not, the colours
 // that come of it, and a hand that never rests.
-#include "viewer/live_texels.h"
+#include "viewer/set_wishes.h"
 
 #include <gtest/gtest.h>
 
@@ -14,7 +14,6 @@
 #include "support/bits.h"
 #include "support/fits_text.h"
 #include "support/small_scene.h"
-#include "viewer/set_wishes.h"
 
 namespace astrosplat {
 namespace {
@@ -42,7 +41,7 @@ std::shared_ptr<const LoadedLayer> loaded_layer(const SourceParams& source) {
 }
 
 SplatSet live_set(const std::shared_ptr<const LoadedLayer>& loaded, const SourceParams& now) {
-    return *LiveMaker()({loaded, now}, {}).layer->sample.set;
+    return *live_maker()({loaded, now}, {}).layer->sample.set;
 }
 
 double light(const SplatSet& set) {

@@ -14,7 +14,6 @@
 #include "sets/load_source.h"
 #include "support/small_scene.h"
 #include "viewer/cpu_preview.h"
-#include "viewer/preview_budget.h"
 #include "viewer/preview_dots.h"
 
 namespace astrosplat {

@@ -10,8 +10,8 @@
 #include "support/process_state.h"
 #include "support/temp_folder.h"
 #include "viewer/background_work.h"
-#include "viewer/input_queue.h"
 #include "viewer/render_queue.h"
+#include "viewer/window.h"
 
 namespace astrosplat {
 namespace {

@@ -14,7 +14,7 @@
 #include "gl/gl_fixture.h"
 #include "support/quiet.h"
 #include "support/temp_folder.h"
-#include "viewer/session_parts.h"
+#include "viewer/session.h"
 
 namespace astrosplat::test {
 namespace {

@@ -7,8 +7,8 @@
 
 #include "sets/load_source.h"
 #include "support/small_scene.h"
-#include "viewer/growing_set.h"
-#include "viewer/set_list.h"
+#include "viewer/loaded_layer.h"
+#include "viewer/set_loader.h"
 
 namespace astrosplat {
 namespace {

@@ -5,8 +5,7 @@
 
 #include "edit/view_camera.h"
 #include "unit/edit/scenes.h"
-#include "viewer/playback.h"
-#include "viewer/viewport_camera.h"
+#include "viewer/view_motion.h"
 
 namespace astrosplat {
 namespace {

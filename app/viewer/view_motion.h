@@ -1,7 +1,9 @@
-// The viewport's camera, moved by mouse and keys over it, and lines of the scene's camera for views beside
-// it. In: input, and the view on the screen. Out: the view's free camera, an edit of the document, or lines.
+// What moves the view: mouse and keys over the viewport, and the clock while the scene plays; and lines of
+// the scene's camera for views beside it. In: input, the time, and the view on the screen. Out: the view's
+// free camera or an edit of the document; the view's frame, and how many a second were reached; lines.
 #pragma once
 
+#include <deque>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <vector>
@@ -63,5 +65,25 @@ class CameraOverlay {
     Scene path_of_;                 // the part of the scene that it was made of, with this box
     Bounds path_box_;
 };
+
+/// Plays a scene's frames.
+class Playback {
+  public:
+    /// Runs the frames between the view's in and out points at the scene's speed: round and round, there and
+    /// back, or once. Where drawing is slower, frames are dropped, or the speed with ViewState::every_frame.
+    void advance(ViewState& view, const OutputParams& output, double now);
+    /// Frames a second that were shown over the last second or so; 0 until that is known.
+    double shown_fps() const;
+
+  private:
+    double next_frame(double frame, double steps, ViewState& view, const OutputParams& output);
+
+    double played_at_ = -1.0;      // seconds; below 0: it does not play
+    bool backwards_ = false;       // on the way back
+    std::deque<double> shown_at_;  // seconds of the last frames
+};
+
+/// The first of [output] frames.
+double first_frame(const Scene& scene);
 
 }  // namespace astrosplat

@@ -1,9 +1,10 @@
-#include "viewer/viewport_camera.h"
+#include "viewer/view_motion.h"
 
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <utility>
+#include <vector>
 
 #include "camera/projection.h"
 #include "core/error.h"
@@ -14,6 +15,7 @@
 #include "scene/animate.h"
 #include "scene/describe.h"
 #include "scene/frames.h"
+#include "scene/load.h"
 
 namespace astrosplat {
 namespace {
@@ -81,6 +83,68 @@ bool go_to_free_view(ViewState& view, const ShownView& shown, bool turning) {
     return from_camera;
 }
 
+/// Of a scene all that its camera's path depends on, to notice when that changes; the rest at its defaults.
+Scene camera_part(const Scene& scene) {
+    Scene part;
+    part.camera = scene.camera;
+    part.output.width = scene.output.width;
+    part.output.height = scene.output.height;
+    part.output.frames = scene.output.frames;
+    part.imported = scene.imported;
+    for (const Track& track : scene.animation)
+        if (track.key.is_below("camera")) part.animation.push_back(track);
+    return part;
+}
+
+/// Places of the scene's camera over the frames of [output], at most 256 of them; one where it does not move.
+std::vector<glm::dvec3> camera_path(const Scene& scene, const Bounds& box) {
+    constexpr double most = 256.0;
+    const std::vector<std::int64_t> frames = parse_frames(scene.output.frames, "output.frames");
+    const auto first = static_cast<double>(frames.front()), last = static_cast<double>(frames.back());
+    const double step = std::max(1.0, (last - first) / (most - 1.0));
+    std::vector<glm::dvec3> path;
+    for (double frame = first; frame <= last; frame += step) {
+        const Scene now = scene_at(scene, frame);
+        const glm::dvec3 eye = make_camera(now.camera, static_cast<double>(now.output.width),
+                                           static_cast<double>(now.output.height), box)
+                                   .eye;
+        if (path.empty() || path.back() != eye) path.push_back(eye);
+    }
+    return path;
+}
+
+/// Edges of the pyramid that `camera` sees, out to `length` scene units: lines of the four corners, then the
+/// frame with a mark above its upper side.
+std::vector<std::vector<glm::dvec3>> frustum(const Camera& camera, double width_px, double height_px,
+                                             double length) {
+    const auto corner = [&](double x_px, double y_px) {
+        return camera.eye +
+               camera.world_from_camera * exact::point_at_depth(make_exact_lens(camera), x_px, y_px, length);
+    };
+    const glm::dvec3 corners[] = {corner(0, 0), corner(width_px, 0), corner(width_px, height_px),
+                                  corner(0, height_px)};
+    std::vector<std::vector<glm::dvec3>> lines;
+    for (const glm::dvec3& c : corners) lines.push_back({camera.eye, c});
+    lines.push_back({corners[0], corners[1], corners[2], corners[3], corners[0]});
+    lines.push_back({corner(0.4 * width_px, -0.04 * height_px), corner(0.5 * width_px, -0.16 * height_px),
+                     corner(0.6 * width_px, -0.04 * height_px), corner(0.4 * width_px, -0.04 * height_px)});
+    return lines;
+}
+
+struct PlayRange {
+    double first, last;
+};
+
+/// Between the in and out points, where they lie within the frames.
+PlayRange play_range(const ViewState& view, const OutputParams& output) {
+    const std::vector<std::int64_t> frames = parse_frames(output.frames, "output.frames");
+    const auto first = static_cast<double>(frames.front()), last = static_cast<double>(frames.back());
+    PlayRange range{std::clamp(view.play_first.value_or(first), first, last),
+                    std::clamp(view.play_last.value_or(last), first, last)};
+    if (range.first > range.last) range.last = last;
+    return range;
+}
+
 }  // namespace
 
 FreeCamera Navigator::moved(FreeCamera camera, const ViewportInput& input, const glm::dvec2& viewport_px,
@@ -142,58 +206,6 @@ bool frame_in_view(ViewState& view, const Bounds& box, const ShownView& shown) {
     return left;
 }
 
-namespace {
-
-/// Of a scene all that its camera's path depends on, to notice when that changes; the rest at its defaults.
-Scene camera_part(const Scene& scene) {
-    Scene part;
-    part.camera = scene.camera;
-    part.output.width = scene.output.width;
-    part.output.height = scene.output.height;
-    part.output.frames = scene.output.frames;
-    part.imported = scene.imported;
-    for (const Track& track : scene.animation)
-        if (track.key.is_below("camera")) part.animation.push_back(track);
-    return part;
-}
-
-/// Places of the scene's camera over the frames of [output], at most 256 of them; one where it does not move.
-std::vector<glm::dvec3> camera_path(const Scene& scene, const Bounds& box) {
-    constexpr double most = 256.0;
-    const std::vector<std::int64_t> frames = parse_frames(scene.output.frames, "output.frames");
-    const auto first = static_cast<double>(frames.front()), last = static_cast<double>(frames.back());
-    const double step = std::max(1.0, (last - first) / (most - 1.0));
-    std::vector<glm::dvec3> path;
-    for (double frame = first; frame <= last; frame += step) {
-        const Scene now = scene_at(scene, frame);
-        const glm::dvec3 eye = make_camera(now.camera, static_cast<double>(now.output.width),
-                                           static_cast<double>(now.output.height), box)
-                                   .eye;
-        if (path.empty() || path.back() != eye) path.push_back(eye);
-    }
-    return path;
-}
-
-/// Edges of the pyramid that `camera` sees, out to `length` scene units: lines of the four corners, then the
-/// frame with a mark above its upper side.
-std::vector<std::vector<glm::dvec3>> frustum(const Camera& camera, double width_px, double height_px,
-                                             double length) {
-    const auto corner = [&](double x_px, double y_px) {
-        return camera.eye +
-               camera.world_from_camera * exact::point_at_depth(make_exact_lens(camera), x_px, y_px, length);
-    };
-    const glm::dvec3 corners[] = {corner(0, 0), corner(width_px, 0), corner(width_px, height_px),
-                                  corner(0, height_px)};
-    std::vector<std::vector<glm::dvec3>> lines;
-    for (const glm::dvec3& c : corners) lines.push_back({camera.eye, c});
-    lines.push_back({corners[0], corners[1], corners[2], corners[3], corners[0]});
-    lines.push_back({corner(0.4 * width_px, -0.04 * height_px), corner(0.5 * width_px, -0.16 * height_px),
-                     corner(0.6 * width_px, -0.04 * height_px), corner(0.4 * width_px, -0.04 * height_px)});
-    return lines;
-}
-
-}  // namespace
-
 std::vector<CameraOverlay::Line> CameraOverlay::lines(const Scene& scene, const Scene& now, const Bounds& box,
                                                       const ViewRequest& request, const Rect& place) {
     std::vector<Line> result;
@@ -221,6 +233,52 @@ std::vector<CameraOverlay::Line> CameraOverlay::lines(const Scene& scene, const 
         result.clear();
     }
     return result;
+}
+
+double Playback::next_frame(double frame, double steps, ViewState& view, const OutputParams& output) {
+    const auto [first, last] = play_range(view, output);
+    if (frame < first || frame > last) return first;
+    if (view.play_mode != PlayMode::ping_pong || first == last) {
+        if (frame + steps <= last) return frame + steps;
+        view.playing = view.play_mode != PlayMode::once;
+        return view.playing ? first : last;
+    }
+    const double length = last - first;
+    const double there = backwards_ ? 2.0 * length - (frame - first) : frame - first;
+    const double at = std::fmod(there + steps, 2.0 * length);
+    backwards_ = at >= length;
+    return backwards_ ? last - (at - length) : first + at;
+}
+
+void Playback::advance(ViewState& view, const OutputParams& output, double now) {
+    if (!view.playing) {
+        played_at_ = -1.0;
+        backwards_ = false;
+        shown_at_.clear();
+        return;
+    }
+    if (played_at_ < 0.0) {
+        played_at_ = now;
+        const PlayRange range = play_range(view, output);
+        if (view.play_mode == PlayMode::once && view.frame >= range.last) view.frame = range.first;
+        return;
+    }
+    const double due = std::floor((now - played_at_) * output.fps);
+    if (due < 1.0) return;
+    const double steps = view.every_frame ? 1.0 : due;
+    view.frame = next_frame(std::floor(view.frame), steps, view, output);
+    played_at_ = due > steps ? now : played_at_ + steps / output.fps;
+    shown_at_.push_back(now);
+    while (shown_at_.size() > 2 && now - shown_at_.front() > 1.0) shown_at_.pop_front();
+}
+
+double Playback::shown_fps() const {
+    if (shown_at_.size() < 2) return 0.0;
+    return static_cast<double>(shown_at_.size() - 1) / (shown_at_.back() - shown_at_.front());
+}
+
+double first_frame(const Scene& scene) {
+    return static_cast<double>(parse_frames(scene.output.frames, "output.frames").front());
 }
 
 }  // namespace astrosplat
