@@ -340,7 +340,7 @@ Move face_on_to_edge_on(const Scene& scene, const CameraParams& camera, const Bo
     const glm::dvec3 arm = start - middle, up = glm::normalize(camera.up);
     glm::dvec3 axis = thin_direction(scene);
     if (glm::dot(arm, axis) < 0.0) axis = -axis;
-    const Framing framing = frame_box(box, camera.fov, aspect_of(scene.output));
+    const Framing framing = frame_box(box, camera, aspect_of(scene.output));
     const bool is_face_on = glm::dot(arm, axis) > face_on_cosine * glm::length(arm);
     const double distance = is_face_on ? glm::length(arm) : glm::length(framing.position - framing.target);
     const bool turns = glm::length(across(up, axis)) > least_across;

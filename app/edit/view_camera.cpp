@@ -138,7 +138,7 @@ CameraParams seen_camera(const Scene& scene, const ViewState& view, const Status
     if (camera.position) return camera;
     if (status.box.empty())
         throw InputError("camera.position: expected layers to frame, found none loaded yet");
-    const Framing framing = frame_box(status.box, camera.fov, aspect);
+    const Framing framing = frame_box(status.box, camera, aspect);
     camera.position = framing.position;
     camera.target = framing.target;
     camera.height = framing.height;

@@ -154,7 +154,7 @@ Camera make_camera(const CameraParams& params, double width_px, double height_px
     if (params.position) {
         camera.eye = *params.position;
     } else {
-        Framing framing = frame_box_within(scene_box, framing_direction(), tan_y, camera.aspect);
+        const Framing framing = frame_box(scene_box, params, camera.aspect);
         camera.eye = framing.position;
         target = framing.target;
         height = framing.height;
@@ -234,6 +234,10 @@ double pixel_spread(const Camera& camera) { return exact::pixel_spread(make_exac
 
 Framing frame_box(const Bounds& box, double vertical_fov_deg, double aspect) {
     return frame_box(box, framing_direction(), vertical_fov_deg, aspect);
+}
+
+Framing frame_box(const Bounds& box, const CameraParams& params, double aspect) {
+    return frame_box_within(box, framing_direction(), half_height(params, aspect), aspect);
 }
 
 Framing frame_box(const Bounds& box, const glm::dmat3& world_from_camera, double vertical_fov_deg,

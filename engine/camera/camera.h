@@ -121,6 +121,8 @@ struct Framing {
     double height;  // orthographic height that frames the same
 };
 Framing frame_box(const Bounds& box, double vertical_fov_deg, double aspect);
+/// As a camera without a position looks at a box, through its own lens.
+Framing frame_box(const Bounds& box, const CameraParams& params, double aspect);
 /// The same seen along another direction; `world_from_camera` has the columns right, up, back.
 Framing frame_box(const Bounds& box, const glm::dmat3& world_from_camera, double vertical_fov_deg,
                   double aspect);

@@ -374,8 +374,11 @@ TEST_F(SeenCamera, KeepsTheLensWhereTheViewportIsNarrow) {
 
 TEST_F(SeenCamera, HasAPlaceWhereTheSceneCameraFramesItsLayers) {
     scene.camera.position.reset();
-    const CameraParams seen = seen_camera(scene, view, status);
-    expect_near(project(seen, {1, 2, -3}), project(scene.camera, {1, 2, -3}, box), 1e-9);
+    for (const double focal_length : {0.0, 90.0}) {
+        scene.camera.focal_length = focal_length;
+        const CameraParams seen = seen_camera(scene, view, status);
+        expect_near(project(seen, {1, 2, -3}), project(scene.camera, {1, 2, -3}, box), 1e-9);
+    }
     status.box = {};
     EXPECT_EQ(message_of<InputError>([&] { seen_camera(scene, view, status); }),
               "camera.position: expected layers to frame, found none loaded yet");
