@@ -88,7 +88,8 @@ LayerNeed need_of_file(const LayerParams& layer) try {
         need.splats = file.splats();
         need.making = file.bytes() + need.splats * sorting_bytes;
         need.streamed = static_cast<std::int64_t>(file.size()) * streamed_bytes_per_block;
-        need.may_stream = !is_encoded(layer.render) && why_not_streamed(file, look_of(layer)).empty();
+        need.may_stream =
+            !is_mixed_in_display_space(layer.render) && why_not_streamed(file, look_of(layer)).empty();
     } else if (format == "gltf") {
         const auto bytes = static_cast<std::int64_t>(std::filesystem::file_size(path));
         need.splats = bytes / (capture_row_bytes + (has("harmonics") ? harmonics_row_bytes : 0));

@@ -139,7 +139,7 @@ std::string_view format_of_output(const std::filesystem::path& file) {
 bool is_volume(std::string_view format) { return format == "openvdb"; }
 
 /// Whether colours are encoded for a display.
-bool is_encoded(const ExportOptions& options, std::string_view format) {
+bool has_display_values(const ExportOptions& options, std::string_view format) {
     const bool linear = format == "gltf" || is_volume(format);
     const std::string space = options.space.value_or(linear ? "linear" : "display");
     if (space != "display" && space != "linear")
@@ -245,7 +245,7 @@ void report(const std::filesystem::path& file, const Baked& baked) {
 
 int run_export(const CommandOptions& options, const ExportOptions& own) {
     const std::string_view format = format_of_output(*options.output);
-    const bool encoded = is_encoded(own, format);
+    const bool encoded = has_display_values(own, format);
     const std::int64_t count = count_of(own);
     const double voxel_size = voxel_size_of(own, *options.output);
     Scene scene = load_scene(options.input, assignments_of(options));

@@ -127,7 +127,8 @@ void Pipeline::State::open_layer(std::size_t index) {
         layer.box = layer.streamed->bounds();
         const std::string reason = why_not_streamed(layer.streamed->file(), look_of(params));
         if (!reason.empty()) throw InputError(reason);
-        if (is_encoded(params.render)) throw InputError("display values are made of all splats at once");
+        if (is_mixed_in_display_space(params.render))
+            throw InputError("display values are made of all splats at once");
     } catch (const InputError& error) {
         throw InputError("layer '" + params.name + "': " + error.what());
     }
@@ -184,7 +185,7 @@ void Pipeline::State::shade(std::size_t index, const LayerParams& params, const 
                           inputs.falloff_variance,
                           inputs.column,
                           {},
-                          is_encoded(params.render) && !facts_of(layer).stars};
+                          is_mixed_in_display_space(params.render) && !facts_of(layer).stars};
     if (layer.set && !layer.set->harmonics.empty()) shading.seen_from = seen_from(seen, render_layer(params));
     if (layer.shaded_with == shading) return;
     load_thickness_map(layer, shading.look.thickness);

@@ -43,7 +43,7 @@ std::vector<SharedSplats> cut_layers(std::vector<PreviewLayer>& layers, std::spa
         RenderLayer& layer = layers[i].layer;
         splats.push_back(sources[i].stars);
         if (sources[i].merged) {
-            if (is_encoded(layer.render)) encode_colors(cut[next]);
+            if (is_mixed_in_display_space(layer.render)) encode_colors(cut[next]);
             splats.back() = std::make_shared<const ShadedSplats>(std::move(cut[next++]));
             layer.render.opacity = 1.0f;
         }

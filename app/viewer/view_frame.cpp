@@ -104,7 +104,8 @@ std::int64_t ViewFrame::dots_wanted() const {
 /// Stars, and what is mixed in display values, are drawn by the engine's own compositor alone.
 bool ViewFrame::draws_by_opengl() const {
     const auto engine_draws = [](const LayerParams& layer) {
-        return layer.visible && (layer.source.kind == SourceKind::stars || is_encoded(layer.render));
+        return layer.visible &&
+               (layer.source.kind == SourceKind::stars || is_mixed_in_display_space(layer.render));
     };
     return choice_.opengl && std::ranges::none_of(request_->scene.layers, engine_draws);
 }

@@ -58,7 +58,7 @@ bool reaches(const Scene& now, const LayerParams& layer) {
 bool is_idle(const ParameterKey& generic_key, const Scene& now, const LayerParams& layer) {
     const std::string& key = generic_key.text();
     if (!reaches(now, layer)) return true;
-    if (key == "layer.render.space") return !is_encoded(layer.render);
+    if (key == "layer.render.space") return !is_mixed_in_display_space(layer.render);
     if (key == "layer.source.like" || key == "layer.source.depth" || key == "layer.source.slab")
         return !like_layer(now, layer);
     const bool shapes_stars =

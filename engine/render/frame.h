@@ -68,7 +68,7 @@ inline bool stars_stay_points(const LayerRender& render) {
 }
 
 /// Whether the layer is composited in display values.
-inline bool is_encoded(const LayerRender& render) {
+inline bool is_mixed_in_display_space(const LayerRender& render) {
     return render.space == BlendSpace::display && render.isolate && render.blend == Blend::over &&
            !render.holdout;
 }

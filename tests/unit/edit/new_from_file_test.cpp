@@ -152,7 +152,7 @@ TEST_F(NewFromFile, CapturesAreMixedInDisplayValuesAndFramedWithoutStrays) {
         const Scene scene = scene_for(file);
         const LayerParams& layer = scene.layers[0];
         EXPECT_EQ(layer.source.file, file);
-        EXPECT_TRUE(is_encoded(layer.render));
+        EXPECT_TRUE(is_mixed_in_display_space(layer.render));
         ASSERT_TRUE(scene.camera.position.has_value());
         for (int k = 0; k < 3; ++k) EXPECT_LT(std::fabs(scene.camera.target[k]), 1.0);
         EXPECT_NEAR(glm::distance(*scene.camera.position, scene.camera.target),
