@@ -190,7 +190,7 @@ void colors(const LookUniforms& u, Block& b, glm::vec3* out) {
     for (int j = 0; j < u.noise_count; ++j)
         if (u.noises[j].brightness != 0.0f) vary(u.noises[j].brightness, b.n[j], b.color_factor, b.count);
     levels(b, u.grade);
-    if (u.grade.saturation != 1.0f || u.grade.inverse_gamma != 1.0f) saturate_and_bend(b, u.grade);
+    if (look_finishes(u.grade)) saturate_and_bend(b, u.grade);
     if (u.match == MATCH_SCREEN) screened(b, u.alpha);
     write_colors(b, out);
 }

@@ -181,6 +181,9 @@ float look_finish(float c, float luminance, LookGrade step) {
     return as_pow(max(0.0f, c * step.saturation + luminance * (1.0f - step.saturation)), step.inverse_gamma);
 }
 
+// Whether look_finish changes anything.
+bool look_finishes(LookGrade step) { return step.saturation != 1.0f || step.inverse_gamma != 1.0f; }
+
 // look_depth by its series where it is small: shader compilers may cancel 1 - (1 - m), which costs its last digits.
 float look_small_depth(float alpha) {
     float series = alpha * (1.0f + alpha * (0.5f + alpha * (0.33333333f + alpha * 0.25f)));

@@ -2,6 +2,7 @@
 // bit, and the message of an InputError.
 #pragma once
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -14,6 +15,7 @@
 #include <string>
 
 #include "core/error.h"
+#include "core/file_format.h"
 #include "core/parallel.h"
 #include "splats/splat_set.h"
 #include "support/bits.h"
@@ -48,6 +50,11 @@ class SplatFileTest : public testing::Test {
 };
 
 using test::bytes_of;
+
+/// Of all splat files that have a use, as messages list them.
+inline std::string known_endings(FileUse use) {
+    return fmt::format("{}", fmt::join(endings_of({FileKind::splats}, use), " "));
+}
 
 /// The line an InputError says, without the folder of the file; "" when nothing is thrown.
 template <class Read>

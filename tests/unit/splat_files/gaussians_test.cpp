@@ -214,7 +214,7 @@ TEST_F(GaussianFiles, OthersSayWhatTheyLose) {
     write_splats(path("b.pda"), set);
     EXPECT_HAS(said.text(), "they become round; .splats keeps them");
     EXPECT_EQ(error_of(path("b.glb"), [&](const auto& file) { write_splats(file, set); }),
-              "b.glb: expected one of the endings .pda .ply .splats, found .glb");
+              "b.glb: expected one of the endings " + known_endings(FileUse::written) + ", found .glb");
 }
 
 // Gaussians of USD as text, ParticleField3DGaussianSplat: as we, the schema and others write them, and one

@@ -10,6 +10,7 @@
 #include "splat_files/splat_file.h"
 #include "splats/row_order.h"
 #include "splats/splat_set.h"
+#include "support/errors.h"
 #include "unit/splat_files/file_support.h"
 
 namespace astrosplat {
@@ -318,15 +319,16 @@ TEST_F(Native, NumbersThatAreNotFiniteAreRefused) {
 using SplatFile = SplatFileTest;
 
 TEST_F(SplatFile, UnknownEndingsNameTheKnownOnes) {
-    const std::string expected =
-        "a.xyz: expected one of the endings .pda .ply .glb .gltf .usda .usd .splats, found .xyz";
-    EXPECT_EQ(error_of(write("a.xyz", "x"), [](const auto& file) { read_splats(file); }), expected);
-    EXPECT_EQ(error_of(path("a.xyz"), [](const auto& file) { write_splats(file, SplatSet{}); }),
-              "a.xyz: expected one of the endings .pda .ply .splats, found .xyz");
+    const std::string read = known_endings(FileUse::read);
+    EXPECT_HAS(read, ".pda .ply .glb .gltf .usda .usd");
+    EXPECT_EQ(error_of(write("a.other", "x"), [](const auto& file) { read_splats(file); }),
+              "a.other: expected one of the endings " + read + ", found .other");
+    EXPECT_EQ(error_of(path("a.other"), [](const auto& file) { write_splats(file, SplatSet{}); }),
+              "a.other: expected one of the endings " + known_endings(FileUse::written) + ", found .other");
     EXPECT_EQ(error_of(write("a", "x"), [](const auto& file) { read_splats(file); }),
-              "a: expected one of the endings .pda .ply .glb .gltf .usda .usd .splats, found none");
-    EXPECT_EQ(error_of(path("none.xyz"), [](const auto& file) { read_splats(file); }),
-              "none.xyz: cannot be read: No such file or directory");
+              "a: expected one of the endings " + read + ", found none");
+    EXPECT_EQ(error_of(path("none.other"), [](const auto& file) { read_splats(file); }),
+              "none.other: cannot be read: No such file or directory");
 }
 
 TEST_F(SplatFile, ContentCountsMoreThanTheName) {
