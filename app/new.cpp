@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <array>
+#include <algorithm>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <optional>
-#include <utility>
 #include <vector>
 
 #include "cli.h"
@@ -24,45 +24,80 @@ namespace fs = std::filesystem;
 namespace {
 
 struct NewOptions {
-    std::string as;     // an object of the sky, or plane; empty: chosen by looking at the picture
-    std::string shape;  // of a scene of columns; empty: a scene of bodies
+    std::string as;      // an object of the sky, or plane; empty: told by the picture and its file
+    std::string object;  // its name, "M 104"; may be empty
+    std::string shape;   // of a scene of columns; empty: a scene of bodies
     bool film = false;
 };
 
-constexpr std::array sky_objects{
-    std::pair{SkyObject::galaxy, "galaxy"}, std::pair{SkyObject::nebula, "nebula"},
-    std::pair{SkyObject::remnant, "remnant"}, std::pair{SkyObject::field, "field"}};
-
 std::optional<SkyObject> object_of(const std::string& as) {
     if (as.empty()) return {};
-    std::vector<std::string> names;
-    for (const auto& [object, name] : sky_objects) {
-        if (as == name) return object;
-        names.emplace_back(name);
-    }
+    std::vector<std::string> names = all_names<SkyObject>();
+    if (const auto found = std::ranges::find(names, as); found != names.end())
+        return static_cast<SkyObject>(found - names.begin());
     names.emplace_back("plane");
     throw InputError(
         fmt::format("--as: expected {}, found '{}'{}", alternatives(names), as, did_you_mean(as, names)));
 }
 
-std::string object_name(SkyObject object) {
-    for (const auto& [known, name] : sky_objects)
-        if (known == object) return name;
-    return "";
+const CatalogueObject* object_by_name(const std::string& name) {
+    if (name.empty()) return nullptr;
+    if (const CatalogueObject* const known = object_named(name)) return known;
+    std::vector<std::string> names;
+    for (const CatalogueObject& object : object_catalogue())
+        names.insert(names.end(), object.names.begin(), object.names.end());
+    throw InputError(
+        fmt::format("--object: expected a name in the table of objects, such as 'M 104', found {}{}",
+                    shown(name), did_you_mean(name, names)));
 }
 
-std::string bodies_text(const fs::path& picture, const fs::path& place, const NewOptions& options) {
-    StructureChoice choice;
-    PictureScene scene = picture_scene(picture, object_of(options.as), choice);
+/// "galaxy", or "galaxy (72 %), perhaps nebula".
+std::string in_words(const std::vector<ObjectGuess>& guesses) {
+    constexpr double surely = 0.9;
+    const std::string best(name_of(guesses[0].object));
+    if (guesses.size() < 2 || guesses[0].sure >= surely) return best;
+    return fmt::format("{} ({:.0f} %), perhaps {}", best, 100.0 * guesses[0].sure,
+                       name_of(guesses[1].object));
+}
+
+void say(const fs::path& picture, const ObjectMetadata& metadata, const Identification& found) {
+    const std::string name = printable(picture.filename().string());
+    if (!found.why.empty())
+        log_info(fmt::format("'{}' is taken for: {}; {}; --as chooses another", name, in_words(found.guesses),
+                             found.why));
+    if (!metadata.type.empty() && metadata.type != "Observation" && metadata.type != "Photographic")
+        log_info(fmt::format("'{}' is no observation: its metadata says {}", name, shown(metadata.type)));
+}
+
+Report to_report(const Identification& found) {
+    Report report{{"object", name_of(found.guesses[0].object)},
+                  {"sure", number(found.guesses[0].sure)},
+                  {"because", found.why},
+                  {"else", Report::object()}};
+    for (std::size_t i = 1; i < found.guesses.size(); ++i)
+        report["else"][std::string(name_of(found.guesses[i].object))] = number(found.guesses[i].sure);
+    if (found.known) report["names"] = found.known->names;
+    if (found.distance_ly) report["distance_ly"] = number(*found.distance_ly);
+    return report;
+}
+
+struct BodiesScene {
+    std::string text;
+    Report report;
+};
+BodiesScene bodies_scene(const fs::path& picture, const fs::path& place, const NewOptions& options) {
+    Identification found;
+    PictureScene scene =
+        picture_scene(picture, {object_of(options.as), object_by_name(options.object)}, found);
     scene.film = options.film;
-    if (!choice.why.empty())
-        log_info(fmt::format("'{}' is taken for a {}: {}; --as chooses another",
-                             printable(picture.filename().string()), object_name(choice.object), choice.why));
-    return picture_scene_text(scene, place);
+    say(picture, clues_of(picture).metadata, found);
+    return {picture_scene_text(scene, place), to_report(found)};
 }
 
 std::string columns_text(const fs::path& picture, const fs::path& place, const NewOptions& options) {
     if (options.film) throw InputError("--film: expected a scene of bodies, found --shape or --as plane");
+    if (!options.object.empty())
+        throw InputError("--object: expected a scene of bodies, found --shape or --as plane");
     if (!options.shape.empty() && !options.as.empty() && options.as != "plane")
         throw InputError(fmt::format("--shape: expected no other kind of scene, found --as {}", options.as));
     return new_scene_text(picture, options.shape.empty() ? "plane" : options.shape, place);
@@ -75,24 +110,35 @@ int run_new(const CommandOptions& options, const NewOptions& own) {
     if (kind_of(format_by_name(scene)) != FileKind::scene)
         bad_input(scene.string(), "", "a name ending in .toml", "'" + scene.extension().string() + "'");
     const bool columns = !own.shape.empty() || own.as == "plane";
-    const std::string text = columns ? columns_text(picture, scene, own) : bodies_text(picture, scene, own);
+    const BodiesScene made = columns ? BodiesScene{columns_text(picture, scene, own), Report::object()}
+                                     : bodies_scene(picture, scene, own);
     refuse_to_overwrite(scene, options.overwrite);
     prove_writable(folder_of(scene));
-    write_file_atomically(scene, text, existing_of(options));
-    fmt::print("{}\n", printable(scene.string()));
+    write_file_atomically(scene, made.text, existing_of(options));
+    if (options.json) {
+        Report report{{"scene", scene.string()}};
+        report.update(made.report);
+        print_report(report, true);
+    } else {
+        fmt::print("{}\n", printable(scene.string()));
+    }
     return exit_done;
 }
 
 }  // namespace
 
 void add_new(CLI::App& app, Invocation& call) {
+    const std::string kinds = fmt::format("{}|plane", fmt::join(all_names<SkyObject>(), "|"));
     auto [command, own] = add_command(app, call, "new", "Writes a scene for a picture", run_new);
     add_input(command, call.options, "IMAGE", "The picture");
     add_output(command, call.options, "SCENE",
                "The scene file to write (default: the picture's name with .toml, in this folder)")
         ->required(false);
-    add_value(command, "--as", own.as, "galaxy|nebula|remnant|field|plane",
-              "What the picture shows (default: by looking at it)");
+    add_value(command, "--as", own.as, kinds,
+              "What the picture shows (default: by what its file says, and by its light)");
+    add_value(command, "--object", own.object, "NAME",
+              "The object that it shows, such as 'M 104': one of the table of objects");
+    add_json(command, call.options);
     command.add_flag("--film", own.film, "With a camera move of ten seconds");
     add_value(command, "--shape", own.shape, "plane|relief|disk|sphere",
               "Columns on this mesh instead of bodies");

@@ -208,8 +208,8 @@ std::string sky_scene_text(const fs::path& file, const fs::path& place) {
 
 PictureScene scene_of_picture(const fs::path& file) {
     require_picture(file);
-    StructureChoice choice;
-    return picture_scene(file, {}, choice);
+    Identification found;
+    return picture_scene(file, {}, found);
 }
 
 /// Stars of a picture come with it: prepare writes both into one folder.

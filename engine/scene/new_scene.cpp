@@ -19,6 +19,7 @@
 #include "core/log.h"
 #include "core/real.h"
 #include "core/text.h"
+#include "objects/impression.h"
 #include "prepare/star_removal.h"
 #include "scene/parameter.h"
 #include "scene/parameter_key.h"
@@ -142,7 +143,7 @@ name = {name}
 meshes    = [ {{ mesh = "plane", texture = {picture} }} ]  # 10 units along its longer side
 uv        = "camera"              # depth goes along the rays to this camera, so that from there one sees the picture:
 uv_camera = {{ position = [0, {distance}, 0], up = [0, 0, -1], fov = {fov} }}
-structure = {{ kind = {kind}, clumps = 1.0, {extent}, {opacity}, {edges}{stars} }}  # disk, sheet, walls; columns extrudes it
+structure = {{ kind = {kind}, clumps = {clumps}, {extent}, {opacity}, {edges}{stars} }}  # disk, sheet, walls; columns extrudes it
 stretch   = "auto"                # from data values to display values: asinh for FITS; or linear, asinh, log
 black     = "auto"                # data value shown as black
 white     = "auto"                # data value shown as white
@@ -301,6 +302,7 @@ std::string_view opacity_of(StructureKind structure) {
 std::string extent_of(const PictureScene& scene) {
     if (scene.structure == StructureKind::disk) return "flare = 0.25, warp = 0.01";
     if (scene.structure == StructureKind::walls) return fmt::format("depth = {}", wall_depth);
+    if (scene.object == SkyObject::thin) return "height = 0.02, depth = 0.0";
     return scene.object == SkyObject::field ? "height = 0.05, depth = 0.01" : "depth = 0.15";
 }
 
@@ -342,8 +344,8 @@ void take_stars(PictureScene& scene, const std::filesystem::path& table, const P
     scene.star_px = median_sigma_px(stars);
 }
 
-PictureScene picture_scene(const std::filesystem::path& image, std::optional<SkyObject> shown,
-                           StructureChoice& choice, const Progress& progress) {
+PictureScene picture_scene(const fs::path& image, const PictureRequest& request, Identification& found,
+                           const Progress& progress) {
     constexpr std::int64_t most_texels = 4096 * 4096;  // more do not change what is seen in it
     const Texture texture =
         load_texture({image}, {}, TextureSettings::Wrap::clamp, progress, {make_prepared, {}, most_texels});
@@ -355,9 +357,11 @@ PictureScene picture_scene(const std::filesystem::path& image, std::optional<Sky
     find_stars(scene, progress);
     scene.mean_light = mean_light(light);
     scene.subject = subject_of(light);
-    choice = choose_structure(light, shown);
-    scene.structure = choice.kind;
-    scene.object = choice.object;
+    ObjectClues clues = clues_of(image);
+    clues.named = request.named;
+    found = identify(clues, light, request.as);
+    scene.structure = found.structure;
+    scene.object = found.guesses.front().object;
     return scene;
 }
 
@@ -383,6 +387,7 @@ std::string picture_scene_text(const PictureScene& scene, const std::filesystem:
         fmt::arg("points", fmt::format("{:.3g}", points_within * distance)),
         fmt::arg("edges", margin > 0.0 ? fmt::format("margin = {}", margin) : "border = 0.03"),
         fmt::arg("stars", scene.stars.empty() ? "" : ", stars = false"), fmt::arg("extent", extent_of(scene)),
+        fmt::arg("clumps", scene.object == SkyObject::thin ? "0.0" : "1.0"),
         fmt::arg("opacity", opacity_of(scene.structure)));
     if (!scene.stars.empty()) {
         const double frame_px = static_cast<double>(side_px(longest, longest));

@@ -9,8 +9,8 @@
 #include <optional>
 #include <string>
 
-#include "bodies/choose.h"
 #include "core/progress.h"
+#include "objects/identify.h"
 #include "source/source.h"
 
 namespace astrosplat {
@@ -38,11 +38,17 @@ struct PictureScene {
     double star_px = 1.0;              // standard deviation of their images, px of the picture
 };
 
-/// Reads the picture, for its size and to choose a structure for it, or for what it is said to show. The
-/// stars.csv that `prepare` wrote beside the picture (star_table_mark) is taken, too. Throws InputError,
-/// Cancelled.
-PictureScene picture_scene(const std::filesystem::path& image, std::optional<SkyObject> shown,
-                           StructureChoice& choice, const Progress& progress = {});
+/// What a person says of a picture.
+struct PictureRequest {
+    std::optional<SkyObject> as;             // what it is to be taken for
+    const CatalogueObject* named = nullptr;  // the object that it shows
+};
+
+/// Reads the picture and what its file says, for its size and to choose a structure for it; `found`: what it
+/// was taken for. The stars.csv that `prepare` wrote beside the picture (star_table_mark) is taken, too.
+/// Throws InputError, Cancelled.
+PictureScene picture_scene(const std::filesystem::path& image, const PictureRequest& request,
+                           Identification& found, const Progress& progress = {});
 
 /// Makes the stars of a table, if it has any, a layer of their own. Throws InputError, Cancelled.
 void take_stars(PictureScene& scene, const std::filesystem::path& table, const Progress& progress = {});

@@ -67,6 +67,27 @@ std::string text_keyword(fitsfile* in, const char* keyword) {
     return read_keyword(in, TSTRING, keyword, value.data()) ? std::string(trim(value.data())) : "";
 }
 
+// DISTANCE with its unit in brackets at the beginning of the comment (FITS 4.0, section 4.3): light years.
+// Without one, or with another, it could be anything.
+std::optional<double> distance_ly_of(fitsfile* in) {
+    constexpr double parsec = 3.261563777;  // light years, by the definitions of the IAU
+    constexpr std::array<std::pair<std::string_view, double>, 6> units{{{"[Mpc]", 1e6 * parsec},
+                                                                        {"[kpc]", 1e3 * parsec},
+                                                                        {"[pc]", parsec},
+                                                                        {"[Mlyr]", 1e6},
+                                                                        {"[klyr]", 1e3},
+                                                                        {"[lyr]", 1.0}}};
+    double value = 0.0;
+    std::array<char, FLEN_COMMENT> comment{};
+    int status = 0;
+    fits_read_key(in, TDOUBLE, "DISTANCE", &value, comment.data(), &status);
+    fits_clear_errmsg();
+    const auto unit = std::ranges::find_if(
+        units, [&](const auto& known) { return std::string_view(comment.data()).starts_with(known.first); });
+    if (status != 0 || !(value > 0.0) || !std::isfinite(value) || unit == units.end()) return {};
+    return value * unit->second;
+}
+
 int hdu_count(const fs::path& file, fitsfile* in) {
     int count = 0, status = 0;
     fits_get_num_hdus(in, &count, &status);
@@ -319,6 +340,8 @@ FitsRows open_fits_rows(const fs::path& file, const std::string& hdu, int plane,
     rows.plane.name = found.name;
     rows.plane.credit = text_keyword(in.get(), "AUTHOR");
     if (rows.plane.credit.empty()) rows.plane.credit = text_keyword(in.get(), "ORIGIN");
+    rows.plane.object = text_keyword(in.get(), "OBJECT");
+    rows.plane.distance_ly = distance_ly_of(in.get());
     rows.plane.sky = sky_of(in.get());
     check_tiles(file, in.get());
     rows.read = [=, width = axes[0], height = axes[1]](std::int64_t begin, std::int64_t end, double* values) {

@@ -95,9 +95,11 @@ struct FitsPlane {
     std::int64_t width = 0, height = 0;  // px
     Buffer<double> values;  // physical (BSCALE, BZERO applied), row 0 on top; NaN where undefined
     int hdu = 0;
-    std::string name;            // EXTNAME
-    std::string credit;          // AUTHOR or ORIGIN
-    std::optional<FitsSky> sky;  // where the header tells it
+    std::string name;                   // EXTNAME
+    std::string credit;                 // AUTHOR or ORIGIN
+    std::string object;                 // OBJECT; may be empty
+    std::optional<double> distance_ly;  // DISTANCE, where its comment tells the unit
+    std::optional<FitsSky> sky;         // where the header tells it
 };
 
 /// A plane that is handed out by rows.

@@ -1,16 +1,14 @@
 // The one place where picture files are opened with OpenImageIO: by a list of formats, each with its own
-// plug-in, and without what libraries print of their own; and what it does not tell of a file. Its maker,
-// from the XMP packet inside it (AVM, the metadata of astronomy outreach, keeps the credit in
-// photoshop:Credit; OpenImageIO cuts it to IPTC's 32 characters). Whether a JPEG file is whole: libjpeg fills
-// the missing part of a cut file with grey and says nothing. Include in .cpp files only, behind
-// <fmt/format.h>: OpenImageIO's headers are large and bring a copy of fmt with other settings.
+// plug-in, and without what libraries print of their own; and what it does not tell of a file:
+// whether a JPEG file is whole. libjpeg fills the missing part of a cut file with grey and says nothing.
+// Include in .cpp files only, behind <fmt/format.h>: OpenImageIO's headers are large and bring a copy of fmt
+// with other settings.
 #pragma once
 
 #include <OpenImageIO/imageio.h>
 #include <filesystem>
 #include <memory>
 #include <string>
-#include <string_view>
 
 namespace astrosplat {
 
@@ -33,14 +31,6 @@ bool read_rows(OIIO::ImageInput& picture, int begin, int end, OIIO::TypeDesc for
 
 /// Throws InputError "FILE: cannot be read as a picture: REASON", the first line of it.
 [[noreturn]] void fail_picture(const std::filesystem::path& file, const std::string& reason);
-
-/// The value of an XMP property ("photoshop:Credit"), written as an attribute or as an element, with entities
-/// decoded, markup dropped and blanks made single. Empty when it is not there.
-std::string xmp_property(std::string_view packet, std::string_view name);
-
-/// photoshop:Credit, else dc:creator, else dc:rights, of the XMP packet in the first 4 MiB of a file; may be
-/// empty.
-std::string xmp_credit(const std::filesystem::path& file);
 
 /// Follows the markers of a JPEG file (ITU-T T.81, B.1.1) to its end-of-image marker; false where the file
 /// ends first. Files of other formats are not judged: true.

@@ -17,6 +17,7 @@
 #include "core/text.h"
 #include "image/channels.h"
 #include "source/fits.h"
+#include "source/object_metadata.h"
 #include "source/picture.h"
 
 namespace astrosplat {
@@ -250,7 +251,7 @@ double largest_integer(const ImageSpec& spec) {
 }
 
 std::string find_credit(const fs::path& file, const ImageSpec& spec) {
-    std::string credit = xmp_credit(file);
+    std::string credit = read_xmp_metadata(file).credit;
     if (!credit.empty()) return credit;
     for (const char* name : {"IPTC:Provider", "Artist", "Exif:Artist", "IPTC:Creator", "Copyright"}) {
         credit = trim(spec.get_string_attribute(name));

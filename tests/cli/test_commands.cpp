@@ -103,8 +103,10 @@ TEST_F(Commands, NewMakesBodiesOfAPicture) {
     const RunResult chosen = run({"new", "picture.ppm", "-o", "chosen.toml"});
     ASSERT_EQ(chosen.code, 0) << chosen.err;
     EXPECT_NE(chosen.err.find("--as chooses another"), std::string::npos) << chosen.err;
-    for (const auto& [as, kind] : {std::pair("galaxy", "disk"), std::pair("nebula", "sheet"),
-                                   std::pair("remnant", "walls"), std::pair("field", "sheet")}) {
+    for (const auto& [as, kind] :
+         {std::pair("galaxy", "disk"), std::pair("nebula", "sheet"), std::pair("remnant", "walls"),
+          std::pair("field", "sheet"), std::pair("elliptical", "disk"), std::pair("planetary", "walls"),
+          std::pair("cluster", "disk"), std::pair("thin", "sheet")}) {
         const std::string scene = std::string(as) + ".toml";
         const RunResult made = run({"new", "picture.ppm", "-o", scene, "--as", as, "--film"});
         ASSERT_EQ(made.code, 0) << made.err;
@@ -117,6 +119,8 @@ TEST_F(Commands, NewMakesBodiesOfAPicture) {
         EXPECT_EQ(rendered.code, 0) << rendered.err;
     }
     EXPECT_NE(text_of(folder / "field.toml").find("height = 0.05, depth = 0.01"), std::string::npos);
+    EXPECT_NE(text_of(folder / "thin.toml").find("clumps = 0.0, height = 0.02, depth = 0.0"),
+              std::string::npos);
     EXPECT_EQ(text_of(folder / "nebula.toml").find("height"), std::string::npos);
     EXPECT_EQ(text_of(folder / "chosen.toml").find("[animation]"), std::string::npos);
     ASSERT_EQ(run({"new", "picture.ppm", "-o", "columns.toml", "--as", "plane"}).code, 0);
@@ -127,6 +131,35 @@ TEST_F(Commands, NewMakesBodiesOfAPicture) {
     expect_one_line(run({"new", "picture.ppm", "-o", "x.toml", "--as", "nebula", "--shape", "disk"}), 2,
                     "--shape");
     EXPECT_FALSE(fs::exists(folder / "x.toml"));
+}
+
+// What a picture shows is told by a person, by its file's metadata and name, and by its light.
+TEST_F(Commands, NewSaysWhatAPictureShowsAndBecauseOfWhat) {
+    write_text(folder / "ngc 4594.ppm", small_picture());
+    const RunResult named = run({"new", "ngc 4594.ppm", "--json"});
+    ASSERT_EQ(named.code, 0) << named.err;
+    EXPECT_NE(named.err.find("M 104 in the table of objects is spiral; --as"), std::string::npos)
+        << named.err;
+    const nlohmann::json report = nlohmann::json::parse(named.out);
+    EXPECT_EQ(report["scene"], "ngc 4594.toml");
+    EXPECT_EQ(report["object"], "galaxy");
+    EXPECT_GT(report["sure"].get<double>(), 0.8);
+    EXPECT_EQ(report["names"][0], "M 104");
+    EXPECT_GT(report["distance_ly"].get<double>(), 1e7);
+    const RunResult by_person = run({"new", "ngc 4594.ppm", "--object", "m57", "--json", "--overwrite"});
+    EXPECT_EQ(nlohmann::json::parse(by_person.out)["object"], "planetary") << by_person.out;
+    expect_one_line(run({"new", "ngc 4594.ppm", "--object", "Sombrer Galaxy", "-o", "x.toml"}), 2,
+                    "did you mean 'Sombrero Galaxy'?");
+    expect_one_line(run({"new", "ngc 4594.ppm", "--object", "M 104", "--as", "plane", "-o", "x.toml"}), 2,
+                    "--object");
+    const std::string avm =
+        "<rdf:RDF xmlns:avm=\"http://www.communicatingastronomy.org/avm/1.0/\"><rdf:Description "
+        "avm:Type=\"Artwork\" "
+        "avm:Subject.Category=\"C.5.1.4\"/></rdf:RDF>";
+    write_text(folder / "art.ppm", small_picture() + avm);
+    const RunResult art = run({"new", "art.ppm"});
+    EXPECT_NE(art.err.find("AVM says C.5.1.4: elliptical galaxy; --as"), std::string::npos) << art.err;
+    EXPECT_NE(art.err.find("is no observation: its metadata says 'Artwork'"), std::string::npos) << art.err;
 }
 
 TEST_F(Commands, GenerateWritesALayer) {

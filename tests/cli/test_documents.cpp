@@ -283,7 +283,8 @@ TEST_F(Manual, BashCompletes) {
     using Offers = std::vector<std::string>;
     write_text(folder / "zwei worte.toml", "");
     EXPECT_EQ(completed({"ver"}), Offers{"verify"});
-    EXPECT_EQ(completed({"new", "--as", ""}), (Offers{"galaxy", "nebula", "remnant", "field", "plane"}));
+    EXPECT_EQ(completed({"new", "--as", ""}), (Offers{"galaxy", "elliptical", "nebula", "planetary",
+                                                      "remnant", "field", "cluster", "thin", "plane"}));
     EXPECT_EQ(completed({"--progress", "p"}), Offers{"plain"});
     EXPECT_EQ(completed({"--batch", "zwei"}), Offers{"zwei worte.toml"});
     EXPECT_EQ(completed({"--set", "output.fp"}), Offers{"output.fps="});

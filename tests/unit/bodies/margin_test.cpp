@@ -5,7 +5,6 @@
 
 #include <algorithm>
 
-#include "bodies/choose.h"
 #include "source/textured_mesh.h"
 #include "support/painted_picture.h"
 
@@ -169,17 +168,6 @@ TEST(Margin, OtherMeshesStay) {
     meshes[0].mesh = builtin_mesh("plane", 1.0);
     EXPECT_EQ(add_margins(meshes, 0.0, StructureKind::disk, "a")[0], glm::dvec2(1.0));
     EXPECT_EQ(meshes[0].textures[0].image.width, picture_width);
-}
-
-TEST(Margin, IsChosenByTheShareOfTheRimThatIsLit) {
-    EXPECT_EQ(lit_share_of_rim(even_light()), 1.0);
-    Image corner = make_image(picture_width, picture_height, 3, 0.0005f);
-    EXPECT_EQ(lit_share_of_rim(corner), 0.0);
-    for (std::int64_t y = 0; y < picture_height / 2; ++y)
-        for (std::int64_t x = 0; x < picture_width / 3; ++x) corner.at(x, y)[0] = 1.0f;
-    const double lit = 0.5 * picture_height + picture_width / 3.0,
-                 all = 2.0 * (picture_width + picture_height);
-    EXPECT_NEAR(lit_share_of_rim(corner), lit / all, 0.02);
 }
 
 }  // namespace

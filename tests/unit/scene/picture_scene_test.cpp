@@ -68,7 +68,7 @@ TEST(PictureScene, StarsThatWereTakenOutAreALayerOfTheirOwn) {
 TEST(PictureScene, AForeignTableBesideAPictureIsLeftAlone) {
     const TempFolder folder;
     const std::filesystem::path picture = folder.file("picture.ppm", "P3\n2 1\n255\n9 9 9 200 90 10\n");
-    StructureChoice choice;
+    Identification choice;
     for (const char* foreign :
          {"name,ra,dec,mag\nVega,279.2,38.8,0.03\n", "u,v,flux_r,flux_g,flux_b\n0.5,0.5,1,1,1\n", "", "#"}) {
         folder.file("stars.csv", foreign);

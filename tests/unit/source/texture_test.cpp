@@ -13,7 +13,6 @@
 #include "core/error.h"
 #include "core/real.h"
 #include "source/fits.h"
-#include "source/open_picture.h"
 #include "source/picture.h"
 #include "source/texture.h"
 #include "support/errors.h"
@@ -229,15 +228,6 @@ TEST(TextureErrors, OneLineEach) {
     settings.alpha = Alpha::file;
     EXPECT_EQ(error({a}, settings),
               a.string() + ": expected an alpha channel (alpha = \"file\"), found none");
-}
-
-TEST(Credit, FromAttributesAndElements) {
-    EXPECT_EQ(xmp_property("<x photoshop:Credit=\"A &amp; B\" y=\"\">", "photoshop:Credit"), "A & B");
-    EXPECT_EQ(xmp_property("<dc:creator>\n <rdf:Seq><rdf:li>Some\n One</rdf:li></rdf:Seq></dc:creator>",
-                           "dc:creator"),
-              "Some One");
-    EXPECT_EQ(xmp_property("<x/>", "dc:creator"), "");
-    EXPECT_EQ(xmp_property("photoshop:Credit=", "photoshop:Credit"), "");
 }
 
 fs::path write_fits(const fs::path& file, std::vector<long> axes, std::vector<float> values) {

@@ -1,0 +1,214 @@
+// XMP writes a property as an attribute of rdf:Description or as an element in it, a list as rdf:Seq, Bag or
+// Alt of rdf:li; its prefixes are whatever the packet declares.
+#include "source/object_metadata.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <pugixml.hpp>
+
+#include "core/file.h"
+#include "core/real.h"
+#include "core/text.h"
+#include "source/fits.h"
+
+namespace astrosplat {
+namespace {
+
+constexpr std::string_view packet_begin = "<rdf:RDF", packet_end = "</rdf:RDF>";
+constexpr std::size_t searched_bytes = std::size_t{4}
+                                       << 20;  // at either end; published packets have up to 100 kB
+constexpr const char* avm_space = "http://www.communicatingastronomy.org/avm/1.0/";
+constexpr const char* dublin_core_space = "http://purl.org/dc/elements/1.1/";
+constexpr const char* photoshop_space = "http://ns.adobe.com/photoshop/1.0/";
+
+// A file's first and last bytes, one after the other; a small one is read whole.
+std::string read_ends(const std::filesystem::path& file) {
+    InputFile in(file);
+    const auto size = static_cast<std::size_t>(std::max<std::int64_t>(0, in.size()));
+    std::string bytes;
+    const auto read_on = [&](std::size_t count) {
+        const std::size_t before = bytes.size();
+        bytes.resize(before + count);
+        std::size_t have = before;
+        for (std::size_t got = 1; got > 0; have += got)
+            got = in.read(bytes.data() + have, bytes.size() - have);
+        bytes.resize(have);
+    };
+    read_on(std::min(size, size > 2 * searched_bytes ? searched_bytes : size));
+    if (size > bytes.size() && ::lseek(in.descriptor(), -static_cast<off_t>(searched_bytes), SEEK_END) >= 0)
+        read_on(searched_bytes);
+    return bytes;
+}
+
+// Without blanks at its ends, runs of them inside as one: packets are often indented.
+std::string plain(std::string_view text) {
+    std::string result;
+    for (const char c : trim(text)) {
+        const bool blank = c == ' ' || c == '\t' || c == '\r' || c == '\n';
+        if (!blank) result += c;
+        if (blank && result.back() != ' ') result += ' ';
+    }
+    return result;
+}
+
+// The prefix that the packet declares for a namespace; `usual` where it declares none.
+std::string prefix_of(const pugi::xml_node& root, std::string_view space, std::string usual) {
+    struct Finder : pugi::xml_tree_walker {
+        std::string_view space;
+        std::string found;
+        bool for_each(pugi::xml_node& node) override {
+            for (const pugi::xml_attribute& a : node.attributes()) {
+                const std::string_view name = a.name();
+                if (name.starts_with("xmlns:") && space == a.value()) found = name.substr(6);
+            }
+            return found.empty();
+        }
+    } finder;
+    finder.space = space;
+    pugi::xml_node(root).traverse(finder);
+    return finder.found.empty() ? std::move(usual) : finder.found;
+}
+
+class Properties {
+  public:
+    Properties(const pugi::xml_document& packet, const char* space, const char* usual_prefix)
+        : rdf_(packet.child("rdf:RDF")), prefix_(prefix_of(packet, space, usual_prefix) + ":") {}
+
+    /// All values of a property, without blanks at their ends; empty ones and "-", AVM's word for none, keep
+    /// their places.
+    std::vector<std::string> list(const char* property) const {
+        const std::string name = prefix_ + property;
+        std::vector<std::string> values;
+        for (const pugi::xml_node& description : rdf_.children("rdf:Description")) {
+            if (const pugi::xml_attribute value = description.attribute(name.c_str()))
+                values.push_back(plain(value.value()));
+            for (const pugi::xml_node& element : description.children(name.c_str())) add(element, values);
+        }
+        return values;
+    }
+
+    /// The first value that says anything.
+    std::string text(const char* property) const {
+        for (std::string& value : list(property))
+            if (!value.empty() && value != "-") return std::move(value);
+        return "";
+    }
+
+    std::optional<double> number(const char* property, std::size_t place = 0) const {
+        const std::vector<std::string> values = list(property);
+        const std::optional<double> value =
+            place < values.size() ? parse_double(values[place]) : std::nullopt;
+        return value && std::isfinite(*value) ? value : std::nullopt;
+    }
+
+    bool any() const {
+        const auto named = [this](const auto& thing) {
+            return std::string_view(thing.name()).starts_with(prefix_);
+        };
+        return std::ranges::any_of(rdf_.children("rdf:Description"), [&](const pugi::xml_node& d) {
+            return std::ranges::any_of(d.attributes(), named) || std::ranges::any_of(d.children(), named);
+        });
+    }
+
+  private:
+    static void add(const pugi::xml_node& element, std::vector<std::string>& values) {
+        bool listed = false;
+        for (const pugi::xml_node& list : element.children()) {
+            for (const pugi::xml_node& item : list.children("rdf:li")) {
+                values.push_back(plain(item.text().get()));
+                listed = true;
+            }
+        }
+        if (!listed) values.push_back(plain(element.text().get()));
+    }
+
+    pugi::xml_node rdf_;
+    std::string prefix_;
+};
+
+std::optional<double> if_positive(std::optional<double> value) {
+    return value && *value > 0.0 ? value : std::nullopt;
+}
+
+std::vector<std::string> saying(std::vector<std::string> values) {
+    std::erase_if(values, [](const std::string& value) { return value.empty() || value == "-"; });
+    return values;
+}
+
+std::string first_of(std::string a, std::string b) { return a.empty() ? std::move(b) : std::move(a); }
+
+std::optional<std::array<double, 2>> pair_of(const Properties& avm, const char* property) {
+    const std::optional<double> a = avm.number(property, 0), b = avm.number(property, 1);
+    return a && b ? std::optional(std::array{*a, *b}) : std::nullopt;
+}
+
+ObjectMetadata metadata_of(const pugi::xml_document& packet) {
+    const Properties avm(packet, avm_space, "avm"), core(packet, dublin_core_space, "dc"),
+        photoshop(packet, photoshop_space, "photoshop");
+    ObjectMetadata found;
+    found.categories = saying(avm.list("Subject.Category"));
+    found.names = saying(avm.list("Subject.Name"));  // of AVM 1.0; since 1.1 it is dc:subject
+    for (std::string& name : saying(core.list("subject"))) found.names.push_back(std::move(name));
+    found.title = first_of(core.text("title"), photoshop.text("Headline"));
+    found.description = core.text("description");
+    found.credit = first_of(photoshop.text("Credit"), first_of(core.text("creator"), core.text("rights")));
+    found.type = avm.text("Type");
+    found.distance_ly = if_positive(avm.number("Distance"));
+    if (const std::optional<double> scale = avm.number("Spatial.Scale"))
+        found.degrees_per_px = if_positive(std::fabs(*scale));
+    found.reference_px = pair_of(avm, "Spatial.ReferenceDimension").value_or(std::array{0.0, 0.0});
+    found.north_angle = avm.number("Spatial.Rotation");
+    found.sky_position = pair_of(avm, "Spatial.ReferenceValue");
+    return found;
+}
+
+}  // namespace
+
+ObjectMetadata find_xmp_metadata(std::string_view bytes) {
+    std::optional<ObjectMetadata> first;
+    for (std::size_t begin; (begin = bytes.find(packet_begin)) != std::string_view::npos;) {
+        bytes.remove_prefix(begin);
+        const std::size_t end = bytes.find(packet_end);
+        if (end == std::string_view::npos) break;
+        const std::size_t size = end + packet_end.size();
+        pugi::xml_document packet;
+        if (packet.load_buffer(bytes.data(), size, pugi::parse_default, pugi::encoding_utf8)) {
+            if (Properties(packet, avm_space, "avm").any()) return metadata_of(packet);
+            if (!first) first = metadata_of(packet);
+        }
+        bytes.remove_prefix(size);
+    }
+    return first.value_or(ObjectMetadata{});
+}
+
+ObjectMetadata read_xmp_metadata(const std::filesystem::path& file) {
+    return find_xmp_metadata(read_ends(file));
+}
+
+ObjectMetadata read_fits_metadata(const std::filesystem::path& file) {
+    const FitsPlane plane = open_fits_rows(file, "auto", 0).plane;
+    ObjectMetadata found;
+    if (!plane.object.empty()) found.names.push_back(plane.object);
+    found.credit = plane.credit;
+    found.distance_ly = plane.distance_ly;
+    found.reference_px = {static_cast<double>(plane.width), static_cast<double>(plane.height)};
+    if (!plane.sky) return found;
+    const auto& [east_x, east_y, north_x, north_y] = plane.sky->cd;
+    const double area = east_x * north_y - east_y * north_x;
+    found.degrees_per_px = std::sqrt(std::fabs(area));
+    // Towards north the right ascension stays: along (-east_y, east_x) / area.
+    found.north_angle = real::degrees(real::atan2(east_y / area, east_x / area));
+    found.sky_position = plane.sky->crval;
+    return found;
+}
+
+std::optional<double> degrees_per_px_of(const ObjectMetadata& metadata, double width_px, double height_px) {
+    if (!metadata.degrees_per_px || !(width_px > 0.0) || !(height_px > 0.0)) return {};
+    const auto [reference_width, reference_height] = metadata.reference_px;
+    if (!(reference_width > 0.0) || !(reference_height > 0.0)) return metadata.degrees_per_px;
+    return *metadata.degrees_per_px / std::max(width_px / reference_width, height_px / reference_height);
+}
+
+}  // namespace astrosplat

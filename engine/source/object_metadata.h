@@ -1,0 +1,46 @@
+// What a picture's file says of what it shows: AVM, the metadata that ESA, ESO, NASA and their telescopes
+// write into published pictures (Astronomy Visualization Metadata 1.2, in an XMP packet), or the cards of a
+// FITS header. In: a file. Out: plain values.
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace astrosplat {
+
+struct ObjectMetadata {
+    std::vector<std::string> categories;     // Subject.Category, such as "C.5.1.1"
+    std::vector<std::string> names;          // Subject.Name, or OBJECT: "M 104", "Sombrero Galaxy"
+    std::string title, description, credit;  // as the file has them, in its first language
+    std::string type;                        // "Observation", "Artwork", "Simulation" ...; may be empty
+    std::optional<double> distance_ly;       // light years, > 0
+    std::optional<double> degrees_per_px;    // Spatial.Scale, along the picture's width, > 0
+    std::array<double, 2> reference_px{};  // width and height of the picture that the scale is of; 0: unknown
+    std::optional<double> north_angle;     // Spatial.Rotation: degrees, of north counter-clockwise from up
+    std::optional<std::array<double, 2>>
+        sky_position;  // degrees: right ascension, declination of a place in it
+};
+
+/// Of the first XMP packet with AVM, else of the first one, in the first or last 4 MiB of the file: JPEG, PNG
+/// and TIFF keep packets uncompressed, so that they can be found without knowing the format (XMP
+/// specification, part 3, packet scanning). Nothing where there is none, or none that is XML. Throws
+/// InputError where the file cannot be read.
+ObjectMetadata read_xmp_metadata(const std::filesystem::path& file);
+
+/// The same of bytes in which packets stand.
+ObjectMetadata find_xmp_metadata(std::string_view bytes);
+
+/// Of the HDU of a FITS file that is taken for the picture: OBJECT, DISTANCE, and how the sky lies on it.
+/// Throws InputError.
+ObjectMetadata read_fits_metadata(const std::filesystem::path& file);
+
+/// How wide one pixel of a picture of this size is on the sky, in degrees: the scale is of the reference's
+/// pixels, which the picture may have reduced, or cut to other proportions after it was reduced to cover
+/// them.
+std::optional<double> degrees_per_px_of(const ObjectMetadata& metadata, double width_px, double height_px);
+
+}  // namespace astrosplat

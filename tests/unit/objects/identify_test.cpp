@@ -1,0 +1,199 @@
+#include "objects/identify.h"
+
+#include <gtest/gtest.h>
+
+#include "bodies/picture_light.h"
+#include "objects/impression.h"
+#include "source/texture.h"
+#include "support/painted_picture.h"
+#include "support/printing.h"
+#include "support/test_data.h"
+
+namespace astrosplat {
+namespace {
+
+using enum SkyObject;
+using SkyObjects = std::vector<SkyObject>;
+
+SkyObject likeliest(const ObjectClues& clues, const Image& light) {
+    return identify(clues, light).guesses.front().object;
+}
+
+ObjectClues said_in(std::vector<std::string> categories, std::string title = "", std::string file = "") {
+    ObjectClues clues;
+    clues.metadata.categories = std::move(categories);
+    clues.metadata.title = std::move(title);
+    clues.file_name = std::move(file);
+    return clues;
+}
+
+TEST(Category, MeansKindsByTheMostSpecialEntry) {
+    EXPECT_EQ(objects_of_category("C.5.1.4"), SkyObjects{elliptical});
+    EXPECT_EQ(objects_of_category("5.1.4"), SkyObjects{elliptical});
+    EXPECT_EQ(objects_of_category("C.5.1.1"), SkyObjects{galaxy});
+    EXPECT_EQ(objects_of_category("C.5.3.3"), (SkyObjects{galaxy, elliptical}));
+    EXPECT_EQ(objects_of_category("D.5.5.3"), SkyObjects{field});
+    EXPECT_EQ(objects_of_category("B.3.6.4.2"), SkyObjects{cluster});
+    EXPECT_EQ(objects_of_category("B.4.1.3"), SkyObjects{planetary});
+    EXPECT_EQ(objects_of_category("B.4.1.33"), SkyObjects{nebula}) << "not 4.1.3";
+    EXPECT_EQ(objects_of_category("A.2.2"), SkyObjects{thin});
+    for (const char* other : {"E.8.1", "E.9", "", "C", "x.y"})
+        EXPECT_TRUE(objects_of_category(other).empty()) << other;
+}
+
+// What is said wins over what is seen, the person over the file.
+TEST(Identify, BelievesTheFileMoreThanTheLight) {
+    const Image spiral = painted::galaxy(400, 250);
+    EXPECT_EQ(likeliest({}, spiral), galaxy);
+    for (const SkyObject object : {elliptical, nebula, planetary, remnant, field, cluster, thin}) {
+        const char* const category[] = {"",        "C.5.1.4", "B.4.2.1",   "B.4.1.3",
+                                        "B.4.1.4", "D.6.1.1", "B.3.6.4.2", "A.2.2"};
+        EXPECT_EQ(likeliest(said_in({category[static_cast<int>(object)]}), spiral), object)
+            << name_of(object);
+    }
+    ObjectClues clues = said_in({"B.4.1.3"});
+    clues.named = object_named("M 87");
+    EXPECT_EQ(likeliest(clues, spiral), elliptical);
+}
+
+TEST(Identify, SaysBecauseOfWhat) {
+    const Image spiral = painted::galaxy(400, 250);
+    EXPECT_EQ(identify(said_in({"C.5.1.1"}), spiral).why, "AVM says C.5.1.1: spiral galaxy");
+    EXPECT_EQ(identify(said_in({}, "", "ngc4594"), spiral).why, "M 104 in the table of objects is spiral");
+    EXPECT_EQ(identify(said_in({}, "A galaxy by night"), spiral).why, "'A galaxy by night' says galaxy");
+    EXPECT_EQ(identify({}, spiral).why, likeness_of(impression_of(spiral)).why);
+    EXPECT_EQ(identify(said_in({"B.3"}), spiral).why,
+              "AVM says B.3: star; " + likeness_of(impression_of(spiral)).why)
+        << "a star may be anything, so the light counts";
+}
+
+TEST(Identify, KnowsTheObjectAndHowFarItIs) {
+    const Image spiral = painted::galaxy(400, 250);
+    ObjectClues clues = said_in({}, "The Sombrero Galaxy");
+    const Identification found = identify(clues, spiral);
+    ASSERT_TRUE(found.known);
+    EXPECT_EQ(found.known->names.front(), "M 104");
+    EXPECT_EQ(found.distance_ly, found.known->distance_ly);
+    clues.metadata.distance_ly = 5.0;
+    EXPECT_EQ(identify(clues, spiral).distance_ly, 5.0) << "the file's own";
+    EXPECT_FALSE(identify({}, spiral).known);
+}
+
+TEST(Identify, IsSureOfSharesThatAddUp) {
+    for (const Image& light :
+         {painted::galaxy(400, 250), painted::nebula(400, 250), make_image(8, 8, 3, 0.3f)}) {
+        const auto guesses = identify({}, light).guesses;
+        double sum = 0.0, last = 1.0;
+        for (const ObjectGuess& guess : guesses) {
+            EXPECT_LE(guess.sure, last);
+            last = guess.sure;
+            sum += guess.sure;
+        }
+        EXPECT_GT(sum, 0.9);
+        EXPECT_LE(sum, 1.0 + 1e-12);
+    }
+}
+
+TEST(Identify, TellsPaintedObjectsApart) {
+    for (const std::int64_t width : {400, 900}) {
+        const std::int64_t height = width * 5 / 8;
+        EXPECT_EQ(likeliest({}, painted::galaxy(width, height)), galaxy) << width;
+        EXPECT_EQ(likeliest({}, painted::nebula(width, height)), nebula) << width;
+    }
+}
+
+TEST(Identify, WhatIsTooSmallOrEvenIsANebula) {
+    for (const Image& light :
+         {make_image(8, 8, 3, 0.3f), make_image(400, 250, 3, 0.3f), make_image(400, 250, 3)}) {
+        EXPECT_EQ(likeliest({}, light), nebula);
+        EXPECT_NE(identify({}, light).why.find("too even"), std::string::npos);
+    }
+}
+
+StructureKind structure_in(const Image& light, std::optional<SkyObject> as = {}) {
+    return identify({}, light, as).structure;
+}
+
+// A nebula is a shell where it stands alone, and a sheet where it does not.
+TEST(Identify, ChoosesTheStructure) {
+    const Image alone = painted::remnant(400, 250), even = make_image(400, 250, 3, 0.3f);
+    EXPECT_EQ(structure_in(painted::galaxy(400, 250)), StructureKind::disk);
+    EXPECT_EQ(structure_in(painted::nebula(400, 250)), StructureKind::walls);
+    EXPECT_EQ(structure_in(alone), StructureKind::walls);
+    EXPECT_EQ(structure_in(alone, nebula), StructureKind::walls);
+    EXPECT_EQ(structure_in(even, nebula), StructureKind::sheet);
+    EXPECT_EQ(structure_in(make_image(8, 8, 3, 0.3f), nebula), StructureKind::sheet);
+    for (const Image& light : {alone, even}) {
+        for (const SkyObject object : {galaxy, elliptical, cluster})
+            EXPECT_EQ(structure_in(light, object), StructureKind::disk) << name_of(object);
+        for (const SkyObject object : {planetary, remnant})
+            EXPECT_EQ(structure_in(light, object), StructureKind::walls) << name_of(object);
+        for (const SkyObject object : {field, thin})
+            EXPECT_EQ(structure_in(light, object), StructureKind::sheet) << name_of(object);
+        EXPECT_EQ(identify(said_in({"C.5.1.1"}), light, nebula).why, "") << "a person's word needs no reason";
+    }
+}
+
+// Of wide light: a bright star is none.
+TEST(Subject, IsWhereWideLightIsBrightest) {
+    Image light = make_image(640, 400, 3, 0.02f);
+    painted::add_point(light, 160.0, 300.0, 30.0, 0.4, 0.3, 0.2);
+    painted::add_point(light, 500.0, 100.0, 1.2, 0.9, 0.9, 0.9);
+    const glm::dvec2 subject = subject_of(light);
+    EXPECT_NEAR(subject.x, 0.25, 0.02);
+    EXPECT_NEAR(subject.y, 0.75, 0.02);
+    EXPECT_EQ(subject_of(make_image(8, 8, 3, 1.0f)), glm::dvec2(0.5));
+    EXPECT_EQ(subject_of(make_image(64, 40, 3)), glm::dvec2(0.5));
+}
+
+TEST(LitShareOfRim, CountsThePixelsAtTheEdges) {
+    constexpr std::int64_t width = 200, height = 120;
+    EXPECT_EQ(lit_share_of_rim(make_image(width, height, 3, 0.2f)), 1.0);
+    Image corner = make_image(width, height, 3, 0.0005f);
+    EXPECT_EQ(lit_share_of_rim(corner), 0.0);
+    for (std::int64_t y = 0; y < height / 2; ++y)
+        for (std::int64_t x = 0; x < width / 3; ++x) corner.at(x, y)[0] = 1.0f;
+    EXPECT_NEAR(lit_share_of_rim(corner), (0.5 * height + width / 3.0) / (2.0 * (width + height)), 0.02);
+}
+
+struct Labelled {
+    const char* file;
+    SkyObject object;
+};
+// Of the telescopes' pictures those that the numbers of impression were not made of would be needed for a
+// proof; these guard that nothing is lost.
+constexpr Labelled labelled[] = {{"heic0304e.jpg", nebula},
+                                 {"heic0706a.jpg", galaxy},
+                                 {"heic1104a.jpg", galaxy},
+                                 {"heic1107a.jpg", galaxy},
+                                 {"heic1305a.jpg", galaxy},
+                                 {"heic1310a.jpg", planetary},
+                                 {"heic1501a.jpg", nebula},
+                                 {"heic1608a.jpg", nebula},
+                                 {"hubble_deep_field.jpg", field},
+                                 {"m101_heic0602a.jpg", galaxy},
+                                 {"opo0010a.jpg", nebula},
+                                 {"opo0028a.jpg", planetary},
+                                 {"opo0328a.jpg", galaxy},
+                                 {"opo1347a.jpg", thin},
+                                 {"opo9607a.jpg", planetary},
+                                 {"potw1451a.jpg", galaxy},
+                                 {"potw1542a.jpg", galaxy},
+                                 {"potw1751a.jpg", cluster},
+                                 {"red_spider_heic0109a.jpg", planetary},
+                                 {"m42.png", nebula},
+                                 {"ngc891.png", galaxy},
+                                 {"sh2-106.png", nebula}};
+
+TEST(Identify, TellsRealObjectsApartWithAndWithoutWhatTheirFilesSay) {
+    ASTROSPLAT_TEST_DATA_OR_SKIP(images, "images");
+    for (const Labelled& picture : labelled) {
+        const Texture texture = load_texture({images / picture.file}, {}, TextureSettings::Wrap::clamp);
+        const Image light = picture_light(texture, 0.0).light;
+        EXPECT_EQ(likeliest(clues_of(images / picture.file), light), picture.object) << picture.file;
+        EXPECT_EQ(likeliest({}, light), picture.object) << picture.file << ": " << identify({}, light).why;
+    }
+}
+
+}  // namespace
+}  // namespace astrosplat

@@ -1,0 +1,161 @@
+#include "source/object_metadata.h"
+
+#include <fitsio.h>
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "source/picture.h"
+#include "support/temp_folder.h"
+#include "support/test_data.h"
+
+namespace astrosplat {
+namespace {
+
+using Texts = std::vector<std::string>;
+
+std::string packet(const std::string& attributes, const std::string& elements,
+                   const std::string& prefix = "avm") {
+    return "<x:xmpmeta xmlns:x='adobe:ns:meta/'><rdf:RDF "
+           "xmlns:rdf='http://www.w3.org/1999/02/22-rdf-syntax-ns#'>"
+           "<rdf:Description rdf:about='' xmlns:dc='http://purl.org/dc/elements/1.1/' "
+           "xmlns:photoshop='http://ns.adobe.com/photoshop/1.0/' xmlns:" +
+           prefix + "='http://www.communicatingastronomy.org/avm/1.0/' " + attributes + ">" + elements +
+           "</rdf:Description></rdf:RDF></x:xmpmeta>";
+}
+
+TEST(XmpMetadata, FromAttributesAndLists) {
+    const ObjectMetadata found = find_xmp_metadata(
+        "\xFF\xE1 junk " +
+        packet("avm:Type='Artwork' avm:Spatial.Rotation='84.5' photoshop:Credit='A &amp; B'",
+               "<avm:Subject.Category><rdf:Bag><rdf:li>C.5.1.1</rdf:li><rdf:li>-</rdf:li><rdf:li/>"
+               "<rdf:li>C.5.1.2</rdf:li></rdf:Bag></avm:Subject.Category>"
+               "<avm:Distance><rdf:Seq><rdf:li>4.6e7</rdf:li><rdf:li>0.002</rdf:li></rdf:Seq></avm:Distance>"
+               "<avm:Spatial.Scale><rdf:Seq><rdf:li>-1e-5</rdf:li><rdf:li>1e-5</rdf:li></rdf:Seq></"
+               "avm:Spatial.Scale>"
+               "<avm:Spatial.ReferenceDimension><rdf:Seq><rdf:li>4000</rdf:li><rdf:li>3000</rdf:li></rdf:Seq>"
+               "</avm:Spatial.ReferenceDimension>"
+               "<avm:Spatial.ReferenceValue><rdf:Seq><rdf:li>140.5</rdf:li><rdf:li>-51</rdf:li></rdf:Seq>"
+               "</avm:Spatial.ReferenceValue>"
+               "<dc:title><rdf:Alt><rdf:li xml:lang='x-default'>A\n  spiral</rdf:li></rdf:Alt></dc:title>"
+               "<dc:subject><rdf:Bag><rdf:li>NGC 2841</rdf:li></rdf:Bag></dc:subject>"));
+    EXPECT_EQ(found.categories, (Texts{"C.5.1.1", "C.5.1.2"}));
+    EXPECT_EQ(found.names, Texts{"NGC 2841"});
+    EXPECT_EQ(found.title, "A spiral");
+    EXPECT_EQ(found.credit, "A & B");
+    EXPECT_EQ(found.type, "Artwork");
+    EXPECT_EQ(found.distance_ly, 4.6e7);
+    EXPECT_EQ(found.degrees_per_px, 1e-5);
+    EXPECT_EQ(found.reference_px, (std::array{4000.0, 3000.0}));
+    EXPECT_EQ(found.north_angle, 84.5);
+    EXPECT_EQ(found.sky_position, (std::array{140.5, -51.0}));
+}
+
+TEST(XmpMetadata, PrefixesAreThoseThatThePacketDeclares) {
+    EXPECT_EQ(find_xmp_metadata(packet("sky:Type='Chart'", "", "sky")).type, "Chart");
+    EXPECT_EQ(find_xmp_metadata(packet("avm:Type='Chart'", "", "sky")).type, "");
+}
+
+TEST(XmpMetadata, TheFirstPacketWithAvmElseTheFirst) {
+    const std::string plain = packet("photoshop:Credit='first'", ""), broken = "<rdf:RDF><a></rdf:RDF>";
+    const std::string avm = packet("avm:Type='Observation' photoshop:Credit='second'", "");
+    EXPECT_EQ(find_xmp_metadata(plain + avm).credit, "second");
+    EXPECT_EQ(find_xmp_metadata(broken + plain + plain).credit, "first");
+    EXPECT_EQ(find_xmp_metadata(broken).credit, "");
+    EXPECT_EQ(find_xmp_metadata("<rdf:RDF> no end").credit, "");
+    EXPECT_EQ(find_xmp_metadata("").credit, "");
+}
+
+TEST(XmpMetadata, FiguresThatSayNothingAreLeftOut) {
+    const ObjectMetadata found = find_xmp_metadata(
+        packet("avm:Spatial.Rotation='-' avm:Spatial.Scale='0'",
+               "<avm:Distance><rdf:Seq><rdf:li>-</rdf:li><rdf:li>0.1</rdf:li></rdf:Seq></avm:Distance>"));
+    EXPECT_FALSE(found.north_angle);
+    EXPECT_FALSE(found.degrees_per_px);
+    EXPECT_FALSE(found.distance_ly);
+    EXPECT_FALSE(find_xmp_metadata(packet("avm:Distance='inf'", "")).distance_ly);
+}
+
+// By the creator where nobody is credited, by the rights where there is no creator.
+TEST(XmpMetadata, CreditIsWhoeverIsNamed) {
+    const std::string creator = "<dc:creator><rdf:Seq><rdf:li>Some\n One</rdf:li></rdf:Seq></dc:creator>";
+    const std::string rights = "<dc:rights><rdf:Alt><rdf:li>CC BY</rdf:li></rdf:Alt></dc:rights>";
+    EXPECT_EQ(find_xmp_metadata(packet("", creator + rights)).credit, "Some One");
+    EXPECT_EQ(find_xmp_metadata(packet("", rights)).credit, "CC BY");
+}
+
+TEST(XmpMetadata, IsFoundAtEitherEndOfALargeFile) {
+    const TempFolder folder;
+    const std::string avm = packet("avm:Type='Observation'", ""), much(9 << 20, 'x');
+    EXPECT_EQ(read_xmp_metadata(folder.file("small", avm)).type, "Observation");
+    EXPECT_EQ(read_xmp_metadata(folder.file("first", avm + much)).type, "Observation");
+    EXPECT_EQ(read_xmp_metadata(folder.file("last", much + avm)).type, "Observation");
+    EXPECT_EQ(read_xmp_metadata(folder.file("empty", "")).type, "");
+    EXPECT_THROW(read_xmp_metadata(folder / "none"), InputError);
+}
+
+// A wallpaper is reduced to cover its screen and cut: 4000x3000 at 1920x1200 shows 4000 px of the width.
+TEST(DegreesPerPixel, FollowTheReferenceThatThePictureWasCutFrom) {
+    ObjectMetadata metadata;
+    EXPECT_FALSE(degrees_per_px_of(metadata, 100, 100));
+    metadata.degrees_per_px = 1e-5;
+    EXPECT_EQ(degrees_per_px_of(metadata, 1000, 10), 1e-5);
+    metadata.reference_px = {4000.0, 3000.0};
+    EXPECT_DOUBLE_EQ(*degrees_per_px_of(metadata, 4000, 3000), 1e-5);
+    EXPECT_DOUBLE_EQ(*degrees_per_px_of(metadata, 1920, 1200), 1e-5 * 4000 / 1920);
+    EXPECT_DOUBLE_EQ(*degrees_per_px_of(metadata, 800, 1200), 1e-5 * 3000 / 1200);
+    EXPECT_FALSE(degrees_per_px_of(metadata, 0, 1200));
+}
+
+void put(fitsfile* out, const char* key, double value, const char* comment = "") {
+    int status = 0;
+    fits_update_key(out, TDOUBLE, key, &value, comment, &status);
+    ASSERT_EQ(status, 0);
+}
+
+std::filesystem::path write_sky(const TempFolder& folder, const std::string& name,
+                                const char* distance_unit) {
+    const std::filesystem::path file = folder / name;
+    fitsfile* out = nullptr;
+    int status = 0;
+    long axes[] = {4, 3};
+    std::array<float, 12> values{};
+    values[5] = 1.0f;
+    fits_create_diskfile(&out, file.c_str(), &status);
+    fits_create_img(out, FLOAT_IMG, 2, axes, &status);
+    fits_write_key_str(out, "OBJECT", "M 51", "", &status);
+    fits_write_key_str(out, "CTYPE1", "RA---TAN", "", &status);
+    fits_write_key_str(out, "CTYPE2", "DEC--TAN", "", &status);
+    put(out, "CRPIX1", 2.0), put(out, "CRPIX2", 1.5), put(out, "CRVAL1", 202.5), put(out, "CRVAL2", 47.2);
+    // North lies 30 degrees to the left of up.
+    put(out, "CD1_1", -1e-4 * std::cos(0.5235987755982988)), put(out, "CD1_2", -1e-4 * 0.5);
+    put(out, "CD2_1", -1e-4 * 0.5), put(out, "CD2_2", 1e-4 * std::cos(0.5235987755982988));
+    put(out, "DISTANCE", 2.0, distance_unit);
+    fits_write_img(out, TFLOAT, 1, 12, values.data(), &status);
+    fits_close_file(out, &status);
+    EXPECT_EQ(status, 0);
+    return file;
+}
+
+TEST(FitsMetadata, HasObjectPlaceAndDistance) {
+    const TempFolder folder;
+    const ObjectMetadata found = read_fits_metadata(write_sky(folder, "a.fits", "[Mpc] to it"));
+    EXPECT_EQ(found.names, Texts{"M 51"});
+    EXPECT_NEAR(*found.degrees_per_px, 1e-4, 1e-12);
+    EXPECT_NEAR(*found.north_angle, 30.0, 1e-9);
+    EXPECT_EQ(found.sky_position, (std::array{202.5, 47.2}));
+    EXPECT_NEAR(*found.distance_ly, 6.523127554e6, 1.0);
+    EXPECT_FALSE(read_fits_metadata(write_sky(folder, "b.fits", "to it")).distance_ly) << "it has no unit";
+}
+
+TEST(XmpMetadata, OfAPublishedPicture) {
+    ASTROSPLAT_TEST_DATA_OR_SKIP(images, "images");
+    const ObjectMetadata found = read_xmp_metadata(images / "heic1104a.jpg");
+    EXPECT_EQ(found.categories, Texts{"C.5.1.1"});
+    EXPECT_EQ(found.names, Texts{"NGC 2841"});
+    EXPECT_EQ(found.title, "Flocculent spiral NGC 2841");
+    EXPECT_NEAR(*degrees_per_px_of(found, 1920, 1200), 1.10356023779e-05 * 3897 / 1920, 1e-12);
+}
+
+}  // namespace
+}  // namespace astrosplat
