@@ -13,6 +13,7 @@
 #include "core/error.h"
 #include "core/file_format.h"
 #include "core/log.h"
+#include "core/real.h"
 #include "core/text.h"
 #include "exit.h"
 #include "scene/new_scene.h"
@@ -60,16 +61,29 @@ std::string in_words(const std::vector<ObjectGuess>& guesses) {
                        name_of(guesses[1].object));
 }
 
-void say(const fs::path& picture, const ObjectMetadata& metadata, const Identification& found) {
-    const std::string name = printable(picture.filename().string());
+void say(const fs::path& picture, const Identification& found) {
+    const std::string name = printable(picture.filename().string()), &type = found.metadata.type;
     if (!found.why.empty())
         log_info(fmt::format("'{}' is taken for: {}; {}; --as chooses another", name, in_words(found.guesses),
                              found.why));
-    if (!metadata.type.empty() && metadata.type != "Observation" && metadata.type != "Photographic")
-        log_info(fmt::format("'{}' is no observation: its metadata says {}", name, shown(metadata.type)));
+    if (!type.empty() && type != "Observation" && type != "Photographic")
+        log_info(fmt::format("'{}' is no observation: its metadata says {}", name, shown(type)));
 }
 
-Report to_report(const Identification& found) {
+/// Where it lies on the sky and how large it is there, as far as the file says.
+void add_sky(const ObjectMetadata& metadata, const PictureScene& scene, Report& report) {
+    const auto width = double(scene.width_px), height = double(scene.height_px);
+    const std::optional<double> degrees_per_px = degrees_per_px_of(metadata, width, height);
+    if (const auto& place = metadata.sky_position)
+        report["sky"] = {{"right_ascension", number((*place)[0])}, {"declination", number((*place)[1])}};
+    if (metadata.north_angle) report["north_angle"] = number(*metadata.north_angle);
+    if (!degrees_per_px) return;
+    report["width_degrees"] = number(*degrees_per_px * width);
+    if (const auto found = report.find("distance_ly"); found != report.end())
+        report["width_ly"] = number(found->get<double>() * real::radians(*degrees_per_px * width));
+}
+
+Report to_report(const Identification& found, const PictureScene& scene) {
     Report report{{"object", name_of(found.guesses[0].object)},
                   {"sure", number(found.guesses[0].sure)},
                   {"because", found.why},
@@ -78,6 +92,8 @@ Report to_report(const Identification& found) {
         report["else"][std::string(name_of(found.guesses[i].object))] = number(found.guesses[i].sure);
     if (found.known) report["names"] = found.known->names;
     if (found.distance_ly) report["distance_ly"] = number(*found.distance_ly);
+    if (!found.metadata.credit.empty()) report["credit"] = found.metadata.credit;
+    add_sky(found.metadata, scene, report);
     return report;
 }
 
@@ -90,8 +106,8 @@ BodiesScene bodies_scene(const fs::path& picture, const fs::path& place, const N
     PictureScene scene =
         picture_scene(picture, {object_of(options.as), object_by_name(options.object)}, found);
     scene.film = options.film;
-    say(picture, clues_of(picture).metadata, found);
-    return {picture_scene_text(scene, place), to_report(found)};
+    say(picture, found);
+    return {picture_scene_text(scene, place), to_report(found, scene)};
 }
 
 std::string columns_text(const fs::path& picture, const fs::path& place, const NewOptions& options) {

@@ -221,10 +221,12 @@ std::vector<SkyObject> objects_of_category(std::string_view category) {
 Identification identify(const ObjectClues& clues, const Image& light, std::optional<SkyObject> as) {
     const ObjectMetadata& metadata = clues.metadata;
     Identification found;
+    found.metadata = metadata;
     found.known = known_object(clues);
     found.distance_ly = metadata.distance_ly;
     if (!found.distance_ly && found.known) found.distance_ly = found.known->distance_ly;
     const Impression impression = impression_of(light);
+    found.middle = impression.middle;
     if (as) {
         found.guesses = {{*as, 1.0}};
         found.structure = structure_of(*as, impression);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <glm/vec2.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -10,7 +11,7 @@
 
 #include "core/image.h"
 #include "objects/catalogue.h"
-#include "objects/sky_object.h"
+#include "objects/impression.h"
 #include "source/object_metadata.h"
 #include "source/source.h"
 
@@ -36,6 +37,8 @@ struct Identification {
     std::vector<ObjectGuess> guesses;                // the likeliest first; at least one; together at most 1
     StructureKind structure = StructureKind::sheet;  // of the first
     std::string why;                                 // of the first: "AVM says C.5.1.1: spiral galaxy"
+    glm::dvec2 middle{0.5};                          // of what it shows, in shares of width and height
+    ObjectMetadata metadata;                         // the picture's
     const CatalogueObject* known = nullptr;          // the object in the catalogue, where it has it
     std::optional<double> distance_ly;               // by metadata, else by the catalogue
 };

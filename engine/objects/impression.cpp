@@ -54,16 +54,12 @@ Copies copies_of(const Image& light) {
     return {std::move(whole), std::move(rest)};
 }
 
-Image small_copy(const Copies& copies) {
-    return gaussian_blur(of_width(copies.without_stars, small_width), 1.0);
-}
-
 struct Place {
     std::int64_t x = 0, y = 0;
 };
 Place brightest_place(const Image& channel) {
-    const Image smooth = gaussian_blur(channel, 0.02 * static_cast<double>(channel.width));
-    const auto top = std::max_element(smooth.pixels.begin(), smooth.pixels.end()) - smooth.pixels.begin();
+    const Image smooth = gaussian_blur(channel, 0.02 * double(channel.width));
+    const auto top = std::ranges::max_element(smooth.pixels) - smooth.pixels.begin();
     return {top % channel.width, top / channel.width};
 }
 
@@ -79,25 +75,28 @@ Image above_sky(Image channel) {
 
 double sum_of(const Image& channel) {
     double sum = 0.0;
-    for (const float value : channel.pixels) sum += static_cast<double>(value);
+    for (const float value : channel.pixels) sum += double(value);
     return sum;
+}
+
+// Calls visit(x, y) for every pixel, row by row: sums keep their order.
+template <class Visit>
+void for_each_in_order(const Image& image, const Visit& visit) {
+    for_each_between(image, 0, 0, image.width - 1, image.height - 1, visit);
 }
 
 std::vector<Pixel> by_radius(const Image& light, const Image& above, Place middle) {
     const glm::dvec3 sky(sky_of(channel_of(light, 0)), sky_of(channel_of(light, 1)),
                          sky_of(channel_of(light, 2)));
-    const auto edge = static_cast<std::int64_t>(edge_share * static_cast<double>(light.width));
+    const auto edge = static_cast<std::int64_t>(edge_share * double(light.width));
     std::vector<Pixel> pixels;
-    for (std::int64_t y = 0; y < light.height; ++y) {
-        for (std::int64_t x = 0; x < light.width; ++x) {
-            const float* const p = light.at(x, y);
-            const bool at_edge = x < edge || y < edge || x >= light.width - edge || y >= light.height - edge;
-            pixels.push_back(
-                {std::hypot(static_cast<double>(x - middle.x), static_cast<double>(y - middle.y)),
-                 static_cast<double>(*above.at(x, y)), glm::max(glm::dvec3(p[0], p[1], p[2]) - sky, 0.0),
-                 static_cast<double>(p[0]), static_cast<double>(p[2]), at_edge});
-        }
-    }
+    for_each_in_order(light, [&](std::int64_t x, std::int64_t y) {
+        const float* const p = light.at(x, y);
+        const bool at_edge = x < edge || y < edge || x >= light.width - edge || y >= light.height - edge;
+        pixels.push_back({std::hypot(double(x - middle.x), double(y - middle.y)), double(*above.at(x, y)),
+                          glm::max(glm::dvec3(p[0], p[1], p[2]) - sky, 0.0), double(p[0]), double(p[2]),
+                          at_edge});
+    });
     std::ranges::stable_sort(pixels, {}, &Pixel::radius);
     return pixels;
 }
@@ -144,27 +143,23 @@ bool is_grey(const std::vector<Pixel>& pixels) {
 double difference_of_sides(const Image& above, Place middle, double half) {
     const Image smooth = gaussian_blur(above, 2.0);
     double difference = 0.0, sum = 0.0;
-    for (std::int64_t y = 0; y < above.height; ++y) {
-        for (std::int64_t x = 0; x < above.width; ++x) {
-            const std::int64_t u = 2 * middle.x - x, v = 2 * middle.y - y;
-            const double radius =
-                std::hypot(static_cast<double>(x - middle.x), static_cast<double>(y - middle.y));
-            const bool seen = u >= 0 && v >= 0 && u < above.width && v < above.height;
-            if (!seen || radius < 0.35 * half || radius > 1.5 * half) continue;
-            const auto here = static_cast<double>(*smooth.at(x, y)),
-                       there = static_cast<double>(*smooth.at(u, v));
-            difference += std::fabs(here - there);
-            sum += here + there;
-        }
-    }
+    for_each_in_order(above, [&](std::int64_t x, std::int64_t y) {
+        const std::int64_t u = 2 * middle.x - x, v = 2 * middle.y - y;
+        const double radius = std::hypot(double(x - middle.x), double(y - middle.y));
+        const bool seen = u >= 0 && v >= 0 && u < above.width && v < above.height;
+        if (!seen || radius < 0.35 * half || radius > 1.5 * half) return;
+        const auto here = double(*smooth.at(x, y)), there = double(*smooth.at(u, v));
+        difference += std::fabs(here - there);
+        sum += here + there;
+    });
     return sum > 0.0 ? difference / sum : 1.0;
 }
 
 double share_in_small_things(const Image& above) {
-    const Image wide = gaussian_blur(above, small_things * static_cast<double>(above.width));
+    const Image wide = gaussian_blur(above, small_things * double(above.width));
     double small = 0.0;
     for (std::size_t i = 0; i < above.pixels.size(); ++i)
-        small += static_cast<double>(std::max(0.0f, above.pixels[i] - wide.pixels[i]));
+        small += double(std::max(0.0f, above.pixels[i] - wide.pixels[i]));
     return small / std::max(nothing, sum_of(above));
 }
 
@@ -178,7 +173,8 @@ bool of_stars(const glm::dvec3& color) {
 
 glm::dvec2 chroma_of(const glm::dvec3& color) {
     const double floor = 0.02 * (color.r + color.g + color.b) + nothing;
-    return {std::log((color.r + floor) / (color.g + floor)), std::log((color.b + floor) / (color.g + floor))};
+    return {real::log((color.r + floor) / (color.g + floor)),
+            real::log((color.b + floor) / (color.g + floor))};
 }
 
 void measure_colors(const std::vector<Pixel>& pixels, double half, Impression& seen) {
@@ -200,8 +196,8 @@ double detail_of(const Image& above) {
     const Image smooth = gaussian_blur(above, 3.0);
     double away = 0.0, sum = 0.0;
     for (std::size_t i = 0; i < above.pixels.size(); ++i) {
-        away += static_cast<double>(std::fabs(above.pixels[i] - smooth.pixels[i]));
-        sum += static_cast<double>(smooth.pixels[i]);
+        away += double(std::fabs(above.pixels[i] - smooth.pixels[i]));
+        sum += double(smooth.pixels[i]);
     }
     return away / std::max(nothing, sum);
 }
@@ -209,15 +205,13 @@ double detail_of(const Image& above) {
 // Axis ratio by second moments about the middle.
 double roundness_of(const Image& above, Place middle, double reach) {
     double xx = 0.0, xy = 0.0, yy = 0.0;
-    for (std::int64_t y = 0; y < above.height; ++y)
-        for (std::int64_t x = 0; x < above.width; ++x) {
-            const auto dx = static_cast<double>(x - middle.x), dy = static_cast<double>(y - middle.y);
-            if (std::hypot(dx, dy) > reach) continue;
-            const auto w = static_cast<double>(*above.at(x, y));
-            xx += w * dx * dx;
-            xy += w * dx * dy;
-            yy += w * dy * dy;
-        }
+    for_each_within(above, double(middle.x) + 0.5, double(middle.y) + 0.5, reach,
+                    [&](std::int64_t x, std::int64_t y, double dx, double dy) {
+                        const auto w = double(*above.at(x, y));
+                        xx += w * dx * dx;
+                        xy += w * dx * dy;
+                        yy += w * dy * dy;
+                    });
     const double mean = 0.5 * (xx + yy), turn = std::hypot(0.5 * (xx - yy), xy);
     return mean > 0.0 ? std::sqrt(std::max(0.0, mean - turn) / (mean + turn)) : 1.0;
 }
@@ -226,18 +220,17 @@ double dark_share(const Image& above) {
     const auto bound =
         static_cast<float>(0.03 * percentile({above.pixels.begin(), above.pixels.end()}, 0.99));
     const auto dark = std::ranges::count_if(above.pixels, [&](float value) { return value < bound; });
-    return static_cast<double>(dark) / static_cast<double>(above.pixels.size());
+    return double(dark) / double(above.pixels.size());
 }
 
 Place centre_of(const Image& above) {
     double x_sum = 0.0, y_sum = 0.0, sum = nothing;
-    for (std::int64_t y = 0; y < above.height; ++y)
-        for (std::int64_t x = 0; x < above.width; ++x) {
-            const auto w = static_cast<double>(*above.at(x, y));
-            x_sum += w * static_cast<double>(x);
-            y_sum += w * static_cast<double>(y);
-            sum += w;
-        }
+    for_each_in_order(above, [&](std::int64_t x, std::int64_t y) {
+        const auto w = double(*above.at(x, y));
+        x_sum += w * double(x);
+        y_sum += w * double(y);
+        sum += w;
+    });
     return {std::llround(x_sum / sum), std::llround(y_sum / sum)};
 }
 
@@ -246,7 +239,7 @@ Place centre_of(const Image& above) {
 Impression impression_of(const Image& light) {
     if (light.width < least_side_px || light.height < least_side_px) return {};
     const Copies copies = copies_of(light);
-    const Image small = small_copy(copies);
+    const Image small = gaussian_blur(of_width(copies.without_stars, small_width), 1.0);
     const Image above = above_sky(brightest_channel(small));
     const Place middle = brightest_place(above);
     const std::vector<Pixel> pixels = by_radius(small, above, middle);
@@ -254,12 +247,14 @@ Impression impression_of(const Image& light) {
     const Part all = part_of(pixels, [](const Pixel&) { return true; });
     seen.lit = all.light > 0.0;
     if (!seen.lit) return seen;
+    seen.middle = {(double(middle.x) + 0.5) / double(small.width),
+                   (double(middle.y) + 0.5) / double(small.height)};
     const double half = radius_of(pixels, 0.5);
     const Part core = ring_of(pixels, 0.0, 0.35 * half);
     seen.grey = is_grey(pixels);
-    seen.peak = std::log(core.light / std::max(nothing, ring_of(pixels, 0.8 * half, 1.2 * half).light));
+    seen.peak = real::log(core.light / std::max(nothing, ring_of(pixels, 0.8 * half, 1.2 * half).light));
     seen.redness =
-        std::log(core.redness / std::max(nothing, ring_of(pixels, 0.9 * half, 1.6 * half).redness));
+        real::log(core.redness / std::max(nothing, ring_of(pixels, 0.9 * half, 1.6 * half).redness));
     seen.edge = part_of(pixels, [](const Pixel& p) { return p.edge; }).light / all.light;
     seen.sides = difference_of_sides(above, middle, half);
     const Image whole = above_sky(brightest_channel(copies.whole));
@@ -270,7 +265,7 @@ Impression impression_of(const Image& light) {
         stars.pixels[i] = std::max(0.0f, stars.pixels[i] - rest.pixels[i]);
     seen.stars = sum_of(stars) / std::max(nothing, sum_of(whole));
     measure_colors(pixels, half, seen);
-    seen.size = half / static_cast<double>(small.width);
+    seen.size = half / double(small.width);
     seen.detail = detail_of(above);
     seen.roundness = roundness_of(above, middle, 1.5 * half);
     seen.dark = dark_share(above);
@@ -473,16 +468,6 @@ StructureKind structure_of(SkyObject object, const Impression& seen) {
         default:
             return StructureKind::sheet;
     }
-}
-
-glm::dvec2 subject_of(const Image& light) {
-    const glm::dvec2 middle(0.5);
-    if (light.width < least_side_px || light.height < least_side_px) return middle;
-    const Image brightest = brightest_channel(small_copy(copies_of(light)));
-    if (!(std::ranges::max(brightest.pixels) > 0.0f)) return middle;
-    const Place place = brightest_place(brightest);
-    return {(double(place.x) + 0.5) / double(brightest.width),
-            (double(place.y) + 0.5) / double(brightest.height)};
 }
 
 double mean_light(const Image& light) {

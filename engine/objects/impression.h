@@ -1,5 +1,6 @@
-// What a picture shows, by its light alone. In: the light. Out: fifteen plain numbers, each without a unit
-// and of the order of 1, and what they are like.
+// The kinds of object that a picture may show, as far as they are given depth in different ways, and which it
+// shows by its light alone. In: the light. Out: plain numbers, each without a unit and of the order of 1, and
+// what they are like.
 #pragma once
 
 #include <array>
@@ -7,15 +8,32 @@
 #include <string>
 
 #include "core/image.h"
-#include "objects/sky_object.h"
+#include "core/text.h"
 #include "source/source.h"
 
 namespace astrosplat {
+
+enum class SkyObject {
+    galaxy,      // with a disk
+    elliptical,  // a galaxy without
+    nebula,
+    planetary,  // a nebula about an axis
+    remnant,    // a shell
+    field,      // of many small things: an open cluster, a cluster of galaxies, a deep field
+    cluster,    // a globular one
+    thin,       // a comet, a star: nothing whose depth shows
+};
+constexpr auto names_of(SkyObject) {
+    return names_up_to<SkyObject::thin>("galaxy", "elliptical", "nebula", "planetary", "remnant", "field",
+                                        "cluster", "thin");
+}
+inline constexpr std::size_t sky_object_count = names_of(SkyObject{}).size();
 
 /// Light is that of the brightest channel above the sky, which is the darkest tenth; the middle is the
 /// brightest place of it under a blur of .02 widths, stars left out; radii are from there.
 struct Impression {
     bool lit = false, grey = false;  // anywhere above its sky; has no colours
+    glm::dvec2 middle{0.5};          // from the top left corner, in shares of width and height
     double peak = 0.0;               // ln: in the middle over at the half-light radius
     double redness = 0.0;            // ln: red over blue, of the middle against its surroundings
     double edge = 0.0;               // at the picture's edges over the mean
@@ -45,10 +63,6 @@ Likeness likeness_of(const Impression& seen);
 
 /// How such an object is given depth. A nebula is a shell where it stands alone on a dark sky, else a sheet.
 StructureKind structure_of(SkyObject object, const Impression& seen);
-
-/// Where a picture is brightest over wide areas, its stars left out: from the top left corner, in shares of
-/// its width and height. The middle, where it is too small to tell or dark.
-glm::dvec2 subject_of(const Image& light);
 
 /// Mean of the brightest channel, 0 to 1 of the displayed white.
 double mean_light(const Image& light);

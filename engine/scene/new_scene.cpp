@@ -356,12 +356,12 @@ PictureScene picture_scene(const fs::path& image, const PictureRequest& request,
     scene.lit_rim = lit_share_of_rim(light);
     find_stars(scene, progress);
     scene.mean_light = mean_light(light);
-    scene.subject = subject_of(light);
     ObjectClues clues = clues_of(image);
     clues.named = request.named;
     found = identify(clues, light, request.as);
     scene.structure = found.structure;
     scene.object = found.guesses.front().object;
+    scene.subject = found.middle;
     return scene;
 }
 

@@ -152,7 +152,6 @@ ObjectMetadata metadata_of(const pugi::xml_document& packet) {
     found.names = saying(avm.list("Subject.Name"));  // of AVM 1.0; since 1.1 it is dc:subject
     for (std::string& name : saying(core.list("subject"))) found.names.push_back(std::move(name));
     found.title = first_of(core.text("title"), photoshop.text("Headline"));
-    found.description = core.text("description");
     found.credit = first_of(photoshop.text("Credit"), first_of(core.text("creator"), core.text("rights")));
     found.type = avm.text("Type");
     found.distance_ly = if_positive(avm.number("Distance"));

@@ -13,12 +13,12 @@
 namespace astrosplat {
 
 struct ObjectMetadata {
-    std::vector<std::string> categories;     // Subject.Category, such as "C.5.1.1"
-    std::vector<std::string> names;          // Subject.Name, or OBJECT: "M 104", "Sombrero Galaxy"
-    std::string title, description, credit;  // as the file has them, in its first language
-    std::string type;                        // "Observation", "Artwork", "Simulation" ...; may be empty
-    std::optional<double> distance_ly;       // light years, > 0
-    std::optional<double> degrees_per_px;    // Spatial.Scale, along the picture's width, > 0
+    std::vector<std::string> categories;   // Subject.Category, such as "C.5.1.1"
+    std::vector<std::string> names;        // Subject.Name, or OBJECT: "M 104", "Sombrero Galaxy"
+    std::string title, credit;             // as the file has them, in its first language
+    std::string type;                      // "Observation", "Artwork", "Simulation" ...; may be empty
+    std::optional<double> distance_ly;     // light years, > 0
+    std::optional<double> degrees_per_px;  // Spatial.Scale, along the picture's width, > 0
     std::array<double, 2> reference_px{};  // width and height of the picture that the scale is of; 0: unknown
     std::optional<double> north_angle;     // Spatial.Rotation: degrees, of north counter-clockwise from up
     std::optional<std::array<double, 2>>

@@ -155,11 +155,14 @@ TEST_F(Commands, NewSaysWhatAPictureShowsAndBecauseOfWhat) {
     const std::string avm =
         "<rdf:RDF xmlns:avm=\"http://www.communicatingastronomy.org/avm/1.0/\"><rdf:Description "
         "avm:Type=\"Artwork\" "
-        "avm:Subject.Category=\"C.5.1.4\"/></rdf:RDF>";
+        "avm:Subject.Category=\"C.5.1.4\" avm:Distance=\"1000\" avm:Spatial.Scale=\"-0.01\"/></rdf:RDF>";
     write_text(folder / "art.ppm", small_picture() + avm);
-    const RunResult art = run({"new", "art.ppm"});
+    const RunResult art = run({"new", "art.ppm", "--json"});
     EXPECT_NE(art.err.find("AVM says C.5.1.4: elliptical galaxy; --as"), std::string::npos) << art.err;
     EXPECT_NE(art.err.find("is no observation: its metadata says 'Artwork'"), std::string::npos) << art.err;
+    const nlohmann::json measured = nlohmann::json::parse(art.out);
+    EXPECT_NEAR(measured["width_ly"].get<double>(),
+                1000.0 * measured["width_degrees"].get<double>() * 0.0174532925, 1e-4);
 }
 
 TEST_F(Commands, GenerateWritesALayer) {

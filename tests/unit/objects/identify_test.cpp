@@ -135,15 +135,16 @@ TEST(Identify, ChoosesTheStructure) {
 }
 
 // Of wide light: a bright star is none.
-TEST(Subject, IsWhereWideLightIsBrightest) {
+TEST(Impression, HasItsMiddleWhereWideLightIsBrightest) {
     Image light = make_image(640, 400, 3, 0.02f);
     painted::add_point(light, 160.0, 300.0, 30.0, 0.4, 0.3, 0.2);
     painted::add_point(light, 500.0, 100.0, 1.2, 0.9, 0.9, 0.9);
-    const glm::dvec2 subject = subject_of(light);
-    EXPECT_NEAR(subject.x, 0.25, 0.02);
-    EXPECT_NEAR(subject.y, 0.75, 0.02);
-    EXPECT_EQ(subject_of(make_image(8, 8, 3, 1.0f)), glm::dvec2(0.5));
-    EXPECT_EQ(subject_of(make_image(64, 40, 3)), glm::dvec2(0.5));
+    const glm::dvec2 middle = impression_of(light).middle;
+    EXPECT_NEAR(middle.x, 0.25, 0.02);
+    EXPECT_NEAR(middle.y, 0.75, 0.02);
+    EXPECT_EQ(impression_of(make_image(8, 8, 3, 1.0f)).middle, glm::dvec2(0.5));
+    EXPECT_EQ(impression_of(make_image(64, 40, 3)).middle, glm::dvec2(0.5));
+    EXPECT_EQ(identify({}, light).middle, middle);
 }
 
 TEST(LitShareOfRim, CountsThePixelsAtTheEdges) {
