@@ -120,9 +120,9 @@ LayerNeed need_of_source(const SetCache& cache, const LayerParams& layer) {
         load_meshes(cache, source, stoppable(), most_texels_read(source, room_for_bodies()));
     if (!bodies) return need_of_columns(source, meshes);
     const BodiesPlan plan = plan_bodies(source, std::move(meshes), layer.name);
-    const std::int64_t dots = expected_dots(plan.meshes, plan.structure);
-    return {.splats = std::min(dots, source.splats > 0 ? source.splats : most_splats),
-            .making = bodies_memory_bytes(plan.meshes, dots)};
+    const std::int64_t splats = expected_splats(plan.meshes, plan.structure);
+    return {.splats = std::min(splats, source.splats > 0 ? source.splats : most_splats),
+            .making = bodies_memory_bytes(plan.meshes, splats)};
 }
 
 /// Loads meshes and pictures where `count` alone does not tell and the set is not in the cache. Throws as

@@ -214,7 +214,7 @@ void merge_splats(std::vector<RenderLayer>& layers, std::vector<ShadedSplats>& r
     for (std::size_t i = 0; i < layers.size(); ++i) {
         layers[i].splats = &reduced[i];
         layers[i].render.opacity = 1.0f;
-        if (all > count) layers[i].directional = nullptr;  // dots that stand for many look alike all around
+        if (all > count) layers[i].directional = nullptr;  // splats that stand for many look alike all around
     }
 }
 

@@ -4,11 +4,11 @@
 
 uniform sampler2DArray footprint_profiles;  // weight over distance, a row per radius, a layer per falloff
 
-flat in vec4 dot_place;
-flat in vec4 dot_table;
-flat in vec4 dot_light;
+flat in vec4 disc_place;
+flat in vec4 disc_table;
+flat in vec4 disc_light;
 #if KIND == 2
-flat in vec4 dot_occlusion;
+flat in vec4 disc_occlusion;
 layout(location = 0, index = 1) out vec4 through;
 layout(location = 0, index = 0) out vec4 light;
 #else
@@ -16,21 +16,21 @@ layout(location = 0) out vec4 light;
 #endif
 
 void main() {
-    float place = dot_place.z + dot_place.w * distance(gl_FragCoord.xy, dot_place.xy);
-    float w = textureLod(footprint_profiles, vec3(place, dot_table.xy), 0.0).r;
-    w += dot_table.z * (w * (1.0 - w));
-    float s = clamp(dot_light.w * w, 0.0, dot_table.w);
+    float place = disc_place.z + disc_place.w * distance(gl_FragCoord.xy, disc_place.xy);
+    float w = textureLod(footprint_profiles, vec3(place, disc_table.xy), 0.0).r;
+    w += disc_table.z * (w * (1.0 - w));
+    float s = clamp(disc_light.w * w, 0.0, disc_table.w);
 #if KIND == 2
-    vec3 hidden = min(vec3(1.0), s * dot_occlusion.rgb);
-    if (dot_occlusion.a > 1.0) {
+    vec3 hidden = min(vec3(1.0), s * disc_occlusion.rgb);
+    if (disc_occlusion.a > 1.0) {
         float most = min(s, 1.0);
-        hidden = vec3(blend_absorbed(most, dot_occlusion.r), blend_absorbed(most, dot_occlusion.g),
-                      blend_absorbed(most, dot_occlusion.b));
+        hidden = vec3(blend_absorbed(most, disc_occlusion.r), blend_absorbed(most, disc_occlusion.g),
+                      blend_absorbed(most, disc_occlusion.b));
     }
     float hidden_alpha = (hidden.r + hidden.g + hidden.b) * (1.0 / 3.0);
-    light = vec4(s * dot_light.rgb, hidden_alpha * min(dot_occlusion.a, 1.0));
+    light = vec4(s * disc_light.rgb, hidden_alpha * min(disc_occlusion.a, 1.0));
     through = vec4(1.0 - hidden, 1.0 - hidden_alpha);
 #else
-    light = vec4(s * dot_light.rgb, KIND == 1 ? 0.0 : s);
+    light = vec4(s * disc_light.rgb, KIND == 1 ? 0.0 : s);
 #endif
 }

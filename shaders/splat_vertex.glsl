@@ -33,11 +33,11 @@ layout(location = 0) in vec4 splat_place;
 layout(location = 1) in vec4 splat_color;
 #endif
 
-flat out vec4 dot_place;  // centre in px; profile coordinate = z + w * distance
-flat out vec4 dot_table;  // row, table, edge gain, largest s
-flat out vec4 dot_light;  // colour, opacity
+flat out vec4 disc_place;  // centre in px; profile coordinate = z + w * distance
+flat out vec4 disc_table;  // row, table, edge gain, largest s
+flat out vec4 disc_light;  // colour, opacity
 #if KIND == 2
-flat out vec4 dot_occlusion;  // r, g, b; 0: shows no alpha (holdout), 2: absorbs, with these exponents
+flat out vec4 disc_occlusion;  // r, g, b; 0: shows no alpha (holdout), 2: absorbs, with these exponents
 #endif
 
 const float PROFILE_SAMPLES = 256.0;
@@ -90,20 +90,20 @@ void main() {
                         edge.x * (1.0 + pixel_ripple(edge.y, edge.z, edge.w, cx, cy)));
 
     float per_px = (1.0 - 1.0 / PROFILE_SAMPLES) / (profile.hi - profile.lo);
-    dot_place = vec4(centre, 0.5 / PROFILE_SAMPLES - profile.lo * per_px, per_px);
-    dot_table = vec4(node_x, layer.falloff.x, gains.edge_gain, max(1.0, color.a));
+    disc_place = vec4(centre, 0.5 / PROFILE_SAMPLES - profile.lo * per_px, per_px);
+    disc_table = vec4(node_x, layer.falloff.x, gains.edge_gain, max(1.0, color.a));
     float opacity = color.a * layer.axis.w * near_fade(lens, at.depth, radius) * gains.amplitude;
     bool holdout = layer.blend.w != 0.0;
     int blend = holdout ? BLEND_OVER : int(layer.blend.x);
     bool absorbs = !holdout && blend_absorbs(blend, color.r);
-    dot_light = vec4(holdout || absorbs ? vec3(0.0) : color.rgb, opacity);
+    disc_light = vec4(holdout || absorbs ? vec3(0.0) : color.rgb, opacity);
 #if KIND == 2
     float cosine = axis_cosine(lens, layer.axis.xyz, p);
     float h = blend == BLEND_HYBRID ? hybrid_amount(cosine, layer.blend.y, layer.blend.z) : 0.0;
-    dot_occlusion = vec4(blend_occlusion(blend, color.r, h), blend_occlusion(blend, color.g, h),
+    disc_occlusion = vec4(blend_occlusion(blend, color.r, h), blend_occlusion(blend, color.g, h),
                          blend_occlusion(blend, color.b, h), holdout ? 0.0 : 1.0);
     if (absorbs)
-        dot_occlusion = vec4(blend_exponent(blend, color.r, layer.absorb.r),
+        disc_occlusion = vec4(blend_exponent(blend, color.r, layer.absorb.r),
                              blend_exponent(blend, color.g, layer.absorb.g),
                              blend_exponent(blend, color.b, layer.absorb.b), 2.0);
 #endif

@@ -17,7 +17,7 @@ FileKind kind_of_file(const std::filesystem::path& file);
 
 /// The text of a scene file `place` around a picture (on the built-in plane), an OBJ (with its own pictures,
 /// else with the picture of the same name beside it or the only one in its folder, else in neutral grey;
-/// projected along its thinnest axis where it has no texture coordinates) or a splat file (dots of half the
+/// projected along its thinnest axis where it has no texture coordinates) or a splat file (radii of half the
 /// mean spacing where it has no radii). Reads the mesh, and splat files without radii, as a whole. Throws
 /// InputError for other files, looks among them.
 std::string scene_text_for(const std::filesystem::path& file, const std::filesystem::path& place);

@@ -158,7 +158,7 @@ FreeCamera framed(FreeCamera camera, const Bounds& box, double aspect) {
     camera.pivot = framing.target;
     camera.height = std::fmax(framing.height, 1e-9);
     camera.position = framing.position;
-    // From far enough outside that the near plane cuts nothing, nor dots beyond the box.
+    // From far enough outside that the near plane cuts nothing, nor splats beyond the box.
     if (has_parallel_rays(camera))
         camera.position = framing.target - axes.forward * (2.0 * glm::length(box_to_frame(box).extent()));
     return camera;

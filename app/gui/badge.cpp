@@ -125,10 +125,10 @@ BadgeText badge_text(const Scene& scene, const Status& status) {
         case ViewFrameState::preview:
             break;
     }
-    const char* const dots = shown.round_dots ? "round dots" : "dots";
+    const char* const splats = shown.round_splats ? "round splats" : "splats";
     if (shown.shown >= shown.total)
-        return {shown.round_dots ? "Preview, round dots" : "Preview", total, color::accent};
-    return {fmt::format("Preview, {} {} for {}", short_count(shown.shown), dots, short_count(shown.total)),
+        return {shown.round_splats ? "Preview, round splats" : "Preview", total, color::accent};
+    return {fmt::format("Preview, {} {} for {}", short_count(shown.shown), splats, short_count(shown.total)),
             "", color::accent};
 }
 

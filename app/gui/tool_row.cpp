@@ -126,7 +126,7 @@ void exposure_control(GuiFrame& frame) {
     if (ImGui::IsItemClicked(ImGuiMouseButton_Right)) stops = 0.0f;
 }
 
-// From as many dots as hold the frame rate to all splats.
+// From as many splats as hold the frame rate to all of them.
 void preview_control(GuiFrame& frame) {
     constexpr float least_percent = 0.5f;
     float percent = frame.view.preview_share * 100.0f;
@@ -142,8 +142,8 @@ void preview_control(GuiFrame& frame) {
     ImGui::PopStyleColor();
     note_item(frame, "preview");
     tooltip(
-        "What moves: at the left as many dots as hold 24 frames a second, each for many splats; to the right "
-        "more dots and fewer frames, up to every splat");
+        "What moves: at the left as many splats as hold 24 frames a second, each in place of many; to the "
+        "right more splats and fewer frames, up to every splat");
 }
 
 void engine_control(GuiFrame& frame) {

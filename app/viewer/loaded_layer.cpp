@@ -230,7 +230,7 @@ LoadedLayer whole_layer(std::shared_ptr<const SplatSet> set, const SourceParams&
     const std::int64_t splats = set->size();
     const bool is_small = splats <= sample_limit;
     MergeSource seen;
-    if (set->stars)  // drawn as they are, however many: no dot could stand for several
+    if (set->stars)  // drawn as they are, however many: no splat could stand for several
         seen.set = set;
     else if (is_small)
         seen = source_of(set, splats);

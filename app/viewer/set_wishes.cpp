@@ -83,7 +83,7 @@ class ThinnedFiles {
     std::map<std::tuple<fs::path, std::string, int>, RawPicture> files_;
 };
 
-/// The pictures of all meshes, as smooth as the dots that show them.
+/// The pictures of all meshes, as smooth as the splats that show them.
 std::vector<Image> blurred_pictures(const std::vector<TexturedMesh>& meshes) {
     constexpr double sigma_of_width = 0.004;  // of the blur, as a share of the picture's width
     std::vector<Image> pictures;
@@ -105,7 +105,7 @@ glm::vec3 light_at(const Image& picture, glm::vec2 uv) {
 
 float brightest(const glm::vec3& light) { return std::max({light.x, light.y, light.z}); }
 
-/// One dot where the picture's light became another: opacity follows the brightness as it did when the dot
+/// A splat where the picture's light became another: opacity follows the brightness as it did when the splat
 /// was made (DEPTH 5), and the colour makes the light of both follow the picture's.
 void follow(const glm::vec3& before, const glm::vec3& now, float power, glm::vec3& color, float& alpha) {
     constexpr float least = 0.002f, most = 16.0f;  // of white; of the ratio
@@ -175,15 +175,15 @@ SplatSet LiveSample::structure(const SourceParams& source) const {
     std::size_t pictures = 0;
     for (const TexturedMesh& m : meshes)
         first.push_back(std::exchange(pictures, pictures + m.textures.size()));
-    SplatSet dots = *sample.set;
+    SplatSet set = *sample.set;
     const auto power = static_cast<float>(source.structure.opacity);
-    parallel_each(dots.id.size(), live_rows_at_once, [&](std::size_t i) {
-        const std::size_t picture = first[dots.mesh[i]];
+    parallel_each(set.id.size(), live_rows_at_once, [&](std::size_t i) {
+        const std::size_t picture = first[set.mesh[i]];
         if (now[picture].width == 0) return;
-        follow(light_at(before[picture], dots.uv[i]), light_at(now[picture], dots.uv[i]), power,
-               dots.color[i], dots.alpha[i]);
+        follow(light_at(before[picture], set.uv[i]), light_at(now[picture], set.uv[i]), power, set.color[i],
+               set.alpha[i]);
     });
-    return dots;
+    return set;
 }
 
 LiveFound LiveSample::under(const LiveRequest& request, const Progress& progress) {

@@ -73,7 +73,7 @@ std::vector<PreviewLayer> ViewFrame::preview_layers() {
     shown_.assign(request_->layers.size(), 0);
     kept_.assign(request_->layers.size(), -1);
     status_.total = 0;
-    status_.round_dots = false;
+    status_.round_splats = false;
     for (std::size_t i = 0; i < request_->layers.size(); ++i) {
         const LayerParams& params = request_->scene.layers[i];
         const std::shared_ptr<const LoadedLayer>& loaded = request_->layers[i];
@@ -82,7 +82,7 @@ std::vector<PreviewLayer> ViewFrame::preview_layers() {
         layer.layer = render_layer(request_->scene, params);
         layer.set = loaded->set ? loaded->set : loaded->sample.set;
         layer.layer.absorbs = layer.set->absorbs;
-        status_.round_dots = status_.round_dots || holds_gaussians(*layer.set);
+        status_.round_splats = status_.round_splats || holds_gaussians(*layer.set);
         layer.layer.star_pixels = layer.set->star_pixels;
         layer.look = look_of(params);
         layer.inputs = look_inputs(params);
@@ -95,7 +95,7 @@ std::vector<PreviewLayer> ViewFrame::preview_layers() {
     return layers;
 }
 
-std::int64_t ViewFrame::dots_wanted() const {
+std::int64_t ViewFrame::splats_wanted() const {
     if (choice_.share > 0.0f)
         return std::max<std::int64_t>(1, std::llround(double(choice_.share) * double(status_.total)));
     return choice_.splats > 0 ? choice_.splats : budget_.splats;
@@ -123,8 +123,8 @@ void ViewFrame::cut(std::vector<PreviewLayer>& layers, const PreviewView& view) 
     std::vector<std::shared_ptr<const LoadedLayer>> loaded;
     for (const std::size_t place : places_) loaded.push_back(request_->layers[place]);
     const float least_px = choice_.share >= 1.0f ? 0.0f : CutSettings().least_px;
-    dots_.cut(layers, loaded, view, dots_wanted(), least_px);
-    const std::vector<double> kept = dots_.kept();
+    splats_.cut(layers, loaded, view, splats_wanted(), least_px);
+    const std::vector<double> kept = splats_.kept();
     for (std::size_t n = 0; n < places_.size(); ++n)
         kept_[places_[n]] = std::llround(kept[n] * static_cast<double>(loaded[n]->splats));
 }
@@ -159,7 +159,7 @@ bool ViewFrame::previews_arrived(const ViewRequest& now) const {
 
 /// Sums of whole sets, while nothing more urgent needs the processor.
 bool ViewFrame::refine(double now) {
-    return choice_.refined && stage_ != Stage::refining && !draws_whole_sets() && dots_.refine(now);
+    return choice_.refined && stage_ != Stage::refining && !draws_whole_sets() && splats_.refine(now);
 }
 
 /// The part of the frame that is seen, as a frame of its own.
@@ -208,7 +208,7 @@ void ViewFrame::draw_preview(double now) {
 
 /// Steps of finer previews come before the final frame, where that takes its time.
 bool ViewFrame::takes_steps(bool hurry) const {
-    return !hurry && dots_.whole() && !draws_by_opengl() && choice_.share == 0.0f &&
+    return !hurry && splats_.whole() && !draws_by_opengl() && choice_.share == 0.0f &&
            step_ < plan_steps(final_s_).count;
 }
 
@@ -218,23 +218,23 @@ bool ViewFrame::step_is_due(double now) {
     const StepPlan plan = plan_steps(final_s_);
     const double most_s = choice_.splats > 0 ? 0.0 : plan.most_s;
     for (++step_; step_ <= plan.count; ++step_)
-        if (const std::int64_t dots = dots_of_step(step_, status_.total, status_.shown, draw_s_, most_s)) {
-            begin_step(dots);
+        if (const std::int64_t n = splats_of_step(step_, status_.total, status_.shown, draw_s_, most_s)) {
+            begin_step(n);
             return true;
         }
     return false;
 }
 
-void ViewFrame::begin_step(std::int64_t dots) {
+void ViewFrame::begin_step(std::int64_t splats) {
     FinerRequest wanted;
     wanted.number = ++finer_request_.number;
     for (const PreviewLayer& layer : layers_) wanted.layers.push_back(layer.layer);
     for (std::size_t n = 0; n < places_.size(); ++n)
         wanted.layers[n].render = render_layer(request_->scene.layers[places_[n]]).render;
-    wanted.sources = dots_.sources();
+    wanted.sources = splats_.sources();
     wanted.view = preview_view();
     wanted.environment = environment_;
-    wanted.budget = dots;
+    wanted.budget = splats;
     finer_.want(wanted);
     enter(Stage::finer);
 }
@@ -265,7 +265,7 @@ void ViewFrame::begin_final() {
     canvas_ = drawn_ ? *drawn_ : gl_->read();  // which the tiles replace
     if (!drawn_) canvas_texture_.upload(canvas_);
     texture_ = canvas_texture_.handle();
-    dots_.rest();
+    splats_.rest();
     final_.start(std::move(wanted));
     enter(Stage::refining);
     status_.progress = 0.0f;
@@ -348,7 +348,7 @@ bool ViewFrame::final_is_next(double now) const {
 }
 
 bool ViewFrame::exact() const {
-    const bool lacks_sums = choice_.refined && !draws_whole_sets() && dots_.lacks_sums();
+    const bool lacks_sums = choice_.refined && !draws_whole_sets() && splats_.lacks_sums();
     return request_ && !files_->loading() && !(gl_ && gl_->sorting()) && !lacks_sums;
 }
 

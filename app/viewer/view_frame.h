@@ -15,7 +15,7 @@
 #include "gl/preview.h"
 #include "scene/scene.h"
 #include "viewer/final_frame.h"
-#include "viewer/preview_dots.h"
+#include "viewer/preview_splats.h"
 #include "viewer/scene_files.h"
 
 namespace astrosplat {
@@ -34,7 +34,7 @@ Camera camera_of(const ViewRequest& request);
 struct PreviewChoice {
     bool opengl = false;
     bool whole_sets = false;  // by OpenGL, where it is quick enough: every splat, without a cut
-    float share = 0.0f;       // of all splats, as dots; 1: every splat; 0: sized by the frame rate
+    float share = 0.0f;       // of all splats; 1: every one; 0: sized by the frame rate
     std::int64_t splats = 0;  // with share 0: this many in all, whatever the frame rate; 0: by it
     bool refined = true;      // cuts of whole sets, once there is time to make them; else of samples
     double target_ms = 25.0;  // of one preview
@@ -79,7 +79,7 @@ class ViewFrame {
     enum class Stage {
         empty,     // nothing has been asked for
         preview,   // drawn
-        finer,     // and one of more dots is on its way, while nothing is touched
+        finer,     // and one of more splats is on its way, while nothing is touched
         refining,  // tiles of the final frame replace the preview
         final,     // all have
         failed     // the status says why; until something else is to be seen
@@ -89,7 +89,7 @@ class ViewFrame {
 
     std::vector<PreviewLayer> preview_layers();
     PreviewView preview_view() const;
-    std::int64_t dots_wanted() const;
+    std::int64_t splats_wanted() const;
     bool draws_by_opengl() const;
     bool draws_whole_sets() const;
     void cut(std::vector<PreviewLayer>& layers, const PreviewView& view);
@@ -100,7 +100,7 @@ class ViewFrame {
     void draw_preview(double now);
     bool takes_steps(bool hurry) const;
     bool step_is_due(double now);
-    void begin_step(std::int64_t dots);
+    void begin_step(std::int64_t splats);
     bool take_step();
     void begin_final();
     void take_final(double now);
@@ -112,7 +112,7 @@ class ViewFrame {
     std::optional<ViewRequest> request_;
     std::shared_ptr<const Environment> environment_;  // of the last preview
     PreviewChoice choice_;
-    PreviewDots dots_;
+    PreviewSplats splats_;
     CpuPreview cpu_;
     std::unique_ptr<GlPreview> gl_;  // made when first wanted
     PreviewBudget budget_;

@@ -28,8 +28,8 @@ namespace astrosplat {
 namespace {
 
 constexpr int picture_bit = 56, instance_bit = 42;
-constexpr int most_faces = 64;             // that show one dot: ids hold 6 bits of which
-constexpr float nearest_approach = 0.95f;  // of the way to the picture's camera that a dot comes at most
+constexpr int most_faces = 64;             // that show one splat: ids hold 6 bits of which
+constexpr float nearest_approach = 0.95f;  // of the way to the picture's camera that a splat comes at most
 
 glm::vec2 uv_of(const glm::vec3& texel, const Image& image) {
     return {texel.x / float(image.width) + 0.5f, texel.y / float(image.height) + 0.5f};
@@ -50,9 +50,9 @@ struct BodiesTask {
     const std::string& layer_name;
 };
 
-// Adds all dots of a picture, with their colours as they would be if nothing hid anything.
-void add_dots(const PictureLight& picture, const UvSurface& surface, const BodiesTask& task,
-              const Progress& progress, PictureSplats& dots) {
+// Adds all splats of a picture, with their colours as they would be if nothing hid anything.
+void add_splats(const PictureLight& picture, const UvSurface& surface, const BodiesTask& task,
+                const Progress& progress, PictureSplats& set) {
     const StructureParams& params = task.params;
     Image rest = copied(picture.light);
     const PictureStars stars = take_picture_stars(rest, params, picture.enlarged);
@@ -65,31 +65,31 @@ void add_dots(const PictureLight& picture, const UvSurface& surface, const Bodie
     const std::vector<Band> bands = make_bands(rest.width);
     const double dust = dust_of(params);
     Image emission;         // of all bands, where there is dust
-    release_spare_pages();  // of reading and of the fields: bands and their dots are the most there is
+    release_spare_pages();  // of reading and of the fields: bands and their splats are the most there is
     split_bands(std::move(rest), bands, dust > 0.0, [&](const Band& band, const Image& light) {
         progress.check();
         if (dust > 0.0) add(light, emission);
         const bool coarsest = band.index + 1 == int(bands.size());
-        for (const BandDots& size : band_dots(band, coarsest, placement))
-            add_band(light, size, brightest, picture.alpha, placement, opacity, dots);
+        for (const BandSplats& size : band_splats(band, coarsest, placement))
+            add_band(light, size, brightest, picture.alpha, placement, opacity, set);
         progress.at(0.2 + 0.7 * (band.index + 1.0) / double(bands.size()));
     });
     if (dust > 0.0)
         add_dust(transmittance_of(without_stars, emission, picture.alpha), dust,
-                 dust_exponents_of(picture.light), placement, dots);
-    add_picture_stars(stars, placement, opacity, dots);
-    log_detail(fmt::format("layer '{}': {} dots and {} in {}", task.layer_name,
-                           human_count(double(dots.splats.size())), counted(stars.count, "star"),
+                 dust_exponents_of(picture.light), placement, set);
+    add_picture_stars(stars, placement, opacity, set);
+    log_detail(fmt::format("layer '{}': {} splats and {} in {}", task.layer_name,
+                           human_count(double(set.splats.size())), counted(stars.count, "star"),
                            counted(std::int64_t(bands.size()), "band")));
 }
 
 constexpr std::int64_t rows_per_task = 16384;
 
-// How many faces show each dot.
-Buffer<std::uint8_t> faces_of(const PictureSplats& dots, const UvSurface& surface, const Image& image) {
-    Buffer<std::uint8_t> faces(dots.splats.position.size());
+// How many faces show each splat.
+Buffer<std::uint8_t> faces_of(const PictureSplats& set, const UvSurface& surface, const Image& image) {
+    Buffer<std::uint8_t> faces(set.splats.position.size());
     parallel_each(faces.size(), rows_per_task, [&](std::size_t i) {
-        const int found = surface.faces_at(uv_of(dots.splats.position[i], image));
+        const int found = surface.faces_at(uv_of(set.splats.position[i], image));
         faces[i] = static_cast<std::uint8_t>(std::min(found, most_faces));
     });
     return faces;
@@ -105,17 +105,17 @@ void repeat(Buffer<T>& values, const Buffer<std::int64_t>& first) {
     values = std::move(rows);
 }
 
-// One row for every face that shows a dot; the id says which of them.
-void repeat_by_faces(const Buffer<std::uint8_t>& faces, PictureSplats& dots) {
+// One row for every face that shows a splat; the id says which of them.
+void repeat_by_faces(const Buffer<std::uint8_t>& faces, PictureSplats& set) {
     if (std::ranges::all_of(faces, [](std::uint8_t n) { return n == 1; })) return;
     Buffer<std::int64_t> first(faces.size() + 1);
     first[0] = 0;
     for (std::size_t i = 0; i < faces.size(); ++i) first[i + 1] = first[i] + faces[i];
-    for_each_array(dots.splats, [&](auto& values) { repeat(values, first); });
-    repeat(dots.distance, first);
+    for_each_array(set.splats, [&](auto& values) { repeat(values, first); });
+    repeat(set.distance, first);
     parallel_each(faces.size(), rows_per_task, [&](std::size_t i) {
         for (std::int64_t n = 0; n < faces[i]; ++n)
-            dots.splats.id[first[i] + n] |= std::uint64_t(n) << instance_bit;
+            set.splats.id[first[i] + n] |= std::uint64_t(n) << instance_bit;
     });
 }
 
@@ -135,7 +135,7 @@ void put_on_surface(const UvSurface& surface, const PictureOnMesh& picture, std:
     const glm::vec2 uv = uv_of(p, picture.texture().image);
     const SurfacePlace place = place_of_row(surface, uv, set.id[row]);
     const float z = place.approach > 0.0f ? std::min(p.z, nearest_approach / place.approach) : p.z;
-    const float scale = place.units_per_texel * (1.0f - place.approach * z);  // nearer dots are smaller
+    const float scale = place.units_per_texel * (1.0f - place.approach * z);  // nearer splats are smaller
     set.position[row] = place.position + place.rise * (z * place.units_per_texel);
     set.distance[row] *= scale;
     set.radius[row] *= scale;
@@ -145,17 +145,17 @@ void put_on_surface(const UvSurface& surface, const PictureOnMesh& picture, std:
     set.mesh[row] = picture.mesh_index;
 }
 
-// The dots on the mesh, in the memory that they have.
-SplatSet on_mesh(PictureSplats dots, const Buffer<std::uint8_t>& faces, const UvSurface& surface,
+// The splats on the mesh, in the memory that they have.
+SplatSet on_mesh(PictureSplats made, const Buffer<std::uint8_t>& faces, const UvSurface& surface,
                  const PictureOnMesh& picture, std::uint64_t number) {
-    repeat_by_faces(faces, dots);
+    repeat_by_faces(faces, made);
     SplatSet set;
-    set.position = std::move(dots.splats.position);
-    set.color = std::move(dots.splats.color);
-    set.alpha = std::move(dots.splats.alpha);
-    set.radius = std::move(dots.splats.radius);
-    set.id = std::move(dots.splats.id);
-    set.distance = std::move(dots.distance);
+    set.position = std::move(made.splats.position);
+    set.color = std::move(made.splats.color);
+    set.alpha = std::move(made.splats.alpha);
+    set.radius = std::move(made.splats.radius);
+    set.id = std::move(made.splats.id);
+    set.distance = std::move(made.distance);
     set.uv.resize(set.position.size());
     set.normal.resize(set.position.size());
     set.mesh.resize(set.position.size());
@@ -176,24 +176,24 @@ void append(SplatSet rows, SplatSet& set) {
     });
 }
 
-// Dots before the fit, and how many faces show each.
-struct MadeDots {
-    PictureSplats dots;
+// Splats before the fit, and how many faces show each.
+struct MadeSplats {
+    PictureSplats set;
     Buffer<std::uint8_t> faces;
     Image light;  // of the picture that they are to show
 };
 
-constexpr double most_expected = 1.08;  // times as many dots as are expected
+constexpr double most_expected = 1.08;  // times as many splats as are expected
 
 // Takes the texture's pixels, unless they might be wanted again.
-MadeDots made_dots(Texture& texture, const UvSurface& surface, const BodiesTask& task, double expected,
+MadeSplats made_of(Texture& texture, const UvSurface& surface, const BodiesTask& task, double expected,
                    bool once_more, const Progress& progress) {
     PictureLight picture = picture_light(texture, task.params.border);
     if (!once_more) texture.image.pixels = {};
-    MadeDots made;
-    reserve_dots(made.dots, std::int64_t(most_expected * expected));
-    add_dots(picture, surface, task, progress, made.dots);
-    made.faces = faces_of(made.dots, surface, texture.image);
+    MadeSplats made;
+    reserve_splats(made.set, std::int64_t(most_expected * expected));
+    add_splats(picture, surface, task, progress, made.set);
+    made.faces = faces_of(made.set, surface, texture.image);
     made.light = std::move(picture.light);
     return made;
 }
@@ -205,14 +205,14 @@ Image smaller(const Image& image, double area) {
     return reduced_by_area(image, std::min(length, image.width), std::min(length, image.height));
 }
 
-// A picture's dots on its mesh. While they are more than `most` (0: any number), the picture is reduced.
+// A picture's splats on its mesh. While they are more than `most` (0: any number), the picture is reduced.
 SplatSet bodies_of(const PictureOnMesh& picture, std::size_t number, Texture& texture, double expected,
                    std::int64_t most, const BodiesTask& task, const Progress& progress) {
     constexpr int most_tries = 8;
-    constexpr double aimed_at = 0.97, made_share = 0.4;  // of the time, that making the dots takes
+    constexpr double aimed_at = 0.97, made_share = 0.4;  // of the time, that making the splats takes
     for (int tries = 1;; ++tries) {
         const UvSurface surface = surface_of(*picture.mesh, picture.material);
-        MadeDots made = made_dots(texture, surface, task, expected, most > 0, progress.part(0.0, made_share));
+        MadeSplats made = made_of(texture, surface, task, expected, most > 0, progress.part(0.0, made_share));
         const std::int64_t rows = std::accumulate(made.faces.begin(), made.faces.end(), std::int64_t{0});
         if (most > 0 && rows > most) {
             if (tries == most_tries)
@@ -228,14 +228,14 @@ SplatSet bodies_of(const PictureOnMesh& picture, std::size_t number, Texture& te
         texture.image.pixels = {};
         release_spare_pages();  // of the bands
         const FrontFit fit =
-            fit_front(made.dots, std::move(made.light), texture.times > 1, progress.part(made_share, 1.0));
+            fit_front(made.set, std::move(made.light), texture.times > 1, progress.part(made_share, 1.0));
         release_spare_pages();  // of the fit
         log_detail(fmt::format("layer '{}': front view {:.1f} dB after {} steps of the fit", task.layer_name,
                                fit.psnr_db, fit.steps));
-        const std::int64_t dots = made.dots.splats.size();
-        const bool absorbs = made.dots.absorbs;
-        SplatSet set = on_mesh(std::move(made.dots), made.faces, surface, picture, number);
-        set.test_positions = dots;
+        const std::int64_t positions = made.set.splats.size();
+        const bool absorbs = made.set.absorbs;
+        SplatSet set = on_mesh(std::move(made.set), made.faces, surface, picture, number);
+        set.test_positions = positions;
         set.absorbs = absorbs;
         return set;
     }
@@ -244,11 +244,11 @@ SplatSet bodies_of(const PictureOnMesh& picture, std::size_t number, Texture& te
 }  // namespace
 
 SplatSet make_bodies(std::vector<TexturedMesh> meshes, const StructureParams& params, std::uint32_t seed,
-                     const std::string& layer_name, const Progress& progress, std::int64_t most_dots) {
+                     const std::string& layer_name, const Progress& progress, std::int64_t most_splats) {
     const std::vector<PictureOnMesh> pictures = pictures_of(meshes);
     std::vector<double> expected;
     for (const PictureOnMesh& picture : pictures)
-        expected.push_back(expected_dots(picture.texture(), params));
+        expected.push_back(expected_splats(picture.texture(), params));
     const double all = std::accumulate(expected.begin(), expected.end(), 0.0);
     claim_memory(bodies_memory_bytes(meshes, std::int64_t(all)),
                  fmt::format("making bodies for layer '{}'", layer_name));
@@ -256,11 +256,11 @@ SplatSet make_bodies(std::vector<TexturedMesh> meshes, const StructureParams& pa
     for (std::size_t i = 0; i < pictures.size(); ++i) {
         const PictureOnMesh& picture = pictures[i];
         Texture& texture = meshes[picture.mesh_index].textures[picture.material];
-        const auto share = std::int64_t(double(most_dots) * expected[i] / all);
+        const auto share = std::int64_t(double(most_splats) * expected[i] / all);
         const auto done = [&](std::size_t n) { return double(n) / double(pictures.size()); };
-        SplatSet rows =
-            bodies_of(picture, i, texture, expected[i], most_dots > 0 ? std::max<std::int64_t>(1, share) : 0,
-                      {params, seed + std::uint32_t(i), layer_name}, progress.part(done(i), done(i + 1)));
+        SplatSet rows = bodies_of(
+            picture, i, texture, expected[i], most_splats > 0 ? std::max<std::int64_t>(1, share) : 0,
+            {params, seed + std::uint32_t(i), layer_name}, progress.part(done(i), done(i + 1)));
         set.test_positions += rows.test_positions;
         set.absorbs = set.absorbs || rows.absorbs;
         append(std::move(rows), set);

@@ -1,7 +1,7 @@
 // A picture as bodies in depth instead of columns (source.structure): its stars, its bands and their depths
-// become dots that show the picture from the front and hold up from everywhere else. In: meshes with
+// become splats that show the picture from the front and hold up from everywhere else. In: meshes with
 // pictures. Out: a SplatSet whose colours, alphas and radii are final, so that a plain look shows it as it
-// is; before that, how many dots and bytes they will be, and pictures made smaller or larger to suit.
+// is; before that, how many splats and bytes they will be, and pictures made smaller or larger to suit.
 #pragma once
 
 #include <cstdint>
@@ -17,12 +17,12 @@
 namespace astrosplat {
 
 /// Every picture of every mesh by itself; its pixels are given back once they are read. `params.kind` is not
-/// columns. A picture that becomes more than its share of `most_dots` (0: any number) is reduced and taken
+/// columns. A picture that becomes more than its share of `most_splats` (0: any number) is reduced and taken
 /// again. Announces its memory before taking it and says at detail level what was found. The same bits with
-/// any number of threads. Throws InputError, also where `most_dots` are too few for any picture; Cancelled.
+/// any number of threads. Throws InputError, also where `most_splats` are too few for any picture; Cancelled.
 SplatSet make_bodies(std::vector<TexturedMesh> meshes, const StructureParams& params, std::uint32_t seed,
                      const std::string& layer_name, const Progress& progress = {},
-                     std::int64_t most_dots = 0);
+                     std::int64_t most_splats = 0);
 
 /// A picture of a mesh's material, where a face shows it.
 struct PictureOnMesh {
@@ -35,28 +35,28 @@ struct PictureOnMesh {
 std::vector<PictureOnMesh> pictures_of(std::span<const TexturedMesh> meshes);
 
 /// From samples of the picture, taken apart as the whole will be; within some 5 %.
-double expected_dots(const Texture& texture, const StructureParams& params);
+double expected_splats(const Texture& texture, const StructureParams& params);
 
 /// More than a picture of width x height texels can become; at once.
-double most_dots(std::int64_t width, std::int64_t height, const StructureParams& params);
+double splats_at_most(std::int64_t width, std::int64_t height, const StructureParams& params);
 
-/// Dots that make_bodies() will make, within some 5 %: told from samples of the pictures.
-std::int64_t expected_dots(std::span<const TexturedMesh> meshes, const StructureParams& params);
+/// Splats that make_bodies() will make, within some 5 %: told from samples of the pictures.
+std::int64_t expected_splats(std::span<const TexturedMesh> meshes, const StructureParams& params);
 
-/// Bytes that make_bodies() will take at its peak beside the meshes and pictures for so many dots, within
+/// Bytes that make_bodies() will take at its peak beside the meshes and pictures for so many splats, within
 /// about 15 %.
-std::int64_t bodies_memory_bytes(std::span<const TexturedMesh> meshes, std::int64_t dots);
+std::int64_t bodies_memory_bytes(std::span<const TexturedMesh> meshes, std::int64_t splats);
 
 /// No picture of more texels could be made bodies of in so many bytes.
 std::int64_t most_texels_within(std::int64_t bytes);
 
 struct BodiesLimit {
     std::int64_t room_bytes = 0;
-    std::int64_t most_dots = 0;  // 0: as many as there are
+    std::int64_t splats = 0;  // 0: as many as there are
 };
 
 /// Enlarges pictures that are small by whole numbers, to no more than a picture of 2048x2048 has: a texel is
-/// then several dots, which together show it as sharp as it was. Says so at detail level.
+/// then several splats, which together show it as sharp as it was. Says so at detail level.
 void enlarge_small_pictures(std::vector<TexturedMesh>& meshes, const std::string& layer_name);
 
 /// Reduces every picture of more texels by an area filter to so many; 0: none. Says so at detail level, also

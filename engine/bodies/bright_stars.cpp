@@ -127,7 +127,7 @@ std::vector<Found> all_stars(const Image& light) {
     return stars;
 }
 
-// Sigmas of a star's Gaussians, in that of the middle one, which is a power of two: as wide as the dots of
+// Sigmas of a star's Gaussians, in that of the middle one, which is a power of two: as wide as the splats of
 // bands, which the front is fitted with.
 constexpr int widths = 3;
 constexpr float sigmas[widths] = {0.5f, 1.0f, 2.0f};

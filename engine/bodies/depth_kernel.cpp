@@ -1,4 +1,4 @@
-// Each step is a plain loop over the dots of a block, which the compiler turns into vectors.
+// Each step is a plain loop over the splats of a block, which the compiler turns into vectors.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "bodies/depth_kernel.cpp"
 #include <hwy/foreach_target.h>
@@ -33,11 +33,11 @@ constexpr int coarse_candidates = 24, fine_candidates = 8;
 
 using Lane = float[DepthBlock::size];
 
-// A number of 0..1 that follows from a dot's hash: another for each `which`.
+// A number of 0..1 that follows from a splat's hash: another for each `which`.
 float uniform_of(uint random, int which) { return as_uniform(as_mix(random + uint(which) * 0x9e3779b9u)); }
 
 // Quantile of sech^2(z / height) / (2 height), at most 2.1 heights from the middle: farther out a few wide
-// dots would stand alone, as smoke.
+// splats would stand alone, as smoke.
 float logistic(float u, float height) {
     const float inside = 0.015f + 0.97f * u;
     return 0.5f * height * as_log(inside / (1.0f - inside));
@@ -56,11 +56,11 @@ struct NoisePlane {
     Lane value, slope;
 };
 
-// One octave in those columns. Candidates for a dot differ in z alone, so the lattice is asked once for every
-// plane: in between, noise is the sum of what the two planes contribute, faded with the distance.
+// One octave in those columns. Candidates for a splat differ in z alone, so the lattice is asked once for
+// every plane: in between, noise is the sum of what the two planes contribute, faded with the distance.
 struct ColumnNoise {
     float frequency, gain, shift;
-    Lane lowest;  // of the planes that count for a dot
+    Lane lowest;  // of the planes that count for a splat
     std::vector<NoisePlane> planes;
 };
 

@@ -1,4 +1,4 @@
-// Depths of many dots at once, in the noise that all bands share (DEPTH 4). Compiled once per instruction set
+// Depths of many splats at once, in the noise that bands share (DEPTH 4). Compiled once per instruction set
 // with the same bits on each.
 #pragma once
 
@@ -15,14 +15,14 @@ struct NoiseStack {
     std::uint32_t seed = 0;
 };
 
-/// Dots on their way to a depth, texels.
+/// Splats on their way to a depth, texels.
 struct DepthBlock {
     static constexpr int size = 256;
     int count = 0;
     float x[size], y[size];
     float height[size];          // scale height H_k of the envelope
     float clumping[size];        // disks: how much of the noise counts
-    std::uint32_t random[size];  // a hash for each dot; all of its choices follow from it
+    std::uint32_t random[size];  // a hash for each splat; all of its choices follow from it
     float z[size];               // out
 };
 

@@ -1,4 +1,4 @@
-// Depths are drawn for a block of dots at a time, by the kind of the structure: about a disk's plane, on or
+// Depths are drawn for a block of splats at a time, by the kind of the structure: about a disk's plane, on or
 // between two walls, or about a sheet.
 #include <algorithm>
 #include <cmath>
@@ -13,9 +13,9 @@ namespace {
 using shared::as_exp, shared::as_hash, shared::as_log, shared::as_mix, shared::as_uniform;
 
 // Values for features of 2, 4, 8 ... 128 and 200 texels at a width of 1920, as DEPTH 3 and 4 have them, but
-// for its 40, 64 and 100 of the widest dots.
+// for its 40, 64 and 100 of the widest splats.
 using ByFeature = double[8];
-constexpr ByFeature dots_each = {2.4, 4, 9, 16, 24, 24, 24, 24};  // within 2 pi sigma^2
+constexpr ByFeature splats_each = {2.4, 4, 9, 16, 24, 24, 24, 24};  // within 2 pi sigma^2
 constexpr ByFeature clumpiness = {3, 3, 2.6, 2.2, 1.7, 0.8, 0.3, 0.05};
 
 // Between them linear in the logarithm.
@@ -72,43 +72,43 @@ namespace {
 
 constexpr float least_sigma = 0.45f;      // texels; .62 as published ends 2 dB below
 constexpr double widest_filament = 45.0;  // texels at a width of 1920; what is wider is glow
-constexpr double crowd_in_bulges = 32.0;  // times as many wide dots there, or its outline would be ragged
-// Amplitude over brightness below which dots are thinned out: of fine bands, and of others over how many
+constexpr double crowd_in_bulges = 32.0;  // times as many wide splats there, or its outline would be ragged
+// Amplitude over brightness below which splats are thinned out: of fine bands, and of others over how many
 // there are (DEPTH 3).
 constexpr double fine_threshold = 0.05, threshold_of_one = 0.25;
 // About a sheet, of a feature: half of DEPTH 4's, which made a quarter more needles of the Bubble.
 constexpr float sheet_spread = 0.25f;
 
-BandDots dots_of_size(const Band& band, bool glow, double sigma, double each) {
-    BandDots dots;
-    dots.index = band.index;
-    dots.feature = float(band.feature);
-    dots.spread = sheet_spread * dots.feature;
-    dots.glow = glow;
-    dots.sigma = band.index == 0 ? least_sigma : std::max(least_sigma, float(sigma));
-    const double s = double(dots.sigma), area = 2.0 * real::pi * s * s;
-    dots.spacing = float(std::sqrt(std::max(1.0, area / each)));
-    dots.threshold = float(band.index <= 1 ? fine_threshold : threshold_of_one / each);
-    return dots;
+BandSplats splats_of_size(const Band& band, bool glow, double sigma, double each) {
+    BandSplats splats;
+    splats.index = band.index;
+    splats.feature = float(band.feature);
+    splats.spread = sheet_spread * splats.feature;
+    splats.glow = glow;
+    splats.sigma = band.index == 0 ? least_sigma : std::max(least_sigma, float(sigma));
+    const double s = double(splats.sigma), area = 2.0 * real::pi * s * s;
+    splats.spacing = float(std::sqrt(std::max(1.0, area / each)));
+    splats.threshold = float(band.index <= 1 ? fine_threshold : threshold_of_one / each);
+    return splats;
 }
 
 }  // namespace
 
-std::vector<BandDots> band_dots(const Band& band, bool coarsest, const Placement& placement) {
+std::vector<BandSplats> band_splats(const Band& band, bool coarsest, const Placement& placement) {
     const bool glow =
         placement.kind == StructureKind::walls && band.feature > widest_filament * placement.scale;
     const double widest =
         std::max(widest_sigma_share * placement.height, glow ? widest_glow_share * placement.depth : 0.0);
     const double natural = coarsest ? 4.0 * widest : band.feature / 4.0;
     const double usual =
-        by_feature(dots_each, band.index == 0 ? 2.0 : std::max(4.0, band.feature / placement.scale));
-    std::vector<BandDots> sizes{dots_of_size(band, glow, std::min(natural, widest), usual)};
+        by_feature(splats_each, band.index == 0 ? 2.0 : std::max(4.0, band.feature / placement.scale));
+    std::vector<BandSplats> sizes{splats_of_size(band, glow, std::min(natural, widest), usual)};
     if (placement.kind != StructureKind::disk) return sizes;
     for (const float thickness : wider_in_bulges) {
         const double sigma = std::min(natural, double(thickness) * widest);
         if (float(sigma) <= sizes.back().sigma) break;
         sizes.back().thickness_to = thickness;
-        sizes.push_back(dots_of_size(band, glow, sigma, crowd_in_bulges * usual));
+        sizes.push_back(splats_of_size(band, glow, sigma, crowd_in_bulges * usual));
         sizes.back().thickness_from = thickness;
         sizes.back().size = int(sizes.size()) - 1;
     }
@@ -118,26 +118,26 @@ std::vector<BandDots> band_dots(const Band& band, bool coarsest, const Placement
 namespace {
 
 // DEPTH 4: the scale height of the finest band, of H(x, y), and what is added up to the sixth; the least
-// square of it that is left when the dots' own thickness is taken off.
+// square of it that is left when the splats' own thickness is taken off.
 struct BandHeights {
     float finest, rise;
 };
 constexpr BandHeights heights_in_disks{0.45f, 0.55f}, heights_elsewhere{0.6f, 0.4f};
-constexpr float least_square = 0.09f;       // of H(x, y)
-constexpr float dots_own_thickness = 1.2f;  // square of it, of that of their sigma
+constexpr float least_square = 0.09f;         // of H(x, y)
+constexpr float splats_own_thickness = 1.2f;  // square of it, of that of their sigma
 
-// Of a dot in a bulge, where the disk alone would be `disk` thick: most are near the plane and few high up,
+// Of a splat in a bulge, where the disk alone would be `disk` thick: most are near the plane and few high up,
 // as in a ball of stars. All as high as the bulge would be a tower.
 float height_in_bulge(float disk, float bulge, std::uint32_t random) {
     return disk + (bulge - disk) * as_uniform(as_mix(random ^ 0x1b56c4e9u));
 }
 
-// Scale heights of a band's dots: fine bands are thinner, and wide dots bring a thickness of their own.
-void set_heights(const Placement& placement, const BandDots& dots, DepthBlock& block) {
+// Scale heights of a band's splats: fine bands are thinner, and wide splats bring a thickness of their own.
+void set_heights(const Placement& placement, const BandSplats& splats, DepthBlock& block) {
     const bool bulges = placement.kind == StructureKind::disk;
     const BandHeights& heights = bulges ? heights_in_disks : heights_elsewhere;
-    const float share = heights.finest + heights.rise * std::min(1.0f, float(dots.index) / 5.0f);
-    const float own = dots.index > 2 ? dots_own_thickness * dots.sigma * dots.sigma : 0.0f;
+    const float share = heights.finest + heights.rise * std::min(1.0f, float(splats.index) / 5.0f);
+    const float own = splats.index > 2 ? splats_own_thickness * splats.sigma * splats.sigma : 0.0f;
     for (int i = 0; i < block.count; ++i) {
         const float whole = placement.scale_height(block.x[i], block.y[i]);
         const float disk = placement.height_without_bulge(block.x[i], block.y[i]);
@@ -169,19 +169,19 @@ void fill_between_walls(const Placement& placement, double feature, PlacedBlock&
 
 }  // namespace
 
-void place_freely(const Placement& placement, const BandDots& dots, PlacedBlock& block) {
+void place_freely(const Placement& placement, const BandSplats& splats, PlacedBlock& block) {
     constexpr double disk_wave = 4.0, sheet_wave = 7.0;      // of H, the longest of the noise: DEPTH 4
     constexpr double sheet_folds = 0.22, sheet_ratio = 0.5;  // of that wave, their height; DEPTH 4
-    set_heights(placement, dots, block);
-    const double feature = dots.feature, h = placement.height;
+    set_heights(placement, splats, block);
+    const double feature = splats.feature, h = placement.height;
     if (placement.kind == StructureKind::disk) {
         const double gain = clump_gain(placement, feature);
         disk_depths(stack(placement, disk_wave * h, feature, gain, steady_ratio), block);
-    } else if (dots.glow) {
+    } else if (splats.glow) {
         fill_between_walls(placement, feature, block);
     } else {
         const double gain = sheet_folds * octave_deviation * sheet_wave * h * placement.clumps;
-        sheet_depths(stack(placement, sheet_wave * h, feature, gain, sheet_ratio), dots.spread, block);
+        sheet_depths(stack(placement, sheet_wave * h, feature, gain, sheet_ratio), splats.spread, block);
     }
     for (int i = 0; i < block.count; ++i) {
         block.distance[i] = std::fabs(block.z[i]);
@@ -195,9 +195,9 @@ namespace {
 // the other from aslant: each taller, they are one needle. Found by the needles of the Bubble and the
 // Pillars: below .2 knots are lenses.
 constexpr float knot_depth = 0.6f, knot_depth_on_sheets = 0.35f;
-constexpr float widest_in_knots = 5.0f;  // texels, sigma of the largest dots that follow their knot
+constexpr float widest_in_knots = 5.0f;  // texels, sigma of the largest splats that follow their knot
 constexpr float side_sharpness = 8.0f;   // of the change from one wall to the other
-constexpr float least_side = 0.15f;  // share of a filament's dots on the other one: no part of a wall is bare
+constexpr float least_side = 0.15f;  // share of a filament's splats on the other one: no wall is ever bare
 
 const Knot& knot_of(const Placement& placement, std::int32_t knot) { return placement.knots.knots[knot]; }
 
@@ -223,8 +223,8 @@ float sheet_at(const Placement& placement, float x, float y) {
     return 2.0f * placement.relief_at(x, y) - float(placement.depth);
 }
 
-// Lifts dots onto the relief of a sheet, where there is one. Under a round knot it is level, but not under a
-// piece of a filament, which would become a flight of steps.
+// Lifts splats onto the relief of a sheet, where there is one. Under a round knot it is level, but not under
+// a piece of a filament, which would become a flight of steps.
 void add_relief(const Placement& placement, PlacedBlock& block) {
     if (placement.relief.pixels.empty()) return;
     for (int i = 0; i < block.count; ++i) {
@@ -245,10 +245,10 @@ float between(float value) { return 2.0f / (1.0f + as_exp(-2.0f * value)) - 1.0f
 void spread_in_sky(const Placement& placement, double feature, const DepthReach* reaches,
                    PlacedBlock& block) {
     DepthBlock sky;
-    int dots[PlacedBlock::size];
+    int row[PlacedBlock::size];
     for (int i = 0; i < block.count; ++i) {
         if (reaches[i].of != DepthReach::Of::sky || block.knot[i] >= 0) continue;
-        dots[sky.count] = i;
+        row[sky.count] = i;
         sky.x[sky.count] = block.x[i];
         sky.y[sky.count] = block.y[i];
         sky.random[sky.count] = block.random[i];
@@ -256,10 +256,10 @@ void spread_in_sky(const Placement& placement, double feature, const DepthReach*
     }
     if (sky.count == 0) return;
     spread_in_clouds(placement, feature, sky);
-    for (int k = 0; k < sky.count; ++k) block.z[dots[k]] = sky.z[k];
+    for (int k = 0; k < sky.count; ++k) block.z[row[k]] = sky.z[k];
 }
 
-// Puts dots onto one of two walls, front or back, and bends these. A filament stays on one wall for as long
+// Puts splats onto one of two walls, front or back, and bends these. A filament stays on one wall for as long
 // as it can; what belongs to a knot is where its middle is. Light of a core or of the sky is anywhere within
 // its reach. Waves in texels at a width of 1920, as DEPTH 4 has them but for shorter ones of the sides.
 void add_walls(const Placement& placement, double feature, PlacedBlock& block) {
@@ -295,13 +295,13 @@ void add_walls(const Placement& placement, double feature, PlacedBlock& block) {
 
 }  // namespace
 
-void place(const Placement& placement, const BandDots& dots, PlacedBlock& block) {
-    place_freely(placement, dots, block);
+void place(const Placement& placement, const BandSplats& splats, PlacedBlock& block) {
+    place_freely(placement, splats, block);
     std::fill_n(block.knot, block.count, -1);
-    if (dots.sigma <= widest_in_knots && !placement.knots.knots.empty()) follow_knots(placement, block);
+    if (splats.sigma <= widest_in_knots && !placement.knots.knots.empty()) follow_knots(placement, block);
     if (placement.kind == StructureKind::sheet) add_relief(placement, block);
-    if (placement.kind == StructureKind::walls && !dots.glow)
-        add_walls(placement, double(dots.feature), block);
+    if (placement.kind == StructureKind::walls && !splats.glow)
+        add_walls(placement, double(splats.feature), block);
 }
 
 }  // namespace astrosplat

@@ -1,5 +1,5 @@
-// Dust lies in a thin sheet, so light of dots before it is not dimmed and what is behind is dimmed more than
-// the picture shows: the share before it is measured, cell by cell, from the dots as they were placed.
+// Dust lies in a thin sheet, so light of splats before it is not dimmed and what is behind is dimmed more
+// than the picture shows: the share before it is measured, cell by cell, from the splats as they were placed.
 #include "bodies/dust.h"
 
 #include <algorithm>
@@ -29,11 +29,11 @@ constexpr float lane_height = 0.2f, lane_thickness = 0.05f;
 constexpr double sheet_wave = 26.0;  // texels at a width of 1920, of the clumps in the sheet
 constexpr std::int64_t share_cell_px = 8;
 constexpr double share_blur_cells = 4.0;
-constexpr std::size_t light_parts = 8;  // of the dots, whose light is added up at the same time
-constexpr float dot_sigma = 1.3f, dots_each_texel = 0.6f;
-constexpr float most_opaque = 0.9f;    // a dot's middle
-constexpr float least_kept = 1e-3f;    // share of dots: where fewer would be, there is none
-constexpr float certain_depth = 0.1f;  // optical depth from which no dot is left out
+constexpr std::size_t light_parts = 8;  // of the splats, whose light is added up at the same time
+constexpr float splat_sigma = 1.3f, splats_each_texel = 0.6f;
+constexpr float most_opaque = 0.9f;    // a splat's middle
+constexpr float least_kept = 1e-3f;    // share of splats: where fewer would be, there is none
+constexpr float certain_depth = 0.1f;  // optical depth from which no splat is left out
 
 // Optical depth of the sheet's middle line, and how far that stands out, bent by waves of its own so that
 // edge-on it is torn and not ruled.
@@ -47,16 +47,16 @@ void bend(const Placement& placement, DepthBlock& block) {
 }
 
 // Channel 0: light before the sheet, 1: all light, of cells of share_cell_px, blurred.
-Image light_before(const Placement& placement, const PictureSplats& dots) {
+Image light_before(const Placement& placement, const PictureSplats& set) {
     const Image none = make_image((placement.picture_width + share_cell_px - 1) / share_cell_px,
                                   (placement.picture_height + share_cell_px - 1) / share_cell_px, 2);
     std::vector<Image> parts(light_parts, none);
     const float middle_x = 0.5f * float(placement.picture_width),
                 middle_y = 0.5f * float(placement.picture_height);
     const auto add = [&](std::size_t i, Image& cells) {
-        const glm::vec3 p = dots.splats.position[i], color = dots.splats.color[i];
-        const float x = p.x + middle_x, y = middle_y - p.y, radius = dots.splats.radius[i];
-        const float light = std::max({color.x, color.y, color.z}) * dots.splats.alpha[i] * radius * radius;
+        const glm::vec3 p = set.splats.position[i], color = set.splats.color[i];
+        const float x = p.x + middle_x, y = middle_y - p.y, radius = set.splats.radius[i];
+        const float light = std::max({color.x, color.y, color.z}) * set.splats.alpha[i] * radius * radius;
         const auto cell_along = [](float at, std::int64_t count) {
             return std::clamp<std::int64_t>(std::int64_t(at) / share_cell_px, 0, count - 1);
         };
@@ -65,7 +65,7 @@ Image light_before(const Placement& placement, const PictureSplats& dots) {
         if (p.z - middle_plane(placement, x, y) > lane_height * placement.scale_height(x, y))
             cell[0] += light;
     };
-    const std::size_t count = dots.splats.position.size();
+    const std::size_t count = set.splats.position.size();
     parallel_each(parts.size(), 1, [&](std::size_t part) {
         for (std::size_t i = part * count / light_parts; i < (part + 1) * count / light_parts; ++i)
             add(i, parts[part]);
@@ -75,7 +75,7 @@ Image light_before(const Placement& placement, const PictureSplats& dots) {
     return gaussian_blur(parts[0], share_blur_cells);
 }
 
-// Share of the dots that are kept.
+// Share of the splats that are kept.
 float kept_dust(float depth) {
     const float kept = std::min(1.0f, depth / certain_depth);
     return kept > least_kept ? kept : 0.0f;
@@ -87,18 +87,18 @@ float sheet_depth(float transmittance, float before) {
     return -as_log(std::clamp(behind, least_transmittance, 1.0f));
 }
 
-struct DustDots {
+struct DustMaker {
     const Image& transmittance;
     const Image& before;
     float amount;
     glm::vec3 exponents;
     const Placement& placement;
 
-    static constexpr float footprint = footprint_share * 6.28318531f * dot_sigma * dot_sigma;
-    static constexpr float spacing = 1.29099445f;  // of dots_each_texel
-    static_assert(spacing * spacing * dots_each_texel > 0.999f &&
-                  spacing * spacing * dots_each_texel < 1.001f);
-    DotLattice lattice{transmittance.width, transmittance.height, spacing};
+    static constexpr float footprint = footprint_share * 6.28318531f * splat_sigma * splat_sigma;
+    static constexpr float spacing = 1.29099445f;  // of splats_each_texel
+    static_assert(spacing * spacing * splats_each_texel > 0.999f &&
+                  spacing * spacing * splats_each_texel < 1.001f);
+    SplatLattice lattice{transmittance.width, transmittance.height, spacing};
 
     // Of the sheet at a place, that dims what lies behind it so that the whole is dimmed as it is seen.
     float depth_at(float x, float y) const {
@@ -111,49 +111,49 @@ struct DustDots {
 
     struct Candidate {
         float x, y;   // texels from the top left corner
-        float alpha;  // of the dot's middle
+        float alpha;  // of the splat's middle
         std::uint64_t id;
     };
 
-    // A cell's dot, where there is dust and it is not thinned out.
-    std::optional<Candidate> candidate_of(const DotCell& cell) const {
-        Candidate dot;
-        dot.id = dust_band << 48 | lattice.number(cell);
-        dot.x = (float(cell.column) + random(dot.id, shared::PURPOSE_JITTER_X)) * spacing;
-        dot.y = (float(cell.row) + random(dot.id, shared::PURPOSE_JITTER_Y)) * spacing;
-        if (dot.x >= float(transmittance.width) || dot.y >= float(transmittance.height)) return {};
-        const float depth = amount * depth_at(dot.x, dot.y), kept = kept_dust(depth);
-        if (!(kept > 0.0f) || random(dot.id, shared::PURPOSE_DENSITY) >= kept) return {};
-        // The optical depth of a dot of Gaussian s is 2 pi sigma^2 Li2(s), of which s + s^2 / 4 is enough.
-        const float share = depth / kept / (dots_each_texel * footprint);
-        dot.alpha = std::min(most_opaque, 2.0f * (std::sqrt(1.0f + share) - 1.0f));
-        return dot;
+    // A cell's splat, where there is dust and it is not thinned out.
+    std::optional<Candidate> candidate_of(const LatticeCell& cell) const {
+        Candidate splat;
+        splat.id = dust_band << 48 | lattice.number(cell);
+        splat.x = (float(cell.column) + random(splat.id, shared::PURPOSE_JITTER_X)) * spacing;
+        splat.y = (float(cell.row) + random(splat.id, shared::PURPOSE_JITTER_Y)) * spacing;
+        if (splat.x >= float(transmittance.width) || splat.y >= float(transmittance.height)) return {};
+        const float depth = amount * depth_at(splat.x, splat.y), kept = kept_dust(depth);
+        if (!(kept > 0.0f) || random(splat.id, shared::PURPOSE_DENSITY) >= kept) return {};
+        // The optical depth of a splat of Gaussian s is 2 pi sigma^2 Li2(s), of which s + s^2 / 4 is enough.
+        const float share = depth / kept / (splats_each_texel * footprint);
+        splat.alpha = std::min(most_opaque, 2.0f * (std::sqrt(1.0f + share) - 1.0f));
+        return splat;
     }
 
     float random(std::uint64_t id, std::uint32_t purpose) const {
         return as_uniform(placement.hash_of(id, purpose));
     }
 
-    void make_dots(std::span<const DotCell> cells, std::size_t first, PictureSplats& out) const {
+    void make_splats(std::span<const LatticeCell> cells, std::size_t first, PictureSplats& out) const {
         DepthBlock block;
         block.count = int(cells.size());
         for (std::size_t i = 0; i < cells.size(); ++i) {
-            const Candidate dot = *candidate_of(cells[i]);
-            block.x[i] = dot.x;
-            block.y[i] = dot.y;
-            block.height[i] = lane_thickness * placement.scale_height(dot.x, dot.y);
+            const Candidate splat = *candidate_of(cells[i]);
+            block.x[i] = splat.x;
+            block.y[i] = splat.y;
+            block.height[i] = lane_thickness * placement.scale_height(splat.x, splat.y);
             block.clumping[i] = 1.0f;
-            block.random[i] = placement.hash_of(dot.id, shared::PURPOSE_DEPTH);
-            out.splats.alpha[first + i] = dot.alpha;
+            block.random[i] = placement.hash_of(splat.id, shared::PURPOSE_DEPTH);
+            out.splats.alpha[first + i] = splat.alpha;
             out.splats.color[first + i] = -exponents;
-            out.splats.id[first + i] = dot.id;
+            out.splats.id[first + i] = splat.id;
         }
         const double wave = sheet_wave * placement.scale;
         disk_depths(stack(placement, wave, wave, whole_gain * placement.clumps, 1.0), block);
         bend(placement, block);
         for (std::size_t i = 0; i < cells.size(); ++i) {
             const float z = block.z[i] + middle_plane(placement, block.x[i], block.y[i]);
-            out.splats.position[first + i] = placement.among_dots(block.x[i], block.y[i], z);
+            out.splats.position[first + i] = placement.among_splats(block.x[i], block.y[i], z);
             out.distance[first + i] = std::fabs(block.z[i]);
         }
     }
@@ -188,15 +188,15 @@ double dust_of(const StructureParams& params) {
     return params.dust ? *params.dust : params.kind == StructureKind::disk ? dust_of_disks : 0.0;
 }
 
-float expected_dust_dots(float transmittance, double amount) {
+float expected_dust_splats(float transmittance, double amount) {
     constexpr float usual_before = 0.37f;  // .29 to .455 were measured
-    return dots_each_texel * kept_dust(float(amount) * sheet_depth(transmittance, usual_before));
+    return splats_each_texel * kept_dust(float(amount) * sheet_depth(transmittance, usual_before));
 }
 
 void add_dust(const Image& transmittance, double amount, const glm::vec3& exponents,
               const Placement& placement, PictureSplats& out) {
     const Image before = light_before(placement, out);
-    add_lattice_dots(DustDots{transmittance, before, float(amount), exponents, placement}, dot_sigma, out);
+    add_on_lattice(DustMaker{transmittance, before, float(amount), exponents, placement}, splat_sigma, out);
     out.absorbs = true;
 }
 

@@ -1,5 +1,5 @@
 // The dark details of a picture as dust that absorbs (DEPTH 2, 5). In: the picture's light and its bands'
-// sum, and the dots that shine. Out: dots of colours below 0 on a torn sheet before the middle of the disk.
+// sum, and the splats that shine. Out: splats of colours below 0 on a torn sheet before the disk's middle.
 #pragma once
 
 #include "bodies/picture_splats.h"
@@ -22,8 +22,8 @@ Image transmittance_of(const Image& brightest, const Image& emission, const Imag
 /// Share of its optical depth that a picture's dust has.
 double dust_of(const StructureParams& params);
 
-/// Dots a texel where it leaves so much, about.
-float expected_dust_dots(float transmittance, double amount);
+/// Splats a texel where it leaves so much, about.
+float expected_dust_splats(float transmittance, double amount);
 
 /// Adds the dust that, with the light of `out` partly before it and partly behind, leaves `transmittance`
 /// of the whole. `amount`: share of its optical depth, 0 to 1; `exponents`: those of the picture.

@@ -1,7 +1,7 @@
-// What the depths of a picture's dots follow (DEPTH 4), as smooth fields over it: how thick a layer is, where
-// its middle or the walls of a shell lie, and how much of a shell's light is on neither of its walls. In: the
-// picture's light without its stars. Out: one-channel images, in texels, halved as often as their smoothness
-// allows.
+// What the depths of a picture's splats follow (DEPTH 4), as smooth fields over it: how thick a layer is,
+// where its middle or the walls of a shell lie, and how much of a shell's light is on neither of its walls.
+// In: the picture's light without its stars. Out: one-channel images, in texels, halved as often as their
+// smoothness allows.
 #pragma once
 
 #include "core/image.h"

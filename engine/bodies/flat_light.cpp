@@ -1,7 +1,7 @@
-// Dots of one size are one blur: they are spread over the pixels about them, the widest first, on a grid as
+// Splats of one size are one blur: they are spread over the pixels about them, the widest first, on a grid as
 // coarse as their size allows, and blurred together with all wider ones. Corrections go the other way.
 // Spreading is compiled once per instruction set, with the same bits on each: weights are plain loops over a
-// few dots, which the compiler turns into vectors; then each dot adds nine vectors.
+// few splats, which the compiler turns into vectors; then each splat adds nine vectors.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "bodies/flat_light.cpp"
 #include <hwy/foreach_target.h>
@@ -17,12 +17,12 @@
 #include "image/blur.h"
 #include "image/channels.h"
 
-#ifndef ASTROSPLAT_SPREAD_DOTS  // the same for all targets
-#define ASTROSPLAT_SPREAD_DOTS
+#ifndef ASTROSPLAT_SPREAD_SPLATS  // the same for all targets
+#define ASTROSPLAT_SPREAD_SPLATS
 namespace astrosplat {
 
 // Rows of a grid while light is added to them by quadratic B-splines. Pixels have four channels, so that each
-// is stored and loaded as one vector; and there are more of them all around, for what dots at the edges
+// is stored and loaded as one vector; and there are more of them all around, for what splats at the edges
 // spread.
 struct SpreadRows {
     static constexpr std::int64_t margin = 2;
@@ -30,15 +30,15 @@ struct SpreadRows {
     Image pixels = make_image(width + 2 * margin, end - first + 2 * margin, 4);
 };
 
-// Dots in the space of their picture, whose top left corner is at (-left, top).
-struct SpreadDots {
+// Splats in the space of their picture, whose top left corner is at (-left, top).
+struct SpreadSplats {
     const glm::vec3* position;
     const glm::vec3* color;
     const float* alpha;
     std::size_t count;
     float left, top;  // texels
     float scale;      // pixels a texel
-    float flux;       // pixels: the sum of the weights of a dot
+    float flux;       // pixels: the sum of the weights of a splat
 };
 
 }  // namespace astrosplat
@@ -52,7 +52,7 @@ namespace {
 constexpr std::size_t block = 64;
 
 struct Block {
-    std::int32_t column[block], row[block];  // of the pixel that the dot lies in
+    std::int32_t column[block], row[block];  // of the pixel that the splat lies in
     float across[3][block], down[3][block];  // weights of that pixel and of its neighbours
     alignas(16) float light[block][4];
 };
@@ -69,13 +69,13 @@ HWY_FLATTEN void weigh(const float* HWY_RESTRICT place, std::size_t count, std::
     }
 }
 
-HWY_FLATTEN void fill(const SpreadDots& dots, std::size_t first, std::size_t count, Block& out) {
+HWY_FLATTEN void fill(const SpreadSplats& splats, std::size_t first, std::size_t count, Block& out) {
     float x[block], y[block];
     for (std::size_t i = 0; i < count; ++i) {
-        x[i] = (dots.position[first + i].x + dots.left) * dots.scale;
-        y[i] = (dots.top - dots.position[first + i].y) * dots.scale;
-        const float share = dots.flux * dots.alpha[first + i];
-        for (int c = 0; c < 3; ++c) out.light[i][c] = dots.color[first + i][c] * share;
+        x[i] = (splats.position[first + i].x + splats.left) * splats.scale;
+        y[i] = (splats.top - splats.position[first + i].y) * splats.scale;
+        const float share = splats.flux * splats.alpha[first + i];
+        for (int c = 0; c < 3; ++c) out.light[i][c] = splats.color[first + i][c] * share;
         out.light[i][3] = 0.0f;
     }
     weigh(x, count, out.column, out.across);
@@ -84,8 +84,8 @@ HWY_FLATTEN void fill(const SpreadDots& dots, std::size_t first, std::size_t cou
 
 }  // namespace
 
-// Adds the light of dots, as far as it reaches the rows.
-HWY_FLATTEN void spread_dots(const SpreadDots& dots, SpreadRows& rows) {
+// Adds the light of splats, as far as it reaches the rows.
+HWY_FLATTEN void spread_splats(const SpreadSplats& splats, SpreadRows& rows) {
     const hn::CappedTag<float, 4> channels;
     const std::int64_t next_row = 4 * rows.pixels.width;
     Block now;
@@ -104,9 +104,9 @@ HWY_FLATTEN void spread_dots(const SpreadDots& dots, SpreadRows& rows) {
             hn::Store(hn::Add(hn::Load(channels, to + 8), hn::Mul(right, down)), channels, to + 8);
         }
     };
-    for (std::size_t first = 0; first < dots.count; first += block) {
-        const std::size_t count = std::min(block, dots.count - first);
-        fill(dots, first, count, now);
+    for (std::size_t first = 0; first < splats.count; first += block) {
+        const std::size_t count = std::min(block, splats.count - first);
+        fill(splats, first, count, now);
         for (std::size_t i = 0; i < count; ++i)
             if (now.row[i] >= rows.first - 1 && now.row[i] <= rows.end)
                 for (std::size_t channel = 0; channel < 4; channel += hn::Lanes(channels)) spread(i, channel);
@@ -119,22 +119,22 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace astrosplat {
 
-HWY_EXPORT(spread_dots);
+HWY_EXPORT(spread_splats);
 
 namespace {
 
-constexpr std::size_t dots_per_chunk = 4096;
+constexpr std::size_t splats_per_chunk = 4096;
 constexpr std::int64_t rows_per_strip = 32;
 constexpr double coarsest_step = 0.55;  // of the deviation of what is seen on a grid
 constexpr std::int64_t smallest_grid = 8;
 constexpr double spread_variance = 0.25;    // steps^2, of the quadratic B-spline at any offset
 constexpr double doubling_variance = 0.75;  // steps^2 of the finer grid
-constexpr double seen_share = 0.25;         // of a footprint's variance through which a dot sees the ratio
+constexpr double seen_share = 0.25;         // of a footprint's variance through which a splat sees the ratio
 constexpr float largest_factor = 3.0f;
-constexpr double fine_sigma = 1.5;            // texels, up to which dots are sharpened
-constexpr double around = 16.0;               // times the variance of what a dot sees
+constexpr double fine_sigma = 1.5;            // texels, up to which splats are sharpened
+constexpr double around = 16.0;               // times the variance of what a splat sees
 constexpr double narrowest_halved_px = 1.25;  // its profile need not be exact
-constexpr double few_share = 0.01;            // dots of a range, of the pixels of what they see
+constexpr double few_share = 0.01;            // splats of a range, of the pixels of what they see
 constexpr double same_sigma = 0.01;           // share that sigmas of one range differ by
 constexpr double narrowest_blur_px = 0.4;     // a narrower one leaves 97 % of a pixel where it is
 
@@ -192,26 +192,26 @@ void add_rows(const SpreadRows& rows, Image& sum) {
 
 }  // namespace
 
-FlatLight::FlatLight(PictureSplats& dots, std::int64_t width, std::int64_t height, double filter_px)
-    : dots_(dots), middle_(0.5f * glm::vec2(width, height)), filter_variance_(filter_px * filter_px) {
+FlatLight::FlatLight(PictureSplats& set, std::int64_t width, std::int64_t height, double filter_px)
+    : set_(set), middle_(0.5f * glm::vec2(width, height)), filter_variance_(filter_px * filter_px) {
     grids_.push_back({width, height, 1.0});
     while (std::min(grids_.back().width, grids_.back().height) > smallest_grid) {
         const Grid& finer = grids_.back();
         grids_.push_back({(finer.width + 1) / 2, (finer.height + 1) / 2, 2.0 * finer.step});
     }
-    for (const DotRange& range : dots.ranges) add_range(range);
+    for (const SplatRange& range : set.ranges) add_range(range);
     std::ranges::stable_sort(ranges_, {}, &Range::sigma);
 }
 
-void FlatLight::add_range(const DotRange& dots) {
-    const auto sigma = double(dots.sigma);
+void FlatLight::add_range(const SplatRange& splats) {
+    const auto sigma = double(splats.sigma);
     auto same = std::ranges::find_if(
         ranges_, [&](const Range& range) { return std::fabs(range.sigma - sigma) < same_sigma * sigma; });
     if (same == ranges_.end()) same = ranges_.insert(ranges_.end(), {sigma, {}});
     Range& range = *same;
-    const auto end = std::size_t(dots.end);
-    for (auto i = std::size_t(dots.begin); i < end; i += dots_per_chunk)
-        range.chunks.push_back({i, std::min(i + dots_per_chunk, end), texel(i).y, texel(i).y});
+    const auto end = std::size_t(splats.end);
+    for (auto i = std::size_t(splats.begin); i < end; i += splats_per_chunk)
+        range.chunks.push_back({i, std::min(i + splats_per_chunk, end), texel(i).y, texel(i).y});
     parallel_each(range.chunks.size(), 16, [&](std::size_t c) {
         Chunk& chunk = range.chunks[c];
         for (std::size_t i = chunk.begin; i < chunk.end; ++i) {
@@ -222,8 +222,8 @@ void FlatLight::add_range(const DotRange& dots) {
 }
 
 // From the top left corner.
-glm::vec2 FlatLight::texel(std::size_t dot) const {
-    const glm::vec3& p = dots_.splats.position[dot];
+glm::vec2 FlatLight::texel(std::size_t splat) const {
+    const glm::vec3& p = set_.splats.position[splat];
     return {p.x + middle_.x, middle_.y - p.y};
 }
 
@@ -243,8 +243,8 @@ void FlatLight::spread(const Range& range, double step, Image& sum) const {
         const auto top = float(double(first_row - 1) * step), bottom = float(double(end_row + 1) * step);
         for (const Chunk& chunk : range.chunks) {
             if (chunk.bottom < top || chunk.top > bottom) continue;
-            const ShadedSplats& all = dots_.splats;
-            HWY_DYNAMIC_DISPATCH(spread_dots)
+            const ShadedSplats& all = set_.splats;
+            HWY_DYNAMIC_DISPATCH(spread_splats)
             ({&all.position[chunk.begin], &all.color[chunk.begin], &all.alpha[chunk.begin],
               chunk.end - chunk.begin, middle_.x, middle_.y, scale, flux},
              rows);
@@ -278,9 +278,9 @@ Image FlatLight::sum() const {
 
 // They see what those of the next narrower range do: a view of their own would take as long as that of many.
 bool FlatLight::has_few(const Range& range, const Grid& seen) const {
-    std::size_t dots = 0;
-    for (const Chunk& chunk : range.chunks) dots += chunk.end - chunk.begin;
-    return double(dots) < few_share * double(seen.width * seen.height);
+    std::size_t splats = 0;
+    for (const Chunk& chunk : range.chunks) splats += chunk.end - chunk.begin;
+    return double(splats) < few_share * double(seen.width * seen.height);
 }
 
 void FlatLight::multiply(const Range& range, const Image& factor, double step) {
@@ -289,7 +289,7 @@ void FlatLight::multiply(const Range& range, const Image& factor, double step) {
         for (std::size_t i = range.chunks[c].begin; i < range.chunks[c].end; ++i) {
             const glm::vec2 at = texel(i) * scale;
             const LinearSample place(factor, at.x, at.y);
-            dots_.splats.color[i] *= glm::vec3(place.of(factor, 0), place.of(factor, 1), place.of(factor, 2));
+            set_.splats.color[i] *= glm::vec3(place.of(factor, 0), place.of(factor, 1), place.of(factor, 2));
         }
     });
 }

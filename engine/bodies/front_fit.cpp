@@ -1,8 +1,8 @@
-// Compositing the dots takes long, and what hides what hardly changes with their colours. So they are
-// rendered once: then the share of all light that reaches the viewer makes the view out of the dots' flat
-// light. (On coarse pixels: a share for every pixel would follow the grain of the dots.) Before, what there
+// Compositing the splats takes long, and what hides what hardly changes with their colours. So they are
+// rendered once: then the share of all light that reaches the viewer makes the view out of the splats' flat
+// light. (On coarse pixels: a share for every pixel would follow the grain of the splats.) Before, what there
 // is too much of is supposed to be hidden. Steps are Richardson and Lucy's, which stay positive and undo the
-// dots' own blur; each takes half of the last one along (Polyak's heavy ball, in logarithms), so that seven
+// splats' own blur; each takes half of the last one along (Polyak's heavy ball, in logarithms), so that seven
 // are worth ten without.
 #include "bodies/front_fit.h"
 
@@ -81,14 +81,14 @@ std::int64_t rendered_step(const Image& picture, bool small) {
 
 class FittedView {
   public:
-    FittedView(PictureSplats& dots, const Image& picture, bool small)
-        : target_(gaussian_blur(picture, filter_px)), flat_(dots, picture.width, picture.height, filter_px) {
+    FittedView(PictureSplats& set, const Image& picture, bool small)
+        : target_(gaussian_blur(picture, filter_px)), flat_(set, picture.width, picture.height, filter_px) {
         settings_.pixel_filter = float(filter_px);
         layer_.name = "front";
-        layer_.splats = &dots.splats;
-        layer_.absorbs = dots.absorbs;
+        layer_.splats = &set.splats;
+        layer_.absorbs = set.absorbs;
         float highest = 0.0f;
-        for (const glm::vec3& p : dots.splats.position) highest = std::max(highest, p.z);
+        for (const glm::vec3& p : set.splats.position) highest = std::max(highest, p.z);
         const std::int64_t step = rendered_step(picture, small);
         settings_.width = (picture.width + step - 1) / step;
         settings_.height = (picture.height + step - 1) / step;
@@ -190,8 +190,8 @@ double FittedView::psnr_db(const Image& seen) const {
 
 }  // namespace
 
-FrontFit fit_front(PictureSplats& dots, Image light, bool small, const Progress& progress) {
-    FittedView view(dots, light, small);
+FrontFit fit_front(PictureSplats& set, Image light, bool small, const Progress& progress) {
+    FittedView view(set, light, small);
     const int steps_after = small ? last_steps_of_small : last_steps;
     light = {};
     Image seen = view.supposed();

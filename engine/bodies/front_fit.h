@@ -1,5 +1,5 @@
 // The front view made right (DEPTH 5): what is composited dims what lies deep, so colours are raised, step by
-// step, by the ratio of the picture to what is seen. In and out: the dots of a picture. In between: their
+// step, by the ratio of the picture to what is seen. In and out: the splats of a picture. In between: their
 // light from the front as if nothing hid anything, on grids of the picture's size and coarser ones, for a
 // small part of what compositing them costs.
 #pragma once
@@ -21,7 +21,7 @@ struct FrontFit {
 /// last, cells of 32 px get the picture's flux. `small`: the picture was enlarged, its own texels are several
 /// of these. The same bits with any number of threads. Throws Cancelled; InputError where memory does not
 /// suffice.
-FrontFit fit_front(PictureSplats& dots, Image light, bool small = false, const Progress& progress = {});
+FrontFit fit_front(PictureSplats& set, Image light, bool small = false, const Progress& progress = {});
 
 /// The ratio of the wanted light to the visible: three channels each, of one size, > 0.
 struct Fraction {
@@ -30,25 +30,25 @@ struct Fraction {
 
 class FlatLight {
   public:
-    /// Of the dots that shine, over a picture of width x height texels seen through a Gaussian filter. The
-    /// dots' places and sizes stay as they are while this lives.
-    FlatLight(PictureSplats& dots, std::int64_t width, std::int64_t height, double filter_px);
+    /// Of the splats that shine, over a picture of width x height texels seen through a Gaussian filter. The
+    /// splats' places and sizes stay as they are while this lives.
+    FlatLight(PictureSplats& set, std::int64_t width, std::int64_t height, double filter_px);
 
-    /// The sum of all dots: three channels, of the picture's size. The same bits with any number of threads.
+    /// The sum of all splats: three channels, of the picture's size. The same bits for any thread count.
     Image sum() const;
 
-    /// Multiplies every dot's colour by the ratio of the two images of `fraction`, each blurred by half of
-    /// the dot's own footprint, clamped to [1/3, 3]. `overshoot`: by its square, and fine dots once more by
-    /// what it differs from the ratio of the pixels around.
+    /// Multiplies every splat's colour by the ratio of the two images of `fraction`, each blurred by half of
+    /// the splat's own footprint, clamped to [1/3, 3]. `overshoot`: by its square, and fine splats once more
+    /// by what it differs from the ratio of the pixels around.
     void correct(Fraction fraction, bool overshoot);
 
-    /// Multiplies every dot's colour by a value of `factor`, of three channels on steps of so many texels,
+    /// Multiplies every splat's colour by a value of `factor`, of three channels on steps of so many texels,
     /// linear between them.
     void multiply(const Image& factor, double step);
 
   private:
     struct Chunk {
-        std::size_t begin, end;  // dots
+        std::size_t begin, end;  // splats
         float top, bottom;       // of their places, texels
     };
     struct Range {
@@ -60,14 +60,14 @@ class FlatLight {
         double step;  // texels, a power of two
     };
 
-    void add_range(const DotRange& dots);
+    void add_range(const SplatRange& splats);
     std::size_t grid_for(double variance) const;
     bool has_few(const Range& range, const Grid& seen) const;
-    glm::vec2 texel(std::size_t dot) const;
+    glm::vec2 texel(std::size_t splat) const;
     void spread(const Range& range, double step, Image& sum) const;
     void multiply(const Range& range, const Image& factor, double step);
 
-    PictureSplats& dots_;
+    PictureSplats& set_;
     glm::vec2 middle_;           // of the picture, texels
     double filter_variance_;     // texels^2
     std::vector<Grid> grids_;    // fine to coarse

@@ -1,6 +1,6 @@
-// Dots are counted on samples: squares spread evenly over the picture are split into bands, and the shares of
-// dots that are kept are added up pixel by pixel. Coarse bands differ there from the whole picture's, but
-// have few dots.
+// Splats are counted on samples: squares spread evenly over the picture are split into bands, and the shares
+// of splats that are kept are added up pixel by pixel. Coarse bands differ there from the whole picture's,
+// but have few splats.
 #include "bodies/bodies.h"
 
 #include <fmt/format.h>
@@ -52,9 +52,9 @@ double sum_inside(const Image& part, const Value& value) {
     return sum;
 }
 
-// Dots a texel in the middle of a part.
-double dots_a_texel(const Texture& part, const StructureParams& params, const Placement& placement,
-                    const std::vector<Band>& bands) {
+// Splats a texel in the middle of a part.
+double splats_a_texel(const Texture& part, const StructureParams& params, const Placement& placement,
+                      const std::vector<Band>& bands) {
     const PictureLight picture = picture_light(part, 0.0);
     const Image brightest = brightest_channel(picture.light);
     Image rest = picture.light;
@@ -64,24 +64,24 @@ double dots_a_texel(const Texture& part, const StructureParams& params, const Pl
     const auto shows = [&](std::int64_t x, std::int64_t y) {
         return picture.alpha.pixels.empty() || *picture.alpha.at(x, y) > 0.0f;
     };
-    double dots = 0.0;
+    double splats = 0.0;
     split_bands(std::move(rest), bands, dust_of(params) > 0.0, [&](const Band& band, const Image& light) {
         std::ranges::transform(emission.pixels, light.pixels, emission.pixels.begin(), std::plus());
         const bool coarsest = band.index + 1 == int(bands.size());
-        const BandDots size = band_dots(band, coarsest, placement)[0];
+        const BandSplats size = band_splats(band, coarsest, placement)[0];
         const double kept = sum_inside(brightest, [&](std::int64_t x, std::int64_t y) {
             const float* const p = light.at(x, y);
             return shows(x, y) ? kept_share(std::max({p[0], p[1], p[2]}), *brightest.at(x, y), size) : 0.0f;
         });
-        dots += kept / double(size.spacing * size.spacing);
+        splats += kept / double(size.spacing * size.spacing);
     });
     if (dust_of(params) > 0.0) {
         const Image seen = transmittance_of(without_stars, emission, picture.alpha);
-        dots += sum_inside(seen, [&](std::int64_t x, std::int64_t y) {
-            return expected_dust_dots(*seen.at(x, y), dust_of(params));
+        splats += sum_inside(seen, [&](std::int64_t x, std::int64_t y) {
+            return expected_dust_splats(*seen.at(x, y), dust_of(params));
         });
     }
-    return dots / sum_inside(brightest, [](std::int64_t, std::int64_t) { return 1.0f; });
+    return splats / sum_inside(brightest, [](std::int64_t, std::int64_t) { return 1.0f; });
 }
 
 // Where samples of a side begin, and how long they are.
@@ -97,21 +97,21 @@ Samples samples_of(std::int64_t size) {
 
 }  // namespace
 
-double most_dots(std::int64_t width, std::int64_t height, const StructureParams& params) {
+double splats_at_most(std::int64_t width, std::int64_t height, const StructureParams& params) {
     const Placement placement = placement_without_fields(width, height, params, 0.0);
-    double each_texel = dust_of(params) > 0.0 ? double(expected_dust_dots(0.0f, 1.0)) : 0.0;
+    double each_texel = dust_of(params) > 0.0 ? double(expected_dust_splats(0.0f, 1.0)) : 0.0;
     const std::vector<Band> bands = make_bands(width);
     for (const Band& band : bands) {
         const bool coarsest = band.index + 1 == int(bands.size());
-        float spacing = std::numeric_limits<float>::infinity();  // a place has dots of one size
-        for (const BandDots& size : band_dots(band, coarsest, placement))
+        float spacing = std::numeric_limits<float>::infinity();  // a place has splats of one size
+        for (const BandSplats& size : band_splats(band, coarsest, placement))
             spacing = std::min(spacing, size.spacing);
         each_texel += 1.0 / double(spacing * spacing);
     }
     return each_texel * double(width * height);
 }
 
-double expected_dots(const Texture& texture, const StructureParams& params) {
+double expected_splats(const Texture& texture, const StructureParams& params) {
     const Image& image = texture.image;
     if (std::min(image.width, image.height) <= 2 * margin_px) return double(image.width * image.height);
     const Placement placement = placement_without_fields(image.width, image.height, params, 0.0);
@@ -122,7 +122,7 @@ double expected_dots(const Texture& texture, const StructureParams& params) {
         const auto number = std::int64_t(i);
         const Texture part = part_of(texture, columns.begin(number % columns.count),
                                      rows.begin(number / columns.count), columns.length, rows.length);
-        densities[i] = dots_a_texel(part, params, placement, bands);
+        densities[i] = splats_a_texel(part, params, placement, bands);
     });
     const double mean = std::accumulate(densities.begin(), densities.end(), 0.0) / double(densities.size());
     return mean * double(image.width * image.height);
@@ -144,22 +144,22 @@ Image at_area(const Image& image, double area, double smallest_px) {
     return reduced_by_area(image, size.width, size.height);
 }
 
-std::int64_t expected_dots(std::span<const TexturedMesh> meshes, const StructureParams& params) {
-    double dots = 0.0;
-    for (const PictureOnMesh& picture : pictures_of(meshes)) dots += expected_dots(picture.texture(), params);
-    return std::int64_t(dots);
+std::int64_t expected_splats(std::span<const TexturedMesh> meshes, const StructureParams& params) {
+    double sum = 0.0;
+    for (const PictureOnMesh& mesh : pictures_of(meshes)) sum += expected_splats(mesh.texture(), params);
+    return std::int64_t(sum);
 }
 
 std::int64_t most_texels_within(std::int64_t bytes) {
     return std::max<std::int64_t>(1, bytes / bytes_a_texel);
 }
 
-std::int64_t bodies_memory_bytes(std::span<const TexturedMesh> meshes, std::int64_t dots) {
+std::int64_t bodies_memory_bytes(std::span<const TexturedMesh> meshes, std::int64_t splats) {
     // Measured. Blocks that wait for their next use are a part of it (core/buffer.cpp).
-    constexpr std::int64_t bytes_a_dot = 44, bytes_on_mesh = 68;
+    constexpr std::int64_t bytes_a_splat = 44, bytes_on_mesh = 68;
     constexpr std::int64_t most_waiting = std::int64_t{256} << 20;
     const std::int64_t images = largest_picture(meshes) * bytes_a_texel;
-    const std::int64_t used = std::max(images + dots * bytes_a_dot, dots * bytes_on_mesh);
+    const std::int64_t used = std::max(images + splats * bytes_a_splat, splats * bytes_on_mesh);
     return used + std::max(used / 8, std::min(most_waiting, images));
 }
 
@@ -167,20 +167,20 @@ namespace {
 
 // An upper bound of the memory for pictures of their sizes.
 std::int64_t most_bytes(std::span<const TexturedMesh> meshes, const StructureParams& params) {
-    double dots = 0.0;
+    double splats = 0.0;
     for (const PictureOnMesh& picture : pictures_of(meshes))
-        dots += most_dots(picture.texture().image.width, picture.texture().image.height, params);
-    return bodies_memory_bytes(meshes, std::int64_t(dots));
+        splats += splats_at_most(picture.texture().image.width, picture.texture().image.height, params);
+    return bodies_memory_bytes(meshes, std::int64_t(splats));
 }
 
 // How much of the limit is used; more than 1 is too much.
 double used_share(std::span<const TexturedMesh> meshes, const StructureParams& params,
                   const BodiesLimit& limit) {
-    const std::int64_t dots = expected_dots(meshes, params);
+    const std::int64_t splats = expected_splats(meshes, params);
     const double memory =
-        double(bodies_memory_bytes(meshes, dots)) / double(std::max<std::int64_t>(1, limit.room_bytes));
-    if (limit.most_dots <= 0) return memory;
-    return std::max(memory, double(dots) / double(limit.most_dots));
+        double(bodies_memory_bytes(meshes, splats)) / double(std::max<std::int64_t>(1, limit.room_bytes));
+    if (limit.splats <= 0) return memory;
+    return std::max(memory, double(splats) / double(limit.splats));
 }
 
 Texture* largest_texture(std::vector<TexturedMesh>& meshes) {
@@ -240,7 +240,7 @@ void enlarge_small_pictures(std::vector<TexturedMesh>& meshes, const std::string
 
 void reduce_pictures(std::vector<TexturedMesh>& meshes, const StructureParams& params,
                      const BodiesLimit& limit, const std::string& layer_name) {
-    if (limit.most_dots <= 0 && most_bytes(meshes, params) <= limit.room_bytes) return;
+    if (limit.splats <= 0 && most_bytes(meshes, params) <= limit.room_bytes) return;
     const auto share_now = [&] { return used_share(meshes, params, limit); };
     std::vector<const Texture*> reduced;
     for (double share = share_now(); share > 1.0; share = share_now()) {
@@ -249,10 +249,10 @@ void reduce_pictures(std::vector<TexturedMesh>& meshes, const StructureParams& p
         const auto [width, height] = size_in_file(*largest);
         reduce(*largest, share, share_now);
         reduced.push_back(largest);
-        const bool few = limit.most_dots <= 0 || expected_dots(meshes, params) < limit.most_dots * 4 / 5;
+        const bool few = limit.splats <= 0 || expected_splats(meshes, params) < limit.splats * 4 / 5;
         const std::string why =
             few ? fmt::format("would not fit into {} of memory", human_bytes(double(limit.room_bytes)))
-                : fmt::format("would be more than {}", human_count(limit.most_dots, "dot"));
+                : fmt::format("would be more than {}", human_count(limit.splats, "splat"));
         const std::string message =
             fmt::format("layer '{}': a picture of {}x{} px is reduced to {}x{}, for its bodies {}",
                         layer_name, width, height, largest->image.width, largest->image.height, why);

@@ -34,86 +34,86 @@ struct Candidate {
     std::uint64_t id;
 };
 
-// Share of the optical depth that dots keep. A bulge, old stars without dust, glows: seen from the side,
+// Share of the optical depth that splats keep. A bulge, old stars without dust, glows: seen from the side,
 // light comes from all of its depth, not from a surface as a cloud's would. So does what is between two
 // walls: were it a fog, the fit would raise the filaments of the back wall by what is lost in it, and from
 // behind they would burn out.
-float hiding_of(const BandDots& dots, const Placement& placement, float thickness) {
+float hiding_of(const BandSplats& splats, const Placement& placement, float thickness) {
     if (placement.kind == StructureKind::disk) {
         const float bulge = thickness / glowing_thickness;
         return 1.0f / std::clamp(bulge * bulge * bulge * bulge, 1.0f, clearest_bulge);
     }
-    return dots.glow ? glow_hiding : 1.0f;
+    return splats.glow ? glow_hiding : 1.0f;
 }
 
-// The optical depth a dot adds to its column is its share of the column's light.
-void shade(const Candidate& dot, float footprint, const Opacity& opacity, std::size_t at,
-           ShadedSplats& splats) {
-    const float brightest = std::max(least_brightness, dot.brightest);
-    const float tau = dot.hiding * opacity.depth_of(dot.brightest, dot.opacity_limit);
-    const float alpha = std::clamp(tau * (dot.amplitude / brightest) / footprint, 1e-6f, 1.0f);
+// The optical depth a splat adds to its column is its share of the column's light.
+void shade(const Candidate& splat, float footprint, const Opacity& opacity, std::size_t at,
+           ShadedSplats& out) {
+    const float brightest = std::max(least_brightness, splat.brightest);
+    const float tau = splat.hiding * opacity.depth_of(splat.brightest, splat.opacity_limit);
+    const float alpha = std::clamp(tau * (splat.amplitude / brightest) / footprint, 1e-6f, 1.0f);
     const float boost = tau > 1e-4f ? tau / (1.0f - as_exp(-tau)) : 1.0f;  // what lies before it takes away
-    splats.alpha[at] = alpha;
-    splats.color[at] = dot.light * (boost / (alpha * footprint));
-    splats.id[at] = dot.id;
+    out.alpha[at] = alpha;
+    out.color[at] = splat.light * (boost / (alpha * footprint));
+    out.id[at] = splat.id;
 }
 
-// The dots of a band that are of one size.
-struct DotsOfBand {
+// The splats of a band that are of one size.
+struct BandMaker {
     const Image& band;
-    const BandDots& dots;
+    const BandSplats& splats;
     const Image &brightest, &alpha;
     const Placement& placement;
     const Opacity& opacity;
-    DotLattice lattice{band.width, band.height, dots.spacing};
-    bool of_any_thickness = dots.thickness_from <= 0.0f && std::isinf(dots.thickness_to);
+    SplatLattice lattice{band.width, band.height, splats.spacing};
+    bool of_any_thickness = splats.thickness_from <= 0.0f && std::isinf(splats.thickness_to);
 
-    // A cell's dot, where there is light and it is not thinned out.
-    std::optional<Candidate> candidate_of(const DotCell& cell) const {
-        Candidate dot;
-        dot.id = std::uint64_t(dots.index) << 48 | std::uint64_t(dots.size) << 40;
-        dot.id += lattice.number(cell);
+    // A cell's splat, where there is light and it is not thinned out.
+    std::optional<Candidate> candidate_of(const LatticeCell& cell) const {
+        Candidate splat;
+        splat.id = std::uint64_t(splats.index) << 48 | std::uint64_t(splats.size) << 40;
+        splat.id += lattice.number(cell);
         const auto place_in = [&](std::int64_t step, std::uint32_t purpose) {
-            const float random = as_uniform(placement.hash_of(dot.id, purpose));
-            return (float(step) + 0.5f + cell_jitter * (random - 0.5f)) * dots.spacing;
+            const float random = as_uniform(placement.hash_of(splat.id, purpose));
+            return (float(step) + 0.5f + cell_jitter * (random - 0.5f)) * splats.spacing;
         };
-        dot.x = place_in(cell.column, shared::PURPOSE_JITTER_X);
-        dot.y = place_in(cell.row, shared::PURPOSE_JITTER_Y);
-        if (dot.x >= float(band.width) || dot.y >= float(band.height)) return {};
+        splat.x = place_in(cell.column, shared::PURPOSE_JITTER_X);
+        splat.y = place_in(cell.row, shared::PURPOSE_JITTER_Y);
+        if (splat.x >= float(band.width) || splat.y >= float(band.height)) return {};
         if (!of_any_thickness) {
-            const float thickness = placement.thickness_at(dot.x, dot.y);
-            if (thickness < dots.thickness_from || thickness >= dots.thickness_to) return {};
+            const float thickness = placement.thickness_at(splat.x, splat.y);
+            if (thickness < splats.thickness_from || thickness >= splats.thickness_to) return {};
         }
-        const LinearSample place(band, dot.x, dot.y);
-        dot.light = {place.of(band, 0), place.of(band, 1), place.of(band, 2)};
-        dot.amplitude = std::max({dot.light.x, dot.light.y, dot.light.z});
-        if (dot.amplitude <= 0.0f) return {};
-        dot.opacity_limit = alpha.pixels.empty() ? 1.0f : place.of(alpha);
-        if (dot.opacity_limit <= 0.0f) return {};
-        dot.brightest = place.of(brightest);
-        const float kept = kept_share(dot.amplitude, dot.brightest, dots);
-        if (as_uniform(placement.hash_of(dot.id, shared::PURPOSE_DENSITY)) >= kept) return {};
-        const float gain = dots.spacing * dots.spacing / kept;
-        dot.light *= gain;
-        dot.amplitude *= gain;
-        return dot;
+        const LinearSample place(band, splat.x, splat.y);
+        splat.light = {place.of(band, 0), place.of(band, 1), place.of(band, 2)};
+        splat.amplitude = std::max({splat.light.x, splat.light.y, splat.light.z});
+        if (splat.amplitude <= 0.0f) return {};
+        splat.opacity_limit = alpha.pixels.empty() ? 1.0f : place.of(alpha);
+        if (splat.opacity_limit <= 0.0f) return {};
+        splat.brightest = place.of(brightest);
+        const float kept = kept_share(splat.amplitude, splat.brightest, splats);
+        if (as_uniform(placement.hash_of(splat.id, shared::PURPOSE_DENSITY)) >= kept) return {};
+        const float gain = splats.spacing * splats.spacing / kept;
+        splat.light *= gain;
+        splat.amplitude *= gain;
+        return splat;
     }
 
-    void make_dots(std::span<const DotCell> cells, std::size_t first, PictureSplats& out) const {
-        const float footprint = footprint_share * float(2.0 * real::pi) * dots.sigma * dots.sigma;
+    void make_splats(std::span<const LatticeCell> cells, std::size_t first, PictureSplats& out) const {
+        const float footprint = footprint_share * float(2.0 * real::pi) * splats.sigma * splats.sigma;
         PlacedBlock block;
         block.count = int(cells.size());
         for (std::size_t i = 0; i < cells.size(); ++i) {
-            Candidate dot = *candidate_of(cells[i]);
-            dot.hiding = hiding_of(dots, placement, placement.thickness_at(dot.x, dot.y));
-            block.x[i] = dot.x;
-            block.y[i] = dot.y;
-            block.random[i] = placement.hash_of(dot.id, shared::PURPOSE_DEPTH);
-            shade(dot, footprint, opacity, first + i, out.splats);
+            Candidate splat = *candidate_of(cells[i]);
+            splat.hiding = hiding_of(splats, placement, placement.thickness_at(splat.x, splat.y));
+            block.x[i] = splat.x;
+            block.y[i] = splat.y;
+            block.random[i] = placement.hash_of(splat.id, shared::PURPOSE_DEPTH);
+            shade(splat, footprint, opacity, first + i, out.splats);
         }
-        place(placement, dots, block);
+        place(placement, splats, block);
         for (std::size_t i = 0; i < cells.size(); ++i) {
-            out.splats.position[first + i] = placement.among_dots(block.x[i], block.y[i], block.z[i]);
+            out.splats.position[first + i] = placement.among_splats(block.x[i], block.y[i], block.z[i]);
             out.distance[first + i] = block.distance[i];
         }
     }
@@ -121,21 +121,21 @@ struct DotsOfBand {
 
 }  // namespace
 
-void reserve_dots(PictureSplats& set, std::int64_t count) {
+void reserve_splats(PictureSplats& set, std::int64_t count) {
     const auto size = std::size_t(count);
     for_each_array(set.splats, [&](auto& values) { values.reserve(size); });
     set.distance.reserve(size);
 }
 
-void resize_dots(PictureSplats& set, std::int64_t count) {
+void resize_splats(PictureSplats& set, std::int64_t count) {
     const auto size = std::size_t(count);
     for_each_array(set.splats, [&](auto& values) { values.resize(size); });
     set.distance.resize(size);
 }
 
-float kept_share(float amplitude, float brightest, const BandDots& dots) {
+float kept_share(float amplitude, float brightest, const BandSplats& splats) {
     constexpr float dark_sky = 0.03f;  // DEPTH 3
-    return std::min(1.0f, amplitude / (dots.threshold * (brightest + dark_sky)));
+    return std::min(1.0f, amplitude / (splats.threshold * (brightest + dark_sky)));
 }
 
 float Opacity::depth_of(float brightest, float alpha) const {
@@ -144,10 +144,10 @@ float Opacity::depth_of(float brightest, float alpha) const {
     return -as_log(1.0f - std::min(hidden, alpha));
 }
 
-void add_band(const Image& band, const BandDots& dots, const Image& brightest, const Image& alpha,
+void add_band(const Image& band, const BandSplats& splats, const Image& brightest, const Image& alpha,
               const Placement& placement, const Opacity& opacity, PictureSplats& out) {
     out.ranges.push_back(
-        add_lattice_dots(DotsOfBand{band, dots, brightest, alpha, placement, opacity}, dots.sigma, out));
+        add_on_lattice(BandMaker{band, splats, brightest, alpha, placement, opacity}, splats.sigma, out));
 }
 
 namespace {
@@ -156,7 +156,7 @@ namespace {
 void add_stars(std::span<const Star> stars, std::size_t first_number, const Placement& placement,
                const Opacity& opacity, PictureSplats& out) {
     const std::int64_t begin = out.splats.size();
-    resize_dots(out, begin + std::ssize(stars));
+    resize_splats(out, begin + std::ssize(stars));
     double sigmas = 0.0;
     for (std::size_t i = 0; i < stars.size(); ++i) {
         const Star& star = stars[i];
@@ -166,7 +166,7 @@ void add_stars(std::span<const Star> stars, std::size_t first_number, const Plac
         const float alpha =
             std::clamp(star_opacity * opacity.depth_of(peak, 1.0f) / footprint_share, 1e-3f, 1.0f);
         out.splats.position[at] =
-            placement.among_dots(star.x, star.y, spread + middle_plane(placement, star.x, star.y));
+            placement.among_splats(star.x, star.y, spread + middle_plane(placement, star.x, star.y));
         out.splats.color[at] = star.peak / alpha;
         out.splats.alpha[at] = alpha;
         out.splats.radius[at] = radius_sigmas * star.sigma;

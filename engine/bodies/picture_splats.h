@@ -1,7 +1,7 @@
-// The dots of a picture, in its own space: texels, x to the right, y up, z towards the viewer, the origin in
-// the middle. In: bands and stars; which cells of a lattice have a dot. Out: dots that show the picture from
-// the front, but for what hides what (front_fit.h), in order of the cells. The cells are gone through first,
-// so that every dot is made where it stays.
+// The splats of a picture, in its own space: texels, x to the right, y up, z towards the viewer, the origin
+// in the middle. In: bands and stars; which cells of a lattice have a splat. Out: splats that show the
+// picture from the front, but for what hides what (front_fit.h), in order of the cells. The cells are gone
+// through first, so that every splat is made where it stays.
 #pragma once
 
 #include <algorithm>
@@ -19,8 +19,8 @@
 
 namespace astrosplat {
 
-/// Dots [begin, end) of one size.
-struct DotRange {
+/// Splats [begin, end) of one size.
+struct SplatRange {
     std::int64_t begin = 0, end = 0;
     float sigma = 0.0f;  // texels; of stars: of most of them
 };
@@ -28,16 +28,16 @@ struct DotRange {
 struct PictureSplats {
     ShadedSplats
         splats;  // id: band, 254 for dust or 255 for stars from bit 48 on, size from 40, lattice cell
-    Buffer<float> distance;        // texels from the middle of the layer
-    std::vector<DotRange> ranges;  // of those that shine
-    bool absorbs = false;          // there is dust: dots of colours below 0 (blend.glsl)
+    Buffer<float> distance;          // texels from the middle of the layer
+    std::vector<SplatRange> ranges;  // of those that shine
+    bool absorbs = false;            // there is dust: splats of colours below 0 (blend.glsl)
 };
 
-/// Takes the memory of so many dots at once, which are more than there are.
-void reserve_dots(PictureSplats& set, std::int64_t count);
+/// Takes the memory of so many splats at once, which are more than there are.
+void reserve_splats(PictureSplats& set, std::int64_t count);
 
-/// Makes room for more dots, whose values are not set.
-void resize_dots(PictureSplats& set, std::int64_t count);
+/// Makes room for more splats, whose values are not set.
+void resize_splats(PictureSplats& set, std::int64_t count);
 
 /// How a picture's brightness m becomes opacity, 1 - e^-tau = kappa m^p (DEPTH 5).
 struct Opacity {
@@ -46,74 +46,74 @@ struct Opacity {
     float depth_of(float brightest, float alpha) const;
 };
 
-/// Radius of a dot of the default falloff, in its sigmas; the integral of its footprint over 2 pi sigma^2;
+/// Radius of a splat of the default falloff, in its sigmas; the integral of its footprint over 2 pi sigma^2;
 /// and its variance along an axis over sigma^2: both integrals of the Gaussian of sharpness 4.5, cut at 3
 /// sigma.
 inline constexpr float radius_sigmas = 3.0f;
 inline constexpr float footprint_share = 0.9494f;
 inline constexpr double footprint_variance = 0.8802;
 
-/// Share of a band's dots that are kept where its light's brightest channel is `amplitude`, and the picture's
-/// `brightest`.
-float kept_share(float amplitude, float brightest, const BandDots& dots);
+/// Share of a band's splats that are kept where its light's brightest channel is `amplitude`, and the
+/// picture's `brightest`.
+float kept_share(float amplitude, float brightest, const BandSplats& splats);
 
-/// Adds a band's dots. `picture` is the whole picture's light, whose brightness decides the opacity.
-void add_band(const Image& band, const BandDots& dots, const Image& brightest, const Image& alpha,
+/// Adds a band's splats. `picture` is the whole picture's light, whose brightness decides the opacity.
+void add_band(const Image& band, const BandSplats& splats, const Image& brightest, const Image& alpha,
               const Placement& placement, const Opacity& opacity, PictureSplats& out);
 
-/// Adds one dot for each Gaussian of a star, at a depth of the layer's own distribution.
+/// Adds one splat for each Gaussian of a star, at a depth of the layer's own distribution.
 void add_picture_stars(const PictureStars& stars, const Placement& placement, const Opacity& opacity,
                        PictureSplats& out);
 
-struct DotCell {
+struct LatticeCell {
     std::int64_t column, row;
 };
 
 /// Cells of a picture of width x height texels. They are numbered row by row.
-struct DotLattice {
+struct SplatLattice {
     std::int64_t columns, rows;
-    DotLattice(std::int64_t width, std::int64_t height, float spacing)
+    SplatLattice(std::int64_t width, std::int64_t height, float spacing)
         : columns(std::int64_t(float(width) / spacing) + 1),
           rows(std::int64_t(float(height) / spacing) + 1) {}
-    std::uint64_t number(const DotCell& cell) const {
+    std::uint64_t number(const LatticeCell& cell) const {
         return std::uint64_t(cell.row * columns + cell.column);
     }
 };
 
-/// Which cells of some rows have a dot.
-struct DotRows {
+/// Which cells of some rows have a splat.
+struct LatticeRows {
     std::int64_t begin = 0, columns = 0;
-    std::vector<bool> dots;  // of all cells from row `begin` on
+    std::vector<bool> filled;  // of all cells from row `begin` on
     std::int64_t count = 0;
 
     /// Calls visit(cells) for those that have, up to DepthBlock::size at once.
     template <class Visit>
     void for_each_block(const Visit& visit) const {
-        std::array<DotCell, DepthBlock::size> cells;
+        std::array<LatticeCell, DepthBlock::size> cells;
         std::size_t found = 0;
         std::int64_t left = count;
         for (std::int64_t i = 0; left > 0; ++i) {
-            if (!dots[i]) continue;
+            if (!filled[i]) continue;
             cells[found++] = {i % columns, begin + i / columns};
             if (--left > 0 && found < cells.size()) continue;
-            visit(std::span<const DotCell>(cells.data(), found));
+            visit(std::span<const LatticeCell>(cells.data(), found));
             found = 0;
         }
     }
 };
 
-/// has_dot(cell) of all cells, a few rows at a time.
-template <class HasDot>
-std::vector<DotRows> find_dots(const DotLattice& lattice, const HasDot& has_dot) {
+/// has_splat(cell) of all cells, a few rows at a time.
+template <class HasSplat>
+std::vector<LatticeRows> find_splats(const SplatLattice& lattice, const HasSplat& has_splat) {
     constexpr std::int64_t rows_at_once = 16;
-    std::vector<DotRows> parts(std::size_t((lattice.rows + rows_at_once - 1) / rows_at_once));
+    std::vector<LatticeRows> parts(std::size_t((lattice.rows + rows_at_once - 1) / rows_at_once));
     parallel_chunks(lattice.rows, rows_at_once, [&](std::int64_t begin, std::int64_t end, int) {
-        DotRows part{begin, lattice.columns, {}, 0};
-        part.dots.reserve(std::size_t((end - begin) * lattice.columns));
-        for (DotCell cell{0, begin}; cell.row < end; ++cell.row) {
+        LatticeRows part{begin, lattice.columns, {}, 0};
+        part.filled.reserve(std::size_t((end - begin) * lattice.columns));
+        for (LatticeCell cell{0, begin}; cell.row < end; ++cell.row) {
             for (cell.column = 0; cell.column < lattice.columns; ++cell.column) {
-                part.dots.push_back(has_dot(cell));
-                part.count += part.dots.back() ? 1 : 0;
+                part.filled.push_back(has_splat(cell));
+                part.count += part.filled.back() ? 1 : 0;
             }
         }
         parts[begin / rows_at_once] = std::move(part);
@@ -121,21 +121,21 @@ std::vector<DotRows> find_dots(const DotLattice& lattice, const HasDot& has_dot)
     return parts;
 }
 
-/// Appends a dot of that size for every cell of dots.lattice for which dots.candidate_of(cell), an optional,
-/// is one. dots.make_dots(cells, first, out) fills in the values of at most DepthBlock::size dots, from row
-/// `first` of the arrays on, but for their radii. Both are called on several threads.
-template <class Dots>
-DotRange add_lattice_dots(const Dots& dots, float sigma, PictureSplats& out) {
-    const std::vector<DotRows> parts =
-        find_dots(dots.lattice, [&](const DotCell& cell) { return dots.candidate_of(cell).has_value(); });
+/// Appends a splat of that size for every cell of maker.lattice for which maker.candidate_of(cell), an
+/// optional, is one. maker.make_splats(cells, first, out) fills in the values of at most DepthBlock::size
+/// splats, from row `first` of the arrays on, but for their radii. Both are called on several threads.
+template <class Maker>
+SplatRange add_on_lattice(const Maker& maker, float sigma, PictureSplats& out) {
+    const std::vector<LatticeRows> parts = find_splats(
+        maker.lattice, [&](const LatticeCell& cell) { return maker.candidate_of(cell).has_value(); });
     std::vector<std::int64_t> first{out.splats.size()};
-    for (const DotRows& part : parts) first.push_back(first.back() + part.count);
-    resize_dots(out, first.back());
+    for (const LatticeRows& part : parts) first.push_back(first.back() + part.count);
+    resize_splats(out, first.back());
     parallel_each(parts.size(), 1, [&](std::size_t i) {
         auto next = std::size_t(first[i]);
         std::fill_n(out.splats.radius.data() + next, parts[i].count, radius_sigmas * sigma);
-        parts[i].for_each_block([&](std::span<const DotCell> cells) {
-            dots.make_dots(cells, next, out);
+        parts[i].for_each_block([&](std::span<const LatticeCell> cells) {
+            maker.make_splats(cells, next, out);
             next += cells.size();
         });
     });

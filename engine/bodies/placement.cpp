@@ -57,9 +57,9 @@ std::vector<Knot> around_stars(std::span<const Star> stars) {
     return knots;
 }
 
-// Those of dots of the second finest band, and of stars their own.
+// Those of splats of the second finest band, and of stars their own.
 void set_knot_depths(Placement& placement, std::span<const Star> stars) {
-    BandDots like;
+    BandSplats like;
     like.index = 1;
     like.sigma = like.spacing = 1.0f;
     like.feature = float(4.0 * placement.scale);

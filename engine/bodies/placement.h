@@ -1,5 +1,5 @@
-// Where in depth each dot of a picture goes (DEPTH 4). In: the picture's light without stars and what the
-// scene says of its structure. Out: depths of dots, in texels towards the viewer.
+// Where in depth each splat of a picture goes (DEPTH 4). In: the picture's light without stars and what the
+// scene says of its structure. Out: depths of splats, in texels towards the viewer.
 #pragma once
 
 #include <cstdint>
@@ -23,7 +23,7 @@ namespace astrosplat {
 
 /// Scale heights by themselves, of a picture's longest side.
 inline constexpr double disk_thickness = 0.018, sheet_thickness = 0.011;
-/// Sigma of the widest dots, of the scale height; larger ones would be a fog of their own.
+/// Sigma of the widest splats, of the scale height; larger ones would be a fog of their own.
 inline constexpr double widest_sigma_share = 0.45;
 /// The same of the glow between two walls, of how far each of them stands out.
 inline constexpr double widest_glow_share = 0.06;
@@ -61,13 +61,13 @@ struct Placement {
     float height_without_bulge(float x, float y) const;
     /// The scale height over that: more than 1 where a disk is a bulge.
     float thickness_at(float x, float y) const;
-    /// Of a dot, by the shares of its column's light; `glow`: of the light between the walls, not of details.
+    /// Of a splat, by the shares of its column's light; `glow`: of the light between the walls, not details.
     DepthReach reach_at(float x, float y, std::uint32_t random, bool glow) const;
-    /// Where a place at this height is among dots: from the middle of the picture, y up.
-    glm::vec3 among_dots(float x, float y, float z) const {
+    /// Where a place at this height is among splats: from the middle of the picture, y up.
+    glm::vec3 among_splats(float x, float y, float z) const {
         return {x - 0.5f * float(picture_width), 0.5f * float(picture_height) - y, z};
     }
-    /// A hash of a dot for one purpose.
+    /// A hash of a splat for one purpose.
     std::uint32_t hash_of(std::uint64_t id, std::uint32_t purpose) const {
         return shared::as_hash(seed, std::uint32_t(id), std::uint32_t(id >> 32), purpose);
     }
@@ -75,7 +75,7 @@ struct Placement {
 
 /// `texels_per_unit`: of the surface that carries the picture; `flat`: it is a plane, so a sheet takes its
 /// relief from the picture instead. What `stars` of a disk leave around themselves stays at their depth: a
-/// profile is never quite that of their Gaussians, and would be a row of dots in depth.
+/// profile is never quite that of their Gaussians, and would be a row of splats in depth.
 Placement make_placement(const Image& brightest, const StructureParams& params, double texels_per_unit,
                          bool flat, std::uint32_t seed, std::span<const Star> stars = {});
 
@@ -105,33 +105,33 @@ NoiseStack waves(const Placement& placement, std::uint32_t field,
 /// (DEPTH 4).
 inline constexpr double whole_gain = 1.6;
 
-/// How the dots of one band are made (DEPTH 3), lengths in texels.
-struct BandDots {
+/// How the splats of one band are made (DEPTH 3), lengths in texels.
+struct BandSplats {
     int index = 0, size = 0;  // of the band; of its sizes
-    float sigma = 0.0f;       // of a dot
+    float sigma = 0.0f;       // of a splat
     float spacing = 0.0f;     // of the lattice they are drawn on
     float threshold = 0.0f;   // amplitude over brightness below which they are thinned out
     float feature = 0.0f;
     float spread = 0.0f;  // about a sheet
     bool glow = false;    // fills what is between two walls, and hides little
     float thickness_from = 0.0f,
-          thickness_to = std::numeric_limits<float>::infinity();  // H(x, y) / H where such dots belong
+          thickness_to = std::numeric_limits<float>::infinity();  // H(x, y) / H where such splats belong
 };
-/// One size for each thickness: the widest dots of a disk grow with it, or those high up in a bulge would
+/// One size for each thickness: the widest splats of a disk grow with it, or those high up in a bulge would
 /// stand alone, as smoke.
-std::vector<BandDots> band_dots(const Band& band, bool coarsest, const Placement& placement);
+std::vector<BandSplats> band_splats(const Band& band, bool coarsest, const Placement& placement);
 
-/// A block's dots with their distances from the middle of what they belong to.
+/// A block's splats with their distances from the middle of what they belong to.
 struct PlacedBlock : DepthBlock {
     float distance[size];     // texels, >= 0
     std::int32_t knot[size];  // whose depth it has; or -1
 };
 
-/// Fills z and distance from x, y and random; dots of fine bands that belong to a knot take its depth.
-void place(const Placement& placement, const BandDots& dots, PlacedBlock& block);
+/// Fills z and distance from x, y and random; splats of fine bands that belong to a knot take its depth.
+void place(const Placement& placement, const BandSplats& splats, PlacedBlock& block);
 
 /// The same without knots and without the relief or the walls that the depths are about.
-void place_freely(const Placement& placement, const BandDots& dots, PlacedBlock& block);
+void place_freely(const Placement& placement, const BandSplats& splats, PlacedBlock& block);
 
 /// Quantile `u` of sech^2(z / height) / (2 height).
 float logistic(float u, float height);

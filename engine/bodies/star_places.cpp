@@ -23,7 +23,7 @@ namespace {
 // At least so much of a star's light passes: one farther back moves along its ray to where it does.
 constexpr double least_passing = 0.95;
 
-constexpr float nearest_star = 0.95f;  // of the way to the picture's camera, as of other dots
+constexpr float nearest_star = 0.95f;  // of the way to the picture's camera, as of other splats
 
 std::optional<std::uint32_t> material_of_picture(const TexturedMesh& mesh) {
     for (std::uint32_t i = 0; i < mesh.textures.size(); ++i)
@@ -188,8 +188,8 @@ struct Hit {
     glm::vec3 depth;  // optical, of each channel
 };
 
-// The footprint of a dot as the pixel filter shows it: its own where it is wide, else a Gaussian of the same
-// integral and variance.
+// The footprint of a splat as the pixel filter shows it: its own where it is wide, else a Gaussian of the
+// same integral and variance.
 class Footprint {
   public:
     Footprint(double radius_px, double filter_px) {

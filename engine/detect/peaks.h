@@ -1,6 +1,6 @@
 // Points and compact things that stand out of a picture. In: brightness. Out: where they are; of what may be
 // a star how high it is, and how uncertain that is; of knots and star clusters, each of which is to be a ball
-// at one depth, not a column of dots, which pixels belong to which.
+// at one depth, not a column of splats, which pixels belong to which.
 #pragma once
 
 #include <cstdint>

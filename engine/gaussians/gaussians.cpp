@@ -77,8 +77,8 @@ std::vector<ShadedSplats> reduce_splats(std::span<const RenderLayer> layers,
     frame.width = frame.height = static_cast<std::int64_t>(frame_px);
     const Camera camera = camera_around(layers, world_from_camera);
     std::vector<MergedSplats> merged(layers.size());
-    std::vector<DotSettings> dots;
-    for (const RenderLayer& layer : layers) dots.emplace_back(layer.render);
+    std::vector<MergeSettings> merging;
+    for (const RenderLayer& layer : layers) merging.emplace_back(layer.render);
     std::vector<CutLayer> cuts;
     for (std::size_t i = 0; i < layers.size(); ++i) {
         const std::shared_ptr<const SplatSet> set = set_of(layers[i]);
@@ -87,7 +87,7 @@ std::vector<ShadedSplats> reduce_splats(std::span<const RenderLayer> layers,
         RenderLayer plain = layers[i];
         plain.render.lod = {};  // this camera only measures, however near it is
         cuts.push_back(
-            {&merged[i], &dots[i], make_projection(plain, static_cast<std::uint16_t>(i), camera, frame)});
+            {&merged[i], &merging[i], make_projection(plain, static_cast<std::uint16_t>(i), camera, frame)});
     }
     CutSettings settings;
     settings.budget = count;

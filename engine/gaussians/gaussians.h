@@ -51,16 +51,16 @@ struct Gaussians {
     std::size_t harmonics_each() const { return harmonics_up_to(degree); }
 };
 
-/// The Gaussian that stands for a dot of alpha 1 and radius 1.
+/// The Gaussian that stands for a splat of alpha 1 and radius 1.
 struct GaussianProfile {
-    double peak = 1.0;   // of its weight; above 1 where the dot has a flat middle
+    double peak = 1.0;   // of its weight; above 1 where the splat has a flat middle
     double sigma = 0.3;  // radii
 };
 
 /// Of all Gaussians with the integral I of w over the disc, the nearest in L2. With k = 1 / (2 sigma^2) it is
 /// (I k / pi) e^(-k t^2), and its distance from w, but for what does not depend on k, is
 ///     I^2 k / (2 pi) - (2 I k / pi) Integral of w(t) e^(-k t^2) over the disc,
-/// whose least value is searched. A constant dot gives k = ln 4; a gaussian one nearly its own sharpness.
+/// whose least value is searched. A constant splat gives k = ln 4; a gaussian one nearly its own sharpness.
 GaussianProfile nearest_gaussian(const Falloff& falloff);
 
 /// Splats that are left out or lose something, counted.
@@ -75,7 +75,7 @@ struct BakeCounts {
 };
 
 /// How a splat looks on a frame, blend and exposure applied. Values hold at the centre; elsewhere on the
-/// frame they fall as e^(-d^2 / 2), d in standard deviations. Above 1 where a dot has a flat middle, whose
+/// frame they fall as e^(-d^2 / 2), d in standard deviations. Above 1 where a splat has a flat middle, whose
 /// integral the Gaussian has.
 struct SplatAppearance {
     glm::dvec3 place{0.0};  // scene units, world space
@@ -140,7 +140,7 @@ void finish_harmonics(Gaussians& gaussians, const Camera& camera, bool encoded);
 void fit_to_view(Gaussians& gaussians, const Image& wanted, const Camera& camera,
                  const RenderSettings& settings);
 
-/// Fewer splats, by the preview's tree (merge/README.md): at most `count` dots of all layers together, which
+/// Fewer splats, by the preview's tree (merge/README.md): at most `count` of all layers together, which
 /// stand for all of them, seen from everywhere; those of layer i at place i, with its opacity in their
 /// alphas; where the layers have no more than that, a copy of them. Their size is judged along the view of
 /// `world_from_camera` (right, up, back), all as if equally far, so that no side of the model is coarser and

@@ -21,15 +21,15 @@ namespace astrosplat {
 
 namespace {
 
-/// Dots of one node, side by side along what looks longest of it.
-struct DotRow {
+/// Splats of one node, side by side along what looks longest of it.
+struct NodeRow {
     int count = 1;
     glm::vec3 step{0.0f};  // from one to the next, layer space
-    Across each;           // of one dot's part
+    Across each;           // of one splat's part
 };
 
-/// A merged layer as the camera sees it: which nodes the frame shows, how large they look, and the dots that
-/// stand for them.
+/// A merged layer as the camera sees it: which nodes the frame shows, how large they look, and the splats
+/// that stand for them.
 class SeenLayer {
   public:
     SeenLayer(const CutLayer& layer, const CutSettings& settings) : layer_(layer), settings_(settings) {
@@ -39,7 +39,7 @@ class SeenLayer {
     }
 
     const MergedSplats& merged() const { return *layer_.merged; }
-    bool is_lattice() const { return layer_.dots->lattice; }
+    bool is_lattice() const { return layer_.merging->lattice; }
     glm::vec3 to_camera(const glm::vec3& p) const { return astrosplat::to_camera(layer_.projection, p); }
 
     /// Whether the frame may show anything of the node, whose centre is p in camera space.
@@ -55,16 +55,16 @@ class SeenLayer {
             static_cast<float>(settings_.width), static_cast<float>(settings_.height));
     }
 
-    /// One dot, but for a node of a lattice that looks longer than wide: round dots in line with each other
+    /// One splat, but for a node of a lattice that looks longer than wide: round ones in line with each other
     /// would overlap in one direction and leave gaps, which add up to stripes, in the other.
-    DotRow dots_of(const NodeSums& s) const {
+    NodeRow row_of(const NodeSums& s) const {
         constexpr float most = 4.0f;
         const float xx = along(s, right_, right_), yy = along(s, up_, up_), xy = along(s, right_, up_);
         const float mean = 0.5f * (xx + yy), half = 0.5f * (xx - yy), root = std::sqrt(half * half + xy * xy);
         const float longer = mean + root, shorter = std::max(0.0f, mean - root);
-        DotRow row{1, glm::vec3(0.0f), {mean, longer}};
+        NodeRow row{1, glm::vec3(0.0f), {mean, longer}};
         if (!is_lattice() || !(longer > 0.0f)) return row;
-        const float own = static_cast<float>(layer_.dots->variance) * s.own;
+        const float own = static_cast<float>(layer_.merging->variance) * s.own;
         const float splats = s.cover * s.cover / s.squares;
         row.count = static_cast<int>(
             std::min({most, std::max(1.0f, splats), std::sqrt((longer + own) / (shorter + own)) + 0.5f}));
@@ -78,15 +78,15 @@ class SeenLayer {
         return row;
     }
 
-    /// Width of an even box with the spread of each dot's splats, px; less where the splats themselves are
-    /// wider than that spread, so that their places hardly show.
-    float size_px(const NodeSums& sums, const DotRow& row, const glm::vec3& p) const {
+    /// Width of an even box with the spread of what each one stands for, px; less where the splats
+    /// themselves are wider than that spread, so that their places hardly show.
+    float size_px(const NodeSums& sums, const NodeRow& row, const glm::vec3& p) const {
         const LayerProjection& l = layer_.projection;
         const float px_per_unit = shared::instance_of(l.lens, shared::beyond_near(l.lens, p)).px_per_unit;
         const float spread = row.each.largest;
         if (!(spread > 0.0f)) return 0.0f;
         constexpr float least = 0.01f;  // so that all are divided where nothing else limits it
-        const float own = static_cast<float>(layer_.dots->variance) * sums.own;
+        const float own = static_cast<float>(layer_.merging->variance) * sums.own;
         const float share = std::clamp(2.0f * spread / (spread + own), least, 1.0f);
         return share * share * std::sqrt(12.0f * spread) * l.radius_scale * px_per_unit;
     }
@@ -96,7 +96,7 @@ class SeenLayer {
         const ShadedSplats& splats = merged().splats;
         out.position[i] = splats.position[index];
         out.color[i] = splats.color[index];
-        out.alpha[i] = splats.alpha[index] * layer_.dots->render.opacity;
+        out.alpha[i] = splats.alpha[index] * layer_.merging->render.opacity;
         out.radius[i] = splats.radius[index];
         CloudPlace place;
         if (is_star(splats.id[index])) {
@@ -110,12 +110,12 @@ class SeenLayer {
         light_as_cloud(place, out, i);
     }
 
-    /// A node's dots, as rows from `first`.
+    /// A node's merged splats, as rows from `first`.
     void put_node(std::int64_t index, ShadedSplats& out, std::size_t first) const {
         NodeSums sums = merged().sums[index];
-        const DotRow row = dots_of(sums);
+        const NodeRow row = row_of(sums);
         const LayerProjection& l = layer_.projection;
-        const LayerRender& r = layer_.dots->render;
+        const LayerRender& r = layer_.merging->render;
         const float hybrid =
             shared::hybrid_amount(shared::axis_cosine(l.lens, l.axis_in_camera, to_camera(sums.centre)),
                                   r.hybrid_from_deg, r.hybrid_to_deg);
@@ -123,7 +123,7 @@ class SeenLayer {
         sums.cover *= share;
         sums.squares *= share;
         sums.light *= share;
-        const Dot dot = make_dot(*layer_.dots, sums, row.each, hybrid);
+        const NodeSplat splat = splat_of(*layer_.merging, sums, row.each, hybrid);
         CloudPlace place;
         place.radius = std::sqrt(sums.own);
         place.spread = glm::sqrt(glm::max(sums.spread, 0.0f) + child_spread * child_spread * sums.own);
@@ -131,9 +131,9 @@ class SeenLayer {
             const std::size_t i = first + static_cast<std::size_t>(k);
             const float steps = static_cast<float>(k) - 0.5f * static_cast<float>(row.count - 1);
             out.position[i] = sums.centre + steps * row.step;
-            out.color[i] = dot.color;
-            out.alpha[i] = dot.alpha;
-            out.radius[i] = dot.radius;
+            out.color[i] = splat.color;
+            out.alpha[i] = splat.alpha;
+            out.radius[i] = splat.radius;
             light_as_cloud(place, out, i);
         }
     }
@@ -170,8 +170,8 @@ struct Piece {
     std::int64_t index;
     float size_px;  // 0: not to be divided
     std::uint16_t layer;
-    std::uint8_t dots;  // that it becomes
-    bool is_leaf : 1;   // and was found to be one
+    std::uint8_t splats;  // that it becomes
+    bool is_leaf : 1;     // and was found to be one
     bool is_splat : 1;
 };
 
@@ -203,20 +203,20 @@ class Cutter {
     };
 
     std::optional<Round> next_round() const {
-        // Pieces of half the size are up to eight times as many, each of up to four dots on a lattice: while
-        // that leaves room, many sizes at once.
+        // Pieces of half the size are up to eight times as many, each of up to four splats on a lattice:
+        // while that leaves room, many sizes at once.
         constexpr double most_growth = 64.0;
         const double margin = in_rows_ ? 0.0625 : 0.25, least_growth = in_rows_ ? 2.0 : 1.5;
         float largest = 0.0f, largest_node = 0.0f;
-        std::int64_t dots = 0;
+        std::int64_t splats = 0;
         for (const Piece& piece : pieces_) {
-            dots += piece.dots;
+            splats += piece.splats;
             largest = std::max(largest, piece.size_px);
             if (!piece.is_leaf) largest_node = std::max(largest_node, piece.size_px);
         }
-        const std::int64_t room = settings_.budget - dots;
+        const std::int64_t room = settings_.budget - splats;
         if (room <= 0 || !(largest > settings_.least_px)) return std::nullopt;
-        const double growth = margin * static_cast<double>(settings_.budget) / static_cast<double>(dots);
+        const double growth = margin * static_cast<double>(settings_.budget) / static_cast<double>(splats);
         if (growth < least_growth || !(largest_node > settings_.least_px))
             return round_with_room(largest, room);
         const auto step = static_cast<float>(1.0 / std::cbrt(std::min(growth, most_growth)));
@@ -260,13 +260,13 @@ class Cutter {
     const MergeNode& node_of(const Piece& piece) const {
         return layers_[piece.layer].merged().tree->nodes[piece.index];
     }
-    /// Dots beside this one's that there are at most when it is divided.
+    /// Splats besides this one's that there are at most when it is divided.
     std::int64_t more_of(const Piece& piece) const {
         const MergeNode& node = node_of(piece);
-        if (node.is_leaf()) return node.end - node.first - piece.dots;
+        if (node.is_leaf()) return node.end - node.first - piece.splats;
         const SeenLayer& layer = layers_[piece.layer];
         const NodeSums* const parts = &layer.merged().sums[node.children];
-        return layer.dots_of(parts[0]).count + layer.dots_of(parts[1]).count - piece.dots;
+        return layer.row_of(parts[0]).count + layer.row_of(parts[1]).count - piece.splats;
     }
 
     /// Divided until its parts are within the limit, or leaves.
@@ -287,7 +287,7 @@ class Cutter {
             return;
         }
         if (merged.weight > 1.0f)
-            return out.push_back({piece.index, 0.0f, piece.layer, piece.dots, true, false});
+            return out.push_back({piece.index, 0.0f, piece.layer, piece.splats, true, false});
         for (std::int64_t r = node.first; r < node.end; ++r) {
             const std::int64_t splat = merged.place[merged.tree->rows[r]];
             if (splat >= 0) out.push_back({splat, 0.0f, piece.layer, 1, true, true});
@@ -300,7 +300,7 @@ class Cutter {
         if (!(sums.cover > 0.0f)) return;
         const glm::vec3 p = layer.to_camera(sums.centre);
         if (!layer.shows(sums, p)) return;
-        const DotRow row = layer.dots_of(sums);
+        const NodeRow row = layer.row_of(sums);
         add_piece({index, layer.size_px(sums, row, p), l, static_cast<std::uint8_t>(row.count), false, false},
                   limit_px, out);
     }
@@ -325,7 +325,7 @@ std::vector<ShadedSplats> cut_splats(std::span<const CutLayer> layers, const Cut
     Buffer<std::size_t> places(pieces.size());
     for (std::size_t i = 0; i < pieces.size(); ++i) {
         places[i] = counts[pieces[i].layer];
-        counts[pieces[i].layer] += pieces[i].dots;
+        counts[pieces[i].layer] += pieces[i].splats;
     }
     std::vector<ShadedSplats> cut(layers.size());
     for (std::size_t l = 0; l < layers.size(); ++l) resize(cut[l], counts[l]);

@@ -1,5 +1,5 @@
-// The finest dots that a frame has time for (merge/README.md), each in place of the splats below a node. In:
-// merged layers, a camera and a number of dots. Out: splats for the renderer, which stand for all of them.
+// The finest merged splats that a frame has time for (merge/README.md), each in place of those below a node.
+// In: merged layers, a camera and a number of splats. Out: splats for the renderer, which stand for all.
 #pragma once
 
 #include <array>
@@ -14,14 +14,14 @@
 
 namespace astrosplat {
 
-/// Optical depth of a dot: the integral of -ln(1 - alpha w) over its disc, square radii; and its inverse.
+/// Optical depth of a splat: the integral of -ln(1 - alpha w) over its disc, square radii; and its inverse.
 class DepthTable {
   public:
     explicit DepthTable(const Falloff& falloff);
 
     /// alpha in [0, 1]; what hides more than most_log counts as that.
     double depth(double alpha) const;
-    /// Alpha of a dot of this depth, at most 1.
+    /// Alpha of a splat of this depth, at most 1.
     double alpha(double depth) const;
 
   private:
@@ -33,19 +33,19 @@ class DepthTable {
     std::array<double, steps + 1> alpha_;  // over x, at equal steps of x = depth / (depth + of_faint)
 };
 
-/// Values that all dots of a layer share.
-struct DotSettings {
+/// Values that all merged splats of a layer share.
+struct MergeSettings {
     /// `lattice`: the set's splats are on one.
-    explicit DotSettings(const LayerRender& render, bool lattice = false);
+    explicit MergeSettings(const LayerRender& render, bool lattice = false);
 
     LayerRender render;
     bool lattice;
     DepthTable depths;
     double variance;  // of the falloff, square radii
-    double overlap;   // variance of a dot over that of what it stands for, where that is as wide as high
+    double overlap;   // variance of a merged one over that of what it stands for, where as wide as high
 };
 
-struct Dot {
+struct NodeSplat {        // in place of all below a node
     float radius = 0.0f;  // scene units
     float alpha = 0.0f;   // with the layer's opacity
     glm::vec3 color{0.0f};
@@ -58,15 +58,15 @@ struct Across {
 };
 
 /// `hybrid` is the share of screen (blend hybrid). Add keeps the light exactly. Where splats hide each other,
-/// n of them spread over the dot's disc at random let through what the dot does: its depth is n times that of
-/// one splat thinned to the disc.
-Dot make_dot(const DotSettings& settings, const NodeSums& sums, const Across& across, float hybrid);
+/// n of them spread over the merged one's disc at random let through what it does: its depth is n times that
+/// of one splat thinned to the disc.
+NodeSplat splat_of(const MergeSettings& settings, const NodeSums& sums, const Across& across, float hybrid);
 
-/// A splat, or a dot in place of many.
+/// A splat, or a merged one in place of many.
 struct CloudPlace {
     glm::vec3 centre{0.0f}, spread{0.0f};  // and standard deviations of its light along the axes; layer space
     glm::vec3 in_camera{0.0f};             // the centre
-    float radius = 0.0f;                   // of the splat, or of those that the dot stands for; layer space
+    float radius = 0.0f;                   // of the splat, or of those that it stands for; layer space
     float alpha = 0.0f;
     glm::vec3 color{0.0f};
 };
@@ -78,19 +78,19 @@ float cloud_light(const LayerProjection& layer, const CloudPlace& place);
 
 struct CutLayer {
     const MergedSplats* merged = nullptr;
-    const DotSettings* dots = nullptr;
+    const MergeSettings* merging = nullptr;
     LayerProjection projection;  // of make_projection; its splats are not used
 };
 
 struct CutSettings {
-    std::int64_t budget = 0;             // dots together, at most
+    std::int64_t budget = 0;             // splats together, at most
     float least_px = 1.5f;               // what looks smaller is not divided
     std::int64_t width = 0, height = 0;  // px of the frame
 };
 
-/// The splats of each layer: nodes as dots, and what looks large down to the splats themselves; nothing that
-/// the frame does not show. Divides what looks largest while the budget has room. Alphas have
-/// the layer's opacity in them. The same for any thread count.
+/// The splats of each layer: of nodes merged ones, and what looks large down to its own; nothing that the
+/// frame does not show. Divides what looks largest while the budget has room. Alphas have the layer's opacity
+/// in them. The same for any thread count.
 std::vector<ShadedSplats> cut_splats(std::span<const CutLayer> layers, const CutSettings& settings);
 
 }  // namespace astrosplat

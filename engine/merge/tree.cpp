@@ -202,7 +202,7 @@ MergedSplats merge_splats(const MergeSource& source, ShadedSplats splats, const 
     const Buffer<MergeNode>& nodes = merged.tree->nodes;
     claim_memory(
         static_cast<std::int64_t>(nodes.size() * sizeof(NodeSums) + set.id.size() * sizeof(std::int64_t)),
-        "the merged dots of a preview");
+        "the merged splats of a preview");
     merged.place = places_of_rows(set, splats);
     merged.splats = std::move(splats);
     merged.sums.resize(nodes.size());

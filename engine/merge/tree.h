@@ -1,4 +1,4 @@
-// A tree over the positions of a set, so that a few dots can stand for many (merge/README.md), and what the
+// A tree over the positions of a set, so that a few splats can stand for many (merge/README.md), and what the
 // splats below each of its nodes add up to after a look. In: SplatSet, then its shaded splats. Out: its rows
 // along a Morton curve and the nodes over them; MergedSplats, of which any cut (cut.h) has all the light.
 #pragma once

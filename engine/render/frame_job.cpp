@@ -106,14 +106,14 @@ void prepare(FrameJob& job, RenderCache::State& cache) {
         projection.cancelled = job.progress.cancelled;
         if (projection.lod_limit_px > 0.0f)
             projection.lod = &cache.lod(render.falloff, finest_level(render.lod.max_children), job.progress);
-        if (layers[l].stars) projection.star_dots = star_dots(*layers[l].stars, footprints);
+        if (layers[l].stars) projection.star_splats = star_splats(*layers[l].stars, footprints);
         job.projections.push_back(projection);
         job.fold_layers.push_back(
             {&footprints, render.blend, render.holdout, render.absorb, layers[l].absorbs});
     }
     float largest = largest_light(layers, job.progress);
     for (const LayerProjection& projection : job.projections)
-        if (!projection.star_dots.empty()) largest = std::max(largest, largest_star_light(projection));
+        if (!projection.star_splats.empty()) largest = std::max(largest, largest_star_light(projection));
     if (job.environment) largest = std::max(largest, job.environment->largest);
     job.fold.stop = stop_threshold(largest, settings.exposure);
     job.fold.lens = make_lens(camera);

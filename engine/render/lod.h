@@ -1,7 +1,7 @@
 // Close-ups (DESIGN 7): a splat too large on screen becomes N = 4^level smaller ones in its own volume, fixed
 // in layer space. In: projected diameter, alpha, blend. Out: levels to draw, their alphas, where the children
 // lie, and their light's structure, e^(strength n) with n octaves of noise between the splat's size and
-// theirs (DEPTH 6). A star's dot is only the telescope's blur, so its image grows less.
+// theirs (DEPTH 6). A star's splat is only the telescope's blur, so its image grows less.
 #pragma once
 
 #include <algorithm>
@@ -109,9 +109,9 @@ float largest_child_light(float strength);
 /// The most that the colour of a star close by is multiplied by.
 inline constexpr float brightest_near_star = 16.0f;
 
-/// Radius of the image of a star at a share `nearness`, in (0, 1), of lod.star_distance, over that of a dot
+/// Radius of the image of a star at a share `nearness`, in (0, 1), of lod.star_distance, over that of a splat
 /// there. From that distance on the image grows only with the fourth root of 1 / nearness, as a brighter star
-/// in a photograph is a little larger, until its light, which is the dot's, is brightest_near_star times as
+/// in a photograph is a little larger, until its light, which is the splat's, is brightest_near_star times as
 /// dense. 1 where nearness is 1.
 inline float near_star_size(float nearness) {
     const float root = std::sqrt(nearness);

@@ -272,7 +272,7 @@ float support_px(const LayerProjection& layer, const ScreenSplat& splat, const B
 
 void project_most(const LayerProjection& layer, std::int64_t begin, std::int64_t end, const ScreenRect& rect,
                   Buffer<ScreenSplat>& out, Buffer<Shape>& shapes, Buffer<std::int64_t>& rest) {
-    if (!layer.star_dots.empty()) return project_stars(layer, begin, end, rect, out, shapes);
+    if (!layer.star_splats.empty()) return project_stars(layer, begin, end, rect, out, shapes);
     if (!layer.splats->stretch.empty()) {
         for (std::int64_t i = begin; i < end; ++i)
             project_stretched(layer, splat_in_camera(layer, i), i, rect, out, shapes);

@@ -23,8 +23,8 @@ struct ScreenRect {
     float x0, y0, x1, y1;
 };
 
-/// One of the gaussians that the image of a star is made of (star_dots()).
-struct StarDot {
+/// One of the gaussians that the image of a star is made of (star_splats()).
+struct StarSplat {
     float share = 1.0f;      // of the star's light
     float per_light = 1.0f;  // colour that gives a light of 1 over all pixels
     float radius_px = 1.0f;  // of the falloff
@@ -54,7 +54,7 @@ struct LayerProjection {
     std::uint16_t layer = 0;
     const LodTable* lod = nullptr;                 // set when lod_limit_px > 0
     const std::atomic<bool>* cancelled = nullptr;  // as in Progress: one splat may have millions of children
-    std::vector<StarDot> star_dots;                // of a layer of stars; else empty
+    std::vector<StarSplat> star_splats;            // of a layer of stars; else empty
     StarPixels star_pixels;                        // theirs, as in RenderLayer
 };
 
@@ -71,7 +71,7 @@ inline glm::vec3 to_camera(const LayerProjection& layer, const glm::vec3& p) {
 float structure_of(const LayerProjection& layer, const glm::vec3& position, const glm::vec3& color,
                    float alpha);
 
-/// Radius of the image of a star at `position` in camera space over that of its dot: less than 1 within
+/// Radius of the image of a star at `position` in camera space over that of its splat: less than 1 within
 /// lod.star_distance (near_star_size() of render/lod.h). Its colour is divided by the square.
 float near_star_size(const LayerProjection& layer, const glm::vec3& position);
 
@@ -94,12 +94,12 @@ void project_rows(const LayerProjection& layer, std::span<const std::int64_t> ro
 
 // ---- for stars
 
-/// The dots that a star's image is made of, the core first; `footprint` is that of a gaussian falloff.
+/// The splats that a star's image is made of, the core first; `footprint` is that of a gaussian falloff.
 ///
 /// Moffat's (1 + r^2)^-b and a spike's e^-|x| are mixtures of gaussians, by the gamma distribution of their
 /// inverse variance and the exponential one of their variance; here in steps of a factor of two. The core's
 /// gaussian and the pixel filter's together have the deviation core_px, as far as the filter is not wider.
-std::vector<StarDot> star_dots(const StarPsf& psf, const FootprintTable& footprint);
+std::vector<StarSplat> star_splats(const StarPsf& psf, const FootprintTable& footprint);
 
 /// As project() does. A star at r from the layer's origin and c from the eye has (r / c)^2 of its colour as
 /// light over all pixels, c no less than near and near_fade; at infinity just its colour. Wings and spikes

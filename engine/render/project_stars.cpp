@@ -13,12 +13,12 @@
 namespace astrosplat {
 namespace {
 
-constexpr float faintest_peak = 1.0f / 16384.0f;  // of a wing's or a spike's dot, scene light
+constexpr float faintest_peak = 1.0f / 16384.0f;  // of a wing's or a spike's splat, scene light
 constexpr float infinity_from = 1e15f;            // scene units
 
 /// A gaussian of these deviations, px, the pixel filter included, along (x, y) and across.
-StarDot make_dot(double share, double along_px, double across_px, double x, double y,
-                 const FootprintTable& footprint) {
+StarSplat make_splat(double share, double along_px, double across_px, double x, double y,
+                     const FootprintTable& footprint) {
     // No narrower than a pixel's filter and a little: light is right at every radius, peaks stay in range.
     const double filter = double(footprint.pixel_filter_px), least = 0.25;
     const auto radius = [&](double deviation) {
@@ -26,14 +26,14 @@ StarDot make_dot(double share, double along_px, double across_px, double x, doub
         return std::fmax(own / std::sqrt(double(footprint.variance)), least);
     };
     const double a = radius(along_px), b = radius(across_px);
-    StarDot dot;
-    dot.share = static_cast<float>(share);
-    dot.per_light = static_cast<float>(1.0 / (double(footprint.integral) * a * b));
-    dot.radius_px = static_cast<float>(a);
-    dot.is_round = a == b;
-    dot.shape = {static_cast<float>(x * a), static_cast<float>(-y * b), static_cast<float>(y * a),
-                 static_cast<float>(x * b)};
-    return dot;
+    StarSplat splat;
+    splat.share = static_cast<float>(share);
+    splat.per_light = static_cast<float>(1.0 / (double(footprint.integral) * a * b));
+    splat.radius_px = static_cast<float>(a);
+    splat.is_round = a == b;
+    splat.shape = {static_cast<float>(x * a), static_cast<float>(-y * b), static_cast<float>(y * a),
+                   static_cast<float>(x * b)};
+    return splat;
 }
 
 float square(float x) { return x * x; }
@@ -69,18 +69,18 @@ StarLight star_light(const LayerProjection& layer, const glm::vec3& p, std::int6
 
 float brightest(const glm::vec3& light) { return std::max({light.x, light.y, light.z}); }
 
-/// Which share of a dot of a wing or a spike is drawn.
-float shown_share(const StarDot& dot, float light) {
+/// Which share of a splat of a wing or a spike is drawn.
+float shown_share(const StarSplat& splat, float light) {
     return real::smoothstep(
-        std::clamp((light * dot.share * dot.per_light / faintest_peak - 1.0f) / 3.0f, 0.0f, 1.0f));
+        std::clamp((light * splat.share * splat.per_light / faintest_peak - 1.0f) / 3.0f, 0.0f, 1.0f));
 }
 
 }  // namespace
 
-std::vector<StarDot> star_dots(const StarPsf& psf, const FootprintTable& footprint) {
+std::vector<StarSplat> star_splats(const StarPsf& psf, const FootprintTable& footprint) {
     const double core_px = psf.core_px;
     const double wings = psf.wing_share, spikes = std::min(double(psf.spike_share), 1.0 - wings);
-    std::vector<StarDot> dots{make_dot(1.0 - wings - spikes, core_px, core_px, 1.0, 0.0, footprint)};
+    std::vector<StarSplat> splats{make_splat(1.0 - wings - spikes, core_px, core_px, 1.0, 0.0, footprint)};
     const auto mixture = [](int from, int to, const auto& density) {
         std::vector<std::pair<double, double>> parts;  // value, share
         double sum = 0.0;
@@ -95,10 +95,10 @@ std::vector<StarDot> star_dots(const StarPsf& psf, const FootprintTable& footpri
     // A part no wider than the core is added to it: equal splats of one star would have no order.
     const auto add = [&](double share, double along_px, double across_px, double turn) {
         if (along_px <= core_px)
-            dots[0].share += static_cast<float>(share);
+            splats[0].share += static_cast<float>(share);
         else
-            dots.push_back(
-                make_dot(share, along_px, across_px, real::cos(turn), -real::sin(turn), footprint));
+            splats.push_back(
+                make_splat(share, along_px, across_px, real::cos(turn), -real::sin(turn), footprint));
     };
     if (wings > 0.0)
         for (const auto& [t, share] :
@@ -107,8 +107,8 @@ std::vector<StarDot> star_dots(const StarPsf& psf, const FootprintTable& footpri
             add(wings * share, deviation, deviation, 0.0);
         }
     if (!(spikes > 0.0) || psf.vanes < 1) {
-        dots[0].share += static_cast<float>(spikes);
-        return dots;
+        splats[0].share += static_cast<float>(spikes);
+        return splats;
     }
     const int lines = psf.vanes % 2 == 0 ? psf.vanes / 2 : psf.vanes;
     for (int line = 0; line < lines; ++line) {
@@ -116,7 +116,7 @@ std::vector<StarDot> star_dots(const StarPsf& psf, const FootprintTable& footpri
         for (const auto& [v, share] : mixture(-4, 2, [](double v) { return v * real::exp(-v); }))
             add(spikes * share / lines, double(psf.spike_px) * std::sqrt(2.0 * v), core_px, turn);
     }
-    return dots;
+    return splats;
 }
 
 void project_stars(const LayerProjection& layer, std::int64_t begin, std::int64_t end, const ScreenRect& rect,
@@ -139,15 +139,15 @@ void project_stars(const LayerProjection& layer, std::int64_t begin, std::int64_
         splat.hybrid = 0;
         const float light = brightest(star.light);
         if (!(light > 0.0f) || !(splat.opacity > 0.0f)) continue;
-        const auto draw = [&](const StarDot& dot, float share) {
+        const auto draw = [&](const StarSplat& part, float share) {
             ScreenSplat drawn = splat;
-            Shape shape = dot.shape;
-            float light_here = share * dot.per_light,
-                  reach_px = dot.radius_px * layer.reach + layer.margin_px;
-            if (!dot.is_round) {
+            Shape shape = part.shape;
+            float light_here = share * part.per_light,
+                  reach_px = part.radius_px * layer.reach + layer.margin_px;
+            if (!part.is_round) {
                 if (sphere) {
                     const SphereAxes axes = sphere_axes(lens, double(splat.x_px), double(splat.y_px));
-                    shape = onto_sphere(axes, dot.shape);
+                    shape = onto_sphere(axes, part.shape);
                     light_here *= static_cast<float>(frame_area(axes));
                 }
                 reach_px = shape_support_px(shape, {layer.reach, layer.margin_px, layer.variance});
@@ -157,21 +157,21 @@ void project_stars(const LayerProjection& layer, std::int64_t begin, std::int64_
                                          rect.y1))
                 return;
             for (int k = 0; k < 3; ++k) drawn.color[k] = star.light[k] * light_here;
-            drawn.radius_px = dot.radius_px;
-            if (!dot.is_round) {
+            drawn.radius_px = part.radius_px;
+            if (!part.is_round) {
                 set_shape_number(drawn, static_cast<std::uint32_t>(shapes.size()));
                 shapes.push_back(shape);
             }
             push_places(drawn, period, support, rect, out);
         };
-        float core_share = layer.star_dots[0].share;
-        for (std::size_t d = 1; d < layer.star_dots.size(); ++d) {
-            const StarDot& dot = layer.star_dots[d];
-            const float shown = shown_share(dot, light);
-            core_share += dot.share * (1.0f - shown);
-            if (shown > 0.0f) draw(dot, dot.share * shown);
+        float core_share = layer.star_splats[0].share;
+        for (std::size_t d = 1; d < layer.star_splats.size(); ++d) {
+            const StarSplat& part = layer.star_splats[d];
+            const float shown = shown_share(part, light);
+            core_share += part.share * (1.0f - shown);
+            if (shown > 0.0f) draw(part, part.share * shown);
         }
-        draw(layer.star_dots[0], core_share);
+        draw(layer.star_splats[0], core_share);
     }
 }
 
@@ -180,7 +180,7 @@ float largest_star_light(const LayerProjection& layer) {
     for (std::int64_t i = 0; i < layer.splats->size(); ++i)
         largest = std::max(
             largest, brightest(star_light(layer, to_camera(layer, layer.splats->position[i]), i).light));
-    return largest * layer.star_dots[0].per_light * layer.opacity;
+    return largest * layer.star_splats[0].per_light * layer.opacity;
 }
 
 }  // namespace astrosplat

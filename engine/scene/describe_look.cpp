@@ -137,15 +137,15 @@ void describe_look(const Describer& d, Look& look) {
 }
 
 void describe_render(const Describer& d, LayerRender& r) {
-    const Describer dot = d.shown_in("Mixing", "Dot profile"), mixing = d.shown_in("Mixing", "Blend"),
+    const Describer splat = d.shown_in("Mixing", "Splat profile"), mixing = d.shown_in("Mixing", "Blend"),
                     detail = d.shown_in("Mixing", "Level of detail");
-    dot(r.falloff.shape, "falloff", "Dot profile", "", "How a splat fades from its centre to its rim.",
-        shown_as("Shape"));
-    dot(r.falloff.core, "core", "Core", "of the radius", "Trapezoid: the flat part.", range(0, 1),
-        only_with("falloff", {"trapezoid"}));
-    dot(r.falloff.sharpness, "sharpness", "Sharpness", "",
-        "Gaussian and exponential: how fast the splat fades.", within(1e-6, 1e6), slider(0.5, 20),
-        only_with("falloff", {"gaussian", "exponential"}));
+    splat(r.falloff.shape, "falloff", "Splat profile", "", "How a splat fades from its centre to its rim.",
+          shown_as("Shape"));
+    splat(r.falloff.core, "core", "Core", "of the radius", "Trapezoid: the flat part.", range(0, 1),
+          only_with("falloff", {"trapezoid"}));
+    splat(r.falloff.sharpness, "sharpness", "Sharpness", "",
+          "Gaussian and exponential: how fast the splat fades.", within(1e-6, 1e6), slider(0.5, 20),
+          only_with("falloff", {"gaussian", "exponential"}));
     mixing(r.blend, "blend", "Blend", "", "How splats mix with what lies behind.");
     mixing(r.opacity, "opacity", "Opacity", "", "Of the whole layer.", range(0, 1));
     mixing(r.hybrid_from_deg, "hybrid.from_deg", "Over up to", "degrees",

@@ -62,7 +62,7 @@ SetSample sample_bodies(const SetCache& cache, const SourceParams& source, const
     BodiesPlan plan =
         plan_bodies(source, load_meshes(cache, source, progress, most_texels_read(source, room_for_bodies())),
                     layer_name);
-    const std::int64_t dots = expected_dots(plan.meshes, plan.structure);
+    const std::int64_t splats = expected_splats(plan.meshes, plan.structure);
     const std::int64_t texels = largest_picture(plan.meshes);
     const double reading = seconds_since(start);
     reduce_to(plan.meshes, rows_of(texels), layer_name);
@@ -73,7 +73,7 @@ SetSample sample_bodies(const SetCache& cache, const SourceParams& source, const
     sample.set = make_bodies(std::move(plan.meshes), plan.structure, resolved_seed(source.seed, layer_name),
                              layer_name, progress);
     sample.making_seconds = reading + smaller * seconds_since(making);
-    sample.splats = source.splats > 0 ? std::min(dots, source.splats) : dots;
+    sample.splats = source.splats > 0 ? std::min(splats, source.splats) : splats;
     const auto narrower = static_cast<float>(1.0 / std::sqrt(smaller));
     for (float& radius : sample.set.radius) radius *= narrower;
     return sample;

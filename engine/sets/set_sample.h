@@ -1,5 +1,5 @@
 // A hundredth of a layer's splats, to tell from what all of them will take. In: what load_source takes. Out:
-// rows of a set that is kept, or of a splat file; of a set that is not kept yet the dots of a smaller picture
+// rows of a set that is kept, or of a splat file; of a set that is not kept yet those of a smaller picture
 // or of a coarser lattice, as wide as those of the whole set, and how long the whole will take to make.
 #pragma once
 

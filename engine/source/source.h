@@ -216,7 +216,7 @@ struct StructureParams {
     double flare = 0.0;   // disk: scale height at the rim over that in the middle, less 1
     double warp = 0.0;    // disk: of the width, how far its plane rises at the rim, and sinks opposite
     Stars stars =
-        Stars::automatic;  // found and made into single dots; automatic: unless prepare removes them
+        Stars::automatic;  // found and made into single splats; automatic: unless prepare removes them
     std::optional<double>
         dust;               // share of the dark details that absorb; empty: four fifths in a disk, else 0
     double opacity = 0.55;  // power of brightness that opacity grows with

@@ -104,10 +104,10 @@ TEST(Density, AutomaticVoxelsKeepAboutCount) {
 }
 
 // Vertical matching, from scene text to pixels: a plane whose picture has one alpha everywhere, seen from the
-// front, shows that alpha, whatever the dots' size and falloff and however they lie across the plane.
+// front, shows that alpha, whatever the splats' size and falloff and however they lie across the plane.
 
 constexpr const char* falloffs[] = {"constant", "linear", "trapezoid", "gaussian", "exponential"};
-// Scene units; corners and centres of voxels of 0.074. Smaller dots of the sharpest falloff could not cover
+// Scene units; corners and centres of voxels of 0.074. Smaller splats of the sharpest falloff could not cover
 // 0.9 of the plane with an alpha of at most 1 each.
 constexpr double radii[] = {0.15, 0.2, 0.3};
 struct Across {
@@ -202,7 +202,7 @@ TEST_P(VerticalMatching, FrontViewUnderAddShowsAlphaTimesColour) {
 
 INSTANTIATE_TEST_SUITE_P(Alphas, VerticalMatching, ::testing::Values(0.1, 0.3, 0.5, 0.7, 0.9));
 
-// Near and far: dots keep their light at every distance, with and without level of detail, and nothing pops
+// Near and far: splats keep their light at every distance, with and without level of detail, and nothing pops
 // when the camera flies through them.
 
 constexpr const char* header =
@@ -233,10 +233,10 @@ resolution = [{}, {}]
 fov = 53.13010235415598
 {}
 [[layer]]
-name = "dots"
+name = "splats"
 [layer.source]
 kind = "splats"
-file = "dots.pda"
+file = "splats.pda"
 [layer.render]
 {}
 {}
@@ -247,7 +247,7 @@ file = "dots.pda"
 // From 2000 to 4 scene units away: radii of 0.024 to 12 px, at places that fall anywhere on the pixel grid.
 TEST(Distance, EveryFalloffKeepsItsLight) {
     const TempFolder folder;
-    folder.file("dots.pda", fmt::format(header, 1) + "0.013 0.021 0 0.5 0.25 1 0.5 0.75\n");
+    folder.file("splats.pda", fmt::format(header, 1) + "0.013 0.021 0 0.5 0.25 1 0.5 0.75\n");
     for (const Shape& shape : shapes) {
         Pipeline pipeline(scene_of(
             folder,
@@ -266,14 +266,14 @@ TEST(Distance, EveryFalloffKeepsItsLight) {
 }
 
 // 105 separate splats of 28 px; level of detail splits them into 64 children each. A long lens (1024 px): far
-// off the axis a ball of children is seen stretched, where a dot stays round, and shows a little more light.
+// off the axis a ball of children is seen stretched, where a splat stays round, and shows slightly more.
 TEST(Distance, LevelOfDetailKeepsTheLightInPerspective) {
     const TempFolder folder;
-    std::string dots = fmt::format(header, 105);
+    std::string splats = fmt::format(header, 105);
     for (int i = 0; i < 105; ++i)
-        dots += fmt::format("{} {} {} 0.9 0.5 0.2 {} 3.5\n", 8.5 * (i % 15 - 7), 8.5 * (i / 15 - 3),
-                            i * 37 % 5 - 2, i % 2 ? 0.3 : 0.48);
-    folder.file("dots.pda", dots);
+        splats += fmt::format("{} {} {} 0.9 0.5 0.2 {} 3.5\n", 8.5 * (i % 15 - 7), 8.5 * (i / 15 - 3),
+                              i * 37 % 5 - 2, i % 2 ? 0.3 : 0.48);
+    folder.file("splats.pda", splats);
     for (const Shape& shape : shapes) {
         for (const char* blend : {"over", "add"}) {
             const auto render = [&](int max_px) {
@@ -292,7 +292,7 @@ TEST(Distance, LevelOfDetailKeepsTheLightInPerspective) {
 }
 
 // From a mean overlap of 4 on, a sheet sends the same light from near and far (DESIGN 7, known limit).
-TEST(Distance, SheetOfEnoughDotsLooksTheSameFromAfar) {
+TEST(Distance, SheetOfEnoughSplatsLooksTheSameFromAfar) {
     const TempFolder folder;
     write_float_tiff(folder / "sheet.tif", 2, 2, [](int, int) { return glm::vec4(0.9f, 0.5f, 0.2f, 0.8f); });
     for (const Shape& shape : shapes) {
@@ -352,7 +352,7 @@ double largest_jump(const TempFolder& folder, const std::string& camera, const s
 // that popped would change it by the same amount however small the steps.
 TEST(NearFade, NothingPopsAsTheCameraPassesThrough) {
     const TempFolder folder;
-    folder.file("dots.pda",
+    folder.file("splats.pda",
                 fmt::format(header, 3) +
                     "0 0 0 1 0.5 0.2 0.8 0.5\n0.4 0.1 -0.6 1 1 0.5 0.3 0.4\n-0.1 0.2 0.9 1 1 1 0.5 0.3\n");
     for (const char* camera : {"", "near_fade = 0.8", "near = 0.2"}) {
@@ -366,7 +366,7 @@ TEST(NearFade, NothingPopsAsTheCameraPassesThrough) {
 // Children fade over their own, small radius: smaller steps show it.
 TEST(NearFade, NothingPopsInACloudOfChildren) {
     const TempFolder folder;
-    folder.file("dots.pda", fmt::format(header, 1) + "0 0 0 1 0.5 0.2 0.8 0.5\n");
+    folder.file("splats.pda", fmt::format(header, 1) + "0 0 0 1 0.5 0.2 0.8 0.5\n");
     const std::string keys = "lod = { max_px = 200.0 }";
     const double coarse = largest_jump(folder, "", keys, 0.1, 0.0, 100);
     const double fine = largest_jump(folder, "", keys, 0.1, 0.0, 200);

@@ -95,7 +95,7 @@ double difference(const Image& image, Mapping mapping, int way, bool encoded) {
 
 void expect_reads_right(const Image& image, Mapping mapping, bool encoded = false) {
     const double upright = difference(image, mapping, 0, encoded);
-    EXPECT_LT(upright, 0.06);  // what the dots blur at the letter's edges
+    EXPECT_LT(upright, 0.06);  // what the splats blur at the letter's edges
     for (int way = 1; way < 8; ++way)
         EXPECT_GT(difference(image, mapping, way, encoded), 3.0 * upright) << "way " << way;
 }

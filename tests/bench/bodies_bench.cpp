@@ -30,14 +30,14 @@ void bodies(benchmark::State& state) {
     release_spare_pages();
     const std::int64_t before = resident_bytes();
     forget_peak();
-    std::int64_t dots = 0;
-    for (auto _ : state) dots = make_bodies(meshes, params, 1, "galaxy").size();
+    std::int64_t splats = 0;
+    for (auto _ : state) splats = make_bodies(meshes, params, 1, "galaxy").size();
     const auto texels = static_cast<double>(width * height);
     state.counters["texel_B"] = static_cast<double>(peak_bytes() - before) / texels;
     state.counters["told_B"] =
-        static_cast<double>(bodies_memory_bytes(meshes, expected_dots(meshes, params))) / texels;
+        static_cast<double>(bodies_memory_bytes(meshes, expected_splats(meshes, params))) / texels;
     state.counters["Mpx"] = 1e-6 * texels;
-    state.counters["Mdots"] = 1e-6 * static_cast<double>(dots);
+    state.counters["Msplats"] = 1e-6 * static_cast<double>(splats);
 }
 
 BENCHMARK(bodies)->Arg(1920)->Arg(3840)->Unit(benchmark::kMillisecond)->UseRealTime()->Iterations(1);

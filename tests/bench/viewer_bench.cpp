@@ -363,8 +363,8 @@ void measure_session(const ViewerOptions& options, const GlInfo& gl, const Parts
     }
 }
 
-/// As many dots as hold 24 frames a second while the scene is orbited.
-std::int64_t fluid_dots(const ViewerOptions& options, const GlInfo& gl) {
+/// As many splats as hold 24 frames a second while the scene is orbited.
+std::int64_t fluid_splats(const ViewerOptions& options, const GlInfo& gl) {
     Viewer viewer(options, gl, 960, 540, false);
     viewer.session().view.settle = false;
     viewer.run_until([&] {
@@ -388,13 +388,13 @@ void save_picture(const Image& image, const std::filesystem::path& file) {
     write_image(file, image.width, image.height, rgba);
 }
 
-/// What moves beside the final frame (issue 18, 1), with `dots`, or where that is 0 with those of 24 frames a
-/// second.
-void measure_truths(const ViewerOptions& options, const GlInfo& gl, std::int64_t dots,
+/// What moves beside the final frame (issue 18, 1), with `shown` splats, or where that is 0 with those of 24
+/// frames a second.
+void measure_truths(const ViewerOptions& options, const GlInfo& gl, std::int64_t shown,
                     const std::filesystem::path& pictures) {
-    if (dots == 0) dots = fluid_dots(options, gl);
+    if (shown == 0) shown = fluid_splats(options, gl);
     for (const test::NamedView& view : test::preview_views()) {
-        const test::ViewTruth truth = test::measure_truth(view, dots, options.cache);
+        const test::ViewTruth truth = test::measure_truth(view, shown, options.cache);
         if (!pictures.empty()) {
             save_picture(truth.preview, pictures / (std::string(view.name) + ", preview.png"));
             save_picture(truth.final, pictures / (std::string(view.name) + ", final.png"));
@@ -405,7 +405,7 @@ void measure_truths(const ViewerOptions& options, const GlInfo& gl, std::int64_t
             fmt::format("{:+.1f} %, {} of {} blocks{}", 100.0 * (truth.light - 1.0), truth.near,
                         truth.bright_blocks,
                         view.is_edge ? fmt::format(", {:+.0f} %", 100.0 * (truth.thickness - 1.0)) : ""),
-            fmt::format("{} of {} thousand splats", truth.dots / 1000, truth.splats / 1000));
+            fmt::format("{} of {} thousand splats", truth.shown / 1000, truth.splats / 1000));
     }
 }
 
@@ -479,14 +479,14 @@ int run(int argc, char** argv) {
     ViewerOptions options;
     Parts wanted;
     bool opengl = false;
-    std::int64_t splats = 44'000'000, dots = 0;
+    std::int64_t splats = 44'000'000, shown = 0;
     std::string pictures, size = "3840x2160", cache = default_cache_folder().string();
     CLI::App app("Measures the viewer: the table of issue 4.");
     app.add_option("scene", options.input, "default: the demo");
     app.add_option("--cache", cache, "folder of generated sets");
     app.add_option("--only", wanted.names, "some of: start orbit slider scrub settle window idle truth");
     app.add_option("--pictures", pictures, "folder for the frames of truth");
-    app.add_option("--dots", dots, "of the previews of truth; default: those that hold 24 frames a second");
+    app.add_option("--shown", shown, "of the previews of truth; default: those that hold 24 frames a second");
     app.add_flag("--opengl", opengl, "only OpenGL's preview, of synthetic splats");
     app.add_option("--splats", splats, "with --opengl");
     app.add_option("--size", size, "with --opengl: px");
@@ -508,7 +508,7 @@ int run(int argc, char** argv) {
         return 0;
     }
     measure_session(options, context.info(), wanted, started, processor_started);
-    if (wanted("truth")) measure_truths(options, context.info(), dots, pictures);
+    if (wanted("truth")) measure_truths(options, context.info(), shown, pictures);
     return 0;
 }
 

@@ -16,7 +16,7 @@ namespace astrosplat::test {
 
 namespace fs = std::filesystem;
 
-/// `count` soft dots in a cube of side 4, the same on every run.
+/// `count` soft splats in a cube of side 4, the same on every run.
 inline std::string cube_of_splats(int count) {
     std::string text = fmt::format(
         "ATTRIBUTES\n position rgbPP opacityPP radiusPP\nTYPES\n V V R R\nNUMBER_OF_PARTICLES: {}\nBEGIN "

@@ -46,7 +46,7 @@ class Export : public SceneTest {
     }
 };
 
-// sharpness 4.5: found by an independent search for the nearest gaussian of the dot's integral
+// sharpness 4.5: found by an independent search for the nearest gaussian of the splat's integral
 constexpr double peak = 1.009324, sigma = 0.323295;
 
 TEST_F(Export, PlyIsWhatReadersOfGaussiansExpect) {
@@ -214,8 +214,8 @@ std::array<double, 3> sum_of(const VdbGrid& grid) {
     return sum;
 }
 
-/// The sum of alpha times area over the dots of a .pda, area the integral of a gaussian dot of sharpness 4.5,
-/// and that times red.
+/// The sum of alpha times area over the splats of a .pda, area the integral of a gaussian splat of
+/// sharpness 4.5, and that times red.
 std::pair<double, double> depth_and_red(const std::string& pda) {
     const double end = std::exp(-4.5);  // shifted and scaled so that it ends at 0
     const double area = std::numbers::pi * ((1.0 - end) / 4.5 - end) / (1.0 - end);
@@ -249,7 +249,7 @@ TEST_F(ExportVolume, IsWhatVolumeRenderersExpect) {
 }
 
 TEST_F(ExportVolume, HoldsTheLayersLightAtTheFramesExposure) {
-    // Faint, so that a dot hides its alpha times its area within a thousandth.
+    // Faint, so that a splat hides its alpha times its area within a thousandth.
     const std::vector<std::string> faint = {"--layer", "stars", "--voxel-size",
                                             "0.08",    "--set", "layer.stars.render.opacity=0.01"};
     const auto [depth, red] = depth_and_red(text_of(folder / "stars.pda"));
@@ -264,7 +264,7 @@ TEST_F(ExportVolume, HoldsTheLayersLightAtTheFramesExposure) {
     EXPECT_EQ(brighter.words.at("exposure_stops"), "2");
 }
 
-TEST_F(ExportVolume, OfOneDotStandsWhereTheLayerPutsIt) {
+TEST_F(ExportVolume, OfOneSplatStandsWhereTheLayerPutsIt) {
     write_text(
         folder / "stars.pda",
         "ATTRIBUTES\n position rgbPP opacityPP radiusPP\nTYPES\n V V R R\nNUMBER_OF_PARTICLES: 1\nBEGIN "

@@ -151,7 +151,7 @@ space = "display"
 constexpr const char* page_view =
     R"({"width":320,"height":240,"fov":45,"position":[2.0,1.5,9.0],"target":[0.2,0.1,0.0]})";
 
-// A capture with its harmonics, and dots whose light was fitted to the view.
+// A capture with its harmonics, and splats whose light was fitted to the view.
 TEST_F(ReadersNightly, GlbLooksTheSameInAPageOfPlayCanvas) {
     std::string chromium;
     for (const char* place : {"/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin/google-chrome"})
@@ -161,9 +161,9 @@ TEST_F(ReadersNightly, GlbLooksTheSameInAPageOfPlayCanvas) {
     write_text(folder / "capture.ply", ply_of(capture(200, 3), 3));
     write_text(folder / "capture.toml",
                scene_of("capture.ply", "render = { isolate = true, space = \"display\" }\n"));
-    write_text(folder / "dots.toml", scene_of("stars.pda", ""));
+    write_text(folder / "splats.toml", scene_of("stars.pda", ""));
     for (const auto& [scene, least_db] :
-         std::initializer_list<std::pair<std::string, double>>{{"capture", 40.0}, {"dots", 28.0}}) {
+         std::initializer_list<std::pair<std::string, double>>{{"capture", 40.0}, {"splats", 28.0}}) {
         const std::string model = scene + ".glb", picture = scene + ".png";
         ASSERT_EQ(
             run({"export", scene + ".toml", "-o", model, "--space", "display", "--progress", "none"}).code,

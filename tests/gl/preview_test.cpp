@@ -162,7 +162,7 @@ TEST_F(PreviewPicture, LayersPlacedFarFromTheOrigin) {
     expect_like_offline({layer}, camera);
 }
 
-TEST_F(PreviewPicture, FromInsideWithDotsWiderThanPoints) {
+TEST_F(PreviewPicture, FromInsideWithSplatsWiderThanPoints) {
     Camera camera = test::perspective_camera(width, height);
     camera.eye = {0.1, 0.02, 0.3};
     camera.near_fade = 0.05;
@@ -190,9 +190,9 @@ Camera camera_above(double eye_height) {
     return make_camera(params, width, height, {});
 }
 
-/// Dots that the look moves up to the camera are drawn whole, though the set itself lies far enough away for
-/// points.
-TEST_F(PreviewPicture, JitterBringsDotsTooNearForPoints) {
+/// Splats that the look moves up to the camera are drawn whole, though the set itself lies far enough away
+/// for points.
+TEST_F(PreviewPicture, JitterBringsSplatsTooNearForPoints) {
     PreviewLayer layer = test::cloud_layer(600, 9, 0.2f, render_with(Falloff::Shape::linear, Blend::add));
     layer.layer.render.lod.max_px = 0.0f;
     layer.look.alpha.gain = 0.1f;
@@ -214,12 +214,12 @@ class CutLayers {
             const auto tree = std::make_shared<const MergeTree>(build_merge_tree(*layer.set));
             merged_.push_back(
                 merge_splats({layer.set, tree, 1.0f}, apply_look(*layer.set, layer.look, layer.inputs)));
-            dots_.emplace_back(layer.layer.render);
+            merging_.emplace_back(layer.layer.render);
         }
         std::vector<CutLayer> seen;
         for (std::size_t l = 0; l < layers.size(); ++l)
             seen.push_back(
-                {&merged_[l], &dots_[l],
+                {&merged_[l], &merging_[l],
                  make_projection(layers[l].layer, static_cast<std::uint16_t>(l), camera, picture)});
         splats_ = cut_splats(seen, {budget, 0.0f, width, height});
         for (std::size_t l = 0; l < layers.size(); ++l) {
@@ -231,7 +231,7 @@ class CutLayers {
 
   private:
     std::vector<MergedSplats> merged_;
-    std::vector<DotSettings> dots_;
+    std::vector<MergeSettings> merging_;
     std::vector<ShadedSplats> splats_;
 };
 
@@ -264,7 +264,7 @@ TEST_F(PreviewPicture, CutsOfTwoCamerasDoNotMix) {
     }
 }
 
-TEST_F(PreviewPicture, DotsOfACutAreTooWideForPoints) {
+TEST_F(PreviewPicture, SplatsOfACutAreTooWideForPoints) {
     std::vector<PreviewLayer> layers = {
         test::cloud_layer(2000, 9, 0.12f, render_with(Falloff::Shape::linear))};
     const Camera camera = camera_above(0.55);

@@ -251,7 +251,7 @@ TEST_F(ViewportTest, TheBadgeSaysHowFinalItIs) {
     Status status = example_status();
     EXPECT_EQ(badge_text(document.scene(), status).text, "Refining 41 %");
     status.view_frame.state = ViewFrameState::preview;
-    EXPECT_EQ(badge_text(document.scene(), status).text, "Preview, 240 k dots for 12.4 M");
+    EXPECT_EQ(badge_text(document.scene(), status).text, "Preview, 240 k splats for 12.4 M");
     status.view_frame.state = ViewFrameState::final;
     status.view_frame.seconds = 1.8;
     EXPECT_EQ(badge_text(document.scene(), status).text, "Final 1.8 s");

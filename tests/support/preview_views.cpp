@@ -111,7 +111,7 @@ ViewTruth compare_frames(const Image& preview, const Image& final, bool is_edge)
     return truth;
 }
 
-ViewTruth measure_truth(const NamedView& view, std::int64_t dots, const SetCache& cache) {
+ViewTruth measure_truth(const NamedView& view, std::int64_t shown, const SetCache& cache) {
     const TempFolder folder;
     ViewerOptions options;
     options.cache = cache;
@@ -121,7 +121,7 @@ ViewTruth measure_truth(const NamedView& view, std::int64_t dots, const SetCache
     session.gl.software = true;
     session.view.view = ViewKind::free;
     session.view.free = view.camera;
-    session.fixed_splats = dots;
+    session.fixed_splats = shown;
     session.view.settle = false;
     session.document.edit("No sky", [](Scene& scene) { scene.environment.image.clear(); });
     draw_until(session, [&] { return preview_exact(session); });
@@ -130,7 +130,7 @@ ViewTruth measure_truth(const NamedView& view, std::int64_t dots, const SetCache
     session.view.settle = true;
     draw_until(session, [&] { return settled(session); });
     ViewTruth truth = compare_frames(preview, session.view_frame.read(), view.is_edge);
-    truth.dots = status.shown;
+    truth.shown = status.shown;
     truth.splats = status.total;
     truth.preview = preview;
     truth.final = session.view_frame.read();

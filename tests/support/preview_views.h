@@ -25,15 +25,15 @@ std::span<const NamedView> preview_views();
 
 /// A preview beside the final frame of the same view, both linear and without a sky.
 struct ViewTruth {
-    std::int64_t dots = 0, splats = 0;
+    std::int64_t shown = 0, splats = 0;
     double light = 0.0;               // of the preview, over that of the final frame
     int bright_blocks = 0, near = 0;  // brighter than a tenth of the brightest; within 20 % of these
     double thickness = 1.0;           // at half brightness, over that of the final frame
     Image preview, final;             // RGBA
 };
 
-/// The preview has so many dots; sets come from the cache.
-ViewTruth measure_truth(const NamedView& view, std::int64_t dots, const SetCache& cache);
+/// The preview draws so many splats; sets come from the cache.
+ViewTruth measure_truth(const NamedView& view, std::int64_t shown, const SetCache& cache);
 
 /// Compares two frames of the same size. `is_edge`: also how thick they are.
 ViewTruth compare_frames(const Image& preview, const Image& final, bool is_edge);

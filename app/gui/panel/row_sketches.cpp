@@ -1,4 +1,4 @@
-// The drawings above rows: levels, profiles, a dot, sectors, a noise; and what 0 stands for.
+// The drawings above rows: levels, profiles, a splat, sectors, a noise; and what 0 stands for.
 #include "gui/panel/parts.h"
 
 #include <fmt/format.h>
@@ -113,7 +113,7 @@ std::vector<float> falloff_samples(const Falloff& falloff) {
     return sampled([&](float t) { return static_cast<float>(falloff_value(falloff, double(t))); });
 }
 
-// Sketches: a dot, the angles of a hybrid, a noise.
+// Sketches: a splat, the angles of a hybrid, a noise.
 
 // Linear light as an opaque grey of the screen.
 ImU32 grey(double light) {
@@ -122,7 +122,7 @@ ImU32 grey(double light) {
     return IM_COL32(byte, byte, byte, 255);
 }
 
-void draw_dot(const Rect& area, const Falloff& falloff) {
+void draw_splat(const Rect& area, const Falloff& falloff) {
     ImDrawList* list = ImGui::GetWindowDrawList();
     fill_rect(area, IM_COL32_BLACK, px(3));
     const float radius = area.height * 0.5f - px(4);
@@ -170,13 +170,13 @@ std::vector<ImU32> noise_greys(const Noise& noise, int columns, int rows, double
     return greys;
 }
 
-/// The dot of a falloff and, beside it, its profile.
+/// The splat of a falloff and, beside it, its profile.
 void draw_falloff(Context& context, const ParameterSpec&) {
     const Falloff& falloff = context.layer().render.falloff;
     const Rect area = begin_plot();
-    const Rect dot{area.corner(), {area.height, area.height}};
-    draw_dot(dot, falloff);
-    const Rect curve{{dot.end().x + px(4), area.y}, {area.width - dot.width - px(4), area.height}};
+    const Rect splat{area.corner(), {area.height, area.height}};
+    draw_splat(splat, falloff);
+    const Rect curve{{splat.end().x + px(4), area.y}, {area.width - splat.width - px(4), area.height}};
     draw_curve(curve, falloff_samples(falloff), 1.05f, color::accent);
     captions("", "rim");
 }

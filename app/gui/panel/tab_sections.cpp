@@ -189,7 +189,7 @@ const TabSection sections[] = {
      [](const Context&) -> std::string { return "export, apply, copy"; },
      {},
      look_buttons},
-    {"Mixing", "Dot profile", unfolded, value_of<falloff>},
+    {"Mixing", "Splat profile", unfolded, value_of<falloff>},
     {"Mixing",
      "Blend",
      unfolded,

@@ -56,7 +56,7 @@ TEST(Bands, WhatIsEvenIsInTheCoarsest) {
     for (const float v : bands.back().pixels) ASSERT_NEAR(v, 0.25f, 1e-3f);
 }
 
-// A dot of a size is in the band of that size, not in the finest: this is what gives it a thickness of its
+// A splat of a size is in the band of that size, not in the finest: this is what gives it a thickness of its
 // own.
 TEST(Bands, HoldWhatIsOfTheirSize) {
     for (const int wanted : {0, 2}) {
@@ -152,11 +152,11 @@ Placement flat_placement() {
     return placement;
 }
 
-// Mean optical depth at an exponent of 1 of dots of Gaussian s: 2 pi sigma^2 Li2(s) each.
-double optical_depth(const PictureSplats& dots, std::int64_t first = 0) {
+// Mean optical depth at an exponent of 1 of splats of Gaussian s: 2 pi sigma^2 Li2(s) each.
+double optical_depth(const PictureSplats& set, std::int64_t first = 0) {
     double sum = 0.0;
-    for (std::int64_t i = first; i < dots.splats.size(); ++i) {
-        const double s = dots.splats.alpha[static_cast<std::size_t>(i)], sigma = 1.3;
+    for (std::int64_t i = first; i < set.splats.size(); ++i) {
+        const double s = set.splats.alpha[static_cast<std::size_t>(i)], sigma = 1.3;
         double dilogarithm = 0.0, power = s;
         for (int k = 1; k < 200; ++k, power *= s) dilogarithm += power / (k * k);
         sum += 2.0 * 3.14159265358979 * sigma * sigma * 0.9494 * dilogarithm;
@@ -166,53 +166,52 @@ double optical_depth(const PictureSplats& dots, std::int64_t first = 0) {
 
 TEST(Dust, ASheetBeforeAllLightHasTheDepthThatIsSeen) {
     for (const float seen : {0.95f, 0.6f, 0.2f}) {
-        PictureSplats dots;
-        add_dust(make_image(size_px, size_px, 1, seen), 1.0, dust_exponents, flat_placement(), dots);
-        EXPECT_TRUE(dots.absorbs);
-        EXPECT_TRUE(dots.ranges.empty());  // the fit leaves dust alone
-        EXPECT_NEAR(optical_depth(dots), -std::log(seen), -0.03 * std::log(seen)) << seen;
+        PictureSplats set;
+        add_dust(make_image(size_px, size_px, 1, seen), 1.0, dust_exponents, flat_placement(), set);
+        EXPECT_TRUE(set.absorbs);
+        EXPECT_TRUE(set.ranges.empty());  // the fit leaves dust alone
+        EXPECT_NEAR(optical_depth(set), -std::log(seen), -0.03 * std::log(seen)) << seen;
     }
 }
 
 TEST(Dust, AmountIsAShareOfTheDepth) {
-    PictureSplats dots;
-    add_dust(make_image(size_px, size_px, 1, 0.6f), 0.5, dust_exponents, flat_placement(), dots);
-    EXPECT_NEAR(optical_depth(dots), -0.5 * std::log(0.6), 0.01);
+    PictureSplats set;
+    add_dust(make_image(size_px, size_px, 1, 0.6f), 0.5, dust_exponents, flat_placement(), set);
+    EXPECT_NEAR(optical_depth(set), -0.5 * std::log(0.6), 0.01);
 }
 
 // Half of the light lies before the sheet and is not dimmed: the rest has to lose twice as much.
 TEST(Dust, LightBeforeTheSheetIsMadeUpFor) {
-    PictureSplats dots;
+    PictureSplats set;
     for (int y = 2; y < size_px; y += 4)
         for (int x = 2; x < size_px; x += 4)
             for (const float z : {-20.0f, 20.0f}) {
-                dots.splats.position.emplace_back(static_cast<float>(x - 120), static_cast<float>(120 - y),
-                                                  z);
-                dots.splats.color.emplace_back(1.0f);
-                dots.splats.alpha.push_back(0.1f);
-                dots.splats.radius.push_back(2.0f * radius_sigmas);
-                dots.splats.id.push_back(dots.splats.id.size());
-                dots.distance.push_back(20.0f);
+                set.splats.position.emplace_back(static_cast<float>(x - 120), static_cast<float>(120 - y), z);
+                set.splats.color.emplace_back(1.0f);
+                set.splats.alpha.push_back(0.1f);
+                set.splats.radius.push_back(2.0f * radius_sigmas);
+                set.splats.id.push_back(set.splats.id.size());
+                set.distance.push_back(20.0f);
             }
-    const std::int64_t first = dots.splats.size();
-    add_dust(make_image(size_px, size_px, 1, 0.8f), 1.0, dust_exponents, flat_placement(), dots);
-    EXPECT_NEAR(optical_depth(dots, first), -std::log(0.6), 0.02);
+    const std::int64_t first = set.splats.size();
+    add_dust(make_image(size_px, size_px, 1, 0.8f), 1.0, dust_exponents, flat_placement(), set);
+    EXPECT_NEAR(optical_depth(set, first), -std::log(0.6), 0.02);
 }
 
 TEST(Dust, LiesTornAboutASheetBeforeTheMiddle) {
-    PictureSplats dots;
-    add_dust(make_image(size_px, size_px, 1, 0.5f), 1.0, dust_exponents, flat_placement(), dots);
+    PictureSplats set;
+    add_dust(make_image(size_px, size_px, 1, 0.5f), 1.0, dust_exponents, flat_placement(), set);
     double sum = 0.0, squares = 0.0;
-    for (const glm::vec3& p : dots.splats.position) {
+    for (const glm::vec3& p : set.splats.position) {
         sum += static_cast<double>(p.z);
         squares += static_cast<double>(p.z * p.z);
     }
-    const double count = static_cast<double>(dots.splats.size()), mean = sum / count;
+    const double count = static_cast<double>(set.splats.size()), mean = sum / count;
     EXPECT_NEAR(mean, 2.0, 1.2);  // .2 H, give or take the widest waves
     const double deviation = std::sqrt(squares / count - mean * mean);
     EXPECT_GT(deviation, 1.6);  // more than the sheet's own .05 H
     EXPECT_LT(deviation, 5.0);
-    for (const glm::vec3& color : dots.splats.color) ASSERT_EQ(color, -dust_exponents);
+    for (const glm::vec3& color : set.splats.color) ASSERT_EQ(color, -dust_exponents);
 }
 
 TEST(Dust, OfAGreyPictureIsGrey) {
@@ -222,19 +221,19 @@ TEST(Dust, OfAGreyPictureIsGrey) {
     EXPECT_EQ(dust_exponents_of(light), glm::vec3(1.0f));
     light.pixels[3 * 63 + 2] = 0.27f;
     EXPECT_EQ(dust_exponents_of(light), dust_exponents);
-    PictureSplats dots;
-    add_dust(make_image(size_px, size_px, 1, 0.5f), 1.0, glm::vec3(1.0f), flat_placement(), dots);
-    ASSERT_GT(dots.splats.size(), 100);
-    for (const glm::vec3& color : dots.splats.color) ASSERT_EQ(color, glm::vec3(-1.0f));
+    PictureSplats set;
+    add_dust(make_image(size_px, size_px, 1, 0.5f), 1.0, glm::vec3(1.0f), flat_placement(), set);
+    ASSERT_GT(set.splats.size(), 100);
+    for (const glm::vec3& color : set.splats.color) ASSERT_EQ(color, glm::vec3(-1.0f));
 }
 
 // A lane stays one when a camera comes close: at every place the sheet is thin, whatever its waves.
 TEST(Dust, IsThinAtEveryPlace) {
-    PictureSplats dots;
-    add_dust(make_image(size_px, size_px, 1, 0.5f), 1.0, dust_exponents, flat_placement(), dots);
+    PictureSplats set;
+    add_dust(make_image(size_px, size_px, 1, 0.5f), 1.0, dust_exponents, flat_placement(), set);
     constexpr std::size_t cells = size_px / 4;
     std::vector<std::array<double, 3>> sums(cells * cells);  // of 1, z, z^2
-    for (const glm::vec3& p : dots.splats.position) {
+    for (const glm::vec3& p : set.splats.position) {
         const auto column = static_cast<std::size_t>(p.x + 0.5f * size_px) / 4,
                    row = static_cast<std::size_t>(0.5f * size_px - p.y) / 4;
         auto& sum = sums[std::min(row, cells - 1) * cells + std::min(column, cells - 1)];
@@ -244,7 +243,7 @@ TEST(Dust, IsThinAtEveryPlace) {
     double within = 0.0;
     for (const auto& [count, z, square] : sums)
         if (count > 0.0) within += square - z * z / count;
-    EXPECT_LT(std::sqrt(within / static_cast<double>(dots.splats.size())), 0.8);  // .08 H
+    EXPECT_LT(std::sqrt(within / static_cast<double>(set.splats.size())), 0.8);  // .08 H
 }
 
 }  // namespace

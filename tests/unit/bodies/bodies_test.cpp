@@ -62,7 +62,7 @@ std::vector<SurfacePlace> places(const UvSurface& surface, glm::vec2 uv) {
 }
 
 std::int64_t told_bytes(const std::vector<TexturedMesh>& meshes, const StructureParams& params) {
-    return bodies_memory_bytes(meshes, expected_dots(meshes, params));
+    return bodies_memory_bytes(meshes, expected_splats(meshes, params));
 }
 
 TEST(Bodies, PicturesThatDoNotFitAreReducedAsFarAsIsNeeded) {
@@ -86,13 +86,13 @@ TEST(Bodies, PicturesThatDoNotFitAreReducedAsFarAsIsNeeded) {
 }
 
 // As many as were asked for, or up to 15 % less.
-TEST(Bodies, PicturesOfMoreDotsThanAskedForAreReducedUntilTheyAreNot) {
+TEST(Bodies, PicturesOfMoreSplatsThanAskedForAreReducedUntilTheyAreNot) {
     for (const StructureKind kind : {StructureKind::sheet, StructureKind::disk}) {
         const bool disk = kind == StructureKind::disk;
         std::vector<TexturedMesh> meshes{
             on_plane(disk ? painted::galaxy(800, 500) : painted::nebula(800, 500))};
         const std::int64_t room = 2 * told_bytes(meshes, of_kind(kind));
-        const std::int64_t asked = expected_dots(meshes, of_kind(kind)) * 2 / 3;
+        const std::int64_t asked = expected_splats(meshes, of_kind(kind)) * 2 / 3;
         reduce_pictures(meshes, of_kind(kind), {room, asked}, "gas");
         EXPECT_LT(meshes[0].textures[0].image.width, 800);
         const std::int64_t made = make_bodies(meshes, of_kind(kind), 3u, "gas").size();
@@ -101,7 +101,7 @@ TEST(Bodies, PicturesOfMoreDotsThanAskedForAreReducedUntilTheyAreNot) {
     }
 }
 
-// Noise on black sky: dots of every band nearly everywhere.
+// Noise on black sky: splats of every band nearly everywhere.
 TEST(Bodies, AreNeverMoreThanTheMostForTheirSize) {
     Image noise = painted::galaxy(320, 200);
     for (std::size_t i = 0; i < noise.pixels.size(); ++i)
@@ -109,7 +109,7 @@ TEST(Bodies, AreNeverMoreThanTheMostForTheirSize) {
     for (const StructureKind kind : {StructureKind::sheet, StructureKind::disk}) {
         const auto made =
             static_cast<double>(make_bodies({on_plane(noise)}, of_kind(kind), 3u, "gas").size());
-        const double most = most_dots(320, 200, of_kind(kind));
+        const double most = splats_at_most(320, 200, of_kind(kind));
         EXPECT_LE(made, most);
         EXPECT_GE(made, 0.5 * most);
     }
@@ -320,16 +320,16 @@ TEST(PictureLight, FadesAtTheBorderAndDropsWhatIsNoLight) {
     EXPECT_NEAR(faded.light.at(4, 30)[1] / 0.5f, *faded.alpha.at(4, 30), 1e-6);
 }
 
-PictureSplats unfitted_dots(const Image& light, const Placement& placement) {
+PictureSplats unfitted_splats(const Image& light, const Placement& placement) {
     const Image brightest = brightest_channel(light);
-    PictureSplats dots;
+    PictureSplats set;
     const std::vector<Band> bands = make_bands(light.width);
     split_bands(light, bands, false, [&](const Band& band, const Image& image) {
         const bool coarsest = band.index + 1 == static_cast<int>(bands.size());
-        for (const BandDots& size : band_dots(band, coarsest, placement))
-            add_band(image, size, brightest, {}, placement, {}, dots);
+        for (const BandSplats& size : band_splats(band, coarsest, placement))
+            add_band(image, size, brightest, {}, placement, {}, set);
     });
-    return dots;
+    return set;
 }
 
 // The fit makes an even picture even and keeps its flux.
@@ -345,8 +345,8 @@ TEST(FrontFit, GivesAnEvenPictureItsColour) {
     }();
     const Placement placement =
         make_placement(brightest_channel(light), of_kind(StructureKind::disk), 10.0, true, 1u);
-    PictureSplats dots = unfitted_dots(light, placement);
-    EXPECT_GT(fit_front(dots, light).psnr_db, 30.0);
+    PictureSplats set = unfitted_splats(light, placement);
+    EXPECT_GT(fit_front(set, light).psnr_db, 30.0);
 }
 
 // Steps that take nothing of the last one along end 1 dB below.
@@ -356,15 +356,15 @@ TEST(FrontFit, IsCloseToItsPictureAfterSevenSteps) {
         light.pixels[i] *= static_cast<float>(0.5 + painted::random(static_cast<std::uint32_t>(i), 7));
     const Placement placement =
         make_placement(brightest_channel(light), of_kind(StructureKind::sheet), 48.0, true, 1u);
-    PictureSplats dots = unfitted_dots(light, placement);
-    const FrontFit fit = fit_front(dots, light);
+    PictureSplats set = unfitted_splats(light, placement);
+    const FrontFit fit = fit_front(set, light);
     EXPECT_EQ(fit.steps, 7);
     EXPECT_GT(fit.psnr_db, 44.0);
 }
 
-Image view_along_z(const PictureSplats& dots, const Image& light, double from) {
+Image view_along_z(const PictureSplats& set, const Image& light, double from) {
     RenderLayer layer;
-    layer.splats = &dots.splats;
+    layer.splats = &set.splats;
     CameraParams params;
     params.projection = Projection::orthographic;
     params.position = glm::dvec3(0.0, 0.0, from);
@@ -383,9 +383,9 @@ TEST(FrontFit, KeepsThePicturesFlux) {
     const Image light = painted::galaxy(320, 192);
     const Placement placement =
         make_placement(brightest_channel(light), of_kind(StructureKind::disk), 32.0, true, 1u);
-    PictureSplats dots = unfitted_dots(light, placement);
-    fit_front(dots, light);
-    const Image seen = view_along_z(dots, light, 1000.0);
+    PictureSplats set = unfitted_splats(light, placement);
+    fit_front(set, light);
+    const Image seen = view_along_z(set, light, 1000.0);
     double here = 0.0, there = 0.0;
     for (std::int64_t y = 32; y < light.height - 32; ++y) {
         for (std::int64_t x = 32; x < light.width - 32; ++x) {
@@ -401,9 +401,9 @@ TEST(FrontFit, OfALargePictureIsAsClose) {
     const Image light = painted::galaxy(1301, 811);
     const Placement placement =
         make_placement(brightest_channel(light), of_kind(StructureKind::disk), 130.0, true, 1u);
-    PictureSplats dots = unfitted_dots(light, placement);
-    fit_front(dots, light);
-    const Image seen = view_along_z(dots, light, 3000.0), wanted = gaussian_blur(light, 0.5);
+    PictureSplats set = unfitted_splats(light, placement);
+    fit_front(set, light);
+    const Image seen = view_along_z(set, light, 3000.0), wanted = gaussian_blur(light, 0.5);
     double here = 0.0, there = 0.0, squares = 0.0;
     for (std::int64_t y = 0; y < light.height; ++y) {
         for (std::int64_t x = 0; x < light.width; ++x) {
@@ -431,9 +431,9 @@ TEST(FrontFit, OfASmallPictureHasTheLightOfItsPoints) {
     const Image light = enlarged(points, 2);
     const Placement placement =
         make_placement(brightest_channel(light), of_kind(StructureKind::sheet), 112.0, true, 1u);
-    PictureSplats dots = unfitted_dots(light, placement);
-    fit_front(dots, light, true);
-    const Image seen = view_along_z(dots, light, 3000.0);
+    PictureSplats set = unfitted_splats(light, placement);
+    fit_front(set, light, true);
+    const Image seen = view_along_z(set, light, 3000.0);
     double here = 0.0, there = 0.0;
     for (std::size_t i = 0; i < light.pixels.size() / 3; ++i) {
         here += static_cast<double>(seen.pixels[static_cast<std::size_t>(seen.channels) * i + 1]);
@@ -448,9 +448,9 @@ TEST(FrontFit, WallsHaveTheSameLightFromBehind) {
     for (float& value : light.pixels) value *= 4.0f;
     const Placement placement =
         make_placement(brightest_channel(light), of_kind(StructureKind::walls), 48.0, true, 1u);
-    PictureSplats dots = unfitted_dots(light, placement);
-    fit_front(dots, light);
-    const Image front = view_along_z(dots, light, 1000.0), back = view_along_z(dots, light, -1000.0);
+    PictureSplats set = unfitted_splats(light, placement);
+    fit_front(set, light);
+    const Image front = view_along_z(set, light, 1000.0), back = view_along_z(set, light, -1000.0);
     double squares = 0.0;
     for (std::int64_t y = 0; y < light.height; ++y) {
         for (std::int64_t x = 0; x < light.width; ++x) {
@@ -472,24 +472,24 @@ struct HalfBulge {
             placement.thickness.pixels[static_cast<std::size_t>(i)] =
                 static_cast<float>(placement.height) * (i % 640 < 320 ? disk : 2.0f);
     }
-    PictureSplats dots(const Band& band, bool coarsest) const {
+    PictureSplats splats(const Band& band, bool coarsest) const {
         PictureSplats result;
-        for (const BandDots& size : band_dots(band, coarsest, placement))
+        for (const BandSplats& size : band_splats(band, coarsest, placement))
             add_band(light, size, brightest, {}, placement, {}, result);
         return result;
     }
 };
 
-TEST(Bulge, HasManyWiderDotsOfTheSameLightAndAnEighthOfTheOpacity) {
+TEST(Bulge, HasManyWiderSplatsOfTheSameLightAndAnEighthOfTheOpacity) {
     const HalfBulge disk(0.6f);
-    const PictureSplats dots = disk.dots(make_bands(640).back(), true);
+    const PictureSplats set = disk.splats(make_bands(640).back(), true);
     double light[2] = {0.0, 0.0}, depth[2] = {0.0, 0.0}, radius[2] = {0.0, 0.0}, count[2] = {0.0, 0.0};
-    for (std::size_t i = 0; i < dots.splats.position.size(); ++i) {
-        const float x = dots.splats.position[i].x;
+    for (std::size_t i = 0; i < set.splats.position.size(); ++i) {
+        const float x = set.splats.position[i].x;
         if (std::fabs(x) < 20.0f || std::fabs(x) > 300.0f) continue;
-        const double r = static_cast<double>(dots.splats.radius[i]), covers = r * r;
-        const double opacity = static_cast<double>(dots.splats.alpha[i]) * covers;
-        light[x > 0.0f] += opacity * static_cast<double>(dots.splats.color[i].y);
+        const double r = static_cast<double>(set.splats.radius[i]), covers = r * r;
+        const double opacity = static_cast<double>(set.splats.alpha[i]) * covers;
+        light[x > 0.0f] += opacity * static_cast<double>(set.splats.color[i].y);
         depth[x > 0.0f] += opacity;
         radius[x > 0.0f] += r;
         ++count[x > 0.0f];
@@ -501,7 +501,7 @@ TEST(Bulge, HasManyWiderDotsOfTheSameLightAndAnEighthOfTheOpacity) {
     const double tau = static_cast<double>(Opacity{}.depth_of(0.3f, 1.0f));
     const auto raised = [](double t) { return t / (1.0 - std::exp(-t)); };
     EXPECT_NEAR(light[1] / light[0], raised(0.125 * tau) / raised(tau), 0.01);
-    std::vector<std::uint64_t> ids(dots.splats.id.begin(), dots.splats.id.end());
+    std::vector<std::uint64_t> ids(set.splats.id.begin(), set.splats.id.end());
     std::sort(ids.begin(), ids.end());
     EXPECT_EQ(std::adjacent_find(ids.begin(), ids.end()), ids.end());
 }
@@ -510,9 +510,9 @@ TEST(Bulge, HasManyWiderDotsOfTheSameLightAndAnEighthOfTheOpacity) {
 // from the plane, and a tenth farther than 1.32 H.
 TEST(Bulge, ThinsOutUpwards) {
     const HalfBulge disk;
-    const PictureSplats dots = disk.dots(make_bands(640)[0], false);
+    const PictureSplats set = disk.splats(make_bands(640)[0], false);
     std::vector<float> heights;
-    for (const glm::vec3& p : dots.splats.position)
+    for (const glm::vec3& p : set.splats.position)
         if (p.x > 20.0f) heights.push_back(std::fabs(p.z) / static_cast<float>(disk.placement.height));
     ASSERT_GT(heights.size(), 1000u);
     std::sort(heights.begin(), heights.end());
@@ -624,15 +624,15 @@ TEST(Bodies, DisksWarpAndFlare) {
     EXPECT_NEAR(*bent.thickness.at(299, 99) / *plain.thickness.at(299, 99), 1.5f, 0.01f);
 }
 
-// Every dot rises with the plane where it is, but for those of a knot, which rises as a whole.
-TEST(Bodies, AWarpMovesDotsStarsAndDustAlike) {
+// Every splat rises with the plane where it is, but for those of a knot, which rises as a whole.
+TEST(Bodies, AWarpMovesSplatsStarsAndDustAlike) {
     const TexturedMesh mesh = on_plane(painted::galaxy(320, 200));
     StructureParams params = of_kind(StructureKind::disk);
     const SplatSet flat = make_bodies({mesh}, params, 3u, "gas");
     params.warp = 0.08;
     const SplatSet bent = make_bodies({mesh}, params, 3u, "gas");
     const Placement plane = make_placement(make_image(320, 200, 1, 0.3f), params, 32.0, true, 1u);
-    int dots[3] = {0, 0, 0}, exact[3] = {0, 0, 0};  // shining, dust, stars
+    int all[3] = {0, 0, 0}, exact[3] = {0, 0, 0};  // shining, dust, stars
     std::size_t k = 0;
     for (std::size_t i = 0; i < flat.id.size(); ++i) {
         while (k < bent.id.size() && bent.id[k] < flat.id[i]) ++k;
@@ -644,15 +644,15 @@ TEST(Bodies, AWarpMovesDotsStarsAndDustAlike) {
         const int kind = band == 254 ? 1 : band == 255 ? 2 : 0;
         const float off = std::fabs(bent.position[k].y - p.y - rise);
         ASSERT_LT(off, 0.4f);
-        ++dots[kind];
+        ++all[kind];
         exact[kind] += off < 1e-4f;
     }
-    EXPECT_GT(dots[0], 1000);
-    EXPECT_GT(exact[0], 0.6 * dots[0]);
-    EXPECT_GT(dots[1], 10);
-    EXPECT_EQ(exact[1], dots[1]);
-    EXPECT_GT(dots[2], 5);
-    EXPECT_EQ(exact[2], dots[2]);
+    EXPECT_GT(all[0], 1000);
+    EXPECT_GT(exact[0], 0.6 * all[0]);
+    EXPECT_GT(all[1], 10);
+    EXPECT_EQ(exact[1], all[1]);
+    EXPECT_GT(all[2], 5);
+    EXPECT_EQ(exact[2], all[2]);
 }
 
 TEST(Bodies, WhereThePictureIsTransparentThereIsNothing) {

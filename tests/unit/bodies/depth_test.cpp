@@ -18,7 +18,7 @@
 namespace astrosplat {
 namespace {
 
-// Dots at random places of a picture of 1000 x 1000, all of one scale height.
+// Splats at random places of a picture of 1000 x 1000, all of one scale height.
 std::vector<std::unique_ptr<PlacedBlock>> scattered(int blocks, float height) {
     std::vector<std::unique_ptr<PlacedBlock>> result;
     for (int b = 0; b < blocks; ++b) {
@@ -68,8 +68,7 @@ TEST(Depths, WithoutClumpsFollowTheEnvelope) {
     EXPECT_LE(z.back(), 41.9);
 }
 
-// Where the noise is high there are more dots, and for octaves past the third it is the finer draw that does
-// it.
+// Where the noise is high there are more splats, and for octaves past the third the finer draw does it.
 TEST(Depths, GatherWhereTheNoiseIsHigh) {
     const NoiseStack noise = octaves(5, 1.5f);
     double coarse = 0.0, fine = 0.0;
@@ -171,7 +170,8 @@ TEST(Depths, AreTheSameOnEveryInstructionSet) {
     for (const std::string& target : vector_targets()) {
         set_vector_target(target);
         const std::vector<float> here = run();
-        for (std::size_t i = 0; i < best.size(); ++i) ASSERT_EQ(here[i], best[i]) << target << ", dot " << i;
+        for (std::size_t i = 0; i < best.size(); ++i)
+            ASSERT_EQ(here[i], best[i]) << target << ", splat " << i;
     }
     set_vector_target("best");
 }
@@ -231,10 +231,10 @@ TEST(Fields, ReliefIsNowhereTooSteepAndNothingOnEmptySky) {
     }
 }
 
-// All dots of a knot share its depth; other fine dots at the same distance from each other do not.
-// Standard deviation of the heights of 200 of the finest dots about a texel.
+// All splats of a knot share its depth; other fine splats at the same distance from each other do not.
+// Standard deviation of the heights of 200 of the finest splats about a texel.
 double spread_at(const Placement& placement, float cx, float cy) {
-    const BandDots dots = band_dots(make_bands(320)[0], false, placement)[0];
+    const BandSplats splats = band_splats(make_bands(320)[0], false, placement)[0];
     PlacedBlock block;
     block.count = 200;
     for (int i = 0; i < block.count; ++i) {
@@ -242,7 +242,7 @@ double spread_at(const Placement& placement, float cx, float cy) {
         block.y[i] = cy + 0.01f * static_cast<float>(i / 10);
         block.random[i] = shared::as_hash(3u, static_cast<std::uint32_t>(i), 0u, 4u);
     }
-    place(placement, dots, block);
+    place(placement, splats, block);
     double sum = 0.0, squares = 0.0;
     for (int i = 0; i < block.count; ++i) {
         sum += static_cast<double>(block.z[i]);
@@ -284,7 +284,7 @@ TEST(Placement, KnotsOfAFilamentLieOnTheRelief) {
     placement.relief = make_image(320, 200, 1);
     for (std::int64_t i = 0; i < 320 * 200; ++i)
         placement.relief.pixels[static_cast<std::size_t>(i)] = 0.5f * static_cast<float>(i % 320);
-    const BandDots dots = band_dots(make_bands(320)[0], false, placement)[0];
+    const BandSplats splats = band_splats(make_bands(320)[0], false, placement)[0];
     for (const float roundness : {0.0f, 1.0f}) {
         placement.knots.knots[0].roundness = roundness;
         PlacedBlock block;
@@ -294,7 +294,7 @@ TEST(Placement, KnotsOfAFilamentLieOnTheRelief) {
             block.y[i] = 100.0f;
             block.random[i] = shared::as_hash(3u, static_cast<std::uint32_t>(i % 100), 0u, 4u);
         }
-        place(placement, dots, block);
+        place(placement, splats, block);
         double rise = 0.0;
         for (int i = 0; i < 100; ++i) rise += static_cast<double>(block.z[i + 100] - block.z[i]) / 100.0;
         EXPECT_NEAR(rise, roundness > 0.5f ? 0.0 : 4.0, 1e-4);
@@ -308,7 +308,7 @@ TEST(Placement, WallsLieOnBothSidesAndASheetOnOne) {
         params.kind = kind;
         params.stars = StructureParams::Stars::no;
         const Placement placement = make_placement(brightest, params, 32.0, true, 9u);
-        const BandDots dots = band_dots(make_bands(320)[1], false, placement)[0];
+        const BandSplats splats = band_splats(make_bands(320)[1], false, placement)[0];
         int front = 0, back = 0;
         for (int repeat = 0; repeat < 20; ++repeat) {
             PlacedBlock block;
@@ -319,7 +319,7 @@ TEST(Placement, WallsLieOnBothSidesAndASheetOnOne) {
                 block.y[i] = 80.0f + 40.0f * shared::as_uniform(shared::as_hash(8u, id, 0u, 2u));
                 block.random[i] = shared::as_hash(8u, id, 0u, 3u);
             }
-            place(placement, dots, block);
+            place(placement, splats, block);
             for (int i = 0; i < block.count; ++i) {
                 const float out = *placement.relief.at(static_cast<std::int64_t>(block.x[i]),
                                                        static_cast<std::int64_t>(block.y[i]));

@@ -1,4 +1,4 @@
-// The light of a picture's dots: filled holes, and the flat light in closed form.
+// The light of a picture's splats: filled holes, and the flat light in closed form.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -66,7 +66,7 @@ TEST(FilledLight, TheSkyIsWhatLiesAroundTheShell) {
     EXPECT_GT(at(filled.sky_share, shell_x + 190.0, shell_y), 0.99f);
 }
 
-// The depths of fine dots about a place.
+// The depths of fine splats about a place.
 struct Depths {
     double mean = 0.0, deviation = 0.0, farthest = 0.0;
     std::array<double, 8> eighths{};  // of -103 to 103 texels
@@ -79,7 +79,7 @@ Depths depths_about(double x, double y, bool fine, double clumps = 0.0, float ar
     Placement placement = make_placement(shell_with(0.3f, 0.0f), params, 64.0, true, 5u);
     placement.knots = {};
     const std::vector<Band> bands = make_bands(shell_width);
-    const BandDots dots = band_dots(fine ? bands[1] : bands.back(), !fine, placement)[0];
+    const BandSplats splats = band_splats(fine ? bands[1] : bands.back(), !fine, placement)[0];
     double sum = 0.0, squares = 0.0, count = 0.0;
     Depths depths;
     for (std::uint32_t number = 0; number < 40; ++number) {
@@ -92,7 +92,7 @@ Depths depths_about(double x, double y, bool fine, double clumps = 0.0, float ar
             block.y[i] = static_cast<float>(y) + around * (shared::as_uniform(random(2u)) - 0.5f);
             block.random[i] = random(3u);
         }
-        place(placement, dots, block);
+        place(placement, splats, block);
         for (int i = 0; i < block.count; ++i) {
             const auto z = static_cast<double>(block.z[i]);
             sum += z;
@@ -153,48 +153,48 @@ TEST(FilledLight, SmallThingsOfTheSkyFloatWithTheirClouds) {
     }
 }
 
-// The flat light of a picture's dots against closed forms and against the renderer's.
+// The flat light of a picture's splats against closed forms and against the renderer's.
 
 constexpr std::int64_t width = 96, height = 64;
 constexpr double filter_px = 0.5;
 
-void add_dot(PictureSplats& dots, const glm::vec3& position, const glm::vec3& color, float alpha,
-             float radius) {
-    dots.splats.position.push_back(position);
-    dots.splats.color.push_back(color);
-    dots.splats.alpha.push_back(alpha);
-    dots.splats.radius.push_back(radius);
+void add_splat(PictureSplats& set, const glm::vec3& position, const glm::vec3& color, float alpha,
+               float radius) {
+    set.splats.position.push_back(position);
+    set.splats.color.push_back(color);
+    set.splats.alpha.push_back(alpha);
+    set.splats.radius.push_back(radius);
 }
 
-// Dots of three sizes all over the picture, in rows, and one of dust.
-PictureSplats some_dots() {
-    PictureSplats dots;
+// Splats of three sizes all over the picture, in rows, and one of dust.
+PictureSplats some_splats() {
+    PictureSplats set;
     std::uint32_t n = 0;
     for (const float sigma : {0.5f, 1.7f, 6.0f}) {
-        const auto begin = dots.splats.size();
+        const auto begin = set.splats.size();
         for (int i = 0; i < 300; ++i, ++n) {
             const auto x = static_cast<float>((painted::random(n, 1) - 0.5) * static_cast<double>(width));
-            add_dot(dots, {x, 31.9f - 0.21f * float(i), 0.0f}, {1.0f, 0.5f, float(painted::random(n, 2))},
-                    0.1f, radius_sigmas * sigma);
+            add_splat(set, {x, 31.9f - 0.21f * float(i), 0.0f}, {1.0f, 0.5f, float(painted::random(n, 2))},
+                      0.1f, radius_sigmas * sigma);
         }
-        dots.ranges.push_back({begin, dots.splats.size(), sigma});
+        set.ranges.push_back({begin, set.splats.size(), sigma});
     }
-    add_dot(dots, glm::vec3(0.0f), glm::vec3(-1.0f), 0.5f, 4.0f);
-    return dots;
+    add_splat(set, glm::vec3(0.0f), glm::vec3(-1.0f), 0.5f, 4.0f);
+    return set;
 }
 
-PictureSplats one_dot(float x, float y, float sigma) {
-    PictureSplats dots;
-    add_dot(dots, {x, y, 0.0f}, {0.0f, 2.0f, 0.0f}, 0.25f, radius_sigmas * sigma);
-    dots.ranges.push_back({0, 1, sigma});
-    return dots;
+PictureSplats one_splat(float x, float y, float sigma) {
+    PictureSplats set;
+    add_splat(set, {x, y, 0.0f}, {0.0f, 2.0f, 0.0f}, 0.25f, radius_sigmas * sigma);
+    set.ranges.push_back({0, 1, sigma});
+    return set;
 }
 
-// Flux, centre and variance along the axes of one dot, on every grid.
-TEST(FlatLight, OneDotIsItsFootprint) {
+// Flux, centre and variance along the axes of one splat, on every grid.
+TEST(FlatLight, OneSplatIsItsFootprint) {
     for (const double sigma : {0.45, 0.5, 0.6, 0.75, 0.9, 1.3, 3.0, 7.0}) {
-        PictureSplats dots = one_dot(3.3f, -5.6f, static_cast<float>(sigma));
-        const Image light = FlatLight(dots, width, height, filter_px).sum();
+        PictureSplats set = one_splat(3.3f, -5.6f, static_cast<float>(sigma));
+        const Image light = FlatLight(set, width, height, filter_px).sum();
         double sum = 0.0, x_sum = 0.0, y_sum = 0.0, squares = 0.0;
         for (std::int64_t y = 0; y < height; ++y) {
             for (std::int64_t x = 0; x < width; ++x) {
@@ -225,11 +225,11 @@ Fraction fraction_of(float ratio) {
 }
 
 TEST(FlatLight, AnEvenRatioCorrectsAllThatShines) {
-    const PictureSplats before = some_dots();
+    const PictureSplats before = some_splats();
     const auto corrected = [&](float ratio, bool overshoot) {
-        PictureSplats dots = before;
-        FlatLight(dots, width, height, filter_px).correct(fraction_of(ratio), overshoot);
-        return dots.splats.color;
+        PictureSplats set = before;
+        FlatLight(set, width, height, filter_px).correct(fraction_of(ratio), overshoot);
+        return set.splats.color;
     };
     const auto plain = corrected(1.5f, false), over = corrected(1.5f, true), most = corrected(2.5f, true);
     for (std::size_t i = 0; i + 1 < plain.size(); ++i) {
@@ -243,13 +243,13 @@ TEST(FlatLight, AnEvenRatioCorrectsAllThatShines) {
 }
 
 // Detail that only fine splats can show is left to them.
-TEST(FlatLight, FineDotsAreSharpened) {
+TEST(FlatLight, FineSplatsAreSharpened) {
     Fraction fraction = fraction_of(1.0f);
     fraction.wanted.at(48, 32)[1] = 0.45f;
     const auto factor = [&](float sigma, bool overshoot) {
-        PictureSplats dots = one_dot(0.5f, -0.5f, sigma);
-        FlatLight(dots, width, height, filter_px).correct(fraction, overshoot);
-        return dots.splats.color[0].y / 2.0f;
+        PictureSplats set = one_splat(0.5f, -0.5f, sigma);
+        FlatLight(set, width, height, filter_px).correct(fraction, overshoot);
+        return set.splats.color[0].y / 2.0f;
     };
     const float fine = factor(0.5f, false), coarse = factor(4.0f, false);
     EXPECT_GT(fine, 1.2f);
@@ -259,17 +259,17 @@ TEST(FlatLight, FineDotsAreSharpened) {
 }
 
 // A view of their own would take as long as that of many.
-TEST(FlatLight, FewDotsSeeWhatTheNextNarrowerOnesDo) {
+TEST(FlatLight, FewSplatsSeeWhatTheNextNarrowerOnesDo) {
     Fraction fraction = fraction_of(1.0f);
     fraction.wanted.at(48, 32)[1] = 0.45f;
-    // Of a dot of the first size and one of the second, at the same place.
+    // Of a splat of the first size and one of the second, at the same place.
     const auto factors = [&](float second_sigma, int of_second_size) {
-        PictureSplats dots = one_dot(0.5f, -0.5f, 0.5f);
+        PictureSplats set = one_splat(0.5f, -0.5f, 0.5f);
         for (int i = 0; i < of_second_size; ++i)
-            add_dot(dots, {0.5f, -0.5f, 0.0f}, {0.0f, 2.0f, 0.0f}, 0.25f, radius_sigmas * second_sigma);
-        dots.ranges.push_back({1, dots.splats.size(), second_sigma});
-        FlatLight(dots, width, height, filter_px).correct(fraction, true);
-        return std::pair(dots.splats.color[0].y, dots.splats.color.back().y);
+            add_splat(set, {0.5f, -0.5f, 0.0f}, {0.0f, 2.0f, 0.0f}, 0.25f, radius_sigmas * second_sigma);
+        set.ranges.push_back({1, set.splats.size(), second_sigma});
+        FlatLight(set, width, height, filter_px).correct(fraction, true);
+        return std::pair(set.splats.color[0].y, set.splats.color.back().y);
     };
     const auto [narrow, few] = factors(0.8f, 61);
     EXPECT_EQ(few, narrow);
@@ -282,12 +282,12 @@ TEST(FlatLight, FewDotsSeeWhatTheNextNarrowerOnesDo) {
 }
 
 TEST(FlatLight, MultipliesByAGridsValues) {
-    PictureSplats dots = one_dot(0.0f, 0.0f, 1.0f);  // in the middle of the picture: between cells
+    PictureSplats set = one_splat(0.0f, 0.0f, 1.0f);  // in the middle of the picture: between cells
     Image cells = make_image(3, 2, 3, 1.0f);
     cells.at(1, 0)[1] = 2.0f;
     cells.at(1, 1)[1] = 4.0f;
-    FlatLight(dots, width, height, filter_px).multiply(cells, 32.0);
-    EXPECT_NEAR(dots.splats.color[0].y, 6.0f, 1e-5f);
+    FlatLight(set, width, height, filter_px).multiply(cells, 32.0);
+    EXPECT_NEAR(set.splats.color[0].y, 6.0f, 1e-5f);
 }
 
 }  // namespace

@@ -77,7 +77,7 @@ struct RemnantPlacement {
     }
 };
 
-PlacedBlock dots_about(float x, float y, float reach, std::uint32_t number) {
+PlacedBlock splats_about(float x, float y, float reach, std::uint32_t number) {
     PlacedBlock block;
     block.count = DepthBlock::size;
     for (int i = 0; i < block.count; ++i) {
@@ -95,12 +95,12 @@ PlacedBlock dots_about(float x, float y, float reach, std::uint32_t number) {
 // One would look through it into a hollow.
 TEST(Shell, NoPartOfAWallIsBare) {
     const RemnantPlacement remnant;
-    const BandDots dots = band_dots(make_bands(640)[1], false, remnant.placement)[0];
-    ASSERT_FALSE(dots.glow);
+    const BandSplats splats = band_splats(make_bands(640)[1], false, remnant.placement)[0];
+    ASSERT_FALSE(splats.glow);
     for (std::uint32_t i = 0; i < 25; ++i) {
-        PlacedBlock block = dots_about(220.0f + 50.0f * static_cast<float>(i % 5),
-                                       120.0f + 40.0f * static_cast<float>(i / 5), 8.0f, i);
-        place(remnant.placement, dots, block);
+        PlacedBlock block = splats_about(220.0f + 50.0f * static_cast<float>(i % 5),
+                                         120.0f + 40.0f * static_cast<float>(i / 5), 8.0f, i);
+        place(remnant.placement, splats, block);
         int in_front = 0;
         for (int k = 0; k < block.count; ++k) in_front += block.z[k] > 0.0f;
         EXPECT_GT(in_front, block.count / 12) << i;
@@ -111,19 +111,19 @@ TEST(Shell, NoPartOfAWallIsBare) {
 TEST(Shell, GlowFillsItEvenly) {
     const RemnantPlacement remnant(0.0);  // without clouds
     const std::vector<Band> bands = make_bands(640);
-    const BandDots dots = band_dots(bands.back(), true, remnant.placement)[0];
-    ASSERT_TRUE(dots.glow);
+    const BandSplats splats = band_splats(bands.back(), true, remnant.placement)[0];
+    ASSERT_TRUE(splats.glow);
     std::array<int, 8> eighths{};
     for (std::uint32_t i = 0; i < 16; ++i) {
-        PlacedBlock block = dots_about(320.0f, 200.0f, 4.0f, i);
-        place(remnant.placement, dots, block);
+        PlacedBlock block = splats_about(320.0f, 200.0f, 4.0f, i);
+        place(remnant.placement, splats, block);
         for (int k = 0; k < block.count; ++k) {
             const float out = block.z[k] / remnant.placement.relief_at(block.x[k], block.y[k]);
             ASSERT_LT(std::fabs(out), 1.0f);
             ++eighths[static_cast<std::size_t>(4.0f * (out + 1.0f))];
         }
     }
-    for (const int dots_in : eighths) EXPECT_NEAR(dots_in, 512, 80);
+    for (const int count : eighths) EXPECT_NEAR(count, 512, 80);
 }
 
 // A piece nearly as wide as long is a ball at one place of one wall; a piece of a filament lies along the
@@ -138,11 +138,11 @@ TEST(Shell, OnlyBallsAreKnots) {
     for (std::int64_t y = 0; y < placement.relief.height; ++y)
         for (std::int64_t x = 0; x < placement.relief.width; ++x)
             *placement.relief.at(x, y) = 40.0f + 0.5f * static_cast<float>(x - placement.relief.width / 2);
-    const BandDots dots = band_dots(make_bands(640)[0], false, placement)[0];
+    const BandSplats splats = band_splats(make_bands(640)[0], false, placement)[0];
     for (const float ballness : {0.0f, 1.0f}) {
         placement.knots.knots[0].ballness = ballness;
-        PlacedBlock block = dots_about(320.0f, 200.0f, 12.0f, 1u);
-        place(placement, dots, block);
+        PlacedBlock block = splats_about(320.0f, 200.0f, 12.0f, 1u);
+        place(placement, splats, block);
         const auto [low, high] = std::minmax_element(block.z, block.z + block.count);
         if (ballness > 0.5f) {
             EXPECT_LT(*high - *low, 12.0f);

@@ -85,7 +85,7 @@ TEST(Stars, FlatOnesLeaveNoHole) {
         ASSERT_GE(light.pixels[i], 0.044f) << "pixel " << i / 3;
 }
 
-// Left in, each of them would be a row of faint dots in depth.
+// Left in, each of them would be a row of faint splats in depth.
 TEST(Stars, FaintOnesInADarkSkyAreTaken) {
     Image light = make_image(256, 128, 3, 0.006f);
     for (std::uint32_t i = 0; i < 20; ++i)
@@ -162,7 +162,7 @@ TEST(Stars, LeaveNoHolesInDisksAndNoLightInClouds) {
     }
 }
 
-// The fit takes the dots of a range for as wide as each other.
+// The fit takes the splats of a range for as wide as each other.
 TEST(Stars, ThoseOfARangeAreAboutOfOneSize) {
     Image image = sky(512, 256);
     for (int i = 0; i < 28; ++i)
@@ -172,13 +172,13 @@ TEST(Stars, ThoseOfARangeAreAboutOfOneSize) {
     params.kind = StructureKind::sheet;
     const PictureStars stars = take_picture_stars(image, params);
     ASSERT_GT(stars.count, 20);
-    PictureSplats dots;
-    add_picture_stars(stars, placement_without_fields(512, 256, params, 100.0), {}, dots);
-    ASSERT_EQ(dots.splats.size(), stars.count);
-    EXPECT_GE(dots.ranges.size(), 3u);
-    for (const DotRange& range : dots.ranges)
+    PictureSplats set;
+    add_picture_stars(stars, placement_without_fields(512, 256, params, 100.0), {}, set);
+    ASSERT_EQ(set.splats.size(), stars.count);
+    EXPECT_GE(set.ranges.size(), 3u);
+    for (const SplatRange& range : set.ranges)
         for (std::int64_t i = range.begin; i < range.end; ++i)
-            EXPECT_NEAR(dots.splats.radius[static_cast<std::size_t>(i)] / radius_sigmas, range.sigma,
+            EXPECT_NEAR(set.splats.radius[static_cast<std::size_t>(i)] / radius_sigmas, range.sigma,
                         0.25f * range.sigma);
 }
 

@@ -1,4 +1,4 @@
-// Dots as Gaussians: their integrals and blends, and their way through files.
+// Splats as Gaussians: their integrals and blends, and their way through files.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -21,7 +21,7 @@
 namespace astrosplat::test {
 namespace {
 
-// Dots as Gaussians: the integral by summing over a fine grid, blends by hand, and fewer splats with the same
+// Splats as Gaussians: the integral by summing over a fine grid, blends by hand, and fewer with the same
 // light.
 
 Falloff falloff_of(Falloff::Shape shape, float sharpness = 4.5f) {
@@ -80,26 +80,26 @@ LayerRender blend_of(Blend blend) {
     return render;
 }
 
-TEST(Gaussians, HaveTheIntegralOfTheDot) {
+TEST(Gaussians, HaveTheIntegralOfTheSplat) {
     for (const Falloff& falloff :
          {falloff_of(Falloff::Shape::constant), falloff_of(Falloff::Shape::linear),
           falloff_of(Falloff::Shape::trapezoid), falloff_of(Falloff::Shape::gaussian),
           falloff_of(Falloff::Shape::gaussian, 20.0f), falloff_of(Falloff::Shape::exponential, 6.0f)}) {
         const GaussianProfile g = nearest_gaussian(falloff);
-        const double dot = sum_over_plane([&](double r) { return falloff_value(falloff, r); });
+        const double splat = sum_over_plane([&](double r) { return falloff_value(falloff, r); });
         const double gaussian =
             sum_over_plane([&](double r) { return g.peak * std::exp(-r * r / (2 * g.sigma * g.sigma)); });
-        EXPECT_NEAR(gaussian / dot, 1.0, 2e-3) << int(falloff.shape);
+        EXPECT_NEAR(gaussian / splat, 1.0, 2e-3) << int(falloff.shape);
     }
 }
 
-TEST(Gaussians, OfAConstantDotHasALogarithmInClosedForm) {
+TEST(Gaussians, OfAConstantSplatHasALogarithmInClosedForm) {
     const GaussianProfile g = nearest_gaussian(falloff_of(Falloff::Shape::constant));
     EXPECT_NEAR(g.peak, std::log(4.0), 1e-5);
     EXPECT_NEAR(g.sigma, std::sqrt(0.5 / std::log(4.0)), 1e-5);
 }
 
-TEST(Gaussians, OfAGaussianDotIsNearlyItself) {
+TEST(Gaussians, OfAGaussianSplatIsNearlyItself) {
     const GaussianProfile g = nearest_gaussian(falloff_of(Falloff::Shape::gaussian, 20.0f));
     EXPECT_NEAR(g.peak, 1.0, 1e-4);
     EXPECT_NEAR(g.sigma, std::sqrt(0.5 / 20.0), 1e-4);

@@ -5,7 +5,7 @@
 
 #include "look/apply.h"
 #include "look/shared_look.h"
-#include "support/dots.h"
+#include "support/splats.h"
 
 namespace astrosplat::test {
 

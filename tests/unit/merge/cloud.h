@@ -7,7 +7,7 @@
 
 #include "merge/cut.h"
 #include "merge/tree.h"
-#include "support/dots.h"
+#include "support/splats.h"
 
 namespace astrosplat::test {
 
@@ -34,9 +34,9 @@ struct Cloud {
 };
 
 /// Of one layer alone.
-inline ShadedSplats cut_of(const MergedSplats& merged, const DotSettings& dots,
+inline ShadedSplats cut_of(const MergedSplats& merged, const MergeSettings& merging,
                            const LayerProjection& projection, const CutSettings& settings) {
-    const CutLayer cut{&merged, &dots, projection};
+    const CutLayer cut{&merged, &merging, projection};
     return std::move(cut_splats(std::span(&cut, 1), settings)[0]);
 }
 

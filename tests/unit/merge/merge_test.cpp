@@ -58,7 +58,7 @@ ShadedSplats cut_of(const MergedSplats& merged, std::int64_t budget, const Layer
     RenderSettings frame;
     frame.width = width;
     frame.height = height;
-    return test::cut_of(merged, DotSettings(render), make_projection(layer, 0, seen_by, frame),
+    return test::cut_of(merged, MergeSettings(render), make_projection(layer, 0, seen_by, frame),
                         {budget, least_px, width, height});
 }
 
@@ -186,12 +186,14 @@ Cloud thread(const glm::vec3& direction) {
 TEST(Merge, AThreadIsHalvedUntilItsPartsLookSmallEnough) {
     for (const glm::vec3 direction : {glm::vec3(1, 0, 0), glm::vec3(0, 1, 0)}) {
         const MergedSplats merged = thread(direction).merged();
-        const auto dots = [&](float least_px) { return cut_of(merged, 4096, {}, camera(), least_px).size(); };
-        EXPECT_EQ(dots(66.0f), 1);
-        EXPECT_EQ(dots(62.0f), 2) << "its length counts";
-        EXPECT_EQ(dots(33.0f), 2);
-        EXPECT_EQ(dots(5.0f), 16);
-        EXPECT_EQ(dots(3.0f), 32);
+        const auto count = [&](float least_px) {
+            return cut_of(merged, 4096, {}, camera(), least_px).size();
+        };
+        EXPECT_EQ(count(66.0f), 1);
+        EXPECT_EQ(count(62.0f), 2) << "its length counts";
+        EXPECT_EQ(count(33.0f), 2);
+        EXPECT_EQ(count(5.0f), 16);
+        EXPECT_EQ(count(3.0f), 32);
     }
     EXPECT_EQ(cut_of(thread({0, 0, 1}).merged(), 4096, {}, camera(), 5.0f).size(), 1) << "seen along it";
 }
@@ -205,7 +207,7 @@ TEST(Merge, WhereAllThatLooksLargeIsDividedMoreRoomChangesNothing) {
         EXPECT_EQ(cut_of(merged, more, {}, camera(), 3.0f).size(), enough) << more;
 }
 
-TEST(Merge, WhatTheFrameDoesNotShowTakesNoDots) {
+TEST(Merge, WhatTheFrameDoesNotShowTakesNoSplats) {
     const Cloud cloud = random_cloud(20000, glm::vec3(1.0f), 0.001f, 0.5f);
     const ShadedSplats cut = cut_of(cloud.merged(), 2000, {}, camera(0.1));
     EXPECT_GT(cut.size(), 100);
@@ -240,17 +242,17 @@ TEST(Merge, AColumnLetsThroughWhatItDidUnderEveryBlend) {
     }
 }
 
-TEST(Merge, OneSplatIsItsOwnDotUnderEveryBlend) {
+TEST(Merge, OneSplatIsItselfUnderEveryBlend) {
     for (const Blend blend : {Blend::over, Blend::add, Blend::screen, Blend::lighten, Blend::hybrid}) {
         for (const float alpha : {0.01f, 0.5f, 0.97f}) {
             Cloud cloud;
             cloud.add({0.2f, 0.1f, 0.0f}, {0.9f, 0.4f, 0.1f}, alpha, 0.25f);
-            const Dot dot =
-                make_dot(DotSettings(render_as(blend)), cloud.merged().sums[0], {0.0f, 0.0f}, 0.3f);
-            EXPECT_NEAR(dot.radius, 0.25, 1e-6);
-            EXPECT_NEAR(dot.alpha, alpha, 2e-4);
-            EXPECT_NEAR(dot.color.x * dot.alpha, 0.9f * alpha, 3e-4);
-            EXPECT_NEAR(dot.color.z * dot.alpha, 0.1f * alpha, 3e-4);
+            const NodeSplat splat =
+                splat_of(MergeSettings(render_as(blend)), cloud.merged().sums[0], {0.0f, 0.0f}, 0.3f);
+            EXPECT_NEAR(splat.radius, 0.25, 1e-6);
+            EXPECT_NEAR(splat.alpha, alpha, 2e-4);
+            EXPECT_NEAR(splat.color.x * splat.alpha, 0.9f * alpha, 3e-4);
+            EXPECT_NEAR(splat.color.z * splat.alpha, 0.1f * alpha, 3e-4);
         }
     }
 }
@@ -263,18 +265,18 @@ TEST(Merge, StarsCloseByAreThePointsOfTheFinalFrame) {
     params.position = {0.0, 0.0, 2.0};
     params.fov = 10.0;
     const Camera near_by = make_camera(params, width, height, {});
-    LayerRender as_dot, as_point;
+    LayerRender as_splat, as_point;
     as_point.lod.star_distance = 8.0f;
-    const Image preview = picture_of(cut_of(cloud.merged(), 10, as_point, near_by), as_dot, near_by),
+    const Image preview = picture_of(cut_of(cloud.merged(), 10, as_point, near_by), as_splat, near_by),
                 final = picture_of(cloud.splats, as_point, near_by),
-                dot = picture_of(cloud.splats, as_dot, near_by);
+                splat = picture_of(cloud.splats, as_splat, near_by);
     const float brightest = *std::ranges::max_element(final.pixels);
-    EXPECT_GT(brightest, 2.0f * *std::ranges::max_element(dot.pixels));
+    EXPECT_GT(brightest, 2.0f * *std::ranges::max_element(splat.pixels));
     for (std::size_t i = 0; i < final.pixels.size(); ++i)
         ASSERT_NEAR(preview.pixels[i], final.pixels[i], 1e-3f * brightest);
 }
 
-TEST(Merge, OpacityOfTheLayerIsInTheDots) {
+TEST(Merge, OpacityOfTheLayerIsInTheSplats) {
     const Cloud cloud = random_cloud(500, glm::vec3(0.1f), 0.01f, 0.1f);
     LayerRender render;
     render.opacity = 0.5f;
@@ -283,7 +285,7 @@ TEST(Merge, OpacityOfTheLayerIsInTheDots) {
     EXPECT_EQ(cut_of(merged, 500, render).alpha[0], 0.5f * cut_of(merged, 500).alpha[0]);
 }
 
-TEST(Merge, TheDepthOfADotAndItsAlphaAreInverse) {
+TEST(Merge, TheDepthOfASplatAndItsAlphaAreInverse) {
     for (const auto shape : {Falloff::Shape::constant, Falloff::Shape::linear, Falloff::Shape::trapezoid,
                              Falloff::Shape::gaussian, Falloff::Shape::exponential}) {
         Falloff falloff;
@@ -299,7 +301,7 @@ TEST(Merge, TheDepthOfADotAndItsAlphaAreInverse) {
     EXPECT_NEAR(DepthTable(disc).depth(0.5), 3.14159265 * std::log(2.0), 1e-3);
 }
 
-TEST(Merge, AThreadOfSplatsIsARowOfDots) {
+TEST(Merge, AThreadOfSplatsIsARowOfMergedOnes) {
     Cloud cloud;
     for (std::uint32_t i = 0; i < 4000; ++i) {
         const float along = 2.0f * uniform(i, 0) - 1.0f;
@@ -309,7 +311,7 @@ TEST(Merge, AThreadOfSplatsIsARowOfDots) {
     EXPECT_GE(cut.size(), 48);
     for (std::size_t i = 0; i < cut.radius.size(); ++i) {
         EXPECT_NEAR(cut.position[i].y, 0.5f * cut.position[i].x, 1e-4);
-        EXPECT_LT(cut.radius[i], 0.1f);  // a dot for every 0.035 of the length
+        EXPECT_LT(cut.radius[i], 0.1f);  // a splat for every 0.035 of the length
     }
 }
 
@@ -319,7 +321,7 @@ TEST(Merge, SplatsThatAbsorbAreNotMergedWithLight) {
         cloud.set->color[i] = cloud.splats.color[i] = {-0.5f, -1.0f, -2.0f};
     cloud.set->absorbs = true;
     for (const std::int64_t budget :
-         {1, 2}) {  // each has a root of its own, even where one dot was asked for
+         {1, 2}) {  // each has a root of its own, even where one splat was asked for
         const ShadedSplats cut = cut_of(cloud.merged(), budget);
         ASSERT_EQ(cut.size(), 2);
         EXPECT_GT(cut.color[0].x, 0.0f);
@@ -345,16 +347,16 @@ TEST(Merge, WhatTheLookDropsIsNotThere) {
     EXPECT_EQ(cut_of(cloud.merged(), 100).size(), 0);
 }
 
-// Haze whose dots are as wide as their cloud looks the same, however far it is divided.
-TEST(Merge, WhatIsFineGetsTheDotsAndNotTheHazeBesideIt) {
+// Haze whose splats are as wide as their cloud looks the same, however far it is divided.
+TEST(Merge, WhatIsFineGetsTheSplatsAndNotTheHazeBesideIt) {
     const MergedSplats fine = random_cloud(20000, glm::vec3(1.0f), 0.02f, 0.2f).merged(),
                        haze = random_cloud(20000, glm::vec3(1.0f), 1.0f, 0.01f).merged();
-    const DotSettings dots{LayerRender()};
+    const MergeSettings settings{LayerRender()};
     RenderSettings frame;
     frame.width = width;
     frame.height = height;
     const LayerProjection seen = make_projection(RenderLayer(), 0, camera(), frame);
-    const std::array<CutLayer, 2> layers = {CutLayer{&fine, &dots, seen}, {&haze, &dots, seen}};
+    const std::array<CutLayer, 2> layers = {CutLayer{&fine, &settings, seen}, {&haze, &settings, seen}};
     const std::vector<ShadedSplats> cut = cut_splats(layers, {2000, 1.5f, width, height});
     EXPECT_GT(cut[0].size(), 1500);
     EXPECT_GT(cut[1].size(), 1) << "it has a shape of its own";

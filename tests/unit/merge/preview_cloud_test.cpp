@@ -1,4 +1,4 @@
-// Clouds of dots for a preview: their light close by, and their evenness.
+// Clouds of splats for a preview: their light close by, and their evenness.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -11,13 +11,13 @@
 #include "render/lod.h"
 #include "render/render.h"
 #include "splats/splat_set.h"
-#include "support/dots.h"
+#include "support/splats.h"
 #include "unit/merge/cloud.h"
 
 namespace astrosplat {
 namespace {
 
-// Structure close by (lod.noise) in a preview's dots: as bright as the children of the final frame are on
+// Structure close by (lod.noise) in a preview's splats: as bright as the children of the final frame are on
 // average, and 1 where there are none.
 
 /// Grey splats, each of which takes up a few blocks of the frame.
@@ -54,7 +54,7 @@ struct CloseBy {
         }
     }
     ShadedSplats cut(std::int64_t budget) const {
-        return test::cut_of(cloud.merged(), DotSettings(layer.render),
+        return test::cut_of(cloud.merged(), MergeSettings(layer.render),
                             make_projection(layer, 0, camera, frame), {budget, 0.0f, side, side});
     }
     /// Light of blocks of 32 px.
@@ -85,7 +85,7 @@ double total(const std::vector<double>& blocks) {
     return sum;
 }
 
-TEST(CloudLight, DotsAreBrightWhereTheirChildrenAre) {
+TEST(CloudLight, SplatsAreBrightWhereTheirChildrenAre) {
     CloseBy scene;
     scene.fill(3000, 0.3f);
     const std::vector<double> final = scene.blocks(scene.cloud.splats, true);
@@ -133,17 +133,18 @@ TEST(CloudLight, StarsOfAPictureAreNoClouds) {
     EXPECT_NE(cut.color[star_first ? 1 : 0].x, 0.5f);
 }
 
-// Dots in place of a lattice: as even as it was although its cells are alike and in line, and none of both
+// Splats in place of a lattice: as even as it was although its cells are alike and in line, and none of both
 // sides of its middle.
 
 struct Seen {
     double unevenness;  // standard deviation over mean of the light of its middle
-    double cover;       // of the dots, over that of the splats
-    std::size_t dots;
+    double cover;       // of what is drawn, over that of the splats
+    std::size_t splats;
 };
 
-/// A block of 48 x 48 x `deep` splats through dots that stand for 64 each, seen from so far beside its front.
-Seen seen_through_dots(bool lattice, int deep = 48, double degrees = 0.0) {
+/// A block of 48 x 48 x `deep` splats through merged ones that stand for 64 each, from so far beside its
+/// front.
+Seen seen_through_splats(bool lattice, int deep = 48, double degrees = 0.0) {
     constexpr int splats_a_side = 48, side = 256, first = 96, end = 160;  // px
     test::Cloud cloud;
     const auto at = [](int i) { return (static_cast<float>(i) + 0.5f) / splats_a_side * 2.0f - 1.0f; };
@@ -164,7 +165,7 @@ Seen seen_through_dots(bool lattice, int deep = 48, double degrees = 0.0) {
     RenderSettings frame;
     frame.width = frame.height = side;
     const ShadedSplats cut =
-        test::cut_of(cloud.merged(), DotSettings(layer.render, lattice),
+        test::cut_of(cloud.merged(), MergeSettings(layer.render, lattice),
                      make_projection(layer, 0, camera, frame), {count / 64, 0.0f, side, side});
     layer.splats = &cut;
     const Image image = render(std::span(&layer, 1), camera, nullptr, frame).beauty;
@@ -184,28 +185,28 @@ Seen seen_through_dots(bool lattice, int deep = 48, double degrees = 0.0) {
 }
 
 TEST(MergedLattice, HasNoStripes) {
-    const double even = seen_through_dots(true).unevenness;
+    const double even = seen_through_splats(true).unevenness;
     EXPECT_LT(even, 0.14) << "waves 17 % high along either axis; the root mean square of both";
-    EXPECT_GT(seen_through_dots(false).unevenness, 1.6 * even) << "as other sets' dots would look";
+    EXPECT_GT(seen_through_splats(false).unevenness, 1.6 * even) << "as other sets' splats would look";
 }
 
-// Its cells look wider than high: each becomes several dots, which lie side by side and share its light.
+// Its cells look wider than high: each becomes several splats, which lie side by side and share its light.
 TEST(MergedLattice, HasNoStripesAslantEither) {
     constexpr int deep = 8;
     for (const double degrees : {60.0, 72.0}) {
-        const Seen seen = seen_through_dots(true, deep, degrees);
+        const Seen seen = seen_through_splats(true, deep, degrees);
         EXPECT_LT(seen.unevenness, 0.16) << degrees;
-        EXPECT_GT(seen_through_dots(false, deep, degrees).unevenness, 2.0 * seen.unevenness) << degrees;
+        EXPECT_GT(seen_through_splats(false, deep, degrees).unevenness, 2.0 * seen.unevenness) << degrees;
         EXPECT_NEAR(seen.cover, 1.0, 1e-4) << degrees;
-        EXPECT_LE(seen.dots, 48u * 48u * deep / 64u) << degrees;
-        EXPECT_GT(seen.dots, 48u * 48u * deep / 192u) << degrees;
+        EXPECT_LE(seen.splats, 48u * 48u * deep / 64u) << degrees;
+        EXPECT_GT(seen.splats, 48u * 48u * deep / 192u) << degrees;
     }
 }
 
 TEST(MergedLattice, KeepsToItsBudgetFromEverySide) {
     for (const int deep : {2, 8, 48})
         for (double degrees = 0.0; degrees < 90.0; degrees += 5.0)
-            EXPECT_LE(seen_through_dots(true, deep, degrees).dots,
+            EXPECT_LE(seen_through_splats(true, deep, degrees).splats,
                       48u * 48u * static_cast<unsigned>(deep) / 64u)
                 << deep << " deep, from " << degrees;
 }
@@ -234,7 +235,7 @@ int mixed_leaves(double spacing) {
     return mixed;
 }
 
-/// A dot of both would be all before the dust of a disk, or all behind it.
+/// A merged splat of both would be all before the dust of a disk, or all behind it.
 TEST(MergedLattice, IsHalvedInItsMiddle) {
     EXPECT_EQ(mixed_leaves(0.1), 0);
     EXPECT_GT(mixed_leaves(0.0), 100) << "as other sets are";

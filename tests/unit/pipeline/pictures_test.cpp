@@ -45,7 +45,7 @@ class Fidelity : public testing::Test {
     Scene& scene = small.scene;
 };
 
-TEST_F(Fidelity, APlaneOfSoftDotsIsItsPicture) {
+TEST_F(Fidelity, APlaneOfSoftSplatsIsItsPicture) {
     const FidelityReport report = measured();
     EXPECT_EQ(report.layer, "dust");
     EXPECT_EQ(report.front.width_px, 160);

@@ -182,7 +182,7 @@ TEST(ChildNoise, StarsOfPicturesStayWhole) {
     EXPECT_NE(picture(7, 10.0f, 0.75f), whole);
 }
 
-/// A cluster of dots of many sizes, each of them fuzz from afar.
+/// A cluster of splats of many sizes, each of them fuzz from afar.
 ShadedSplats knot() {
     std::vector<OneSplat> specs;
     for (std::uint32_t i = 0; i < 500; ++i) {
@@ -220,11 +220,11 @@ TEST(ChildNoise, AFlightIntoAKnotHasNeitherFlickerNorPops) {
         EXPECT_LE(change[t], 1.05 * 0.5 * (change[t - 1] + change[t + 1])) << "frame " << t + 1;
 }
 
-// Of many dots some split at any time, and each alone is hardly seen: one dot shows how.
-TEST(ChildNoise, ADotBecomesItsChildrenLittleByLittle) {
+// Of many splats some split at any time, and each alone is hardly seen: one splat shows how.
+TEST(ChildNoise, ASplatBecomesItsChildrenLittleByLittle) {
     constexpr int frames = 48, side = 120;
     const ShadedSplats splats = make_splats({{glm::vec3(0.0f), 0.5f, 0.3f, {1.5f, 0.9f, 0.5f}}});
-    RenderLayer layer = layer_of("dot", splats, Blend::over, Falloff::Shape::gaussian);
+    RenderLayer layer = layer_of("splat", splats, Blend::over, Falloff::Shape::gaussian);
     layer.render.lod.max_px = 300.0f;  // at 1080 lines
     layer.render.lod.noise = 0.75f;
     const auto view = [&](int t) {

@@ -243,7 +243,7 @@ std::string describe(const RandomScene& scene) {
     return text;
 }
 
-/// Dots with a hard rim: there a table is least like what it stands for.
+/// Splats with a hard rim: there a table is least like what it stands for.
 bool has_rims(const RandomScene& scene) {
     return std::any_of(scene.layers.begin(), scene.layers.end(), [](const RenderLayer& layer) {
         const Falloff& falloff = layer.render.falloff;

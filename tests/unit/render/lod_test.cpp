@@ -138,13 +138,13 @@ INSTANTIATE_TEST_SUITE_P(All, LodLight,
                                            LodCase{Falloff::Shape::trapezoid, Blend::over, 0.4f},
                                            LodCase{Falloff::Shape::constant, Blend::over, 0.45f}));
 
-// Stars of pictures close by: points that keep the light of their dots, and nothing else changes.
+// Stars of pictures close by: points that keep the light of their splats, and nothing else changes.
 
 constexpr std::uint64_t star_number = star_band << 48 | 12;
 constexpr int side_px = 96;
 
 /// One splat at the origin, seen by a camera so far away.
-struct OneDot {
+struct OneStar {
     std::uint64_t id = star_number;
     float alpha = 0.01f;
     double from = 2.0;           // scene units
@@ -155,9 +155,9 @@ struct OneDot {
     bool absorbs = false;
 
     Image render() const {
-        ShadedSplats dot = make_splats({{{0.0f, 0.0f, 0.0f}, 0.05f, alpha, {1.0f, 0.8f, 0.6f}}});
-        dot.id[0] = id;
-        RenderLayer layer = layer_of("star", dot, blend, Falloff::Shape::gaussian);
+        ShadedSplats splat = make_splats({{{0.0f, 0.0f, 0.0f}, 0.05f, alpha, {1.0f, 0.8f, 0.6f}}});
+        splat.id[0] = id;
+        RenderLayer layer = layer_of("star", splat, blend, Falloff::Shape::gaussian);
         layer.render.lod = lod;
         layer.render.lod.star_distance = star_distance;
         CameraParams params;
@@ -180,7 +180,7 @@ double light_of(const Image& image) {
 
 float brightest_of(const Image& image) { return *std::max_element(image.pixels.begin(), image.pixels.end()); }
 
-TEST(NearStar, ItsSizeGoesFromThatOfADotToAPoints) {
+TEST(NearStar, ItsSizeGoesFromThatOfASplatToAPoints) {
     EXPECT_EQ(near_star_size(1.0f), 1.0f);
     EXPECT_FLOAT_EQ(near_star_size(0.5f), std::pow(0.5f, 0.75f));
     EXPECT_EQ(near_star_size(1e-6f), 0.25f);
@@ -190,7 +190,7 @@ TEST(NearStar, ItsSizeGoesFromThatOfADotToAPoints) {
 
 TEST(NearStar, ItKeepsItsLightAndIsSharper) {
     for (const Blend blend : {Blend::over, Blend::add}) {
-        OneDot star{.blend = blend};
+        OneStar star{.blend = blend};
         const Image disc = star.render();
         star.star_distance = 8.0f;
         const Image point = star.render();
@@ -202,10 +202,10 @@ TEST(NearStar, ItKeepsItsLightAndIsSharper) {
 }
 
 TEST(NearStar, OnlyStarsThatAreNearChange) {
-    const auto changes = [](OneDot dot, float distance) {
-        const Image before = dot.render();
-        dot.star_distance = distance;
-        return dot.render().pixels != before.pixels;
+    const auto changes = [](OneStar star, float distance) {
+        const Image before = star.render();
+        star.star_distance = distance;
+        return star.render().pixels != before.pixels;
     };
     EXPECT_TRUE(changes({}, 8.0f));
     EXPECT_FALSE(changes({}, 2.0f));
@@ -217,7 +217,7 @@ TEST(NearStar, OnlyStarsThatAreNearChange) {
 }
 
 TEST(NearStar, ItIsNotSplit) {
-    OneDot star{.star_distance = 8.0f};
+    OneStar star{.star_distance = 8.0f};
     const Image whole = star.render();
     star.lod.max_px = 8.0f;
     EXPECT_EQ(star.render().pixels, whole.pixels);
@@ -225,7 +225,7 @@ TEST(NearStar, ItIsNotSplit) {
 
 /// Its light is behind nothing that closes a pixel too early, however bright it is.
 TEST(NearStar, ItIsSeenThroughWhatIsNearlyOpaque) {
-    const ShadedSplats dots = [] {
+    const ShadedSplats splats = [] {
         std::vector<OneSplat> all(30, {{0.0f, 0.0f, 1.0f}, 0.5f, 0.32f, {0.0f, 0.0f, 0.0f}});
         all.push_back({{0.0f, 0.0f, 0.0f}, 0.05f, 0.9f, {1.0f, 1.0f, 1.0f}});
         ShadedSplats made = make_splats(all);
@@ -236,7 +236,7 @@ TEST(NearStar, ItIsSeenThroughWhatIsNearlyOpaque) {
     params.position = {0.0, 0.0, 2.0};
     params.fov = 20.0;
     const Camera camera = make_camera(params, side_px, side_px, {});
-    RenderLayer layer = layer_of("star", dots, Blend::over, Falloff::Shape::gaussian);
+    RenderLayer layer = layer_of("star", splats, Blend::over, Falloff::Shape::gaussian);
     const auto seen = [&](float star_distance) {
         layer.render.lod.star_distance = star_distance;
         return double(render({&layer, 1}, camera, nullptr, settings_of(side_px, side_px))
@@ -246,7 +246,7 @@ TEST(NearStar, ItIsSeenThroughWhatIsNearlyOpaque) {
 }
 
 TEST(NearStar, AFlightPastItHasNoPops) {
-    OneDot star{.star_distance = 3.0f};
+    OneStar star{.star_distance = 3.0f};
     double before = 0.0;
     for (int t = 0; t <= 40; ++t) {
         star.from = 4.0 - 0.05 * t;  // farther and nearer than that

@@ -245,8 +245,8 @@ TEST(BinRects, AreThoseThatTheSquareTouchesOnTheLevelThatFits) {
 // The memory of projected splats, estimated from a part of them as from all, whatever tiles the part alone
 // would choose.
 
-/// Every `step`-th dot of a frame of 640x480 px that is full of small ones and has some wide ones.
-ShadedSplats dots(int step) {
+/// Every `step`-th splat of a frame of 640x480 px that is full of small ones and has some wide ones.
+ShadedSplats some_splats(int step) {
     constexpr int count = 400000;
     std::vector<OneSplat> all;
     std::uint32_t state = 5;
@@ -255,10 +255,10 @@ ShadedSplats dots(int step) {
         return static_cast<float>(state >> 8) / 16777216.0f;
     };
     for (int i = 0; i < count; ++i) {
-        OneSplat dot{
+        OneSplat splat{
             {640.0f * next() - 320.0f, 480.0f * next() - 240.0f, next()}, 1.0f + 2.0f * next(), 0.1f};
-        if (i % 400 == 0) dot.radius = 60.0f;
-        if (i % step == 0 || (i % 400 == 0 && (i / 400) % step == 0)) all.push_back(dot);
+        if (i % 400 == 0) splat.radius = 60.0f;
+        if (i % step == 0 || (i % 400 == 0 && (i / 400) % step == 0)) all.push_back(splat);
     }
     return make_splats(all);
 }
@@ -274,7 +274,7 @@ std::int64_t bytes_of(const ShadedSplats& splats, double each, int tile_px = 0, 
 }
 
 TEST(ScatteredBytes, APartTellsWhatAllTake) {
-    const ShadedSplats all = dots(1), part = dots(9);
+    const ShadedSplats all = some_splats(1), part = some_splats(9);
     const double each = static_cast<double>(all.size()) / static_cast<double>(part.size());
     for (const float max_px : {0.0f, 40.0f}) {
         const auto whole = static_cast<double>(bytes_of(all, 1.0, 0, max_px));
@@ -285,7 +285,7 @@ TEST(ScatteredBytes, APartTellsWhatAllTake) {
 
 // Few splats would choose the wider ones.
 TEST(ScatteredBytes, TilesAreThoseOfAllSplats) {
-    const ShadedSplats part = dots(9);
+    const ShadedSplats part = some_splats(9);
     EXPECT_EQ(bytes_of(part, 1.0), bytes_of(part, 1.0, 64));
     EXPECT_EQ(bytes_of(part, 1000.0), bytes_of(part, 1000.0, 32));
     EXPECT_GT(bytes_of(part, 1000.0), 1000 * bytes_of(part, 1.0));

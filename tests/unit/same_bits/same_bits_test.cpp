@@ -112,26 +112,26 @@ Bits bands() {
     return Bits() << images;
 }
 
-/// Dots of three sizes and one of dust.
+/// Splats of three sizes and one of dust.
 Bits flat_light() {
-    PictureSplats dots;
+    PictureSplats set;
     std::uint32_t n = 0;
     for (const float sigma : {0.5f, 1.7f, 6.0f}) {
-        const auto begin = dots.splats.size();
+        const auto begin = set.splats.size();
         for (int i = 0; i < 300; ++i, ++n) {
-            dots.splats.position.emplace_back(96.0f * (static_cast<float>(painted::random(n, 1)) - 0.5f),
-                                              31.9f - 0.21f * static_cast<float>(i), 0.0f);
-            dots.splats.color.emplace_back(1.0f, 0.5f, static_cast<float>(painted::random(n, 2)));
-            dots.splats.alpha.push_back(0.1f);
-            dots.splats.radius.push_back(radius_sigmas * sigma);
+            set.splats.position.emplace_back(96.0f * (static_cast<float>(painted::random(n, 1)) - 0.5f),
+                                             31.9f - 0.21f * static_cast<float>(i), 0.0f);
+            set.splats.color.emplace_back(1.0f, 0.5f, static_cast<float>(painted::random(n, 2)));
+            set.splats.alpha.push_back(0.1f);
+            set.splats.radius.push_back(radius_sigmas * sigma);
         }
-        dots.ranges.push_back({begin, dots.splats.size(), sigma});
+        set.ranges.push_back({begin, set.splats.size(), sigma});
     }
-    dots.splats.position.emplace_back(0.0f);
-    dots.splats.color.emplace_back(-1.0f);
-    dots.splats.alpha.push_back(0.5f);
-    dots.splats.radius.push_back(4.0f);
-    return Bits() << FlatLight(dots, 96, 64, 0.5).sum();
+    set.splats.position.emplace_back(0.0f);
+    set.splats.color.emplace_back(-1.0f);
+    set.splats.alpha.push_back(0.5f);
+    set.splats.radius.push_back(4.0f);
+    return Bits() << FlatLight(set, 96, 64, 0.5).sum();
 }
 
 Bits margins() {

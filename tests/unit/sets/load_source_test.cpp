@@ -6,10 +6,10 @@
 #include "sets/load_source.h"
 #include "source/textured_mesh.h"
 #include "splat_files/splat_file.h"
-#include "support/dots.h"
 #include "support/errors.h"
 #include "support/pixmap.h"
 #include "support/quiet.h"
+#include "support/splats.h"
 #include "support/test_data.h"
 #include "unit/splat_files/file_support.h"
 

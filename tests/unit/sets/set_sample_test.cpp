@@ -17,7 +17,7 @@
 namespace astrosplat {
 namespace {
 
-// Samples of sets: rows of what is kept, and of what is not, dots as wide as those of the whole set.
+// Samples of sets: rows of what is kept, and of what is not, splats as wide as those of the whole set.
 
 namespace fs = std::filesystem;
 
@@ -99,7 +99,7 @@ TEST_F(SetSampleTest, OfWhatIsNotKeptItIsMadeAsWide) {
         EXPECT_GT(sample.making_seconds, 0.0);
         EXPECT_NEAR(static_cast<double>(sample.splats), splats, 0.15 * splats);
         EXPECT_GT(sample.each(), 1.3);
-        // A smaller picture has fewer sizes of dots; were the rest not made narrower, they would cover 1.5
+        // A smaller picture has fewer sizes of splats; were the rest not made narrower, they would cover 1.5
         // times as much.
         EXPECT_LE(area(sample.set, sample.each()), 1.1 * area(whole, 1.0));
         EXPECT_GE(area(sample.set, sample.each()), 0.5 * area(whole, 1.0));

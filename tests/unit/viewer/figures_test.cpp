@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "core/color.h"
-#include "support/dots.h"
+#include "support/splats.h"
 #include "support/temp_folder.h"
 #include "viewer/compared_pictures.h"
 #include "viewer/comparison.h"
@@ -215,20 +215,20 @@ TEST(MeanColor, IsOfSplatsFromEverywhere) {
 
 constexpr std::int64_t size = 64;  // px
 
-/// Layers of one large dot each, seen from +z; x < 0 is the left half.
+/// Layers of one large splat each, seen from +z; x < 0 is the left half.
 struct LayersAtPixel : testing::Test {
     std::vector<ShadedSplats> splats;
     std::vector<PreviewLayer> layers;
     LayersAtPixel() { splats.reserve(8); }
 
     PreviewLayer& add(const char* name, glm::vec3 place, glm::vec3 color, float alpha = 1.0f) {
-        ShadedSplats dot;
-        dot.position.push_back(place);
-        dot.color.push_back(color);
-        dot.alpha.push_back(alpha);
-        dot.radius.push_back(1.0f);
-        dot.id.push_back(splats.size());
-        splats.push_back(std::move(dot));
+        ShadedSplats splat;
+        splat.position.push_back(place);
+        splat.color.push_back(color);
+        splat.alpha.push_back(alpha);
+        splat.radius.push_back(1.0f);
+        splat.id.push_back(splats.size());
+        splats.push_back(std::move(splat));
         PreviewLayer layer;
         layer.layer.name = name;
         layer.layer.splats = &splats.back();

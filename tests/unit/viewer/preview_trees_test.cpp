@@ -18,9 +18,9 @@
 #include "gl/gl_fixture.h"
 #include "merge/cut.h"
 #include "render/footprint.h"
-#include "support/dots.h"
 #include "support/preview_views.h"
 #include "support/quiet.h"
+#include "support/splats.h"
 #include "support/temp_folder.h"
 #include "viewer/cpu_preview.h"
 #include "viewer/kept_trees.h"
@@ -194,7 +194,7 @@ TEST_F(KeptTreesTest, ALoaderKeepsTheTreesOfSetsThatAreLargerThanTheirSample) {
     EXPECT_TRUE(same(*first->whole.tree, *second->whole.tree));
 }
 
-// Previews of few dots must show the light of what they stand for: mean brightness, blocks of 64x64 px and
+// Previews of few splats must show the light of what they stand for: mean brightness, blocks of 64x64 px and
 // the thickness of a disk seen from its edge.
 
 constexpr int frame_width = 960, frame_height = 540;
@@ -270,12 +270,12 @@ const View views[] = {{"over, tilted", Blend::over, tilted},       {"over, edge 
                       {"screen, edge on", Blend::screen, edge_on}, {"add, tilted", Blend::add, tilted},
                       {"add, edge on", Blend::add, edge_on}};
 
-/// A galaxy of more than eight million dots, which all views share, whole and as a preview draws it.
+/// A galaxy of more than eight million splats, which all views share, whole and as a preview draws it.
 class Gallery {
   public:
     std::int64_t size() const { return set_->size(); }
 
-    /// With every splat, and with a cut of so many dots.
+    /// With every splat, and with a cut of so many.
     Image whole(const View& view) { return draw(view, merged(view.blend).splats); }
     Image cut(const View& view, std::int64_t budget) {
         LayerRender render;
@@ -285,8 +285,8 @@ class Gallery {
         RenderSettings frame;
         frame.width = frame_width;
         frame.height = frame_height;
-        const DotSettings dots(render);
-        const CutLayer seen{&merged(view.blend), &dots,
+        const MergeSettings settings(render);
+        const CutLayer seen{&merged(view.blend), &settings,
                             make_projection(layer, 0, camera_at(view.eye), frame)};
         const auto splats = cut_splats(std::span(&seen, 1), {budget, 1.5f, frame_width, frame_height});
         return draw(view, splats[0]);
@@ -322,11 +322,11 @@ class Gallery {
 
 void expect_light_of_the_whole(Gallery& gallery, const View& view) {
     const Image full = gallery.whole(view);
-    for (const std::int64_t dots : {80000, 30000}) {
-        if (dots < 80000 && view.eye == close) continue;  // where each is a tenth of the picture wide
-        SCOPED_TRACE(fmt::format("{}, {} dots", view.name, dots));
+    for (const std::int64_t splats : {80000, 30000}) {
+        if (splats < 80000 && view.eye == close) continue;  // where each is a tenth of the picture wide
+        SCOPED_TRACE(fmt::format("{}, {} splats", view.name, splats));
         const test::ViewTruth truth =
-            test::compare_frames(gallery.cut(view, dots), full, view.eye == edge_on);
+            test::compare_frames(gallery.cut(view, splats), full, view.eye == edge_on);
         EXPECT_NEAR(truth.light, 1.0, 0.03);
         EXPECT_GT(truth.bright_blocks, 5);
         EXPECT_GE(truth.near, 0.95 * truth.bright_blocks) << "of " << truth.bright_blocks << " blocks";
@@ -334,15 +334,15 @@ void expect_light_of_the_whole(Gallery& gallery, const View& view) {
     }
 }
 
-TEST(PreviewTruth, AHundredthAsManyDotsShowTheLightOfTheWhole) {
+TEST(PreviewTruth, AHundredthAsManySplatsShowTheLightOfTheWhole) {
     Gallery gallery;
     ASSERT_GT(gallery.size(), 8000000);
     for (const View& view : views) expect_light_of_the_whole(gallery, view);
 }
 
 /// What moves can be believed: six views of the shipped scenes, drawn by the viewer's own session with as
-/// many dots as hold 24 frames a second on two cores, against their final frames.
-constexpr std::int64_t dots_of_two_cores = 60'000;  // fewer than two cores drew at that rate
+/// many splats as hold 24 frames a second on two cores, against their final frames.
+constexpr std::int64_t splats_of_two_cores = 60'000;  // fewer than two cores drew at that rate
 
 class PreviewViewsNightly : public test::GlTest {};
 
@@ -351,8 +351,8 @@ TEST_F(PreviewViewsNightly, MovingPicturesHaveTheLightOfTheFinalOnes) {
     const TempFolder folder;
     for (const test::NamedView& view : test::preview_views()) {
         SCOPED_TRACE(view.name);
-        const test::ViewTruth truth = test::measure_truth(view, dots_of_two_cores, {folder.path(), 0});
-        EXPECT_LE(truth.dots, dots_of_two_cores);
+        const test::ViewTruth truth = test::measure_truth(view, splats_of_two_cores, {folder.path(), 0});
+        EXPECT_LE(truth.shown, splats_of_two_cores);
         EXPECT_NEAR(truth.light, 1.0, 0.03);
         EXPECT_GT(truth.bright_blocks, 3);
         EXPECT_GE(truth.near, 0.9 * truth.bright_blocks) << "of " << truth.bright_blocks << " blocks";

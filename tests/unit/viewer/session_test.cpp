@@ -151,20 +151,20 @@ TEST_F(FinerPreviewSession, EveryStepIsCloserToTheFinalFrame) {
     do draw();
     while (!session.sets.loaded(session.document) || !preview_exact(session));
     std::vector<Image> seen{session.view_frame.read()};
-    std::vector<std::int64_t> dots{shown()};
+    std::vector<std::int64_t> counts{shown()};
     session.view.settle = true;
     draw();
-    EXPECT_EQ(shown(), dots.back()) << "the hand may still move";
+    EXPECT_EQ(shown(), counts.back()) << "the hand may still move";
     now += 0.1;  // less than the final frame waits for
     while (seen.size() < 3) {
         draw();
         ASSERT_EQ(session.view_frame.status().state, ViewFrameState::preview);
-        if (shown() == dots.back()) continue;
-        dots.push_back(shown());
+        if (shown() == counts.back()) continue;
+        counts.push_back(shown());
         seen.push_back(session.view_frame.read());
     }
-    EXPECT_GT(dots[1], 3 * dots[0]);
-    EXPECT_GT(dots[2], 3 * dots[1]);
+    EXPECT_GT(counts[1], 3 * counts[0]);
+    EXPECT_GT(counts[2], 3 * counts[1]);
     for (now += 1.0; !settled(session); now += 0.02) draw();
     EXPECT_LT(distance_to(seen[1]), 0.8 * distance_to(seen[0]));
     EXPECT_LT(distance_to(seen[2]), distance_to(seen[1]));

@@ -15,9 +15,9 @@
 #include "core/error.h"
 #include "sets/load_source.h"
 #include "splat_files/formats.h"
-#include "support/dots.h"
 #include "support/fits_text.h"
 #include "support/small_scene.h"
+#include "support/splats.h"
 
 namespace astrosplat {
 namespace {

@@ -1,4 +1,4 @@
-// Sets and dots for tests, splat by splat.
+// Sets and splats for tests, splat by splat.
 #pragma once
 
 #include <glm/vec3.hpp>

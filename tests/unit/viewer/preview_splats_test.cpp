@@ -1,4 +1,4 @@
-// How many dots a preview draws, and which.
+// How many splats a preview draws, and which.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,7 +14,7 @@
 #include "sets/load_source.h"
 #include "support/small_scene.h"
 #include "viewer/cpu_preview.h"
-#include "viewer/preview_dots.h"
+#include "viewer/preview_splats.h"
 
 namespace astrosplat {
 namespace {
@@ -25,9 +25,9 @@ namespace {
 constexpr int width = 160, height = 100;
 constexpr std::int64_t all = 1'000'000;
 
-class PreviewDotsTest : public testing::Test {
+class PreviewSplatsTest : public testing::Test {
   protected:
-    explicit PreviewDotsTest(std::int64_t sample_limit = all) {
+    explicit PreviewSplatsTest(std::int64_t sample_limit = all) {
         for (const LayerParams& params : small.scene.layers) add(params, sample_limit);
     }
 
@@ -50,16 +50,16 @@ class PreviewDotsTest : public testing::Test {
         return make_camera(small.scene.camera, width, height, box);
     }
     PreviewView view() const { return {camera(), nullptr, width, height}; }
-    Image draw(PreviewDots& dots) const {
+    Image draw(PreviewSplats& splats) const {
         std::vector<PreviewLayer> seen = layers;
-        dots.cut(seen, loaded, view(), budget, least_px);
+        splats.cut(seen, loaded, view(), budget, least_px);
         CpuPreview preview;
         return preview.draw(seen, view());
     }
-    std::string hash(PreviewDots& dots) const { return pixel_hash(draw(dots)); }
+    std::string hash(PreviewSplats& splats) const { return pixel_hash(draw(splats)); }
     std::string redrawn() const {
-        PreviewDots dots;
-        return hash(dots);
+        PreviewSplats splats;
+        return hash(splats);
     }
     Image rendered() const {
         std::vector<ShadedSplats> shaded;
@@ -82,9 +82,9 @@ class PreviewDotsTest : public testing::Test {
     float least_px = 0.0f;
 };
 
-void wait(PreviewDots& dots) {
-    while (dots.lacks_sums()) {
-        dots.refine(seconds_now());
+void wait(PreviewSplats& splats) {
+    while (splats.lacks_sums()) {
+        splats.refine(seconds_now());
         std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
 }
@@ -96,7 +96,7 @@ double light_of(const Image& picture) {
     return sum;
 }
 
-TEST_F(PreviewDotsTest, StarsAreNeverMergedOrLeftOut) {
+TEST_F(PreviewSplatsTest, StarsAreNeverMergedOrLeftOut) {
     LayerParams stars;
     stars.name = "sky";
     stars.source.kind = SourceKind::stars;
@@ -108,36 +108,36 @@ TEST_F(PreviewDotsTest, StarsAreNeverMergedOrLeftOut) {
     EXPECT_TRUE(loaded.back()->arranged);
     std::swap(layers[0], layers[2]);
     std::swap(loaded[0], loaded[2]);
-    PreviewDots dots;
-    const Image picture = draw(dots), wanted = rendered();
+    PreviewSplats splats;
+    const Image picture = draw(splats), wanted = rendered();
     for (std::size_t i = 0; i < picture.pixels.size(); ++i)
         ASSERT_NEAR(picture.pixels[i], wanted.pixels[i], 1e-5f * std::max(1.0f, wanted.pixels[i]));
     budget = 10;
     std::vector<PreviewLayer> seen = layers;
     seen[0].look.grade.gain = 2.0f;
-    dots.cut(seen, loaded, view(), budget, least_px);
+    splats.cut(seen, loaded, view(), budget, least_px);
     EXPECT_EQ(seen[0].layer.splats->size(), 301);
     EXPECT_EQ(seen[0].layer.splats->color[0], 2.0f * loaded[0]->set->color[0]);
     EXPECT_LE(seen[1].layer.splats->size() + seen[2].layer.splats->size(), 10);
-    EXPECT_EQ(dots.kept()[0], 1.0);
-    EXPECT_FALSE(dots.refine(seconds_now()));
+    EXPECT_EQ(splats.kept()[0], 1.0);
+    EXPECT_FALSE(splats.refine(seconds_now()));
 }
 
-TEST_F(PreviewDotsTest, WithRoomForAllSplatsTheFrameIsTheRenderers) {
-    PreviewDots dots;
-    const Image picture = draw(dots), wanted = rendered();
+TEST_F(PreviewSplatsTest, WithRoomForAllSplatsTheFrameIsTheRenderers) {
+    PreviewSplats splats;
+    const Image picture = draw(splats), wanted = rendered();
     for (std::size_t i = 0; i < picture.pixels.size(); ++i)
         ASSERT_NEAR(picture.pixels[i], wanted.pixels[i], 1e-5f * std::max(1.0f, wanted.pixels[i]));
 }
 
-TEST_F(PreviewDotsTest, AFewDotsHaveTheLightOfAll) {
+TEST_F(PreviewSplatsTest, AFewSplatsHaveTheLightOfAll) {
     budget = layers[0].set->size() / 20;
-    PreviewDots dots;
-    EXPECT_NEAR(light_of(draw(dots)) / light_of(rendered()), 1.0, 0.03);
+    PreviewSplats splats;
+    EXPECT_NEAR(light_of(draw(splats)) / light_of(rendered()), 1.0, 0.03);
 }
 
-TEST_F(PreviewDotsTest, WhatIsKeptNeverShows) {
-    PreviewDots kept;
+TEST_F(PreviewSplatsTest, WhatIsKeptNeverShows) {
+    PreviewSplats kept;
     std::vector<std::string> seen = {hash(kept)};
     const auto changed = [&](const auto& change) {
         change();
@@ -165,38 +165,38 @@ TEST_F(PreviewDotsTest, WhatIsKeptNeverShows) {
     });
 }
 
-TEST_F(PreviewDotsTest, LargeSplatsAreNotSplitUp) {
+TEST_F(PreviewSplatsTest, LargeSplatsAreNotSplitUp) {
     const std::string wanted = redrawn();
     for (PreviewLayer& layer : layers) layer.layer.render.lod.max_px = 4.0f;
     EXPECT_EQ(redrawn(), wanted);
 }
 
-TEST_F(PreviewDotsTest, ALookThatCannotBeAppliedIsRefusedUntilItCan) {
-    PreviewDots dots;
-    const std::string before = hash(dots);
+TEST_F(PreviewSplatsTest, ALookThatCannotBeAppliedIsRefusedUntilItCan) {
+    PreviewSplats splats;
+    const std::string before = hash(splats);
     layers[0].look.noise.assign(9, Noise{});
     for (Noise& noise : layers[0].look.noise) noise.jitter = 0.1f;
-    for (int i = 0; i < 2; ++i) EXPECT_THROW(hash(dots), InputError);
+    for (int i = 0; i < 2; ++i) EXPECT_THROW(hash(splats), InputError);
     layers[0].look.noise.clear();
-    EXPECT_EQ(hash(dots), before);
+    EXPECT_EQ(hash(splats), before);
 }
 
-TEST_F(PreviewDotsTest, NoLayersAndEmptySets) {
+TEST_F(PreviewSplatsTest, NoLayersAndEmptySets) {
     const auto nothing = std::make_shared<const SplatSet>();
     layers.pop_back();
     loaded.pop_back();
     layers[0].set = nothing;
     loaded[0] = std::make_shared<const LoadedLayer>(whole_layer(nothing, {}, "nothing", all));
-    PreviewDots dots;
-    EXPECT_EQ(light_of(draw(dots)), 0.0);
+    PreviewSplats splats;
+    EXPECT_EQ(light_of(draw(splats)), 0.0);
     layers.clear();
     loaded.clear();
-    EXPECT_EQ(light_of(draw(dots)), 0.0);
+    EXPECT_EQ(light_of(draw(splats)), 0.0);
 }
 
-class SampledDotsTest : public PreviewDotsTest {
+class SampledSplatsTest : public PreviewSplatsTest {
   protected:
-    SampledDotsTest() : PreviewDotsTest(1500) {}
+    SampledSplatsTest() : PreviewSplatsTest(1500) {}
     void arrange() {
         for (auto& layer : loaded)
             if (!layer->arranged)
@@ -206,47 +206,47 @@ class SampledDotsTest : public PreviewDotsTest {
 };
 
 /// Sums of a dragged look would come too late, and their making would slow the preview down.
-TEST_F(SampledDotsTest, WholeSetsWaitUntilALookIsAtRest) {
+TEST_F(SampledSplatsTest, WholeSetsWaitUntilALookIsAtRest) {
     arrange();
     budget = 3000;
-    PreviewDots dots;
+    PreviewSplats splats;
     double now = 100.0;
     for (const float gain : {0.9f, 0.8f, 0.7f}) {
         layers[0].look.grade.gain = gain;
-        draw(dots);
+        draw(splats);
         for (int i = 0; i < 20; ++i) {  // as long as sums take many times over, of which 60 ms are counted
-            EXPECT_FALSE(dots.refine(now += 0.003));
+            EXPECT_FALSE(splats.refine(now += 0.003));
             std::this_thread::sleep_for(std::chrono::milliseconds(10));
         }
-        EXPECT_TRUE(dots.lacks_sums());
+        EXPECT_TRUE(splats.lacks_sums());
     }
     now += 0.1;
-    while (dots.lacks_sums()) {
-        dots.refine(now);
+    while (splats.lacks_sums()) {
+        splats.refine(now);
         std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
 }
 
-TEST_F(SampledDotsTest, ASampleComesFirstAndTheWholeSetOnceItsSumsAreThere) {
+TEST_F(SampledSplatsTest, ASampleComesFirstAndTheWholeSetOnceItsSumsAreThere) {
     ASSERT_GT(layers[0].set->size(), 1500);
     budget = 3000;
-    PreviewDots dots;
-    EXPECT_NEAR(light_of(draw(dots)) / light_of(rendered()), 1.0, 0.15);
-    EXPECT_FALSE(dots.lacks_sums()) << "there is no tree of the whole";
+    PreviewSplats splats;
+    EXPECT_NEAR(light_of(draw(splats)) / light_of(rendered()), 1.0, 0.15);
+    EXPECT_FALSE(splats.lacks_sums()) << "there is no tree of the whole";
     arrange();
-    const std::string sampled = hash(dots);
-    wait(dots);
-    const Image whole = draw(dots);
+    const std::string sampled = hash(splats);
+    wait(splats);
+    const Image whole = draw(splats);
     EXPECT_NE(pixel_hash(whole), sampled);
-    EXPECT_FALSE(dots.refine(seconds_now())) << "nothing is missing";
+    EXPECT_FALSE(splats.refine(seconds_now())) << "nothing is missing";
     EXPECT_NEAR(light_of(whole) / light_of(rendered()), 1.0, 0.03);
     layers[0].look.grade.gain = 0.5f;
-    const std::string edited = hash(dots);
-    wait(dots);
-    EXPECT_NE(hash(dots), edited);
+    const std::string edited = hash(splats);
+    wait(splats);
+    EXPECT_NE(hash(splats), edited);
 }
 
-// The budget against machines of known speed, and steps of more dots at rest.
+// The budget against machines of known speed, and steps of more splats at rest.
 
 /// Milliseconds of a frame: a fixed part and so much per thousand splats.
 struct Machine {
@@ -337,12 +337,12 @@ TEST(FramePace, LeavesTimeForTheRestOfTheWindow) {
 
 TEST(FinerSteps, StepsAreSharesThatTheTimeAllows) {
     constexpr std::int64_t galaxy = 9'400'000;
-    EXPECT_EQ(dots_of_step(1, galaxy, 81'000, 0.03, 0.4), 470'000);
-    EXPECT_EQ(dots_of_step(2, galaxy, 470'000, 0.1, 0.4), 1'880'000);
-    EXPECT_EQ(dots_of_step(2, galaxy, 470'000, 0.2, 0.4), 940'000) << "which take 0.4 s";
-    EXPECT_EQ(dots_of_step(2, galaxy, 470'000, 0.2, 0.0), 1'880'000) << "whatever it takes";
-    EXPECT_EQ(dots_of_step(1, 100'000, 60'000, 0.01, 0.4), 0) << "fewer than there are";
-    EXPECT_EQ(dots_of_step(3, galaxy, 81'000, 0.01, 0.4), 0) << "there is no such step";
+    EXPECT_EQ(splats_of_step(1, galaxy, 81'000, 0.03, 0.4), 470'000);
+    EXPECT_EQ(splats_of_step(2, galaxy, 470'000, 0.1, 0.4), 1'880'000);
+    EXPECT_EQ(splats_of_step(2, galaxy, 470'000, 0.2, 0.4), 940'000) << "which take 0.4 s";
+    EXPECT_EQ(splats_of_step(2, galaxy, 470'000, 0.2, 0.0), 1'880'000) << "whatever it takes";
+    EXPECT_EQ(splats_of_step(1, 100'000, 60'000, 0.01, 0.4), 0) << "fewer than there are";
+    EXPECT_EQ(splats_of_step(3, galaxy, 81'000, 0.01, 0.4), 0) << "there is no such step";
 }
 
 TEST(FinerSteps, QuickFinalFramesAreNotHeldUp) {

@@ -1,4 +1,4 @@
-// Optical depths are tabulated once for a falloff; a faint dot takes three look-ups and no logarithm.
+// Optical depths are tabulated once for a falloff; a faint one takes three look-ups and no logarithm.
 #include "merge/cut.h"
 
 #include <algorithm>
@@ -35,13 +35,13 @@ double interpolated(const std::array<double, size>& table, double at) {
     return table[i] + (table[i + 1] - table[i]) * (at - static_cast<double>(i));
 }
 
-/// A row of dots with the moments of what they stand for has dips between them; somewhat wider ones have few.
+/// A row of splats with the moments of what they stand for has dips between them; wider ones have few.
 /// Cells of a lattice are all alike and in line, so that what dips are left add up to stripes: for a bell of
 /// variance s^2 every a they are 2 e^(-2 pi^2 s^2 / a^2) deep, 28 % for 1.2 times the a^2 / 12 of a cell, 17
 /// % for 1.5. A cell that is longer than wide gets less of that: what is thin hides more than what is wide.
 constexpr double least_overlap = 1.2;
 
-/// n splats, each of which would cover so much of the dot's disc, as one dot's alpha.
+/// n splats, each of which would cover so much of the merged one's disc, as its alpha.
 double alpha_together(const DepthTable& depths, double n, double cover) {
     return depths.alpha(n * depths.depth(std::min(1.0, cover)));
 }
@@ -79,14 +79,14 @@ double DepthTable::alpha(double depth) const {
     return x * interpolated(alpha_, x * steps);
 }
 
-DotSettings::DotSettings(const LayerRender& r, bool lattice)
+MergeSettings::MergeSettings(const LayerRender& r, bool lattice)
     : render(r),
       lattice(lattice),
       depths(r.falloff),
       variance(falloff_variance(r.falloff)),
       overlap(lattice ? 1.5 : least_overlap) {}
 
-Dot make_dot(const DotSettings& settings, const NodeSums& sums, const Across& across, float hybrid) {
+NodeSplat splat_of(const MergeSettings& settings, const NodeSums& sums, const Across& across, float hybrid) {
     const LayerRender& render = settings.render;
     const double spread = std::max(0.0f, across.mean), largest = across.largest;
     const double evenness = largest > 0.0 ? std::max(0.0, 2.0 * spread / largest - 1.0) : 0.0;
@@ -94,33 +94,33 @@ Dot make_dot(const DotSettings& settings, const NodeSums& sums, const Across& ac
     const double square = double(sums.own) + overlap * spread / settings.variance;
     const double cover = double(sums.cover) * double(render.opacity) / square;  // of the disc
     const double n = double(sums.cover) * double(sums.cover) / double(sums.squares);
-    Dot dot;
-    dot.radius = static_cast<float>(std::sqrt(square));
-    dot.color = sums.light / sums.cover;
-    const bool absorbs = shared::blend_absorbs(static_cast<int>(render.blend), dot.color.x);
+    NodeSplat splat;
+    splat.radius = static_cast<float>(std::sqrt(square));
+    splat.color = sums.light / sums.cover;
+    const bool absorbs = shared::blend_absorbs(static_cast<int>(render.blend), splat.color.x);
     const Blend blend = render.holdout || absorbs ? Blend::over : render.blend;
     if (blend == Blend::add) {
-        dot.alpha = static_cast<float>(std::min(1.0, cover));
-        dot.color *= static_cast<float>(std::max(1.0, cover));
-        return dot;
+        splat.alpha = static_cast<float>(std::min(1.0, cover));
+        splat.color *= static_cast<float>(std::max(1.0, cover));
+        return splat;
     }
     if (blend != Blend::screen && blend != Blend::hybrid) {
-        dot.alpha = static_cast<float>(alpha_together(settings.depths, n, cover / n));
-        return dot;
+        splat.alpha = static_cast<float>(alpha_together(settings.depths, n, cover / n));
+        return splat;
     }
     // Each channel is hidden by itself; what alpha cannot say the colour does, as for level of detail.
     constexpr double least = 1e-3;  // occlusion below which light is proportional to cover
     const auto hides = [&](int k) {
-        const float o = shared::blend_occlusion(static_cast<int>(blend), dot.color[k], hybrid);
+        const float o = shared::blend_occlusion(static_cast<int>(blend), splat.color[k], hybrid);
         return std::clamp(double(o), least, 1.0);
     };
     const double o[] = {hides(0), hides(1), hides(2)}, mean = (o[0] + o[1] + o[2]) / 3.0;
     const double alpha = std::min(1.0, alpha_together(settings.depths, n, cover / n * mean) / mean);
     for (int k = 0; k < 3; ++k)
-        dot.color[k] *=
+        splat.color[k] *=
             static_cast<float>(alpha_together(settings.depths, n, cover / n * o[k]) / o[k] / alpha);
-    dot.alpha = static_cast<float>(alpha);
-    return dot;
+    splat.alpha = static_cast<float>(alpha);
+    return splat;
 }
 
 namespace {

@@ -1,7 +1,7 @@
 // The splats that a preview draws. How many: in motion a budget that follows the measured time of a frame, at
 // rest a few steps of more; plain numbers in and out, no clock. Which of each layer: a cut through its tree
 // (merge/README.md), of the whole set where its sums are there, else of a sample, whose sums take no time.
-// In: layers, a camera and a number of dots. Out: shaded splats; and at rest, until the final frame comes,
+// In: layers, a camera and a number of splats. Out: shaded splats; and at rest, until the final frame comes,
 // images of the same view with more of them.
 #pragma once
 
@@ -62,9 +62,9 @@ struct StepPlan {
 /// than the rest that comes before it anyway.
 StepPlan plan_steps(double final_s);
 
-/// Dots of a step that are worth drawing after `shown` of `total` splats took `seconds`, within most_s; 0:
+/// Splats of a step that are worth drawing after `shown` of `total` splats took `seconds`, within most_s; 0:
 /// none are. No limit where most_s is 0.
-std::int64_t dots_of_step(int step, std::int64_t total, std::int64_t shown, double seconds, double most_s);
+std::int64_t splats_of_step(int step, std::int64_t total, std::int64_t shown, double seconds, double most_s);
 
 /// Inputs of a layer's sums.
 struct SumsRequest {
@@ -80,22 +80,22 @@ struct FoundSums {
 /// The source of a layer's cuts, or, of stars, all of its splats. Does not change.
 struct CutSource {
     std::shared_ptr<const MergedSplats> merged;  // null: stars
-    std::shared_ptr<const DotSettings> dots;
+    std::shared_ptr<const MergeSettings> merging;
     std::shared_ptr<const ShadedSplats> stars;
 };
 
-class PreviewDots {
+class PreviewSplats {
   public:
-    PreviewDots();
+    PreviewSplats();
 
     /// Gives every layer its splats, about `budget` in all, which stay until the next call, with the layer's
-    /// opacity in them; of stars all, without it. `loaded`: what each layer is made of; least_px: of a dot
+    /// opacity in them; of stars all, without it. `loaded`: what each layer is made of; least_px: of a splat
     /// (merge/cut.h). Throws InputError where a look cannot be applied.
     void cut(std::vector<PreviewLayer>& layers, std::span<const std::shared_ptr<const LoadedLayer>> loaded,
              const PreviewView& view, std::int64_t budget, float least_px = CutSettings().least_px);
     /// The last cut was of samples where whole sets could be.
     bool lacks_sums() const { return missing().has_value(); }
-    /// It was of whole sets: one of more dots would show more.
+    /// It was of whole sets: one of more splats would show more.
     bool whole() const;
     /// Goes on making them in the background, once looks have been at rest for a while: sums of a look that
     /// is dragged come too late, and take the processor from its preview. True: there are more of them now.
@@ -103,7 +103,7 @@ class PreviewDots {
     bool refine(double now);
     /// Gives up what is being made, until refine() is called again.
     void rest() { work_.forget(); }
-    /// Inputs of the last cut, for another one of more dots.
+    /// Inputs of the last cut, for another one of more splats.
     std::vector<CutSource> sources() const;
     /// Of each layer the share of its splats that the look keeps, 0..1.
     std::vector<double> kept() const;
@@ -114,7 +114,7 @@ class PreviewDots {
         std::optional<Shading> shading;  // of the sums there are
         std::shared_ptr<const MergedSplats> of_sample;
         std::shared_ptr<const FoundSums> of_whole;  // with an error: there will be none
-        std::shared_ptr<const DotSettings> dots;
+        std::shared_ptr<const MergeSettings> merging;
         std::shared_ptr<const ShadedSplats> splats;
 
         std::shared_ptr<const MergedSplats> best() const {
@@ -133,20 +133,20 @@ class PreviewDots {
     LatestWork<SumsRequest, FoundSums> work_;
 };
 
-/// The view of a preview with more dots, drawn in the background.
+/// The view of a preview with more splats, drawn in the background.
 struct FinerRequest {
     std::uint64_t number = 0;  // another one is another request
     std::vector<RenderLayer> layers;
     std::vector<CutSource> sources;  // of each layer
     PreviewView view;
     std::shared_ptr<const Environment> environment;  // of the view
-    std::int64_t budget = 0;                         // dots
+    std::int64_t budget = 0;                         // splats
     bool operator==(const FinerRequest& other) const { return number == other.number; }
 };
 
 struct FinerFound {
     Image image;             // RGBA, linear
-    std::int64_t shown = 0;  // dots
+    std::int64_t shown = 0;  // splats
     double seconds = 0.0;
     std::string error;
 };

@@ -1,6 +1,5 @@
-// The quickest of a few frames counts, because what disturbs a frame (a cut, another program) only ever makes
-// it slower.
-#include "viewer/preview_dots.h"
+// The quickest of a few frames counts: what disturbs one (a cut, another program) only makes it slower.
+#include "viewer/preview_splats.h"
 
 #include <algorithm>
 #include <cmath>
@@ -35,7 +34,7 @@ std::vector<SharedSplats> cut_layers(std::vector<PreviewLayer>& layers, std::spa
     for (std::size_t i = 0; i < layers.size(); ++i)
         if (const CutSource& source = sources[i]; source.merged)
             seen.push_back(
-                {source.merged.get(), source.dots.get(),
+                {source.merged.get(), source.merging.get(),
                  make_projection(layers[i].layer, static_cast<std::uint16_t>(i), view.camera, frame)});
     std::vector<ShadedSplats> cut = cut_splats(seen, {budget, least_px, view.width, view.height});
     std::vector<SharedSplats> splats;
@@ -104,12 +103,12 @@ StepPlan plan_steps(double final_s) {
     return {2, 0.4};
 }
 
-std::int64_t dots_of_step(int step, std::int64_t total, std::int64_t shown, double seconds, double most_s) {
-    constexpr double least_gain = 1.5;  // times the dots shown: a step of fewer is not worth its time
-    double dots = share_of_step(step) * static_cast<double>(total);
+std::int64_t splats_of_step(int step, std::int64_t total, std::int64_t shown, double seconds, double most_s) {
+    constexpr double least_gain = 1.5;  // times the splats shown: a step of fewer is not worth its time
+    double splats = share_of_step(step) * static_cast<double>(total);
     const double most = static_cast<double>(shown) * (most_s > 0.0 && seconds > 0.0 ? most_s / seconds : 1e9);
-    dots = std::min(dots, most);
-    return dots < least_gain * static_cast<double>(shown) ? 0 : std::llround(dots);
+    splats = std::min(splats, most);
+    return splats < least_gain * static_cast<double>(shown) ? 0 : std::llround(splats);
 }
 
 FinerPreview::Work finer_preview() {
@@ -118,11 +117,11 @@ FinerPreview::Work finer_preview() {
     };
 }
 
-PreviewDots::PreviewDots() : work_(make_sums) {}
+PreviewSplats::PreviewSplats() : work_(make_sums) {}
 
 /// The state that is kept of the layer with this set: when a layer before it is hidden, the others stay as
 /// they are.
-PreviewDots::Layer& PreviewDots::layer_at(std::size_t index, const LoadedLayer& loaded) {
+PreviewSplats::Layer& PreviewSplats::layer_at(std::size_t index, const LoadedLayer& loaded) {
     const auto first = layers_.begin() + static_cast<std::ptrdiff_t>(std::min(index, layers_.size()));
     const auto found =
         std::find_if(first, layers_.end(), [&](const Layer& l) { return l.sample == loaded.sample; });
@@ -136,10 +135,11 @@ PreviewDots::Layer& PreviewDots::layer_at(std::size_t index, const LoadedLayer& 
     return layers_[index];
 }
 
-void PreviewDots::shade(Layer& layer, const PreviewLayer& wanted) {
+void PreviewSplats::shade(Layer& layer, const PreviewLayer& wanted) {
     const bool stars = wanted.layer.stars.has_value();
-    if (!stars && (!layer.dots || !(layer.dots->render == wanted.layer.render)))
-        layer.dots = std::make_shared<const DotSettings>(wanted.layer.render, wanted.set->is_on_lattice());
+    if (!stars && (!layer.merging || !(layer.merging->render == wanted.layer.render)))
+        layer.merging =
+            std::make_shared<const MergeSettings>(wanted.layer.render, wanted.set->is_on_lattice());
     Shading shading = shading_of(wanted);
     if (layer.shading == shading) return;
     layer.shading.reset();  // an exception below must not leave old splats under a new look
@@ -156,29 +156,29 @@ void PreviewDots::shade(Layer& layer, const PreviewLayer& wanted) {
     layer.shading = std::move(shading);
 }
 
-void PreviewDots::cut(std::vector<PreviewLayer>& layers,
-                      std::span<const std::shared_ptr<const LoadedLayer>> loaded, const PreviewView& view,
-                      std::int64_t budget, float least_px) {
+void PreviewSplats::cut(std::vector<PreviewLayer>& layers,
+                        std::span<const std::shared_ptr<const LoadedLayer>> loaded, const PreviewView& view,
+                        std::int64_t budget, float least_px) {
     for (std::size_t i = 0; i < layers.size(); ++i) shade(layer_at(i, *loaded[i]), layers[i]);
     layers_.resize(layers.size());
     std::vector<SharedSplats> splats = cut_layers(layers, sources(), view, budget, least_px);
     for (std::size_t i = 0; i < layers.size(); ++i) layers_[i].splats = std::move(splats[i]);
 }
 
-std::optional<SumsRequest> PreviewDots::missing() const {
+std::optional<SumsRequest> PreviewSplats::missing() const {
     for (const Layer& layer : layers_)
         if (layer.whole.tree && layer.shading && !layer.of_whole)
             return SumsRequest{layer.whole, *layer.shading};
     return std::nullopt;
 }
 
-bool PreviewDots::whole() const {
+bool PreviewSplats::whole() const {
     return std::ranges::all_of(layers_, [](const Layer& layer) {
         return !layer.sample.tree || layer.sample.weight <= 1.0f || layer.best() != layer.of_sample;
     });
 }
 
-bool PreviewDots::refine(double now) {
+bool PreviewSplats::refine(double now) {
     constexpr double rest_s = 0.1;
     if (std::exchange(looks_changed_, false)) at_rest_since_ = now;
     if (now - at_rest_since_ < rest_s) return false;
@@ -193,18 +193,18 @@ bool PreviewDots::refine(double now) {
     return found->error.empty();
 }
 
-std::vector<CutSource> PreviewDots::sources() const {
+std::vector<CutSource> PreviewSplats::sources() const {
     std::vector<CutSource> sources;
     for (const Layer& layer : layers_) {
         if (layer.sample.tree)
-            sources.push_back({layer.best(), layer.dots, nullptr});
+            sources.push_back({layer.best(), layer.merging, nullptr});
         else
             sources.push_back({nullptr, nullptr, layer.splats});
     }
     return sources;
 }
 
-std::vector<double> PreviewDots::kept() const {
+std::vector<double> PreviewSplats::kept() const {
     std::vector<double> shares;
     for (const Layer& layer : layers_) {
         const auto rows = static_cast<double>(std::max<std::int64_t>(1, layer.sample.set->size()));
