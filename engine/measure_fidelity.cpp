@@ -4,18 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
 #include <utility>
-#include <vector>
 
 #include "core/error.h"
 #include "image/resample.h"
 #include "look/apply.h"
 #include "pipeline.h"
 #include "scene/animate.h"
-#include "scene/front_frame.h"
 #include "scene/layer_setup.h"
-#include "sets/kept.h"
 #include "source/texture.h"
 
 namespace astrosplat {

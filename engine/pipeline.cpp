@@ -8,13 +8,10 @@
 
 #include "camera/camera.h"
 #include "core/buffer.h"
-#include "core/progress.h"
 #include "core/text.h"
-#include "frame/frame_scene.h"
 #include "look/apply.h"
 #include "scene/animate.h"
 #include "scene/layer_setup.h"
-#include "sets/kept.h"
 #include "source/texture.h"
 #include "streamed/streamed_set.h"
 

@@ -8,7 +8,6 @@
 #include <cmath>
 #include <cstdint>
 #include <glm/geometric.hpp>
-#include <glm/matrix.hpp>
 
 #include "camera/projection.h"
 #include "core/error.h"

@@ -20,7 +20,6 @@
 #include <mutex>
 #include <set>
 #include <string>
-#include <utility>
 
 #include "core/file.h"
 

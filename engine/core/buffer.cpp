@@ -11,8 +11,6 @@
 #include <cstdint>
 #include <limits>
 #include <mutex>
-#include <new>
-#include <vector>
 
 namespace astrosplat {
 namespace {

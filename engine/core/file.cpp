@@ -13,7 +13,6 @@
 #include <cstring>
 #include <memory>
 #include <set>
-#include <string>
 #include <string_view>
 #include <system_error>
 

@@ -13,14 +13,11 @@
 #include <array>
 #include <atomic>
 #include <condition_variable>
-#include <cstdint>
 #include <cstdlib>
 #include <exception>
 #include <mutex>
-#include <string>
 #include <system_error>
 #include <thread>
-#include <vector>
 
 #include "core/error.h"
 #include "core/memory.h"

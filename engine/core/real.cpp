@@ -4,7 +4,6 @@
 // leading term as a second double where it would show.
 #include "core/real.h"
 
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <cstring>

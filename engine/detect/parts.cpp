@@ -1,7 +1,6 @@
 #include "detect/parts.h"
 
 #include <algorithm>
-#include <cmath>
 #include <glm/geometric.hpp>
 #include <utility>
 

@@ -6,7 +6,6 @@
 #include <functional>
 #include <optional>
 
-#include "core/parallel.h"
 #include "core/real.h"
 #include "image/blur.h"
 #include "image/channels.h"

@@ -8,7 +8,6 @@
 #include <array>
 #include <cmath>
 #include <glm/common.hpp>
-#include <glm/geometric.hpp>
 #include <vector>
 
 #include "core/color.h"

@@ -5,7 +5,6 @@
 #include <cassert>
 #include <cmath>
 #include <glm/geometric.hpp>
-#include <glm/matrix.hpp>
 #include <memory>
 
 #include "core/bounds.h"

@@ -3,10 +3,7 @@
 // of the lattice that reaches into it.
 #include "generate/generate.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <cassert>
 #include <cfloat>
 #include <cmath>
 #include <utility>
@@ -20,7 +17,6 @@
 #include "source/texture.h"
 #include "splat_files/native.h"
 #include "splats/row_order.h"
-#include "splats/splat_set.h"
 
 namespace astrosplat {
 namespace {

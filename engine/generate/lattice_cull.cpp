@@ -9,10 +9,8 @@
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
-#include <optional>
 #include <string>
 #include <tuple>
-#include <vector>
 
 #include "core/parallel.h"
 #include "core/text.h"

@@ -13,7 +13,6 @@
 #include "core/color.h"
 #include "core/memory.h"
 #include "core/parallel.h"
-#include "core/progress.h"
 #include "core/rotation.h"
 #include "look/kernel.h"
 #include "look/picture_fit.h"

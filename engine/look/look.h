@@ -2,7 +2,6 @@
 // values; what a scene file leaves out has the defaults here. apply.h turns them into ShadedSplats.
 #pragma once
 
-#include <cstdint>
 #include <filesystem>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>

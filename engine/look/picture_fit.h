@@ -8,7 +8,6 @@
 
 #include <array>
 #include <cstdint>
-#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <vector>
 

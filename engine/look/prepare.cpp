@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <string>
 #include <vector>
 
 #include "core/error.h"

@@ -6,15 +6,12 @@
 #include <algorithm>
 #include <bit>
 #include <cassert>
-#include <cmath>
 #include <glm/geometric.hpp>
 #include <utility>
-#include <vector>
 
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "splats/row_order.h"
-#include "splats/splat_set.h"
 
 namespace astrosplat {
 

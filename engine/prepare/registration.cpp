@@ -5,7 +5,6 @@
 #include "prepare/registration.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>

@@ -2,7 +2,6 @@
 #include "prepare/star_removal.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 

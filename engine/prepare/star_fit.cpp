@@ -3,7 +3,6 @@
 #include "prepare/star_fit.h"
 
 #include <algorithm>
-#include <array>
 #include <cassert>
 #include <cmath>
 #include <optional>

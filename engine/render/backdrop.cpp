@@ -3,7 +3,6 @@
 #include "render/environment.h"
 
 #include <algorithm>
-#include <cmath>
 #include <glm/vec2.hpp>
 #include <vector>
 

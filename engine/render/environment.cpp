@@ -11,14 +11,12 @@
 #include <glm/matrix.hpp>
 #include <utility>
 
-#include "camera/camera.h"
 #include "core/error.h"
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "core/real.h"
 #include "core/rotation.h"
 #include "source/texture.h"
-#include "source/tiled_sky.h"
 
 namespace astrosplat {
 namespace {

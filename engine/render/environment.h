@@ -2,7 +2,6 @@
 // light. In: EnvironmentParams. Out: colour along a direction.
 #pragma once
 
-#include <array>
 #include <filesystem>
 #include <glm/mat3x3.hpp>
 #include <glm/vec2.hpp>

@@ -1,14 +1,10 @@
 #include "render/footprint.h"
 
-#include <algorithm>
 #include <bit>
 #include <cmath>
-#include <cstdint>
 #include <limits>
 
 #include "core/parallel.h"
-#include "core/real.h"
-#include "render/shared_render.h"
 
 namespace astrosplat {
 

@@ -6,8 +6,6 @@
 #include "camera/projection.h"
 #include "core/parallel.h"
 #include "core/real.h"
-#include "render/lod.h"
-#include "render/project.h"
 #include "render/shape.h"
 #include "render/shared_render.h"
 #include "splats/splat_set.h"

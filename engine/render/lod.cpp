@@ -1,8 +1,5 @@
 #include "render/lod.h"
 
-#include <algorithm>
-#include <cassert>
-#include <cmath>
 #include <glm/common.hpp>
 #include <iterator>
 

@@ -9,8 +9,6 @@
 #include <cmath>
 #include <cstdint>
 #include <glm/vec3.hpp>
-#include <map>
-#include <memory>
 #include <vector>
 
 #include "core/progress.h"

@@ -7,7 +7,6 @@
 
 #include "camera/projection.h"
 #include "core/progress.h"
-#include "render/lod.h"
 #include "render/shape.h"
 #include "render/shared_render.h"
 #include "render/sphere_shape.h"

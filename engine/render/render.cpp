@@ -11,8 +11,6 @@
 #include "core/error.h"
 #include "core/memory.h"
 #include "core/parallel.h"
-#include "core/progress.h"
-#include "render/frame.h"
 #include "render/frame_job.h"
 #include "render/scatter.h"
 #include "render/screen_splat.h"

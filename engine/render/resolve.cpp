@@ -1,7 +1,6 @@
 #include "render/resolve.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "core/color.h"
 

@@ -3,11 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
-#include <glm/vec2.hpp>
 
 #include "core/real.h"
-#include "render/footprint.h"
-#include "render/shape.h"
 #include "render/sphere_sums.h"
 
 namespace astrosplat {

@@ -10,7 +10,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <glm/geometric.hpp>
 #include <mutex>
 #include <unordered_map>
 #include <utility>

@@ -5,7 +5,6 @@
 #pragma once
 
 #include <filesystem>
-#include <glm/vec3.hpp>
 #include <vector>
 
 #include "core/bounds.h"

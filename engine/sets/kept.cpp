@@ -5,9 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cstdlib>
-#include <optional>
-#include <string>
-#include <string_view>
 #include <tuple>
 #include <utility>
 
@@ -17,11 +14,8 @@
 #include "core/log.h"
 #include "core/memory.h"
 #include "source/picture.h"
-#include "source/prepared_picture.h"
 #include "source/stored_picture.h"
 #include "source/write_image.h"
-#include "splat_files/native.h"
-#include "splats/splat_set.h"
 
 namespace astrosplat {
 namespace {

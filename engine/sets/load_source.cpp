@@ -6,9 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <limits>
-#include <span>
 #include <utility>
 
 #include "bodies/bodies.h"
@@ -19,8 +17,6 @@
 #include "core/log.h"
 #include "core/memory.h"
 #include "core/parallel.h"
-#include "generate/generate.h"
-#include "source/textured_mesh.h"
 #include "splat_files/splat_file.h"
 
 namespace astrosplat {

@@ -4,9 +4,7 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <chrono>
-#include <string_view>
 #include <thread>
 #include <utility>
 #include <vector>

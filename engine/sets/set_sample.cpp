@@ -3,19 +3,15 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <optional>
 #include <string_view>
 #include <utility>
 
 #include "bodies/bodies.h"
 #include "core/error.h"
 #include "core/file_format.h"
-#include "core/progress.h"
 #include "generate/generate.h"
-#include "sets/kept.h"
 #include "sets/load_source.h"
 #include "splat_files/native.h"
-#include "splats/splat_set.h"
 
 namespace astrosplat {
 namespace {

@@ -6,13 +6,10 @@
 #include <zlib.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <memory>
-#include <optional>
 #include <string_view>
-#include <vector>
 
 #include "core/error.h"
 #include "core/file.h"

@@ -1,13 +1,10 @@
 // Polygons are split by ear clipping in their own plane, in double precision.
 #include "source/mesh.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <glm/geometric.hpp>
-#include <glm/vec2.hpp>
 #include <numeric>
 
 #include "core/error.h"

@@ -16,7 +16,6 @@
 #include "core/text.h"
 #include "image/blur.h"
 #include "image/channels.h"
-#include "prepare/stages.h"
 #include "prepare/star_removal.h"
 #include "source/fits.h"
 #include "source/picture.h"

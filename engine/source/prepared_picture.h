@@ -3,7 +3,6 @@
 // taken away.
 #pragma once
 
-#include <array>
 #include <filesystem>
 #include <functional>
 #include <optional>

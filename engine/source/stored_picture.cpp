@@ -9,7 +9,6 @@
 #include "core/color.h"
 #include "core/parallel.h"
 #include "image/channels.h"
-#include "source/fits.h"
 
 namespace astrosplat {
 namespace {

@@ -7,7 +7,6 @@
 #include <atomic>
 #include <cmath>
 #include <functional>
-#include <limits>
 
 #include "core/color.h"
 #include "core/error.h"

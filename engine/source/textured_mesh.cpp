@@ -5,15 +5,12 @@
 #include <cassert>
 #include <functional>
 #include <glm/matrix.hpp>
-#include <utility>
-#include <vector>
 
 #include "camera/projection.h"
 #include "core/error.h"
 #include "core/log.h"
 #include "core/real.h"
 #include "core/shared_maths.h"
-#include "source/mesh.h"
 
 namespace astrosplat {
 namespace {

@@ -4,8 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <glm/geometric.hpp>
-#include <vector>
 
 #include "core/error.h"
 #include "core/memory.h"

@@ -6,11 +6,8 @@
 
 #include <algorithm>
 #include <cassert>
-#include <filesystem>
 #include <memory>
-#include <string>
 
-#include "core/atomic_file.h"
 #include "core/error.h"
 #include "source/open_picture.h"
 

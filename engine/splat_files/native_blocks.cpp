@@ -11,7 +11,6 @@
 #include <cerrno>
 #include <cfloat>
 #include <cstring>
-#include <string>
 #include <string_view>
 #include <utility>
 

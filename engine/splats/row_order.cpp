@@ -3,7 +3,6 @@
 // codes, then each of those parts by itself in cache, stable throughout.
 #include "splats/row_order.h"
 
-#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cassert>

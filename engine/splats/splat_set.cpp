@@ -3,12 +3,10 @@
 #include "splats/splat_set.h"
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cassert>
 #include <limits>
 #include <span>
-#include <vector>
 
 #include "core/memory.h"
 #include "core/parallel.h"

@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
-#include <string_view>
 #include <utility>
 
 #include "core/error.h"

@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <glm/common.hpp>
-#include <vector>
 
 #include "core/color.h"
 #include "core/memory.h"

@@ -8,7 +8,6 @@
 #include <glm/vec3.hpp>
 #include <optional>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "core/progress.h"
