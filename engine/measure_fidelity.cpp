@@ -104,7 +104,7 @@ std::int64_t FidelityReference::height_px(std::int64_t width_px) const {
     return std::max<std::int64_t>(1, static_cast<std::int64_t>(height + 0.5));
 }
 
-FidelityReference fidelity_reference(const Scene& now, const std::optional<std::filesystem::path>& file,
+FidelityReference fidelity_reference(const Scene& now, const std::optional<fs::path>& file,
                                      const Progress& progress, const SetCache& cache) {
     const LayerParams& layer = layer_with_picture(now);
     FidelityReference reference;

@@ -3,7 +3,6 @@
 // were taken of.
 #pragma once
 
-#include <filesystem>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -11,6 +10,7 @@
 #include <vector>
 
 #include "core/image.h"
+#include "core/path.h"
 #include "core/progress.h"
 #include "fidelity/front.h"
 #include "fidelity/side.h"
@@ -23,12 +23,12 @@ namespace astrosplat {
 
 /// The picture that the front view is compared with.
 struct FidelityReference {
-    std::string layer;           // whose picture it is, or stands for
-    std::filesystem::path file;  // empty: the layer's own picture
-    FrontFrame frame;            // world space
-    Image picture;               // linear light on black, in its own resolution
-    double border = 0.0;         // share of its width along every edge where light fades: not compared
-    bool disk = true;            // seen from its edge it is to look like a galaxy: not a sheet, nor walls
+    std::string layer;    // whose picture it is, or stands for
+    fs::path file;        // empty: the layer's own picture
+    FrontFrame frame;     // world space
+    Image picture;        // linear light on black, in its own resolution
+    double border = 0.0;  // share of its width along every edge where light fades: not compared
+    bool disk = true;     // seen from its edge it is to look like a galaxy: not a sheet, nor walls
 
     /// Height in px of a front view so wide.
     std::int64_t height_px(std::int64_t width_px) const;
@@ -40,12 +40,12 @@ struct FidelityReference {
 /// scene of splat files can name its picture in a layer that is not visible. `file` replaces the picture,
 /// not its place; its proportions are to be the frame's within 1 %. `now`: the scene at one frame. Throws
 /// InputError, Cancelled.
-FidelityReference fidelity_reference(const Scene& now, const std::optional<std::filesystem::path>& file,
+FidelityReference fidelity_reference(const Scene& now, const std::optional<fs::path>& file,
                                      const Progress& progress = {}, const SetCache& cache = {});
 
 struct FidelityReport {
     std::string layer;
-    std::filesystem::path reference;
+    fs::path reference;
     FrontFidelity front, full;  // at FidelitySettings::width_px and at the picture's own width
     Needles needles;            // from 60 degrees
     Needles flat_needles;       // of the picture, without any depth

@@ -40,7 +40,7 @@ struct LayerState {
     std::shared_ptr<SplatSet> to_use_up;    // the same, where its splats are not read after the first shading
     std::unique_ptr<StreamedSet> streamed;  // in place of `set` and `shaded`
     Bounds box;                             // of the set, layer space
-    std::filesystem::path thickness_file;
+    fs::path thickness_file;
     Derived thickness_derived = Derived::none;
     Image thickness_map;
     std::optional<ShadingInputs> shaded_with;  // what `shaded` was made with

@@ -2,7 +2,6 @@
 // samples for motion blur and depth of field. Camera space: x right, y up, looking along -z.
 #pragma once
 
-#include <filesystem>
 #include <glm/mat3x3.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
@@ -11,6 +10,7 @@
 
 #include "camera/lens.h"
 #include "core/bounds.h"
+#include "core/path.h"
 #include "core/text.h"
 
 namespace astrosplat {
@@ -66,7 +66,7 @@ struct CameraParams {
     double near = 0.01;             // scene units
     double far = 0.0;               // scene units; 0: none
     double near_fade = 0.0;         // scene units; 0: one radius of the splat
-    std::filesystem::path file;     // another program's camera (scene/camera_file.h); "": none
+    fs::path file;                  // another program's camera (scene/camera_file.h); "": none
     double file_scale = 1.0;        // scene units per unit of the file
     CameraFileUp file_up = CameraFileUp::automatic;
     double file_offset = 0.0;  // frames added to those of the file

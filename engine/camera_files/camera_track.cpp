@@ -60,13 +60,13 @@ bool quaternion_from_view(const glm::dvec3& direction, const glm::dvec3& up, glm
 
 namespace {
 
-using ReadTrack = CameraTrack (*)(const std::filesystem::path& file, const FrameRate& rate);
+using ReadTrack = CameraTrack (*)(const fs::path& file, const FrameRate& rate);
 
 constexpr std::pair<std::string_view, ReadTrack> readers[] = {
     {"chan", read_chan}, {"gaia_sky", read_gaia_sky},          {"openspace", read_openspace},
     {"gltf", read_gltf}, {"transforms", read_transforms_json}, {"usda", read_usda}};
 
-ReadTrack reader_of(const std::filesystem::path& file) {
+ReadTrack reader_of(const fs::path& file) {
     const FileFormat* const format = format_by_name(file);
     for (const auto& [id, read] : readers)
         if (format && format->id == id) return read;
@@ -75,9 +75,9 @@ ReadTrack reader_of(const std::filesystem::path& file) {
 
 }  // namespace
 
-bool is_camera_file(const std::filesystem::path& file) { return reader_of(file) != nullptr; }
+bool is_camera_file(const fs::path& file) { return reader_of(file) != nullptr; }
 
-CameraTrack read_camera(const std::filesystem::path& file, const FrameRate& rate) {
+CameraTrack read_camera(const fs::path& file, const FrameRate& rate) {
     const ReadTrack read = reader_of(file);
     if (!read)
         bad_input(file.string(), "", "a name ending in " + alternatives(endings_of(FileUse::camera_read)),

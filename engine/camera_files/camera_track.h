@@ -4,12 +4,13 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 #include <string>
 #include <vector>
+
+#include "core/path.h"
 
 namespace astrosplat {
 
@@ -55,10 +56,10 @@ bool quaternion_from_axes(const glm::dmat3& world_from_camera, glm::dvec4& quate
 bool quaternion_from_view(const glm::dvec3& direction, const glm::dvec3& up, glm::dvec4& quaternion);
 
 /// Whether the name ends as one of such files does, in capitals or not (core/file_format.h).
-bool is_camera_file(const std::filesystem::path& file);
+bool is_camera_file(const fs::path& file);
 
 /// A file of one of these endings. Throws InputError, one line with file, line (where the format has lines),
 /// expectation and finding.
-CameraTrack read_camera(const std::filesystem::path& file, const FrameRate& rate);
+CameraTrack read_camera(const fs::path& file, const FrameRate& rate);
 
 }  // namespace astrosplat

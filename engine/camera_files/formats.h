@@ -13,7 +13,7 @@ namespace astrosplat {
 
 /// .chan, the camera files of Nuke, Maya, Houdini and Blender: one line a frame, "frame tx ty tz rx ry rz
 /// [fov]", angles in degrees applied in the order z, x, y (Nuke's ZXY), fov vertical, y up.
-CameraTrack read_chan(const std::filesystem::path& file, const FrameRate& rate);
+CameraTrack read_chan(const fs::path& file, const FrameRate& rate);
 /// The field of view is written where the track has one.
 std::string chan_text(const CameraTrack& track);
 
@@ -21,7 +21,7 @@ std::string chan_text(const CameraTrack& track);
 /// or beside it: the first node with a camera, moved by its own and its parents' transforms and by the first
 /// animation that moves any of them; a second of the file is output_fps frames, from frame 0 on (file_fps is
 /// not used). One sample at every whole frame that the animation touches, one in all where nothing moves.
-CameraTrack read_gltf(const std::filesystem::path& file, const FrameRate& rate);
+CameraTrack read_gltf(const fs::path& file, const FrameRate& rate);
 /// A .gltf with one animated camera and all its bytes inside. Its field of view or height is that of the
 /// first sample, for glTF moves none; places and turns have a float's precision. `aspect`: width / height;
 /// frames are not negative (InputError).
@@ -33,7 +33,7 @@ std::string gltf_text(const CameraTrack& track, double aspect, double near, doub
 /// and at every whole one between, one in all where nothing moves. The field of view is that of focalLength
 /// and verticalAperture; without a focalLength there is none. Places stay in the file's units whatever its
 /// metersPerUnit; up is its upAxis. Nothing that the file refers to is opened.
-CameraTrack read_usda(const std::filesystem::path& file, const FrameRate& rate);
+CameraTrack read_usda(const fs::path& file, const FrameRate& rate);
 /// Values of a camera in USD besides its samples.
 struct UsdLens {
     double aspect = 1.0;            // width / height
@@ -46,19 +46,19 @@ std::string usda_text(const CameraTrack& track, const UsdLens& lens);
 /// Gaia Sky's recordings of flights (.gsc): "time x y z, direction, up" in every line, one line a frame from
 /// frame 1 on, 60 a second unless rate.file_fps says otherwise (the time is that of the sky, which may stand
 /// still). Units are 1e9 m. Without a field of view.
-CameraTrack read_gaia_sky(const std::filesystem::path& file, const FrameRate& rate);
+CameraTrack read_gaia_sky(const fs::path& file, const FrameRate& rate);
 
 /// OpenSpace's recordings, formats 1.00, 2.00 and 3.00 as text. Seconds since the recording's start become
 /// frames, frame 1 at 0 s; lines that are no camera's are skipped, as are further ones at one time. Places,
 /// in metres, are relative to a body: where that is not the same all the time, a warning tells. Without a
 /// field of view.
-CameraTrack read_openspace(const std::filesystem::path& file, const FrameRate& rate);
+CameraTrack read_openspace(const fs::path& file, const FrameRate& rate);
 
 /// transforms.json, the cameras of a capture as NeRF and its successors keep them: one sample for each of its
 /// frames, at frames 1, 2, ... in the file's order; z is up. Their transform_matrix is world from camera, its
 /// camera looks along -z. The field of view is that of fl_y and h, or fl_x and w, of the frame or of all;
 /// else camera_angle_y; else camera_angle_x, of square pictures unless w and h are told. Without any of these
 /// there is none.
-CameraTrack read_transforms_json(const std::filesystem::path& file, const FrameRate& rate);
+CameraTrack read_transforms_json(const fs::path& file, const FrameRate& rate);
 
 }  // namespace astrosplat

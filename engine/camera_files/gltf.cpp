@@ -190,7 +190,7 @@ void set_lens(const GltfFile& file, const Json& camera, CameraTrack& track) {
             track.orthographic ? 2.0 * value : real::degrees(value);
 }
 
-CameraTrack read_checked_gltf(const std::filesystem::path& path, const FrameRate& rate) {
+CameraTrack read_checked_gltf(const fs::path& path, const FrameRate& rate) {
     GltfFile file(path);
     const std::vector<std::int64_t> way = way_to_camera(file);
     std::vector<MovedNode> nodes;
@@ -227,7 +227,7 @@ void add_floats(std::string& bytes, std::initializer_list<double> values) {
 
 }  // namespace
 
-CameraTrack read_gltf(const std::filesystem::path& file, const FrameRate& rate) {
+CameraTrack read_gltf(const fs::path& file, const FrameRate& rate) {
     try {
         return read_checked_gltf(file, rate);
     } catch (const Json::exception& error) {  // a value of another type than glTF says

@@ -47,7 +47,7 @@ double unrolled(double angle, double before) {
 
 }  // namespace
 
-CameraTrack read_chan(const std::filesystem::path& file, const FrameRate& rate) {
+CameraTrack read_chan(const fs::path& file, const FrameRate& rate) {
     const std::string text = read_file(file);
     TextRows rows(text, file.string());
     CameraTrack track;
@@ -143,7 +143,7 @@ glm::dvec4 unit_quaternion(const TextRows& rows, const Words& words, const Colum
 
 }  // namespace
 
-CameraTrack read_gaia_sky(const std::filesystem::path& file, const FrameRate& rate) {
+CameraTrack read_gaia_sky(const fs::path& file, const FrameRate& rate) {
     const std::string text = read_file(file);
     TextRows rows(text, file.string());
     CameraTrack track;
@@ -168,7 +168,7 @@ CameraTrack read_gaia_sky(const std::filesystem::path& file, const FrameRate& ra
     return track;
 }
 
-CameraTrack read_openspace(const std::filesystem::path& file, const FrameRate& rate) {
+CameraTrack read_openspace(const fs::path& file, const FrameRate& rate) {
     const std::string text = read_file(file);
     TextRows rows(text, file.string());
     const Columns columns = columns_of(rows);

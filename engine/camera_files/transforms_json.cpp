@@ -34,7 +34,7 @@ std::optional<double> vertical_fov_deg(const Json& frame, const Json& all) {
     return fov(real::tan(0.5 * *angle) * (w && h ? *h / *w : 1.0));
 }
 
-CameraTrack read_checked_transforms(const std::filesystem::path& file) {
+CameraTrack read_checked_transforms(const fs::path& file) {
     const auto fail = [&](const std::string& expected, const std::string& found) {
         bad_input(file.string(), "", expected, found);
     };
@@ -74,7 +74,7 @@ CameraTrack read_checked_transforms(const std::filesystem::path& file) {
 
 }  // namespace
 
-CameraTrack read_transforms_json(const std::filesystem::path& file, const FrameRate&) {
+CameraTrack read_transforms_json(const fs::path& file, const FrameRate&) {
     try {
         return read_checked_transforms(file);
     } catch (const Json::exception& error) {  // a value of another type

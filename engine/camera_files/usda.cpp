@@ -141,7 +141,7 @@ std::string matrix_of(const TrackSample& sample) {
 
 }  // namespace
 
-CameraTrack read_usda(const std::filesystem::path& file, const FrameRate& rate) {
+CameraTrack read_usda(const fs::path& file, const FrameRate& rate) {
     const std::string text = read_file(file), name = file.string();
     const UsdStage stage = parse_usda(text, name);
     Chain here, first;

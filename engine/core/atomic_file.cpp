@@ -26,8 +26,6 @@
 namespace astrosplat {
 namespace {
 
-namespace fs = std::filesystem;
-
 [[noreturn]] void fail_writing(const fs::path& target, const char* reason) {
     throw OutputError(fmt::format("{}: cannot be written: {}", target.string(), reason));
 }
@@ -203,7 +201,7 @@ void refuse_other_than_file(const fs::path& target) {
 
 namespace {
 
-bool is_still_named(int descriptor, const std::filesystem::path& file) {
+bool is_still_named(int descriptor, const fs::path& file) {
     struct stat open_file {};
     struct stat named {};
     return ::fstat(descriptor, &open_file) == 0 && ::stat(file.c_str(), &named) == 0 &&

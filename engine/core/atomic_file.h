@@ -6,11 +6,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <exception>
-#include <filesystem>
 #include <string_view>
 #include <utility>
 
 #include "core/error.h"
+#include "core/path.h"
 
 namespace astrosplat {
 
@@ -25,10 +25,10 @@ struct AlreadyExists : OutputError {
 /// Where a file goes.
 struct WriteTarget {
     /// A path alone is a file that may be replaced.
-    WriteTarget(std::filesystem::path path, Existing when_there = Existing::replace)
+    WriteTarget(fs::path path, Existing when_there = Existing::replace)
         : file(std::move(path)), existing(when_there) {}
 
-    std::filesystem::path file;
+    fs::path file;
     Existing existing;  // keep: AlreadyExists is thrown, also where it came while we wrote
 };
 
@@ -37,13 +37,13 @@ class AtomicFile {
   public:
     /// Creates an empty temporary file beside `target` (symbolic links are followed). Throws OutputError when
     /// the folder cannot be written or the target exists and is no regular file.
-    explicit AtomicFile(const std::filesystem::path& target, Existing existing = Existing::replace);
+    explicit AtomicFile(const fs::path& target, Existing existing = Existing::replace);
     ~AtomicFile();
     AtomicFile(const AtomicFile&) = delete;
     AtomicFile& operator=(const AtomicFile&) = delete;
 
-    const std::filesystem::path& target() const { return target_; }
-    const std::filesystem::path& temporary() const { return temporary_; }
+    const fs::path& target() const { return target_; }
+    const fs::path& temporary() const { return temporary_; }
     /// Bytes from the start to the last one written.
     std::int64_t size() const { return size_; }
 
@@ -60,24 +60,24 @@ class AtomicFile {
   private:
     bool create_temporary();
 
-    std::filesystem::path target_;     // what messages name
-    std::filesystem::path resolved_;   // behind symbolic links
-    std::filesystem::path temporary_;  // empty once committed
+    fs::path target_;     // what messages name
+    fs::path resolved_;   // behind symbolic links
+    fs::path temporary_;  // empty once committed
     Existing existing_;
     int descriptor_ = -1;                      // locked, which tells others that the file is in use
     std::int64_t size_ = 0, handed_over_ = 0;  // bytes; of them on their way to the disk
 };
 
 /// The whole of `text` as file `target`, by the above.
-void write_file_atomically(const std::filesystem::path& target, std::string_view text,
+void write_file_atomically(const fs::path& target, std::string_view text,
                            Existing existing = Existing::replace);
 
 /// Throws AlreadyExists when anything has this name.
-void refuse_existing(const std::filesystem::path& target);
+void refuse_existing(const fs::path& target);
 
 /// Throws OutputError when something lies at `target` that is no regular file (symbolic links are followed):
 /// no file can be written there.
-void refuse_other_than_file(const std::filesystem::path& target);
+void refuse_other_than_file(const fs::path& target);
 
 /// An AtomicFile behind the code of a library that exceptions must not pass, or that swallows them: a write
 /// that fails is remembered, and thrown where the library has returned.
@@ -101,7 +101,7 @@ class GuardedFile {
         if (failure_) std::rethrow_exception(failure_);
     }
     std::int64_t size() const { return file_.size(); }
-    const std::filesystem::path& target() const { return file_.target(); }
+    const fs::path& target() const { return file_.target(); }
 
   private:
     AtomicFile& file_;
@@ -123,7 +123,7 @@ class FileLock {
     };
     enum class Missing { create, leave };
 
-    explicit FileLock(std::filesystem::path file) : file_(std::move(file)) {}
+    explicit FileLock(fs::path file) : file_(std::move(file)) {}
     ~FileLock();
     FileLock(const FileLock&) = delete;
     FileLock& operator=(const FileLock&) = delete;
@@ -132,7 +132,7 @@ class FileLock {
     State try_lock(Missing missing = Missing::create);
 
   private:
-    std::filesystem::path file_;
+    fs::path file_;
     int descriptor_ = -1;  // open while the lock is held
 };
 

@@ -23,8 +23,6 @@ namespace astrosplat {
 
 namespace {
 
-namespace fs = std::filesystem;
-
 [[noreturn]] void cannot_read(const fs::path& file, std::string_view reason) {
     throw InputError(fmt::format("{}: cannot be read: {}", file.string(), reason));
 }
@@ -103,7 +101,6 @@ std::string read_beginning(const fs::path& file, std::size_t size) {
     return text;
 }
 
-namespace fs = std::filesystem;
 namespace {
 
 // A relative folder in a variable does not count, as the XDG specification says.
@@ -159,9 +156,9 @@ std::vector<std::string> names_in(const std::string& folder) {
     return {names.begin(), names.end()};
 }
 
-std::filesystem::path make_temporary_folder() {
+fs::path make_temporary_folder() {
     std::error_code error;
-    const std::filesystem::path place = std::filesystem::temp_directory_path(error);
+    const fs::path place = fs::temp_directory_path(error);
     if (error) throw OutputError(fmt::format("no folder for temporary files: {}", error.message()));
     std::string pattern = (place / "astrosplat-XXXXXX").string();
     if (!mkdtemp(pattern.data()))
@@ -174,7 +171,7 @@ TemporaryFolder::TemporaryFolder() : path_(make_temporary_folder()) {}
 
 TemporaryFolder::~TemporaryFolder() {
     std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
+    fs::remove_all(path_, ignored);
 }
 
 }  // namespace astrosplat

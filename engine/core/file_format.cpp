@@ -8,7 +8,6 @@
 
 namespace astrosplat {
 
-namespace fs = std::filesystem;
 using namespace std::string_view_literals;
 
 // OpenImageIO's own movies and "null" are left out on purpose: they open files that are no pictures.

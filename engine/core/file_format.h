@@ -2,12 +2,13 @@
 // file dialogs and their messages all ask it, so that they cannot disagree.
 #pragma once
 
-#include <filesystem>
 #include <initializer_list>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "core/path.h"
 
 namespace astrosplat {
 
@@ -50,11 +51,11 @@ std::span<const FileFormat> file_formats();
 
 /// The format that a file's name promises, in capitals or not; nullptr for other names, and for endings that
 /// do not have the use.
-const FileFormat* format_by_name(const std::filesystem::path& file, FileUse use = FileUse::read);
+const FileFormat* format_by_name(const fs::path& file, FileUse use = FileUse::read);
 
 /// The format of a file to be read: by its first bytes where a format has such, else by its name. nullptr for
 /// other files.
-const FileFormat* format_of_file(const std::filesystem::path& file);
+const FileFormat* format_of_file(const fs::path& file);
 
 /// FileKind::unknown where there is no format.
 FileKind kind_of(const FileFormat* format);

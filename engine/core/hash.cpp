@@ -39,7 +39,7 @@ std::string Sha256::hex() {
     return text;
 }
 
-std::string sha256_of_file(const std::filesystem::path& file, const Progress& progress) {
+std::string sha256_of_file(const fs::path& file, const Progress& progress) {
     InputFile in(file);
     Sha256 hash;
     std::vector<char> block(std::size_t{1} << 20);

@@ -7,11 +7,11 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <filesystem>
 #include <memory>
 #include <string>
 #include <string_view>
 
+#include "core/path.h"
 #include "core/progress.h"
 
 namespace astrosplat {
@@ -33,7 +33,7 @@ class Sha256 {
 };
 
 /// Hash of a file's bytes. Throws InputError when it cannot be read; Cancelled.
-std::string sha256_of_file(const std::filesystem::path& file, const Progress& progress = {});
+std::string sha256_of_file(const fs::path& file, const Progress& progress = {});
 
 /// XXH64.
 inline std::uint64_t xxh64(std::string_view bytes) { return XXH64(bytes.data(), bytes.size(), 0); }

@@ -11,7 +11,6 @@
 #include <array>
 #include <atomic>
 #include <cmath>
-#include <filesystem>
 #include <fstream>
 #include <limits>
 #include <string_view>
@@ -19,6 +18,7 @@
 
 #include "core/error.h"
 #include "core/log.h"
+#include "core/path.h"
 #include "core/text.h"
 
 namespace astrosplat {
@@ -67,7 +67,7 @@ std::int64_t field(std::string_view text, std::string_view name) {
 }
 
 // Empty where there is none.
-std::string text_of(const std::filesystem::path& file) {
+std::string text_of(const fs::path& file) {
     std::ifstream in(file);
     return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
 }
@@ -173,8 +173,6 @@ void claim_memory(std::int64_t bytes, const std::string& what) {
 }
 
 namespace {
-
-namespace fs = std::filesystem;
 
 bool lists(const std::string& controllers, const std::string& wanted) {
     return ("," + controllers + ",").find("," + wanted + ",") != std::string::npos;

@@ -18,8 +18,6 @@
 namespace astrosplat {
 namespace {
 
-namespace fs = std::filesystem;
-
 // Reaches no pixel of any frame, or is told in other words.
 bool is_elsewhere(const ParameterSpec& spec) {
     constexpr std::array<std::string_view, 6> keys = {"output.path",   "output.frames",      "output.fps",

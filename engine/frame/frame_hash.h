@@ -2,12 +2,12 @@
 // mean that rendering again would give the same pixels, so --resume skips the frame.
 #pragma once
 
-#include <filesystem>
 #include <map>
 #include <string>
 
 #include "core/file.h"
 #include "core/image.h"
+#include "core/path.h"
 #include "core/progress.h"
 #include "frame/frame_scene.h"
 #include "scene/parameter.h"
@@ -22,7 +22,7 @@ struct HashedFile {
     std::string hash;
     FileStamp stamp;
 };
-using HashedFiles = std::map<std::filesystem::path, HashedFile>;
+using HashedFiles = std::map<fs::path, HashedFile>;
 
 /// To be called once the files are loaded. Throws InputError where one has other bytes now: what was loaded
 /// may not be what was hashed; Cancelled.
@@ -47,14 +47,14 @@ class FrameHasher {
     const HashedFiles& files() const { return files_; }
 
   private:
-    std::string file_text(const std::filesystem::path& file);
+    std::string file_text(const fs::path& file);
     std::string line(const Parameter& parameter);
     std::string ocio_text(const DisplayTransform& ocio);
     std::string layer_text(const Scene& scene, const LayerParams& layer);
 
     Region region_;
     HashedFiles files_;
-    std::map<std::filesystem::path, std::string> material_lists_;  // of meshes
+    std::map<fs::path, std::string> material_lists_;  // of meshes
 };
 
 }  // namespace astrosplat

@@ -10,8 +10,6 @@
 namespace astrosplat {
 namespace {
 
-namespace fs = std::filesystem;
-
 /// A place for the frame's number.
 struct Place {
     std::size_t begin = 0, size = 0;

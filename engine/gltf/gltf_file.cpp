@@ -56,7 +56,7 @@ std::int64_t count_in(const Json& object, const char* name, std::int64_t otherwi
 
 }  // namespace
 
-GltfFile::GltfFile(const std::filesystem::path& file) : file_(file) {
+GltfFile::GltfFile(const fs::path& file) : file_(file) {
     std::string text = read_file(file);
     if (text.size() >= 12 && word_at(text, 0) == glb_magic) {
         std::string json;
@@ -108,7 +108,7 @@ const std::string& GltfFile::buffer(const Json& index) {
             bytes = *read;
         } else {
             // A foreign file may only name files in its own folder.
-            const std::filesystem::path name = std::filesystem::path(uri).lexically_normal();
+            const fs::path name = fs::path(uri).lexically_normal();
             if (uri.find(':') != std::string::npos || name.is_absolute() || name.string().starts_with(".."))
                 fail("buffers in or beside the file", "'" + printable(uri) + "'");
             bytes = read_file(file_.parent_path() / name);

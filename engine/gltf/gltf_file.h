@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
@@ -13,15 +12,17 @@
 #include <string>
 #include <vector>
 
+#include "core/path.h"
+
 namespace astrosplat {
 
 class GltfFile {
   public:
     /// Reads a .gltf or a .glb. Throws InputError.
-    explicit GltfFile(const std::filesystem::path& file);
+    explicit GltfFile(const fs::path& file);
 
     const nlohmann::json& json() const { return json_; }
-    const std::filesystem::path& path() const { return file_; }
+    const fs::path& path() const { return file_; }
 
     /// The element `index` of the list `name` at the top. Throws InputError where there is none.
     const nlohmann::json& element(const char* name, const nlohmann::json& index) const;
@@ -36,7 +37,7 @@ class GltfFile {
   private:
     const std::string& buffer(const nlohmann::json& index);
 
-    std::filesystem::path file_;
+    fs::path file_;
     nlohmann::json json_;
     std::string binary_;  // of a .glb
     std::map<std::int64_t, std::string> buffers_;

@@ -2,11 +2,11 @@
 // values; what a scene file leaves out has the defaults here. apply.h turns them into ShadedSplats.
 #pragma once
 
-#include <filesystem>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <vector>
 
+#include "core/path.h"
 #include "core/text.h"
 #include "source/source.h"
 
@@ -36,7 +36,7 @@ struct ThicknessStop {
 };
 
 struct Thickness {
-    std::filesystem::path map;         // empty: none
+    fs::path map;                      // empty: none
     Derived derive = Derived::none;    // reads this map of the picture, as grey, in its place
     std::vector<ThicknessStop> stops;  // "keys" in the file
     bool operator==(const Thickness&) const = default;

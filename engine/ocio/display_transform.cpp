@@ -16,7 +16,6 @@
 #include "core/text.h"
 
 namespace astrosplat {
-namespace fs = std::filesystem;
 namespace ocio = OCIO_NAMESPACE;
 
 OcioError::OcioError(std::string of_key, const std::string& message)

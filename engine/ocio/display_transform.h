@@ -4,20 +4,20 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "core/error.h"
+#include "core/path.h"
 
 namespace astrosplat {
 
 /// [output] ocio. Unless wanted(), a view is the program's own.
 struct OcioParams {
-    std::filesystem::path config;  // empty: the file that the environment's OCIO names
-    std::string display, view;     // empty: the configuration's first
-    std::string space;             // the configuration's name for linear light of Rec. 709; empty: looked for
+    fs::path config;            // empty: the file that the environment's OCIO names
+    std::string display, view;  // empty: the configuration's first
+    std::string space;          // the configuration's name for linear light of Rec. 709; empty: looked for
     bool wanted() const { return !config.empty() || !display.empty() || !view.empty() || !space.empty(); }
     bool operator==(const OcioParams&) const = default;
 };
@@ -35,16 +35,16 @@ struct ColorDisplay {
     std::string default_view;
 };
 struct ColorConfig {
-    std::filesystem::path file;
+    fs::path file;
     std::vector<ColorDisplay> displays;
     std::string default_display;
 };
 
 /// The file that `params` or else the environment's OCIO names; may be empty.
-std::filesystem::path config_file(const OcioParams& params);
+fs::path config_file(const OcioParams& params);
 
 /// Throws InputError where there is no such file or it is no configuration.
-ColorConfig read_color_config(const std::filesystem::path& file);
+ColorConfig read_color_config(const fs::path& file);
 
 /// A table that the text reads by a sampler of this name.
 struct GlslTable {
@@ -79,7 +79,7 @@ class DisplayTransform {
     const std::string& view() const;
     const std::string& space() const;
     /// The configuration, and the tables it reads for this view.
-    const std::vector<std::filesystem::path>& files() const;
+    const std::vector<fs::path>& files() const;
 
   private:
     struct State;

@@ -80,7 +80,7 @@ ImageComparison compare_images(const Image& a, const Image& b) {
     return result;
 }
 
-ImageComparison compare_files(const std::filesystem::path& a, const std::filesystem::path& b) {
+ImageComparison compare_files(const fs::path& a, const fs::path& b) {
     Image first = load_linear_image(a), second = load_linear_image(b);
     if (first.width != second.width || first.height != second.height)
         bad_input(b.string(), "",
@@ -157,7 +157,7 @@ class StoredSums {
     std::int64_t colors_ = 0;  // values of colours
 };
 
-OpenFrame open_if_readable(const std::filesystem::path& file) try {
+OpenFrame open_if_readable(const fs::path& file) try {
     return open_picture(file);
 } catch (const InputError&) {
     return nullptr;
@@ -165,7 +165,7 @@ OpenFrame open_if_readable(const std::filesystem::path& file) try {
 
 }  // namespace
 
-StoredComparison compare_stored(const std::filesystem::path& first, const std::filesystem::path& second) {
+StoredComparison compare_stored(const fs::path& first, const fs::path& second) {
     StoredComparison comparison;
     comparison.result = StoredComparison::Result::first_damaged;
     const OpenFrame a = open_if_readable(first), b = open_picture(second);

@@ -4,10 +4,10 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <string>
 
 #include "core/image.h"
+#include "core/path.h"
 
 namespace astrosplat {
 
@@ -30,7 +30,7 @@ struct ImageComparison {
 ImageComparison compare_images(const Image& a, const Image& b);
 
 /// Reads both as linear light. Throws InputError when one cannot be read or the sizes differ.
-ImageComparison compare_files(const std::filesystem::path& a, const std::filesystem::path& b);
+ImageComparison compare_files(const fs::path& a, const fs::path& b);
 
 struct StoredComparison {
     enum class Result { compared, first_damaged, other_form } result = Result::compared;
@@ -46,6 +46,6 @@ struct StoredComparison {
 };
 
 /// `second` must be readable: throws InputError otherwise.
-StoredComparison compare_stored(const std::filesystem::path& first, const std::filesystem::path& second);
+StoredComparison compare_stored(const fs::path& first, const fs::path& second);
 
 }  // namespace astrosplat

@@ -76,7 +76,7 @@ bool read_all(Imf::InputFile& in) {
 
 /// `answer` of an open file; `otherwise` where it is none that OpenEXR can read.
 template <class Answer, class Result>
-Result ask(const std::filesystem::path& file, const Answer& answer, Result otherwise) try {
+Result ask(const fs::path& file, const Answer& answer, Result otherwise) try {
     Imf::InputFile in(file.c_str(), exr_threads());
     return answer(in);
 } catch (const std::bad_alloc&) {
@@ -87,7 +87,7 @@ Result ask(const std::filesystem::path& file, const Answer& answer, Result other
 
 }  // namespace
 
-std::optional<StoredHeader> read_exr_header(const std::filesystem::path& file) {
+std::optional<StoredHeader> read_exr_header(const fs::path& file) {
     const auto header_of = [](const Imf::InputFile& in) {
         const Imf::Header& from = in.header();
         const Region whole = region_of(from.displayWindow(), from.displayWindow());
@@ -104,7 +104,7 @@ std::optional<StoredHeader> read_exr_header(const std::filesystem::path& file) {
     return ask(file, header_of, std::optional<StoredHeader>());
 }
 
-bool exr_is_whole(const std::filesystem::path& file) { return ask(file, read_all, false); }
+bool exr_is_whole(const fs::path& file) { return ask(file, read_all, false); }
 
 namespace {
 

@@ -67,7 +67,7 @@ const std::array<KindRules, 3>& rules() {
     return table;
 }
 
-const KindRules& rules_for(const std::filesystem::path& file) {
+const KindRules& rules_for(const fs::path& file) {
     const FileFormat* const format = format_by_name(file);
     for (const KindRules& rule : rules())
         if (format && format->id == rule.format) return rule;
@@ -95,7 +95,7 @@ void check_aovs(const OutputParams& output, const KindRules& rule) {
 
 }  // namespace
 
-FrameFormat resolve_format(const OutputParams& output, const std::filesystem::path& file) {
+FrameFormat resolve_format(const OutputParams& output, const fs::path& file) {
     const KindRules& rule = rules_for(file);
     FrameFormat format;
     format.kind = rule.kind;

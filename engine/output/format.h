@@ -3,11 +3,11 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <memory>
 #include <vector>
 
 #include "core/image.h"
+#include "core/path.h"
 #include "scene/scene.h"
 
 namespace astrosplat {
@@ -32,7 +32,7 @@ struct FrameFormat {
 
 /// Throws InputError, one line, when ending, depth, compression, primaries or aovs do not fit together, or
 /// the view cannot be made (OcioError, where it is one of the names).
-FrameFormat resolve_format(const OutputParams& output, const std::filesystem::path& file);
+FrameFormat resolve_format(const OutputParams& output, const fs::path& file);
 
 /// Throws InputError when the settings do not fit the format ("aovs need exr", "png knows 8 and 16 bits"),
 /// with the place of the key where it is known.

@@ -4,10 +4,10 @@
 // at all; of a file its header, and whether it is whole.
 #pragma once
 
-#include <filesystem>
 #include <optional>
 #include <string_view>
 
+#include "core/path.h"
 #include "output/format.h"
 #include "output/metadata.h"
 #include "output/write.h"
@@ -24,15 +24,15 @@ void write_png(const FrameFile& target, const FrameFormat& format, const Rendere
                const FrameMetadata& metadata);
 
 /// Nothing where the file is none of the format, or damaged.
-std::optional<StoredHeader> read_exr_header(const std::filesystem::path& file);
-std::optional<StoredHeader> read_tiff_header(const std::filesystem::path& file);
-std::optional<StoredHeader> read_png_header(const std::filesystem::path& file);
+std::optional<StoredHeader> read_exr_header(const fs::path& file);
+std::optional<StoredHeader> read_tiff_header(const fs::path& file);
+std::optional<StoredHeader> read_png_header(const fs::path& file);
 
 /// True when the file was read to its last pixel. False says nothing of forms that no frame is written in:
 /// tiles, several parts, interlacing.
-bool exr_is_whole(const std::filesystem::path& file);
-bool tiff_is_whole(const std::filesystem::path& file);
-bool png_is_whole(const std::filesystem::path& file);
+bool exr_is_whole(const fs::path& file);
+bool tiff_is_whole(const fs::path& file);
+bool png_is_whole(const fs::path& file);
 
 struct FrameFileFormat {
     std::string_view id;  // of core/file_format.h

@@ -164,8 +164,6 @@ std::vector<KeyDifference> differing_keys(const std::string& first, const std::s
 
 namespace {
 
-namespace fs = std::filesystem;
-
 Eye eye_of(std::string_view name) {
     for (const Eye eye : {Eye::left, Eye::right})
         if (name == name_of(eye)) return eye;
@@ -222,7 +220,7 @@ bool picture_is_whole(const fs::path& file) try {
 
 }  // namespace
 
-ImageInfo read_image_info(const std::filesystem::path& file) {
+ImageInfo read_image_info(const fs::path& file) {
     const auto in = open_picture(file);
     const OIIO::ImageSpec& spec = in->spec();
     ImageInfo info{spec.width,       spec.height,       spec.x, spec.y, spec.full_width,
@@ -236,7 +234,7 @@ ImageInfo read_image_info(const std::filesystem::path& file) {
     return info;
 }
 
-FrameHeader read_frame_header(const std::filesystem::path& file) {
+FrameHeader read_frame_header(const fs::path& file) {
     const FrameFileFormat* const format = frame_file_format(file);
     const std::optional<StoredHeader> stored = format ? format->read_header(file) : std::nullopt;
     if (!stored) return {};
@@ -255,7 +253,7 @@ FrameHeader read_frame_header(const std::filesystem::path& file) {
     return header;
 }
 
-bool frame_is_whole(const std::filesystem::path& file) {
+bool frame_is_whole(const fs::path& file) {
     const FrameFileFormat* const format = frame_file_format(file);
     return (format && format->is_whole(file)) || picture_is_whole(file);
 }

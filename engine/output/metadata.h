@@ -4,7 +4,6 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <map>
 #include <optional>
 #include <string>
@@ -14,6 +13,7 @@
 
 #include "camera/camera.h"
 #include "core/image.h"
+#include "core/path.h"
 #include "output/write.h"
 
 namespace astrosplat {
@@ -72,7 +72,7 @@ struct ImageInfo {
 
 /// The header of a picture file, without reading its pixels. Throws InputError when the
 /// file cannot be opened as a picture.
-ImageInfo read_image_info(const std::filesystem::path& file);
+ImageInfo read_image_info(const fs::path& file);
 
 /// The header of a frame file. The stored size and region are those of its hashed text, where it has one.
 struct FrameHeader : StoredHeader {
@@ -82,9 +82,9 @@ struct FrameHeader : StoredHeader {
     Eye eye = Eye::centre;
 };
 /// Fields that are not told, or not in a readable way, are empty; all of them where the file is no picture.
-FrameHeader read_frame_header(const std::filesystem::path& file);
+FrameHeader read_frame_header(const fs::path& file);
 
 /// True when the file can be read to its last pixel.
-bool frame_is_whole(const std::filesystem::path& file);
+bool frame_is_whole(const fs::path& file);
 
 }  // namespace astrosplat

@@ -132,7 +132,7 @@ struct OpenPng {
     OpenFile file;
     PngReader reader;
 };
-std::unique_ptr<OpenPng> open_png(const std::filesystem::path& path) {
+std::unique_ptr<OpenPng> open_png(const fs::path& path) {
     OpenFile file(std::fopen(path.c_str(), "rbe"));
     if (!file) return nullptr;
     auto opened = std::make_unique<OpenPng>(std::move(file));
@@ -171,7 +171,7 @@ void write_png(const FrameFile& target, const FrameFormat& format, const Rendere
     file.commit();
 }
 
-std::optional<StoredHeader> read_png_header(const std::filesystem::path& file) {
+std::optional<StoredHeader> read_png_header(const fs::path& file) {
     const auto opened = open_png(file);
     if (!opened) return {};
     const png_structp png = opened->reader.png();
@@ -186,7 +186,7 @@ std::optional<StoredHeader> read_png_header(const std::filesystem::path& file) {
     return header;
 }
 
-bool png_is_whole(const std::filesystem::path& file) {
+bool png_is_whole(const fs::path& file) {
     const auto opened = open_png(file);
     if (!opened) return false;
     const png_structp png = opened->reader.png();

@@ -214,7 +214,7 @@ void write_samples(const FrameFile& target, const FrameFormat& format, const Sam
 }
 
 /// A TIFF file in whose first directory one can look; nothing where it is none.
-OpenTiff open_tiff(const std::filesystem::path& file, TiffError& error) {
+OpenTiff open_tiff(const fs::path& file, TiffError& error) {
     // m: not mapped, as it may be cut short meanwhile.
     return OpenTiff(TIFFOpenExt(file.c_str(), "rm", options_for(error).get()));
 }
@@ -238,7 +238,7 @@ void write_tiff(const FrameFile& target, const FrameFormat& format, const Render
         write(4, encode_float(format, frame.beauty).pixels.data());
 }
 
-std::optional<StoredHeader> read_tiff_header(const std::filesystem::path& file) {
+std::optional<StoredHeader> read_tiff_header(const fs::path& file) {
     TiffError error;
     const OpenTiff tiff = open_tiff(file, error);
     std::uint32_t width = 0, height = 0;
@@ -250,7 +250,7 @@ std::optional<StoredHeader> read_tiff_header(const std::filesystem::path& file) 
     return StoredHeader{width, height, {}, parse_metadata_lines(description)};
 }
 
-bool tiff_is_whole(const std::filesystem::path& file) {
+bool tiff_is_whole(const fs::path& file) {
     TiffError error;
     const OpenTiff tiff = open_tiff(file, error);
     if (!tiff || TIFFIsTiled(tiff.get())) return false;

@@ -13,8 +13,6 @@
 namespace astrosplat {
 namespace {
 
-namespace fs = std::filesystem;
-
 void check_finite(const Image& image, const char* what) {
     for (std::size_t i = 0; i < image.pixels.size(); ++i)
         if (!std::isfinite(image.pixels[i]))

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -11,6 +10,7 @@
 #include "camera/camera.h"
 #include "core/atomic_file.h"
 #include "core/image.h"
+#include "core/path.h"
 #include "render/frame.h"
 #include "scene/scene.h"
 
@@ -31,7 +31,7 @@ struct FrameMetadata {
 
 /// Where a frame goes, and as what.
 struct FrameFile {
-    std::filesystem::path file;  // its ending chooses the format
+    fs::path file;  // its ending chooses the format
     OutputParams output;
     std::int64_t whole_width = 0, whole_height = 0;  // px, of the whole frame
     Region region{};                                 // where the frame lies in it (EXR: the data window)

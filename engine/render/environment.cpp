@@ -195,8 +195,7 @@ void build_levels(std::vector<std::vector<Image>>& faces, const Progress& progre
     }
 }
 
-void check_cube(const std::vector<std::filesystem::path>& files,
-                const std::vector<std::vector<Image>>& faces) {
+void check_cube(const std::vector<fs::path>& files, const std::vector<std::vector<Image>>& faces) {
     std::int64_t n = inner(faces[0][0].width);
     for (std::size_t face = 0; face < 6; ++face) {
         std::int64_t w = inner(faces[face][0].width), h = inner(faces[face][0].height);
@@ -237,11 +236,11 @@ Environment load_environment(const EnvironmentParams& params, const Progress& pr
                         params.cube.size()));
     if (!params.cube.empty() + !params.image.empty() + !params.tile.empty() > 1)
         throw InputError("environment: expected image, cube or tile, found several of them");
-    std::vector<std::filesystem::path> files = params.cube;
+    std::vector<fs::path> files = params.cube;
     if (files.empty() && !params.image.empty()) files.push_back(params.image);
     Environment environment;
     EnvironmentFaces faces;
-    for (const std::filesystem::path& file : files) {
+    for (const fs::path& file : files) {
         std::vector<Image> pictures = load_environment_pictures(file, border, progress);
         if (files.size() == 6 && pictures.size() != 1)
             bad_input(file.string(), "environment.cube", "a picture of one face",

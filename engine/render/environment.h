@@ -2,7 +2,6 @@
 // light. In: EnvironmentParams. Out: colour along a direction.
 #pragma once
 
-#include <filesystem>
 #include <glm/mat3x3.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
@@ -11,16 +10,17 @@
 
 #include "camera/camera.h"
 #include "core/image.h"
+#include "core/path.h"
 #include "core/progress.h"
 #include "source/tiled_sky.h"
 
 namespace astrosplat {
 
 struct EnvironmentParams {
-    std::filesystem::path image;              // equirectangular; empty: none
-    std::vector<std::filesystem::path> cube;  // or six: +x -x +y -y +z -z
-    std::filesystem::path tile;               // or a part of the sky, of which the whole is made
-    SkyTiling tiling;                         // how
+    fs::path image;              // equirectangular; empty: none
+    std::vector<fs::path> cube;  // or six: +x -x +y -y +z -z
+    fs::path tile;               // or a part of the sky, of which the whole is made
+    SkyTiling tiling;            // how
     float gain = 1.0f;
     glm::dvec3 rotation{0.0};  // degrees about x, then y, then z
     double behind = 0.0;       // scene units from the origin; 0: infinitely far

@@ -21,8 +21,6 @@ namespace astrosplat {
 
 namespace {
 
-namespace fs = std::filesystem;
-
 bool is_table(const fs::path& file) {
     const FileFormat* const format = format_by_name(file);
     return format && format->id == "table";
@@ -215,7 +213,7 @@ CameraTrack camera_track(const Scene& scene, std::span<const std::int64_t> frame
     return track;
 }
 
-std::string camera_text(const CameraTrack& track, const Scene& scene, const std::filesystem::path& file) {
+std::string camera_text(const CameraTrack& track, const Scene& scene, const fs::path& file) {
     const FileFormat* const format = format_by_name(file, FileUse::camera_written);
     const std::string_view id = format ? format->id : "";
     if (id == "table") return csv_text(sampled_tracks(track, {}, file));

@@ -5,12 +5,12 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "camera_files/camera_track.h"
+#include "core/path.h"
 #include "scene/scene.h"
 
 namespace astrosplat {
@@ -26,7 +26,7 @@ void refresh_camera_file(Scene& scene, const std::string& place);
 /// are separated by commas, semicolons or tabs, numbers have decimal points. Lists of the scene grow where a
 /// key names their next element. Throws InputError for keys that cannot be animated, values out of range and
 /// frames that do not ascend.
-std::vector<Track> read_csv_tracks(const std::filesystem::path& file, const FrameRate& rate, Scene& scene);
+std::vector<Track> read_csv_tracks(const fs::path& file, const FrameRate& rate, Scene& scene);
 
 /// The text of such a file: one row for every frame, of tracks that have a keyframe at each of these frames.
 std::string csv_text(const std::vector<Track>& tracks);
@@ -39,6 +39,6 @@ CameraTrack camera_track(const Scene& scene, std::span<const std::int64_t> frame
 
 /// The text of a file whose name ends in .chan, .csv, .gltf or .usda. camera.file reads .chan and .csv
 /// back within 1e-6, .gltf within a float's precision. Throws InputError for other names.
-std::string camera_text(const CameraTrack& track, const Scene& scene, const std::filesystem::path& file);
+std::string camera_text(const CameraTrack& track, const Scene& scene, const fs::path& file);
 
 }  // namespace astrosplat

@@ -50,7 +50,7 @@ ColumnName column_name(const Description& description, std::string_view word) {
 
 class CsvReader {
   public:
-    CsvReader(const std::filesystem::path& file, std::string_view text, const FrameRate& rate, Scene& scene)
+    CsvReader(const fs::path& file, std::string_view text, const FrameRate& rate, Scene& scene)
         : place_(file.string()), rows_(text, place_), rate_(rate), scene_(scene) {}
 
     std::vector<Track> read() {
@@ -173,7 +173,7 @@ class CsvReader {
 
 }  // namespace
 
-std::vector<Track> read_csv_tracks(const std::filesystem::path& file, const FrameRate& rate, Scene& scene) {
+std::vector<Track> read_csv_tracks(const fs::path& file, const FrameRate& rate, Scene& scene) {
     const std::string text = read_file(file);
     return CsvReader(file, text, rate, scene).read();
 }

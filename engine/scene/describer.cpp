@@ -102,12 +102,12 @@ std::vector<std::string> words_of(const Value& value, const ParameterSpec& spec)
     return words;
 }
 
-std::vector<std::filesystem::path> files_of(const Value& value, const ParameterSpec& spec) {
+std::vector<fs::path> files_of(const Value& value, const ParameterSpec& spec) {
     if (value.text()) {
         if (value.text()->empty()) return {};
         return {text_of(value, spec)};
     }
-    std::vector<std::filesystem::path> files;
+    std::vector<fs::path> files;
     for (const Value& element : list_of(value, spec)) {
         files.emplace_back(text_of(element, spec));
         if (files.back().empty()) refuse(expectation(spec), "an empty file name");
@@ -137,13 +137,13 @@ Value choice_value(const std::string& name) {
 
 Value words_value(const std::vector<std::string>& words) { return Value::List(words.begin(), words.end()); }
 
-Value path_value(const std::filesystem::path& file) { return file.string(); }
+Value path_value(const fs::path& file) { return file.string(); }
 
-Value files_value(const std::vector<std::filesystem::path>& files, const ParameterSpec& spec) {
+Value files_value(const std::vector<fs::path>& files, const ParameterSpec& spec) {
     if (files.empty()) return spec.nothing;
     if (files.size() == 1) return files[0].string();
     Value::List list;
-    for (const std::filesystem::path& file : files) list.emplace_back(file.string());
+    for (const fs::path& file : files) list.emplace_back(file.string());
     return list;
 }
 

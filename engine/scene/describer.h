@@ -6,12 +6,12 @@
 #include <fmt/format.h>
 
 #include <concepts>
-#include <filesystem>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 #include <optional>
 
+#include "core/path.h"
 #include "core/text.h"
 #include "scene/parameter.h"
 #include "scene/scene.h"
@@ -27,13 +27,13 @@ std::vector<double> numbers_of(const Value& value, const ParameterSpec& spec);  
 std::string text_of(const Value& value, const ParameterSpec& spec);
 std::size_t choice_of(const Value& value, const ParameterSpec& spec);  // index into spec.choices
 std::vector<std::string> words_of(const Value& value, const ParameterSpec& spec);
-std::vector<std::filesystem::path> files_of(const Value& value, const ParameterSpec& spec);
+std::vector<fs::path> files_of(const Value& value, const ParameterSpec& spec);
 std::vector<glm::vec2> curve_of(const Value& value, const ParameterSpec& spec);
 Value choice_value(const std::string& name);  // "true" and "false" as booleans
-Value files_value(const std::vector<std::filesystem::path>& files, const ParameterSpec& spec);
+Value files_value(const std::vector<fs::path>& files, const ParameterSpec& spec);
 Value curve_value(const std::vector<glm::vec2>& points);
 Value words_value(const std::vector<std::string>& words);
-Value path_value(const std::filesystem::path& file);
+Value path_value(const fs::path& file);
 
 inline double widened(double x) { return x; }
 inline double widened(float x) { return widen(x); }
@@ -61,7 +61,7 @@ struct Field<double> : PlainField<ParameterType::number, number_of, as_value<dou
 template <>
 struct Field<float> : PlainField<ParameterType::number, float_of, widen> {};
 template <>
-struct Field<std::filesystem::path> : PlainField<ParameterType::file, text_of, path_value> {};
+struct Field<fs::path> : PlainField<ParameterType::file, text_of, path_value> {};
 template <>
 struct Field<std::vector<std::string>> : PlainField<ParameterType::words, words_of, words_value> {};
 template <>
@@ -103,9 +103,9 @@ struct Field<std::string> {
 };
 
 template <>
-struct Field<std::vector<std::filesystem::path>> {
+struct Field<std::vector<fs::path>> {
     static void describe(ParameterSpec& spec) { spec.type = ParameterType::files; }
-    static Value get(const std::vector<std::filesystem::path>& field, const ParameterSpec& spec) {
+    static Value get(const std::vector<fs::path>& field, const ParameterSpec& spec) {
         return files_value(field, spec);
     }
     static auto set(const Value& value, const ParameterSpec& spec) { return files_of(value, spec); }

@@ -5,10 +5,10 @@
 
 #include <toml++/toml.h>
 
-#include <filesystem>
 #include <functional>
 #include <string>
 
+#include "core/path.h"
 #include "scene/parameter.h"
 #include "scene/scene.h"
 
@@ -43,7 +43,7 @@ struct Entry {
 /// Where entries come from: how their paths are read, and how their keys are shown.
 struct EntryOrigin {
     std::string name;                    // the file
-    std::filesystem::path folder;        // of its paths
+    fs::path folder;                     // of its paths
     bool command_line = false;           // full keys in messages; paths of frame files become absolute
     ParameterKey layer_group = "layer";  // what "layer" of the manual's keys is called here; empty: a preset
 };

@@ -157,12 +157,11 @@ SourceParams source_of(const Scene& scene, const LayerParams& layer) {
     return source;
 }
 
-std::vector<std::filesystem::path> named_files(const SourceParams& source) {
+std::vector<fs::path> named_files(const SourceParams& source) {
     if (source.kind == SourceKind::splats) return {source.file};
     if (source.kind == SourceKind::stars)
-        return source.stars.catalogue.empty() ? std::vector<std::filesystem::path>()
-                                              : std::vector{source.stars.catalogue};
-    std::vector<std::filesystem::path> files;
+        return source.stars.catalogue.empty() ? std::vector<fs::path>() : std::vector{source.stars.catalogue};
+    std::vector<fs::path> files;
     for (const MeshInput& input : source.meshes) {
         if (!is_builtin_mesh(input.mesh)) files.push_back(input.mesh);
         files.insert(files.end(), input.texture.begin(), input.texture.end());
@@ -174,32 +173,32 @@ std::vector<std::filesystem::path> named_files(const SourceParams& source) {
         files.push_back(mask.image);
         for (const MaskTerms& terms : mask.any) files.push_back(terms.image);
     }
-    std::erase(files, std::filesystem::path());
+    std::erase(files, fs::path());
     return files;
 }
 
-std::vector<std::filesystem::path> all_files(const SourceParams& source) {
-    std::vector<std::filesystem::path> files = named_files(source);
+std::vector<fs::path> all_files(const SourceParams& source) {
+    std::vector<fs::path> files = named_files(source);
     if (source.kind != SourceKind::mesh) return files;
     for (const MeshInput& input : source.meshes) {
         if (!has_own_pictures(input)) continue;
-        const std::vector<std::filesystem::path> materials = obj_materials(input.mesh);
+        const std::vector<fs::path> materials = obj_materials(input.mesh);
         files.insert(files.end(), materials.begin(), materials.end());
     }
     return files;
 }
 
 bool has_own_pictures(const MeshInput& input) {
-    const auto is_empty = [](const std::filesystem::path& file) { return file.empty(); };
+    const auto is_empty = [](const fs::path& file) { return file.empty(); };
     return !is_builtin_mesh(input.mesh) && std::ranges::all_of(input.texture, is_empty);
 }
 
-std::vector<std::filesystem::path> picture_files(const Scene& scene) {
-    std::vector<std::filesystem::path> files = scene.environment.cube;
+std::vector<fs::path> picture_files(const Scene& scene) {
+    std::vector<fs::path> files = scene.environment.cube;
     files.push_back(scene.environment.image);
     files.push_back(scene.environment.tile);
     for (const LayerParams& layer : scene.layers) files.push_back(layer.look.thickness.map);
-    std::erase(files, std::filesystem::path());
+    std::erase(files, fs::path());
     return files;
 }
 

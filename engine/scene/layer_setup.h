@@ -4,10 +4,10 @@
 // for before a run, and hashed.
 #pragma once
 
-#include <filesystem>
 #include <vector>
 
 #include "core/bounds.h"
+#include "core/path.h"
 #include "look/apply.h"
 #include "render/frame.h"
 #include "scene/parameter.h"
@@ -50,13 +50,13 @@ SourceParams source_of(const Scene& scene, const LayerParams& layer);
 
 /// The files that a source names: meshes, textures, pictures of masks, splats, catalogues. Not what is built
 /// in.
-std::vector<std::filesystem::path> named_files(const SourceParams& source);
+std::vector<fs::path> named_files(const SourceParams& source);
 /// The same with what an OBJ brings of its own: material libraries and their pictures. Reads it.
-std::vector<std::filesystem::path> all_files(const SourceParams& source);
+std::vector<fs::path> all_files(const SourceParams& source);
 /// A mesh from a file that takes the pictures its own materials name.
 bool has_own_pictures(const MeshInput& input);
 
 /// Those of a scene beside its layers' sources: thickness maps and pictures of the sky.
-std::vector<std::filesystem::path> picture_files(const Scene& scene);
+std::vector<fs::path> picture_files(const Scene& scene);
 
 }  // namespace astrosplat

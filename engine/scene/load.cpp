@@ -20,7 +20,6 @@
 
 namespace astrosplat {
 
-namespace fs = std::filesystem;
 namespace {
 
 /// A file of keys that hold before a scene's own: the look of a layer, or the output for a kind of screen.

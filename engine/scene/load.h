@@ -3,10 +3,10 @@
 // returned.
 #pragma once
 
-#include <filesystem>
 #include <span>
 #include <string>
 
+#include "core/path.h"
 #include "scene/parameter.h"
 #include "scene/parameter_key.h"
 #include "scene/scene.h"
@@ -27,21 +27,21 @@ Value typed_value(const std::string& text);
 /// Loads a scene and applies the assignments. Paths inside the file are resolved against its folder, those of
 /// assignments against the working directory; ${NAME} is an environment variable. The camera file is read
 /// (camera_file.h). Throws InputError.
-Scene load_scene(const std::filesystem::path& file, std::span<const Assignment> assignments = {});
+Scene load_scene(const fs::path& file, std::span<const Assignment> assignments = {});
 
 /// A scene and where its keys were last set, for messages about what is found out later.
 struct PlacedScene {
     Scene scene;
     Places places;
 };
-PlacedScene load_placed(const std::filesystem::path& file, std::span<const Assignment> assignments = {});
+PlacedScene load_placed(const fs::path& file, std::span<const Assignment> assignments = {});
 
 /// The same from text in memory; `file` names it in messages and resolves its paths.
-Scene parse_scene(const std::string& toml, const std::filesystem::path& file,
+Scene parse_scene(const std::string& toml, const fs::path& file,
                   std::span<const Assignment> assignments = {});
 
 /// parse_scene without the rules between parameters (check.h) and without its camera file, for texts on their
 /// way to becoming a scene.
-Scene parse_unchecked(const std::string& toml, const std::filesystem::path& file);
+Scene parse_unchecked(const std::string& toml, const fs::path& file);
 
 }  // namespace astrosplat

@@ -28,7 +28,6 @@
 
 namespace astrosplat {
 
-namespace fs = std::filesystem;
 namespace {
 
 const std::vector<std::string> shapes{"plane", "relief", "disk", "sphere"};
@@ -309,15 +308,15 @@ std::string extent_of(const PictureScene& scene) {
 // The table that `prepare` writes beside a picture that it took stars from. Another table of that name says
 // nothing about this picture.
 void find_stars(PictureScene& scene, const Progress& progress) {
-    const std::filesystem::path table = scene.image.parent_path() / "stars.csv";
+    const fs::path table = scene.image.parent_path() / "stars.csv";
     if (read_beginning(table, star_table_mark.size()) == star_table_mark)
         take_stars(scene, table, progress);
-    else if (std::error_code ignored; std::filesystem::is_regular_file(table, ignored))
+    else if (std::error_code ignored; fs::is_regular_file(table, ignored))
         log_info(fmt::format("{}: not a table of prepare's, and left alone", printable(table.string())));
 }
 
 std::string stars_text(const PictureScene& scene, const std::string& picture, double frame_px_per_px,
-                       const std::filesystem::path& file) {
+                       const fs::path& file) {
     constexpr double least_px = 0.6;
     return fmt::format(
         stars_format, fmt::arg("name", picture == "stars" ? "\"more_stars\"" : "\"stars\""),
@@ -337,7 +336,7 @@ double margin_of(const PictureScene& scene) {
 
 }  // namespace
 
-void take_stars(PictureScene& scene, const std::filesystem::path& table, const Progress& progress) {
+void take_stars(PictureScene& scene, const fs::path& table, const Progress& progress) {
     const PictureTable stars = read_picture_table(table, progress);
     if (stars.stars.empty()) return;
     scene.stars = table;
@@ -365,7 +364,7 @@ PictureScene picture_scene(const fs::path& image, const PictureRequest& request,
     return scene;
 }
 
-std::string picture_scene_text(const PictureScene& scene, const std::filesystem::path& file) {
+std::string picture_scene_text(const PictureScene& scene, const fs::path& file) {
     const std::string name = layer_name_of(scene.image.stem().string(), "picture");
     const std::int64_t longest = std::max(scene.width_px, scene.height_px);
     const double height = longest_side * static_cast<double>(scene.height_px) / static_cast<double>(longest);

@@ -4,11 +4,11 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <glm/vec2.hpp>
 #include <optional>
 #include <string>
 
+#include "core/path.h"
 #include "core/progress.h"
 #include "objects/identify.h"
 #include "source/source.h"
@@ -17,15 +17,14 @@ namespace astrosplat {
 
 /// The commented text of a scene file `file` that shows `image` on a built-in shape: plane, relief, disk or
 /// sphere. Throws InputError for another shape.
-std::string new_scene_text(const std::filesystem::path& image, const std::string& shape,
-                           const std::filesystem::path& file);
+std::string new_scene_text(const fs::path& image, const std::string& shape, const fs::path& file);
 
 /// Letters, digits and _ of a file's or person's name, beginning with a letter; `otherwise` where none is
 /// left.
 std::string layer_name_of(const std::string& text, const char* otherwise = "layer");
 
 struct PictureScene {
-    std::filesystem::path image;
+    fs::path image;
     std::int64_t width_px = 0, height_px = 0;  // the picture's
     StructureKind structure = StructureKind::disk;
     SkyObject object = SkyObject::galaxy;
@@ -34,8 +33,8 @@ struct PictureScene {
     bool film = false;        // with a camera move of ten seconds
     /// That it passes close by, from the top left corner in shares of width and height.
     glm::dvec2 subject{0.5};
-    std::filesystem::path stars = {};  // the table of those that `prepare` took away; empty: there is none
-    double star_px = 1.0;              // standard deviation of their images, px of the picture
+    fs::path stars = {};   // the table of those that `prepare` took away; empty: there is none
+    double star_px = 1.0;  // standard deviation of their images, px of the picture
 };
 
 /// What a person says of a picture.
@@ -47,14 +46,14 @@ struct PictureRequest {
 /// Reads the picture and what its file says, for its size and to choose a structure for it; `found`: what it
 /// was taken for. The stars.csv that `prepare` wrote beside the picture (star_table_mark) is taken, too.
 /// Throws InputError, Cancelled.
-PictureScene picture_scene(const std::filesystem::path& image, const PictureRequest& request,
-                           Identification& found, const Progress& progress = {});
+PictureScene picture_scene(const fs::path& image, const PictureRequest& request, Identification& found,
+                           const Progress& progress = {});
 
 /// Makes the stars of a table, if it has any, a layer of their own. Throws InputError, Cancelled.
-void take_stars(PictureScene& scene, const std::filesystem::path& table, const Progress& progress = {});
+void take_stars(PictureScene& scene, const fs::path& table, const Progress& progress = {});
 
 /// The text of a scene in `file`. Its first frame is the picture itself, filled exactly; with a film the
 /// camera holds it, tilts, passes close by and flies on.
-std::string picture_scene_text(const PictureScene& scene, const std::filesystem::path& file);
+std::string picture_scene_text(const PictureScene& scene, const fs::path& file);
 
 }  // namespace astrosplat

@@ -178,8 +178,6 @@ Value from_numbers(const ParameterSpec& spec, const std::vector<double>& numbers
     return list;
 }
 
-namespace fs = std::filesystem;
-
 // Paths are handled as text: no file needs to exist.
 
 namespace {

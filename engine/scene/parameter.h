@@ -5,13 +5,13 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <functional>
 #include <string>
 #include <variant>
 #include <vector>
 
 #include "core/error.h"
+#include "core/path.h"
 #include "core/text.h"
 #include "scene/parameter_key.h"
 
@@ -158,11 +158,11 @@ Value from_numbers(const ParameterSpec& spec, const std::vector<double>& numbers
 /// The paths of a file, files or pattern parameter, expanded and put below `folder`; names that stand for
 /// themselves (built-in meshes) and empty ones stay. Frame patterns stay relative to the scene unless
 /// `absolute_patterns`.
-Value resolve_paths(const Value& value, const ParameterSpec& spec, const std::filesystem::path& folder,
+Value resolve_paths(const Value& value, const ParameterSpec& spec, const fs::path& folder,
                     bool absolute_patterns);
 
 /// The inverse for a scene file in `folder`: relative where the path was, or where it lies below the folder.
 /// resolve_paths(unresolve_paths(v)) == v.
-Value unresolve_paths(const Value& value, const ParameterSpec& spec, const std::filesystem::path& folder);
+Value unresolve_paths(const Value& value, const ParameterSpec& spec, const fs::path& folder);
 
 }  // namespace astrosplat

@@ -15,7 +15,6 @@
 #include "scene/toml_text.h"
 
 namespace astrosplat {
-namespace fs = std::filesystem;
 namespace {
 
 /// The default of an element's parameter.

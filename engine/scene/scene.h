@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <filesystem>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <memory>
@@ -14,6 +13,7 @@
 
 #include "camera/camera.h"
 #include "camera/keyframe.h"
+#include "core/path.h"
 #include "core/text.h"
 #include "look/look.h"
 #include "ocio/display_transform.h"
@@ -41,7 +41,7 @@ struct OutputParams {
     friend constexpr auto names_of(View) { return names_up_to<View::soft>("auto", "linear", "srgb", "soft"); }
     enum class Primaries { rec709, acescg };
     friend constexpr auto names_of(Primaries) { return names_up_to<Primaries::acescg>("rec709", "acescg"); }
-    std::filesystem::path preset;              // of [output] and [camera], for a kind of screen; empty: none
+    fs::path preset;                           // of [output] and [camera], for a kind of screen; empty: none
     std::int64_t width = 1920, height = 1080;  // resolution, px
     std::string frames = "1-240";
     double fps = 24.0;
@@ -72,7 +72,7 @@ struct ReferenceParams {
     friend constexpr auto names_of(View) {
         return names_up_to<View::side>("any", "camera", "free", "front", "top", "side");
     }
-    std::filesystem::path file;
+    fs::path file;
     View view = View::any;     // in which it is compared
     std::string frames;        // at which, as OutputParams has them; empty: all
     glm::dvec2 position{0.0};  // of its middle from the frame's, frame heights to the right and up
@@ -94,7 +94,7 @@ struct LayerParams {
     std::string name;
     bool visible = true;
     glm::dvec3 axis{0.0, 1.0, 0.0};
-    std::filesystem::path preset;
+    fs::path preset;
     LayerTransform transform;
     SourceParams source;
     Look look;
@@ -116,7 +116,7 @@ struct Track {
 /// The content of camera.file as tracks that win over those of [animation], and the settings it was read for.
 struct ImportedCamera {
     struct Source {
-        std::filesystem::path file;
+        fs::path file;
         double scale = 1.0, offset = 0.0, file_fps = 0.0;
         CameraFileUp up = CameraFileUp::automatic;
         double output_fps = 24.0;
@@ -138,8 +138,7 @@ struct SharedCamera {
 };
 
 struct Scene {
-    std::filesystem::path
-        file;  // where it was loaded from; paths in it are already resolved against its folder
+    fs::path file;  // where it was loaded from; paths in it are already resolved against its folder
     OutputParams output;
     CameraParams camera;
     EnvironmentParams environment;

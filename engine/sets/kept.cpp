@@ -20,8 +20,6 @@
 namespace astrosplat {
 namespace {
 
-namespace fs = std::filesystem;
-
 constexpr std::int64_t largest_limit = std::int64_t{20} << 30;  // bytes
 
 }  // namespace

@@ -7,11 +7,11 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "core/path.h"
 #include "core/progress.h"
 #include "generate/generate.h"
 #include "sets/load_source.h"
@@ -41,12 +41,11 @@ std::string recipe_text(const SourceParams& source, const std::string& layer_nam
 
 /// The same of skies of cut-outs (source/tiled_sky.h).
 inline constexpr int sky_version = 1;
-std::string sky_recipe_text(const std::filesystem::path& file, const SkyTiling& tiling,
-                            const Progress& progress = {});
+std::string sky_recipe_text(const fs::path& file, const SkyTiling& tiling, const Progress& progress = {});
 
 /// The same of one prepared picture: its files, how they are read and settings.prepare.
-std::string prepared_recipe_text(const std::vector<std::filesystem::path>& files,
-                                 const TextureSettings& settings, const Progress& progress = {});
+std::string prepared_recipe_text(const std::vector<fs::path>& files, const TextureSettings& settings,
+                                 const Progress& progress = {});
 
 /// That text, and its hash, which names the entry; both empty where an input cannot be read.
 struct Recipe {
@@ -67,14 +66,14 @@ Recipe geometry_recipe(const ColumnPlan& plan);
 // share their geometry, and only texels are read again.
 
 struct SetCache {
-    std::filesystem::path folder;  // made when something is kept; empty: no cache
+    fs::path folder;  // made when something is kept; empty: no cache
     /// Bytes of all entries; the least recently used go first. 0: 20 GiB or a tenth of the disk, whichever is
     /// less.
     std::int64_t limit_bytes = 0;
 };
 
 /// $ASTROSPLAT_CACHE, else $XDG_CACHE_HOME/astrosplat, else ~/.cache/astrosplat; empty without a home.
-std::filesystem::path default_cache_folder();
+fs::path default_cache_folder();
 
 /// The limit; for 0 the one that it stands for in this folder.
 std::int64_t limit_bytes(const SetCache& cache);
@@ -107,9 +106,9 @@ void shrink_cache(const SetCache& cache, std::int64_t bytes);
 void warn_unkept(const SetCache& cache, const std::string& why);
 
 /// NAME.splats: a whole set, or the geometry of columns.
-std::filesystem::path set_file(const SetCache& cache, const std::string& name);
+fs::path set_file(const SetCache& cache, const std::string& name);
 /// NAME.texels: colours and alphas of columns.
-std::filesystem::path texel_file(const SetCache& cache, const std::string& name);
+fs::path texel_file(const SetCache& cache, const std::string& name);
 
 /// An entry that is damaged, or that was made of something else, is removed with a warning; so are those of
 /// the functions below. All throw Cancelled.
@@ -135,7 +134,7 @@ std::string texel_recipe(const Recipe& recipe, const std::string& geometry_name)
 
 /// One file to be written.
 struct KeptFile {
-    std::filesystem::path file;
+    fs::path file;
     NativePart part;
     std::string recipe;
 };
@@ -157,7 +156,7 @@ std::vector<TexturedMesh> load_meshes(const SetCache& cache, const SourceParams&
 SkyMaker kept_skies(const SetCache& cache);
 
 /// Whether this one is kept. Throws Cancelled.
-bool is_kept(const SetCache& cache, const std::filesystem::path& file, const SkyTiling& tiling,
+bool is_kept(const SetCache& cache, const fs::path& file, const SkyTiling& tiling,
              const Progress& progress = {});
 
 }  // namespace astrosplat

@@ -16,8 +16,6 @@
 namespace astrosplat {
 namespace {
 
-namespace fs = std::filesystem;
-
 // A value, the numbers of a vector, an enum as its number, "auto" where there is none.
 template <class T>
 std::string text_of(const T& value) {

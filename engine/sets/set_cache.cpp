@@ -20,8 +20,6 @@
 namespace astrosplat {
 namespace {
 
-namespace fs = std::filesystem;
-
 constexpr auto poll_interval = std::chrono::milliseconds(50);
 
 fs::path lock_file(const fs::path& folder, const std::string& name) { return folder / (name + ".lock"); }

@@ -2,21 +2,19 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <string_view>
 #include <utility>
 
 #include "bodies/bodies.h"
 #include "core/error.h"
 #include "core/file_format.h"
+#include "core/path.h"
 #include "generate/generate.h"
 #include "sets/load_source.h"
 #include "splat_files/native.h"
 
 namespace astrosplat {
 namespace {
-
-namespace fs = std::filesystem;
 
 constexpr double share = 0.01;
 constexpr std::int64_t enough = 100'000;  // splats or texels: of fewer, what does not grow with them is most

@@ -21,8 +21,6 @@
 namespace astrosplat {
 namespace {
 
-namespace fs = std::filesystem;
-
 struct Close {
     void operator()(fitsfile* file) const {
         int status = 0;

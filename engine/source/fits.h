@@ -5,7 +5,6 @@
 
 #include <array>
 #include <cstdint>
-#include <filesystem>
 #include <functional>
 #include <optional>
 #include <span>
@@ -13,6 +12,7 @@
 #include <vector>
 
 #include "core/buffer.h"
+#include "core/path.h"
 #include "core/progress.h"
 #include "source/source.h"
 
@@ -61,10 +61,10 @@ class StretchCurve {
 /// the cards of the tile compression convention (FITS 4.0, section 10.1) and the sizes of tables. Throws
 /// InputError "FILE:HDU n: expected ..." for one that cannot be. Headers that are damaged otherwise are left
 /// to CFITSIO.
-void check_fits_headers(const std::filesystem::path& file);
+void check_fits_headers(const fs::path& file);
 
 /// By content, or a gzip file by its name.
-bool is_fits(const std::filesystem::path& file);
+bool is_fits(const fs::path& file);
 
 struct FitsHdu {
     int number = 0;                  // 0: the primary HDU
@@ -78,10 +78,10 @@ struct FitsHdu {
 };
 
 /// All HDUs with their statistics. Throws InputError, Cancelled.
-std::vector<FitsHdu> describe_fits(const std::filesystem::path& file, const Progress& progress = {});
+std::vector<FitsHdu> describe_fits(const fs::path& file, const Progress& progress = {});
 
 /// Throws InputError unless one of the HDUs holds a picture.
-void require_fits_picture(const std::filesystem::path& file);
+void require_fits_picture(const fs::path& file);
 
 /// How the sky lies on a picture: the keywords CRPIX, CRVAL and CD of a tangent plane (CTYPE RA---TAN,
 /// DEC--TAN, of which distortions are left out); CDELT with PC or CROTA2 make a CD.
@@ -111,9 +111,8 @@ struct FitsRows {
 
 /// `hdu`: "auto" (the first with a picture), a number from 0 (the primary HDU), or an EXTNAME in any case.
 /// `plane` counts from 0 over the axes beyond two. Throws InputError, Cancelled.
-FitsRows open_fits_rows(const std::filesystem::path& file, const std::string& hdu, int plane,
+FitsRows open_fits_rows(const fs::path& file, const std::string& hdu, int plane,
                         const Progress& progress = {});
-FitsPlane read_fits(const std::filesystem::path& file, const std::string& hdu, int plane,
-                    const Progress& progress = {});
+FitsPlane read_fits(const fs::path& file, const std::string& hdu, int plane, const Progress& progress = {});
 
 }  // namespace astrosplat

@@ -22,8 +22,6 @@
 namespace astrosplat {
 namespace {
 
-namespace fs = std::filesystem;
-
 constexpr std::size_t card_size = 80, block_size = 2880;
 using Cards = std::map<std::string, std::string, std::less<>>;  // keyword -> value as written
 using Stream = std::unique_ptr<gzFile_s, int (*)(gzFile)>;

@@ -135,7 +135,7 @@ Mesh revolved(std::span<const glm::dvec2> outline, std::span<const double> v, do
     return mesh;
 }
 
-bool is_builtin_mesh(const std::filesystem::path& name) {
+bool is_builtin_mesh(const fs::path& name) {
     return std::ranges::find(builtin_meshes, name.string()) != builtin_meshes.end();
 }
 

@@ -4,7 +4,6 @@
 
 #include <array>
 #include <cstdint>
-#include <filesystem>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <span>
@@ -13,6 +12,7 @@
 #include <vector>
 
 #include "core/bounds.h"
+#include "core/path.h"
 #include "core/progress.h"
 #include "source/source.h"
 
@@ -29,9 +29,8 @@ struct Mesh {
     std::vector<glm::vec3> positions;  // scene units
     std::vector<glm::vec2> uvs;        // v = 0 is the bottom row
     std::vector<Triangle> triangles;
-    std::vector<std::filesystem::path>
-        maps;          // map_Kd of each material (empty path: none), resolved to the MTL's folder
-    std::string name;  // the file, for messages
+    std::vector<fs::path> maps;  // map_Kd of each material (empty path: none), resolved to the MTL's folder
+    std::string name;            // the file, for messages
 };
 
 /// Bounds of all vertices (also of those no face uses).
@@ -55,7 +54,7 @@ Mesh revolved(std::span<const glm::dvec2> outline, std::span<const double> v, do
 inline constexpr std::array<std::string_view, 11> builtin_meshes = {
     "plane", "relief", "sheet",     "disk", "sphere",    "spheroid",
     "shell", "bubble", "hourglass", "ring", "revolution"};
-bool is_builtin_mesh(const std::filesystem::path& name);
+bool is_builtin_mesh(const fs::path& name);
 
 /// "plane": in xz, centred, longer side 10, `aspect` = width / height of the picture, u to +x, v to -z.
 /// "disk": radius 5 in xz, uv as the plane's, and the largest circle around the middle of the picture.
@@ -75,12 +74,11 @@ std::vector<std::array<std::uint32_t, 3>> triangulate(std::span<const glm::vec3>
 /// Reads an OBJ: several objects, quads and polygons, negative indices, map_Kd. Faces keep the file's order.
 /// A missing MTL is a warning. Throws InputError (file, line where known) for unreadable, truncated or empty
 /// files, indices out of range, coordinates that are not finite; Cancelled.
-Mesh load_obj(const std::filesystem::path& file, const Progress& progress = {});
+Mesh load_obj(const fs::path& file, const Progress& progress = {});
 
 /// The files besides the OBJ itself that its map_Kd pictures come from: the material libraries that it names
 /// and the pictures that those name, as far as they exist. Reads no geometry. Throws InputError,
 /// Cancelled.
-std::vector<std::filesystem::path> obj_materials(const std::filesystem::path& file,
-                                                 const Progress& progress = {});
+std::vector<fs::path> obj_materials(const fs::path& file, const Progress& progress = {});
 
 }  // namespace astrosplat

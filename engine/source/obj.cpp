@@ -19,7 +19,6 @@
 namespace astrosplat {
 namespace {
 
-namespace fs = std::filesystem;
 using Words = std::vector<std::string_view>;
 
 constexpr std::int64_t no_index = -1;

@@ -24,7 +24,7 @@ constexpr const char* dublin_core_space = "http://purl.org/dc/elements/1.1/";
 constexpr const char* photoshop_space = "http://ns.adobe.com/photoshop/1.0/";
 
 // A file's first and last bytes, one after the other; a small one is read whole.
-std::string read_ends(const std::filesystem::path& file) {
+std::string read_ends(const fs::path& file) {
     InputFile in(file);
     const auto size = static_cast<std::size_t>(std::max<std::int64_t>(0, in.size()));
     std::string bytes;
@@ -182,11 +182,9 @@ ObjectMetadata find_xmp_metadata(std::string_view bytes) {
     return first.value_or(ObjectMetadata{});
 }
 
-ObjectMetadata read_xmp_metadata(const std::filesystem::path& file) {
-    return find_xmp_metadata(read_ends(file));
-}
+ObjectMetadata read_xmp_metadata(const fs::path& file) { return find_xmp_metadata(read_ends(file)); }
 
-ObjectMetadata read_fits_metadata(const std::filesystem::path& file) {
+ObjectMetadata read_fits_metadata(const fs::path& file) {
     const FitsPlane plane = open_fits_rows(file, "auto", 0).plane;
     ObjectMetadata found;
     if (!plane.object.empty()) found.names.push_back(plane.object);

@@ -4,11 +4,12 @@
 #pragma once
 
 #include <array>
-#include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "core/path.h"
 
 namespace astrosplat {
 
@@ -29,14 +30,14 @@ struct ObjectMetadata {
 /// and TIFF keep packets uncompressed, so that they can be found without knowing the format (XMP
 /// specification, part 3, packet scanning). Nothing where there is none, or none that is XML. Throws
 /// InputError where the file cannot be read.
-ObjectMetadata read_xmp_metadata(const std::filesystem::path& file);
+ObjectMetadata read_xmp_metadata(const fs::path& file);
 
 /// The same of bytes in which packets stand.
 ObjectMetadata find_xmp_metadata(std::string_view bytes);
 
 /// Of the HDU of a FITS file that is taken for the picture: OBJECT, DISTANCE, and how the sky lies on it.
 /// Throws InputError.
-ObjectMetadata read_fits_metadata(const std::filesystem::path& file);
+ObjectMetadata read_fits_metadata(const fs::path& file);
 
 /// How wide one pixel of a picture of this size is on the sky, in degrees: the scale is of the reference's
 /// pixels, which the picture may have reduced, or cut to other proportions after it was reduced to cover

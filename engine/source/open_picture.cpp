@@ -18,8 +18,6 @@
 namespace astrosplat {
 namespace {
 
-namespace fs = std::filesystem;
-
 thread_local int quiet_depth = 0;
 
 // The stream's write function: everything "written" where a QuietStderr lives in this thread.
@@ -98,7 +96,7 @@ std::size_t next_marker(std::string_view bytes, std::size_t at) {
 
 }  // namespace
 
-bool jpeg_is_whole(const std::filesystem::path& file) {
+bool jpeg_is_whole(const fs::path& file) {
     const std::string text = read_file(file);
     const std::string_view bytes = text;
     if (bytes.substr(0, 3) != "\xFF\xD8\xFF") return true;

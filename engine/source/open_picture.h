@@ -6,9 +6,10 @@
 #pragma once
 
 #include <OpenImageIO/imageio.h>
-#include <filesystem>
 #include <memory>
 #include <string>
+
+#include "core/path.h"
 
 namespace astrosplat {
 
@@ -24,16 +25,16 @@ class QuietStderr {
 
 /// Opens a picture in one of the formats of core/file_format.h, with unassociated alpha as it is stored.
 /// Throws InputError: not a readable regular file, another kind of file, a damaged header.
-std::unique_ptr<OIIO::ImageInput> open_picture(const std::filesystem::path& file);
+std::unique_ptr<OIIO::ImageInput> open_picture(const fs::path& file);
 
 /// All channels of rows begin .. end from the top of what is stored, as `format`. False: damaged.
 bool read_rows(OIIO::ImageInput& picture, int begin, int end, OIIO::TypeDesc format, void* values);
 
 /// Throws InputError "FILE: cannot be read as a picture: REASON", the first line of it.
-[[noreturn]] void fail_picture(const std::filesystem::path& file, const std::string& reason);
+[[noreturn]] void fail_picture(const fs::path& file, const std::string& reason);
 
 /// Follows the markers of a JPEG file (ITU-T T.81, B.1.1) to its end-of-image marker; false where the file
 /// ends first. Files of other formats are not judged: true.
-bool jpeg_is_whole(const std::filesystem::path& file);
+bool jpeg_is_whole(const fs::path& file);
 
 }  // namespace astrosplat

@@ -23,7 +23,6 @@
 namespace astrosplat {
 namespace {
 
-namespace fs = std::filesystem;
 using OIIO::ImageInput;
 using OIIO::ImageSpec;
 

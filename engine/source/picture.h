@@ -1,10 +1,10 @@
 // Picture files as stored, before any colour or alpha treatment: OpenImageIO behind one plain struct.
 #pragma once
 
-#include <filesystem>
 #include <string>
 
 #include "core/image.h"
+#include "core/path.h"
 #include "core/progress.h"
 #include "image/resample.h"
 
@@ -25,16 +25,16 @@ struct Picture {
 /// single-channel pictures become r = g = b; luminance/chroma EXR becomes RGB; where an EXR's data window
 /// differs from its display window, the display window is filled with what lies in it (empty elsewhere).
 /// Throws InputError, Cancelled.
-Picture read_picture(const std::filesystem::path& file, const Progress& progress = {});
+Picture read_picture(const fs::path& file, const Progress& progress = {});
 
 /// The same by rows, which `progress` hears of. A picture that has to be turned is held as a whole.
 struct PictureRows {
     Picture picture;  // without its pixels
     ImageRows rows;   // throw InputError, Cancelled
 };
-PictureRows open_picture_rows(const std::filesystem::path& file, const Progress& progress = {});
+PictureRows open_picture_rows(const fs::path& file, const Progress& progress = {});
 
 /// Throws InputError unless the file's headers promise a picture, also in FITS.
-void require_picture(const std::filesystem::path& file);
+void require_picture(const fs::path& file);
 
 }  // namespace astrosplat

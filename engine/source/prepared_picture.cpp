@@ -25,8 +25,6 @@
 namespace astrosplat {
 namespace {
 
-namespace fs = std::filesystem;
-
 // A picture as the stages of its preparation take it.
 struct PrepareInput {
     Image image;  // RGBA, premultiplied; FITS: 0 at its black, 1 at its white point, beyond them as measured
@@ -44,7 +42,7 @@ TanGrid grid_of(const FitsSky& sky) {
     return {{sky.crpix[0], sky.crpix[1]}, {sky.crval[0], sky.crval[1]}, sky.cd};
 }
 
-PrepareInput read_fits_input(const std::filesystem::path& file, const TextureSettings& settings,
+PrepareInput read_fits_input(const fs::path& file, const TextureSettings& settings,
                              const Progress& progress) {
     const FitsPlane plane = read_fits(file, settings.hdu, settings.plane, progress);
     const Limits limits = choose_limits(value_range(plane.values), settings, file.string());
@@ -65,7 +63,7 @@ PrepareInput read_fits_input(const std::filesystem::path& file, const TextureSet
     return input;
 }
 
-PrepareInput read_picture_input(const std::filesystem::path& file, const TextureSettings& settings,
+PrepareInput read_picture_input(const fs::path& file, const TextureSettings& settings,
                                 const Progress& progress) {
     Stored stored = read_stored(file, settings, progress);
     PrepareInput input;
@@ -116,7 +114,7 @@ void put_channel(const PrepareInput& filter, int channel, PrepareInput& rgb) {
 }
 
 // Throws InputError, Cancelled.
-PrepareInput read_prepare_input(const std::filesystem::path& file, const TextureSettings& settings,
+PrepareInput read_prepare_input(const fs::path& file, const TextureSettings& settings,
                                 const Progress& progress) {
     PrepareInput input = is_fits(file) ? read_fits_input(file, settings, progress)
                                        : read_picture_input(file, settings, progress);
@@ -127,8 +125,8 @@ PrepareInput read_prepare_input(const std::filesystem::path& file, const Texture
 
 // Three filters as red, green and blue. Where the sky is known on all of them (FITS) and their grids differ,
 // green and blue are sampled on red's; else they must have one size. Throws InputError, Cancelled.
-PrepareInput read_three_filters(const std::array<std::filesystem::path, 3>& files,
-                                const TextureSettings& settings, const Progress& progress) {
+PrepareInput read_three_filters(const std::array<fs::path, 3>& files, const TextureSettings& settings,
+                                const Progress& progress) {
     const PrepareInput first = read_prepare_input(files[0], settings, progress);
     PrepareInput rgb = first;
     put_channel(first, 0, rgb);
@@ -152,7 +150,7 @@ PrepareInput read_three_filters(const std::array<std::filesystem::path, 3>& file
 
 // Puts a picture on the grid that the FITS picture `reference` has on the sky, with its size. Throws
 // InputError where the sky is not known on both, Cancelled.
-void align_to(const std::filesystem::path& reference, const TextureSettings& settings, PrepareInput& input,
+void align_to(const fs::path& reference, const TextureSettings& settings, PrepareInput& input,
               const Progress& progress) {
     const auto require_sky = [](const std::string& name, bool known) {
         if (!known) bad_input(name, "", "a FITS picture whose header tells the sky (RA---TAN)", "none");

@@ -165,8 +165,6 @@ Mesh turned_shape(const std::string& name, const ShapeParams& shape) {
 
 namespace {
 
-namespace fs = std::filesystem;
-
 constexpr std::int64_t cells = 256;      // along the longer side
 constexpr double blur_of_longer = 0.02;  // standard deviation of the smoothing, of the longer side
 

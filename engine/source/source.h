@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
@@ -10,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "core/path.h"
 #include "core/text.h"
 
 namespace astrosplat {
@@ -30,7 +30,7 @@ struct MaskTerms {
     std::optional<glm::dvec2> saturation;  // [lo, hi] of the displayed colour's (HSV)
     std::optional<glm::dvec4> ellipse;     // u, v of its centre and its half axes in picture widths
     double turn = 0.0;                     // degrees that the ellipse is turned, counter-clockwise
-    std::filesystem::path image;           // grey picture over the whole texture, as stored
+    fs::path image;                        // grey picture over the whole texture, as stored
     Derived derive = Derived::none;        // weighs by this map; `luminance` is then of its values
     double feather = 0.0;                  // width of a soft edge: 0..1 of the range, turns, picture widths
     bool invert = false;
@@ -51,8 +51,8 @@ struct PrepareParams {
     friend constexpr auto names_of(Background) {
         return names_up_to<Background::curved>("keep", "level", "plane", "curved");
     }
-    std::filesystem::path align;  // FITS picture on whose grid of the sky it is put; empty: as it is
-    std::filesystem::path fill;   // picture of its size: what is not black is filled from around it
+    fs::path align;  // FITS picture on whose grid of the sky it is put; empty: as it is
+    fs::path fill;   // picture of its size: what is not black is filled from around it
     Stars stars = Stars::keep;
     double threshold = 5.0;            // least height of a star over the local noise
     std::optional<double> saturation;  // linear light; empty: 0.98 of pictures of integers, none of others
@@ -63,7 +63,7 @@ struct PrepareParams {
     std::optional<glm::dvec4> ellipse;         // px from the top left: centre and half axes of what stays
     double turn = 0.0;                         // degrees that the ellipse is turned, counter-clockwise
     double feather = 0.1;                      // share of its half axes over which it fades
-    std::filesystem::path mask;                // picture of its size: what is black is cut off
+    fs::path mask;                             // picture of its size: what is black is cut off
     std::optional<glm::dvec2> alpha;           // luminance where alpha becomes 0 and 1
     bool operator==(const PrepareParams&) const = default;
 };
@@ -122,25 +122,25 @@ struct TextureSettings {
 
 /// Measures of the built-in shapes (textured_mesh.h), each of the shapes it names.
 struct ShapeParams {
-    std::vector<glm::vec2> outline;   // revolution: (r, y) from end to end, scene units
-    double width = 0.5;               // hourglass: radius of a lobe without its share of the waist, of 5
-    double waist = 0.3;               // hourglass: 0 figure eight .. 1 spheroid
-    double thickness = 0.2;           // shell: between its walls, of the radius
-    double opening = 60.0;            // bubble: degrees from the axis to its rim
-    double flattening = 0.0;          // spheroid: 1 - height / width
-    int shells = 1;                   // spheroid: how many are nested
-    double concentration = 3.0;       // spheroid: their number per length falls as e^(-this r / R)
-    double tube = 0.2;                // ring: radius of the tube, of the whole
-    std::filesystem::path depth_map;  // sheet: grey picture, black farthest; empty: the picture's brightness
-    double depth = 0.15;              // sheet: from farthest to nearest, of the width
-    double blur = 0.01;               // sheet: standard deviation, of the longer side
+    std::vector<glm::vec2> outline;  // revolution: (r, y) from end to end, scene units
+    double width = 0.5;              // hourglass: radius of a lobe without its share of the waist, of 5
+    double waist = 0.3;              // hourglass: 0 figure eight .. 1 spheroid
+    double thickness = 0.2;          // shell: between its walls, of the radius
+    double opening = 60.0;           // bubble: degrees from the axis to its rim
+    double flattening = 0.0;         // spheroid: 1 - height / width
+    int shells = 1;                  // spheroid: how many are nested
+    double concentration = 3.0;      // spheroid: their number per length falls as e^(-this r / R)
+    double tube = 0.2;               // ring: radius of the tube, of the whole
+    fs::path depth_map;              // sheet: grey picture, black farthest; empty: the picture's brightness
+    double depth = 0.15;             // sheet: from farthest to nearest, of the width
+    double blur = 0.01;              // sheet: standard deviation, of the longer side
     bool operator==(const ShapeParams&) const = default;
 };
 
 /// One mesh of a layer with its picture. `mesh` is a file or one of mesh.h's builtin_meshes.
 struct MeshInput {
-    std::filesystem::path mesh;
-    std::vector<std::filesystem::path>
+    fs::path mesh;
+    std::vector<fs::path>
         texture;           // empty: the mesh's own map_Kd, else neutral grey; three: one picture from r, g, b
     double relief = 0.15;  // "relief": height as a fraction of the plane's width
     ShapeParams shape = {};
@@ -166,7 +166,7 @@ struct StarSpikes {
 struct StarsParams {
     enum class Depth { layer, magnitude };
     friend constexpr auto names_of(Depth) { return names_up_to<Depth::magnitude>("layer", "magnitude"); }
-    std::filesystem::path catalogue;
+    fs::path catalogue;
     std::string like;            // name of the layer whose picture they are of; empty: of none
     Depth depth = Depth::layer;  // like: at random, or the brighter the nearer
     double slab = 0.0;           // like: scene units, nearest to farthest; 0: as the layer's own stars
@@ -248,9 +248,9 @@ struct SourceParams {
     BackWall back = BackWall::same;  // planar
     UvCamera uv_camera;
     StructureParams structure;
-    std::uint32_t seed = 0;      // 0: derived from the layer's name
-    std::filesystem::path file;  // kind splats
-    StarsParams stars;           // kind stars
+    std::uint32_t seed = 0;  // 0: derived from the layer's name
+    fs::path file;           // kind splats
+    StarsParams stars;       // kind stars
     bool operator==(const SourceParams&) const = default;
 };
 

@@ -13,7 +13,6 @@
 namespace astrosplat {
 namespace {
 
-namespace fs = std::filesystem;
 using Settings = TextureSettings;
 
 // Facts about a plane's picture, known before its pixels.

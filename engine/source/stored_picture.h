@@ -2,11 +2,11 @@
 // begin with. In: a file. Out: its values, FITS stretched, and then linear ones.
 #pragma once
 
-#include <filesystem>
 #include <functional>
 #include <optional>
 #include <string>
 
+#include "core/path.h"
 #include "source/fits.h"
 #include "source/picture.h"
 #include "source/source.h"
@@ -21,12 +21,11 @@ struct RawPicture {
 };
 
 /// Throws InputError, Cancelled.
-RawPicture read_raw(const std::filesystem::path& file, const std::string& hdu, int plane,
-                    const Progress& progress);
+RawPicture read_raw(const fs::path& file, const std::string& hdu, int plane, const Progress& progress);
 
 /// The source of load_texture()'s files: read_raw(), or a store of its earlier results.
-using RawReader = std::function<RawPicture(const std::filesystem::path& file, const std::string& hdu,
-                                           int plane, const Progress& progress)>;
+using RawReader = std::function<RawPicture(const fs::path& file, const std::string& hdu, int plane,
+                                           const Progress& progress)>;
 
 // A picture as stored, with what is known about its values.
 struct Stored {
@@ -38,7 +37,7 @@ struct Stored {
 TextureSettings::Stretch stretch_of(const TextureSettings& settings);
 
 /// FITS is stretched between its limits. Throws InputError, which names `file`.
-Stored stored_of(RawPicture raw, const TextureSettings& settings, const std::filesystem::path& file);
+Stored stored_of(RawPicture raw, const TextureSettings& settings, const fs::path& file);
 
 /// A picture's values by rows. A FITS plane of more than `most_held` values is not held: it is read five
 /// times for its limits, where they are not set, and once more.
@@ -47,12 +46,11 @@ struct StoredRows {
     ImageRows rows;  // throw InputError, Cancelled
 };
 StoredRows rows_of(Stored stored);
-StoredRows open_stored(const std::filesystem::path& file, const TextureSettings& settings,
-                       const Progress& progress, std::int64_t most_held = std::int64_t{1} << 26);
+StoredRows open_stored(const fs::path& file, const TextureSettings& settings, const Progress& progress,
+                       std::int64_t most_held = std::int64_t{1} << 26);
 
 /// The same at once. Throws InputError, Cancelled.
-Stored read_stored(const std::filesystem::path& file, const TextureSettings& settings,
-                   const Progress& progress);
+Stored read_stored(const fs::path& file, const TextureSettings& settings, const Progress& progress);
 
 bool is_encoded(const Stored& stored, TextureSettings::Colorspace colorspace);
 

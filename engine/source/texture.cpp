@@ -21,7 +21,6 @@
 namespace astrosplat {
 namespace {
 
-namespace fs = std::filesystem;
 using Settings = TextureSettings;
 
 constexpr std::int64_t rows_per_chunk = 32;

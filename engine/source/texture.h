@@ -5,7 +5,6 @@
 // by an ellipse or by another picture.
 #pragma once
 
-#include <filesystem>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <span>
@@ -13,6 +12,7 @@
 #include <vector>
 
 #include "core/image.h"
+#include "core/path.h"
 #include "core/progress.h"
 #include "source/mesh.h"
 #include "source/prepared_picture.h"
@@ -49,7 +49,7 @@ struct Texture {
 
 /// `default_wrap` is what Wrap::automatic means here. Masks are weighed but not yet applied: shapes that are
 /// made of a picture's brightness see all of it. Throws InputError, Cancelled.
-Texture load_texture(const std::vector<std::filesystem::path>& files, const TextureSettings& settings,
+Texture load_texture(const std::vector<fs::path>& files, const TextureSettings& settings,
                      TextureSettings::Wrap default_wrap, const Progress& progress = {},
                      const PictureReaders& readers = {});
 
@@ -58,18 +58,17 @@ void apply_mask(Texture& texture);
 
 /// Reads a picture without any colour or alpha treatment, for thickness maps: RGB as stored (0..1 for
 /// integers), row 0 on top. Throws InputError.
-Image load_raw_image(const std::filesystem::path& file);
+Image load_raw_image(const fs::path& file);
 /// load_raw_image(), or in its place the map made of the picture's light (derived_picture), grey.
-Image load_map(const std::filesystem::path& file, Derived derive);
+Image load_map(const fs::path& file, Derived derive);
 
 /// Reads a picture as linear light, premultiplied RGBA, for comparisons. Throws InputError, Cancelled.
-Image load_linear_image(const std::filesystem::path& file, const Progress& progress = {});
+Image load_linear_image(const fs::path& file, const Progress& progress = {});
 
 /// Reads a picture for an environment, as linear light over black: RGB, with room for a border of so many
 /// texels around it. One picture, or the six faces (+x -x +y -y +z -z) of an OpenEXR cube map. Claims the
 /// memory of mip levels too. Throws InputError, Cancelled.
-std::vector<Image> load_environment_pictures(const std::filesystem::path& file, int border,
-                                             const Progress& progress = {});
+std::vector<Image> load_environment_pictures(const fs::path& file, int border, const Progress& progress = {});
 
 /// Straight colour and alpha at one place of a picture.
 struct TextureSample {

@@ -172,7 +172,7 @@ double aspect_of(const TexturedMesh& mesh) {
 }
 
 // Pictures of a source, wrapped as its settings or else its mesh wants it.
-using PictureLoader = std::function<Texture(const std::vector<std::filesystem::path>& files, Wrap)>;
+using PictureLoader = std::function<Texture(const std::vector<fs::path>& files, Wrap)>;
 
 TexturedMesh load_builtin(const MeshInput& input, const SourceParams& source, const PictureLoader& load) {
     const std::string name = input.mesh.string();
@@ -188,7 +188,7 @@ TexturedMesh load_builtin(const MeshInput& input, const SourceParams& source, co
 }
 
 // Of a material; none where it names no picture.
-std::vector<std::filesystem::path> map_of(const Mesh& mesh, std::size_t material) {
+std::vector<fs::path> map_of(const Mesh& mesh, std::size_t material) {
     if (material >= mesh.maps.size() || mesh.maps[material].empty()) return {};
     return {mesh.maps[material]};
 }
@@ -207,7 +207,7 @@ Texture neutral_grey() {
 bool is_neutral(const Texture& texture) { return texture.summary == neutral_summary; }
 
 // The picture of a mesh as its source wants it read.
-Texture load_picture(const std::vector<std::filesystem::path>& files, const SourceParams& source, Wrap wrap,
+Texture load_picture(const std::vector<fs::path>& files, const SourceParams& source, Wrap wrap,
                      const Progress& progress, const PictureReaders& readers) {
     if (files.empty()) return neutral_grey();
     return load_texture(files, source.texture, wrap, progress, readers);
@@ -246,7 +246,7 @@ Bounds bounds(std::span<const TexturedMesh> meshes) {
 std::vector<TexturedMesh> load_meshes(const SourceParams& source, const Progress& progress,
                                       const PictureReaders& readers) {
     if (source.meshes.empty()) bad_input("source.meshes", "", "at least one mesh", "none");
-    const PictureLoader load = [&](const std::vector<std::filesystem::path>& files, Wrap wrap) {
+    const PictureLoader load = [&](const std::vector<fs::path>& files, Wrap wrap) {
         return load_picture(files, source, wrap, progress, readers);
     };
     std::vector<TexturedMesh> meshes;

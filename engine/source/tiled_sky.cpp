@@ -313,8 +313,7 @@ std::array<Image, 6> tiled_sky(const Image& picture, const SkyTiling& tiling, co
     return faces;
 }
 
-std::array<Image, 6> tiled_sky_of(const std::filesystem::path& file, const SkyTiling& tiling,
-                                  const Progress& progress) {
+std::array<Image, 6> tiled_sky_of(const fs::path& file, const SkyTiling& tiling, const Progress& progress) {
     return tiled_sky(load_linear_image(file, progress), tiling, progress);
 }
 

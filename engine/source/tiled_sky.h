@@ -5,7 +5,6 @@
 
 #include <array>
 #include <cstdint>
-#include <filesystem>
 #include <functional>
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
@@ -14,6 +13,7 @@
 #include <vector>
 
 #include "core/image.h"
+#include "core/path.h"
 #include "core/progress.h"
 
 namespace astrosplat {
@@ -90,11 +90,10 @@ struct SkyTiling {
 std::array<Image, 6> tiled_sky(const Image& picture, const SkyTiling& tiling, const Progress& progress = {});
 
 /// The same of a picture's file, read as linear light.
-std::array<Image, 6> tiled_sky_of(const std::filesystem::path& file, const SkyTiling& tiling,
+std::array<Image, 6> tiled_sky_of(const fs::path& file, const SkyTiling& tiling,
                                   const Progress& progress = {});
 
 /// tiled_sky_of, or what keeps its results (sets/kept.h).
-using SkyMaker =
-    std::function<std::array<Image, 6>(const std::filesystem::path&, const SkyTiling&, const Progress&)>;
+using SkyMaker = std::function<std::array<Image, 6>(const fs::path&, const SkyTiling&, const Progress&)>;
 
 }  // namespace astrosplat

@@ -22,7 +22,7 @@ class PictureFile {
   public:
     /// Writes the header of a picture in the `format` that OpenImageIO knows under this name or ending
     /// ("tiff", "x.png"). Throws OutputError, as all functions here.
-    PictureFile(const std::filesystem::path& file, const std::string& format, const OIIO::ImageSpec& spec,
+    PictureFile(const fs::path& file, const std::string& format, const OIIO::ImageSpec& spec,
                 Existing existing = Existing::replace)
         : sink_(file, existing), out_(OIIO::ImageOutput::create(format)) {
         check(out_ && out_->set_ioproxy(&sink_) && out_->open(file.string(), spec));
@@ -42,7 +42,7 @@ class PictureFile {
   private:
     /// Takes the plug-in's bytes, and remembers what went wrong: plug-ins need not report it.
     struct Sink : OIIO::Filesystem::IOProxy {
-        Sink(const std::filesystem::path& path, Existing existing)
+        Sink(const fs::path& path, Existing existing)
             : IOProxy(path.string(), Write), file(path, existing), guarded(file) {}
         const char* proxytype() const override { return "astrosplat"; }
         std::size_t write(const void* bytes, std::size_t size) override {
@@ -80,7 +80,7 @@ class PictureFile {
 
 }  // namespace
 
-void write_image(const std::filesystem::path& file, std::int64_t width, std::int64_t height,
+void write_image(const fs::path& file, std::int64_t width, std::int64_t height,
                  std::span<const unsigned char> rgba) {
     assert(std::int64_t(rgba.size()) == width * height * 4);
     OIIO::ImageSpec spec(int(width), int(height), 3, OIIO::TypeDesc::UINT8);
@@ -90,7 +90,7 @@ void write_image(const std::filesystem::path& file, std::int64_t width, std::int
     picture.commit();
 }
 
-void write_linear_image(const std::filesystem::path& file, const Image& image, const std::string& credit,
+void write_linear_image(const fs::path& file, const Image& image, const std::string& credit,
                         Existing existing) {
     assert(image.channels == 3 || image.channels == 4);
     OIIO::ImageSpec spec(int(image.width), int(image.height), image.channels, OIIO::TypeDesc::FLOAT);

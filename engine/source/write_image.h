@@ -2,23 +2,23 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <span>
 #include <string>
 
 #include "core/atomic_file.h"
 #include "core/image.h"
+#include "core/path.h"
 
 namespace astrosplat {
 
 /// Writes width x height px of RGBA bytes, top row first, atomically; the ending chooses the format. The
 /// colour is written, alpha is left out. Throws OutputError.
-void write_image(const std::filesystem::path& file, std::int64_t width, std::int64_t height,
+void write_image(const fs::path& file, std::int64_t width, std::int64_t height,
                  std::span<const unsigned char> rgba);
 
 /// Writes linear light of 3 channels, or 4 with a premultiplied alpha, as an EXR file of 32-bit floats,
 /// atomically. `credit` goes into its header where there is one. Throws OutputError.
-void write_linear_image(const std::filesystem::path& file, const Image& image, const std::string& credit,
+void write_linear_image(const fs::path& file, const Image& image, const std::string& credit,
                         Existing existing);
 
 /// A PNG file in memory, of width x height px of RGB bytes, top row first. Throws OutputError.

@@ -64,7 +64,7 @@ void catch_bus_errors() {
     });
 }
 
-std::size_t take_guard(const std::filesystem::path& file) {
+std::size_t take_guard(const fs::path& file) {
     for (std::size_t i = 0; i < guards.size(); ++i)
         if (!guards[i].taken.exchange(true)) return i;
     throw InputError(fmt::format("{}: cannot be read: too many splat files at once", file.string()));
@@ -72,7 +72,7 @@ std::size_t take_guard(const std::filesystem::path& file) {
 
 }  // namespace
 
-MappedFile::MappedFile(const std::filesystem::path& file)
+MappedFile::MappedFile(const fs::path& file)
     : file_(file), input_(file), size_(static_cast<std::size_t>(input_.size())) {
     if (size_ == 0) return;
     catch_bus_errors();

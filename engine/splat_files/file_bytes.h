@@ -7,7 +7,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <filesystem>
 #include <functional>
 #include <string>
 #include <string_view>
@@ -15,6 +14,7 @@
 #include "core/atomic_file.h"
 #include "core/error.h"
 #include "core/file.h"
+#include "core/path.h"
 #include "core/progress.h"
 
 namespace astrosplat {
@@ -22,7 +22,7 @@ namespace astrosplat {
 class MappedFile {
   public:
     /// Throws InputError when the file is missing, unreadable or not a regular file.
-    explicit MappedFile(const std::filesystem::path& file);
+    explicit MappedFile(const fs::path& file);
     ~MappedFile();
     MappedFile(const MappedFile&) = delete;
     MappedFile& operator=(const MappedFile&) = delete;
@@ -33,7 +33,7 @@ class MappedFile {
     void require_whole() const;
 
   private:
-    std::filesystem::path file_;
+    fs::path file_;
     InputFile input_;
     const char* memory_ = nullptr;
     std::size_t size_ = 0;
@@ -47,7 +47,7 @@ void forget_pages(std::string_view bytes);
 /// The result of read(bytes) for the file's bytes. Throws InputError, in words about the file's length where
 /// that changed meanwhile, whatever the reader made of it.
 template <class Read>
-auto read_mapped(const std::filesystem::path& file, const Read& read) {
+auto read_mapped(const fs::path& file, const Read& read) {
     const MappedFile mapped(file);
     try {
         auto result = read(mapped.bytes());

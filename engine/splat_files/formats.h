@@ -6,10 +6,10 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <string_view>
 
 #include "core/atomic_file.h"
+#include "core/path.h"
 #include "core/progress.h"
 #include "splats/splat_set.h"
 
@@ -22,9 +22,9 @@ namespace astrosplat {
 /// line of numbers a particle. Attributes used: position (V), rgbPP (V, linear), opacityPP,
 /// DistanceFromSurfaceMeshPP, radiusPP (R), whichMeshPP, particleId or id (I or R); any others are skipped by
 /// their type. Missing colour is white, missing opacity 1, missing distance 0.
-SplatSet read_pda(const std::filesystem::path& file, const Progress& progress = {});
-SplatColumns pda_columns(const std::filesystem::path& file);
-std::int64_t pda_splat_count(const std::filesystem::path& file);
+SplatSet read_pda(const fs::path& file, const Progress& progress = {});
+SplatColumns pda_columns(const fs::path& file);
+std::int64_t pda_splat_count(const fs::path& file);
 /// Shortest decimal numbers that read back to the same float32, 64-bit ids; the same bytes for any thread
 /// count. What PDA has no attribute for (uv, normal, spacing, credit) is left out.
 void write_pda(const WriteTarget& target, const SplatSet& set, const Progress& progress = {});
@@ -35,9 +35,9 @@ void write_pda(const WriteTarget& target, const SplatSet& set, const Progress& p
 /// Gaussians as 3D Gaussian Splatting stores them: x y z, f_dc_*, f_rest_* of degree 1 to 3 (all red, all
 /// green, all blue), opacity (a logit), scale_* (logarithms), rot_* (w first). All else is skipped. Missing
 /// colour is white, missing alpha 1, missing distance 0.
-SplatSet read_ply(const std::filesystem::path& file, const Progress& progress = {});
-SplatColumns ply_columns(const std::filesystem::path& file);
-std::int64_t ply_splat_count(const std::filesystem::path& file);
+SplatSet read_ply(const fs::path& file, const Progress& progress = {});
+SplatColumns ply_columns(const fs::path& file);
+std::int64_t ply_splat_count(const fs::path& file);
 /// Binary little-endian, all numbers as they are in memory; id_high only where an id needs it. A credit
 /// becomes a comment; normal and spacing are left out.
 void write_ply(const WriteTarget& target, const SplatSet& set, const Progress& progress = {});
@@ -48,16 +48,16 @@ inline constexpr std::string_view gltf_gaussians = "KHR_gaussian_splatting";
 /// POSITION, ROTATION (x y z w), SCALE (linear), OPACITY and SH_DEGREE_l_COEF_n. All of the scene, in the
 /// order of its nodes, each node's placed by it (turned, mirrored and scaled alike along all axes, else
 /// InputError). Compressed ones are refused.
-SplatSet read_gltf_splats(const std::filesystem::path& file, const Progress& progress = {});
-SplatColumns gltf_splat_columns(const std::filesystem::path& file);
+SplatSet read_gltf_splats(const fs::path& file, const Progress& progress = {});
+SplatColumns gltf_splat_columns(const fs::path& file);
 
 /// Gaussians of USD as text (.usda): ParticleField3DGaussianSplat of OpenUSD's UsdVol (26.03). All that the
 /// stage defines, in its order, each prim's placed by its own and its parents' transforms at time 0 (turned,
 /// mirrored and scaled alike along all axes, else InputError) and with y up. Lists are of floats or halves;
 /// what a prim does not list is the schema's: no turn, scales and opacities of 1, middle grey. Harmonics are
 /// display values. Nothing that the file refers to is opened, and no time samples of the lists are read.
-SplatSet read_usda_splats(const std::filesystem::path& file, const Progress& progress = {});
-SplatColumns usda_splat_columns(const std::filesystem::path& file);
-std::int64_t usda_splat_count(const std::filesystem::path& file);
+SplatSet read_usda_splats(const fs::path& file, const Progress& progress = {});
+SplatColumns usda_splat_columns(const fs::path& file);
+std::int64_t usda_splat_count(const fs::path& file);
 
 }  // namespace astrosplat

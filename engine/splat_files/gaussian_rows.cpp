@@ -126,7 +126,7 @@ float gaussian_radius(const glm::vec3& scale) {
     return static_cast<float>(3.0 * std::sqrt(std::sqrt((xy * xy + yz * yz + zx * zx) / 3.0)));
 }
 
-SplatSet finish_gaussians(SplatSet set, const GaussianNumbers& numbers, const std::filesystem::path& file) {
+SplatSet finish_gaussians(SplatSet set, const GaussianNumbers& numbers, const fs::path& file) {
     set.display_harmonics = numbers.display;
     set.radius.resize(set.scale.size());
     set.color.resize(set.scale.size());

@@ -4,12 +4,12 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <filesystem>
 #include <glm/mat3x3.hpp>
 #include <glm/mat4x4.hpp>
 #include <optional>
 #include <string>
 
+#include "core/path.h"
 #include "core/progress.h"
 #include "splats/splat_set.h"
 
@@ -53,13 +53,13 @@ struct GaussianNumbers {
 /// has none but degree 0, its coefficients in color. Turns stored numbers into those that a SplatSet has, and
 /// makes radius and color. Rows with numbers that are not finite, or without a rotation, are left out and
 /// counted in a warning; opacities are clamped to 0..1.
-SplatSet finish_gaussians(SplatSet set, const GaussianNumbers& numbers, const std::filesystem::path& file);
+SplatSet finish_gaussians(SplatSet set, const GaussianNumbers& numbers, const fs::path& file);
 
 /// A set of parts that have a count and a degree of their harmonics: read(part, first, set) fills the rows
 /// from `first` on, with the numbers that finish_gaussians wants. Throws InputError, Cancelled.
 template <class Part, class Read>
 SplatSet read_gaussian_parts(const std::vector<Part>& parts, const GaussianNumbers& numbers,
-                             const std::filesystem::path& file, const Progress& progress, const Read& read) {
+                             const fs::path& file, const Progress& progress, const Read& read) {
     std::int64_t count = 0;
     for (const Part& part : parts) count += part.count;
     SplatSet set = room_for_gaussians(count, is_directional(parts), "splats of " + file.string());

@@ -169,7 +169,7 @@ SplatSet read_parts(GltfFile& file, const Progress& progress) {
 
 /// The result of `read` for the file; wrong types in its JSON are reported in our words.
 template <class Read>
-auto read_json(const std::filesystem::path& path, const Read& read) {
+auto read_json(const fs::path& path, const Read& read) {
     GltfFile file(path);
     try {
         return read(file);
@@ -180,11 +180,11 @@ auto read_json(const std::filesystem::path& path, const Read& read) {
 
 }  // namespace
 
-SplatSet read_gltf_splats(const std::filesystem::path& file, const Progress& progress) {
+SplatSet read_gltf_splats(const fs::path& file, const Progress& progress) {
     return read_json(file, [&](GltfFile& gltf) { return read_parts(gltf, progress); });
 }
 
-SplatColumns gltf_splat_columns(const std::filesystem::path& file) {
+SplatColumns gltf_splat_columns(const fs::path& file) {
     return read_json(file,
                      [](GltfFile& gltf) { return gaussian_set_columns(is_directional(parts_of(gltf))); });
 }

@@ -241,21 +241,21 @@ Buffer<std::int64_t> lit_rows_of(const Layout& layout, const Progress& progress)
 }  // namespace
 }  // namespace native
 
-SplatSet read_native(const std::filesystem::path& file, const Progress& progress,
-                     const OptionalColumns& wanted, NativePart part) {
+SplatSet read_native(const fs::path& file, const Progress& progress, const OptionalColumns& wanted,
+                     NativePart part) {
     return read_mapped(file, [&](std::string_view bytes) {
         return native::read_native_bytes(native::Checker{file.string()}, bytes, wanted, part, progress);
     });
 }
 
-std::vector<SplatSet> read_native_rows(const std::filesystem::path& file, NativePart part,
+std::vector<SplatSet> read_native_rows(const fs::path& file, NativePart part,
                                        std::span<const NativeRows> choices, const Progress& progress) {
     return read_mapped(file, [&](std::string_view bytes) {
         return native::read_rows_of_bytes(native::Checker{file.string()}, bytes, part, choices, progress);
     });
 }
 
-LitRows native_lit_rows(const std::filesystem::path& file, const Progress& progress) {
+LitRows native_lit_rows(const fs::path& file, const Progress& progress) {
     return read_mapped(file, [&](std::string_view bytes) {
         const native::Layout layout =
             native::read_layout(native::Checker{file.string()}, bytes, NativePart::colors);
@@ -264,13 +264,13 @@ LitRows native_lit_rows(const std::filesystem::path& file, const Progress& progr
     });
 }
 
-SplatColumns native_columns(const std::filesystem::path& file) {
+SplatColumns native_columns(const fs::path& file) {
     return read_mapped(file, [&](std::string_view bytes) {
         return native::columns_of(native::read_layout(native::Checker{file.string()}, bytes).header.flags);
     });
 }
 
-std::int64_t native_splat_count(const std::filesystem::path& file) {
+std::int64_t native_splat_count(const fs::path& file) {
     return read_mapped(file, [&](std::string_view bytes) {
         const native::Header header = native::read_layout(native::Checker{file.string()}, bytes).header;
         const std::int64_t dark = header.flags & native::only_colors ? header.zero_alpha : 0;

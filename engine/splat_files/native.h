@@ -4,7 +4,6 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <memory>
 #include <span>
 #include <vector>
@@ -12,6 +11,7 @@
 #include "core/atomic_file.h"
 #include "core/bounds.h"
 #include "core/buffer.h"
+#include "core/path.h"
 #include "core/progress.h"
 #include "splats/splat_set.h"
 
@@ -50,11 +50,11 @@ enum class NativePart { whole, geometry, colors };
 /// Rows come back in the file's order; sort_by_id brings back that of the ids. Every length is checked before
 /// memory is taken or touched, every block against its checksum. Throws InputError, also where the file holds
 /// another part of a set. Columns that are not wanted stay empty.
-SplatSet read_native(const std::filesystem::path& file, const Progress& progress = {},
-                     const OptionalColumns& wanted = {}, NativePart part = NativePart::whole);
+SplatSet read_native(const fs::path& file, const Progress& progress = {}, const OptionalColumns& wanted = {},
+                     NativePart part = NativePart::whole);
 
 /// How many splats a file holds, from its header; of colours those whose alpha is not 0. Throws InputError.
-std::int64_t native_splat_count(const std::filesystem::path& file);
+std::int64_t native_splat_count(const fs::path& file);
 
 /// The same bytes for any thread count. For RowOrder::id the set must be in ascending order of id. Throws
 /// OutputError.
@@ -65,7 +65,7 @@ void write_native(const WriteTarget& target, const SplatSet& set, const Progress
 std::int64_t native_file_bytes(const SplatSet& set, NativePart part = NativePart::whole);
 
 /// The columns that a file holds.
-SplatColumns native_columns(const std::filesystem::path& file);
+SplatColumns native_columns(const fs::path& file);
 
 /// Some rows of a file, ascending, and the columns of them that are wanted.
 struct NativeRows {
@@ -74,7 +74,7 @@ struct NativeRows {
 };
 
 /// Several choices of rows of one file, which is read and checked once, as by read_native().
-std::vector<SplatSet> read_native_rows(const std::filesystem::path& file, NativePart part,
+std::vector<SplatSet> read_native_rows(const fs::path& file, NativePart part,
                                        std::span<const NativeRows> choices, const Progress& progress = {});
 
 /// The rows of a file of colours whose alpha is not 0, and how many rows it has. Its blocks are not checked.
@@ -83,7 +83,7 @@ struct LitRows {
     Buffer<std::int64_t> rows;
     std::int64_t of = 0;
 };
-LitRows native_lit_rows(const std::filesystem::path& file, const Progress& progress = {});
+LitRows native_lit_rows(const fs::path& file, const Progress& progress = {});
 
 // In parts, for sets that are never in memory as a whole. Reading: the facts of the set, and the rows of the
 // blocks that are asked for; bytes are read, not mapped, so that they count as this program's memory only
@@ -94,7 +94,7 @@ LitRows native_lit_rows(const std::filesystem::path& file, const Progress& progr
 class NativeBlocks {
   public:
     /// Checks header and table. Throws InputError as read_native does.
-    explicit NativeBlocks(const std::filesystem::path& file, NativePart part = NativePart::whole);
+    explicit NativeBlocks(const fs::path& file, NativePart part = NativePart::whole);
     ~NativeBlocks();
 
     const SplatSetFacts& facts() const;

@@ -24,12 +24,12 @@
 namespace astrosplat {
 
 struct NativeBlocks::State {
-    std::filesystem::path path;
+    fs::path path;
     native::Layout layout;  // without the blocks' bytes
     SplatSetFacts facts;
     InputFile file;
 
-    State(const std::filesystem::path& of, NativePart part)
+    State(const fs::path& of, NativePart part)
         : path(of),
           layout(read_mapped(
               of, [&](std::string_view bytes) { return native::read_layout({of.string()}, bytes, part); })),
@@ -63,7 +63,7 @@ void NativeBlocks::State::read_at(std::size_t offset, char* out, std::size_t byt
     }
 }
 
-NativeBlocks::NativeBlocks(const std::filesystem::path& file, NativePart part)
+NativeBlocks::NativeBlocks(const fs::path& file, NativePart part)
     : state_(std::make_unique<State>(file, part)) {}
 NativeBlocks::~NativeBlocks() = default;
 

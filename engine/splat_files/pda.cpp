@@ -22,7 +22,7 @@ namespace {
 /// The header's words, with the line each stands on.
 class Words {
   public:
-    Words(const std::filesystem::path& file, std::string_view text) : file_(file.string()), text_(text) {
+    Words(const fs::path& file, std::string_view text) : file_(file.string()), text_(text) {
         if (text_.substr(0, 3) == "\xef\xbb\xbf") at_ = 3;  // byte order mark
     }
 
@@ -128,7 +128,7 @@ std::uint64_t read_particle_count(Words& words) {
     return count;
 }
 
-PdaHeader read_header(const std::filesystem::path& file, std::string_view text) {
+PdaHeader read_header(const fs::path& file, std::string_view text) {
     PdaHeader header;
     Words words(file, text);
     words.expect("ATTRIBUTES");
@@ -184,7 +184,7 @@ std::string header_text(const SplatSet& set) {
                        types, set.size());
 }
 
-SplatSet read_pda_bytes(const std::filesystem::path& file, std::string_view bytes, const Progress& progress) {
+SplatSet read_pda_bytes(const fs::path& file, std::string_view bytes, const Progress& progress) {
     const PdaHeader header = read_header(file, bytes);
     const SplitRows rows = split_rows(header.data, header.data_line);
     if (static_cast<std::uint64_t>(rows.rows) != header.particles)
@@ -199,20 +199,20 @@ SplatSet read_pda_bytes(const std::filesystem::path& file, std::string_view byte
 
 }  // namespace
 
-SplatColumns pda_columns(const std::filesystem::path& file) {
+SplatColumns pda_columns(const fs::path& file) {
     return read_mapped(file, [&](std::string_view bytes) {
         return columns_held(columns_of(read_header(file, bytes).attributes));
     });
 }
 
-std::int64_t pda_splat_count(const std::filesystem::path& file) {
+std::int64_t pda_splat_count(const fs::path& file) {
     return read_mapped(file, [&](std::string_view bytes) {
         constexpr std::uint64_t most = std::numeric_limits<std::int64_t>::max();
         return static_cast<std::int64_t>(std::min(most, read_header(file, bytes).particles));
     });
 }
 
-SplatSet read_pda(const std::filesystem::path& file, const Progress& progress) {
+SplatSet read_pda(const fs::path& file, const Progress& progress) {
     return read_mapped(file, [&](std::string_view bytes) { return read_pda_bytes(file, bytes, progress); });
 }
 

@@ -105,7 +105,7 @@ std::span<const float> codes_for(SplatColumn column, NumberType type) {
 
 bool is_float(NumberType type) { return type == NumberType::f32 || type == NumberType::f64; }
 
-void assign_field(Column& column, const PlyElement& vertex, const std::filesystem::path& file) {
+void assign_field(Column& column, const PlyElement& vertex, const fs::path& file) {
     const auto* const known =
         std::ranges::find_if(known_properties, [&](const KnownProperty& k) { return k.name == column.name; });
     if (known == std::end(known_properties) || column.list || !is_read(vertex, column.name)) return;
@@ -132,7 +132,7 @@ constexpr std::string_view mean_names[] = {"f_dc_0", "f_dc_1", "f_dc_2"};
 constexpr std::string_view rest_prefix = "f_rest_";
 
 /// Their names are numbered from 0 on.
-int rest_count(const PlyElement& vertex, const std::filesystem::path& file) {
+int rest_count(const PlyElement& vertex, const fs::path& file) {
     const auto found = std::ranges::count_if(
         vertex.properties, [](const Column& c) { return c.name.starts_with(rest_prefix) && !c.list; });
     if (found != 0 && found != 9 && found != 24 && found != 45)
@@ -167,7 +167,7 @@ bool holds_gaussians(const PlyElement& vertex) {
 }
 
 /// The columns of such a vertex. Throws InputError where some of them are missing.
-std::vector<Column> gaussian_columns(const PlyElement& vertex, const std::filesystem::path& file) {
+std::vector<Column> gaussian_columns(const PlyElement& vertex, const fs::path& file) {
     const auto require = [&](std::string_view name) {
         if (!has_scalar(vertex, name))
             bad_input(file.string(), "",
@@ -184,7 +184,7 @@ std::vector<Column> gaussian_columns(const PlyElement& vertex, const std::filesy
 
 // ---- reading
 
-std::vector<Column> columns_of(const PlyElement& vertex, const std::filesystem::path& file) {
+std::vector<Column> columns_of(const PlyElement& vertex, const fs::path& file) {
     if (holds_gaussians(vertex)) return gaussian_columns(vertex, file);
     if (has_scalar(vertex, "packed_position"))
         bad_input(file.string(), "", "Gaussians that are not compressed", "packed_position and others");
@@ -196,14 +196,14 @@ std::vector<Column> columns_of(const PlyElement& vertex, const std::filesystem::
     return columns;
 }
 
-std::size_t find_vertex(const PlyHeader& header, const std::filesystem::path& file) {
+std::size_t find_vertex(const PlyHeader& header, const fs::path& file) {
     for (std::size_t i = 0; i < header.elements.size(); ++i)
         if (header.elements[i].name == "vertex") return i;
     bad_input(file.string(), "", "an element vertex", "none");
 }
 
-void read_ascii(const PlyHeader& header, std::size_t vertex, SplatTable& table,
-                const std::filesystem::path& file, const Progress& progress) {
+void read_ascii(const PlyHeader& header, std::size_t vertex, SplatTable& table, const fs::path& file,
+                const Progress& progress) {
     const SplitRows rows = split_rows(header.data, header.data_line);
     std::uint64_t left = static_cast<std::uint64_t>(rows.rows);
     std::int64_t first = 0;
@@ -260,7 +260,7 @@ std::string header_text(const SplatSet& set, bool wide_ids) {
     return text + "end_header\n";
 }
 
-SplatSet read_ply_bytes(const std::filesystem::path& file, std::string_view bytes, const Progress& progress) {
+SplatSet read_ply_bytes(const fs::path& file, std::string_view bytes, const Progress& progress) {
     const PlyHeader header = read_ply_header(file, bytes);
     const std::size_t vertex = find_vertex(header, file);
     SplatTable table;
@@ -278,7 +278,7 @@ SplatSet read_ply_bytes(const std::filesystem::path& file, std::string_view byte
 
 }  // namespace
 
-SplatColumns ply_columns(const std::filesystem::path& file) {
+SplatColumns ply_columns(const fs::path& file) {
     return read_mapped(file, [&](std::string_view bytes) {
         const PlyHeader header = read_ply_header(file, bytes);
         const PlyElement& vertex = header.elements[find_vertex(header, file)];
@@ -287,7 +287,7 @@ SplatColumns ply_columns(const std::filesystem::path& file) {
     });
 }
 
-std::int64_t ply_splat_count(const std::filesystem::path& file) {
+std::int64_t ply_splat_count(const fs::path& file) {
     return read_mapped(file, [&](std::string_view bytes) {
         constexpr std::uint64_t most = std::numeric_limits<std::int64_t>::max();
         const PlyHeader header = read_ply_header(file, bytes);
@@ -295,7 +295,7 @@ std::int64_t ply_splat_count(const std::filesystem::path& file) {
     });
 }
 
-SplatSet read_ply(const std::filesystem::path& file, const Progress& progress) {
+SplatSet read_ply(const fs::path& file, const Progress& progress) {
     return read_mapped(file, [&](std::string_view bytes) { return read_ply_bytes(file, bytes, progress); });
 }
 

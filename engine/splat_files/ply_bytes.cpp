@@ -129,7 +129,7 @@ bool read_line(HeaderReader& reader, PlyHeader& header) {
 
 }  // namespace
 
-PlyHeader read_ply_header(const std::filesystem::path& file, std::string_view bytes) {
+PlyHeader read_ply_header(const fs::path& file, std::string_view bytes) {
     HeaderReader reader{file.string(), bytes, 0};
     PlyHeader header;
     if (bytes.substr(0, 3) != "ply") bad_input(reader.file, "1", "'ply'", quoted(bytes.substr(0, 3)));
@@ -328,8 +328,8 @@ struct BinaryReader {
 
 }  // namespace
 
-void read_binary_rows(const PlyHeader& header, std::size_t vertex, SplatTable& table,
-                      const std::filesystem::path& file, const Progress& progress) {
+void read_binary_rows(const PlyHeader& header, std::size_t vertex, SplatTable& table, const fs::path& file,
+                      const Progress& progress) {
     const BinaryReader reader{file.string(), header.data, header.format == PlyFormat::big_endian};
     std::size_t at = 0;
     for (std::size_t i = 0; i < vertex; ++i) at = reader.chunk_starts(header.elements[i], at).back();

@@ -4,11 +4,11 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <filesystem>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "core/path.h"
 #include "core/progress.h"
 #include "splat_files/splat_table.h"
 
@@ -31,11 +31,11 @@ struct PlyHeader {
 };
 
 /// Throws InputError with the line.
-PlyHeader read_ply_header(const std::filesystem::path& file, std::string_view bytes);
+PlyHeader read_ply_header(const fs::path& file, std::string_view bytes);
 
 /// Opens the table and stores the rows of element number `vertex`, in parallel. Throws InputError with the
 /// first wrong vertex.
-void read_binary_rows(const PlyHeader& header, std::size_t vertex, SplatTable& table,
-                      const std::filesystem::path& file, const Progress& progress);
+void read_binary_rows(const PlyHeader& header, std::size_t vertex, SplatTable& table, const fs::path& file,
+                      const Progress& progress);
 
 }  // namespace astrosplat

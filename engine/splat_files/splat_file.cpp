@@ -22,10 +22,10 @@ namespace {
 
 struct Functions {
     std::string_view format;
-    SplatSet (*read)(const std::filesystem::path&, const Progress&);
+    SplatSet (*read)(const fs::path&, const Progress&);
     void (*write)(const WriteTarget&, const SplatSet&, const Progress&);
-    SplatColumns (*columns)(const std::filesystem::path&);
-    std::int64_t (*count)(const std::filesystem::path&);
+    SplatColumns (*columns)(const fs::path&);
+    std::int64_t (*count)(const fs::path&);
     std::string_view word;   // that files with splats have near their beginning; empty: all hold splats
     bool keeps_all = false;  // splats that absorb are told from those that shine; shapes of Gaussians
 };
@@ -40,8 +40,7 @@ constexpr Functions functions[] = {
      native_columns, native_splat_count, "", true},
 };
 
-const Functions& functions_of(const FileFormat* format, const std::filesystem::path& file,
-                              FileUse use = FileUse::read) {
+const Functions& functions_of(const FileFormat* format, const fs::path& file, FileUse use = FileUse::read) {
     for (const Functions& each : functions)
         if (format && format->id == each.format && (use == FileUse::read || each.write)) return each;
     const std::string ending = file.extension().string();
@@ -52,24 +51,24 @@ const Functions& functions_of(const FileFormat* format, const std::filesystem::p
 
 }  // namespace
 
-SplatSet read_splats(const std::filesystem::path& file, const Progress& progress) {
+SplatSet read_splats(const fs::path& file, const Progress& progress) {
     require_readable(file);
     return functions_of(format_of_file(file), file).read(file, progress);
 }
 
-std::vector<std::string> splat_attributes(const std::filesystem::path& file) {
+std::vector<std::string> splat_attributes(const fs::path& file) {
     require_readable(file);
     return column_names(functions_of(format_of_file(file), file).columns(file));
 }
 
-std::int64_t splat_count(const std::filesystem::path& file) {
+std::int64_t splat_count(const fs::path& file) {
     require_readable(file);
     const Functions& functions = functions_of(format_of_file(file), file);
     assert(functions.count);
     return functions.count(file);
 }
 
-bool may_hold_splats(const std::filesystem::path& file) {
+bool may_hold_splats(const fs::path& file) {
     const FileFormat* const format = format_of_file(file);
     if (kind_of(format) != FileKind::splats) return false;
     constexpr std::size_t beginning = std::size_t{1} << 20;

@@ -2,11 +2,11 @@
 // This is the front door; formats.h and native.h have the readers and writers.
 #pragma once
 
-#include <filesystem>
 #include <string>
 #include <vector>
 
 #include "core/atomic_file.h"
+#include "core/path.h"
 #include "core/progress.h"
 #include "splats/splat_set.h"
 
@@ -14,18 +14,18 @@ namespace astrosplat {
 
 /// The format is told by the file's first bytes, else by its ending. Rows stay in file order (call sort_by_id
 /// before rendering). Throws InputError with file and place.
-SplatSet read_splats(const std::filesystem::path& file, const Progress& progress = {});
+SplatSet read_splats(const fs::path& file, const Progress& progress = {});
 
 /// The columns of a file's splats, by its header alone: some of position, color, alpha, distance, radius, uv,
 /// normal, mesh, scale, rotation, harmonics, id. Throws InputError.
-std::vector<std::string> splat_attributes(const std::filesystem::path& file);
+std::vector<std::string> splat_attributes(const fs::path& file);
 
 /// How many splats a PDA, PLY, USD or native file says that it holds. Throws InputError.
-std::int64_t splat_count(const std::filesystem::path& file);
+std::int64_t splat_count(const fs::path& file);
 
 /// Whether a file is of such a format, and no glTF or USD that at its beginning does not speak of Gaussians:
 /// those may hold cameras.
-bool may_hold_splats(const std::filesystem::path& file);
+bool may_hold_splats(const fs::path& file);
 
 /// In the format of the ending. Writes to a temporary name, then renames: the file appears whole or not at
 /// all. Throws OutputError.

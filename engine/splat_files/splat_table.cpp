@@ -110,14 +110,14 @@ SplatColumns columns_held(const std::vector<Column>& columns) {
     return held;
 }
 
-void open_table(SplatTable& table, std::int64_t rows, const std::filesystem::path& file) {
+void open_table(SplatTable& table, std::int64_t rows, const fs::path& file) {
     if (rows == 0) return;
     claim_memory(rows * bytes_per_row(table), "splats of " + file.string());
     allocate(table, static_cast<std::size_t>(rows));
     for (Column& column : table.columns) bind(column, table);
 }
 
-SplatSet finish_table(SplatTable& table, const std::filesystem::path& file) {
+SplatSet finish_table(SplatTable& table, const fs::path& file) {
     SplatSet& set = table.set;
     const auto rows = static_cast<std::size_t>(set.size());
     if (set.color.empty()) fill(set.color, rows, glm::vec3(1.0f));
@@ -202,7 +202,7 @@ std::string describe(const SplatTable& table) {
     return names;
 }
 
-[[noreturn]] void wrong_length(const SplatTable& table, const std::filesystem::path& file, const Line& line,
+[[noreturn]] void wrong_length(const SplatTable& table, const fs::path& file, const Line& line,
                                const char* end) {
     std::size_t found = 0;
     const char* const stop = line_end(line.begin, end);
@@ -246,7 +246,7 @@ const char* skip_list(const char* p, const char* end) {
 
 /// Reads the row that begins at line.begin; returns the end of its line.
 const char* read_row(const SplatTable& table, std::size_t row, const Line& line, const char* end,
-                     const std::filesystem::path& file) {
+                     const fs::path& file) {
     const char* p = line.begin;
     for (const Column& column : table.columns) {
         p = scan::skip_blanks(p, end);
@@ -266,7 +266,7 @@ const char* read_row(const SplatTable& table, std::size_t row, const Line& line,
 
 /// Reads the rows of one chunk that lie in [begin, end).
 void read_chunk(const TextChunk& chunk, std::int64_t begin, std::int64_t end, const SplatTable& table,
-                const std::filesystem::path& file) {
+                const fs::path& file) {
     Line line{chunk.text.data(), chunk.first_line};
     const char* const stop = line.begin + chunk.text.size();
     for (std::int64_t row = chunk.first_row; line.begin < stop && row < end; ++line.number) {
@@ -298,7 +298,7 @@ SplitRows split_rows(std::string_view text, std::int64_t first_line) {
 }
 
 void read_text_rows(const SplitRows& rows, std::int64_t begin, std::int64_t end, const SplatTable& table,
-                    const std::filesystem::path& file, const Progress& progress) {
+                    const fs::path& file, const Progress& progress) {
     parallel_parts(rows.chunks.size(), progress, [&](std::size_t chunk) {
         read_chunk(rows.chunks[chunk], begin, end, table, file);
         forget_pages(rows.chunks[chunk].text);

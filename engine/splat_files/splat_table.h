@@ -7,13 +7,13 @@
 #include <atomic>
 #include <cfloat>
 #include <cstdint>
-#include <filesystem>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "core/path.h"
 #include "core/progress.h"
 #include "splats/splat_set.h"
 
@@ -59,11 +59,11 @@ struct SplatTable {
 SplatColumns columns_held(const std::vector<Column>& columns);
 
 /// Allocates the arrays for `rows` rows (memory is claimed first) and points the columns at them.
-void open_table(SplatTable& table, std::int64_t rows, const std::filesystem::path& file);
+void open_table(SplatTable& table, std::int64_t rows, const fs::path& file);
 
 /// Fills in what the file lacks (white, opacity 1, distance 0, row number), finds the largest distance, warns
 /// about clamped opacities, and hands out the set.
-SplatSet finish_table(SplatTable& table, const std::filesystem::path& file);
+SplatSet finish_table(SplatTable& table, const fs::path& file);
 
 /// The values allowed in place of `value`, behind "expected"; called only when `store` failed.
 std::string expectation(const Column& column);
@@ -119,7 +119,7 @@ SplitRows split_rows(std::string_view text, std::int64_t first_line);
 /// Reads rows [begin, end) of `rows` into the table's columns as its rows 0 .. end-begin. The lowest bad row
 /// decides the InputError, whatever the threads do.
 void read_text_rows(const SplitRows& rows, std::int64_t begin, std::int64_t end, const SplatTable& table,
-                    const std::filesystem::path& file, const Progress& progress);
+                    const fs::path& file, const Progress& progress);
 
 /// Text of a file for a message: one line, quoted, shortened to 32 characters, others than printable ASCII as
 /// \xNN.

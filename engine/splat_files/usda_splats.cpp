@@ -191,7 +191,7 @@ void read_prim(const UsdText& text, const GaussianPrim& own, std::size_t first, 
 
 /// The result of read(text, all) for a file.
 template <class Read>
-auto read_prims(const std::filesystem::path& file, const Read& read) {
+auto read_prims(const fs::path& file, const Read& read) {
     return read_mapped(file, [&](std::string_view bytes) {
         const UsdText text{bytes, file.string()};
         const UsdStage stage = parse_usda(bytes, text.file);
@@ -201,7 +201,7 @@ auto read_prims(const std::filesystem::path& file, const Read& read) {
 
 }  // namespace
 
-SplatSet read_usda_splats(const std::filesystem::path& file, const Progress& progress) {
+SplatSet read_usda_splats(const fs::path& file, const Progress& progress) {
     return read_prims(file, [&](const UsdText& text, const std::vector<GaussianPrim>& all) {
         return read_gaussian_parts(all, {.trained = false, .display = true}, file, progress,
                                    [&](const GaussianPrim& own, std::size_t first, SplatSet& set) {
@@ -210,13 +210,13 @@ SplatSet read_usda_splats(const std::filesystem::path& file, const Progress& pro
     });
 }
 
-SplatColumns usda_splat_columns(const std::filesystem::path& file) {
+SplatColumns usda_splat_columns(const fs::path& file) {
     return read_prims(file, [](const UsdText&, const std::vector<GaussianPrim>& all) {
         return gaussian_set_columns(is_directional(all));
     });
 }
 
-std::int64_t usda_splat_count(const std::filesystem::path& file) {
+std::int64_t usda_splat_count(const fs::path& file) {
     return read_prims(file, [](const UsdText&, const std::vector<GaussianPrim>& all) {
         std::int64_t count = 0;
         for (const GaussianPrim& own : all) count += own.count;

@@ -285,7 +285,7 @@ StarCatalogue parse_catalogue(std::string_view text, const std::string& name, co
     return catalogue;
 }
 
-std::string read_catalogue_text(const std::filesystem::path& file, const Progress& progress) {
+std::string read_catalogue_text(const fs::path& file, const Progress& progress) {
     const std::string bytes = read_file(file, progress);
     if (!bytes.starts_with("\x1f\x8b")) return bytes;
     std::string text;
@@ -296,7 +296,7 @@ std::string read_catalogue_text(const std::filesystem::path& file, const Progres
     return text;
 }
 
-StarCatalogue read_catalogue(const std::filesystem::path& file, const Progress& progress) {
+StarCatalogue read_catalogue(const fs::path& file, const Progress& progress) {
     return parse_catalogue(read_catalogue_text(file, progress), file.string(), progress);
 }
 

@@ -5,7 +5,6 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <optional>
@@ -14,6 +13,7 @@
 #include <vector>
 
 #include "core/color.h"
+#include "core/path.h"
 #include "core/progress.h"
 
 namespace astrosplat {
@@ -66,7 +66,7 @@ using StarCatalogue = StarRows<CatalogueStar>;
 /// the parallax is missing, 0 or below, and in HYG from 100000 pc on. What is brighter than magnitude -20 is
 /// the Sun: where it lacks a distance, that is 1 au, for which its magnitude holds. Throws InputError where
 /// no row can be used; Cancelled.
-StarCatalogue read_catalogue(const std::filesystem::path& file, const Progress& progress = {});
+StarCatalogue read_catalogue(const fs::path& file, const Progress& progress = {});
 
 /// The same of its text; `name` begins messages.
 StarCatalogue parse_catalogue(std::string_view text, const std::string& name, const Progress& progress = {});
@@ -76,7 +76,7 @@ bool is_catalogue(std::string_view first_line);
 
 /// The text of a file, gzip-compressed or not, whatever its name. Throws InputError for files that cannot be
 /// read, damaged gzip data and text larger than the memory left; Cancelled.
-std::string read_catalogue_text(const std::filesystem::path& file, const Progress& progress = {});
+std::string read_catalogue_text(const fs::path& file, const Progress& progress = {});
 
 // ---- the stars of a picture
 
@@ -93,7 +93,7 @@ using PictureTable = StarRows<TableStar>;
 /// Columns u, v and flux_r, flux_g, flux_b, in any order, and sigma_px where there is one; .gz too. Rows
 /// without light are bad ones. Throws InputError where a column is missing or no row of many can be used;
 /// Cancelled.
-PictureTable read_picture_table(const std::filesystem::path& file, const Progress& progress = {});
+PictureTable read_picture_table(const fs::path& file, const Progress& progress = {});
 
 /// The same of its text; `name` begins messages.
 PictureTable parse_picture_table(std::string_view text, const std::string& name,
@@ -110,6 +110,6 @@ enum class CatalogueKind {
 
 /// By its first line, whatever its name. Of gzip data only where it begins as such; none for what cannot be
 /// read. Throws InputError for damaged gzip data.
-CatalogueKind kind_of_catalogue(const std::filesystem::path& file);
+CatalogueKind kind_of_catalogue(const fs::path& file);
 
 }  // namespace astrosplat

@@ -56,7 +56,7 @@ bool is_picture_table(std::string_view first_line) { return TableColumns(TextTab
 
 constexpr std::size_t beginning_bytes = 8192;
 
-std::string beginning_of(const std::filesystem::path& file) {
+std::string beginning_of(const fs::path& file) {
     const std::string bytes = read_beginning(file, beginning_bytes);
     return bytes.starts_with("\x1f\x8b") ? read_catalogue_text(file).substr(0, beginning_bytes) : bytes;
 }
@@ -77,7 +77,7 @@ PictureTable parse_picture_table(std::string_view text, const std::string& name,
     return result;
 }
 
-PictureTable read_picture_table(const std::filesystem::path& file, const Progress& progress) {
+PictureTable read_picture_table(const fs::path& file, const Progress& progress) {
     return parse_picture_table(read_catalogue_text(file, progress), file.string(), progress);
 }
 
@@ -88,7 +88,7 @@ double median_sigma_px(const PictureTable& table) {
     return widths.empty() ? 0.0 : median(widths);
 }
 
-CatalogueKind kind_of_catalogue(const std::filesystem::path& file) {
+CatalogueKind kind_of_catalogue(const fs::path& file) {
     const std::string text = beginning_of(file);
     if (text.find('\0') != text.npos) return CatalogueKind::none;
     TextRows rows(text);

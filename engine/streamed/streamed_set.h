@@ -2,10 +2,10 @@
 // for one. In: the file and a look. Out: ShadedBlocks, whose splats have the bits that apply_look gives them.
 #pragma once
 
-#include <filesystem>
 #include <string>
 
 #include "core/bounds.h"
+#include "core/path.h"
 #include "core/progress.h"
 #include "look/apply.h"
 #include "look/shared_uniforms.h"
@@ -20,7 +20,7 @@ std::string why_not_streamed(const NativeBlocks& file, const Look& look);
 class StreamedSet : public ShadedBlocks {
   public:
     /// Opens the file, which is a whole set's. Throws InputError.
-    explicit StreamedSet(const std::filesystem::path& file) : file_(file) {}
+    explicit StreamedSet(const fs::path& file) : file_(file) {}
 
     const NativeBlocks& file() const { return file_; }
     /// Of all positions, before any look.

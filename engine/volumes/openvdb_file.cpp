@@ -4,15 +4,13 @@
 #include <fmt/format.h>
 
 #include <cassert>
-#include <filesystem>
 #include <system_error>
 
 #include "core/hash.h"
+#include "core/path.h"
 
 namespace astrosplat {
 namespace {
-
-namespace fs = std::filesystem;
 
 constexpr const char* module_name = "astrosplat-openvdb.so";
 
