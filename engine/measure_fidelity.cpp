@@ -34,8 +34,8 @@ const LayerParams& layer_with_picture(const Scene& now) {
 }
 
 void require_proportions(const FidelityReference& reference) {
-    const double width = static_cast<double>(reference.picture.width);
-    const double height = static_cast<double>(reference.picture.height);
+    const double width = double(reference.picture.width);
+    const double height = double(reference.picture.height);
     const double stretch = width * reference.frame.height / (height * reference.frame.width);
     if (std::fabs(stretch - 1.0) > 0.01)
         bad_input(reference.file.string(), "",
@@ -68,8 +68,7 @@ class FidelityViews {
 
     Image render(const FrontFrame& frame, JudgingView view, std::int64_t width_px, std::int64_t height_px,
                  const Progress& progress) {
-        scene_.camera =
-            judging_camera(frame, view, static_cast<double>(width_px) / static_cast<double>(height_px));
+        scene_.camera = judging_camera(frame, view, double(width_px) / double(height_px));
         pipeline_.set_scene(scene_, sets_);
         const FrameScene now = pipeline_.frame_scene(0.0);
         RenderSettings settings = render_settings(now.scene.output);
@@ -100,8 +99,8 @@ FrontComparison compare_front(FidelityViews& views, const FidelityReference& ref
 }  // namespace
 
 std::int64_t FidelityReference::height_px(std::int64_t width_px) const {
-    const double height = static_cast<double>(width_px) * frame.height / frame.width;
-    return std::max<std::int64_t>(1, static_cast<std::int64_t>(height + 0.5));
+    const double height = double(width_px) * frame.height / frame.width;
+    return std::max<std::int64_t>(1, std::int64_t(height + 0.5));
 }
 
 FidelityReference fidelity_reference(const Scene& now, const std::optional<fs::path>& file,
@@ -143,8 +142,7 @@ std::int64_t fidelity_bytes(const FidelityReference& reference, const FidelitySe
     const std::int64_t sides =
         4 * settings.width_px * settings.width_px * (side_aspect[1] + edge_aspect[1]) / side_aspect[0];
     const std::int64_t floats = blurs + views(small) + sides + views(large);
-    return floats * static_cast<std::int64_t>(sizeof(float)) +
-           front_fidelity_bytes(large, reference.height_px(large));
+    return floats * std::int64_t(sizeof(float)) + front_fidelity_bytes(large, reference.height_px(large));
 }
 
 FidelityReport measure_fidelity(const Scene& now, const FidelityReference& reference,

@@ -108,8 +108,7 @@ LoadedSet Pipeline::State::load_set(const LayerParams& params, const SetCache& c
                                     const Progress& progress) const {
     const SourceParams source = source_of(scene, params);
     const LayerParams* const like = like_layer(scene, params);
-    const SplatSet* const there =
-        like ? layers[static_cast<std::size_t>(like - scene.layers.data())].set.get() : nullptr;
+    const SplatSet* const there = like ? layers[like - scene.layers.data()].set.get() : nullptr;
     if (there) return {load_picture_stars(cache, source, params.name, *there, progress)};
     return load_source(cache, source, params.name, progress, nullptr, columns_read(look_of(params)));
 }
@@ -236,8 +235,7 @@ Camera Pipeline::State::camera(const Scene& now, const RenderSettings& settings)
     for (std::size_t i = 0; i < now.layers.size(); ++i) {
         if (drawn(now, i)) box.add(world_bounds(layers[i].box, render_layer(now, now.layers[i])));
     }
-    return make_camera(now.camera, static_cast<double>(settings.width), static_cast<double>(settings.height),
-                       box);
+    return make_camera(now.camera, double(settings.width), double(settings.height), box);
 }
 
 const Environment* Pipeline::State::environment_at(const Scene& now) {
@@ -256,14 +254,13 @@ Pipeline::Pipeline(const Scene& scene, const Progress& progress, const SetCache&
     state_->scene = scene;
     state_->layers.resize(scene.layers.size());
     state_->statistics.resize(scene.layers.size());
-    const double count = static_cast<double>(std::max<std::size_t>(1, scene.layers.size()));
+    const double count = double(std::max<std::size_t>(1, scene.layers.size()));
     for (std::size_t i = 0; i < scene.layers.size(); ++i) {
         const LayerParams& layer = scene.layers[i];
         if (std::ranges::find(streamed, layer.name) != streamed.end() && ever_visible(scene, layer))
             state_->open_layer(i);
         else
-            state_->load_layer(
-                i, cache, progress.part(static_cast<double>(i) / count, static_cast<double>(i + 1) / count));
+            state_->load_layer(i, cache, progress.part(double(i) / count, double(i + 1) / count));
     }
 }
 
@@ -316,18 +313,17 @@ RenderedFrame Pipeline::frame(const FrameScene& frame, const RenderSettings& set
                               const Progress& progress, const TileDone& tile_done) {
     if (!frame.is_blurred()) return state_->rendering(frame.scene, {}, settings, progress, tile_done);
     const std::vector<std::size_t> drawn = state_->drawn_layers(frame);
-    const auto samples = static_cast<int>(frame.samples.size());
+    const auto samples = int(frame.samples.size());
     RenderSettings of_sample = settings;
     of_sample.opacity = settings.aov_depth;
     RenderedFrame sum;
     for (int i = 0; i < samples; ++i) {
-        const Progress part =
-            progress.part(static_cast<double>(i) / samples, static_cast<double>(i + 1) / samples);
-        const Scene& then = frame.at_sample(static_cast<std::size_t>(i));
+        const Progress part = progress.part(double(i) / samples, double(i + 1) / samples);
+        const Scene& then = frame.at_sample(std::size_t(i));
         std::vector<std::size_t> shown;  // at this moment, as indices of `drawn`
         for (std::size_t l = 0; l < drawn.size(); ++l)
             if (state_->drawn(then, drawn[l])) shown.push_back(l);
-        const glm::dvec2& lens = frame.samples[static_cast<std::size_t>(i)].lens;
+        const glm::dvec2& lens = frame.samples[i].lens;
         add_rendering(sum, state_->rendering(then, lens, of_sample, part, {}), shown);
     }
     divide_sum(sum, samples, settings.aov_layers ? drawn.size() : 0);
@@ -358,7 +354,7 @@ RenderedFrame Pipeline::State::rendering(const Scene& now, const glm::dvec2& len
                                          const TileDone& tile_done) {
     const Camera middle = camera(now, settings);
     shade_visible(now, middle, progress);
-    const Camera seen = through_lens(middle, now.camera, lens, static_cast<double>(settings.width));
+    const Camera seen = through_lens(middle, now.camera, lens, double(settings.width));
     return render(visible_layers(now), seen, environment_at(now), settings, progress, &render_cache,
                   tile_done);
 }
@@ -367,8 +363,8 @@ RenderSettings render_settings(const OutputParams& output) {
     RenderSettings settings;
     settings.width = output.width;
     settings.height = output.height;
-    settings.pixel_filter = static_cast<float>(output.pixel_filter);
-    settings.exposure = static_cast<float>(output.exposure);
+    settings.pixel_filter = float(output.pixel_filter);
+    settings.exposure = float(output.exposure);
     settings.aov_depth = output.holds("depth");
     settings.aov_coverage = output.holds("coverage");
     settings.aov_count = output.holds("count");

@@ -200,10 +200,14 @@ AnyLens lens_of(const Camera& camera) {
                                           shared::PROJECTION_FISHEYE, shared::PROJECTION_EQUIRECTANGULAR,
                                           shared::PROJECTION_CYLINDRICAL));
     using Number = decltype(AnyLens::near);
-    return {static_cast<int>(camera.projection),     static_cast<Number>(camera.focal_px),
-            static_cast<Number>(camera.center_x_px), static_cast<Number>(camera.center_y_px),
-            static_cast<Number>(camera.near),        static_cast<Number>(camera.far),
-            static_cast<Number>(camera.near_fade),   static_cast<Number>(camera.edge),
+    return {int(camera.projection),
+            static_cast<Number>(camera.focal_px),
+            static_cast<Number>(camera.center_x_px),
+            static_cast<Number>(camera.center_y_px),
+            static_cast<Number>(camera.near),
+            static_cast<Number>(camera.far),
+            static_cast<Number>(camera.near_fade),
+            static_cast<Number>(camera.edge),
             static_cast<Number>(camera.parallax)};
 }
 
@@ -277,8 +281,8 @@ ExrMatrices exr_matrices(const Camera& camera, double width_px, double height_px
     ExrMatrices result{};
     for (int r = 0; r < 4; ++r)
         for (int c = 0; c < 4; ++c) {
-            result.world_to_camera[4 * r + c] = static_cast<float>(column[c][r]);
-            result.world_to_ndc[4 * r + c] = static_cast<float>(ndc[c][r]);
+            result.world_to_camera[4 * r + c] = float(column[c][r]);
+            result.world_to_ndc[4 * r + c] = float(ndc[c][r]);
         }
     return result;
 }

@@ -77,7 +77,7 @@ constexpr int pieces_per_segment = 32;  // of the arc length's quadrature
 template <class T>
 std::size_t segment_of(std::span<const Keyframe<T>> keyframes, double frame) {
     auto after = std::ranges::upper_bound(keyframes, frame, {}, &Keyframe<T>::frame);
-    auto index = static_cast<std::size_t>(after - keyframes.begin());
+    auto index = std::size_t(after - keyframes.begin());
     return std::min(index > 0 ? index - 1 : 0, keyframes.size() - 2);
 }
 

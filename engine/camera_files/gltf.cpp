@@ -61,9 +61,9 @@ GltfCurve gltf_curve(GltfFile& file, const nlohmann::json& sampler, int componen
         curve.frames.push_back(frame_of(double(seconds), fps));
     curve.values = file.numbers(sampler.at("output"), components);
     const std::size_t each = curve.between == GltfCurve::Between::cubic ? 3 : 1;
-    if (curve.values.size() != curve.frames.size() * each * static_cast<std::size_t>(components))
+    if (curve.values.size() != curve.frames.size() * each * std::size_t(components))
         file.fail(fmt::format("{} values for {} times", curve.frames.size() * each, curve.frames.size()),
-                  std::to_string(curve.values.size() / static_cast<std::size_t>(components)));
+                  std::to_string(curve.values.size() / std::size_t(components)));
     if (std::adjacent_find(curve.frames.begin(), curve.frames.end(), std::greater_equal<>()) !=
         curve.frames.end())
         file.fail("times that ascend", "others");
@@ -73,14 +73,13 @@ GltfCurve gltf_curve(GltfFile& file, const nlohmann::json& sampler, int componen
 /// Its first or last value before and after its times; turns have length 1.
 glm::dvec4 value_of(const GltfCurve& curve, double frame) {
     const auto after = std::ranges::upper_bound(curve.frames, frame);
-    const auto next = static_cast<std::size_t>(after - curve.frames.begin());
+    const auto next = std::size_t(after - curve.frames.begin());
     const bool cubic = curve.between == GltfCurve::Between::cubic;
     // Part 0 arrives, 1 is the value, 2 leaves.
     const auto value = [&](std::size_t key, std::size_t part) {
         glm::dvec4 v(0.0);
-        const std::size_t at = (cubic ? 3 * key + part : key) * static_cast<std::size_t>(curve.components);
-        for (int c = 0; c < curve.components; ++c)
-            v[c] = double(curve.values[at + static_cast<std::size_t>(c)]);
+        const std::size_t at = (cubic ? 3 * key + part : key) * std::size_t(curve.components);
+        for (int c = 0; c < curve.components; ++c) v[c] = double(curve.values[at + std::size_t(c)]);
         return v;
     };
     const bool turn = curve.components == 4;
@@ -124,15 +123,15 @@ std::vector<std::int64_t> way_to_camera(const GltfFile& file) {
     std::vector<std::int64_t> parent(nodes.size(), -1);
     std::int64_t camera = -1;
     for (std::size_t i = 0; i < nodes.size(); ++i) {
-        if (camera < 0 && nodes[i].contains("camera")) camera = static_cast<std::int64_t>(i);
+        if (camera < 0 && nodes[i].contains("camera")) camera = std::int64_t(i);
         for (const Json& child : nodes[i].value("children", Json::array())) {
             file.element("nodes", child);
-            parent[child.get<std::size_t>()] = static_cast<std::int64_t>(i);
+            parent[child.get<std::size_t>()] = std::int64_t(i);
         }
     }
     if (camera < 0) file.fail("a node with a camera", "none");
     std::vector<std::int64_t> way;
-    for (std::int64_t i = camera; i >= 0; i = parent[static_cast<std::size_t>(i)]) {
+    for (std::int64_t i = camera; i >= 0; i = parent[i]) {
         if (way.size() > nodes.size()) file.fail("nodes that are not their own children", "a circle");
         way.insert(way.begin(), i);
     }
@@ -150,13 +149,13 @@ void attach_curves(GltfFile& file, const std::vector<std::int64_t>& way, double 
             const std::string path = target.value("path", "");
             const auto* const moved = std::ranges::find(moved_paths, path);
             if (found == way.end() || moved == moved_paths.end()) continue;  // weights, or of an extension
-            MovedNode& node = nodes[static_cast<std::size_t>(found - way.begin())];
+            MovedNode& node = nodes[found - way.begin()];
             const auto sampler = channel.at("sampler").get<std::int64_t>();
             const Json& samplers = animation.at("samplers");
             if (sampler < 0 || sampler >= std::ssize(samplers))
                 file.fail("a number of one of its samplers", std::to_string(sampler));
-            node.curves[static_cast<std::size_t>(moved - moved_paths.begin())] = gltf_curve(
-                file, samplers[static_cast<std::size_t>(sampler)], path == "rotation" ? 4 : 3, fps);
+            node.curves[moved - moved_paths.begin()] =
+                gltf_curve(file, samplers[sampler], path == "rotation" ? 4 : 3, fps);
             node.rest.matrix.reset();
             moves = true;
         }
@@ -218,7 +217,7 @@ CameraTrack read_checked_gltf(const fs::path& path, const FrameRate& rate) {
 
 void add_floats(std::string& bytes, std::initializer_list<double> values) {
     for (const double value : values) {
-        const auto number = static_cast<float>(value);
+        const auto number = float(value);
         char raw[sizeof number];
         std::memcpy(raw, &number, sizeof number);
         bytes.append(raw, sizeof number);
@@ -260,8 +259,8 @@ std::string gltf_text(const CameraTrack& track, double aspect, double near, doub
         return Json{{"bufferView", view}, {"componentType", 5126}, {"count", n}, {"type", type}};
     };
     Json times = accessor(0, "SCALAR");
-    times["min"] = {static_cast<float>(first.frame / track.fps)};
-    times["max"] = {static_cast<float>(track.samples.back().frame / track.fps)};
+    times["min"] = {float(first.frame / track.fps)};
+    times["max"] = {float(track.samples.back().frame / track.fps)};
     const Json file = {
         {"asset", {{"version", "2.0"}, {"generator", "astrosplat " ASTROSPLAT_VERSION}}},
         {"scene", 0},

@@ -156,7 +156,7 @@ CameraTrack read_gaia_sky(const fs::path& file, const FrameRate& rate) {
         const std::int64_t index = std::ssize(track.samples);
         check_count(rows, index);
         TrackSample sample;
-        sample.frame = 1.0 + static_cast<double>(index) * rate.output_fps / track.fps;
+        sample.frame = 1.0 + double(index) * rate.output_fps / track.fps;
         sample.eye = vector_of(rows, words, 1, "the place");
         const glm::dvec3 direction = vector_of(rows, words, 4, "the direction"),
                          up = vector_of(rows, words, 7, "up");

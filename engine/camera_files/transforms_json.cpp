@@ -49,14 +49,14 @@ CameraTrack read_checked_transforms(const fs::path& file) {
         fail(fmt::format("at most {} frames", most_camera_samples), "more");
     for (const Json& frame : frames) {
         TrackSample sample;
-        sample.frame = static_cast<double>(track.samples.size() + 1);
+        sample.frame = double(track.samples.size() + 1);
         const std::string place = fmt::format("frame {}", sample.frame);
         const auto rows = frame.at("transform_matrix").get<std::vector<std::vector<double>>>();
         if (rows.size() < 3 || rows[0].size() != 4 || rows[1].size() != 4 || rows[2].size() != 4)
             fail(fmt::format("3 or 4 rows of 4 numbers as transform_matrix of {}", place), "others");
         glm::dmat3 axes;
         for (int c = 0; c < 3; ++c)
-            for (int r = 0; r < 3; ++r) axes[c][r] = rows[std::size_t(r)][std::size_t(c)];
+            for (int r = 0; r < 3; ++r) axes[c][r] = rows[r][c];
         sample.eye = {rows[0][3], rows[1][3], rows[2][3]};
         if (!quaternion_from_axes(axes, sample.rotation))
             fail("axes in the transform_matrix of " + place, "none");

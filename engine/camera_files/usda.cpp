@@ -47,7 +47,7 @@ std::vector<double> time_codes(const Chain& chain, const std::string& file) {
     for (const UsdPrim* const prim : chain) add_times(*prim, times);
     if (times.empty()) return {0.0};
     const double first = *times.begin(), last = *times.rbegin();
-    if (!(last - first + static_cast<double>(times.size()) <= static_cast<double>(most_camera_samples)) ||
+    if (!(last - first + double(times.size()) <= double(most_camera_samples)) ||
         !(std::fmax(std::fabs(first), std::fabs(last)) <= 1e12))
         bad_input(file, "", fmt::format("at most {} frames, near 0", most_camera_samples),
                   fmt::format("time codes from {} to {}", shortest(first), shortest(last)));

@@ -160,7 +160,7 @@ void AtomicFile::write_at(std::int64_t offset, const void* bytes, std::size_t si
         if (written < 0) fail_writing(target_, errno);
         next += written;
         offset += written;
-        size -= static_cast<std::size_t>(written);
+        size -= std::size_t(written);
     }
     size_ = std::max(size_, offset);
     // The disk starts while we go on, so that little is left for commit() to wait for. Only a hint.

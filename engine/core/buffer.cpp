@@ -103,7 +103,7 @@ class Blocks {
             munmap(spare_[count].memory, spare_[count].size);
             spare_bytes_ -= spare_[count].size;
         }
-        spare_.erase(spare_.begin(), spare_.begin() + static_cast<std::ptrdiff_t>(count));
+        spare_.erase(spare_.begin(), spare_.begin() + std::ptrdiff_t(count));
     }
 
     static constexpr std::size_t most_spare = 256;                     // blocks

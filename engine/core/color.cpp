@@ -35,8 +35,8 @@ constexpr int table_steps = 4096;
 std::array<float, table_steps + 2> make_srgb_table() {
     std::array<float, table_steps + 2> table{};
     for (int i = 0; i <= table_steps + 1; ++i) {
-        const double s = static_cast<double>(i) / table_steps;
-        table[static_cast<std::size_t>(i)] = static_cast<float>(1.055 * real::pow(s, 2.0 / 2.4) - 0.055);
+        const double s = double(i) / table_steps;
+        table[i] = float(1.055 * real::pow(s, 2.0 / 2.4) - 0.055);
     }
     return table;
 }
@@ -47,9 +47,9 @@ float display_srgb(float linear) {
     static const std::array<float, table_steps + 2> table = make_srgb_table();
     const float x = linear > 0.0f ? (linear < 1.0f ? linear : 1.0f) : 0.0f;
     if (x <= 0.0031308f) return x * 12.92f;
-    const float at = std::sqrt(x) * static_cast<float>(table_steps);
+    const float at = std::sqrt(x) * float(table_steps);
     const float below = std::floor(at);
-    const auto i = static_cast<std::size_t>(below);
+    const auto i = std::size_t(below);
     return table[i] + (table[i + 1] - table[i]) * (at - below);
 }
 

@@ -47,7 +47,7 @@ InputFile::~InputFile() {
 std::size_t InputFile::read(char* out, std::size_t size) {
     for (;;) {
         const ssize_t got = ::read(descriptor_, out, size);
-        if (got >= 0) return static_cast<std::size_t>(got);
+        if (got >= 0) return std::size_t(got);
         if (errno != EINTR) cannot_read(file_, std::strerror(errno));
     }
 }
@@ -59,7 +59,7 @@ std::string read_file(const fs::path& file, const Progress& progress) {
     claim_memory(in.size(), fmt::format("reading {}", file.string()));
     constexpr std::size_t block = std::size_t{1} << 22;
     std::string text;
-    text.reserve(static_cast<std::size_t>(in.size()) + 1);  // the last read finds the end
+    text.reserve(std::size_t(in.size()) + 1);  // the last read finds the end
     for (std::size_t got = 1; got > 0;) {
         progress.check();
         const std::size_t have = text.size();

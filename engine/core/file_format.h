@@ -25,9 +25,7 @@ enum class FileUse : unsigned {
     movie = 16,          // written as one
 };
 
-constexpr FileUse operator|(FileUse a, FileUse b) {
-    return static_cast<FileUse>(static_cast<unsigned>(a) | static_cast<unsigned>(b));
-}
+constexpr FileUse operator|(FileUse a, FileUse b) { return static_cast<FileUse>(unsigned(a) | unsigned(b)); }
 constexpr bool includes(FileUse uses, FileUse use) { return (uses | use) == uses; }
 
 /// The ending of a file's name, lower case, with the dot.

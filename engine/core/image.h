@@ -22,14 +22,14 @@ struct Image {
 
 inline Image make_image(std::int64_t width, std::int64_t height, int channels, float value = 0.0f) {
     Image image{width, height, channels, {}};
-    image.pixels.assign(static_cast<std::size_t>(width * height * channels), value);
+    image.pixels.assign(std::size_t(width * height * channels), value);
     return image;
 }
 
 /// Without a value: whoever writes a pixel first takes its memory.
 inline Image unfilled_image(std::int64_t width, std::int64_t height, int channels) {
     Image image{width, height, channels, {}};
-    image.pixels.resize(static_cast<std::size_t>(width * height * channels));
+    image.pixels.resize(std::size_t(width * height * channels));
     return image;
 }
 

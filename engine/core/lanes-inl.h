@@ -97,7 +97,7 @@ HWY_INLINE unsigned bits_of(D d, Mask mask) {
     std::uint8_t bytes[8] = {};
     hn::StoreMaskBits(d, mask, bytes);
     static_assert(hn::MaxLanes(D()) <= 16);
-    return bytes[0] | static_cast<unsigned>(bytes[1]) << 8;
+    return bytes[0] | unsigned(bytes[1]) << 8;
 }
 
 #if HWY_TARGET == HWY_AVX2

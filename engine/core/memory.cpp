@@ -95,7 +95,7 @@ std::string human_bytes(double bytes) { return human(bytes, 1024.0, {"B", "KiB",
 std::string human_count(double count) { return human(count, 1000.0, {"", "k", "M", "G", "T"}); }
 
 std::string human_count(std::int64_t count, const std::string& noun) {
-    return human_count(static_cast<double>(count)) + " " + noun + (count == 1 ? "" : "s");
+    return human_count(double(count)) + " " + noun + (count == 1 ? "" : "s");
 }
 
 std::int64_t group_room(const std::string& limit_text, const std::string& usage_text, const std::string& stat,
@@ -129,7 +129,7 @@ std::int64_t peak_memory_bytes() {
     if (file < 0) return 0;
     const ssize_t size = ::read(file, status.data(), status.size());
     ::close(file);
-    const std::string_view text(status.data(), static_cast<std::size_t>(std::max<ssize_t>(0, size)));
+    const std::string_view text(status.data(), std::size_t(std::max<ssize_t>(0, size)));
     return std::max<std::int64_t>(0, field(text, "VmHWM:")) * 1024;
 }
 
@@ -158,7 +158,7 @@ void keep_little_freed_memory() {
 }
 
 void claim_memory(std::int64_t bytes, const std::string& what) {
-    const auto text = [](std::int64_t n) { return human_bytes(static_cast<double>(n)); };
+    const auto text = [](std::int64_t n) { return human_bytes(double(n)); };
     const std::string need = text(bytes);
     const std::int64_t available = available_memory_bytes(), limit = own_limit;
     if (bytes > available) {

@@ -77,8 +77,8 @@ class Pool {
     void start() {
         const std::lock_guard lock(mutex_);
         try {
-            while (static_cast<int>(threads_.size()) + 1 < size_) {
-                const int worker = static_cast<int>(threads_.size()) + 1;
+            while (int(threads_.size()) + 1 < size_) {
+                const int worker = int(threads_.size()) + 1;
                 threads_.emplace_back([this, worker] { serve(worker); });
             }
         } catch (const std::system_error&) {  // the system has no more: those that are there do the work
@@ -158,7 +158,7 @@ int affinity_threads() {
         CPU_FREE(set);
         if (got) return count;
     }
-    return static_cast<int>(std::thread::hardware_concurrency());
+    return int(std::thread::hardware_concurrency());
 }
 
 // Cores granted by "QUOTA PERIOD" in microseconds, rounded up; `most` without a limit ("max", -1).
@@ -166,7 +166,7 @@ int quota_threads(std::string_view quota, std::string_view period, int most) {
     const auto granted = parse_int64(trim(quota));
     const auto per = parse_int64(trim(period));
     if (!granted || !per || *granted <= 0 || *per <= 0) return most;
-    return static_cast<int>(std::clamp<std::int64_t>((*granted + *per - 1) / *per, 1, most));
+    return int(std::clamp<std::int64_t>((*granted + *per - 1) / *per, 1, most));
 }
 
 int quota_of_groups(int most) {
@@ -219,7 +219,7 @@ void parallel_parts(std::size_t count, const Progress& progress,
         } catch (const InputError& error) {
             errors[part] = error.what();
         }
-        progress.at(static_cast<double>(++done) / static_cast<double>(count));
+        progress.at(double(++done) / double(count));
     });
     for (const std::string& error : errors)
         if (!error.empty()) throw InputError(error);

@@ -34,7 +34,7 @@ void parallel_for(std::int64_t count, const std::function<void(std::int64_t inde
 /// parallel_chunks that calls body(index) for every item.
 template <class Index, class Body>
 void parallel_each(Index count, std::int64_t chunk, const Body& body) {
-    parallel_chunks(static_cast<std::int64_t>(count), chunk, [&](std::int64_t begin, std::int64_t end, int) {
+    parallel_chunks(std::int64_t(count), chunk, [&](std::int64_t begin, std::int64_t end, int) {
         for (auto i = static_cast<Index>(begin); i < static_cast<Index>(end); ++i) body(i);
     });
 }

@@ -59,7 +59,7 @@ constexpr std::array<double, N> inverse_factorials(int first, int step, double s
     for (int k = 2; k <= first; ++k) factorial *= k;
     for (std::size_t i = 0; i < N; ++i) {
         c[i] = s / factorial;
-        for (int k = 1; k <= step; ++k) factorial *= first + static_cast<int>(i) * step + k;
+        for (int k = 1; k <= step; ++k) factorial *= first + int(i) * step + k;
         s *= sign;
     }
     return c;
@@ -70,13 +70,13 @@ template <std::size_t N>
 constexpr std::array<double, N> inverse_odds(double sign) {
     std::array<double, N> c{};
     double s = 1.0;
-    for (std::size_t i = 0; i < N; ++i, s *= sign) c[i] = s / static_cast<double>(3 + 2 * i);
+    for (std::size_t i = 0; i < N; ++i, s *= sign) c[i] = s / double(3 + 2 * i);
     return c;
 }
 
 // 2^k, -1022 <= k <= 1023.
 double power_of_two(int k) {
-    const std::uint64_t bits = static_cast<std::uint64_t>(k + 1023) << 52;
+    const std::uint64_t bits = std::uint64_t(k + 1023) << 52;
     double value;
     std::memcpy(&value, &bits, sizeof value);
     return value;
@@ -93,8 +93,8 @@ double exp_pair(Pair x) {
     const double tail = r.lo + x.lo;
     const double q = r.hi * r.hi * polynomial(c, r.hi);
     const double p = 1.0 + (r.hi + (q + tail * (1.0 + (r.hi + q))));
-    const int half = static_cast<int>(k) / 2;  // two steps: 2^k alone may lie outside the range of doubles
-    return p * power_of_two(half) * power_of_two(static_cast<int>(k) - half);
+    const int half = int(k) / 2;  // two steps: 2^k alone may lie outside the range of doubles
+    return p * power_of_two(half) * power_of_two(int(k) - half);
 }
 
 // ln x for finite x > 0: 2 atanh(s) + e ln 2 with s = (m - 1) / (m + 1), x = m 2^e, m within sqrt(2) of 1.
@@ -129,7 +129,7 @@ Reduced reduce(double x) {
     const Pair a = two_sum(x - k * 0x1.921fb544p+0, -k * 0x1.0b4611a6p-34);
     const Pair b = two_sum(a.hi, -k * 0x1.3198a2ep-69);
     const Pair rest = two_sum(b.hi, a.lo + b.lo - k * 0x1.b839a252049c1p-104);
-    return {rest, static_cast<int>(static_cast<std::int64_t>(k) & 3)};
+    return {rest, int(std::int64_t(k) & 3)};
 }
 
 Pair sin_series(Pair x) {
@@ -161,7 +161,7 @@ constexpr Pair half_pi = {0x1.921fb54442d18p+0, 0x1.1a62633145c07p-54};
 // atan(y / x) for 0 <= y <= x, x > 0: atan(c) + atan((y - c x) / (x + c y)) with c the nearest eighth.
 Pair atan_ratio(double y, double x) {
     static constexpr auto series = inverse_odds<8>(-1.0);
-    const int eighth = static_cast<int>(std::floor(y / x * 8.0 + 0.5));
+    const int eighth = int(std::floor(y / x * 8.0 + 0.5));
     const double c = eighth * 0.125;
     const double t = (y - c * x) / (x + c * y);
     const double z = t * t;
@@ -209,15 +209,14 @@ double tan(double x) {
 OnCircle on_circle(float turns) {
     static constexpr auto sines = inverse_factorials<6>(3, 2, -1.0);
     static constexpr auto cosines = inverse_factorials<7>(4, 2, -1.0);
-    const double quarters = 4.0 * static_cast<double>(turns);
-    const int quadrant = static_cast<int>(quarters + 0.5);           // 0..4
+    const double quarters = 4.0 * double(turns);
+    const int quadrant = int(quarters + 0.5);                        // 0..4
     const double x = (quarters - quadrant) * half_pi.hi, z = x * x;  // |x| <= pi / 4
     const double part[2] = {1.0 - 0.5 * z + z * z * polynomial(cosines, z), x - x * z * polynomial(sines, z)};
     static constexpr double cosine_sign[] = {1.0, -1.0, -1.0, 1.0, 1.0},
                             sine_sign[] = {1.0, 1.0, -1.0, -1.0, 1.0};
     const int odd = quadrant & 1;
-    return {static_cast<float>(cosine_sign[quadrant] * part[odd]),
-            static_cast<float>(sine_sign[quadrant] * part[1 - odd])};
+    return {float(cosine_sign[quadrant] * part[odd]), float(sine_sign[quadrant] * part[1 - odd])};
 }
 
 double atan2(double y, double x) {

@@ -23,7 +23,7 @@ glm::dvec4 quaternion_of_matrix(const glm::dmat3& m) {
     const auto largest = std::ranges::max_element(squares) - squares.begin();
     const double xy = m[0][1] + m[1][0], yz = m[1][2] + m[2][1], zx = m[2][0] + m[0][2];
     const double wx = m[1][2] - m[2][1], wy = m[2][0] - m[0][2], wz = m[0][1] - m[1][0];
-    const double square = squares[static_cast<std::size_t>(largest)];
+    const double square = squares[largest];
     glm::dvec4 q = largest == 0   ? glm::dvec4(square, xy, zx, wx)
                    : largest == 1 ? glm::dvec4(xy, square, yz, wy)
                    : largest == 2 ? glm::dvec4(zx, yz, square, wz)

@@ -54,8 +54,8 @@ auto median(Values&& values) {
 /// least, 1 the greatest, 1/2 the mean of the two in the middle. 0 for an empty list; NaN must not occur.
 inline double percentile(std::vector<double> values, double share) {
     if (values.empty()) return 0.0;
-    const double rank = share * static_cast<double>(values.size() - 1), below = std::floor(rank);
-    const auto at = values.begin() + static_cast<std::ptrdiff_t>(below);
+    const double rank = share * double(values.size() - 1), below = std::floor(rank);
+    const auto at = values.begin() + std::ptrdiff_t(below);
     std::nth_element(values.begin(), at, values.end());
     if (rank == below) return *at;
     return *at + (*std::min_element(at + 1, values.end()) - *at) * (rank - below);

@@ -120,7 +120,7 @@ std::optional<std::string> bytes_of_base64(std::string_view text) {
     for (const char c : text) {
         const std::size_t value = letters.find(c);
         if (value == std::string_view::npos) return std::nullopt;
-        bits = bits << 6 | static_cast<std::uint32_t>(value);
+        bits = bits << 6 | std::uint32_t(value);
         count += 6;
         if (count < 8) continue;
         count -= 8;
@@ -217,7 +217,7 @@ TextTable::TextTable(std::string_view text) : rows_(text) {
 int TextTable::column(std::initializer_list<std::string_view> names) const {
     for (const std::string_view name : names)
         if (const auto found = std::ranges::find(names_, name); found != names_.end())
-            return static_cast<int>(found - names_.begin());
+            return int(found - names_.begin());
     return none;
 }
 
@@ -228,7 +228,7 @@ bool TextTable::next() {
 }
 
 std::string_view TextTable::field(int column) const {
-    const auto index = static_cast<std::size_t>(column);
+    const auto index = std::size_t(column);
     return column >= 0 && index < fields_.size() ? fields_[index] : std::string_view();
 }
 

@@ -64,7 +64,7 @@ std::optional<std::string> bytes_of_base64(std::string_view text);
 /// The names of all values up to `last`, which are numbered from 0 without gaps.
 template <auto last, class... Names>
 constexpr std::array<std::string_view, sizeof...(Names)> names_up_to(Names... names) {
-    static_assert(sizeof...(Names) == static_cast<std::size_t>(last) + 1, "one name for every value");
+    static_assert(sizeof...(Names) == std::size_t(last) + 1, "one name for every value");
     return {std::string_view(names)...};
 }
 
@@ -75,7 +75,7 @@ concept NamedEnum = std::is_enum_v<E> && requires(E value) {
 
 template <NamedEnum E>
 constexpr std::string_view name_of(E value) {
-    return names_of(value)[static_cast<std::size_t>(value)];
+    return names_of(value)[value];
 }
 
 /// Whether the values are numbered as the constants of a shader, all of them.

@@ -83,9 +83,8 @@ float median_about(const Image& image, std::int64_t x, std::int64_t y) {
     for_each_about(image, x, y, median_reach_px, [&](std::int64_t i, std::int64_t j) {
         bits[count++] = std::bit_cast<std::int32_t>(*image.at(i, j));
     });
-    std::fill(bits.begin() + static_cast<std::ptrdiff_t>(count), bits.end(),
-              std::numeric_limits<std::int32_t>::max());
-    return value_of_rank(bits, static_cast<std::int32_t>(count / 2));
+    std::fill(bits.begin() + std::ptrdiff_t(count), bits.end(), std::numeric_limits<std::int32_t>::max());
+    return value_of_rank(bits, std::int32_t(count / 2));
 }
 
 Cells measure_cells(const Image& image, std::int64_t cell_px) {

@@ -132,8 +132,7 @@ PictureObjects find_objects(const Image& picture, double longest_px) {
     for (const PixelPart& part : connected_parts(std::move(mask))) {
         const PictureObject object = object_of(part.pixels, brightest, dark);
         if (part.pixels.size() < least_px || double(object.reach) > longest_px) continue;
-        for (const std::int64_t i : part.pixels)
-            found.owner[i] = static_cast<std::int32_t>(found.objects.size());
+        for (const std::int64_t i : part.pixels) found.owner[i] = std::int32_t(found.objects.size());
         found.objects.push_back(object);
     }
     share_light(picture, found);

@@ -49,10 +49,9 @@ Image signed_difference(const Image& a, const Image& b) {
     parallel_each(a.width * a.height, 1 << 14, [&](std::int64_t i) {
         const float difference = displayed_mean(a.pixels.data() + i * a.channels) -
                                  displayed_mean(b.pixels.data() + i * b.channels);
-        const float t = std::min(1.0f, std::fabs(difference) / static_cast<float>(full_difference));
+        const float t = std::min(1.0f, std::fabs(difference) / float(full_difference));
         const float* const full = difference > 0.0f ? more : less;
-        for (int c = 0; c < 3; ++c)
-            shown.pixels[static_cast<std::size_t>(4 * i + c)] = (none[c] + (full[c] - none[c]) * t) / 255.0f;
+        for (int c = 0; c < 3; ++c) shown.pixels[4 * i + c] = (none[c] + (full[c] - none[c]) * t) / 255.0f;
     });
     return shown;
 }
@@ -101,7 +100,7 @@ double mean_hue_deg(double h1, double h2, bool grey) {  // equation 14
 
 Lab lab_of_linear(const float* rgb) {
     double c[3];
-    for (int i = 0; i < 3; ++i) c[i] = rgb[i] > 0.0f ? std::min(1.0, static_cast<double>(rgb[i])) : 0.0;
+    for (int i = 0; i < 3; ++i) c[i] = rgb[i] > 0.0f ? std::min(1.0, double(rgb[i])) : 0.0;
     // IEC 61966-2-1, each row over its sum, so that white is (1, 1, 1).
     const double x = lab_curve((0.4124 * c[0] + 0.3576 * c[1] + 0.1805 * c[2]) / 0.9505);
     const double y = lab_curve(0.2126 * c[0] + 0.7152 * c[1] + 0.0722 * c[2]);
@@ -138,10 +137,10 @@ ColorDifferences color_differences(const Image& a, const Image& b) {
     std::int64_t step = 1;
     while ((a.width / step) * (a.height / step) > most_compared_pixels) ++step;
     const std::int64_t columns = (a.width + step - 1) / step, rows = (a.height + step - 1) / step;
-    std::vector<double> differences(static_cast<std::size_t>(columns * rows));
+    std::vector<double> differences(std::size_t(columns * rows));
     parallel_each(rows, 8, [&](std::int64_t y) {
         for (std::int64_t x = 0; x < columns; ++x)
-            differences[static_cast<std::size_t>(y * columns + x)] =
+            differences[y * columns + x] =
                 ciede2000(lab_of_linear(a.at(x * step, y * step)), lab_of_linear(b.at(x * step, y * step)));
     });
     return {percentile(differences, 0.5), percentile(differences, 0.95)};

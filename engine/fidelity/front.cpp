@@ -25,7 +25,7 @@ void require_same_size([[maybe_unused]] const Image& a, [[maybe_unused]] const I
 Image products(const Image& a, const Image& b) {
     Image all = make_image(a.width, a.height, 5);
     for (std::int64_t i = 0; i < a.width * a.height; ++i) {
-        const float x = a.pixels[static_cast<std::size_t>(i)], y = b.pixels[static_cast<std::size_t>(i)];
+        const float x = a.pixels[i], y = b.pixels[i];
         float* const p = all.pixels.data() + 5 * i;
         p[0] = x, p[1] = y, p[2] = x * x, p[3] = y * y, p[4] = x * y;
     }
@@ -48,13 +48,12 @@ double psnr_db(const Image& a, const Image& b) {
     const double squares = sum_over_rows(x.height, [&](std::int64_t j) {
         double sum = 0.0;
         for (std::int64_t i = 0; i < row; ++i) {
-            const double d = static_cast<double>(x.at(0, j)[i]) - static_cast<double>(y.at(0, j)[i]);
+            const double d = double(x.at(0, j)[i]) - double(y.at(0, j)[i]);
             sum += d * d;
         }
         return sum;
     });
-    return -10.0 * real::log(squares / static_cast<double>(x.pixels.size()) + least_square_error) /
-           real::log(10.0);
+    return -10.0 * real::log(squares / double(x.pixels.size()) + least_square_error) / real::log(10.0);
 }
 
 double ssim(const Image& a, const Image& b) {
@@ -65,7 +64,7 @@ double ssim(const Image& a, const Image& b) {
         for (std::int64_t x = 0; x < blurred.width; ++x) row += ssim_of_pixel(blurred.at(x, y));
         return row;
     });
-    return sum / static_cast<double>(blurred.width * blurred.height);
+    return sum / double(blurred.width * blurred.height);
 }
 
 namespace {
@@ -77,15 +76,15 @@ ChannelSums cell_light(const Image& image, std::int64_t column, std::int64_t row
     const auto begin = [](std::int64_t cell, std::int64_t size) { return cell * size / flux_cells; };
     for (std::int64_t y = begin(row, image.height); y < begin(row + 1, image.height); ++y)
         for (std::int64_t x = begin(column, image.width); x < begin(column + 1, image.width); ++x)
-            for (int c = 0; c < 3; ++c) sums[static_cast<std::size_t>(c)] += image.at(x, y)[c];
+            for (int c = 0; c < 3; ++c) sums[c] += image.at(x, y)[c];
     return sums;
 }
 
 std::vector<ChannelSums> light_of_cells(const Image& image) {
-    std::vector<ChannelSums> cells(static_cast<std::size_t>(flux_cells * flux_cells));
+    std::vector<ChannelSums> cells(std::size_t(flux_cells * flux_cells));
     parallel_for(flux_cells, [&](std::int64_t row, int) {
         for (std::int64_t column = 0; column < flux_cells; ++column)
-            cells[static_cast<std::size_t>(row * flux_cells + column)] = cell_light(image, column, row);
+            cells[row * flux_cells + column] = cell_light(image, column, row);
     });
     return cells;
 }
@@ -101,8 +100,7 @@ double total(const ChannelSums& sums) { return sums[0] + sums[1] + sums[2]; }
 FluxRatios flux_ratios(const Image& picture, const Image& reference) {
     assert(picture.width == reference.width && picture.height == reference.height);
     const std::vector<ChannelSums> ours = light_of_cells(picture), theirs = light_of_cells(reference);
-    const double cell_samples =
-        3.0 * static_cast<double>(picture.width * picture.height) / static_cast<double>(ours.size());
+    const double cell_samples = 3.0 * double(picture.width * picture.height) / double(ours.size());
     FluxRatios result;
     ChannelSums our_sum{}, their_sum{};
     std::vector<double> lit;
@@ -132,12 +130,12 @@ double mean_square_difference(const Image& a, const Image& b) {
     const double sum = sum_over_rows(a.height, [&](std::int64_t y) {
         double row = 0.0;
         for (std::int64_t x = 0; x < a.width; ++x) {
-            const double d = static_cast<double>(*a.at(x, y)) - static_cast<double>(*b.at(x, y));
+            const double d = double(*a.at(x, y)) - double(*b.at(x, y));
             row += d * d;
         }
         return row;
     });
-    return sum / static_cast<double>(a.width * a.height);
+    return sum / double(a.width * a.height);
 }
 
 // The mean square of each band: those between the blurs by 0, 1, 2, 4 ... `widest` px.
@@ -157,7 +155,7 @@ std::vector<double> band_powers(const Image& picture, double widest) {
 
 std::vector<ScalePower> power_by_scale(const Image& picture, const Image& reference) {
     assert(picture.width == reference.width && picture.height == reference.height);
-    const double widest = static_cast<double>(std::min(picture.width, picture.height)) / 8.0;
+    const double widest = double(std::min(picture.width, picture.height)) / 8.0;
     const std::vector<double> ours = band_powers(picture, widest), theirs = band_powers(reference, widest);
     std::vector<ScalePower> bands;
     double finer = 0.0, coarser = 1.0;
@@ -173,7 +171,7 @@ std::vector<ScalePower> power_by_scale(const Image& picture, const Image& refere
 
 FrontFidelity front_fidelity(const Image& rendered, const Image& reference, double border) {
     assert(rendered.width == reference.width && rendered.height == reference.height);
-    const auto margin = static_cast<std::int64_t>(border * static_cast<double>(rendered.width) + 0.5);
+    const auto margin = std::int64_t(border * double(rendered.width) + 0.5);
     const Image ours = inner_colors(rendered, margin), theirs = inner_colors(reference, margin);
     FrontFidelity result;
     result.width_px = rendered.width;
@@ -189,7 +187,7 @@ FrontFidelity front_fidelity(const Image& rendered, const Image& reference, doub
 // The cropped pictures, and the five channels of ssim with two copies on their way through a blur.
 std::int64_t front_fidelity_bytes(std::int64_t width_px, std::int64_t height_px) {
     constexpr std::int64_t floats_per_pixel = 2 * 3 + 3 * 5;
-    return width_px * height_px * floats_per_pixel * static_cast<std::int64_t>(sizeof(float));
+    return width_px * height_px * floats_per_pixel * std::int64_t(sizeof(float));
 }
 
 }  // namespace astrosplat

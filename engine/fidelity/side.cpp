@@ -30,12 +30,11 @@ struct Profiles {
 };
 
 Profiles mean_profiles(const Image& light) {
-    Profiles p{Profile(static_cast<std::size_t>(light.height)),
-               Profile(static_cast<std::size_t>(light.width))};
+    Profiles p{Profile(std::size_t(light.height)), Profile(std::size_t(light.width))};
     for (std::int64_t y = 0; y < light.height; ++y)
         for (std::int64_t x = 0; x < light.width; ++x) {
-            p.rows[static_cast<std::size_t>(y)] += *light.at(x, y) / static_cast<double>(light.width);
-            p.columns[static_cast<std::size_t>(x)] += *light.at(x, y) / static_cast<double>(light.height);
+            p.rows[y] += *light.at(x, y) / double(light.width);
+            p.columns[x] += *light.at(x, y) / double(light.height);
         }
     return p;
 }
@@ -50,11 +49,11 @@ Span span_above(const Profile& p, double threshold) {
     const auto above = [&](double v) { return v > threshold; };
     const auto first = std::find_if(p.begin(), p.end(), above) - p.begin();
     const auto last = std::find_if(p.rbegin(), p.rend(), above) - p.rbegin();
-    return {first, static_cast<std::int64_t>(p.size()) - 1 - last};
+    return {first, std::int64_t(p.size()) - 1 - last};
 }
 
 Profile blurred(const Profile& profile, double sigma_px) {
-    Image line = make_image(static_cast<std::int64_t>(profile.size()), 1, 1);
+    Image line = make_image(std::int64_t(profile.size()), 1, 1);
     std::copy(profile.begin(), profile.end(), line.pixels.begin());
     line = convolved_with_gaussian(line, sigma_px);
     return {line.pixels.begin(), line.pixels.end()};
@@ -72,24 +71,22 @@ double depth_of_lane(const Profile& rows, const Span& half) {
 
 // Values [begin, end) as far as they exist; one at least.
 Profile part(const Profile& p, std::int64_t begin, std::int64_t end) {
-    const auto size = static_cast<std::int64_t>(p.size());
+    const auto size = std::int64_t(p.size());
     const std::int64_t from = std::clamp<std::int64_t>(begin, 0, size - 1);
     return {p.begin() + from, p.begin() + std::clamp(end, from + 1, size)};
 }
 
-double mean(const Profile& p) {
-    return std::accumulate(p.begin(), p.end(), 0.0) / static_cast<double>(p.size());
-}
+double mean(const Profile& p) { return std::accumulate(p.begin(), p.end(), 0.0) / double(p.size()); }
 
 double center_over_half_radius(const Image& light, const Profile& columns, const Span& disk) {
     const Image smooth = convolved_with_gaussian(light, center_blur_px);
     Profile peak(columns.size());
     for (std::int64_t y = 0; y < smooth.height; ++y)
         for (std::size_t x = 0; x < peak.size(); ++x)
-            peak[x] = std::max(peak[x], static_cast<double>(*smooth.at(static_cast<std::int64_t>(x), y)));
+            peak[x] = std::max(peak[x], double(*smooth.at(std::int64_t(x), y)));
     const std::int64_t length = disk.length(), middle = (disk.first + disk.last) / 2,
                        reach = std::max<std::int64_t>(2, length / 40);
-    const Profile wide = blurred(columns, static_cast<double>(length) / 30.0);
+    const Profile wide = blurred(columns, double(length) / 30.0);
     const std::int64_t brightest = std::max_element(wide.begin(), wide.end()) - wide.begin();
     const std::int64_t begin = std::max<std::int64_t>(0, brightest - reach);
     const double center = percentile(part(peak, begin, begin + 2 * reach), 0.5);
@@ -104,10 +101,10 @@ double body_brightness(const Image& light) {
     double sum = 0.0, count = 0.0;
     for (std::size_t i = 0; i < light.pixels.size(); ++i) {
         if (!(smooth.pixels[i] > threshold)) continue;
-        sum += static_cast<double>(light.pixels[i]);
+        sum += double(light.pixels[i]);
         count += 1.0;
     }
-    return static_cast<double>(display_srgb(static_cast<float>(sum / count)));
+    return double(display_srgb(float(sum / count)));
 }
 
 }  // namespace
@@ -119,7 +116,7 @@ EdgeOnProfile edge_on_profile(const Image& edge_view) {
     const Span half = span_above(rows, 0.5 * std::ranges::max(rows)),
                disk = span_above(columns, 0.15 * std::ranges::max(columns));
     EdgeOnProfile result;
-    result.fwhm_over_length = static_cast<double>(half.length()) / static_cast<double>(disk.length());
+    result.fwhm_over_length = double(half.length()) / double(disk.length());
     result.dust_dip = depth_of_lane(rows, half);
     result.center_over_half = center_over_half_radius(light, columns, disk);
     result.body_srgb = body_brightness(light);
@@ -155,7 +152,7 @@ std::vector<Peak> strongest_peaks(const Image& image) {
     return peaks;
 }
 
-using Square = std::array<float, static_cast<std::size_t>(side_px* side_px)>;
+using Square = std::array<float, std::size_t(side_px* side_px)>;
 
 // Light above the surroundings of a point, 0 elsewhere.
 Square standing_out(const Image& brightness, const Peak& peak) {
@@ -186,9 +183,8 @@ std::optional<double> elongation(const Image& brightness, const Peak& peak) {
     if (!keep_connected(square)) return std::nullopt;
     double sum = 0.0, x1 = 0.0, y1 = 0.0, x2 = 0.0, y2 = 0.0;
     for (std::int64_t i = 0; i < side_px * side_px; ++i) {
-        const double w = square[static_cast<std::size_t>(i)];
-        const auto x = static_cast<double>(i % side_px - reach_px),
-                   y = static_cast<double>(i / side_px - reach_px);
+        const double w = square[i];
+        const auto x = double(i % side_px - reach_px), y = double(i / side_px - reach_px);
         sum += w;
         x1 += w * x;
         y1 += w * y;
@@ -214,7 +210,7 @@ Needles needles(const Image& side_view) {
         ++result.points;
         long_ones += *e > needle_elongation;
     }
-    if (result.points > 0) result.share = static_cast<double>(long_ones) / result.points;
+    if (result.points > 0) result.share = double(long_ones) / result.points;
     return result;
 }
 

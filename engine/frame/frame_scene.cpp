@@ -12,7 +12,7 @@ FrameScene frame_scene(const Scene& scene, double number, std::optional<Eye> eye
     FrameScene frame{number, scene_at(scene, number), {}, {}};
     if (eye) frame.scene.camera.eye = *eye;
     const CameraParams& camera = frame.scene.camera;
-    const int count = frame.is_blurred() ? static_cast<int>(frame.scene.output.samples) : 0;
+    const int count = frame.is_blurred() ? int(frame.scene.output.samples) : 0;
     for (int i = 0; i < count; ++i) frame.samples.push_back(camera_sample(camera, i, count));
     if (frame.samples.empty()) frame.samples.emplace_back();
     if (!(camera.shutter > 0.0)) return frame;
@@ -87,7 +87,7 @@ void add_rendering(RenderedFrame& sum, RenderedFrame&& rendering, std::span<cons
 
 void divide_sum(RenderedFrame& sum, int n, std::size_t layer_count) {
     divide(sum.depth, sum.opacity);
-    const float share = 1.0f / static_cast<float>(n);
+    const float share = 1.0f / float(n);
     for (Image* image : {&sum.beauty, &sum.coverage, &sum.count}) scale(*image, share);
     sum.layers.resize(layer_count);
     for (Image& layer : sum.layers) {

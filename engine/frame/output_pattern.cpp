@@ -87,8 +87,7 @@ fs::path OutputPattern::resolve(std::int64_t frame, Eye eye) const {
     const std::string named = with_eye(name, eye);
     const std::optional<Place> place = find_place(named);
     if (!place) return folder / named;
-    const std::uint64_t magnitude =
-        frame < 0 ? 0 - static_cast<std::uint64_t>(frame) : static_cast<std::uint64_t>(frame);
+    const std::uint64_t magnitude = frame < 0 ? 0 - std::uint64_t(frame) : std::uint64_t(frame);
     return folder / fmt::format("{}{}{:0{}}{}", named.substr(0, place->begin), frame < 0 ? "-" : "",
                                 magnitude, place->width, named.substr(place->begin + place->size));
 }

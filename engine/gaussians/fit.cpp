@@ -91,8 +91,7 @@ void fit_to_view(Gaussians& gaussians, const Image& wanted, const Camera& camera
                   at.y_px < float(settings.height)))
                 return;
             glm::vec3 light = splats.alpha[i] * splats.color[i];
-            light *=
-                step_at(goal, found, static_cast<std::int64_t>(at.x_px), static_cast<std::int64_t>(at.y_px));
+            light *= step_at(goal, found, std::int64_t(at.x_px), std::int64_t(at.y_px));
             splats.alpha[i] = std::min(1.0f, std::max({splats.alpha[i], light.x, light.y, light.z}));
             splats.color[i] = glm::min(light / splats.alpha[i], glm::vec3(1.0f));
         });
@@ -125,16 +124,15 @@ struct Directions {
                 for (int i = 0; i < around; ++i) {
                     const double angle = 2.0 * real::pi * i / around, r = std::sqrt(1.0 - z * z);
                     const glm::dvec3 d(r * real::cos(angle), r * real::sin(angle), z);
-                    all.push_back({harmonic_functions(glm::vec3(d)),
-                                   static_cast<float>(weight * 2.0 * real::pi / around)});
+                    all.push_back(
+                        {harmonic_functions(glm::vec3(d)), float(weight * 2.0 * real::pi / around)});
                 }
     }
 };
 
 glm::vec3 color_between(glm::vec3 color, bool from_display, bool to_display) {
     for (int k = 0; k < 3 && from_display != to_display; ++k)
-        color[k] =
-            static_cast<float>(to_display ? real::linear_to_srgb(color[k]) : real::srgb_to_linear(color[k]));
+        color[k] = float(to_display ? real::linear_to_srgb(color[k]) : real::srgb_to_linear(color[k]));
     return color;
 }
 

@@ -33,7 +33,7 @@ constexpr double least_scale = 1e-30;            // scene units, of a Gaussian t
 constexpr int ply_floats = 17, glb_floats = 18;  // without harmonics beyond degree 0
 
 /// Harmonics beyond degree 0, each of three numbers.
-int rest_of(const Gaussians& g) { return static_cast<int>(g.harmonics_each()) - 1; }
+int rest_of(const Gaussians& g) { return int(g.harmonics_each()) - 1; }
 
 glm::vec3 first_harmonic(const Gaussians& g, std::size_t i) {
     return g.degree > 0 ? g.harmonics[i].c[0] : mean_coefficient(g.color[i]);
@@ -47,10 +47,9 @@ char* put(char* out, std::initializer_list<float> values) {
 char* put_ply_row(char* out, const Gaussians& g, std::size_t i) {
     constexpr double most = 1.0 - 1e-6;  // whose logit is 13.8: 1 has none
     const double alpha = std::clamp(double(g.alpha[i]), 1e-9, most);
-    const auto logit = static_cast<float>(real::log(alpha / (1.0 - alpha)));
+    const auto logit = float(real::log(alpha / (1.0 - alpha)));
     glm::vec3 scale;
-    for (int k = 0; k < 3; ++k)
-        scale[k] = static_cast<float>(real::log(std::max(double(g.scale[i][k]), least_scale)));
+    for (int k = 0; k < 3; ++k) scale[k] = float(real::log(std::max(double(g.scale[i][k]), least_scale)));
     const glm::vec3 p = g.position[i], sh = first_harmonic(g, i);
     const glm::vec4 q = g.rotation[i];
     out = put(out, {p.x, p.y, p.z, 0.0f, 0.0f, 0.0f, sh.x, sh.y, sh.z});
@@ -64,7 +63,7 @@ char* put_glb_row(char* out, const Gaussians& g, bool encoded, std::size_t i) {
     const glm::vec4 q = g.rotation[i];
     glm::vec3 c = glm::min(g.color[i], glm::vec3(1.0f));
     if (encoded)
-        for (int k = 0; k < 3; ++k) c[k] = static_cast<float>(real::srgb_to_linear(c[k]));
+        for (int k = 0; k < 3; ++k) c[k] = float(real::srgb_to_linear(c[k]));
     const float a = g.alpha[i];
     out = put(out, {p.x, p.y, p.z, q.x, q.y, q.z, q.w, s.x, s.y, s.z, a, sh.x, sh.y, sh.z});
     for (int j = 1; j <= rest_of(g); ++j) {
@@ -77,11 +76,9 @@ char* put_glb_row(char* out, const Gaussians& g, bool encoded, std::size_t i) {
 template <class PutRow>
 void write_rows(const WriteTarget& target, const std::string& header, const Gaussians& g, int floats,
                 const Progress& progress, const PutRow& put_row) {
-    write_ordered(target, header, g.size(), rows_written_at_once,
-                  static_cast<std::size_t>(floats) * sizeof(float), progress,
-                  [&](std::int64_t begin, std::int64_t end, char* out) {
-                      for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i)
-                          out = put_row(out, i);
+    write_ordered(target, header, g.size(), rows_written_at_once, std::size_t(floats) * sizeof(float),
+                  progress, [&](std::int64_t begin, std::int64_t end, char* out) {
+                      for (auto i = std::size_t(begin); i < std::size_t(end); ++i) out = put_row(out, i);
                       return out;
                   });
 }
@@ -161,14 +158,14 @@ void write_gaussian_glb(const WriteTarget& target, const Gaussians& gaussians, b
     const int floats = glb_floats_of(gaussians);
     const std::int64_t bytes = gaussians.size() * floats * 4;
     const std::string json = glb_json(gaussians, encoded, bytes);
-    const std::int64_t all = 28 + static_cast<std::int64_t>(json.size()) + bytes;
+    const std::int64_t all = 28 + std::int64_t(json.size()) + bytes;
     if (all > std::numeric_limits<std::uint32_t>::max())
         bad_input(target.file.string(), "",
                   fmt::format("at most 4 GiB, some {} million splats (see --count)", 1073 / floats),
                   fmt::format("{} splats", gaussians.size()));
-    const std::string header = "glTF" + number_bytes(2) + number_bytes(static_cast<std::uint32_t>(all)) +
-                               number_bytes(static_cast<std::uint32_t>(json.size())) + "JSON" + json +
-                               number_bytes(static_cast<std::uint32_t>(bytes)) + std::string("BIN\0", 4);
+    const std::string header = "glTF" + number_bytes(2) + number_bytes(std::uint32_t(all)) +
+                               number_bytes(std::uint32_t(json.size())) + "JSON" + json +
+                               number_bytes(std::uint32_t(bytes)) + std::string("BIN\0", 4);
     write_rows(target, header, gaussians, floats, progress,
                [&](char* out, std::size_t i) { return put_glb_row(out, gaussians, encoded, i); });
 }
@@ -221,12 +218,12 @@ std::string array_end(const Gaussians& g, int array) {
 }
 
 char* put_row(char* out, const Gaussians& g, std::int64_t row) {
-    const auto array = static_cast<int>(std::min<std::int64_t>(row / g.size(), radiance));
+    const auto array = int(std::min<std::int64_t>(row / g.size(), radiance));
     const std::int64_t i = row - array * g.size(),
                        count = g.size() * (array == radiance ? rest_of(g) + 1 : 1);
     out = put_text(out, i == 0 ? beginnings[array] : ", ");
     if (i > 0 && i % 8 == 0) out = put_text(out, "\n        ");
-    out = put_value(out, g, array, static_cast<std::size_t>(i));
+    out = put_value(out, g, array, std::size_t(i));
     return i + 1 < count ? out : put_text(out, array_end(g, array));
 }
 

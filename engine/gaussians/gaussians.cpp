@@ -73,7 +73,7 @@ std::vector<ShadedSplats> reduce_splats(std::span<const RenderLayer> layers,
         return reduced;
     }
     RenderSettings frame;
-    frame.width = frame.height = static_cast<std::int64_t>(frame_px);
+    frame.width = frame.height = std::int64_t(frame_px);
     const Camera camera = camera_around(layers, world_from_camera);
     std::vector<MergedSplats> merged(layers.size());
     std::vector<MergeSettings> merging;
@@ -85,8 +85,7 @@ std::vector<ShadedSplats> reduce_splats(std::span<const RenderLayer> layers,
         merged[i] = merge_splats({set, tree}, *layers[i].splats, progress);
         RenderLayer plain = layers[i];
         plain.render.lod = {};  // this camera only measures, however near it is
-        cuts.push_back(
-            {&merged[i], &merging[i], make_projection(plain, static_cast<std::uint16_t>(i), camera, frame)});
+        cuts.push_back({&merged[i], &merging[i], make_projection(plain, std::uint16_t(i), camera, frame)});
     }
     CutSettings settings;
     settings.budget = count;
@@ -110,7 +109,7 @@ GaussianProfile profile_of(const RenderLayer& layer) {
 LayerAppearance::LayerAppearance(const RenderLayer& layer, const Camera& camera, double gain)
     : layer_(layer),
       camera_(camera),
-      gain_(static_cast<float>(gain)),
+      gain_(float(gain)),
       profile_(profile_of(layer)),
       axis_(glm::normalize(layer.world_from_layer * layer.axis)) {
     assert(layer.splats && !layer.stars);
@@ -124,7 +123,7 @@ SplatAppearance LayerAppearance::of(std::size_t i, BakeCounts& counts) const {
     const float s = std::min(1.0f, splats.alpha[i] * layer_.render.opacity);
     glm::vec3 color = splats.color[i];
     if (splats.encoded)
-        for (int k = 0; k < 3; ++k) color[k] = static_cast<float>(real::srgb_to_linear(color[k]));
+        for (int k = 0; k < 3; ++k) color[k] = float(real::srgb_to_linear(color[k]));
     const Blended blend = blended(color, s, seen.place, counts);
     seen.shows = profile_.peak * s;
     seen.hides = profile_.peak * blend.hides;
@@ -141,14 +140,14 @@ glm::dmat3 LayerAppearance::axes_of(std::size_t i) const {
 LayerAppearance::Blended LayerAppearance::blended(const glm::vec3& color, float s, const glm::dvec3& place,
                                                   BakeCounts& counts) const {
     const LayerRender& r = layer_.render;
-    const int blend = static_cast<int>(r.blend);
+    const int blend = int(r.blend);
     if (r.holdout) return {s, glm::vec3(0.0f)};
     if (shared::blend_absorbs(blend, color.x)) {
         ++counts.dust;
         double let_through = 0.0;
         for (int k = 0; k < 3; ++k)
             let_through += real::pow(1.0 - s, shared::blend_exponent(blend, color[k], r.absorb[k])) / 3.0;
-        return {static_cast<float>(1.0 - let_through), glm::vec3(0.0f)};
+        return {float(1.0 - let_through), glm::vec3(0.0f)};
     }
     const glm::vec3 light = s * gain_ * color;
     const float bright = std::min(1.0f, std::max({color.x, color.y, color.z}) * gain_);
@@ -157,7 +156,7 @@ LayerAppearance::Blended LayerAppearance::blended(const glm::vec3& color, float 
 
 float LayerAppearance::hybrid(const glm::dvec3& place) const {
     if (layer_.render.blend != Blend::hybrid) return 0.0f;
-    return shared::hybrid_amount(static_cast<float>(std::abs(glm::dot(axis_, direction_to(camera_, place)))),
+    return shared::hybrid_amount(float(std::abs(glm::dot(axis_, direction_to(camera_, place)))),
                                  layer_.render.hybrid_from_deg, layer_.render.hybrid_to_deg);
 }
 
@@ -256,9 +255,9 @@ class Baker {
         out.position.push_back(glm::vec3(seen.place));
         const glm::vec3 straight(kept / alpha);
         out.color.push_back(layer_.gaussians ? straight : glm::clamp(straight, 0.0f, 1.0f));
-        out.alpha.push_back(static_cast<float>(alpha));
+        out.alpha.push_back(float(alpha));
         if (layer_.splats->stretch.empty()) {
-            out.scale.push_back(glm::vec3(static_cast<float>(std::sqrt(square))));
+            out.scale.push_back(glm::vec3(float(std::sqrt(square))));
             out.rotation.push_back({0.0f, 0.0f, 0.0f, 1.0f});
         } else {
             add_shape(layer_.splats->stretch[i], std::sqrt(square), out);
@@ -283,7 +282,7 @@ class Baker {
     /// Of the layer's set, which are taken along.
     void begin_harmonics(Gaussians& out) const {
         const std::size_t before = out.position.size(), all = before + layer_.splats->position.size();
-        claim_memory(static_cast<std::int64_t>(all * sizeof(Harmonics)), "harmonics");
+        claim_memory(std::int64_t(all * sizeof(Harmonics)), "harmonics");
         out.harmonics.reserve(all);
         out.harmonics.resize(before);
         out.degree = std::max(out.degree, degree_of(layer_.directional->harmonics));
@@ -334,7 +333,7 @@ void encode_for_display(Gaussians& gaussians) {
     parallel_each(gaussians.color.size(), 1 << 14, [&](std::size_t i) {
         for (int k = 0; k < 3; ++k) {
             float& c = gaussians.color[i][k];
-            c = c > 1.0f ? static_cast<float>(real::linear_to_srgb(c)) : display_srgb(c);
+            c = c > 1.0f ? float(real::linear_to_srgb(c)) : display_srgb(c);
         }
     });
 }

@@ -29,9 +29,7 @@ struct HarmonicsSource {
 };
 
 /// How many there are of degree 0 to `degree`.
-constexpr std::size_t harmonics_up_to(int degree) {
-    return static_cast<std::size_t>((degree + 1) * (degree + 1));
-}
+constexpr std::size_t harmonics_up_to(int degree) { return std::size_t((degree + 1) * (degree + 1)); }
 
 /// A Gaussian's weight is alpha e^(-d^2 / 2), d the distance from its centre on the frame in its own standard
 /// deviations there.
@@ -47,7 +45,7 @@ struct Gaussians {
     int degree = 0;                        // 0 to 3
     std::vector<HarmonicsSource> sources;  // in ascending order; Gaussians of none have no directions
 
-    std::int64_t size() const { return static_cast<std::int64_t>(position.size()); }
+    std::int64_t size() const { return std::int64_t(position.size()); }
     std::size_t harmonics_each() const { return harmonics_up_to(degree); }
 };
 

@@ -163,7 +163,7 @@ void cut(std::span<Middle> middles, std::size_t most, const Visit& visit) {
     std::size_t box = 1;
     while (box * fan < middles.size()) box *= fan;
     const std::size_t half = (middles.size() + box - 1) / box / 2 * box;
-    std::nth_element(middles.begin(), middles.begin() + static_cast<std::ptrdiff_t>(half), middles.end(),
+    std::nth_element(middles.begin(), middles.begin() + std::ptrdiff_t(half), middles.end(),
                      [&](const Middle& a, const Middle& b) { return a.at[axis] < b.at[axis]; });
     cut(middles.first(half), most, visit);
     cut(middles.subspan(half), most, visit);
@@ -196,8 +196,8 @@ TreeLevel level_of(std::size_t count) {
 TreeLevel level_above(const TreeLevel& below) {
     TreeLevel level = level_of((below.count + fan - 1) / fan);
     parallel_each(level.count, triangles_per_chunk, [&](std::size_t i) {
-        const auto first = static_cast<std::ptrdiff_t>(i * fan);
-        const auto last = static_cast<std::ptrdiff_t>(std::min((i + 1) * fan, below.count));
+        const auto first = std::ptrdiff_t(i * fan);
+        const auto last = std::ptrdiff_t(std::min((i + 1) * fan, below.count));
         const auto least = [&](const Buffer<float>& side) {
             return *std::min_element(side.begin() + first, side.begin() + last);
         };
@@ -254,7 +254,7 @@ class PointSearch {
             if (squared[i] > limit_ * limit_) continue;
             std::size_t at = found++;
             for (; at > 0 && squared[order[at - 1]] > squared[i]; --at) order[at] = order[at - 1];
-            order[at] = static_cast<std::uint8_t>(i);
+            order[at] = std::uint8_t(i);
         }
         for (std::size_t i = 0; i < found && !(squared[order[i]] > limit_ * limit_); ++i) {
             const std::size_t child = first + order[i];

@@ -28,9 +28,8 @@ template <class Integer>
 float number_at(const char* bytes, bool normalised) {
     Integer value;
     std::memcpy(&value, bytes, sizeof value);
-    if (!normalised) return static_cast<float>(value);
-    return std::max(static_cast<float>(value) / static_cast<float>(std::numeric_limits<Integer>::max()),
-                    -1.0f);
+    if (!normalised) return float(value);
+    return std::max(float(value) / float(std::numeric_limits<Integer>::max()), -1.0f);
 }
 
 /// glTF's names of types: bytes a number takes, and how it is read.
@@ -86,7 +85,7 @@ const Json& GltfFile::element(const char* name, const Json& index) const {
     const std::int64_t i = index.is_number_integer() ? index.get<std::int64_t>() : -1;
     if (list == json_.end() || !list->is_array() || i < 0 || i >= std::ssize(*list))
         fail(fmt::format("a number of one of its {}", name), printable(index.dump()));
-    return (*list)[static_cast<std::size_t>(i)];
+    return (*list)[i];
 }
 
 const std::string& GltfFile::buffer(const Json& index) {
@@ -126,10 +125,10 @@ std::vector<float> GltfFile::numbers(const Json& accessor_index, int components)
     const auto type = std::ranges::find(number_types, code, &NumberType::code);
     if (type == std::end(number_types))
         fail("numbers of one of the types 5120 to 5123 or 5126", std::to_string(code));
-    const std::size_t own = type->size * static_cast<std::size_t>(components);
+    const std::size_t own = type->size * std::size_t(components);
     const std::int64_t count = count_in(accessor, "count", 0), view_size = count_in(view, "byteLength", 0),
                        view_at = count_in(view, "byteOffset", 0), at = count_in(accessor, "byteOffset", 0),
-                       stride = count_in(view, "byteStride", static_cast<std::int64_t>(own));
+                       stride = count_in(view, "byteStride", std::int64_t(own));
     const std::int64_t size = std::ssize(bytes);
     const bool fits = count > 0 && view_at >= 0 && view_at <= size && view_size >= 0 &&
                       view_size <= size - view_at && stride >= std::int64_t(own) && at >= 0 &&
@@ -138,7 +137,7 @@ std::vector<float> GltfFile::numbers(const Json& accessor_index, int components)
     if (!fits) fail("an accessor within its buffer", fmt::format("{} elements beyond it", count));
     const bool normalised = accessor.value("normalized", false);
     std::vector<float> numbers;
-    numbers.reserve(static_cast<std::size_t>(count) * static_cast<std::size_t>(components));
+    numbers.reserve(std::size_t(count) * std::size_t(components));
     for (std::int64_t i = 0; i < count; ++i)
         for (int c = 0; c < components; ++c)
             numbers.push_back(type->read(
@@ -152,7 +151,7 @@ GltfNode node_of(const GltfFile& file, const Json& json) {
         const auto numbers = json.at(name).get<std::vector<double>>();
         if (numbers.size() != count)
             file.fail(fmt::format("{} numbers as a node's {}", count, name), std::to_string(numbers.size()));
-        for (std::size_t i = 0; i < count; ++i) take(static_cast<int>(i), numbers[i]);
+        for (std::size_t i = 0; i < count; ++i) take(int(i), numbers[i]);
     };
     GltfNode node;
     read("translation", 3, [&](int i, double number) { node.translation[i] = number; });

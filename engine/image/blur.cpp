@@ -24,16 +24,16 @@ std::int64_t mirrored(std::int64_t i, std::int64_t n) {
 }
 
 std::vector<float> gaussian_weights(double sigma) {
-    const auto radius = static_cast<std::int64_t>(4.0 * sigma + 0.5);
+    const auto radius = std::int64_t(4.0 * sigma + 0.5);
     std::vector<double> w;
     double sum = 0.0;
     for (std::int64_t i = -radius; i <= radius; ++i) {
-        const double t = static_cast<double>(i) / sigma;
+        const double t = double(i) / sigma;
         w.push_back(real::exp(-0.5 * t * t));
         sum += w.back();
     }
     std::vector<float> weights;
-    for (const double v : w) weights.push_back(static_cast<float>(v / sum));
+    for (const double v : w) weights.push_back(float(v / sum));
     return weights;
 }
 
@@ -51,16 +51,16 @@ void mirror_ends(float* middle, std::int64_t width, int channels, std::int64_t m
 class BlurredRows {
   public:
     void fill(const Image& image, const std::vector<float>& weights, std::int64_t begin, std::int64_t end) {
-        const auto margin = static_cast<std::int64_t>(weights.size() / 2);
+        const auto margin = std::int64_t(weights.size() / 2);
         begin_ = begin - margin;
         count_ = image.width * image.channels;
         const std::int64_t rows = end + margin - begin_;
-        values_.resize(static_cast<std::size_t>(rows * count_));
-        padded_.resize(static_cast<std::size_t>(count_ + 2 * margin * image.channels));
+        values_.resize(std::size_t(rows * count_));
+        padded_.resize(std::size_t(count_ + 2 * margin * image.channels));
         float* const middle = padded_.data() + margin * image.channels;
         std::vector<const float*> shifted;
         for (std::size_t k = 0; k < weights.size(); ++k)
-            shifted.push_back(padded_.data() + static_cast<std::int64_t>(k) * image.channels);
+            shifted.push_back(padded_.data() + std::int64_t(k) * image.channels);
         for (std::int64_t row = 0; row < rows; ++row) {
             std::copy_n(image.at(0, mirrored(begin_ + row, image.height)), count_, middle);
             mirror_ends(middle, image.width, image.channels, margin);
@@ -118,16 +118,15 @@ Image convolved_with_gaussian(const Image& image, double sigma_px) {
     assert(sigma_px >= 0.0);
     if (sigma_px < 0.125 || image.width == 0 || image.height == 0) return image;  // the kernel is one pixel
     const std::vector<float> weights = gaussian_weights(sigma_px);
-    const auto margin = static_cast<std::int64_t>(weights.size() / 2);
+    const auto margin = std::int64_t(weights.size() / 2);
     Image out = unfilled_image(image.width, image.height, image.channels);
-    std::vector<BlurredRows> of_worker(static_cast<std::size_t>(thread_count()));
+    std::vector<BlurredRows> of_worker(std::size_t(thread_count()));
     parallel_chunks(image.height, rows_per_strip, [&](std::int64_t begin, std::int64_t end, int worker) {
-        BlurredRows& blurred = of_worker[static_cast<std::size_t>(worker)];
+        BlurredRows& blurred = of_worker[worker];
         blurred.fill(image, weights, begin, end);
         std::vector<const float*> rows(weights.size());
         for (std::int64_t y = begin; y < end; ++y) {
-            for (std::size_t k = 0; k < rows.size(); ++k)
-                rows[k] = blurred.row(y - margin + static_cast<std::int64_t>(k));
+            for (std::size_t k = 0; k < rows.size(); ++k) rows[k] = blurred.row(y - margin + std::int64_t(k));
             weighted_rows(weights, rows, image.width * image.channels, out.at(0, y));
         }
     });
@@ -139,7 +138,7 @@ Image halved(const Image& image) {
     const int channels = image.channels;
     Image out = unfilled_image((image.width + 1) / 2, (image.height + 1) / 2, channels);
     parallel_each(out.height, rows_per_chunk, [&](std::int64_t y) {
-        std::vector<float> sum(static_cast<std::size_t>((image.width + 4) * channels));
+        std::vector<float> sum(std::size_t((image.width + 4) * channels));
         float* const middle = sum.data() + 2 * channels;
         const float* rows[4];
         for (std::int64_t k = 0; k < 4; ++k) rows[k] = image.at(0, mirrored(2 * y + k - 1, image.height));
@@ -156,7 +155,7 @@ Image doubled(const Image& image, std::int64_t width, std::int64_t height) {
     const int channels = image.channels;
     Image out = unfilled_image(width, height, channels);
     parallel_each(height, rows_per_chunk, [&](std::int64_t y) {
-        std::vector<float> row(static_cast<std::size_t>((image.width + 2) * channels));
+        std::vector<float> row(std::size_t((image.width + 2) * channels));
         const float* const near = image.at(0, y / 2);
         const float* const far = image.at(0, mirrored(y % 2 ? y / 2 + 1 : y / 2 - 1, image.height));
         float* const middle = row.data() + channels;
@@ -205,7 +204,7 @@ void filter_line(std::vector<float>& line, std::int64_t count, std::int64_t widt
 template <class Extreme>
 void filter(Image& image, std::int64_t reach, Extreme extreme) {
     parallel_chunks(image.height, 16, [&](std::int64_t begin, std::int64_t end, int) {
-        std::vector<float> line(static_cast<std::size_t>(image.width + 2 * reach));
+        std::vector<float> line(std::size_t(image.width + 2 * reach));
         for (std::int64_t y = begin; y < end; ++y) {
             std::copy_n(image.at(0, y), image.width, line.begin() + reach);
             filter_line(line, image.width, 1, reach, extreme);
@@ -214,7 +213,7 @@ void filter(Image& image, std::int64_t reach, Extreme extreme) {
     });
     parallel_chunks(image.width, columns_per_strip, [&](std::int64_t begin, std::int64_t end, int) {
         const std::int64_t width = end - begin;
-        std::vector<float> line(static_cast<std::size_t>((image.height + 2 * reach) * width));
+        std::vector<float> line(std::size_t((image.height + 2 * reach) * width));
         for (std::int64_t y = 0; y < image.height; ++y)
             std::copy_n(image.at(begin, y), width, line.begin() + (reach + y) * width);
         filter_line(line, image.height, width, reach, extreme);

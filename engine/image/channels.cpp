@@ -4,11 +4,9 @@ namespace astrosplat {
 
 Image copied(const Image& image) {
     Image copy = unfilled_image(image.width, image.height, image.channels);
-    parallel_chunks(static_cast<std::int64_t>(image.pixels.size()), 65536,
-                    [&](std::int64_t begin, std::int64_t end, int) {
-                        std::copy(image.pixels.begin() + begin, image.pixels.begin() + end,
-                                  copy.pixels.begin() + begin);
-                    });
+    parallel_chunks(std::int64_t(image.pixels.size()), 65536, [&](std::int64_t begin, std::int64_t end, int) {
+        std::copy(image.pixels.begin() + begin, image.pixels.begin() + end, copy.pixels.begin() + begin);
+    });
     return copy;
 }
 

@@ -39,14 +39,14 @@ Image channel_of(const Image& image, int channel);
 class LinearSample {
   public:
     LinearSample(const Image& like, float x, float y) {
-        const float fx = std::clamp(x - 0.5f, 0.0f, static_cast<float>(like.width - 1));
-        const float fy = std::clamp(y - 0.5f, 0.0f, static_cast<float>(like.height - 1));
-        const auto x0 = static_cast<std::int64_t>(fx), y0 = static_cast<std::int64_t>(fy);
+        const float fx = std::clamp(x - 0.5f, 0.0f, float(like.width - 1));
+        const float fy = std::clamp(y - 0.5f, 0.0f, float(like.height - 1));
+        const auto x0 = std::int64_t(fx), y0 = std::int64_t(fy);
         pixel_ = y0 * like.width + x0;
         right_ = x0 + 1 < like.width ? 1 : 0;
         down_ = y0 + 1 < like.height ? like.width : 0;
-        tx_ = fx - static_cast<float>(x0);
-        ty_ = fy - static_cast<float>(y0);
+        tx_ = fx - float(x0);
+        ty_ = fy - float(y0);
     }
 
     float of(const Image& image, int channel = 0) const {
@@ -102,11 +102,10 @@ void for_each_about(const Picture& picture, std::int64_t x, std::int64_t y, std:
 /// dx and dy lead from there to the pixel's middle.
 template <class Picture, class Visit>
 void for_each_within(const Picture& picture, double at_x, double at_y, double radius_px, const Visit& visit) {
-    const auto whole = [](double v) { return static_cast<std::int64_t>(v); };
+    const auto whole = [](double v) { return std::int64_t(v); };
     for_each_between(picture, whole(at_x - radius_px), whole(at_y - radius_px), whole(at_x + radius_px),
                      whole(at_y + radius_px), [&](std::int64_t x, std::int64_t y) {
-                         const double dx = static_cast<double>(x) + 0.5 - at_x,
-                                      dy = static_cast<double>(y) + 0.5 - at_y;
+                         const double dx = double(x) + 0.5 - at_x, dy = double(y) + 0.5 - at_y;
                          if (dx * dx + dy * dy <= radius_px * radius_px) visit(x, y, dx, dy);
                      });
 }

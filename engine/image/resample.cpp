@@ -23,13 +23,12 @@ struct Cover {
 };
 
 Cover cover_of(std::int64_t i, std::int64_t before, std::int64_t after) {
-    const double width = static_cast<double>(before) / static_cast<double>(after);
-    const double begin = static_cast<double>(i) * width, end = static_cast<double>(i + 1) * width;
-    Cover cover{static_cast<std::int64_t>(begin), {}};
-    for (std::int64_t k = cover.first; k < before && static_cast<double>(k) < end; ++k) {
-        const double lo = std::max(begin, static_cast<double>(k)),
-                     hi = std::min(end, static_cast<double>(k + 1));
-        cover.shares.push_back(static_cast<float>((hi - lo) / width));
+    const double width = double(before) / double(after);
+    const double begin = double(i) * width, end = double(i + 1) * width;
+    Cover cover{std::int64_t(begin), {}};
+    for (std::int64_t k = cover.first; k < before && double(k) < end; ++k) {
+        const double lo = std::max(begin, double(k)), hi = std::min(end, double(k + 1));
+        cover.shares.push_back(float((hi - lo) / width));
     }
     return cover;
 }
@@ -39,9 +38,8 @@ float light(float value) { return value > 0.0f && std::isfinite(value) ? value :
 // Towards its neighbours, linearly: a pixel's values at the middles of its parts, row by row.
 class Parts {
   public:
-    explicit Parts(int times) : values(static_cast<std::size_t>(times) * static_cast<std::size_t>(times)) {
-        for (int i = 0; i < times; ++i)
-            offsets_.push_back((static_cast<float>(i) + 0.5f) / static_cast<float>(times) - 0.5f);
+    explicit Parts(int times) : values(std::size_t(times) * std::size_t(times)) {
+        for (int i = 0; i < times; ++i) offsets_.push_back((float(i) + 0.5f) / float(times) - 0.5f);
     }
 
     void set(const float (&around)[3][3]) {
@@ -56,7 +54,7 @@ class Parts {
             }
         }
         const float sum = std::accumulate(values.begin(), values.end(), 0.0f);
-        const float gain = sum > 0.0f ? around[1][1] * static_cast<float>(values.size()) / sum : 0.0f;
+        const float gain = sum > 0.0f ? around[1][1] * float(values.size()) / sum : 0.0f;
         for (float& value : values) value *= gain;
     }
 
@@ -86,7 +84,7 @@ class Reduction {
             const Cover under = rows_under(begin + i);
             std::vector<const float*> covered;
             for (std::size_t k = 0; k < under.shares.size(); ++k)
-                covered.push_back(row(under.first + static_cast<std::int64_t>(k)));
+                covered.push_back(row(under.first + std::int64_t(k)));
             make_row(under, covered, begin + i);
         });
     }
@@ -98,11 +96,10 @@ class Reduction {
         Image row = unfilled_image(width_before_, 1, out_.channels);
         weighted_rows(under.shares, covered, width_before_ * out_.channels, row.pixels.data());
         for (std::int64_t x = 0; x < out_.width; ++x) {
-            const Cover& column = columns_[static_cast<std::size_t>(x)];
+            const Cover& column = columns_[x];
             for (std::size_t k = 0; k < column.shares.size(); ++k)
                 for (int c = 0; c < out_.channels; ++c)
-                    out_.at(x, y)[c] +=
-                        column.shares[k] * row.at(column.first + static_cast<std::int64_t>(k), 0)[c];
+                    out_.at(x, y)[c] += column.shares[k] * row.at(column.first + std::int64_t(k), 0)[c];
         }
     }
 
@@ -120,7 +117,7 @@ class RowWindow {
     void move_to(std::int64_t begin, std::int64_t end) {
         const std::int64_t kept = std::max<std::int64_t>(0, end_ - begin);
         std::copy(values_.end() - kept * row_floats_, values_.end(), values_.begin());
-        values_.resize(static_cast<std::size_t>((end - begin) * row_floats_));
+        values_.resize(std::size_t((end - begin) * row_floats_));
         rows_.read(begin + kept, end, values_.data() + kept * row_floats_);
         begin_ = begin;
         end_ = end;
@@ -152,7 +149,7 @@ Image read_whole(const ImageRows& rows) {
 }
 
 ImageSize size_of_area(std::int64_t width, std::int64_t height, double area, double smallest_px) {
-    const auto w = static_cast<double>(width), h = static_cast<double>(height);
+    const auto w = double(width), h = double(height);
     const double least = std::min(1.0, smallest_px / std::min(w, h));
     const double side = std::clamp(std::sqrt(area / (w * h)), least, 1.0);
     return {std::llround(side * w), std::llround(side * h)};
@@ -171,8 +168,7 @@ Image reduced_by_area(const ImageRows& rows, std::int64_t width, std::int64_t he
     for (std::int64_t begin = 0; begin < height; begin += at_once) {
         const std::int64_t end = std::min(height, begin + at_once);
         const Cover last = reduction.rows_under(end - 1);
-        window.move_to(reduction.rows_under(begin).first,
-                       last.first + static_cast<std::int64_t>(last.shares.size()));
+        window.move_to(reduction.rows_under(begin).first, last.first + std::int64_t(last.shares.size()));
         reduction.make(begin, end, [&](std::int64_t y) { return window.row(y); });
     }
     return reduction.take();
@@ -199,8 +195,7 @@ Image enlarged(const Image& image, int times) {
                 parts.set(around);
                 for (int j = 0; j < times; ++j)
                     for (int i = 0; i < times; ++i)
-                        out.at(x * times + i, y * times + j)[c] =
-                            parts.values[static_cast<std::size_t>(j * times + i)];
+                        out.at(x * times + i, y * times + j)[c] = parts.values[j * times + i];
             }
         }
     });
@@ -216,15 +211,15 @@ struct Neighbours {
 };
 
 Neighbours neighbours(double place, std::int64_t n) {
-    const double at = std::clamp(place - 0.5, 0.0, static_cast<double>(n - 1));
+    const double at = std::clamp(place - 0.5, 0.0, double(n - 1));
     const double below = std::floor(at);
-    const auto first = static_cast<std::int64_t>(below);
-    return {first, std::min(first + 1, n - 1), static_cast<float>(at - below)};
+    const auto first = std::int64_t(below);
+    return {first, std::min(first + 1, n - 1), float(at - below)};
 }
 
 void sample_linearly(const Image& image, const glm::dvec2& place, float* out) {
-    const bool inside = place.x >= 0.0 && place.y >= 0.0 && place.x <= static_cast<double>(image.width) &&
-                        place.y <= static_cast<double>(image.height);
+    const bool inside =
+        place.x >= 0.0 && place.y >= 0.0 && place.x <= double(image.width) && place.y <= double(image.height);
     if (!inside) return;
     const Neighbours x = neighbours(place.x, image.width), y = neighbours(place.y, image.height);
     const float* const a = image.at(x.first, y.first);
@@ -240,10 +235,10 @@ void sample_linearly(const Image& image, const glm::dvec2& place, float* out) {
 }  // namespace
 
 PixelMap map_to_width(const Image& image, std::int64_t width, std::int64_t height) {
-    const double scale = static_cast<double>(image.width) / static_cast<double>(width);
+    const double scale = double(image.width) / double(width);
     PixelMap map;
     map.linear *= scale;
-    map.offset.y = 0.5 * (static_cast<double>(image.height) - scale * static_cast<double>(height));
+    map.offset.y = 0.5 * (double(image.height) - scale * double(height));
     return map;
 }
 
@@ -254,7 +249,7 @@ Image resampled(const Image& image, const PixelMap& texel_from_pixel, std::int64
     Image out = make_image(width, height, image.channels);
     parallel_each(height, 16, [&](std::int64_t y) {
         for (std::int64_t x = 0; x < width; ++x) {
-            const glm::dvec2 center(static_cast<double>(x) + 0.5, static_cast<double>(y) + 0.5);
+            const glm::dvec2 center(double(x) + 0.5, double(y) + 0.5);
             sample_linearly(filtered, texel_from_pixel.offset + texel_from_pixel.linear * center,
                             out.at(x, y));
         }

@@ -13,7 +13,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 void weighted_rows_here(std::span<const float> weights, std::span<const float* const> rows,
                         std::int64_t count, float* out) {
     const hn::ScalableTag<float> d;
-    const auto lanes = static_cast<std::int64_t>(hn::Lanes(d));
+    const auto lanes = std::int64_t(hn::Lanes(d));
     std::int64_t i = 0;
     // Four at a time share the loads of weights and pointers.
     for (; i + 4 * lanes <= count; i += 4 * lanes) {

@@ -77,7 +77,7 @@ void shade_all(const LookRun& run, std::int64_t count, const Progress& progress)
     std::atomic<std::int64_t> done{0};
     parallel_chunks(count, chunk_size, [&](std::int64_t begin, std::int64_t end, int) {
         progress.check();
-        kept[std::size_t(begin / chunk_size)] = shade_run(run, begin, end);
+        kept[begin / chunk_size] = shade_run(run, begin, end);
         progress.at(double(done += end - begin) / double(count));
     });
     close_gaps(run.out, kept);

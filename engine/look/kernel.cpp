@@ -215,16 +215,14 @@ void shade_block(const LookRun& run, std::int64_t begin, std::int64_t at, Block&
     if (moved) {
         jitter(u, b, out.position.data() + at);
     } else {
-        for (int i = 0; i < b.count; ++i)
-            out.position[std::size_t(at + i)] = run.in.position[begin + b.from[i]];
+        for (int i = 0; i < b.count; ++i) out.position[at + i] = run.in.position[begin + b.from[i]];
     }
     colors(u, b, out.color.data() + at);  // before alphas: step 4 divides by the alpha it finds
     alphas(u, b, out.alpha.data() + at);
     if (u.absorbs) restore(absorbers, out.color.data() + at, out.alpha.data() + at);
     if (u.crop_count > 0) fade_at_crops(b, out.alpha.data() + at);
     radii(run, begin, b, out.radius.data() + at);
-    for (int i = 0; i < b.count; ++i)
-        out.id[std::size_t(at + i)] = std::uint64_t(b.id_high[i]) << 32 | b.id_low[i];
+    for (int i = 0; i < b.count; ++i) out.id[at + i] = std::uint64_t(b.id_high[i]) << 32 | b.id_low[i];
 }
 
 }  // namespace

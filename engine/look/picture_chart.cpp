@@ -136,7 +136,7 @@ double astray(const Plane& plane, const SurfaceSample& sample) {
 Plane surface_plane(SurfaceSamples& samples, const glm::dvec2& middle) {
     const auto first = [&](double share) {
         const double part = double(samples.size()) * share;
-        return static_cast<std::ptrdiff_t>(std::min(double(samples.size()), std::max(part, least_part)));
+        return std::ptrdiff_t(std::min(double(samples.size()), std::max(part, least_part)));
     };
     if (samples.empty()) return {};
     const auto off = [](const auto& d) { return glm::dot(d, d); };
@@ -202,7 +202,7 @@ std::vector<SurfaceSamples> sampled(const LookRun& run, const SplatSet& set, std
         const std::int64_t row = place_along(uv.y, chart_side), column = place_along(uv.x, chart_side);
         const double r2 = double(look.radius) * double(look.radius);
         const double light = double(look.probability) * double(look.alpha) * r2;
-        samples[std::size_t((mesh_of(set, i) * chart_side + row) * chart_side + column)].push_back(
+        samples[(mesh_of(set, i) * chart_side + row) * chart_side + column].push_back(
             {{part_of(uv.x), part_of(uv.y)}, set.position[i], light, r2});
     }
     return samples;
@@ -215,7 +215,7 @@ SurfaceSamples around(const std::vector<SurfaceSamples>& samples, std::int64_t b
     for (std::int64_t y = std::max<std::int64_t>(0, row - 1); y <= std::min(chart_side - 1, row + 1); ++y)
         for (std::int64_t x = std::max<std::int64_t>(0, column - 1);
              x <= std::min(chart_side - 1, column + 1); ++x) {
-            const SurfaceSamples& own = samples[std::size_t(block + (y - row) * chart_side + x - column)];
+            const SurfaceSamples& own = samples[block + (y - row) * chart_side + x - column];
             result.insert(result.end(), own.begin(), own.end());
         }
     return result;

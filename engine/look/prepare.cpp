@@ -175,7 +175,7 @@ double own_mean_square(const Buffer<float>& radius) {
     parallel_chunks(count, chunk, [&](std::int64_t begin, std::int64_t end, int) {
         double sum = 0.0;
         for (std::int64_t i = begin; i < end; ++i) sum += double(radius[i]) * double(radius[i]);
-        sums[std::size_t(begin / chunk)] = sum;
+        sums[begin / chunk] = sum;
     });
     double sum = 0.0;
     for (double s : sums) sum += s;

@@ -48,9 +48,9 @@ class SeenLayer {
         if (at.depth + bound < l.lens.near) return false;
         if (l.lens.far > 0.0f && at.depth - bound > l.lens.far) return false;
         if (!(at.depth - bound > l.lens.near)) return true;
-        return shared::appears_in_rect(
-            l.lens, at.x_px, at.y_px, shared::reach_px(l.lens, p, bound, l.margin_px), 0.0f, 0.0f,
-            static_cast<float>(settings_.width), static_cast<float>(settings_.height));
+        return shared::appears_in_rect(l.lens, at.x_px, at.y_px,
+                                       shared::reach_px(l.lens, p, bound, l.margin_px), 0.0f, 0.0f,
+                                       float(settings_.width), float(settings_.height));
     }
 
     /// One splat, but for a node of a lattice that looks longer than wide: round ones in line with each other
@@ -62,12 +62,12 @@ class SeenLayer {
         const float longer = mean + root, shorter = std::max(0.0f, mean - root);
         NodeRow row{1, glm::vec3(0.0f), {mean, longer}};
         if (!is_lattice() || !(longer > 0.0f)) return row;
-        const float own = static_cast<float>(layer_.merging->variance) * s.own;
+        const float own = float(layer_.merging->variance) * s.own;
         const float splats = s.cover * s.cover / s.squares;
-        row.count = static_cast<int>(
-            std::min({most, std::max(1.0f, splats), std::sqrt((longer + own) / (shorter + own)) + 0.5f}));
+        row.count =
+            int(std::min({most, std::max(1.0f, splats), std::sqrt((longer + own) / (shorter + own)) + 0.5f}));
         if (row.count == 1) return row;
-        const float n = static_cast<float>(row.count), part = longer / (n * n);
+        const float n = float(row.count), part = longer / (n * n);
         row.each = {0.5f * (part + shorter), std::max(part, shorter)};
         const glm::vec2 axis =
             glm::normalize(half > 0.0f ? glm::vec2(root + half, xy) : glm::vec2(xy, root - half));
@@ -84,7 +84,7 @@ class SeenLayer {
         const float spread = row.each.largest;
         if (!(spread > 0.0f)) return 0.0f;
         constexpr float least = 0.01f;  // so that all are divided where nothing else limits it
-        const float own = static_cast<float>(layer_.merging->variance) * sums.own;
+        const float own = float(layer_.merging->variance) * sums.own;
         const float share = std::clamp(2.0f * spread / (spread + own), least, 1.0f);
         return share * share * std::sqrt(12.0f * spread) * l.radius_scale * px_per_unit;
     }
@@ -117,7 +117,7 @@ class SeenLayer {
         const float hybrid =
             shared::hybrid_amount(shared::axis_cosine(l.lens, l.axis_in_camera, to_camera(sums.centre)),
                                   r.hybrid_from_deg, r.hybrid_to_deg);
-        const float share = 1.0f / static_cast<float>(row.count);
+        const float share = 1.0f / float(row.count);
         sums.cover *= share;
         sums.squares *= share;
         sums.light *= share;
@@ -126,8 +126,8 @@ class SeenLayer {
         place.radius = std::sqrt(sums.own);
         place.spread = glm::sqrt(glm::max(sums.spread, 0.0f) + child_spread * child_spread * sums.own);
         for (int k = 0; k < row.count; ++k) {
-            const std::size_t i = first + static_cast<std::size_t>(k);
-            const float steps = static_cast<float>(k) - 0.5f * static_cast<float>(row.count - 1);
+            const std::size_t i = first + std::size_t(k);
+            const float steps = float(k) - 0.5f * float(row.count - 1);
             out.position[i] = sums.centre + steps * row.step;
             out.color[i] = splat.color;
             out.alpha[i] = splat.alpha;
@@ -214,10 +214,10 @@ class Cutter {
         }
         const std::int64_t room = settings_.budget - splats;
         if (room <= 0 || !(largest > settings_.least_px)) return std::nullopt;
-        const double growth = margin * static_cast<double>(settings_.budget) / static_cast<double>(splats);
+        const double growth = margin * double(settings_.budget) / double(splats);
         if (growth < least_growth || !(largest_node > settings_.least_px))
             return round_with_room(largest, room);
-        const auto step = static_cast<float>(1.0 / std::cbrt(std::min(growth, most_growth)));
+        const auto step = float(1.0 / std::cbrt(std::min(growth, most_growth)));
         return Round{std::max(settings_.least_px, step * largest_node), false};
     }
 
@@ -230,18 +230,16 @@ class Cutter {
         std::array<std::int64_t, bins> more{};
         for (const Piece& piece : pieces_)
             if (piece.size_px > lowest)
-                more[std::min(bins - 1, static_cast<int>((piece.size_px - lowest) * bins_per_px))] +=
-                    more_of(piece);
+                more[std::min(bins - 1, int((piece.size_px - lowest) * bins_per_px))] += more_of(piece);
         int bin = bins;
         while (bin > 0 && (room -= more[bin - 1]) >= 0) --bin;
         if (bin == bins) return std::nullopt;
-        return Round{lowest + static_cast<float>(bin) / bins_per_px, true};
+        return Round{lowest + float(bin) / bins_per_px, true};
     }
 
     void divide(const Round& round) {
-        const auto count = static_cast<std::int64_t>(pieces_.size());
-        std::vector<std::vector<Piece>> parts(
-            static_cast<std::size_t>((count + pieces_at_once - 1) / pieces_at_once));
+        const auto count = std::int64_t(pieces_.size());
+        std::vector<std::vector<Piece>> parts(std::size_t((count + pieces_at_once - 1) / pieces_at_once));
         parallel_chunks(count, pieces_at_once, [&](std::int64_t begin, std::int64_t end, int) {
             std::vector<Piece>& part = parts[begin / pieces_at_once];
             for (std::int64_t i = begin; i < end; ++i) {
@@ -299,8 +297,8 @@ class Cutter {
         const glm::vec3 p = layer.to_camera(sums.centre);
         if (!layer.shows(sums, p)) return;
         const NodeRow row = layer.row_of(sums);
-        add_piece({index, layer.size_px(sums, row, p), l, static_cast<std::uint8_t>(row.count), false, false},
-                  limit_px, out);
+        add_piece({index, layer.size_px(sums, row, p), l, std::uint8_t(row.count), false, false}, limit_px,
+                  out);
     }
 
     const std::vector<SeenLayer>& layers_;

@@ -31,8 +31,8 @@ double log_of_rest(double x) {
 
 template <std::size_t size>
 double interpolated(const std::array<double, size>& table, double at) {
-    const std::size_t i = std::min(size - 2, static_cast<std::size_t>(at));
-    return table[i] + (table[i + 1] - table[i]) * (at - static_cast<double>(i));
+    const std::size_t i = std::min(size - 2, std::size_t(at));
+    return table[i] + (table[i + 1] - table[i]) * (at - double(i));
 }
 
 /// A row of splats with the moments of what they stand for has dips between them; wider ones have few.
@@ -95,31 +95,30 @@ NodeSplat splat_of(const MergeSettings& settings, const NodeSums& sums, const Ac
     const double cover = double(sums.cover) * double(render.opacity) / square;  // of the disc
     const double n = double(sums.cover) * double(sums.cover) / double(sums.squares);
     NodeSplat splat;
-    splat.radius = static_cast<float>(std::sqrt(square));
+    splat.radius = float(std::sqrt(square));
     splat.color = sums.light / sums.cover;
-    const bool absorbs = shared::blend_absorbs(static_cast<int>(render.blend), splat.color.x);
+    const bool absorbs = shared::blend_absorbs(int(render.blend), splat.color.x);
     const Blend blend = render.holdout || absorbs ? Blend::over : render.blend;
     if (blend == Blend::add) {
-        splat.alpha = static_cast<float>(std::min(1.0, cover));
-        splat.color *= static_cast<float>(std::max(1.0, cover));
+        splat.alpha = float(std::min(1.0, cover));
+        splat.color *= float(std::max(1.0, cover));
         return splat;
     }
     if (blend != Blend::screen && blend != Blend::hybrid) {
-        splat.alpha = static_cast<float>(alpha_together(settings.depths, n, cover / n));
+        splat.alpha = float(alpha_together(settings.depths, n, cover / n));
         return splat;
     }
     // Each channel is hidden by itself; what alpha cannot say the colour does, as for level of detail.
     constexpr double least = 1e-3;  // occlusion below which light is proportional to cover
     const auto hides = [&](int k) {
-        const float o = shared::blend_occlusion(static_cast<int>(blend), splat.color[k], hybrid);
+        const float o = shared::blend_occlusion(int(blend), splat.color[k], hybrid);
         return std::clamp(double(o), least, 1.0);
     };
     const double o[] = {hides(0), hides(1), hides(2)}, mean = (o[0] + o[1] + o[2]) / 3.0;
     const double alpha = std::min(1.0, alpha_together(settings.depths, n, cover / n * mean) / mean);
     for (int k = 0; k < 3; ++k)
-        splat.color[k] *=
-            static_cast<float>(alpha_together(settings.depths, n, cover / n * o[k]) / o[k] / alpha);
-    splat.alpha = static_cast<float>(alpha);
+        splat.color[k] *= float(alpha_together(settings.depths, n, cover / n * o[k]) / o[k] / alpha);
+    splat.alpha = float(alpha);
     return splat;
 }
 
@@ -132,7 +131,7 @@ int level_seen(const CloudPlace& place) {
     const float octaves_per_unit = 1.44269504f;  // 1 / ln 2
     const float octaves =
         octaves_per_unit * shared::as_log(place.radius / std::max(spread, 0.01f * place.radius));
-    return std::max(0, static_cast<int>(std::floor(octaves)) + 3);
+    return std::max(0, int(std::floor(octaves)) + 3);
 }
 
 }  // namespace

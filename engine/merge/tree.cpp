@@ -37,8 +37,8 @@ std::int64_t middle_of(const Buffer<MortonRow>& rows, const MergeNode& node) {
 
 /// The level below one that begins at `first` and ends with the nodes.
 void add_level(const Buffer<MortonRow>& rows, std::int64_t first, Buffer<MergeNode>& nodes) {
-    const auto end = static_cast<std::int64_t>(nodes.size());
-    Buffer<std::int64_t> middles(static_cast<std::size_t>(end - first));
+    const auto end = std::int64_t(nodes.size());
+    Buffer<std::int64_t> middles(std::size_t(end - first));
     parallel_each(end - first, nodes_a_chunk, [&](std::int64_t i) {
         const MergeNode& node = nodes[first + i];
         const bool small = node.end - node.first <= MergeTree::leaf_rows;
@@ -48,7 +48,7 @@ void add_level(const Buffer<MortonRow>& rows, std::int64_t first, Buffer<MergeNo
         const MergeNode node = nodes[i];
         const std::int64_t middle = middles[i - first];
         if (middle == node.first) continue;
-        nodes[i].children = static_cast<std::int64_t>(nodes.size());
+        nodes[i].children = std::int64_t(nodes.size());
         nodes.push_back({node.first, middle, 0});
         nodes.push_back({middle, node.end, 0});
     }
@@ -59,24 +59,22 @@ void add_level(const Buffer<MortonRow>& rows, std::int64_t first, Buffer<MergeNo
 std::int64_t MergeTree::bytes_for(std::int64_t row_count) {
     // Nodes of a lattice have from a half to all of the rows that they may have.
     const std::int64_t node_count = 2 * (2 * row_count / leaf_rows + 1);
-    return row_count * static_cast<std::int64_t>(sizeof(std::int64_t)) +
-           node_count * static_cast<std::int64_t>(sizeof(MergeNode));
+    return row_count * std::int64_t(sizeof(std::int64_t)) + node_count * std::int64_t(sizeof(MergeNode));
 }
 
 MergeTree build_merge_tree(const SplatSet& set, const Progress& progress) {
     MergeTree tree;
     if (set.size() == 0) return tree;
-    claim_memory(MergeTree::bytes_for(set.size()) + set.size() * static_cast<std::int64_t>(sizeof(MortonRow)),
+    claim_memory(MergeTree::bytes_for(set.size()) + set.size() * std::int64_t(sizeof(MortonRow)),
                  "the tree of a preview");
     const Buffer<MortonRow> sorted = morton_order(set, progress);
     const std::int64_t emitting = first_from(sorted, 0, set.size(), morton_absorbs);
     if (emitting > 0) tree.nodes.push_back({0, emitting, 0});
     if (emitting < set.size()) tree.nodes.push_back({emitting, set.size(), 0});
-    for (std::int64_t first = 0; first < static_cast<std::int64_t>(tree.nodes.size());
-         first = tree.levels.back()) {
+    for (std::int64_t first = 0; first < std::int64_t(tree.nodes.size()); first = tree.levels.back()) {
         if (tree.levels.empty()) tree.levels.push_back(0);
         progress.check();
-        tree.levels.push_back(static_cast<std::int64_t>(tree.nodes.size()));
+        tree.levels.push_back(std::int64_t(tree.nodes.size()));
         add_level(sorted, first, tree.nodes);
     }
     tree.rows.resize(sorted.size());
@@ -85,8 +83,8 @@ MergeTree build_merge_tree(const SplatSet& set, const Progress& progress) {
 }
 
 SplatSet sample_tree(const MergeTree& tree, const SplatSet& set, std::int64_t count) {
-    Buffer<std::int64_t> rows(static_cast<std::size_t>(std::min(count, set.size())));
-    const auto sampled = static_cast<std::int64_t>(rows.size());
+    Buffer<std::int64_t> rows(std::size_t(std::min(count, set.size())));
+    const auto sampled = std::int64_t(rows.size());
     for (std::int64_t i = 0; i < sampled; ++i) rows[i] = tree.rows[sampled_row(set.size(), sampled, i)];
     std::sort(rows.begin(), rows.end());
     return take_rows(set, rows);
@@ -115,8 +113,8 @@ class Adder {
         sums.centre = glm::vec3(centre_);
         sums.spread = glm::vec3(spread_ / cover);
         sums.skew = glm::vec3(skew_ / cover);
-        sums.own = static_cast<float>(own_ / cover);
-        sums.bound = static_cast<float>(bound_ * 1.000001);  // what rounding may take away
+        sums.own = float(own_ / cover);
+        sums.bound = float(bound_ * 1.000001);  // what rounding may take away
     }
 
   private:
@@ -154,8 +152,8 @@ NodeSums sums_of_leaf(const MergedSplats& merged, const MergeNode& node) {
             adder.add(c, splats.position[i], glm::dvec3(0.0), glm::dvec3(0.0), radius * radius, radius);
     });
     const double weight = merged.weight;
-    sums.cover = static_cast<float>(weight * cover);
-    sums.squares = static_cast<float>(weight * squares);
+    sums.cover = float(weight * cover);
+    sums.squares = float(weight * squares);
     sums.light = glm::vec3(weight * light);
     adder.finish(cover, sums);
     return sums;
@@ -167,7 +165,7 @@ NodeSums add_sums(const NodeSums& a, const NodeSums& b) {
     if (!(b.cover > 0.0f)) return a;
     const double cover = double(a.cover) + double(b.cover);
     NodeSums sums;
-    sums.cover = static_cast<float>(cover);
+    sums.cover = float(cover);
     sums.squares = a.squares + b.squares;
     sums.light = glm::vec3(glm::dvec3(a.light) + glm::dvec3(b.light));
     Adder adder((double(a.cover) * glm::dvec3(a.centre) + double(b.cover) * glm::dvec3(b.centre)) / cover);
@@ -197,9 +195,8 @@ MergedSplats merge_splats(const MergeSource& source, ShadedSplats splats, const 
     merged.tree = source.tree;
     merged.weight = source.weight;
     const Buffer<MergeNode>& nodes = merged.tree->nodes;
-    claim_memory(
-        static_cast<std::int64_t>(nodes.size() * sizeof(NodeSums) + set.id.size() * sizeof(std::int64_t)),
-        "the merged splats of a preview");
+    claim_memory(std::int64_t(nodes.size() * sizeof(NodeSums) + set.id.size() * sizeof(std::int64_t)),
+                 "the merged splats of a preview");
     merged.place = places_of_rows(set, splats);
     merged.splats = std::move(splats);
     merged.sums.resize(nodes.size());

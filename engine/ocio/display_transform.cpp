@@ -155,8 +155,8 @@ GlslTable plane_table(const ocio::GpuShaderDesc& shader, unsigned index) {
     const float* values = nullptr;
     shader.getTextureValues(index, values);
     const int channels = channel == ocio::GpuShaderCreator::TEXTURE_RED_CHANNEL ? 1 : 3;
-    const int w = static_cast<int>(width), h = static_cast<int>(height);
-    const float* const end = values + std::size_t{width} * height * static_cast<unsigned>(channels);
+    const int w = int(width), h = int(height);
+    const float* const end = values + std::size_t{width} * height * unsigned(channels);
     return {sampler, h > 1 ? 2 : 1, w, h, channels, interpolation != ocio::INTERP_NEAREST, {values, end}};
 }
 
@@ -169,7 +169,7 @@ GlslTable cube_table(const ocio::GpuShaderDesc& shader, unsigned index) {
     shader.get3DTextureValues(index, values);
     const std::size_t count = std::size_t{3} * edge * edge * edge;
     const bool smooth = interpolation != ocio::INTERP_NEAREST && interpolation != ocio::INTERP_TETRAHEDRAL;
-    return {sampler, 3, static_cast<int>(edge), static_cast<int>(edge), 3, smooth, {values, values + count}};
+    return {sampler, 3, int(edge), int(edge), 3, smooth, {values, values + count}};
 }
 
 }  // namespace

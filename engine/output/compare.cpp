@@ -30,14 +30,14 @@ bool same_bits(float a, float b) {
 
 double difference(float a, float b) {
     if (same_bits(a, b)) return 0.0;
-    double d = std::fabs(static_cast<double>(a) - static_cast<double>(b));
+    double d = std::fabs(double(a) - double(b));
     return std::isnan(d) ? std::numeric_limits<double>::infinity() : d;
 }
 
 double percentile(std::vector<double>& values, double share) {
     if (values.empty()) return 0.0;
-    auto rank = static_cast<std::size_t>(std::ceil(share * static_cast<double>(values.size())));
-    auto at = values.begin() + static_cast<std::ptrdiff_t>(std::max<std::size_t>(rank, 1) - 1);
+    auto rank = std::size_t(std::ceil(share * double(values.size())));
+    auto at = values.begin() + std::ptrdiff_t(std::max<std::size_t>(rank, 1) - 1);
     std::nth_element(values.begin(), at, values.end());
     return *at;
 }
@@ -54,12 +54,12 @@ ImageComparison compare_images(const Image& a, const Image& b) {
     ImageComparison result;
     result.width = a.width;
     result.height = a.height;
-    std::vector<double> of_pixel(static_cast<std::size_t>(a.width * a.height), 0.0);
+    std::vector<double> of_pixel(std::size_t(a.width * a.height), 0.0);
     double sum = 0.0, squares = 0.0;
     for (std::size_t i = 0; i < of_pixel.size(); ++i) {
         bool differs = false;
         for (int c = 0; c < a.channels; ++c) {
-            std::size_t k = i * static_cast<std::size_t>(a.channels) + static_cast<std::size_t>(c);
+            std::size_t k = i * std::size_t(a.channels) + std::size_t(c);
             double d = difference(a.pixels[k], b.pixels[k]);
             differs = differs || !same_bits(a.pixels[k], b.pixels[k]);
             sum += d;
@@ -67,13 +67,13 @@ ImageComparison compare_images(const Image& a, const Image& b) {
             of_pixel[i] = std::fmax(of_pixel[i], d);
             if (!(d > result.max_difference)) continue;
             result.max_difference = d;
-            result.max_x = static_cast<std::int64_t>(i) % a.width;
-            result.max_y = static_cast<std::int64_t>(i) / a.width;
+            result.max_x = std::int64_t(i) % a.width;
+            result.max_y = std::int64_t(i) / a.width;
             result.max_channel = c;
         }
         if (differs) ++result.differing_pixels;
     }
-    double values = std::fmax(1.0, static_cast<double>(a.pixels.size()));
+    double values = std::fmax(1.0, double(a.pixels.size()));
     result.mean_difference = sum / values;
     result.psnr_db = psnr(squares / values);
     result.percentile_999 = percentile(of_pixel, 0.999);
@@ -105,8 +105,7 @@ using OpenFrame = std::unique_ptr<OIIO::ImageInput>;
 /// Rows begin .. end from the top of what is stored; false: damaged.
 bool read_values(OIIO::ImageInput& in, int begin, int end, std::vector<float>& values) {
     const OIIO::ImageSpec& spec = in.spec();
-    values.resize(static_cast<std::size_t>(end - begin) * static_cast<std::size_t>(spec.width) *
-                  static_cast<std::size_t>(spec.nchannels));
+    values.resize(std::size_t(end - begin) * std::size_t(spec.width) * std::size_t(spec.nchannels));
     return read_rows(in, begin, end, OIIO::TypeDesc::FLOAT, values.data());
 }
 
@@ -116,10 +115,10 @@ class StoredSums {
     explicit StoredSums(const OIIO::ImageSpec& spec) : spec_(spec) {}
 
     void add_rows(int begin, const std::vector<float>& a, const std::vector<float>& b) {
-        const auto channels = static_cast<std::size_t>(spec_.nchannels);
-        const auto width = static_cast<std::size_t>(spec_.width);
+        const auto channels = std::size_t(spec_.nchannels);
+        const auto width = std::size_t(spec_.width);
         for (std::size_t pixel = 0; pixel * channels < a.size(); ++pixel) {
-            const int x = static_cast<int>(pixel % width), y = begin + static_cast<int>(pixel / width);
+            const int x = int(pixel % width), y = begin + int(pixel / width);
             bool differs = false;
             for (std::size_t c = 0; c < channels; ++c)
                 differs = add_value(x, y, c, a[pixel * channels + c], b[pixel * channels + c]) || differs;
@@ -129,7 +128,7 @@ class StoredSums {
     StoredComparison result() const {
         StoredComparison sums = sums_;
         sums.pixels = std::int64_t{spec_.width} * spec_.height;
-        sums.psnr_db = psnr(squares_ / std::fmax(1.0, static_cast<double>(colors_)));
+        sums.psnr_db = psnr(squares_ / std::fmax(1.0, double(colors_)));
         return sums;
     }
 

@@ -60,16 +60,14 @@ bool read_all(Imf::InputFile& in) {
     constexpr std::size_t value_bytes = 4;
     const std::int64_t width = std::int64_t{window.max.x} - window.min.x + 1;
     if (width * band_rows * std::int64_t{value_bytes} > largest_band) return false;
-    std::vector<char> band(static_cast<std::size_t>(width * band_rows) * value_bytes);
+    std::vector<char> band(std::size_t(width * band_rows) * value_bytes);
     for (std::int64_t y = window.min.y; y <= window.max.y; y += band_rows) {
         Imf::FrameBuffer buffer;
-        char* const origin =
-            band.data() - (y * width + window.min.x) * static_cast<std::int64_t>(value_bytes);
+        char* const origin = band.data() - (y * width + window.min.x) * std::int64_t(value_bytes);
         buffer.insert(channel.name(), Imf::Slice(channel.channel().type, origin, value_bytes,
-                                                 value_bytes * static_cast<std::size_t>(width)));
+                                                 value_bytes * std::size_t(width)));
         in.setFrameBuffer(buffer);
-        in.readPixels(static_cast<int>(y),
-                      static_cast<int>(std::min<std::int64_t>(y + band_rows - 1, window.max.y)));
+        in.readPixels(int(y), int(std::min<std::int64_t>(y + band_rows - 1, window.max.y)));
     }
     return true;
 }
@@ -119,7 +117,7 @@ class ExrStream : public Imf::OStream {
     }
 
     void write(const char bytes[], int size) override {
-        const auto count = static_cast<std::size_t>(size);
+        const auto count = std::size_t(size);
         if (piece_.size() + count > piece_bytes) flush();
         piece_.insert(piece_.end(), bytes, bytes + count);
     }
@@ -134,7 +132,7 @@ class ExrStream : public Imf::OStream {
     /// Writes what is collected. Throws the first OutputError of all writes, of which some may have been made
     /// where nothing can be thrown.
     void flush() {
-        file_.write_at(static_cast<std::int64_t>(begin_), piece_.data(), piece_.size());
+        file_.write_at(std::int64_t(begin_), piece_.data(), piece_.size());
         file_.rethrow_failure();  // which OpenEXR swallows where it ends a file
         begin_ += piece_.size();
         piece_.clear();
@@ -184,9 +182,7 @@ Imf::Compression compression_of(OutputParams::Compression compression) {
 Imf::Chromaticities chromaticities_of(OutputParams::Primaries primaries) {
     const bool acescg = primaries == OutputParams::Primaries::acescg;
     const Chromaticities& set = acescg ? acescg_chromaticities : rec709_chromaticities;
-    const auto at = [](const glm::dvec2& xy) {
-        return Imath::V2f(static_cast<float>(xy.x), static_cast<float>(xy.y));
-    };
+    const auto at = [](const glm::dvec2& xy) { return Imath::V2f(float(xy.x), float(xy.y)); };
     return {at(set.red), at(set.green), at(set.blue), at(set.white)};
 }
 
@@ -219,8 +215,7 @@ void set_text(Imf::Header& header, const FrameMetadata& metadata) {
 Imf::Header make_header(const FrameFile& target, const FrameFormat& format, const Image& beauty,
                         const std::vector<Channel>& channels, const FrameMetadata& metadata) {
     const auto box = [](std::int64_t x, std::int64_t y, std::int64_t width, std::int64_t height) {
-        return Imath::Box2i({static_cast<int>(x), static_cast<int>(y)},
-                            {static_cast<int>(x + width - 1), static_cast<int>(y + height - 1)});
+        return Imath::Box2i({int(x), int(y)}, {int(x + width - 1), int(y + height - 1)});
     };
     Imf::Header header(box(0, 0, target.whole_width, target.whole_height),
                        box(target.region.x, target.region.y, beauty.width, beauty.height));
@@ -250,7 +245,7 @@ class Band {
         : channels_(channels), width_(channels[0].image->width) {
         for (const Channel& channel : channels_) {
             places_.push_back(bytes_.size());
-            bytes_.resize(bytes_.size() + static_cast<std::size_t>(rows * width_ * channel.bytes()));
+            bytes_.resize(bytes_.size() + std::size_t(rows * width_ * channel.bytes()));
         }
     }
 
@@ -272,9 +267,9 @@ class Band {
         for (std::size_t c = 0; c < channels_.size(); ++c) {
             const Channel& channel = channels_[c];
             char* const origin = bytes_.data() + places_[c] - (y * width_ + x) * channel.bytes();
-            buffer.insert(channel.name, Imf::Slice(channel.half ? Imf::HALF : Imf::FLOAT, origin,
-                                                   static_cast<std::size_t>(channel.bytes()),
-                                                   static_cast<std::size_t>(channel.bytes() * width_)));
+            buffer.insert(channel.name,
+                          Imf::Slice(channel.half ? Imf::HALF : Imf::FLOAT, origin,
+                                     std::size_t(channel.bytes()), std::size_t(channel.bytes() * width_)));
         }
         return buffer;
     }
@@ -304,7 +299,7 @@ void write_rows(ExrStream& stream, const Imf::Header& header, const std::vector<
         const std::int64_t end = std::min(y + band_rows, height);
         band.take(y, end);
         out.setFrameBuffer(band.frame_buffer(window.min.x, window.min.y + y));
-        out.writePixels(static_cast<int>(end - y));
+        out.writePixels(int(end - y));
     }
 }
 

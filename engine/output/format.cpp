@@ -146,7 +146,7 @@ float clamp01(float x) { return x > 0.0f ? (x < 1.0f ? x : 1.0f) : 0.0f; }
 
 float soft_curve(float x) { return x * (2.51f * x + 0.03f) / (x * (2.43f * x + 0.59f) + 0.14f); }
 
-float gain_of(const FrameFormat& format) { return static_cast<float>(real::pow(2.0, format.exposure)); }
+float gain_of(const FrameFormat& format) { return float(real::pow(2.0, format.exposure)); }
 
 /// Colour over black, or divided by alpha where the format says so.
 void unpremultiply(const FrameFormat& format, const float* rgba, float* rgb) {
@@ -180,10 +180,10 @@ template <class T, class Put>
 std::vector<T> encode_rows(const FrameFormat& format, const Image& image, const Put& put) {
     const int channels = stored_channels(format);
     const float gain = gain_of(format);
-    std::vector<T> samples(static_cast<std::size_t>(image.width * image.height * channels));
+    std::vector<T> samples(std::size_t(image.width * image.height * channels));
     parallel_each(image.height, 16, [&](std::int64_t y) {
         T* out = samples.data() + y * image.width * channels;
-        std::vector<float> colors(static_cast<std::size_t>(3 * image.width));
+        std::vector<float> colors(std::size_t(3 * image.width));
         for (std::int64_t x = 0; x < image.width; ++x)
             unpremultiply(format, image.at(x, y), colors.data() + 3 * x);
         to_view(format, gain, colors.data(), image.width);
@@ -208,13 +208,12 @@ float apply_view(View view, float value) {
 float dither(std::int64_t x, std::int64_t y, int channel) {
     // 2^32 over the plastic number and over its square: M. Roberts, "The unreasonable effectiveness of
     // quasirandom sequences" (2018). The third factor, 2^32 over the golden ratio, takes the channels apart.
-    std::uint32_t lattice = static_cast<std::uint32_t>(x) * 0xC13FA9A9u +
-                            static_cast<std::uint32_t>(y) * 0x91E10DA5u +
-                            static_cast<std::uint32_t>(channel) * 0x9E3779B9u;
+    std::uint32_t lattice = std::uint32_t(x) * 0xC13FA9A9u + std::uint32_t(y) * 0x91E10DA5u +
+                            std::uint32_t(channel) * 0x9E3779B9u;
     // 255 levels at -127/256 .. 127/256: a value that is a multiple of 1/255 can never be rounded to
     // another one.
     std::uint64_t level = (std::uint64_t{lattice} * 255u) >> 32;
-    return (static_cast<float>(level) - 127.0f) / 256.0f;
+    return (float(level) - 127.0f) / 256.0f;
 }
 
 int stored_channels(const FrameFormat& format) { return format.alpha == Alpha::none ? 3 : 4; }
@@ -232,7 +231,7 @@ std::vector<std::uint8_t> encode_8bit(const FrameFormat& format, const Image& im
     const auto put = [&](std::int64_t x, std::int64_t y, const float* stored, std::uint8_t* out) {
         for (int c = 0; c < channels; ++c) {
             float code = std::floor(stored[c] * 255.0f + 0.5f + dither(x0 + x, y0 + y, c));
-            out[c] = static_cast<std::uint8_t>(std::clamp(code, 0.0f, 255.0f));
+            out[c] = std::uint8_t(std::clamp(code, 0.0f, 255.0f));
         }
         if (format.alpha == Alpha::premultiplied)
             for (int c = 0; c < 3; ++c) out[c] = std::min(out[c], out[3]);
@@ -244,8 +243,7 @@ std::vector<std::uint16_t> encode_16bit(const FrameFormat& format, const Image& 
     const int channels = stored_channels(format);
     return encode_rows<std::uint16_t>(
         format, image, [=](std::int64_t, std::int64_t, const float* stored, std::uint16_t* out) {
-            for (int c = 0; c < channels; ++c)
-                out[c] = static_cast<std::uint16_t>(stored[c] * 65535.0f + 0.5f);
+            for (int c = 0; c < channels; ++c) out[c] = std::uint16_t(stored[c] * 65535.0f + 0.5f);
         });
 }
 
@@ -260,7 +258,7 @@ Image encode_float(const FrameFormat& format, const Image& image) {
             encode_pixel(format, 1.0f, image.at(x, y), stored);
             if (!converted) continue;
             const glm::dvec3 light = matrix * glm::dvec3(stored[0], stored[1], stored[2]);
-            for (int c = 0; c < 3; ++c) stored[c] = static_cast<float>(light[c]);
+            for (int c = 0; c < 3; ++c) stored[c] = float(light[c]);
         }
     });
     return result;

@@ -83,8 +83,8 @@ std::map<std::string, std::string> parse_metadata_lines(std::string_view lines) 
 Rational rational_fps(double fps) {
     double ntsc = std::round(fps * 1.001);
     if (std::fabs(ntsc * 1000.0 / 1001.0 - fps) < 0.0005 && std::fabs(ntsc - fps) > 0.0005)
-        return {static_cast<int>(ntsc) * 1000, 1001};
-    int thousandths = static_cast<int>(std::round(std::fmin(fps, 1e6) * 1000.0));
+        return {int(ntsc) * 1000, 1001};
+    int thousandths = int(std::round(std::fmin(fps, 1e6) * 1000.0));
     int common = std::gcd(thousandths, 1000);
     return {thousandths / common, 1000 / common};
 }

@@ -101,7 +101,7 @@ bool write_all(png_structp png, png_infop info, const PngPicture& picture) {
         png_set_gAMA(png, info, 1.0);
     else if (!picture.format->ocio)
         png_set_sRGB_gAMA_and_cHRM(png, info, PNG_sRGB_INTENT_PERCEPTUAL);
-    png_set_text(png, info, picture.texts->data(), static_cast<int>(picture.texts->size()));
+    png_set_text(png, info, picture.texts->data(), int(picture.texts->size()));
     png_write_info(png, info);
     if (picture.bits == 16 && std::endian::native == std::endian::little) png_set_swap(png);
     const std::int64_t row_bytes = picture.width * picture.channels * picture.bits / 8;
@@ -181,7 +181,7 @@ std::optional<StoredHeader> read_png_header(const fs::path& file) {
     header.whole_height = png_get_image_height(png, info);
     png_textp texts = nullptr;
     const int count = png_get_text(png, info, &texts, nullptr);
-    for (const png_text& text : std::span(texts, static_cast<std::size_t>(count)))
+    for (const png_text& text : std::span(texts, std::size_t(count)))
         header.texts.emplace(text.key, text.text);
     return header;
 }

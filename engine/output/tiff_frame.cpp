@@ -62,14 +62,14 @@ struct Seekable {
     static tmsize_t read(thandle_t, void*, tmsize_t) { return -1; }
     static tmsize_t write(thandle_t handle, void* bytes, tmsize_t size) {
         Seekable& to = of(handle);
-        if (!to.file.write_at(to.place, bytes, static_cast<std::size_t>(size))) return -1;
+        if (!to.file.write_at(to.place, bytes, std::size_t(size))) return -1;
         to.place += size;
         return size;
     }
     static toff_t seek(thandle_t handle, toff_t offset, int whence) {
         Seekable& to = of(handle);
         const std::int64_t from = whence == SEEK_SET ? 0 : whence == SEEK_CUR ? to.place : to.file.size();
-        to.place = from + static_cast<std::int64_t>(offset);
+        to.place = from + std::int64_t(offset);
         return static_cast<toff_t>(to.place);
     }
     static int close(thandle_t) { return 0; }
@@ -94,13 +94,12 @@ void take_differences(Sample* row, std::int64_t count, int channels) {
 }
 
 void predict_floats(unsigned char* row, std::int64_t count, int channels, Bytes& scratch) {
-    scratch.resize(static_cast<std::size_t>(4 * count));
+    scratch.resize(std::size_t(4 * count));
     for (std::int64_t i = 0; i < count; ++i) {
         std::uint32_t bits;
         std::memcpy(&bits, row + 4 * i, sizeof bits);
         for (int byte = 0; byte < 4; ++byte)
-            scratch[static_cast<std::size_t>(byte * count + i)] =
-                static_cast<unsigned char>(bits >> (24 - 8 * byte));
+            scratch[byte * count + i] = static_cast<unsigned char>(bits >> (24 - 8 * byte));
     }
     take_differences(scratch.data(), 4 * count, channels);
     std::ranges::copy(scratch, row);
@@ -131,15 +130,14 @@ Bytes deflated_strip(const Samples& samples, std::int64_t begin, std::int64_t en
 bool write_deflated(TIFF* tiff, const Samples& samples) {
     const std::int64_t strips = (samples.height + strip_rows - 1) / strip_rows;
     for (std::int64_t first = 0; first < strips; first += strips_at_once) {
-        std::vector<Bytes> group(static_cast<std::size_t>(std::min(strips_at_once, strips - first)));
+        std::vector<Bytes> group(std::size_t(std::min(strips_at_once, strips - first)));
         parallel_for(std::ssize(group), [&](std::int64_t i, int) {
             const std::int64_t begin = (first + i) * strip_rows;
-            group[static_cast<std::size_t>(i)] =
-                deflated_strip(samples, begin, std::min(begin + strip_rows, samples.height));
+            group[i] = deflated_strip(samples, begin, std::min(begin + strip_rows, samples.height));
         });
         for (std::size_t i = 0; i < group.size(); ++i)
-            if (TIFFWriteRawStrip(tiff, static_cast<std::uint32_t>(first) + static_cast<std::uint32_t>(i),
-                                  group[i].data(), std::ssize(group[i])) < 0)
+            if (TIFFWriteRawStrip(tiff, std::uint32_t(first) + std::uint32_t(i), group[i].data(),
+                                  std::ssize(group[i])) < 0)
                 return false;
     }
     return true;
@@ -149,8 +147,7 @@ bool write_by_libtiff(TIFF* tiff, const Samples& samples) {
     for (std::int64_t y = 0; y < samples.height; y += strip_rows) {
         const std::int64_t size = std::min(strip_rows, samples.height - y) * samples.row_bytes();
         Bytes strip(samples.rows + y * samples.row_bytes(), samples.rows + y * samples.row_bytes() + size);
-        if (TIFFWriteEncodedStrip(tiff, static_cast<std::uint32_t>(y / strip_rows), strip.data(), size) < 0)
-            return false;
+        if (TIFFWriteEncodedStrip(tiff, std::uint32_t(y / strip_rows), strip.data(), size) < 0) return false;
     }
     return true;
 }
@@ -163,15 +160,15 @@ int tiff_compression(Compression compression) {
 void set_tags(TIFF* tiff, const FrameFormat& format, const Samples& samples, const FrameMetadata& metadata) {
     const bool floats = samples.bytes_each == 4;
     const int compression = tiff_compression(format.compression);
-    TIFFSetField(tiff, TIFFTAG_IMAGEWIDTH, static_cast<std::uint32_t>(samples.width));
-    TIFFSetField(tiff, TIFFTAG_IMAGELENGTH, static_cast<std::uint32_t>(samples.height));
+    TIFFSetField(tiff, TIFFTAG_IMAGEWIDTH, std::uint32_t(samples.width));
+    TIFFSetField(tiff, TIFFTAG_IMAGELENGTH, std::uint32_t(samples.height));
     TIFFSetField(tiff, TIFFTAG_BITSPERSAMPLE, 8 * samples.bytes_each);
     TIFFSetField(tiff, TIFFTAG_SAMPLEFORMAT, floats ? SAMPLEFORMAT_IEEEFP : SAMPLEFORMAT_UINT);
     TIFFSetField(tiff, TIFFTAG_SAMPLESPERPIXEL, samples.channels);
     TIFFSetField(tiff, TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_RGB);
     TIFFSetField(tiff, TIFFTAG_ORIENTATION, ORIENTATION_TOPLEFT);
     TIFFSetField(tiff, TIFFTAG_PLANARCONFIG, PLANARCONFIG_CONTIG);
-    TIFFSetField(tiff, TIFFTAG_ROWSPERSTRIP, static_cast<std::uint32_t>(strip_rows));
+    TIFFSetField(tiff, TIFFTAG_ROWSPERSTRIP, std::uint32_t(strip_rows));
     TIFFSetField(tiff, TIFFTAG_COMPRESSION, compression);
     if (compression != COMPRESSION_NONE)
         TIFFSetField(tiff, TIFFTAG_PREDICTOR, floats ? PREDICTOR_FLOATINGPOINT : PREDICTOR_HORIZONTAL);
@@ -256,7 +253,7 @@ bool tiff_is_whole(const fs::path& file) {
     if (!tiff || TIFFIsTiled(tiff.get())) return false;
     const tmsize_t size = TIFFStripSize(tiff.get());
     if (size <= 0 || size > largest_strip) return false;
-    Bytes strip(static_cast<std::size_t>(size));
+    Bytes strip(size);
     const std::uint32_t strips = TIFFNumberOfStrips(tiff.get());
     for (std::uint32_t i = 0; i < strips; ++i)
         if (TIFFReadEncodedStrip(tiff.get(), i, strip.data(), size) < 0 || error.text[0] != 0) return false;

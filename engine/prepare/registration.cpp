@@ -262,7 +262,7 @@ std::vector<Found> searched(const Image& fixed, const Pyramid& moving, const Pic
         PictureOnPicture place = start;
         place.turn_deg += double(i % turns) * (360.0 / turns);
         place.scale *= real::pow(scale_step, double(i / turns - scales / 2));
-        found[std::size_t(i)] = best_shift(spectra, moving, place);
+        found[i] = best_shift(spectra, moving, place);
     });
     std::ranges::stable_sort(found, std::greater{}, &Found::score);
     return found;

@@ -105,7 +105,7 @@ void mark_disc(PixelMask& mask, double x, double y, double radius) {
 std::vector<double> excess(const std::vector<double>& around) {
     std::vector<double> out;
     for (int i = 0; i < rays; ++i) {
-        const auto at = [&](int k) { return around[std::size_t((i + k + rays) % rays)]; };
+        const auto at = [&](int k) { return around[(i + k + rays) % rays]; };
         out.push_back(at(0) - std::max(at(-narrow), at(narrow)));
     }
     return out;
@@ -164,7 +164,7 @@ void mark_core_and_spikes(const Image& without, const PictureStar& star, PixelMa
     }
     const double least = spike_strength * median_size(strength);
     for (int i = 0; i < rays; ++i) {
-        const auto at = [&](int k) { return strength[std::size_t((i + k + rays) % rays)]; };
+        const auto at = [&](int k) { return strength[(i + k + rays) % rays]; };
         const double opposite = std::max({at(rays / 2 - 1), at(rays / 2), at(rays / 2 + 1)});
         if (at(0) > least && opposite > 0.5 * least)
             mark_spike(without, star, i, start, std::max(2.0 * star.noise, 0.2 * at(0)), mask);

@@ -141,7 +141,7 @@ StarProfile elected(const Search& search, const std::vector<std::size_t>& stars,
         const double best = *std::min_element(misfit.begin(), misfit.end());
         for (std::size_t p = 0; p < sums.size(); ++p) sums[p] += std::min(misfit[p] - best, clearly_worse);
     }
-    return profiles[std::size_t(std::min_element(sums.begin(), sums.end()) - sums.begin())];
+    return profiles[std::min_element(sums.begin(), sums.end()) - sums.begin()];
 }
 
 // How far the widths of these stars scatter beyond what noise does, as logarithms.

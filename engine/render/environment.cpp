@@ -55,9 +55,9 @@ void set_texel(Image& level, std::int64_t x, std::int64_t y, const glm::vec3& co
 // x, y in [0, inner size]; texel centres at halves.
 glm::vec3 bilinear(const Image& level, double x, double y) {
     double fx = std::floor(x - 0.5), fy = std::floor(y - 0.5);
-    auto u = static_cast<float>(x - 0.5 - fx), v = static_cast<float>(y - 0.5 - fy);
-    auto ix = std::clamp<std::int64_t>(static_cast<std::int64_t>(fx), -border, inner(level.width) - 1);
-    auto iy = std::clamp<std::int64_t>(static_cast<std::int64_t>(fy), -border, inner(level.height) - 1);
+    auto u = float(x - 0.5 - fx), v = float(y - 0.5 - fy);
+    auto ix = std::clamp<std::int64_t>(std::int64_t(fx), -border, inner(level.width) - 1);
+    auto iy = std::clamp<std::int64_t>(std::int64_t(fy), -border, inner(level.height) - 1);
     glm::vec3 top = texel(level, ix, iy) * (1.0f - u) + texel(level, ix + 1, iy) * u;
     glm::vec3 bottom = texel(level, ix, iy + 1) * (1.0f - u) + texel(level, ix + 1, iy + 1) * u;
     return top * (1.0f - v) + bottom * v;
@@ -81,15 +81,12 @@ void fill_latlong_border(Image& level) {
 // meet, is the mean of the three texels there.
 void fill_cube_border(std::array<Image*, 6> level) {
     std::int64_t n = inner(level[0]->width);
-    auto size = static_cast<double>(n);
+    auto size = double(n);
     auto neighbour = [&](std::size_t face, std::int64_t x, std::int64_t y) {
         const CubeAxes& axes = cube_axes[face];
-        double s = (static_cast<double>(x) + 0.5) / size * 2.0 - 1.0,
-               t = 1.0 - (static_cast<double>(y) + 0.5) / size * 2.0;
+        double s = (double(x) + 0.5) / size * 2.0 - 1.0, t = 1.0 - (double(y) + 0.5) / size * 2.0;
         Place place = cube_place(glm::normalize(axes.forward + axes.right * s + axes.up * t), size);
-        auto at = [n](double c) {
-            return std::clamp<std::int64_t>(static_cast<std::int64_t>(std::floor(c)), 0, n - 1);
-        };
+        auto at = [n](double c) { return std::clamp<std::int64_t>(std::int64_t(std::floor(c)), 0, n - 1); };
         return texel(*level[place.face], at(place.x), at(place.y));
     };
     for (std::size_t face = 0; face < 6; ++face) {
@@ -117,15 +114,15 @@ struct Halving {
     std::array<double, 3> shares;
 };
 std::vector<Halving> halvings(std::int64_t size, std::int64_t half) {
-    const double rate = static_cast<double>(size) / static_cast<double>(half);
-    std::vector<Halving> result(static_cast<std::size_t>(half));
+    const double rate = double(size) / double(half);
+    std::vector<Halving> result(half);
     for (std::int64_t to = 0; to < half; ++to) {
-        Halving& halving = result[static_cast<std::size_t>(to)];
-        halving.first = static_cast<std::int64_t>(rate * static_cast<double>(to));
+        Halving& halving = result[to];
+        halving.first = std::int64_t(rate * double(to));
         for (int k = 0; k < 3; ++k) {
-            const auto from = static_cast<double>(halving.first + k);
-            const double lo = std::fmax(rate * static_cast<double>(to), from);
-            const double hi = std::fmin(rate * static_cast<double>(to + 1), from + 1.0);
+            const auto from = double(halving.first + k);
+            const double lo = std::fmax(rate * double(to), from);
+            const double hi = std::fmin(rate * double(to + 1), from + 1.0);
             halving.shares[k] = std::fmax(hi - lo, 0.0) / rate;
         }
     }
@@ -139,11 +136,11 @@ Image half_size(const Image& image) {
     const std::vector<Halving> columns = halvings(w, half_w), rows = halvings(h, half_h);
     Image result = unfilled_image(half_w + 2 * border, half_h + 2 * border, 3);
     parallel_for(half_h, [&](std::int64_t y, int) {
-        const Halving& row = rows[static_cast<std::size_t>(y)];
-        const auto high = static_cast<int>(std::min<std::int64_t>(3, h - row.first));
+        const Halving& row = rows[y];
+        const auto high = int(std::min<std::int64_t>(3, h - row.first));
         for (std::int64_t x = 0; x < half_w; ++x) {
-            const Halving& column = columns[static_cast<std::size_t>(x)];
-            const auto wide = static_cast<int>(std::min<std::int64_t>(3, w - column.first));
+            const Halving& column = columns[x];
+            const auto wide = int(std::min<std::int64_t>(3, w - column.first));
             glm::dvec3 sum(0.0);
             for (int j = 0; j < high; ++j) {
                 const float* p = image.at(column.first + border, row.first + j + border);
@@ -159,8 +156,7 @@ Image half_size(const Image& image) {
 // A sky's face, RGB, with room for the border.
 Image with_border(const Image& picture) {
     std::int64_t texels = (picture.width + 2 * border) * (picture.height + 2 * border);
-    claim_memory(texels * 3 * static_cast<std::int64_t>(sizeof(float)) * 4 / 3,
-                 "environment picture and its mip levels");
+    claim_memory(texels * 3 * std::int64_t(sizeof(float)) * 4 / 3, "environment picture and its mip levels");
     Image result = unfilled_image(picture.width + 2 * border, picture.height + 2 * border, 3);
     for (std::int64_t y = 0; y < picture.height; ++y)
         std::copy_n(picture.at(0, y), 3 * picture.width, result.at(border, y + border));
@@ -169,10 +165,10 @@ Image with_border(const Image& picture) {
 
 // Of all texels but the border's; no less than 0.
 float largest_value(const Image& image) {
-    std::vector<float> largest(static_cast<std::size_t>(inner(image.height)), 0.0f);
+    std::vector<float> largest(std::size_t(inner(image.height)), 0.0f);
     parallel_for(inner(image.height), [&](std::int64_t y, int) {
         const float* const row = image.at(border, y + border);
-        float& here = largest[static_cast<std::size_t>(y)];
+        float& here = largest[y];
         for (std::int64_t i = 0; i < 3 * inner(image.width); ++i) here = here < row[i] ? row[i] : here;
     });
     return largest.empty() ? 0.0f : *std::ranges::max_element(largest);
@@ -208,7 +204,7 @@ void check_cube(const std::vector<fs::path>& files, const std::vector<std::vecto
 
 glm::vec3 sample_level(const std::vector<std::vector<Image>>& faces, std::size_t level, const glm::dvec3& d) {
     const Image& first = faces[0][level];
-    auto w = static_cast<double>(inner(first.width)), h = static_cast<double>(inner(first.height));
+    auto w = double(inner(first.width)), h = double(inner(first.height));
     if (faces.size() == 1) {
         glm::dvec2 place = latlong_place(d);
         return bilinear(first, place.x * w, place.y * h);
@@ -220,7 +216,7 @@ glm::vec3 sample_level(const std::vector<std::vector<Image>>& faces, std::size_t
 // Texels of level 0 per `spread` radians: along the equator of a latlong, at the centre of a cube's face.
 double texels_per_spread(const Environment& environment, double spread) {
     const Image& first = (*environment.faces)[0][0];
-    auto w = static_cast<double>(inner(first.width)), h = static_cast<double>(inner(first.height));
+    auto w = double(inner(first.width)), h = double(inner(first.height));
     return spread *
            (environment.faces->size() == 1 ? std::fmax(w / (2.0 * real::pi), h / real::pi) : 0.5 * w);
 }
@@ -302,11 +298,11 @@ glm::vec3 sample_environment(const Environment& environment, const glm::dvec3& d
     const EnvironmentFaces& faces = *environment.faces;
     if (faces.empty()) return glm::vec3(0.0f);
     glm::dvec3 d = environment.environment_from_world * direction;
-    double levels = static_cast<double>(faces[0].size() - 1);
+    double levels = double(faces[0].size() - 1);
     double texels = texels_per_spread(environment, spread);
     double level = texels > 1.0 ? std::fmin(real::log(texels) * (1.0 / real::log(2.0)), levels) : 0.0;
-    auto fine = static_cast<std::size_t>(level);
-    auto blend = static_cast<float>(level - static_cast<double>(fine));
+    auto fine = std::size_t(level);
+    auto blend = float(level - double(fine));
     glm::vec3 color = sample_level(faces, fine, d);
     if (blend > 0.0f) color = color * (1.0f - blend) + sample_level(faces, fine + 1, d) * blend;
     return color * environment.gain;

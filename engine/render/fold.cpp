@@ -38,9 +38,7 @@ BlockPart block_part(const TilePlanes& planes, const Cell& cell, int block, int 
                                                      0.5f, 1.5f, 2.5f, 3.5f, 0.5f, 1.5f, 2.5f, 3.5f};
     alignas(64) static constexpr float row[16] = {0.5f, 0.5f, 0.5f, 0.5f, 1.5f, 1.5f, 1.5f, 1.5f,
                                                   2.5f, 2.5f, 2.5f, 2.5f, 3.5f, 3.5f, 3.5f, 3.5f};
-    const auto edge = [](float corner, int n) {
-        return corner + static_cast<float>(n * TilePlanes::block_px);
-    };
+    const auto edge = [](float corner, int n) { return corner + float(n * TilePlanes::block_px); };
     const float x_px = edge(cell.x0_px, block % TilePlanes::cell_blocks),
                 y_px = edge(cell.y0_px, block / TilePlanes::cell_blocks);
     BlockPart part;
@@ -51,7 +49,7 @@ BlockPart block_part(const TilePlanes& planes, const Cell& cell, int block, int 
                            : hn::Add(load(column + first + p * lanes), all(x_px));
         part.y_px[p] = hn::Add(load(row + first + p * lanes), all(y_px));
     }
-    part.at = cell.first_pixel + static_cast<std::size_t>(block * TilePlanes::block_pixels + first);
+    part.at = cell.first_pixel + std::size_t(block * TilePlanes::block_pixels + first);
     if constexpr (is_onto_sphere(kOutline))
         for (std::size_t k = 0; k < 3; ++k)
             for (std::size_t p = 0; p < parts; ++p)
@@ -215,7 +213,7 @@ void find_discs(const FoldJob& job, Discs& discs) {
 /// Appends those of the splats [begin, end) whose support may touch the cell.
 void find_in_cell(const Discs& discs, std::size_t begin, std::size_t end, const Cell& cell,
                   CellSplats& found) {
-    constexpr float half = 0.5f * static_cast<float>(TilePlanes::cell_px);
+    constexpr float half = 0.5f * float(TilePlanes::cell_px);
     const hn::RebindToUnsigned<D> du;
     const V middle_x = all(cell.x0_px + half), middle_y = all(cell.y0_px + half);
     for (std::size_t i = begin; i < end; i += lanes) {
@@ -223,7 +221,7 @@ void find_in_cell(const Discs& discs, std::size_t begin, std::size_t end, const 
                 reach = hn::Load(D(), &discs.reach_px[i]);
         const V distance = hn::Max(hn::Abs(hn::Sub(x, middle_x)), hn::Abs(hn::Sub(y, middle_y)));
         const M near = hn::Lt(distance, hn::Add(reach, all(half)));
-        const auto index = hn::Add(counting(du), hn::Set(du, static_cast<std::uint32_t>(i)));
+        const auto index = hn::Add(counting(du), hn::Set(du, std::uint32_t(i)));
         const std::size_t n = found.count;
         append(D(), x, near, &found.discs.x_px[n]);
         append(D(), y, near, &found.discs.y_px[n]);
@@ -277,7 +275,7 @@ void fold_found(const FoldJob& job, const FoldCommon& common, bool last, CellSpl
     std::size_t begin = 0;
     for (; begin + size <= found.count || (last && begin < found.count); begin += size) {
         job.progress.check();
-        batch.count = static_cast<int>(std::min(size, found.count - begin));
+        batch.count = int(std::min(size, found.count - begin));
         batch.x_px = &found.discs.x_px[begin];
         batch.y_px = &found.discs.y_px[begin];
         batch.reach_px = &found.discs.reach_px[begin];
@@ -318,10 +316,8 @@ void fold_cells(const FoldJob& job, TilePlanes& planes) {
     Cap caps[SplatBatch::blocks];
     for (int n = 0; n < planes.cell_columns * planes.cell_rows; ++n) {
         const int column = n % planes.cell_columns, row = n / planes.cell_columns;
-        Cell cell{static_cast<std::size_t>(n * TilePlanes::cell_pixels),
-                  static_cast<float>(planes.x0 + column * TilePlanes::cell_px),
-                  static_cast<float>(planes.y0 + row * TilePlanes::cell_px), used_blocks(planes, column, row),
-                  caps};
+        Cell cell{std::size_t(n * TilePlanes::cell_pixels), float(planes.x0 + column * TilePlanes::cell_px),
+                  float(planes.y0 + row * TilePlanes::cell_px), used_blocks(planes, column, row), caps};
         found.count = 0;
         Cap whole;
         if constexpr (sphere) {
@@ -333,8 +329,7 @@ void fold_cells(const FoldJob& job, TilePlanes& planes) {
         for (std::size_t i = 0; i < job.splats.size() && cell.open != 0; i += step) {
             const std::size_t end = std::min(i + step, job.splats.size());
             if constexpr (sphere)
-                find_on_sphere(*scratch, i, end, whole,
-                               cell.x0_px + 0.5f * static_cast<float>(TilePlanes::cell_px),
+                find_on_sphere(*scratch, i, end, whole, cell.x0_px + 0.5f * float(TilePlanes::cell_px),
                                shared::period_px(job.settings.lens), found);
             else
                 find_in_cell(scratch->discs, i, end, cell, found);
@@ -411,11 +406,11 @@ void fold(const FoldJob& job, TilePlanes& planes) {
 void TilePlanes::reset(const Region& tile, const FoldSettings& settings, std::size_t layer_count) {
     x0 = tile.x;
     y0 = tile.y;
-    width = static_cast<int>(tile.width);
-    height = static_cast<int>(tile.height);
+    width = int(tile.width);
+    height = int(tile.height);
     cell_columns = (width + cell_px - 1) / cell_px;
     cell_rows = (height + cell_px - 1) / cell_px;
-    const auto size = static_cast<std::size_t>(cell_columns * cell_rows * cell_pixels);
+    const auto size = std::size_t(cell_columns * cell_rows * cell_pixels);
     for (Buffer<float>& plane : color) plane.assign(size, 0.0f);
     alpha.assign(size, 0.0f);
     for (Buffer<float>& plane : transmittance) plane.assign(size, 1.0f);

@@ -71,7 +71,7 @@ struct TilePlanes {
         const int cell = y / cell_px * cell_columns + x / cell_px;
         const int block = y % cell_px / block_px * cell_blocks + x % cell_px / block_px;
         const int pixel = y % block_px * block_px + x % block_px;
-        return static_cast<std::size_t>(cell * cell_pixels + block * block_pixels + pixel);
+        return std::size_t(cell * cell_pixels + block * block_pixels + pixel);
     }
 };
 

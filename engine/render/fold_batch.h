@@ -29,7 +29,7 @@ struct SplatBits {
         const std::uint64_t word = low | (high & in_high), rest = word & (word - 1);
         low = rest & ~in_high;
         high = (rest & in_high) | (high & ~in_high);
-        return std::countr_zero(word) + static_cast<int>(in_high & 64);
+        return std::countr_zero(word) + int(in_high & 64);
     }
 };
 

@@ -33,7 +33,7 @@ using DI = hn::RebindToSigned<D>;
 using V = hn::Vec<D>;
 using VI = hn::Vec<DI>;
 using M = hn::Mask<D>;
-constexpr int lanes = static_cast<int>(hn::MaxLanes(D()));
+constexpr int lanes = int(hn::MaxLanes(D()));
 constexpr int segments = FootprintNode::segments;
 
 HWY_INLINE V load(const float* p) { return hn::Load(D(), p); }
@@ -70,7 +70,7 @@ HWY_INLINE V look_up(const float* c, VI segment) {
 // where a block's pixels are one vector, else two vectors of pixels, which share what is read of their splat.
 constexpr int sides = 2;
 constexpr int parts = lanes == TilePlanes::block_pixels ? 1 : sides;
-constexpr std::size_t part_of(int side) { return parts == 1 ? 0 : static_cast<std::size_t>(side); }
+constexpr std::size_t part_of(int side) { return parts == 1 ? 0 : std::size_t(side); }
 
 /// Some of a block's pixels: those of one vector or two.
 struct BlockPart {
@@ -166,7 +166,7 @@ HWY_INLINE void end_splats(const SplatBatch& batch, const SplatsUnderway& from, 
         for (int n = 0; n < sides; ++n) w[n] = hn::Mul(w[n], from.place[n]);
         for (int n = 0; n < sides; ++n) w[n] = hn::Add(w[n], coefficient(n, power));
     }
-    const V outside = all(to_whole + static_cast<float>(segments));
+    const V outside = all(to_whole + float(segments));
     for (int n = 0; n < sides; ++n) {
         w[n] = hn::IfThenElseZero(hn::Lt(from.segment[n], outside), w[n]);
         if (kOutline != Outline::soft)

@@ -38,8 +38,8 @@ using namespace astrosplat::shared_types;
 /// Squared distance along one axis from `lanes` splats to the nearest pixel centre of a row or column
 /// of blocks.
 HWY_INLINE V distance_to_block(V center, float first_px) {
-    const float half = 0.5f * static_cast<float>(TilePlanes::block_px - 1);
-    const V middle = all(first_px + 0.5f * static_cast<float>(TilePlanes::block_px));
+    const float half = 0.5f * float(TilePlanes::block_px - 1);
+    const V middle = all(first_px + 0.5f * float(TilePlanes::block_px));
     const V distance = hn::Max(hn::Sub(hn::Abs(hn::Sub(center, middle)), all(half)), hn::Zero(D()));
     return hn::Mul(distance, distance);
 }
@@ -64,10 +64,9 @@ inline void find_touched_blocks(SplatBatch& batch, float x0_px, float y0_px) {
         const V x = load(batch.x_px + n), y = load(batch.y_px + n), reach = load(batch.reach_px + n);
         const V reach_squared = hn::Mul(reach, reach);
         V dx[side];
-        for (int c = 0; c < side; ++c)
-            dx[c] = distance_to_block(x, x0_px + static_cast<float>(c * TilePlanes::block_px));
+        for (int c = 0; c < side; ++c) dx[c] = distance_to_block(x, x0_px + float(c * TilePlanes::block_px));
         for (int r = 0; r < side; ++r) {
-            const V dy = distance_to_block(y, y0_px + static_cast<float>(r * TilePlanes::block_px));
+            const V dy = distance_to_block(y, y0_px + float(r * TilePlanes::block_px));
             for (int c = 0; c < side; ++c)
                 set_bits(hn::Le(hn::Add(dx[c], dy), reach_squared), n, &batch.touches[r * side + c].low);
         }
@@ -162,7 +161,7 @@ inline void find_on_sphere(const FoldScratch& scratch, std::size_t begin, std::s
                 toward_z = hn::Load(D(), &scratch.toward.z[i]);
         const V to_middle = hn::Sub(middle, x);
         const M nearest = hn::And(hn::Ge(to_middle, hn::Neg(half)), hn::Lt(to_middle, half));
-        const auto index = hn::Add(counting(du), hn::Set(du, static_cast<std::uint32_t>(i)));
+        const auto index = hn::Add(counting(du), hn::Set(du, std::uint32_t(i)));
         const M exists = hn::Lt(y, all(1e29f));  // not of the last vector's rest
         const M near = hn::And(hn::And(nearest, exists), reaches(toward_x, toward_y, toward_z, reach, cap));
         const std::size_t n = found.count;
@@ -222,7 +221,7 @@ HWY_INLINE void look_up_footprint(const FootprintTable& table, SplatBatch& batch
     const float t = batch.node_share[i];
     interpolate_cubics(*a, *b, t, batch, i);
     const int quads = table.linear_in_distance ? 3 : table.flat_core ? 2 : 1;
-    for (int k = 0; k < 4 * quads; k += static_cast<int>(hn::MaxLanes(four)))  // one without vectors
+    for (int k = 0; k < 4 * quads; k += int(hn::MaxLanes(four)))  // one without vectors
         interpolate(four, &a->moments.mean + k, &b->moments.mean + k, t, batch.moments[k / 4][i] + k % 4);
 }
 
@@ -270,7 +269,7 @@ HWY_INLINE void normalise_footprints(const FootprintTable& table, SplatBatch& ba
         footprint_gains(table.flat_core, is_tabulated(node), shrink_of_radius(radius_px),
                         table.integral * tabulated_px * tabulated_px, found, edge_found);
     store(profile_begin(linear, range).v, batch.lo + n);
-    store((static_cast<float>(segments) / profile_width(linear, range)).v, batch.scale + n);
+    store((float(segments) / profile_width(linear, range)).v, batch.scale + n);
     store(gains.edge_gain.v, batch.edge_gain + n);
     store(gains.amplitude.v, batch.weight_gain + n);
 }
@@ -310,8 +309,8 @@ HWY_INLINE void prepare_weight(const FoldJob& job, const ScreenSplat& splat, Spl
 /// Occlusion colours: what the general fold alone asks for.
 HWY_INLINE void prepare_occlusion(const ScreenSplat& splat, const FoldLayer& layer, SplatBatch& batch,
                                   int i) {
-    const float h = static_cast<float>(splat.hybrid) * (1.0f / 65535.0f);
-    const int blend = layer.holdout ? shared::BLEND_OVER : static_cast<int>(layer.blend);
+    const float h = float(splat.hybrid) * (1.0f / 65535.0f);
+    const int blend = layer.holdout ? shared::BLEND_OVER : int(layer.blend);
     batch.shows[i] = layer.holdout ? 0.0f : 1.0f;
     const bool absorbs = !layer.holdout && shared::blend_absorbs(blend, splat.color[0]);
     float sum = 0.0f;

@@ -20,8 +20,7 @@ double integral_with(const Falloff& falloff, const F& f) {
 }  // namespace
 
 double falloff_value(const Falloff& falloff, double t) {
-    return shared::falloff_weight(static_cast<int>(falloff.shape), falloff.core, falloff.sharpness,
-                                  static_cast<float>(t));
+    return shared::falloff_weight(int(falloff.shape), falloff.core, falloff.sharpness, float(t));
 }
 
 FalloffTraits traits_of(const Falloff& falloff) {
@@ -39,11 +38,11 @@ FalloffTraits traits_of(const Falloff& falloff) {
                     .core = falloff.core,
                     .kinks = core > 0.0 && core < 1.0 ? std::vector{core} : std::vector<double>{}};
         case Shape::gaussian:
-            return {.reach = static_cast<float>(std::sqrt(decay)),
+            return {.reach = float(std::sqrt(decay)),
                     .linear_in_distance = false,
                     .steep_centre = sharpness > steep};
         case Shape::exponential:
-            return {.reach = static_cast<float>(decay), .steep_centre = sharpness > steep};
+            return {.reach = float(decay), .steep_centre = sharpness > steep};
     }
     return {};
 }
@@ -124,7 +123,7 @@ class Profile {
         double sum = 0.0;
         for (std::size_t i = 0; i + 1 < ends_.size(); ++i) {
             const double a = std::max(lo, ends_[i] * radius_), b = std::min(hi, ends_[i + 1] * radius_);
-            const int parts = std::max(1, static_cast<int>(std::ceil((b - a) / (2.0 * sigma_))));
+            const int parts = std::max(1, int(std::ceil((b - a) / (2.0 * sigma_))));
             for (int k = 0; k < parts && b > a; ++k)
                 sum += integrate_panel(a + (b - a) * k / parts, a + (b - a) * (k + 1) / parts,
                                        [&](double r) { return ring(r, d); });
@@ -137,7 +136,7 @@ class Profile {
         double sum = 0.0;
         for (std::size_t i = 0; i + 1 < ends_.size(); ++i) {
             const double a = ends_[i], b = ends_[i + 1];
-            const int parts = 1 + static_cast<int>((b - a) * radius_ * frequency);
+            const int parts = 1 + int((b - a) * radius_ * frequency);
             for (int k = 0; k < parts; ++k)
                 sum += integrate_panel(a + (b - a) * k / parts, a + (b - a) * (k + 1) / parts, [&](double t) {
                     return falloff_value(falloff_, t) * t *
@@ -209,7 +208,7 @@ double edge_spectrum(const FootprintTable& table, const FootprintNode& node, dou
         sum += integrate_panel(d0, d1, [&](double d) {
             const double place =
                 table.linear_in_distance ? (d - d0) / (d1 - d0) : (d * d - d0 * d0) / (d1 * d1 - d0 * d0);
-            const auto c = [&](int k) { return static_cast<double>(node.cubic[k][s]); };
+            const auto c = [&](int k) { return double(node.cubic[k][s]); };
             const double p = std::clamp(((c(3) * place + c(2)) * place + c(1)) * place + c(0), 0.0, 1.0);
             return p * (1.0 - p) * d * bessel_j0(2.0 * real::pi * frequency * d);
         });
@@ -223,7 +222,7 @@ FootprintNode make_node(const FootprintTable& table, const Falloff& falloff, dou
     double moments[4] = {0.0, 0.0, 0.0, 0.0};
     for (int s = 0; s < segments; ++s) {
         const std::array<double, 4> c = cubic_through(&p[3 * s]);
-        for (int k = 0; k < 4; ++k) node.cubic[k][s] = static_cast<float>(c[k]);
+        for (int k = 0; k < 4; ++k) node.cubic[k][s] = float(c[k]);
         const auto value = [&](double f) {
             return std::clamp(((c[3] * f + c[2]) * f + c[1]) * f + c[0], 0.0, 1.0);
         };
@@ -234,19 +233,18 @@ FootprintNode make_node(const FootprintTable& table, const Falloff& falloff, dou
         moments[3] +=
             integrate_panel(0.0, 1.0, [&](double f) { return value(f) * (1.0 - value(f)) * place(f); });
     }
-    node.moments.mean = static_cast<float>(moments[0] / segments);
-    node.moments.first_moment = static_cast<float>(moments[1] / segments);
-    node.moments.edge_mean = static_cast<float>(moments[2] / segments);
-    node.moments.edge_first_moment = static_cast<float>(moments[3] / segments);
+    node.moments.mean = float(moments[0] / segments);
+    node.moments.first_moment = float(moments[1] / segments);
+    node.moments.edge_mean = float(moments[2] / segments);
+    node.moments.edge_first_moment = float(moments[3] / segments);
     if (radius_px < ripple_limit_px) {
         const Profile profile(falloff, radius_px, table.pixel_filter_px);
         for (int i = 0; i < 3; ++i) {
-            node.moments.ripple[i] =
-                static_cast<float>(profile.relative_spectrum(lattice_frequencies[i], table.integral));
+            node.moments.ripple[i] = float(profile.relative_spectrum(lattice_frequencies[i], table.integral));
             if (table.flat_core)
                 node.moments.edge_ripple[i] =
-                    static_cast<float>(edge_spectrum(table, node, radius_px, lattice_frequencies[i]) /
-                                       edge_spectrum(table, node, radius_px, 0.0));
+                    float(edge_spectrum(table, node, radius_px, lattice_frequencies[i]) /
+                          edge_spectrum(table, node, radius_px, 0.0));
         }
     }
     return node;
@@ -254,7 +252,7 @@ FootprintNode make_node(const FootprintTable& table, const Falloff& falloff, dou
 
 std::array<float, 256> make_cosines() {
     std::array<float, 256> table;
-    for (int i = 0; i < 256; ++i) table[i] = -static_cast<float>(real::cos(2.0 * real::pi * i / 256.0));
+    for (int i = 0; i < 256; ++i) table[i] = -float(real::cos(2.0 * real::pi * i / 256.0));
     return table;
 }
 
@@ -290,24 +288,22 @@ FootprintTable begin_footprint_table(const Falloff& falloff, float pixel_filter_
     table.pixel_filter_px = pixel_filter_px;
     table.reach = traits.reach;
     table.core = traits.core;
-    table.integral = static_cast<float>(falloff_integral(falloff));
-    table.variance = static_cast<float>(falloff_variance(falloff));
+    table.integral = float(falloff_integral(falloff));
+    table.variance = float(falloff_variance(falloff));
     table.nodes.resize(shared::NODE_COUNT);
     return table;
 }
 
 void make_footprint_nodes(FootprintTable& table, float least_px, float largest_px, const Progress& progress) {
-    const auto number = [&](const FootprintNode* node) {
-        return static_cast<std::size_t>(node - table.nodes.data());
-    };
+    const auto number = [&](const FootprintNode* node) { return std::size_t(node - table.nodes.data()); };
     std::size_t first = number(footprint_nodes(table, least_px).a);
     std::size_t end = number(footprint_nodes(table, largest_px).b) + 1;
     if (table.first_made < table.end_made) {  // they stay in one piece
         first = std::min(first, table.first_made);
         end = std::max(end, table.end_made);
     }
-    parallel_for(static_cast<std::int64_t>(end - first), [&](std::int64_t n, int) {
-        const std::size_t i = first + static_cast<std::size_t>(n);
+    parallel_for(std::int64_t(end - first), [&](std::int64_t n, int) {
+        const std::size_t i = first + std::size_t(n);
         if (i >= table.first_made && i < table.end_made) return;
         progress.check();
         table.nodes[i] = make_node(table, table.falloff, double{node_radius_px(i)});
@@ -331,7 +327,7 @@ FootprintNodes footprint_nodes(const FootprintTable& table, float radius_px) {
 }
 
 float node_radius_px(std::size_t node) {
-    const auto bits = static_cast<std::uint32_t>(shared::FIRST_NODE) + static_cast<std::uint32_t>(node);
+    const auto bits = std::uint32_t(shared::FIRST_NODE) + std::uint32_t(node);
     return std::bit_cast<float>(bits << shared::NODE_BITS);
 }
 
@@ -361,7 +357,7 @@ void footprint_at(const FootprintTable& table, float radius_px, float x_px, floa
                  pair.b,
                  pair.t,
                  shared::profile_begin(table.linear_in_distance, range),
-                 static_cast<float>(segments) / shared::profile_width(table.linear_in_distance, range),
+                 float(segments) / shared::profile_width(table.linear_in_distance, range),
                  gains.amplitude,
                  gains.edge_gain,
                  table.support_px(tabulated_px)};
@@ -370,9 +366,9 @@ void footprint_at(const FootprintTable& table, float radius_px, float x_px, floa
 float footprint_weight(const FootprintTable& table, const Footprint& footprint, float distance_px) {
     const float place = table.linear_in_distance ? distance_px : distance_px * distance_px;
     const float u = std::max((place - footprint.lo) * footprint.scale, 0.0f);
-    if (!(u < static_cast<float>(segments))) return 0.0f;
-    const int s = std::min(static_cast<int>(u), segments - 1);
-    const float f = u - static_cast<float>(s);
+    if (!(u < float(segments))) return 0.0f;
+    const int s = std::min(int(u), segments - 1);
+    const float f = u - float(s);
     float c[4];
     for (int k = 0; k < 4; ++k) {
         const float a = footprint.node_a->cubic[k][s];

@@ -141,7 +141,7 @@ constexpr float pixel_cosine_far_px = 1e6f;  // so far out nothing of a splat th
 /// cos of the phase of a coordinate, snapped to 1/256 px, relative to the pixel centres.
 inline float pixel_cosine(float coordinate_px) {
     const float inside = std::min(std::max(coordinate_px, -pixel_cosine_far_px), pixel_cosine_far_px);
-    return pixel_cosines[static_cast<int>(inside * 256.0f) & 255];
+    return pixel_cosines[int(inside * 256.0f) & 255];
 }
 
 /// Integrals over the plane of the profile of a radius, and of its P (1 - P), square px.

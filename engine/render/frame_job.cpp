@@ -15,7 +15,7 @@ namespace astrosplat {
 namespace {
 
 RenderCache::State::Profile numbers_of(const Falloff& falloff) {
-    return {static_cast<int>(falloff.shape), falloff.core, falloff.sharpness};
+    return {int(falloff.shape), falloff.core, falloff.sharpness};
 }
 
 /// Drops all entries when an animated falloff has filled the map, so that a long sequence stays small.
@@ -41,7 +41,7 @@ float largest_light(std::span<const RenderLayer> layers, const Progress& progres
             continue;
         }
         const ShadedSplats& splats = *layer.splats;
-        std::vector<float> partial(static_cast<std::size_t>((splats.size() + chunk - 1) / chunk), 0.0f);
+        std::vector<float> partial(std::size_t((splats.size() + chunk - 1) / chunk), 0.0f);
         parallel_chunks(splats.size(), chunk, [&](std::int64_t begin, std::int64_t end, int) {
             progress.check();
             float most = 0.0f;
@@ -60,7 +60,7 @@ float largest_light(std::span<const RenderLayer> layers, const Progress& progres
 /// Transmittance below which a pixel is closed.
 float stop_threshold(float largest, float exposure_stops) {
     const double exposed = largest * real::exp(std::max(0.0f, exposure_stops) * real::log(2.0));
-    return static_cast<float>(0x1p-16 / std::max(1.0, exposed));
+    return float(0x1p-16 / std::max(1.0, exposed));
 }
 
 }  // namespace
@@ -91,14 +91,13 @@ void prepare(FrameJob& job, RenderCache::State& cache) {
     job.groups = make_groups(layers, job.fold.aovs);
     job.group_of_layer.resize(layers.size());
     for (std::size_t g = 0; g < job.groups.size(); ++g)
-        for (std::size_t l : job.groups[g].layers) job.group_of_layer[l] = static_cast<int>(g);
+        for (std::size_t l : job.groups[g].layers) job.group_of_layer[l] = int(g);
     keep_small(cache.footprints);
     keep_small(cache.lods);
     for (std::size_t l = 0; l < layers.size(); ++l) {
         const LayerRender& render = layers[l].render;
         const FootprintTable& footprints = cache.footprint(render.falloff, settings.pixel_filter);
-        LayerProjection projection =
-            make_projection(layers[l], static_cast<std::uint16_t>(l), camera, settings);
+        LayerProjection projection = make_projection(layers[l], std::uint16_t(l), camera, settings);
         projection.reach = footprints.reach;
         projection.variance = footprints.variance;
         projection.cancelled = job.progress.cancelled;
@@ -136,7 +135,7 @@ bool has_blocks(const FrameJob& job) {
 /// Tile rows of each band so that it takes no more than the limit: its records, or the pixels between slabs.
 std::int64_t rows_per_band(const FrameJob& job, const Tiles& tiles) {
     const std::int64_t limit = job.settings.memory_limit_bytes, rows = tiles.grid.rows();
-    const std::int64_t records = tiles.records * static_cast<std::int64_t>(sizeof(ScreenSplat));
+    const std::int64_t records = tiles.records * std::int64_t(sizeof(ScreenSplat));
     if (limit <= 0 || records <= limit) return rows;
     const std::int64_t bytes = has_blocks(job) ? 4 * carried_bytes(job, tiles.grid) : records;
     const std::int64_t bands = std::max<std::int64_t>(1, (bytes + limit - 1) / limit);
@@ -159,10 +158,10 @@ int watched_parts(const FrameJob& job, const Tiles& tiles) {
     constexpr double most_share = 0.15, records_of_part = 1e6;
     constexpr int most = 2;
     double splats = 1.0;
-    for (const RenderLayer& layer : job.layers) splats += static_cast<double>(layer.size());
-    const auto records = static_cast<double>(tiles.records);
+    for (const RenderLayer& layer : job.layers) splats += double(layer.size());
+    const auto records = double(tiles.records);
     const double bands = std::min(records / records_of_part, most_share * record_of_look * records / splats);
-    return std::min(most, static_cast<int>(bands / 2.0));
+    return std::min(most, int(bands / 2.0));
 }
 
 void add_parts(std::int64_t rows, int parts, std::vector<std::int64_t>& heights) {
@@ -210,8 +209,7 @@ void sample_layers(std::span<const LayerProjection> layers, const TileGrid& grid
             const std::vector<BlockFacts>& blocks = layer.blocks->blocks();
             for (std::size_t b = 0; b + 1 < blocks.size(); ++b) {
                 const std::int64_t begin = blocks[b].first_sample, end = blocks[b + 1].first_sample;
-                const double each = static_cast<double>(blocks[b].splats) /
-                                    static_cast<double>(std::max<std::int64_t>(1, end - begin));
+                const double each = double(blocks[b].splats) / double(std::max<std::int64_t>(1, end - begin));
                 for (std::int64_t i = begin; i < end; i += block)
                     sample(here, i, std::min(i + block, end), each);
             }
@@ -219,8 +217,7 @@ void sample_layers(std::span<const LayerProjection> layers, const TileGrid& grid
         }
         const std::int64_t count = layer.splats->size(), rest = count % stride;
         const std::int64_t sampled = count / stride * block + std::min(rest, block);
-        const double each =
-            static_cast<double>(count) / static_cast<double>(std::max<std::int64_t>(1, sampled));
+        const double each = double(count) / double(std::max<std::int64_t>(1, sampled));
         for (std::int64_t begin = 0; begin < count; begin += stride)
             sample(layer, begin, std::min(begin + block, count), each);
     }
@@ -229,7 +226,7 @@ void sample_layers(std::span<const LayerProjection> layers, const TileGrid& grid
 /// Records that a splat leaves in tiles of a size, about.
 float records_of(const LayerProjection& layer, const ScreenSplat& splat, const Buffer<Shape>& shapes,
                  int tile_px) {
-    const float tiles = 1.0f + 2.0f * support_px(layer, splat, shapes) / static_cast<float>(tile_px);
+    const float tiles = 1.0f + 2.0f * support_px(layer, splat, shapes) / float(tile_px);
     return std::min(9.0f, tiles * tiles);
 }
 
@@ -245,7 +242,7 @@ std::vector<std::int64_t> estimate_records(std::span<const LayerProjection> laye
                               sums[t] += each * records_of(layer, splat, shapes, tile_sizes_px[t]);
                   });
     std::vector<std::int64_t> records;
-    for (const double sum : sums) records.push_back(static_cast<std::int64_t>(sum));
+    for (const double sum : sums) records.push_back(std::int64_t(sum));
     return records;
 }
 
@@ -264,19 +261,18 @@ Tiles choose_tiles(const FrameJob& job) {
     const int sizes[] = {small_px, large_px};
     const std::vector<std::int64_t> records = estimate_records(job.projections, grid, sizes, job.progress);
     const bool enough_to_share = grid.tiles() >= 8 * thread_count();
-    const bool in_cache = static_cast<double>(records[1]) * job.settings.splats_each <=
-                          static_cast<double>(records_in_cache * grid.tiles());
-    const bool saves = static_cast<double>(records[0]) >= worth_missing_it * static_cast<double>(records[1]);
+    const bool in_cache =
+        double(records[1]) * job.settings.splats_each <= double(records_in_cache * grid.tiles());
+    const bool saves = double(records[0]) >= worth_missing_it * double(records[1]);
     if (enough_to_share && (in_cache || saves)) return {grid, records[1]};
     grid.tile_px = small_px;
     return {grid, records[0]};
 }
 
 std::int64_t carried_bytes(const FrameJob& job, const TileGrid& grid) {
-    const std::int64_t planes =
-        9 + (job.fold.aovs ? 3 + 4 * static_cast<std::int64_t>(job.layers.size()) : 0);
+    const std::int64_t planes = 9 + (job.fold.aovs ? 3 + 4 * std::int64_t(job.layers.size()) : 0);
     const std::int64_t pixels = grid.tiles() * grid.tile_px * grid.tile_px;
-    return pixels * planes * static_cast<std::int64_t>(sizeof(float) * job.groups.size());
+    return pixels * planes * std::int64_t(sizeof(float) * job.groups.size());
 }
 
 Bands make_bands(const FrameJob& job) {

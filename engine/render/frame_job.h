@@ -125,7 +125,7 @@ void render_tile(const FrameJob& job, const TileBins& bins, std::int64_t tile, T
 class CarriedTiles {
   public:
     CarriedTiles(const FrameJob& job, const TileGrid& grid)
-        : job_(job), grid_(grid), planes_(static_cast<std::size_t>(grid.tiles()) * job.groups.size()) {}
+        : job_(job), grid_(grid), planes_(std::size_t(grid.tiles()) * job.groups.size()) {}
 
     /// Folds a slab's records into a tile. Different tiles may be folded at once.
     void fold_slab(const TileBins& bins, std::int64_t tile, TileWorker& worker);
@@ -134,7 +134,7 @@ class CarriedTiles {
 
   private:
     TilePlanes& planes_of(std::int64_t tile, std::size_t group) {
-        return planes_[static_cast<std::size_t>(tile) * job_.groups.size() + group];
+        return planes_[std::size_t(tile) * job_.groups.size() + group];
     }
 
     const FrameJob& job_;

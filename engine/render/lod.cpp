@@ -75,7 +75,7 @@ LodTable::LodTable(const Falloff& falloff) : falloff_(falloff) {
 }
 
 void LodTable::prepare(int finest, const Progress& progress) {
-    while (static_cast<int>(levels_.size()) <= finest) build(static_cast<int>(levels_.size()), progress);
+    while (int(levels_.size()) <= finest) build(int(levels_.size()), progress);
 }
 
 /// Centres per area of the parent's disc at distances 0 .. ball in equal steps, integrating to 1: the density
@@ -105,8 +105,8 @@ std::vector<double> LodTable::mean_footprint(int level) const {
     const double ball = centre_ball(level), child = child_radius_scale(level);
     const std::vector<double> density = centre_density(level);
     const auto density_at = [&](double s) {
-        const double x = s / ball * static_cast<double>(density.size() - 1);
-        const auto i = static_cast<std::size_t>(x);
+        const double x = s / ball * double(density.size() - 1);
+        const auto i = std::size_t(x);
         return i + 1 < density.size() ? density[i] + (density[i + 1] - density[i]) * (x - double(i)) : 0.0;
     };
     std::vector<double> azimuth_cosine;
@@ -161,7 +161,7 @@ void LodTable::build(int number, const Progress& progress) {
         while (k + 1 < fine_rings && cumulative[k + 1] < wanted) ++k;
         const double step = cumulative[k + 1] - cumulative[k];
         const double part = step > 0.0 ? std::clamp((wanted - cumulative[k]) / step, 0.0, 1.0) : 0.0;
-        level.radius_of_u.push_back(static_cast<float>(ball * (k + part) / fine_rings));
+        level.radius_of_u.push_back(float(ball * (k + part) / fine_rings));
     }
 
     const Level& parent = levels_[0];
@@ -177,7 +177,7 @@ void LodTable::build(int number, const Progress& progress) {
             const double coarse_alpha = coarse.steady[i] * (1.0 - double(f) / fade_steps);
             std::vector<double> rest;
             for (double q : coarse.footprint) rest.push_back(power_of_rest(coarse_alpha * q, coarse_number));
-            level.fading.push_back(static_cast<float>(solve(a * parent_light, rest, number, level)));
+            level.fading.push_back(float(solve(a * parent_light, rest, number, level)));
         }
     }
     levels_.push_back(std::move(level));
@@ -187,11 +187,10 @@ LodTable::Alphas LodTable::alphas(const LevelChoice& choice, float a) const {
     const Level& fine = levels_[choice.fine];
     const Level& coarse = levels_[choice.coarse];
     const float x = std::clamp(a, 0.0f, 1.0f) * alpha_steps, y = choice.fade * fade_steps;
-    const int i = std::min(static_cast<int>(x), alpha_steps - 1),
-              j = std::min(static_cast<int>(y), fade_steps - 1);
-    const float u = x - static_cast<float>(i), v = y - static_cast<float>(j);
+    const int i = std::min(int(x), alpha_steps - 1), j = std::min(int(y), fade_steps - 1);
+    const float u = x - float(i), v = y - float(j);
     const float* row = &fine.fading[i * (fade_steps + 1) + j];
-    const float steady = static_cast<float>(coarse.steady[i] + (coarse.steady[i + 1] - coarse.steady[i]) * u);
+    const float steady = float(coarse.steady[i] + (coarse.steady[i + 1] - coarse.steady[i]) * u);
     return {steady * (1.0f - choice.fade),
             lerp(lerp(row[0], row[1], v), lerp(row[fade_steps + 1], row[fade_steps + 2], v), u)};
 }
@@ -202,16 +201,16 @@ LodTable::Alphas LodTable::alphas_for_add(const LevelChoice& choice, float a) {
 }
 
 glm::vec3 LodTable::child_offset(int level, std::int64_t child, std::uint32_t seed, std::uint64_t id) const {
-    const std::uint32_t mixed = shared::as_mix(seed + static_cast<std::uint32_t>(child) * 0x9e3779b9u +
-                                               static_cast<std::uint32_t>(level) * 0x85ebca6bu);
-    const auto low = static_cast<std::uint32_t>(id), high = static_cast<std::uint32_t>(id >> 32);
+    const std::uint32_t mixed =
+        shared::as_mix(seed + std::uint32_t(child) * 0x9e3779b9u + std::uint32_t(level) * 0x85ebca6bu);
+    const auto low = std::uint32_t(id), high = std::uint32_t(id >> 32);
     const auto uniform = [&](std::uint32_t n) {
         return shared::as_uniform(shared::as_hash(mixed, low, high, shared::PURPOSE_CHILD + n));
     };
     const float x = uniform(0) * radius_steps;
-    const int i = static_cast<int>(x);
+    const int i = int(x);
     const std::vector<float>& radius = levels_[level].radius_of_u;
-    const float r = lerp(radius[i], radius[i + 1], x - static_cast<float>(i));
+    const float r = lerp(radius[i], radius[i + 1], x - float(i));
     const float z = 1.0f - 2.0f * uniform(1);
     const float ring = std::sqrt(std::max(0.0f, 1.0f - z * z));
     const real::OnCircle around = real::on_circle(uniform(2));
@@ -237,7 +236,7 @@ float log_mean_exponential(float x) {
 // the children, (level - 1) octaves below, and less over one octave beyond either, so that a growing splat
 // takes octaves up and drops them smoothly.
 float octave_share(float t, int level) {
-    const float last = static_cast<float>(level - 2);
+    const float last = float(level - 2);
     return std::clamp(std::min(t + 1.0f, last + 1.0f - t), 0.0f, 1.0f);
 }
 
@@ -249,14 +248,14 @@ ChildNoise make_child_noise(float strength, float radius, int level, std::uint32
     noise.limit = largest_exponent * strength;
     const float octaves_per_unit = 1.44269504f;  // 1 / ln 2
     const float size = octaves_per_unit * shared::as_log(2.0f * radius);
-    const int first = static_cast<int>(std::floor(-1.0f - size)) + 1;
-    for (int i = 0; i < static_cast<int>(noise.octaves.size()); ++i) {
-        const float t = static_cast<float>(first + i) + size;
+    const int first = int(std::floor(-1.0f - size)) + 1;
+    for (int i = 0; i < int(noise.octaves.size()); ++i) {
+        const float t = float(first + i) + size;
         const float share = octave_share(t, level);
         if (!(share > 0.0f)) continue;
         const float deviation =
             strength * share * unit_gain * shared::as_exp(t * shared::as_log(octave_gain));
-        const auto octave = static_cast<std::uint32_t>(first + i);
+        const auto octave = std::uint32_t(first + i);
         const auto hash = [&](std::uint32_t n) {
             return shared::as_hash(seed, octave, n, shared::PURPOSE_CHILD_NOISE);
         };

@@ -33,9 +33,7 @@ int finest_level(int max_children);
 
 inline std::int64_t children_of_level(int level) { return std::int64_t{1} << (2 * level); }
 /// Radius of the children over that of the parent: 2 / sqrt(N).
-inline float child_radius_scale(int level) {
-    return level == 0 ? 1.0f : 2.0f / static_cast<float>(1 << level);
-}
+inline float child_radius_scale(int level) { return level == 0 ? 1.0f : 2.0f / float(1 << level); }
 
 /// The reach of children, parent radii.
 inline constexpr float child_reach = 1.25f;

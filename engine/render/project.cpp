@@ -18,7 +18,7 @@ std::uint16_t hybrid_of(const LayerProjection& layer, const glm::vec3& p) {
     if (layer.render.blend != Blend::hybrid) return 0;
     const float h = shared::hybrid_amount(shared::axis_cosine(layer.lens, layer.axis_in_camera, p),
                                           layer.render.hybrid_from_deg, layer.render.hybrid_to_deg);
-    return static_cast<std::uint16_t>(h * 65535.0f + 0.5f);
+    return std::uint16_t(h * 65535.0f + 0.5f);
 }
 
 namespace {
@@ -56,7 +56,7 @@ bool place_splat(const LayerProjection& layer, const CameraSplat& splat, const s
     out.opacity = splat.alpha * layer.opacity * shared::near_fade(layer.lens, at.depth, splat.radius);
     set_color(out, splat.color);
     out.depth = std::bit_cast<std::uint32_t>(shared::sort_depth(layer.lens, splat.position));
-    out.index = static_cast<std::uint32_t>(index);
+    out.index = std::uint32_t(index);
     out.layer = layer.layer;
     out.hybrid = hybrid_of(layer, splat.position);
     return out.opacity > 0.0f;
@@ -109,14 +109,14 @@ void project_stretched(const LayerProjection& layer, CameraSplat splat, std::int
     const shared::Instance at = shared::instance_of(layer.lens, splat.position);
     if (!shared::is_in_range(layer.lens, at.depth)) return;
     const Shape shape = outline_of(layer, splat, at, index);
-    splat.radius = static_cast<float>(ellipse_of(shape).larger) / at.px_per_unit;
+    splat.radius = float(ellipse_of(shape).larger) / at.px_per_unit;
     if (layer.gaussians) splat.radius *= layer.deviation;
     ScreenSplat screen;
     const float support =
         shared::frame_reach_px(layer.lens, at.x_px, at.y_px,
                                shape_support_px(shape, {layer.reach, layer.margin_px, layer.variance}));
     if (!place_splat(layer, splat, at, index, support, rect, screen)) return;
-    set_shape_number(screen, static_cast<std::uint32_t>(shapes.size()));
+    set_shape_number(screen, std::uint32_t(shapes.size()));
     push_places(screen, shared::period_px(layer.lens), support, rect, out);
     shapes.push_back(shape);
 }
@@ -138,9 +138,9 @@ LevelShades shade_levels(const LayerProjection& layer, const LevelChoice& choice
     LevelShades shades{{whole.coarse, splat.color}, {whole.fine, splat.color}};
     if (blend != Blend::screen && blend != Blend::hybrid) return shades;
     constexpr float least = 1e-3f;  // occlusion below which light is proportional to alpha
-    const float h = static_cast<float>(hybrid_of(layer, splat.position)) / 65535.0f;
+    const float h = float(hybrid_of(layer, splat.position)) / 65535.0f;
     const auto occlusion_at = [&](int k) {
-        return std::clamp(shared::blend_occlusion(static_cast<int>(blend), splat.color[k], h), least, 1.0f);
+        return std::clamp(shared::blend_occlusion(int(blend), splat.color[k], h), least, 1.0f);
     };
     const float mean = (occlusion_at(0) + occlusion_at(1) + occlusion_at(2)) / 3.0f;
     const LodTable::Alphas middle = layer.lod->alphas(choice, splat.alpha * mean);
@@ -212,10 +212,9 @@ bool project_as_children(const LayerProjection& layer, const CameraSplat& splat,
 float structure_of(const LayerProjection& layer, const glm::vec3& position, const glm::vec3& color,
                    float alpha) {
     const Blend blend = layer.render.blend;
-    if (shared::blend_absorbs(static_cast<int>(blend), color.x)) return 0.5f * layer.render.lod.noise;
+    if (shared::blend_absorbs(int(blend), color.x)) return 0.5f * layer.render.lod.noise;
     if (blend != Blend::screen && blend != Blend::hybrid) return layer.render.lod.noise;
-    const float screened =
-        blend == Blend::screen ? 1.0f : static_cast<float>(hybrid_of(layer, position)) / 65535.0f;
+    const float screened = blend == Blend::screen ? 1.0f : float(hybrid_of(layer, position)) / 65535.0f;
     const float brightest = std::max({color.x, color.y, color.z});
     return layer.render.lod.noise * (1.0f - screened * std::min(1.0f, alpha * brightest));
 }
@@ -230,10 +229,10 @@ LayerProjection make_projection(const RenderLayer& layer, std::uint16_t number, 
     p.origin_in_camera = camera_from_world * (layer.translate - camera.eye);
     const glm::dvec3 axis = camera_from_world * layer.world_from_layer * layer.axis;
     p.axis_in_camera = glm::vec3(axis / std::sqrt(glm::dot(axis, axis)));
-    p.layer_scale = static_cast<float>(layer.scale);
-    p.radius_scale = static_cast<float>(layer.scale * layer.radius_scale);
+    p.layer_scale = float(layer.scale);
+    p.radius_scale = float(layer.scale * layer.radius_scale);
     p.gaussians = layer.gaussians;
-    p.deviation = static_cast<float>(1.0 / (3.0 * layer.radius_scale));
+    p.deviation = float(1.0 / (3.0 * layer.radius_scale));
     p.opacity = layer.render.opacity;
     p.lens = make_lens(camera);
     const glm::dvec2 size(settings.width, settings.height), center(camera.center_x_px, camera.center_y_px);
@@ -246,7 +245,7 @@ LayerProjection make_projection(const RenderLayer& layer, std::uint16_t number, 
     // Lighten keeps the brightest splat of a pixel: no number of children has the parent's light, so it is
     // not split.
     if (layer.render.blend != Blend::lighten)
-        p.lod_limit_px = layer.render.lod.max_px * static_cast<float>(settings.height) / 1080.0f;
+        p.lod_limit_px = layer.render.lod.max_px * float(settings.height) / 1080.0f;
     if (stars_stay_points(layer.render) && camera.projection != Projection::orthographic)
         p.star_distance = layer.render.lod.star_distance;
     p.seed = layer.seed;

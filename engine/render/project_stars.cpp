@@ -27,12 +27,11 @@ StarSplat make_splat(double share, double along_px, double across_px, double x, 
     };
     const double a = radius(along_px), b = radius(across_px);
     StarSplat splat;
-    splat.share = static_cast<float>(share);
-    splat.per_light = static_cast<float>(1.0 / (double(footprint.integral) * a * b));
-    splat.radius_px = static_cast<float>(a);
+    splat.share = float(share);
+    splat.per_light = float(1.0 / (double(footprint.integral) * a * b));
+    splat.radius_px = float(a);
     splat.is_round = a == b;
-    splat.shape = {static_cast<float>(x * a), static_cast<float>(-y * b), static_cast<float>(y * a),
-                   static_cast<float>(x * b)};
+    splat.shape = {float(x * a), float(-y * b), float(y * a), float(x * b)};
     return splat;
 }
 
@@ -43,7 +42,7 @@ float measured_side(const LayerProjection& layer, const glm::vec3& place) {
     const StarPixels& pixels = layer.star_pixels;
     const double side =
         pixels.side > 0.0 ? pixels.side : pixels.side_at_1 * glm::length(glm::dvec3(place) - pixels.from);
-    return static_cast<float>(side) * layer.radius_scale;
+    return float(side) * layer.radius_scale;
 }
 
 /// The light of one star at the camera.
@@ -95,7 +94,7 @@ std::vector<StarSplat> star_splats(const StarPsf& psf, const FootprintTable& foo
     // A part no wider than the core is added to it: equal splats of one star would have no order.
     const auto add = [&](double share, double along_px, double across_px, double turn) {
         if (along_px <= core_px)
-            splats[0].share += static_cast<float>(share);
+            splats[0].share += float(share);
         else
             splats.push_back(
                 make_splat(share, along_px, across_px, real::cos(turn), -real::sin(turn), footprint));
@@ -107,7 +106,7 @@ std::vector<StarSplat> star_splats(const StarPsf& psf, const FootprintTable& foo
             add(wings * share, deviation, deviation, 0.0);
         }
     if (!(spikes > 0.0) || psf.vanes < 1) {
-        splats[0].share += static_cast<float>(spikes);
+        splats[0].share += float(spikes);
         return splats;
     }
     const int lines = psf.vanes % 2 == 0 ? psf.vanes / 2 : psf.vanes;
@@ -134,7 +133,7 @@ void project_stars(const LayerProjection& layer, std::int64_t begin, std::int64_
         splat.y_px = shared::snap_px(at.y_px);
         splat.opacity = layer.opacity * shared::near_fade(lens, at.depth, 0.0f);
         splat.depth = std::bit_cast<std::uint32_t>(shared::sort_depth(lens, p));
-        splat.index = static_cast<std::uint32_t>(i);
+        splat.index = std::uint32_t(i);
         splat.layer = layer.layer;
         splat.hybrid = 0;
         const float light = brightest(star.light);
@@ -148,7 +147,7 @@ void project_stars(const LayerProjection& layer, std::int64_t begin, std::int64_
                 if (sphere) {
                     const SphereAxes axes = sphere_axes(lens, double(splat.x_px), double(splat.y_px));
                     shape = onto_sphere(axes, part.shape);
-                    light_here *= static_cast<float>(frame_area(axes));
+                    light_here *= float(frame_area(axes));
                 }
                 reach_px = shape_support_px(shape, {layer.reach, layer.margin_px, layer.variance});
             }
@@ -159,7 +158,7 @@ void project_stars(const LayerProjection& layer, std::int64_t begin, std::int64_
             for (int k = 0; k < 3; ++k) drawn.color[k] = star.light[k] * light_here;
             drawn.radius_px = part.radius_px;
             if (!part.is_round) {
-                set_shape_number(drawn, static_cast<std::uint32_t>(shapes.size()));
+                set_shape_number(drawn, std::uint32_t(shapes.size()));
                 shapes.push_back(shape);
             }
             push_places(drawn, period, support, rect, out);

@@ -18,7 +18,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 using DD = hn::CappedTag<double, 8>;  // places are double until they are relative to the camera
 using D = hn::Rebind<float, DD>;
 using VD = hn::Vec<DD>;
-constexpr int lanes = static_cast<int>(hn::MaxLanes(D()));
+constexpr int lanes = int(hn::MaxLanes(D()));
 using Float = Lanes<D>;
 using Bool = LaneBools<D>;
 using Vec3 = LaneVectors<D>;
@@ -91,7 +91,7 @@ HWY_INLINE Found project_block(const LayerProjection& layer, std::int64_t begin,
                                Projected& c) {
     const DD dd;
     const ShadedSplats& splats = *layer.splats;
-    const auto first = static_cast<std::size_t>(begin);
+    const auto first = std::size_t(begin);
     static_assert(sizeof(glm::vec3) == 3 * sizeof(float));
     hn::Vec<D> layer_x, layer_y, layer_z;
     hn::LoadInterleaved3(D(), &splats.position[first].x, layer_x, layer_y, layer_z);
@@ -129,7 +129,7 @@ void project_blocks(const LayerProjection& layer, std::int64_t begin, std::int64
     const bool hybrid = layer.render.blend == Blend::hybrid;
     const float period = period_px(layer.lens);
     const std::size_t before = out.size();
-    if (period == 0.0f) out.resize(before + static_cast<std::size_t>(end - begin));
+    if (period == 0.0f) out.resize(before + std::size_t(end - begin));
     ScreenSplat* to = out.data() + before;
     Projected c;
     for (; begin < end; begin += lanes) {
@@ -146,7 +146,7 @@ void project_blocks(const LayerProjection& layer, std::int64_t begin, std::int64
                                     c.disc[i][3],
                                     {color.x, color.y, color.z},
                                     std::bit_cast<std::uint32_t>(c.sort_depth[i]),
-                                    static_cast<std::uint32_t>(index),
+                                    std::uint32_t(index),
                                     layer.layer,
                                     hybrid ? hybrid_of(layer, {c.x[i], c.y[i], c.z[i]}) : std::uint16_t{0}};
             if (period == 0.0f)

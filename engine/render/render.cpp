@@ -78,8 +78,8 @@ class BandRun {
         const std::int64_t limit = job_.settings.memory_limit_bytes;
         // Where all is in memory bands alone do, but for frames of few tiles.
         constexpr std::int64_t few = 16'000'000;
-        const std::int64_t least = std::max(
-            TileBins::least_bytes(grid_, static_cast<int>(job_.groups.size())), blocks_.empty() ? few : 0);
+        const std::int64_t least =
+            std::max(TileBins::least_bytes(grid_, int(job_.groups.size())), blocks_.empty() ? few : 0);
         limit_ = limit > 0 ? std::max({limit - pixels_bytes, limit / 4, least}) : 0;
         cache_.store.limit(limit_);
     }
@@ -88,12 +88,11 @@ class BandRun {
     std::vector<DepthRange> plan() {
         limit_store(0);
         const double bytes = record_bytes + (blocks_.empty() ? 0.0 : id_bytes);
-        if (limit_ == 0 || blocks_.empty() ||
-            static_cast<double>(records_) * bytes <= filled * static_cast<double>(limit_))
+        if (limit_ == 0 || blocks_.empty() || double(records_) * bytes <= filled * double(limit_))
             return std::vector<DepthRange>(1);
         limit_store(carried_bytes(job_, grid_));
         sample_ = sample_depths(job_.projections, grid_, job_.progress);
-        most_records_ = filled * static_cast<double>(limit_) / bytes;
+        most_records_ = filled * double(limit_) / bytes;
         return sample_->cut(most_records_, 0);
     }
 
@@ -103,7 +102,7 @@ class BandRun {
             throw InputError(
                 fmt::format("splats at one distance need more than {} of memory, which --memory leaves "
                             "for them",
-                            human_bytes(static_cast<double>(limit_))));
+                            human_bytes(double(limit_))));
         if (!sample_) sample_ = sample_depths(job_.projections, grid_, job_.progress);
         if (most_records_ == 0.0) most_records_ = sample_->records();
         most_records_ *= finer;
@@ -117,8 +116,7 @@ class BandRun {
 
     /// The records of a slab into bins; none where they take too much.
     std::optional<TileBins> scatter(const DepthRange& slab) try {
-        std::optional<TileBins> bins(std::in_place, grid_, static_cast<int>(job_.groups.size()),
-                                     records_in(slab));
+        std::optional<TileBins> bins(std::in_place, grid_, int(job_.groups.size()), records_in(slab));
         cache_.store.clear();
         bins->scatter(job_.projections, job_.group_of_layer, slab, blocks_, cache_.store, job_.progress);
         if (limit_ > 0 &&
@@ -135,9 +133,8 @@ class BandRun {
     }
 
     std::int64_t records_in(const DepthRange& slab) const {
-        return slab.is_all() || most_records_ == 0.0
-                   ? records_
-                   : std::min(records_, static_cast<std::int64_t>(most_records_));
+        return slab.is_all() || most_records_ == 0.0 ? records_
+                                                     : std::min(records_, std::int64_t(most_records_));
     }
 
     bool try_whole() {
@@ -166,11 +163,11 @@ class BandRun {
         std::int64_t splats = 0;
         for (const VisibleBlock& block : blocks_)
             if (slab.holds(block.depths.last)) splats += splats_of(block);
-        return static_cast<double>(splats) / static_cast<double>(visible_splats_);
+        return double(splats) / double(visible_splats_);
     }
 
     void progress_at(double fraction) const {
-        const double share = static_cast<double>(grid_.height) / static_cast<double>(job_.region.height);
+        const double share = double(grid_.height) / double(job_.region.height);
         job_.progress.at(before_ + share * fraction);
     }
 
@@ -183,9 +180,7 @@ class BandRun {
             job_.progress.check();
             body(order_[i], workers_[worker]);
             const std::int64_t finished = ++done;
-            if (finished % 64 == 0)
-                progress_at(before +
-                            share * static_cast<double>(finished) / static_cast<double>(grid_.tiles()));
+            if (finished % 64 == 0) progress_at(before + share * double(finished) / double(grid_.tiles()));
         });
     }
 
@@ -207,12 +202,12 @@ class BandRun {
 /// Bytes of all records of the frame with what folding them takes, without the memory that no record uses.
 std::int64_t scattered_bytes(const FrameJob& job, RenderCache::State& cache) {
     const auto [grid, expected] = choose_tiles(job);
-    TileBins bins(grid, static_cast<int>(job.groups.size()), expected);
+    TileBins bins(grid, int(job.groups.size()), expected);
     cache.store.limit(0);
     cache.store.clear();
     bins.scatter(job.projections, job.group_of_layer, {}, {}, cache.store, job.progress);
-    return bins.records() * static_cast<std::int64_t>(sizeof(ScreenSplat)) +
-           std::ssize(bins.shapes()) * static_cast<std::int64_t>(sizeof(Shape)) +
+    return bins.records() * std::int64_t(sizeof(ScreenSplat)) +
+           std::ssize(bins.shapes()) * std::int64_t(sizeof(Shape)) +
            bins.records_of_fullest(thread_count()) * fold_bytes_per_record;
 }
 
@@ -222,8 +217,8 @@ std::int64_t image_bytes(std::span<const RenderLayer> layers, const RenderSettin
                          std::int64_t width, std::int64_t height) {
     const std::int64_t channels = 4 + settings.aov_depth + settings.opacity + settings.aov_coverage +
                                   settings.aov_count +
-                                  (settings.aov_layers ? 4 * static_cast<std::int64_t>(layers.size()) : 0);
-    return width * height * channels * static_cast<std::int64_t>(sizeof(float));
+                                  (settings.aov_layers ? 4 * std::int64_t(layers.size()) : 0);
+    return width * height * channels * std::int64_t(sizeof(float));
 }
 
 /// RenderSettings::what_is_free in bytes: the memory available now, less the frame's images and what each
@@ -303,8 +298,7 @@ std::int64_t scattered_bytes(std::span<const RenderLayer> layers, const Camera& 
     const TileDone unwatched;
     FrameJob job{drawn, camera, nullptr, unlimited, progress, unwatched, {}, {}, {}, {}, {}, {}};
     prepare(job, *cache.state);
-    return static_cast<std::int64_t>(settings.splats_each *
-                                     static_cast<double>(scattered_bytes(job, *cache.state)));
+    return std::int64_t(settings.splats_each * double(scattered_bytes(job, *cache.state)));
 }
 
 RenderedFrame render(std::span<const RenderLayer> layers, const Camera& camera,
@@ -315,8 +309,7 @@ RenderedFrame render(std::span<const RenderLayer> layers, const Camera& camera,
     const auto start = Clock::now();
     for (const RenderLayer& layer : layers)
         if (layer.splats && layer.splats->size() > 0xffffffffLL)
-            throw InputError("layer " + layer.name + ": " +
-                             human_count(static_cast<double>(layer.splats->size())) +
+            throw InputError("layer " + layer.name + ": " + human_count(double(layer.splats->size())) +
                              " splats in one layer, at most 4294967295 can be drawn");
     std::unique_ptr<RenderCache> own = cache ? nullptr : std::make_unique<RenderCache>();
     RenderCache::State& state = cache ? *cache->state : *own->state;
@@ -327,17 +320,17 @@ RenderedFrame render(std::span<const RenderLayer> layers, const Camera& camera,
     FrameJob job{drawn, camera, environment, settings, progress, tile_done, {}, {}, {}, {}, {}, {}};
     prepare(job, state);
     const Bands bands = make_bands(job);
-    std::int64_t bytes = bands.records * static_cast<std::int64_t>(sizeof(ScreenSplat));
+    std::int64_t bytes = bands.records * std::int64_t(sizeof(ScreenSplat));
     if (settings.memory_limit_bytes > 0) bytes = std::min(bytes, settings.memory_limit_bytes);
     if (bytes > state.store.bytes()) claim_memory(bytes - state.store.bytes(), "projected splats");
     RenderedFrame frame = make_frame(layers, settings, job.region);
     double done = 0.0;
     for (const TileGrid& band : bands.grids) {
         BandRun(job, band, bands.records, done, state, frame).run();
-        done += static_cast<double>(band.height) / static_cast<double>(job.region.height);
+        done += double(band.height) / double(job.region.height);
     }
     if (settings.memory_limit_bytes > 0) state.store.shrink(settings.memory_limit_bytes);
-    const double covered = static_cast<double>(covered_pixels(frame.beauty));
+    const double covered = double(covered_pixels(frame.beauty));
     frame.statistics.mean_overlap = covered > 0.0 ? frame.statistics.mean_overlap / covered : 0.0;
     frame.statistics.seconds = seconds_since(start);
     return frame;

@@ -34,7 +34,7 @@ GroupPixel group_pixel(const BlendGroup& group, const TilePlanes& planes, std::s
     for (int k = 0; k < 3; ++k) p.color[k] = planes.color[k][i];
     if (group.encoded)
         for (float& color : p.color)
-            if (color != 0.0f) color = static_cast<float>(real::srgb_to_linear(color));
+            if (color != 0.0f) color = float(real::srgb_to_linear(color));
     p.alpha = planes.alpha[i];
     for (int k = 0; k < 4; ++k)
         p.through[k] = group.kind == FoldKind::over  ? planes.transmittance[0][i]
@@ -77,8 +77,7 @@ std::vector<BlendGroup> make_groups(std::span<const RenderLayer> layers, bool ao
             merged.layers.push_back(i);
         }
     }
-    if (!merged.layers.empty())
-        groups.insert(groups.begin() + static_cast<std::ptrdiff_t>(merged_place), merged);
+    if (!merged.layers.empty()) groups.insert(groups.begin() + std::ptrdiff_t(merged_place), merged);
     for (BlendGroup& group : groups) group.kind = kind_of(layers, group.layers, aovs);
     return groups;
 }
@@ -87,7 +86,7 @@ TileResolver::TileResolver(std::span<const RenderLayer> layers, const RenderSett
     : layer_count_(layers.size()), settings_(settings) {}
 
 void TileResolver::begin(const TilePlanes& tile, const Camera& camera, const Environment* environment) {
-    const std::size_t size = static_cast<std::size_t>(tile.width) * static_cast<std::size_t>(tile.height);
+    const std::size_t size = std::size_t(tile.width) * std::size_t(tile.height);
     pixels_.assign(size, {});
     environment_ = environment || settings_.backdrop;
     if (settings_.aov_layers) light_.assign(size * layer_count_ * 4, 0.0f);
@@ -97,8 +96,7 @@ void TileResolver::begin(const TilePlanes& tile, const Camera& camera, const Env
     for (int y = 0; y < tile.height; ++y) {
         for (int x = 0; x < tile.width; ++x) {
             PixelState& pixel = pixels_[y * tile.width + x];
-            const double x_px = static_cast<double>(tile.x0 + x) + 0.5,
-                         y_px = static_cast<double>(tile.y0 + y) + 0.5;
+            const double x_px = double(tile.x0 + x) + 0.5, y_px = double(tile.y0 + y) + 0.5;
             if (!shows(camera, x_px, y_px)) {
                 pixel.held = 1.0f;
                 continue;
@@ -125,7 +123,7 @@ void TileResolver::begin_with_backdrop(const TilePlanes& tile) {
 void TileResolver::composite(const BlendGroup& group, const TilePlanes& planes) {
     for (int y = 0; y < planes.height; ++y) {
         for (int x = 0; x < planes.width; ++x) {
-            const std::size_t i = planes.at(x, y), n = static_cast<std::size_t>(y * planes.width + x);
+            const std::size_t i = planes.at(x, y), n = std::size_t(y * planes.width + x);
             PixelState& pixel = pixels_[n];
             GroupPixel p = group_pixel(group, planes, i);
             const bool lighten = group.blend == Blend::lighten && group.isolated && !group.holdout;
@@ -162,7 +160,7 @@ void TileResolver::write(const TilePlanes& tile, std::int64_t x0, std::int64_t y
                          RenderedFrame& frame) const {
     for (int y = 0; y < tile.height; ++y) {
         for (int x = 0; x < tile.width; ++x) {
-            const std::size_t n = static_cast<std::size_t>(y * tile.width + x);
+            const std::size_t n = std::size_t(y * tile.width + x);
             const PixelState& pixel = pixels_[n];
             const std::int64_t px = tile.x0 - x0 + x, py = tile.y0 - y0 + y;
             float* out = frame.beauty.at(px, py);

@@ -29,22 +29,21 @@ void keep_in_slab(const DepthRange& slab, std::size_t first_shape, Buffer<Screen
         const std::uint32_t number = shape_number(splat);
         if (number != last) shapes[end++] = shapes[number];
         last = number;
-        set_shape_number(splat, static_cast<std::uint32_t>(end - 1));
+        set_shape_number(splat, std::uint32_t(end - 1));
     }
     shapes.resize(end);
 }
 
 /// Whether a splat that touches a band is to be counted in it: by its centre, so that it counts once.
 bool counts_here(const TileGrid& grid, float y_px) {
-    return (grid.first_band || y_px >= static_cast<float>(grid.y0)) &&
-           (grid.last_band || y_px < static_cast<float>(grid.y0 + grid.height));
+    return (grid.first_band || y_px >= float(grid.y0)) &&
+           (grid.last_band || y_px < float(grid.y0 + grid.height));
 }
 
 }  // namespace
 
 ScreenRect rect_of(const TileGrid& grid) {
-    return {static_cast<float>(grid.x0), static_cast<float>(grid.y0),
-            static_cast<float>(grid.x0 + grid.width), static_cast<float>(grid.y0 + grid.height)};
+    return {float(grid.x0), float(grid.y0), float(grid.x0 + grid.width), float(grid.y0 + grid.height)};
 }
 
 std::byte* SplatStore::take_bytes(std::int64_t bytes) {
@@ -56,9 +55,8 @@ std::byte* SplatStore::take_bytes(std::int64_t bytes) {
         ++slab_;
         filled_ = 0;
     }
-    if (slab_ == slabs_.size())
-        slabs_.emplace_back(static_cast<std::size_t>(std::max(needed, slab_bytes / line_bytes)));
-    std::byte* place = slabs_[slab_][static_cast<std::size_t>(filled_)].bytes;
+    if (slab_ == slabs_.size()) slabs_.emplace_back(std::size_t(std::max(needed, slab_bytes / line_bytes)));
+    std::byte* place = slabs_[slab_][filled_].bytes;
     filled_ += needed;
     return place;
 }
@@ -84,8 +82,8 @@ TileBins::TileBins(const TileGrid& grid, int groups, std::int64_t expected_recor
     : grid_(grid), groups_(groups) {
     std::int64_t columns = grid.columns(), rows = grid.rows();
     for (;;) {
-        levels_.push_back({static_cast<std::uint32_t>(bins_per_group_), static_cast<std::uint32_t>(columns),
-                           static_cast<float>(columns - 1), static_cast<float>(rows - 1)});
+        levels_.push_back(
+            {std::uint32_t(bins_per_group_), std::uint32_t(columns), float(columns - 1), float(rows - 1)});
         bins_per_group_ += columns * rows;
         if (columns == 1 && rows == 1) break;
         columns = (columns + 1) / 2;
@@ -122,7 +120,7 @@ void TileBins::add_shape(const Shape& shape, float y_px, Sums& sum) const {
     sum.largest_px = std::max(sum.largest_px, nodes.largest_px);
     if (!counts_here(grid_, y_px)) return;
     ++sum.instances;
-    sum.footprint_px += real::pi * static_cast<float>(e.larger) * static_cast<float>(e.smaller);
+    sum.footprint_px += real::pi * float(e.larger) * float(e.smaller);
 }
 
 /// The bins of the splats just projected.
@@ -136,10 +134,9 @@ std::span<const TileBins::Entry> TileBins::list_entries(const LayerProjection& l
         const ScreenSplat& splat = writer.splats[i];
         writer.discs.set(i, splat.x_px, splat.y_px, support_px(layer, splat, writer.shapes));
     }
-    find_bins({static_cast<float>(grid_.x0), static_cast<float>(grid_.y0), static_cast<float>(grid_.tile_px),
-               levels_},
-              writer.discs, count, writer.rects.data());
-    const auto group_bin = static_cast<std::uint32_t>(group * bins_per_group_);
+    find_bins({float(grid_.x0), float(grid_.y0), float(grid_.tile_px), levels_}, writer.discs, count,
+              writer.rects.data());
+    const auto group_bin = std::uint32_t(group * bins_per_group_);
     const BinRect* const rects = writer.rects.data();
     Entry* end = writer.entries.data();
     for (std::uint32_t i = 0; i < count; ++i) {
@@ -191,7 +188,7 @@ void TileBins::join_shapes(std::span<Writer> writers) {
     shapes_.clear();
     shapes_.reserve(all);
     for (Writer& writer : writers) {
-        const auto first = static_cast<std::uint32_t>(shapes_.size());
+        const auto first = std::uint32_t(shapes_.size());
         shapes_.insert(shapes_.end(), writer.shapes.begin(), writer.shapes.end());
         if (first > 0 && !writer.shapes.empty())
             for (const Block& block : writer.blocks)
@@ -210,7 +207,7 @@ std::span<ScreenSplat> TileBins::records_of(const Writer& writer, const Block& b
 
 /// Sets blocks_ and first_block_.
 void TileBins::sort_blocks(std::span<const Writer> writers) {
-    first_block_.assign(static_cast<std::size_t>(bins()) + 1, 0);
+    first_block_.assign(std::size_t(bins()) + 1, 0);
     for (const Writer& writer : writers)
         for (const Block& block : writer.blocks) ++first_block_[block.bin + 1];
     for (std::size_t b = 1; b < first_block_.size(); ++b) first_block_[b] += first_block_[b - 1];
@@ -233,10 +230,10 @@ std::vector<TileBins::Chunk> TileBins::chunks_of(std::span<const LayerProjection
     if (!blocks.empty()) tie_ids_.of_layer.resize(layers.size());
     for (const VisibleBlock& block : blocks) {
         if (!block.depths.meets(slab)) continue;
-        const auto number = static_cast<std::int64_t>(block.block);
+        const auto number = std::int64_t(block.block);
         std::vector<const std::uint64_t*>& ids = tie_ids_.of_layer[block.layer];
         if (ids.size() >> (32 - TieIds::row_bits)) throw StoreFull();
-        chunks.push_back({block.layer, number, number + 1, true, static_cast<std::uint32_t>(ids.size())});
+        chunks.push_back({block.layer, number, number + 1, true, std::uint32_t(ids.size())});
         ids.push_back(nullptr);
     }
     return chunks;
@@ -277,14 +274,14 @@ void TileBins::number_by_ids(const ShadedSplats& block, std::uint32_t slot, Writ
             writer.last_row = splat.index;
             writer.ids.push_back(block.id[splat.index]);
         }
-        splat.index = slot << TieIds::row_bits | static_cast<std::uint32_t>(writer.ids.size() - 1);
+        splat.index = slot << TieIds::row_bits | std::uint32_t(writer.ids.size() - 1);
     }
 }
 
 void TileBins::scatter_block(const LayerProjection& layer, int group, const Chunk& chunk,
                              const DepthRange& slab, Sums& sums, SplatStore& store, Writer& writer,
                              const Progress& progress) {
-    layer.blocks->shade(static_cast<std::size_t>(chunk.begin), writer.block);
+    layer.blocks->shade(std::size_t(chunk.begin), writer.block);
     LayerProjection here = layer;
     here.splats = &writer.block;
     writer.ids.clear();
@@ -300,9 +297,9 @@ void TileBins::scatter(std::span<const LayerProjection> layers, std::span<const 
                        const Progress& progress) {
     const std::vector<Chunk> chunks = chunks_of(layers, slab, blocks);
     sums_.assign(chunks.size(), {});
-    std::vector<Writer> writers(static_cast<std::size_t>(thread_count()));
+    std::vector<Writer> writers(std::size_t(thread_count()));
     for (Writer& writer : writers) writer.cursors.resize(bins());
-    parallel_for(static_cast<std::int64_t>(chunks.size()), [&](std::int64_t c, int worker) {
+    parallel_for(std::int64_t(chunks.size()), [&](std::int64_t c, int worker) {
         const Chunk& chunk = chunks[c];
         const LayerProjection& layer = layers[chunk.layer];
         const int group = group_of_layer[chunk.layer];
@@ -317,7 +314,7 @@ void TileBins::scatter(std::span<const LayerProjection> layers, std::span<const 
 
 std::int64_t TileBins::least_bytes(const TileGrid& grid, int groups) {
     const std::int64_t bins = TileBins(grid, groups, 0).bins();
-    return 4 * bins * thread_count() * least_block * static_cast<std::int64_t>(sizeof(ScreenSplat));
+    return 4 * bins * thread_count() * least_block * std::int64_t(sizeof(ScreenSplat));
 }
 
 std::int64_t TileBins::records() const {
@@ -336,7 +333,7 @@ std::int64_t TileBins::records_of_fullest(int tiles) const {
             for (const auto& run : runs) records.back() += std::ssize(run);
         }
     std::ranges::sort(records, std::greater<>());
-    records.resize(std::min<std::size_t>(records.size(), static_cast<std::size_t>(tiles)));
+    records.resize(std::min<std::size_t>(records.size(), std::size_t(tiles)));
     return std::accumulate(records.begin(), records.end(), std::int64_t{0});
 }
 
@@ -347,9 +344,7 @@ void TileBins::collect(std::int64_t tile, int group, std::vector<std::span<const
         const BinLevel& level = levels_[l];
         const std::int64_t bin =
             group * bins_per_group_ + level.first_bin + (row >> l) * level.columns + (column >> l);
-        const auto at = [&](std::int64_t b) {
-            return blocks_.begin() + static_cast<std::ptrdiff_t>(first_block_[b]);
-        };
+        const auto at = [&](std::int64_t b) { return blocks_.begin() + std::ptrdiff_t(first_block_[b]); };
         out.insert(out.end(), at(bin), at(bin + 1));
     }
 }

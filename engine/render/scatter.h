@@ -49,7 +49,7 @@ class SplatStore {
     /// Space for `count` things in one piece, at the start of a cache line. Thread-safe. Throws StoreFull.
     template <class T>
     T* take(std::int64_t count) {
-        return reinterpret_cast<T*>(take_bytes(count * static_cast<std::int64_t>(sizeof(T))));
+        return reinterpret_cast<T*>(take_bytes(count * std::int64_t(sizeof(T))));
     }
     /// Forgets everything but keeps the memory.
     void clear();

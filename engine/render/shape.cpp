@@ -34,7 +34,7 @@ double Spectrum::value(bool of_edge, double kx, double ky) const {
     if (exponent < -16.0) return 0.0;  // 1e-7
     const double radius = of_edge ? radius_ : radius_ * std::sqrt(squared);
     if (radius > spectrum_end_px) return 0.0;
-    const FootprintNodes nodes = footprint_nodes(table_, static_cast<float>(radius));
+    const FootprintNodes nodes = footprint_nodes(table_, float(radius));
     const auto spectrum = [&](const FootprintNode* node) {
         return double(of_edge ? node->moments.edge_ripple[0] : node->moments.ripple[0]);
     };
@@ -76,9 +76,9 @@ double stretch_of(const Ellipse& e, double variance, double filter_px) {
 Shape outline_of(const glm::dvec3& across, const glm::dvec3& down) {
     // A lower triangular matrix of the same product with its transpose.
     const double width = glm::length(across);
-    if (!(width > 0.0)) return {0.0f, 0.0f, 0.0f, static_cast<float>(glm::length(down))};
-    return {static_cast<float>(width), 0.0f, static_cast<float>(glm::dot(across, down) / width),
-            static_cast<float>(glm::length(glm::cross(across, down)) / width)};
+    if (!(width > 0.0)) return {0.0f, 0.0f, 0.0f, float(glm::length(down))};
+    return {float(width), 0.0f, float(glm::dot(across, down) / width),
+            float(glm::length(glm::cross(across, down)) / width)};
 }
 
 Shape project_affine(const glm::vec2& slope, const glm::mat3& ellipsoid, float px_per_unit) {
@@ -105,19 +105,19 @@ float shape_support_px(const Shape& shape, const FootprintExtent& extent) {
     const double stretch = stretch_of(e, extent.variance, 0.25 * double(extent.margin_px));
     const double round_px =
         std::max(e.smaller, double(shared::SMALLEST_RADIUS_PX)) * extent.reach + extent.margin_px;
-    return static_cast<float>(round_px * std::max(1.0, stretch));
+    return float(round_px * std::max(1.0, stretch));
 }
 
 ShapedFootprint shaped_footprint_at(const FootprintTable& table, const Shape& shape, float x_px, float y_px) {
     const Ellipse e = ellipse_of(shape);
     const double stretch = stretch_of(e, table.variance, table.pixel_filter_px);
-    const auto radius_px = static_cast<float>(e.smaller);
+    const auto radius_px = float(e.smaller);
     ShapedFootprint f;
     footprint_at(table, radius_px, x_px, y_px, f.round);
     const double shrink = 1.0 / stretch - 1.0;
-    f.xx = static_cast<float>(1.0 + shrink * e.x * e.x);
-    f.xy = static_cast<float>(shrink * e.x * e.y);
-    f.yy = static_cast<float>(1.0 + shrink * e.y * e.y);
+    f.xx = float(1.0 + shrink * e.x * e.x);
+    f.xy = float(shrink * e.x * e.y);
+    f.yy = float(1.0 + shrink * e.y * e.y);
     if (!shared::is_tabulated(shared::node_of_radius(radius_px))) return f;
     const FootprintMass mass = footprint_mass(table, radius_px);
     const Spectrum spectrum = spectrum_of(table, e, stretch);
@@ -133,9 +133,9 @@ void set_gains(const FootprintTable& table, double wanted, const StretchedSums& 
     f.amplitude = 1.0f;
     f.edge_gain = 0.0f;
     if (table.flat_core && (wanted >= found.profile || f.lo > 0.0f))
-        f.edge_gain = static_cast<float>((wanted - found.profile) / found.edge);
+        f.edge_gain = float((wanted - found.profile) / found.edge);
     else
-        f.amplitude = static_cast<float>(wanted / found.profile);
+        f.amplitude = float(wanted / found.profile);
 }
 
 NodeRange node_range(const Shape& shape) {
@@ -143,7 +143,7 @@ NodeRange node_range(const Shape& shape) {
     // Spectra are looked up for up to twice the larger radius.
     const double spectrum =
         std::min(2.0 * std::max(e.larger, double(shared::SMALLEST_RADIUS_PX)), spectrum_end_px);
-    return {static_cast<float>(e.smaller), static_cast<float>(std::max(e.smaller, spectrum))};
+    return {float(e.smaller), float(std::max(e.smaller, spectrum))};
 }
 
 }  // namespace astrosplat

@@ -24,7 +24,7 @@ using Int = int;
 namespace {
 int min(int a, int b) { return b < a ? b : a; }
 int max(int a, int b) { return a < b ? b : a; }
-int floatBitsToInt(double x) { return glsl::floatBitsToInt(static_cast<float>(x)); }
+int floatBitsToInt(double x) { return glsl::floatBitsToInt(float(x)); }
 #include "footprint.glsl"
 }  // namespace
 }  // namespace astrosplat::exact

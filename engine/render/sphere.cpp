@@ -71,9 +71,9 @@ void normalise(const FootprintTable& table, float radius_px, double found, doubl
     f.amplitude = 1.0f;
     f.edge_gain = 0.0f;
     if (radius_px < shared::SMALLEST_RADIUS_PX || !table.flat_core)
-        f.amplitude = static_cast<float>(wanted / found);
+        f.amplitude = float(wanted / found);
     else
-        f.edge_gain = static_cast<float>((wanted - found) / edge_found);
+        f.edge_gain = float((wanted - found) / edge_found);
 }
 
 }  // namespace
@@ -88,7 +88,7 @@ void set_directions(const Lens& lens, TilePlanes& planes) {
             if (!exact::shows(exact_one, x_px, y_px)) continue;
             const glm::dvec3 ray =
                 exact_one.focal_px * glm::normalize(exact::ray_through(exact_one, x_px, y_px));
-            for (int k = 0; k < 3; ++k) planes.toward[k][planes.at(x, y)] = static_cast<float>(ray[k]);
+            for (int k = 0; k < 3; ++k) planes.toward[k][planes.at(x, y)] = float(ray[k]);
         }
 }
 
@@ -102,7 +102,7 @@ Footprint sphere_footprint_at(const FootprintTable& table, const Lens& lens, flo
     plain.amplitude = 1.0f;
     plain.edge_gain = 0.0f;
     const auto profile = [&](double squared) {
-        return double(footprint_weight(table, plain, static_cast<float>(std::sqrt(squared))));
+        return double(footprint_weight(table, plain, float(std::sqrt(squared))));
     };
     const auto edge_of = [&](double squared) {
         const double p = profile(squared);

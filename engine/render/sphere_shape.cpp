@@ -127,7 +127,7 @@ class ShapeOnMap {
         plain_.edge_gain = 0.0f;
     }
 
-    float radius_px() const { return static_cast<float>(e_.smaller); }
+    float radius_px() const { return float(e_.smaller); }
     glm::vec3 row(int i) const { return glm::vec3(rows_[i]); }
     double light() const { return double(table_.integral) * e_.larger * e_.smaller; }
 
@@ -171,7 +171,7 @@ class ShapeOnMap {
         const double x = glm::dot(rows_[0], away), y = glm::dot(rows_[1], away), focal = lens_.focal_px;
         const double half_cosine = 1.0 - glm::dot(away, away) / (4.0 * focal * focal);  // squared
         const double squared = (x * x + y * y) / std::fmax(half_cosine, 1e-6);
-        return double(footprint_weight(table_, plain_, static_cast<float>(std::sqrt(squared))));
+        return double(footprint_weight(table_, plain_, float(std::sqrt(squared))));
     }
 
     /// Whether any place so near to one has weight.

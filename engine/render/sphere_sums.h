@@ -229,8 +229,7 @@ class CountedGains {
     using Key = std::array<float, 15>;
     /// `splat`: what the gains depend on besides the table and the lens.
     static Key key_of(const FootprintTable& table, const Lens& lens, const std::array<float, 6>& splat) {
-        const auto projection = static_cast<float>(lens.projection),
-                   shape = static_cast<float>(static_cast<int>(table.falloff.shape));
+        const auto projection = float(lens.projection), shape = float(int(table.falloff.shape));
         Key key{
             lens.focal_px,      lens.center_x_px,        lens.center_y_px,     lens.edge, projection, shape,
             table.falloff.core, table.falloff.sharpness, table.pixel_filter_px};

@@ -56,8 +56,8 @@ void SplatSorter::put_in_order(int open_bits, const Before& before, const Progre
     for (std::size_t begin = 0, end = 1; end <= codes_.size(); ++end) {
         if (end % check_every == 0) progress.check();
         if (end < codes_.size() && close(begin, end)) continue;
-        const auto first = order_.begin() + static_cast<std::ptrdiff_t>(begin);
-        const auto last = order_.begin() + static_cast<std::ptrdiff_t>(end);
+        const auto first = order_.begin() + std::ptrdiff_t(begin);
+        const auto last = order_.begin() + std::ptrdiff_t(end);
         if (end - begin > 1 && !std::is_sorted(first, last, before)) std::sort(first, last, before);
         begin = end;
     }

@@ -75,7 +75,7 @@ std::vector<TileWorker> make_tile_workers(const FrameJob& job) {
 }
 
 std::vector<std::int64_t> tile_order(const FrameJob& job, const TileGrid& grid) {
-    std::vector<std::int64_t> order(static_cast<std::size_t>(grid.tiles()));
+    std::vector<std::int64_t> order(std::size_t(grid.tiles()));
     std::iota(order.begin(), order.end(), std::int64_t{0});
     if (!job.tile_done) return order;
     const auto from_middle = [&](std::int64_t tile) {  // twice the distance between centres, squared
@@ -93,7 +93,7 @@ void render_tile(const FrameJob& job, const TileBins& bins, std::int64_t tile, T
                  RenderedFrame& frame) {
     const Region region = tile_region(bins.grid(), tile);
     resolve_tile(job, region, worker, frame, [&](std::size_t g) -> const TilePlanes* {
-        bins.collect(tile, static_cast<int>(g), worker.runs);
+        bins.collect(tile, int(g), worker.runs);
         if (worker.runs.empty()) return nullptr;
         reset(job, region, g, worker.planes);
         fold_runs(job, bins, g, worker, worker.planes);
@@ -103,7 +103,7 @@ void render_tile(const FrameJob& job, const TileBins& bins, std::int64_t tile, T
 
 void CarriedTiles::fold_slab(const TileBins& bins, std::int64_t tile, TileWorker& worker) {
     for (std::size_t g = 0; g < job_.groups.size(); ++g) {
-        bins.collect(tile, static_cast<int>(g), worker.runs);
+        bins.collect(tile, int(g), worker.runs);
         if (worker.runs.empty()) continue;
         TilePlanes& planes = planes_of(tile, g);
         if (planes.width == 0) reset(job_, tile_region(grid_, tile), g, planes);

@@ -27,8 +27,8 @@ BlockPlace place_of(const LayerProjection& layer, const BlockFacts& block) {
     const auto to_camera = [&](const glm::dvec3& p) {
         return layer.camera_from_layer * p + layer.origin_in_camera;
     };
-    const double scale = static_cast<double>(layer.layer_scale);
-    const double reach = static_cast<double>(block.radius * layer.radius_scale);
+    const double scale = double(layer.layer_scale);
+    const double reach = double(block.radius * layer.radius_scale);
     BlockPlace place;
     place.center = to_camera(block.box.center());
     double farthest = 0.0, deepest = -std::numeric_limits<double>::infinity(), nearest = -deepest,
@@ -56,7 +56,7 @@ BlockPlace place_of(const LayerProjection& layer, const BlockFacts& block) {
 
 std::uint32_t key_of(double depth) {
     const double most = 3.4e38;
-    return std::bit_cast<std::uint32_t>(static_cast<float>(std::clamp(depth, 0.0, most)));
+    return std::bit_cast<std::uint32_t>(float(std::clamp(depth, 0.0, most)));
 }
 
 DepthRange depths_of(const Lens& lens, const BlockPlace& place) {
@@ -69,8 +69,7 @@ DepthRange depths_of(const Lens& lens, const BlockPlace& place) {
 /// straight: all of it lies between them, its footprints within the widest of theirs. True where a corner is
 /// not before the camera.
 bool may_show_between_corners(const LayerProjection& layer, const BlockFacts& block, const ScreenRect& rect) {
-    const Bounds grown{block.box.lo - static_cast<double>(block.radius),
-                       block.box.hi + static_cast<double>(block.radius)};
+    const Bounds grown{block.box.lo - double(block.radius), block.box.hi + double(block.radius)};
     constexpr float inf = std::numeric_limits<float>::infinity();
     float x0 = inf, y0 = inf, x1 = -inf, y1 = -inf, widest = 0.0f;
     for (int i = 0; i < 8; ++i) {
@@ -93,7 +92,7 @@ bool may_show_between_corners(const LayerProjection& layer, const BlockFacts& bl
 bool may_show(const LayerProjection& layer, const BlockPlace& place, const ScreenRect& rect) {
     if (!(place.far > 0.0)) return false;
     const glm::vec3 center(place.center);
-    const auto ball = static_cast<float>(place.ball * (1.0 + rounding));
+    const auto ball = float(place.ball * (1.0 + rounding));
     const shared::Instance at = shared::instance_of(layer.lens, center);
     if (at.depth + ball < layer.lens.near) return false;
     if (!(at.depth - ball > layer.lens.near)) return true;

@@ -94,7 +94,7 @@ std::vector<Track> tracks_of(const CameraTrack& from, const CameraParams& camera
     if (from.has_fov) hold("camera.focal_length", 0.0);  // or it would replace the file's fov
     // A scene that asks for a dome or a panorama gets one along this path too.
     if (from.orthographic && camera.projection == Projection::perspective)
-        hold("camera.projection", static_cast<double>(Projection::orthographic));
+        hold("camera.projection", double(Projection::orthographic));
     return tracks;
 }
 
@@ -177,18 +177,17 @@ CameraTrack camera_track(const Scene& scene, std::span<const std::int64_t> frame
             fmt::format("{}: camera.position: expected a position, or keyframes of it, found none: such a "
                         "camera frames its layers",
                         scene.file.string()));
-    const auto width = static_cast<double>(scene.output.width),
-               height = static_cast<double>(scene.output.height);
+    const auto width = double(scene.output.width), height = double(scene.output.height);
     CameraTrack track;
     track.fps = scene.output.fps;
     std::size_t perspective = 0, orthographic = 0;
     for (const std::int64_t frame : frames) {
-        CameraParams params = scene_at(scene, static_cast<double>(frame)).camera;
+        CameraParams params = scene_at(scene, double(frame)).camera;
         params.eye = Eye::centre;
         params.fisheye_tilt = 0.0;
         const Camera camera = make_camera(params, width, height, {});
         TrackSample sample;
-        sample.frame = static_cast<double>(frame);
+        sample.frame = double(frame);
         sample.eye = camera.eye;
         quaternion_from_axes(camera.world_from_camera, sample.rotation);
         // The same turn on the side where the one before is, so that other programs go the short way.
@@ -217,7 +216,7 @@ std::string camera_text(const CameraTrack& track, const Scene& scene, const fs::
     const FileFormat* const format = format_by_name(file, FileUse::camera_written);
     const std::string_view id = format ? format->id : "";
     if (id == "table") return csv_text(sampled_tracks(track, {}, file));
-    const double aspect = static_cast<double>(scene.output.width) / static_cast<double>(scene.output.height);
+    const double aspect = double(scene.output.width) / double(scene.output.height);
     if (id == "usda") return usda_text(track, {aspect, scene.camera.near, scene.camera.far});
     if (id == "gltf") {
         const auto other_lens = [&](const TrackSample& sample) {

@@ -43,8 +43,7 @@ ColumnName column_name(const Description& description, std::string_view word) {
     const Parameter* vector = find_parameter(description, rest);
     if (!vector || !has_components(vector->spec)) return {word};
     for (const std::string_view names : component_names)
-        if (const std::size_t at = names.find(word.back()); at < names.size())
-            return {rest, static_cast<int>(at)};
+        if (const std::size_t at = names.find(word.back()); at < names.size()) return {rest, int(at)};
     return {word};
 }
 
@@ -75,7 +74,7 @@ class CsvReader {
         const auto frame = std::ranges::find(names, "frame");
         if (frame == names.end())
             rows_.fail("a header with a column 'frame'", shown(names.empty() ? "" : names[0]));
-        frame_ = static_cast<std::size_t>(frame - names.begin());
+        frame_ = std::size_t(frame - names.begin());
         columns_ = names.size();
         grow_lists(names);
         const Description description = describe(scene_);
@@ -104,8 +103,8 @@ class CsvReader {
         const ParameterSpec& spec = parameter->spec;
         if (spec.animation == Animation::no) rows_.fail("keys that can be animated", shown(name));
         if (spec.type == ParameterType::curve) rows_.fail("keys of numbers", shown(name) + ", a curve");
-        const auto count = static_cast<std::size_t>(spec.components);
-        const auto component = static_cast<std::size_t>(std::max(of.component, 0));
+        const auto count = std::size_t(spec.components);
+        const auto component = std::size_t(std::max(of.component, 0));
         if (of.component < 0 && has_components(spec))
             rows_.fail(fmt::format("columns {0}.x, {0}.y, ...", spec.key), shown(name));
         if (component >= count) rows_.fail(fmt::format("{} numbers for {}", count, spec.key), shown(name));

@@ -305,7 +305,7 @@ void describe_fits(const Describer& d, TextureSettings& t) {
         [&t](const ParameterSpec&) {
             const bool number =
                 is_list_index(t.hdu) && t.hdu.size() < 10 && (t.hdu[0] != '0' || t.hdu == "0");
-            return number ? Value(static_cast<std::int64_t>(std::stol(t.hdu))) : Value(t.hdu);
+            return number ? Value(std::int64_t(std::stol(t.hdu))) : Value(t.hdu);
         },
         [&t](const Value& value, const ParameterSpec& s) {
             const bool number = std::holds_alternative<std::int64_t>(value.data);

@@ -47,8 +47,8 @@ double number_of(const Value& value, const ParameterSpec& spec) {
 
 float float_of(const Value& value, const ParameterSpec& spec) {
     const double x = number_of(value, spec);
-    const float narrow = static_cast<float>(x);
-    if (!in_range(static_cast<double>(narrow), spec) && x != spec.min && x != spec.max)
+    const float narrow = float(x);
+    if (!in_range(double(narrow), spec) && x != spec.min && x != spec.max)
         refuse(expectation(spec), short_number(x));  // 1 - 1e-12 is below 1 but becomes 1
     return narrow;
 }
@@ -61,12 +61,12 @@ std::int64_t integer_of(const Value& value, const ParameterSpec& spec) {
     if (!in_range(x, spec)) refuse(expectation(spec), short_number(x));
     if (const auto* exact = std::get_if<std::int64_t>(&value.data)) return *exact;
     if (std::fabs(x) >= 9.2e18) refuse("a whole number of 64 bits", short_number(x));
-    return static_cast<std::int64_t>(x);
+    return std::int64_t(x);
 }
 
 std::vector<double> numbers_of(const Value& value, const ParameterSpec& spec) {
     const Value::List& list = list_of(value, spec);
-    if (list.size() != static_cast<std::size_t>(spec.components)) refuse(expectation(spec), kind_of(value));
+    if (list.size() != std::size_t(spec.components)) refuse(expectation(spec), kind_of(value));
     std::vector<double> numbers;
     for (const Value& element : list) {
         if (!element.is_number()) refuse(expectation(spec), kind_of(element) + " among them");
@@ -89,7 +89,7 @@ std::size_t choice_of(const Value& value, const ParameterSpec& spec) {
     const auto found = std::ranges::find(spec.choices, name);
     if (found == spec.choices.end())
         refuse(expectation(spec), fmt::format("'{}'{}", name, did_you_mean(name, spec.choices)));
-    return static_cast<std::size_t>(found - spec.choices.begin());
+    return std::size_t(found - spec.choices.begin());
 }
 
 std::vector<std::string> words_of(const Value& value, const ParameterSpec& spec) {

@@ -71,10 +71,10 @@ template <std::integral T>
 requires(!std::same_as<T, bool>) struct Field<T> {
     static void describe(ParameterSpec& spec) {
         spec.type = ParameterType::integer;
-        spec.min = std::max(spec.min, static_cast<double>(std::numeric_limits<T>::min()));
-        spec.max = std::min(spec.max, static_cast<double>(std::numeric_limits<T>::max()));
+        spec.min = std::max(spec.min, double(std::numeric_limits<T>::min()));
+        spec.max = std::min(spec.max, double(std::numeric_limits<T>::max()));
     }
-    static Value get(T field, const ParameterSpec&) { return static_cast<std::int64_t>(field); }
+    static Value get(T field, const ParameterSpec&) { return std::int64_t(field); }
     static T set(const Value& value, const ParameterSpec& spec) {
         return static_cast<T>(integer_of(value, spec));
     }
@@ -122,7 +122,7 @@ struct Field<glm::vec<N, T>> {
         Value::List list;
         for (int i = 0; i < N; ++i) {
             if constexpr (std::integral<T>)
-                list.emplace_back(static_cast<std::int64_t>(field[i]));
+                list.emplace_back(std::int64_t(field[i]));
             else
                 list.emplace_back(widened(field[i]));
         }

@@ -25,7 +25,7 @@ class Reader {
         if (problem == std::errc::result_out_of_range || value > largest_frame || value < -largest_frame)
             fail(fmt::format("frames between -{0} and {0}", largest_frame));
         if (problem != std::errc()) fail("frames such as 1-100,120,200-300x2");
-        rest_.remove_prefix(static_cast<std::size_t>(end - rest_.data()));
+        rest_.remove_prefix(std::size_t(end - rest_.data()));
         return value;
     }
     bool skip(std::string_view any) {
@@ -51,7 +51,7 @@ void add_item(std::string_view item, const std::string& place, std::vector<std::
     if (!reader.at_end()) reader.fail("frames such as 1-100,120,200-300x2");
     if (last < first) reader.fail("a range that ascends");
     if (step < 1) reader.fail("a step of at least 1");
-    if ((last - first) / step + static_cast<std::int64_t>(frames.size()) >= most_frames)
+    if ((last - first) / step + std::int64_t(frames.size()) >= most_frames)
         reader.fail(fmt::format("at most {} frames", most_frames));
     for (std::int64_t frame = first; frame <= last; frame += step) frames.push_back(frame);
 }

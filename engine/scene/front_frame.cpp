@@ -191,8 +191,7 @@ double texels_across(const std::vector<SeenFace>& faces) {
     double texels = 0.0, area = 0.0;
     for (const SeenFace& face : faces) {
         const double uv_area = face.uv_ab.x * face.uv_ac.y - face.uv_ab.y * face.uv_ac.x;
-        texels +=
-            std::fabs(uv_area) * static_cast<double>(face.texture->image.width * face.texture->image.height);
+        texels += std::fabs(uv_area) * double(face.texture->image.width * face.texture->image.height);
         area += std::fabs(face.twice_area());
     }
     return area > 0.0 ? std::sqrt(texels / area) : 0.0;
@@ -205,9 +204,8 @@ class FrontBand {
         : picture_(picture),
           begin_(begin),
           end_(end),
-          scale_(static_cast<double>(picture.width)),
-          depth_(static_cast<std::size_t>((end - begin) * picture.width),
-                 -std::numeric_limits<double>::infinity()) {}
+          scale_(double(picture.width)),
+          depth_(std::size_t((end - begin) * picture.width), -std::numeric_limits<double>::infinity()) {}
 
     void draw(const SeenFace& face) {
         const double area = face.twice_area();
@@ -229,7 +227,7 @@ class FrontBand {
   private:
     // Of a pixel's centre, in frame widths from the middle.
     double place(std::int64_t i, std::int64_t size) const {
-        return (static_cast<double>(i) + 0.5 - 0.5 * static_cast<double>(size)) / scale_;
+        return (double(i) + 0.5 - 0.5 * double(size)) / scale_;
     }
 
     // Pixels [first, second) of begin .. end that a face with these corners can touch along an axis.
@@ -237,16 +235,15 @@ class FrontBand {
                                                   std::int64_t begin, std::int64_t end) const {
         const double lo = a + std::min({0.0, ab, ac}), hi = a + std::max({0.0, ab, ac});
         const auto pixel = [&](double at) {
-            const double p = at * scale_ + 0.5 * static_cast<double>(size);
-            return std::clamp(p, static_cast<double>(begin), static_cast<double>(end));
+            const double p = at * scale_ + 0.5 * double(size);
+            return std::clamp(p, double(begin), double(end));
         };
-        return {static_cast<std::int64_t>(std::floor(pixel(lo - 1e-9))),
-                static_cast<std::int64_t>(std::ceil(pixel(hi + 1e-9)))};
+        return {std::int64_t(std::floor(pixel(lo - 1e-9))), std::int64_t(std::ceil(pixel(hi + 1e-9)))};
     }
 
     void show(const SeenFace& face, double b, double c, std::int64_t x, std::int64_t y) {
         const double z = face.a.z + b * face.ab.z + c * face.ac.z;
-        double& depth = depth_[static_cast<std::size_t>((y - begin_) * picture_.width + x)];
+        double& depth = depth_[(y - begin_) * picture_.width + x];
         if (!(z > depth)) return;
         depth = z;
         const TextureSample seen =
@@ -270,9 +267,9 @@ Image front_picture(std::span<const TexturedMesh> meshes, const FrontFrame& fram
     if (std::max(across, down) > widest_px)
         throw InputError(fmt::format("expected a picture of at most {} px, found {:.0f} x {:.0f}", widest_px,
                                      across, down));
-    const auto width = std::max<std::int64_t>(1, static_cast<std::int64_t>(across + 0.5));
-    const auto height = std::max<std::int64_t>(1, static_cast<std::int64_t>(down + 0.5));
-    claim_memory(width * height * 3 * static_cast<std::int64_t>(sizeof(float)), "the picture from the front");
+    const auto width = std::max<std::int64_t>(1, std::int64_t(across + 0.5));
+    const auto height = std::max<std::int64_t>(1, std::int64_t(down + 0.5));
+    claim_memory(width * height * 3 * std::int64_t(sizeof(float)), "the picture from the front");
     Image picture = make_image(width, height, 3);
     parallel_chunks(height, rows_per_band, [&](std::int64_t begin, std::int64_t end, int) {
         progress.check();

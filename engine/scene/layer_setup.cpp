@@ -26,14 +26,14 @@ static_assert(std::size(column_laws) == names_of(Blend{}).size());
 
 StarPsf star_psf(const StarsParams& stars) {
     StarPsf psf;
-    psf.core_px = static_cast<float>(stars.psf);
-    psf.wing_share = static_cast<float>(stars.wings.share);
-    psf.wing_px = static_cast<float>(stars.wings.px);
-    psf.wing_power = static_cast<float>(stars.wings.power);
-    psf.spike_share = std::min(static_cast<float>(stars.spikes.share), 1.0f - psf.wing_share);
+    psf.core_px = float(stars.psf);
+    psf.wing_share = float(stars.wings.share);
+    psf.wing_px = float(stars.wings.px);
+    psf.wing_power = float(stars.wings.power);
+    psf.spike_share = std::min(float(stars.spikes.share), 1.0f - psf.wing_share);
     psf.vanes = stars.spikes.vanes;
-    psf.vane_deg = static_cast<float>(stars.spikes.angle);
-    psf.spike_px = static_cast<float>(stars.spikes.px);
+    psf.vane_deg = float(stars.spikes.angle);
+    psf.spike_px = float(stars.spikes.px);
     return psf;
 }
 
@@ -76,7 +76,7 @@ LookInputs look_inputs(const LayerParams& params) {
     inputs.seed = resolved_seed(params.source.seed, params.name);
     inputs.falloff_integral = falloff_integral(params.render.falloff);
     inputs.falloff_variance = falloff_variance(params.render.falloff);
-    inputs.column = column_laws[static_cast<std::size_t>(params.render.blend)];
+    inputs.column = column_laws[params.render.blend];
     return inputs;
 }
 
@@ -115,7 +115,7 @@ std::vector<glm::dvec3> camera_places(const Scene& scene) {
     if (!track)
         return scene.camera.position ? std::vector{*scene.camera.position} : std::vector<glm::dvec3>();
     const std::vector<Keyframe<glm::dvec3>> keyframes = position_keyframes(*track);
-    const auto parts = static_cast<int>(keyframes.size()) - 1;
+    const auto parts = int(keyframes.size()) - 1;
     const int steps = std::max(1, places_on_path / std::max(1, parts));  // between two keyframes
     std::vector<glm::dvec3> places;
     const auto add = [&](double frame) {

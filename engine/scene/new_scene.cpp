@@ -180,7 +180,7 @@ struct CameraKeyframe {
 void tilt(double distance, double exposure, std::vector<CameraKeyframe>& keyframes) {
     constexpr int first = 36, last = 100, step = 8;
     for (int frame = first; frame <= last; frame += step) {
-        const double t = static_cast<double>(frame - first) / (last - first), eased = real::smoothstep(t);
+        const double t = double(frame - first) / (last - first), eased = real::smoothstep(t);
         const double angle = real::radians(45.0 * eased);
         keyframes.push_back(
             {frame,
@@ -234,7 +234,7 @@ std::vector<CameraKeyframe> flight(double distance, const PictureScene& scene, c
 
 // In scene units on the plane, no nearer to the picture's edges than a fifth of its sides.
 glm::dvec3 subject_in_scene(const PictureScene& scene, double height) {
-    const double width = height * static_cast<double>(scene.width_px) / static_cast<double>(scene.height_px);
+    const double width = height * double(scene.width_px) / double(scene.height_px);
     const glm::dvec2 from_middle = glm::clamp(scene.subject - 0.5, glm::dvec2(-0.3), glm::dvec2(0.3));
     return {from_middle.x * width, 0.0, from_middle.y * height};
 }
@@ -269,14 +269,13 @@ std::string animation_text(const std::vector<CameraKeyframe>& keyframes) {
 
 // Even, as films want it.
 std::int64_t side_px(std::int64_t side, std::int64_t longest) {
-    return std::max<std::int64_t>(
-        2, 2 * std::llround(static_cast<double>(longest_px * side) / (2.0 * static_cast<double>(longest))));
+    return std::max<std::int64_t>(2, 2 * std::llround(double(longest_px * side) / (2.0 * double(longest))));
 }
 
 // Sigma of the widest splats, of the picture's longest side.
 double widest_sigma(StructureKind structure, double margin) {
     if (structure == StructureKind::disk)  // is thicker with its margin
-        return (1.0 + margin) * widest_sigma_share * disk_thickness * static_cast<double>(wider_in_bulges[1]);
+        return (1.0 + margin) * widest_sigma_share * disk_thickness * double(wider_in_bulges[1]);
     const double in_sheet = widest_sigma_share * sheet_thickness;
     return structure == StructureKind::walls ? std::max(in_sheet, widest_glow_share * 0.5 * wall_depth)
                                              : in_sheet;
@@ -284,8 +283,7 @@ double widest_sigma(StructureKind structure, double margin) {
 
 // Pixels at 1080 lines that the widest splats have from the front, and a little more: there they stay whole.
 double split_above_px(StructureKind structure, double longest_over_height, double margin) {
-    return 1.1 * 2.0 * static_cast<double>(radius_sigmas) * widest_sigma(structure, margin) *
-           longest_over_height * 1080.0;
+    return 1.1 * 2.0 * double(radius_sigmas) * widest_sigma(structure, margin) * longest_over_height * 1080.0;
 }
 
 // Low powers of brightness and a dense disk: its dim parts are then not as bright as its middle from the
@@ -367,7 +365,7 @@ PictureScene picture_scene(const fs::path& image, const PictureRequest& request,
 std::string picture_scene_text(const PictureScene& scene, const fs::path& file) {
     const std::string name = layer_name_of(scene.image.stem().string(), "picture");
     const std::int64_t longest = std::max(scene.width_px, scene.height_px);
-    const double height = longest_side * static_cast<double>(scene.height_px) / static_cast<double>(longest);
+    const double height = longest_side * double(scene.height_px) / double(longest);
     const double distance = 0.5 * height / real::tan(real::radians(0.5 * field_of_view));
     const double margin = margin_of(scene);
     std::string text = fmt::format(
@@ -389,8 +387,8 @@ std::string picture_scene_text(const PictureScene& scene, const fs::path& file) 
         fmt::arg("clumps", scene.object == SkyObject::thin ? "0.0" : "1.0"),
         fmt::arg("opacity", opacity_of(scene.structure)));
     if (!scene.stars.empty()) {
-        const double frame_px = static_cast<double>(side_px(longest, longest));
-        text += stars_text(scene, name, frame_px / static_cast<double>(longest), file);
+        const double frame_px = double(side_px(longest, longest));
+        text += stars_text(scene, name, frame_px / double(longest), file);
     }
     return scene.film ? text + animation_text(flight(distance, scene, subject_in_scene(scene, height)))
                       : text;

@@ -11,7 +11,7 @@
 namespace astrosplat {
 
 double Value::number() const {
-    if (const auto* i = std::get_if<std::int64_t>(&data)) return static_cast<double>(*i);
+    if (const auto* i = std::get_if<std::int64_t>(&data)) return double(*i);
     return std::get<double>(data);
 }
 
@@ -40,7 +40,7 @@ std::string to_toml(const std::string& text) {
         } else if (c == '\t') {
             quoted += "\\t";
         } else if ((c >= 0 && c < 0x20) || c == 0x7f) {
-            quoted += fmt::format("\\u{:04X}", static_cast<int>(c));
+            quoted += fmt::format("\\u{:04X}", int(c));
         } else {
             quoted += c;
         }
@@ -132,7 +132,7 @@ std::vector<double> to_numbers(const ParameterSpec& spec, const Value& value) {
     if (spec.type == Type::choice) {
         const std::string name = value.text() ? *value.text() : to_toml(value);
         const auto found = std::ranges::find(spec.choices, name);
-        return {static_cast<double>(found - spec.choices.begin())};
+        return {double(found - spec.choices.begin())};
     }
     if (const auto* b = std::get_if<bool>(&value.data)) return {*b ? 1.0 : 0.0};
     if (value.is_number()) return {value.number()};
@@ -150,7 +150,7 @@ static Value curve_from(const std::vector<double>& numbers) {
     Value::List points;
     float last = 0.0f;
     for (std::size_t i = 0; i + 1 < numbers.size(); i += 2) {
-        float x = static_cast<float>(numbers[i]);
+        float x = float(numbers[i]);
         // Points that move at different speeds may touch; the curve needs ascending x.
         if (i > 0 && x <= last) x = std::nextafter(last, std::numeric_limits<float>::infinity());
         last = x;
@@ -166,12 +166,12 @@ Value from_numbers(const ParameterSpec& spec, const std::vector<double>& numbers
         return std::clamp(x, spec.min, hi);
     };
     if (spec.type == Type::boolean) return first >= 0.5;
-    if (spec.type == Type::integer) return static_cast<std::int64_t>(std::floor(clamped(first) + 0.5));
+    if (spec.type == Type::integer) return std::int64_t(std::floor(clamped(first) + 0.5));
     if (spec.type == Type::number) return clamped(first);
     if (spec.type == Type::curve) return curve_from(numbers);
     if (spec.type == Type::choice) {
-        const double last = static_cast<double>(spec.choices.size()) - 1.0;
-        return spec.choices[static_cast<std::size_t>(std::clamp(std::floor(first + 0.5), 0.0, last))];
+        const double last = double(spec.choices.size()) - 1.0;
+        return spec.choices[std::clamp(std::floor(first + 0.5), 0.0, last)];
     }
     Value::List list;
     for (const double x : numbers) list.emplace_back(clamped(x));

@@ -15,7 +15,7 @@ constexpr double least_scale = 1e-3, largest_scale = 1e3;
 bool is_at_frame(const ReferenceParams& reference, double frame) {
     if (reference.frames.empty()) return true;
     const std::vector<std::int64_t> frames = parse_frames(reference.frames, "reference.frames");
-    return std::ranges::binary_search(frames, static_cast<std::int64_t>(std::floor(frame)));
+    return std::ranges::binary_search(frames, std::int64_t(std::floor(frame)));
 }
 
 glm::dvec2 middle_of(const ReferenceParams& reference, const FrameOnScreen& frame) {

@@ -39,10 +39,10 @@ class Saver {
         for (const ParameterList& list : description.lists) {
             if (!key.is_below(list.key / 0)) continue;
             const std::size_t size = list.key.parts().size();
-            const TomlPath indexed(path.begin(), path.begin() + static_cast<std::ptrdiff_t>(size) + 1);
+            const TomlPath indexed(path.begin(), path.begin() + std::ptrdiff_t(size) + 1);
             const TomlPath bare(indexed.begin(), indexed.end() - 1);
             if (!text_.contains(indexed) && text_.contains(bare))
-                path.erase(path.begin() + static_cast<std::ptrdiff_t>(size));
+                path.erase(path.begin() + std::ptrdiff_t(size));
         }
         return path;
     }

@@ -26,7 +26,7 @@ class TomlScanner {
         order_headers();
         std::ranges::sort(items_, {}, &TomlText::Item::begin);
         for (TomlText::Item& item : items_)
-            item.header = static_cast<std::size_t>(std::ranges::count_if(
+            item.header = std::size_t(std::ranges::count_if(
                               headers_, [&](const auto& header) { return header.begin <= item.begin; })) -
                           1;
     }
@@ -308,7 +308,7 @@ std::string TomlText::cut_block(const TomlPath& path, std::size_t& begin) {
         block += text_.substr(from, to - from);
         text_.erase(from, to - from);
         // The paths of what follows keep their indices: only the places move.
-        headers_.erase(headers_.begin() + static_cast<std::ptrdiff_t>(i));
+        headers_.erase(headers_.begin() + std::ptrdiff_t(i));
         for (std::size_t j = i; j < headers_.size(); ++j) {
             headers_[j].begin -= to - from;
             headers_[j].body_begin -= to - from;

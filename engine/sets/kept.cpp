@@ -34,7 +34,7 @@ std::int64_t limit_bytes(const SetCache& cache) {
     std::error_code error;
     const fs::space_info disk = fs::space(cache.folder, error);
     if (error) return largest_limit;
-    return static_cast<std::int64_t>(std::min<std::uintmax_t>(disk.capacity / 10, largest_limit));
+    return std::int64_t(std::min<std::uintmax_t>(disk.capacity / 10, largest_limit));
 }
 
 void shrink_cache(const SetCache& cache, std::int64_t bytes) {
@@ -53,8 +53,7 @@ void shrink_cache(const SetCache& cache, std::int64_t bytes) {
         if (!entry || file.filename().string().front() == '.') continue;
         entries.push_back({fs::last_write_time(file, error), file, 0});
         const std::uintmax_t size = fs::file_size(file, error);
-        if (!error)
-            entries.back().bytes = static_cast<std::int64_t>(size);  // else another process removed it
+        if (!error) entries.back().bytes = std::int64_t(size);  // else another process removed it
         total += entries.back().bytes;
     }
     std::ranges::sort(entries, {}, [](const Entry& entry) { return std::tie(entry.used, entry.file); });
@@ -210,9 +209,8 @@ void keep(const SetCache& cache, const std::vector<KeptFile>& entries, SplatSet&
         }
     });
     if (!has_room)
-        log_info(fmt::format("a set of {} is not kept: the cache may hold {}",
-                             human_bytes(static_cast<double>(bytes)),
-                             human_bytes(static_cast<double>(limit_bytes(cache)))));
+        log_info(fmt::format("a set of {} is not kept: the cache may hold {}", human_bytes(double(bytes)),
+                             human_bytes(double(limit_bytes(cache)))));
     set.recipe.clear();
 }
 
@@ -231,7 +229,7 @@ std::optional<PreparedPicture> read_kept_picture(const fs::path& file, const cha
 
 void keep_picture(const SetCache& cache, const fs::path& file, const Image& image,
                   const std::string& credit) {
-    const auto bytes = static_cast<std::int64_t>(image.pixels.size() * sizeof(float));
+    const auto bytes = std::int64_t(image.pixels.size() * sizeof(float));
     write_entry(cache, bytes, [&] {
         std::error_code ignored;
         fs::create_directories(cache.folder, ignored);
@@ -271,7 +269,7 @@ std::optional<Faces> faces_of(const Image& strip, std::int64_t side) {
     if (strip.width != side || strip.height != 6 * side) return {};
     Faces faces;
     for (std::int64_t f = 0; f < 6; ++f) {
-        Image& face = faces[static_cast<std::size_t>(f)] = make_image(side, side, 3);
+        Image& face = faces[f] = make_image(side, side, 3);
         for (std::int64_t y = 0; y < side; ++y)
             for (std::int64_t x = 0; x < side; ++x) std::copy_n(strip.at(x, f * side + y), 3, face.at(x, y));
     }

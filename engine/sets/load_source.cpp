@@ -31,8 +31,8 @@ std::string describe_lattice(const Lattice& lattice, double max_distance, std::i
     const std::string size = cubic ? fmt::format("{:.4g}", voxel.x)
                                    : fmt::format("{:.4g} x {:.4g} x {:.4g}", voxel.x, voxel.y, voxel.z);
     return fmt::format("{} x {} x {} voxels of {}, {} positions, max distance {:.4g}, about {}", lattice.n.x,
-                       lattice.n.y, lattice.n.z, size, human_count(static_cast<double>(lattice.positions())),
-                       max_distance, human_bytes(static_cast<double>(bytes)));
+                       lattice.n.y, lattice.n.z, size, human_count(double(lattice.positions())), max_distance,
+                       human_bytes(double(bytes)));
 }
 
 [[noreturn]] void fail(const std::string& layer_name, const InputError& error) {
@@ -190,7 +190,7 @@ double body_height(const SourceParams& source, const TexturedMesh& mesh) {
     if (!(texels_per_unit > 0.0)) return 0.0;
     StructureParams params = source.structure;
     if (mesh.mesh.name != "plane") params.margin = 0.0;  // as add_margins has it
-    const auto beyond = static_cast<std::int64_t>(2.0 * params.margin * static_cast<double>(width));
+    const auto beyond = std::int64_t(2.0 * params.margin * double(width));
     return placement_without_fields(width + beyond, height + beyond, params, texels_per_unit).height /
            texels_per_unit;
 }
@@ -225,7 +225,7 @@ glm::vec4 mean_of(const Image& image, std::int64_t x, std::int64_t y, std::int64
             const float* texel = image.at(i, j);
             sum += glm::vec4(texel[0], texel[1], texel[2], texel[3]);
         }
-    return sum / static_cast<float>((right - x) * (below - y));
+    return sum / float((right - x) * (below - y));
 }
 
 /// The side of a part in texels, so that all pictures have so many together.
@@ -233,7 +233,7 @@ std::int64_t step_of(std::span<const TexturedMesh> meshes) {
     double texels = 0.0;
     for (const TexturedMesh& mesh : meshes)
         for (const Texture& texture : mesh.textures)
-            texels += static_cast<double>(texture.image.width) * static_cast<double>(texture.image.height);
+            texels += double(texture.image.width) * double(texture.image.height);
     return std::max<std::int64_t>(1, std::llround(std::ceil(std::sqrt(texels / most_splats))));
 }
 
@@ -248,9 +248,9 @@ void add_picture(const TexturedMesh& mesh, std::uint32_t material, std::int64_t 
         for (std::int64_t x = 0; x < image.width; x += step, ++id) {
             const glm::vec4 mean = mean_of(image, x, y, step);
             if (!(mean.a > 0.0f)) continue;
-            const float half = 0.5f * static_cast<float>(step);
-            const glm::vec2 uv((static_cast<float>(x) + half) / static_cast<float>(image.width),
-                               1.0f - (static_cast<float>(y) + half) / static_cast<float>(image.height));
+            const float half = 0.5f * float(step);
+            const glm::vec2 uv((float(x) + half) / float(image.width),
+                               1.0f - (float(y) + half) / float(image.height));
             surface.at(uv, [&](const SurfacePlace& place) {
                 store.add(
                     {place.position, glm::vec3(mean) / mean.a, mean.a, 0.0f, id, uv, place.normal, 0, 0});
@@ -266,7 +266,7 @@ double spacing_of(const TexturedMesh& mesh, std::int64_t step) {
         const UvSurface surface(mesh.mesh, material, image.width, image.height, true);
         texels_per_unit = std::max(texels_per_unit, surface.texels_per_unit());
     }
-    return texels_per_unit > 0.0 ? static_cast<double>(step) / texels_per_unit : 0.0;
+    return texels_per_unit > 0.0 ? double(step) / texels_per_unit : 0.0;
 }
 
 }  // namespace

@@ -20,7 +20,7 @@ namespace {
 template <class T>
 std::string text_of(const T& value) {
     if constexpr (std::is_enum_v<T>)
-        return fmt::format("{}", static_cast<int>(value));
+        return fmt::format("{}", int(value));
     else
         return fmt::format("{}", value);
 }

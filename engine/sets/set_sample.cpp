@@ -20,7 +20,7 @@ constexpr double share = 0.01;
 constexpr std::int64_t enough = 100'000;  // splats or texels: of fewer, what does not grow with them is most
 
 std::int64_t rows_of(std::int64_t all) {
-    return std::min(all, std::max(enough, static_cast<std::int64_t>(share * static_cast<double>(all))));
+    return std::min(all, std::max(enough, std::int64_t(share * double(all))));
 }
 
 SplatSet sample_file(const NativeBlocks& file, std::int64_t rows) {
@@ -41,13 +41,13 @@ SetSample sample_columns(const SetCache& cache, const Recipe& recipe, std::int64
                                 NativePart::geometry);
     if (geometry.splats() != texels.splats()) throw InputError("not of these texels");
     SplatSet set = sample_file(geometry, rows), colors = sample_file(texels, rows);
-    const auto positions = static_cast<double>(set.size());
+    const auto positions = double(set.size());
     set.color = std::move(colors.color);
     set.alpha = std::move(colors.alpha);
     set.divided = colors.divided;
     set = lit_splats({std::move(set)});
-    const double lit = static_cast<double>(set.size()) / std::max(1.0, positions);
-    return {std::move(set), static_cast<std::int64_t>(lit * static_cast<double>(texels.splats()))};
+    const double lit = double(set.size()) / std::max(1.0, positions);
+    return {std::move(set), std::int64_t(lit * double(texels.splats()))};
 }
 
 SetSample sample_bodies(const SetCache& cache, const SourceParams& source, const std::string& layer_name,
@@ -60,15 +60,14 @@ SetSample sample_bodies(const SetCache& cache, const SourceParams& source, const
     const std::int64_t texels = largest_picture(plan.meshes);
     const double reading = seconds_since(start);
     reduce_to(plan.meshes, rows_of(texels), layer_name);
-    const double smaller = static_cast<double>(texels) /
-                           static_cast<double>(std::max<std::int64_t>(1, largest_picture(plan.meshes)));
+    const double smaller = double(texels) / double(std::max<std::int64_t>(1, largest_picture(plan.meshes)));
     const auto making = Clock::now();
     SetSample sample;
     sample.set = make_bodies(std::move(plan.meshes), plan.structure, resolved_seed(source.seed, layer_name),
                              layer_name, progress);
     sample.making_seconds = reading + smaller * seconds_since(making);
     sample.splats = source.splats > 0 ? std::min(splats, source.splats) : splats;
-    const auto narrower = static_cast<float>(1.0 / std::sqrt(smaller));
+    const auto narrower = float(1.0 / std::sqrt(smaller));
     for (float& radius : sample.set.radius) radius *= narrower;
     return sample;
 }
@@ -80,10 +79,9 @@ SetSample sample_lattice(const SetCache& cache, const SourceParams& source, cons
     ColumnPlan plan = plan_columns(source, layer_name, progress, kept_pictures(cache));
     const Lattice whole = plan.lattice;
     SetSample sample;
-    sample.splats = static_cast<std::int64_t>(
-        std::min(expected_splats(source, whole, plan.meshes, plan.max_distance), 1e15));
-    const double smaller = static_cast<double>(sample.splats) /
-                           static_cast<double>(std::max<std::int64_t>(1, rows_of(sample.splats)));
+    sample.splats =
+        std::int64_t(std::min(expected_splats(source, whole, plan.meshes, plan.max_distance), 1e15));
+    const double smaller = double(sample.splats) / double(std::max<std::int64_t>(1, rows_of(sample.splats)));
     SourceParams coarse = source;
     coarse.voxels = glm::max(glm::i64vec3(glm::dvec3(whole.n) / std::cbrt(smaller)), glm::i64vec3(1));
     plan.lattice = make_lattice(coarse, plan.meshes, plan.max_distance);

@@ -19,9 +19,7 @@ struct SetSample {
     std::int64_t splats = 0;      // of the whole set, about
     double making_seconds = 0.0;  // of the whole set, about; 0: it is there
     /// How many splats a row stands for, at least 1; 0: there are none.
-    double each() const {
-        return set.size() > 0 ? static_cast<double>(splats) / static_cast<double>(set.size()) : 0.0;
-    }
+    double each() const { return set.size() > 0 ? double(splats) / double(set.size()) : 0.0; }
 };
 
 /// Of a set that is in the cache, or of a .splats file: at once. About so many rows, those of splats without

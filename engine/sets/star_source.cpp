@@ -22,7 +22,7 @@ namespace {
 
 // ", 12 k WHAT" of a summary; nothing where there are none.
 std::string also(std::int64_t count, const std::string& what) {
-    return count > 0 ? ", " + human_count(static_cast<double>(count)) + " " + what : "";
+    return count > 0 ? ", " + human_count(double(count)) + " " + what : "";
 }
 
 std::string too_faint_text(std::int64_t count, const StarsParams& stars) {
@@ -55,11 +55,11 @@ SplatSet scatter_stars(const SourceParams& source, const std::string& layer_name
     if (kinds.empty())
         bad_input(stars.catalogue.string(), "",
                   fmt::format("stars of magnitude {} or brighter with a distance", stars.limit), "none");
-    log_info(fmt::format(
-        "layer '{}': {} within {:.4g} of the camera's path, of {}", layer_name,
-        human_count(source.count, "random star"), stars.spread,
-        from_catalogue ? human_count(static_cast<std::int64_t>(kinds.size()), "star") + " of the catalogue"
-                       : "the main sequence"));
+    log_info(fmt::format("layer '{}': {} within {:.4g} of the camera's path, of {}", layer_name,
+                         human_count(source.count, "random star"), stars.spread,
+                         from_catalogue
+                             ? human_count(std::int64_t(kinds.size()), "star") + " of the catalogue"
+                             : "the main sequence"));
     return random_stars({stars.path, stars.spread}, kinds, source.count,
                         resolved_seed(source.seed, layer_name), scale_of(stars), progress);
 }
@@ -80,7 +80,7 @@ PictureTable bright_stars(const StarsParams& stars, const std::string& layer_nam
     PictureTable table = read_picture_table(stars.catalogue, progress);
     warn_of_bad_rows(table, stars, layer_name);
     const double least = star_flux(stars.limit, stars.zero_point);
-    too_faint = static_cast<std::int64_t>(
+    too_faint = std::int64_t(
         std::erase_if(table.stars, [&](const TableStar& star) { return star.luminance() < least; }));
     return table;
 }
@@ -91,7 +91,7 @@ std::vector<SeenStar> seen_stars(const std::vector<TableStar>& table, const Sour
     std::vector<SeenStar> seen;
     for (const TableStar& star : table) {
         const std::uint32_t hash =
-            shared::as_hash_of_id(seed, static_cast<std::uint64_t>(star.row), shared::PURPOSE_DEPTH);
+            shared::as_hash_of_id(seed, std::uint64_t(star.row), shared::PURPOSE_DEPTH);
         seen.push_back({glm::vec2((star.uv - 0.5) / times + 0.5), shared::as_uniform(hash)});
     }
     if (source.stars.depth != StarsParams::Depth::magnitude) return seen;
@@ -99,7 +99,7 @@ std::vector<SeenStar> seen_stars(const std::vector<TableStar>& table, const Sour
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::ranges::stable_sort(order, std::greater<>(), [&](std::size_t i) { return table[i].luminance(); });
     for (std::size_t i = 0; i < order.size(); ++i)
-        seen[order[i]].before = (static_cast<float>(i) + 0.5f) / static_cast<float>(order.size());
+        seen[order[i]].before = (float(i) + 0.5f) / float(order.size());
     return seen;
 }
 
@@ -121,7 +121,7 @@ PictureOfStars picture_of(const SourceParams& source, const std::string& layer_n
         throw InputError(
             fmt::format("expected a picture on the first mesh of layer '{}', found none", source.stars.like));
     const Texture& whole = *shown_picture(meshes.front());
-    const double width_px = static_cast<double>(whole.file_width > 0 ? whole.file_width : whole.image.width);
+    const double width_px = double(whole.file_width > 0 ? whole.file_width : whole.image.width);
     PictureOfStars result;
     if (picture.structure.kind == StructureKind::columns) {
         const double reach = resolved_max_distance(picture, bounds(meshes));
@@ -133,7 +133,7 @@ PictureOfStars picture_of(const SourceParams& source, const std::string& layer_n
                   plan.times.empty() ? glm::dvec2(1.0) : plan.times.front(),
                   1.0};
     }
-    const double width = static_cast<double>(shown_picture(result.mesh)->image.width);
+    const double width = double(shown_picture(result.mesh)->image.width);
     result.texels_per_px = width / (result.times.x * width_px);
     return result;
 }
@@ -148,15 +148,15 @@ StarPixels pixels_of(const PlacedStars& placed, double texels_per_px) {
 
 SplatSet set_of(const PlacedStars& placed, const std::vector<TableStar>& table,
                 const std::vector<glm::dvec3>& passing) {
-    SplatSet set = empty_star_set(static_cast<std::int64_t>(placed.star.size()));
+    SplatSet set = empty_star_set(std::int64_t(placed.star.size()));
     for (std::size_t i = 0; i < placed.star.size(); ++i) {
         const TableStar& star = table[placed.star[i]];
-        const glm::dvec3 light = star.light * static_cast<double>(placed.texel_area[i]);
+        const glm::dvec3 light = star.light * double(placed.texel_area[i]);
         set.position[i] = placed.position[i];
         set.color[i] = glm::vec3(passing.empty() ? light : light / passing[i]);
         set.distance[i] = placed.distance[i];
-        set.id[i] = static_cast<std::uint64_t>(star.row);
-        set.max_distance = std::max(set.max_distance, static_cast<double>(set.distance[i]));
+        set.id[i] = std::uint64_t(star.row);
+        set.max_distance = std::max(set.max_distance, double(set.distance[i]));
     }
     return set;
 }
@@ -190,7 +190,7 @@ SplatSet load_picture_stars(const SourceParams& source, const std::string& layer
     }
     SplatSet set = set_of(placed, table.stars, passing);
     set.star_pixels = pixels_of(placed, picture.texels_per_px);
-    const auto outside = static_cast<std::int64_t>(table.stars.size() - placed.star.size());
+    const auto outside = std::int64_t(table.stars.size() - placed.star.size());
     log_info(fmt::format("layer '{}': {} of the picture of '{}'{}{}", layer_name,
                          human_count(set.size(), "star"), source.stars.like,
                          too_faint_text(too_faint, source.stars), also(outside, "outside of it left out")));

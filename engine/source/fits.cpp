@@ -93,7 +93,7 @@ int hdu_count(const fs::path& file, fitsfile* in) {
 // Axes as they matter for pictures: those of length 1 dropped while more than two are left.
 std::vector<std::int64_t> picture_axes(std::vector<std::int64_t> axes) {
     for (std::size_t i = axes.size(); i-- > 0 && axes.size() > 2;)
-        if (axes[i] == 1) axes.erase(axes.begin() + static_cast<std::ptrdiff_t>(i));
+        if (axes[i] == 1) axes.erase(axes.begin() + std::ptrdiff_t(i));
     return axes;
 }
 

@@ -209,7 +209,7 @@ std::vector<Triple> clip_ears(const std::vector<Point>& p) {
         while (ear < n && !is_ear(p, left, ear)) ++ear;
         if (ear == n) ear = 1;  // crosses itself or has no area: any corner will do
         triangles.push_back({left[(ear + n - 1) % n], left[ear], left[(ear + 1) % n]});
-        left.erase(left.begin() + static_cast<std::ptrdiff_t>(ear));
+        left.erase(left.begin() + std::ptrdiff_t(ear));
     }
     triangles.push_back({left[0], left[1], left[2]});
     return triangles;

@@ -26,7 +26,7 @@ constexpr const char* photoshop_space = "http://ns.adobe.com/photoshop/1.0/";
 // A file's first and last bytes, one after the other; a small one is read whole.
 std::string read_ends(const fs::path& file) {
     InputFile in(file);
-    const auto size = static_cast<std::size_t>(std::max<std::int64_t>(0, in.size()));
+    const auto size = std::size_t(std::max<std::int64_t>(0, in.size()));
     std::string bytes;
     const auto read_on = [&](std::size_t count) {
         const std::size_t before = bytes.size();
@@ -190,7 +190,7 @@ ObjectMetadata read_fits_metadata(const fs::path& file) {
     if (!plane.object.empty()) found.names.push_back(plane.object);
     found.credit = plane.credit;
     found.distance_ly = plane.distance_ly;
-    found.reference_px = {static_cast<double>(plane.width), static_cast<double>(plane.height)};
+    found.reference_px = {double(plane.width), double(plane.height)};
     if (!plane.sky) return found;
     const auto& [east_x, east_y, north_x, north_y] = plane.sky->cd;
     const double area = east_x * north_y - east_y * north_x;

@@ -239,7 +239,7 @@ class Sky {
                 const glm::dvec2 middle(objects_.objects[k].middle);
                 if (glm::distance(middle, patches[i].picture) >= reach_px_) continue;
                 if (patches_.nearest(patches[i].direction(middle, px_per_radian_)) == i)
-                    shown_[i].push_back(static_cast<std::int32_t>(k));
+                    shown_[i].push_back(std::int32_t(k));
             }
         });
     }

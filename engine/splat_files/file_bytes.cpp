@@ -72,8 +72,7 @@ std::size_t take_guard(const fs::path& file) {
 
 }  // namespace
 
-MappedFile::MappedFile(const fs::path& file)
-    : file_(file), input_(file), size_(static_cast<std::size_t>(input_.size())) {
+MappedFile::MappedFile(const fs::path& file) : file_(file), input_(file), size_(std::size_t(input_.size())) {
     if (size_ == 0) return;
     catch_bus_errors();
     guard_ = take_guard(file);
@@ -133,14 +132,13 @@ class Ring {
 
     Ring(AtomicFile& file, std::size_t slots) : file_(file), slots_(slots) {}
 
-    Slot& slot(std::int64_t chunk) { return slots_[static_cast<std::size_t>(chunk) % slots_.size()]; }
+    Slot& slot(std::int64_t chunk) { return slots_[std::size_t(chunk) % slots_.size()]; }
 
     /// The next chunk to format, once its slot is free; -1 when another thread failed.
     std::int64_t take() {
         std::unique_lock lock(mutex_);
         const std::int64_t chunk = taken_++;
-        changed_.wait(lock,
-                      [&] { return failed_ || chunk < written_ + static_cast<std::int64_t>(slots_.size()); });
+        changed_.wait(lock, [&] { return failed_ || chunk < written_ + std::int64_t(slots_.size()); });
         return failed_ ? -1 : chunk;
     }
 
@@ -188,8 +186,8 @@ void write_ordered(const WriteTarget& target, std::string_view header, std::int6
     AtomicFile output(target.file, target.existing);
     output.write(header);
     const std::int64_t chunks = (count + chunk - 1) / chunk;
-    const std::size_t bytes = static_cast<std::size_t>(std::min(chunk, count)) * row_bytes;
-    Ring ring(output, static_cast<std::size_t>(thread_count()) + 1);
+    const std::size_t bytes = std::size_t(std::min(chunk, count)) * row_bytes;
+    Ring ring(output, std::size_t(thread_count()) + 1);
     parallel_for(chunks, [&](std::int64_t, int) {
         try {
             progress.check();
@@ -199,9 +197,9 @@ void write_ordered(const WriteTarget& target, std::string_view header, std::int6
             slot.bytes.resize(bytes);
             const char* end =
                 format(number * chunk, std::min((number + 1) * chunk, count), slot.bytes.data());
-            slot.size = static_cast<std::size_t>(end - slot.bytes.data());
+            slot.size = std::size_t(end - slot.bytes.data());
             ring.put(number);
-            progress.at(static_cast<double>(number + 1) / static_cast<double>(chunks));
+            progress.at(double(number + 1) / double(chunks));
         } catch (...) {
             ring.fail();
             throw;

@@ -25,12 +25,12 @@ SplatColumns gaussian_set_columns(bool directional) {
 
 SplatSet room_for_gaussians(std::int64_t count, bool directional, const std::string& what) {
     const SplatColumns columns = gaussian_set_columns(directional);
-    claim_memory(count * static_cast<std::int64_t>(bytes_per_splat([&](SplatColumn column) {
+    claim_memory(count * std::int64_t(bytes_per_splat([&](SplatColumn column) {
                      return !is_optional(column) || columns[index_of(column)];
                  })),
                  what);
     SplatSet set;
-    const auto size = static_cast<std::size_t>(count);
+    const auto size = std::size_t(count);
     set.position.resize(size);
     set.alpha.resize(size);
     set.distance.assign(size, 0.0f);
@@ -96,8 +96,8 @@ bool finish_row(SplatSet& set, const GaussianNumbers& numbers, std::size_t i) {
     float& alpha = set.alpha[i];
     glm::vec4& rotation = set.rotation[i];
     if (numbers.trained) {
-        for (int k = 0; k < 3; ++k) scale[k] = static_cast<float>(real::exp(scale[k]));
-        alpha = static_cast<float>(1.0 / (1.0 + real::exp(-double(alpha))));
+        for (int k = 0; k < 3; ++k) scale[k] = float(real::exp(scale[k]));
+        alpha = float(1.0 / (1.0 + real::exp(-double(alpha))));
     }
     const glm::dvec4 q(rotation);
     const double length = std::sqrt(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w);
@@ -108,7 +108,7 @@ bool finish_row(SplatSet& set, const GaussianNumbers& numbers, std::size_t i) {
     else
         color = is_finite(set.harmonics[i]) ? mean_color(set.harmonics[i]) : glm::vec3(std::nanf(""));
     if (numbers.display)
-        for (int k = 0; k < 3; ++k) color[k] = static_cast<float>(real::srgb_to_linear(color[k]));
+        for (int k = 0; k < 3; ++k) color[k] = float(real::srgb_to_linear(color[k]));
     set.radius[i] = gaussian_radius(scale);
     const bool positive = scale.x >= 0.0f && scale.y >= 0.0f && scale.z >= 0.0f;
     if (!(positive && is_finite(set.position[i]) && std::isfinite(set.radius[i]) && is_finite(color) &&
@@ -123,7 +123,7 @@ bool finish_row(SplatSet& set, const GaussianNumbers& numbers, std::size_t i) {
 float gaussian_radius(const glm::vec3& scale) {
     const glm::dvec3 s(scale);
     const double xy = s.x * s.y, yz = s.y * s.z, zx = s.z * s.x;
-    return static_cast<float>(3.0 * std::sqrt(std::sqrt((xy * xy + yz * yz + zx * zx) / 3.0)));
+    return float(3.0 * std::sqrt(std::sqrt((xy * xy + yz * yz + zx * zx) / 3.0)));
 }
 
 SplatSet finish_gaussians(SplatSet set, const GaussianNumbers& numbers, const fs::path& file) {
@@ -141,7 +141,7 @@ SplatSet finish_gaussians(SplatSet set, const GaussianNumbers& numbers, const fs
         file.string(), bad, set.size(), first));
     Buffer<std::int64_t> rows;
     for (std::size_t i = 0; i < is_good.size(); ++i)
-        if (is_good[i]) rows.push_back(static_cast<std::int64_t>(i));
+        if (is_good[i]) rows.push_back(std::int64_t(i));
     return take_rows(set, rows);
 }
 

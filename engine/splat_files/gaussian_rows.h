@@ -67,7 +67,7 @@ SplatSet read_gaussian_parts(const std::vector<Part>& parts, const GaussianNumbe
     for (const Part& part : parts) {
         progress.check();
         read(part, first, set);
-        first += static_cast<std::size_t>(part.count);
+        first += std::size_t(part.count);
     }
     return finish_gaussians(std::move(set), numbers, file);
 }

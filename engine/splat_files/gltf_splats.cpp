@@ -132,7 +132,7 @@ std::vector<float> column_of(GltfFile& file, const Part& part, const std::string
 void read_part(GltfFile& file, const Part& part, std::size_t first, SplatSet& set) {
     const std::optional<GaussianPlacement> placement = gaussian_placement(part.world);
     if (!placement) file.fail("nodes that scale Gaussians alike along all axes", "others");
-    const auto count = static_cast<std::size_t>(part.count);
+    const auto count = std::size_t(part.count);
     {
         const std::vector<float> position = column_of(file, part, "POSITION", 3),
                                  scale = column_of(file, part, extension + ":SCALE", 3),
@@ -151,8 +151,7 @@ void read_part(GltfFile& file, const Part& part, std::size_t first, SplatSet& se
             const std::vector<float> values = column_of(file, part, harmonic_name(l, n), 3);
             for (std::size_t i = 0; i < count; ++i) {
                 const glm::vec3 c(values[3 * i], values[3 * i + 1], values[3 * i + 2]);
-                (set.harmonics.empty() ? set.color[first + i]
-                                       : set.harmonics[first + i].c[static_cast<std::size_t>(l * l + n)]) = c;
+                (set.harmonics.empty() ? set.color[first + i] : set.harmonics[first + i].c[l * l + n]) = c;
             }
         }
     place_gaussians(set, first, first + count, *placement);

@@ -32,7 +32,7 @@ char* pack(const SplatSet& set, std::uint32_t flags, std::int64_t begin, std::in
     for_each_column([&](auto column, SplatColumn which) {
         const auto& array = set.*column;
         if (!has(flags, which)) return;
-        const std::size_t bytes = static_cast<std::size_t>(end - begin) * sizeof array[0];
+        const std::size_t bytes = std::size_t(end - begin) * sizeof array[0];
         std::memcpy(out, &array[begin], bytes);
         out += bytes;
     });
@@ -51,7 +51,7 @@ char* pack(const SplatSet& set, std::span<const Row> rows, char* out) {
 /// The file, whose blocks are what `pack_rows` makes of their rows.
 void write_blocks(const WriteTarget& target, const SplatSet& set, std::uint32_t flags,
                   const Progress& progress, const FormatRows& pack_rows) {
-    std::vector<BlockEntry> table(block_count(static_cast<std::uint64_t>(set.size()), splats_per_block));
+    std::vector<BlockEntry> table(block_count(std::uint64_t(set.size()), splats_per_block));
     SplatSetFacts facts = set;
     if (flags & only_colors) facts.zero_alpha = std::ranges::count(set.alpha, 0.0f);
     write_ordered(
@@ -59,8 +59,8 @@ void write_blocks(const WriteTarget& target, const SplatSet& set, std::uint32_t 
         progress,
         [&](std::int64_t begin, std::int64_t end, char* out) {
             char* const stop = pack_rows(begin, end, out);
-            table[begin / splats_per_block] = describe_block(
-                flags, {out, static_cast<std::size_t>(stop - out)}, static_cast<std::size_t>(end - begin));
+            table[begin / splats_per_block] =
+                describe_block(flags, {out, std::size_t(stop - out)}, std::size_t(end - begin));
             return stop;
         },
         [&] { return table_bytes(table); });
@@ -71,8 +71,7 @@ void write_in_space(const WriteTarget& target, const SplatSet& set, const Progre
     const Buffer<Row> order = spatial_order<Row>(set);
     write_blocks(target, set, flags_of_set(set, RowOrder::space, NativePart::whole), progress,
                  [&](std::int64_t begin, std::int64_t end, char* out) {
-                     const auto first = static_cast<std::size_t>(begin),
-                                count = static_cast<std::size_t>(end - begin);
+                     const auto first = std::size_t(begin), count = std::size_t(end - begin);
                      return pack(set, std::span(order).subspan(first, count), out);
                  });
 }
@@ -97,12 +96,12 @@ void write_native(const WriteTarget& target, const SplatSet& set, const Progress
 }
 
 std::int64_t native_file_bytes(const SplatSet& set, NativePart part) {
-    const auto rows = static_cast<std::uint64_t>(set.size());
+    const auto rows = std::uint64_t(set.size());
     const std::size_t table =
         native::block_count(rows, native::splats_per_block) * sizeof(native::BlockEntry);
-    return static_cast<std::int64_t>(native::data_offset(native::text_of(set).size()) +
-                                     rows * native::row_bytes(native::flags_of_set(set, RowOrder::id, part)) +
-                                     table + sizeof(std::uint64_t));
+    return std::int64_t(native::data_offset(native::text_of(set).size()) +
+                        rows * native::row_bytes(native::flags_of_set(set, RowOrder::id, part)) + table +
+                        sizeof(std::uint64_t));
 }
 
 namespace native {
@@ -114,8 +113,7 @@ SplatSet empty_set(const Layout& layout, std::size_t rows, const OptionalColumns
     const auto is_read = [&](SplatColumn column) {
         return has(layout.header.flags, column) && is_wanted(column, wanted);
     };
-    if (rows > 0)
-        claim_memory(static_cast<std::int64_t>(rows * bytes_per_splat(is_read)), "splats of " + file);
+    if (rows > 0) claim_memory(std::int64_t(rows * bytes_per_splat(is_read)), "splats of " + file);
     SplatSet set;
     for_each_column([&](auto array, SplatColumn column) {
         if (is_read(column)) (set.*array).resize(rows);
@@ -149,14 +147,13 @@ bool unpack(SplatSet& set, std::uint32_t flags, const Block& block) {
 
 /// The same of those rows of the block that are among `rows`, to their places among these.
 bool unpack(SplatSet& set, std::uint32_t flags, const Block& block, std::span<const std::int64_t> rows) {
-    const auto begin = std::ranges::lower_bound(rows, static_cast<std::int64_t>(block.first));
-    const auto end = std::lower_bound(begin, rows.end(), static_cast<std::int64_t>(block.first + block.rows));
-    const auto to = static_cast<std::size_t>(begin - rows.begin()),
-               count = static_cast<std::size_t>(end - begin);
+    const auto begin = std::ranges::lower_bound(rows, std::int64_t(block.first));
+    const auto end = std::lower_bound(begin, rows.end(), std::int64_t(block.first + block.rows));
+    const auto to = std::size_t(begin - rows.begin()), count = std::size_t(end - begin);
     bool finite = true;
     for_each_array(set, flags, block, [&](auto& array, const char* from) {
         for (std::size_t i = to; i < to + count; ++i) {
-            const std::size_t row = static_cast<std::size_t>(rows[i]) - block.first;
+            const std::size_t row = std::size_t(rows[i]) - block.first;
             std::memcpy(&array[i], from + row * sizeof array[0], sizeof array[0]);
             finite &= all_finite(&array[i], 1);
         }
@@ -195,7 +192,7 @@ std::vector<SplatSet> read_rows_of_bytes(const Checker& checker, std::string_vie
     const Layout layout = read_layout(checker, bytes, part);
     std::vector<SplatSet> sets;
     for (const auto& [rows, wanted] : choices) {
-        if (!rows.empty() && rows.back() >= static_cast<std::int64_t>(layout.header.splats))
+        if (!rows.empty() && rows.back() >= std::int64_t(layout.header.splats))
             checker.fail("header", fmt::format("more than {} splats", rows.back()),
                          std::to_string(layout.header.splats));
         sets.push_back(empty_set(layout, rows.size(), wanted, checker.file));
@@ -232,7 +229,7 @@ Buffer<std::int64_t> lit_rows_of(const Layout& layout, const Progress& progress)
         const Block block = block_at(layout, number);
         std::size_t to = before[number];
         for (std::size_t i = 0; i < block.rows; ++i)
-            if (alpha_at(block, i) > 0.0f) rows[to++] = static_cast<std::int64_t>(block.first + i);
+            if (alpha_at(block, i) > 0.0f) rows[to++] = std::int64_t(block.first + i);
         forget_pages(block.bytes);
     });
     return rows;
@@ -259,8 +256,7 @@ LitRows native_lit_rows(const fs::path& file, const Progress& progress) {
     return read_mapped(file, [&](std::string_view bytes) {
         const native::Layout layout =
             native::read_layout(native::Checker{file.string()}, bytes, NativePart::colors);
-        return LitRows{native::lit_rows_of(layout, progress),
-                       static_cast<std::int64_t>(layout.header.splats)};
+        return LitRows{native::lit_rows_of(layout, progress), std::int64_t(layout.header.splats)};
     });
 }
 
@@ -274,7 +270,7 @@ std::int64_t native_splat_count(const fs::path& file) {
     return read_mapped(file, [&](std::string_view bytes) {
         const native::Header header = native::read_layout(native::Checker{file.string()}, bytes).header;
         const std::int64_t dark = header.flags & native::only_colors ? header.zero_alpha : 0;
-        return static_cast<std::int64_t>(header.splats) - dark;
+        return std::int64_t(header.splats) - dark;
     });
 }
 

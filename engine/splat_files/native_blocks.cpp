@@ -57,9 +57,9 @@ void NativeBlocks::State::read_at(std::size_t offset, char* out, std::size_t byt
             throw InputError(
                 fmt::format("{}: cannot be read: {}", path.string(),
                             got < 0 ? std::strerror(errno) : "it became shorter while it was read"));
-        offset += static_cast<std::size_t>(got);
+        offset += std::size_t(got);
         out += got;
-        bytes -= static_cast<std::size_t>(got);
+        bytes -= std::size_t(got);
     }
 }
 
@@ -69,9 +69,9 @@ NativeBlocks::~NativeBlocks() = default;
 
 const SplatSetFacts& NativeBlocks::facts() const { return state_->facts; }
 std::size_t NativeBlocks::size() const { return state_->layout.table.size(); }
-std::int64_t NativeBlocks::splats() const { return static_cast<std::int64_t>(state_->layout.header.splats); }
+std::int64_t NativeBlocks::splats() const { return std::int64_t(state_->layout.header.splats); }
 std::int64_t NativeBlocks::bytes() const {
-    return splats() * static_cast<std::int64_t>(native::row_bytes(state_->layout.header.flags));
+    return splats() * std::int64_t(native::row_bytes(state_->layout.header.flags));
 }
 std::int64_t NativeBlocks::most_rows() const { return state_->layout.header.block; }
 bool NativeBlocks::has(SplatColumn column) const { return native::has(state_->layout.header.flags, column); }
@@ -90,15 +90,14 @@ SplatSet NativeBlocks::sample(std::int64_t rows_wanted) const {
     static_cast<SplatSetFacts&>(out) = state.facts;
     const std::int64_t all = (splats() + at_once - 1) / at_once;
     const std::int64_t places = std::min((rows_wanted + at_once - 1) / at_once, all);
-    const double stride = places == all ? static_cast<double>(at_once)
-                                        : static_cast<double>(splats()) / static_cast<double>(places);
+    const double stride = places == all ? double(at_once) : double(splats()) / double(places);
     return read_mapped(state.path, [&](std::string_view bytes) {
-        if (static_cast<std::int64_t>(bytes.size()) != state.file.size())
+        if (std::int64_t(bytes.size()) != state.file.size())
             throw InputError(
                 fmt::format("{}: cannot be read: it was changed while it was read", state.path.string()));
         std::size_t in_memory = 0;  // block
         for (std::int64_t n = 0; n < places; ++n) {
-            const auto row = static_cast<std::size_t>(static_cast<double>(n) * stride);
+            const auto row = std::size_t(double(n) * stride);
             const std::size_t block = row / state.layout.header.block,
                               first = row % state.layout.header.block;
             if (const std::size_t before = std::exchange(in_memory, block); before != block)
@@ -166,7 +165,7 @@ struct NativeStream::State {
           flags(file_flags),
           splats(count),
           block(native::splats_per_block * native::row_bytes(file_flags)) {
-        table.reserve(native::block_count(static_cast<std::uint64_t>(count), native::splats_per_block));
+        table.reserve(native::block_count(std::uint64_t(count), native::splats_per_block));
     }
 
     /// Calls visit(column, place in a block of so many rows) for every column of the file.
@@ -182,16 +181,15 @@ struct NativeStream::State {
 
     void put(const SplatSet& part, std::span<const std::uint32_t> rows) {
         constexpr std::int64_t rows_at_once = 4096;
-        parallel_chunks(static_cast<std::int64_t>(rows.size()), rows_at_once,
-                        [&](std::int64_t begin, std::int64_t end, int) {
-                            const auto some = rows.subspan(static_cast<std::size_t>(begin),
-                                                           static_cast<std::size_t>(end - begin));
-                            const std::size_t first = filled + static_cast<std::size_t>(begin);
-                            for_each_place(native::splats_per_block, [&]<class T>(Buffer<T> SplatSet::*column,
-                                                                                  std::size_t place) {
-                                gather((part.*column).data(), some, block.data() + place + first * sizeof(T));
-                            });
-                        });
+        parallel_chunks(
+            std::int64_t(rows.size()), rows_at_once, [&](std::int64_t begin, std::int64_t end, int) {
+                const auto some = rows.subspan(std::size_t(begin), std::size_t(end - begin));
+                const std::size_t first = filled + std::size_t(begin);
+                for_each_place(
+                    native::splats_per_block, [&]<class T>(Buffer<T> SplatSet::*column, std::size_t place) {
+                        gather((part.*column).data(), some, block.data() + place + first * sizeof(T));
+                    });
+            });
         filled += rows.size();
     }
 
@@ -200,7 +198,7 @@ struct NativeStream::State {
         const std::string_view bytes(block.data(), filled * native::row_bytes(flags));
         table.push_back(native::describe_block(flags, bytes, filled));
         file.write(bytes);
-        written += static_cast<std::int64_t>(filled);
+        written += std::int64_t(filled);
         filled = 0;
     }
 

@@ -35,7 +35,7 @@ std::size_t data_offset(std::size_t credit_bytes) {
 }
 
 std::size_t block_count(std::uint64_t splats, std::uint32_t block) {
-    return static_cast<std::size_t>(splats / block + (splats % block != 0));
+    return std::size_t(splats / block + (splats % block != 0));
 }
 
 BlockEntry describe_block(std::uint32_t flags, std::string_view bytes, std::size_t rows) {
@@ -111,7 +111,7 @@ NativePart part_of(const Header& header) {
 const char* name_of(NativePart part) {
     constexpr const char* names[] = {"a whole set", "the geometry of a set, from a cache",
                                      "the colours of a set, from a cache"};
-    return names[static_cast<std::size_t>(part)];
+    return names[part];
 }
 
 }  // namespace
@@ -122,7 +122,7 @@ Layout read_layout(const Checker& checker, std::string_view bytes) {
     const std::size_t per_splat = row_bytes(header.flags), begin = data_offset(header.credit_bytes);
     const std::size_t blocks = block_count(header.splats, header.block);
     const bool fits = header.splats <= bytes.size() / per_splat;
-    const std::size_t data = fits ? static_cast<std::size_t>(header.splats) * per_splat : 0;
+    const std::size_t data = fits ? std::size_t(header.splats) * per_splat : 0;
     const std::size_t table = blocks * sizeof(BlockEntry);
     if (!fits || bytes.size() != begin + data + table + sizeof(std::uint64_t))
         checker.fail("", fmt::format("the length that {} splats take", header.splats),
@@ -206,9 +206,9 @@ std::string header_bytes(const SplatSetFacts& facts, std::uint32_t flags, std::i
     std::memcpy(header.magic, magic.data(), sizeof header.magic);
     header.version = version;
     header.flags = flags;
-    header.splats = static_cast<std::uint64_t>(splats);
+    header.splats = std::uint64_t(splats);
     header.block = splats_per_block;
-    header.credit_bytes = static_cast<std::uint32_t>(text.size());
+    header.credit_bytes = std::uint32_t(text.size());
     header.spacing = facts.spacing;
     header.max_distance = facts.max_distance;
     header.test_positions = facts.test_positions;

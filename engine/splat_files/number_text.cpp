@@ -21,9 +21,9 @@ const char* general_float(const char* p, const char* end, float& value) {
     if (error != std::errc::result_out_of_range) return nullptr;
     double wide = 0.0;
     if (std::from_chars(p, end, wide).ec == std::errc()) {
-        value = std::fabs(wide) > 1.0 ? std::numeric_limits<float>::infinity() : static_cast<float>(wide);
+        value = std::fabs(wide) > 1.0 ? std::numeric_limits<float>::infinity() : float(wide);
     } else {  // outside of double as well: below it exactly where the exponent is negative
-        const std::string_view token(p, static_cast<std::size_t>(after - p));
+        const std::string_view token(p, std::size_t(after - p));
         const bool tiny = token.find("e-") != token.npos || token.find("E-") != token.npos;
         value = tiny ? 0.0f : std::numeric_limits<float>::infinity();
     }
@@ -39,7 +39,7 @@ const char* scan_whole(const char* p, const char* end, std::uint64_t& value) {
     constexpr double exact = 9007199254740992.0;  // 2^53
     if (real_error != std::errc() || !(real >= 0.0 && real <= exact) || real != std::floor(real))
         return nullptr;
-    value = static_cast<std::uint64_t>(real);
+    value = std::uint64_t(real);
     return real_after;
 }
 
@@ -87,7 +87,7 @@ constexpr std::uint32_t first_exponent = smallest >> 23;
 constexpr auto scales = [] {
     std::array<Scale, (end >> 23) - first_exponent + 1> table{};
     for (std::uint32_t i = 0; i < table.size(); ++i) {
-        const int minus_q = 150 - static_cast<int>(first_exponent + i);
+        const int minus_q = 150 - int(first_exponent + i);
         int e = 0;
         while (powers_of_ten[e] < std::uint64_t{1} << minus_q) ++e;
         table[i] = {powers_of_ten[e], powers_of_ten[decimals - e], minus_q + 2};
@@ -111,7 +111,7 @@ std::uint64_t shortest_fixed_point(std::uint32_t bits) {
     const std::uint64_t coarse = (below + 5) / 10 * 10;
     const bool is_coarse = value - (coarse << scale.unit) + margin <= 2 * margin;
     // Chosen by a mask, because a branch would be unpredictable.
-    const std::uint64_t is_fine = static_cast<std::uint64_t>(is_coarse) - 1;
+    const std::uint64_t is_fine = std::uint64_t(is_coarse) - 1;
     return (coarse ^ ((coarse ^ fine) & is_fine)) * scale.filler;
 }
 

@@ -60,7 +60,7 @@ inline const char* scan_digits(const char* p, const char* end, std::uint64_t& ma
         p += digits;
         if (digits < 8) return p;
     }
-    while (p < end && is_digit(*p)) mantissa = mantissa * 10 + static_cast<std::uint64_t>(*p++ - '0');
+    while (p < end && is_digit(*p)) mantissa = mantissa * 10 + std::uint64_t(*p++ - '0');
     return p;
 }
 
@@ -99,13 +99,13 @@ inline const char* scan_float(const char* p, const char* end, float& value) {
         return p;
     }
     if (mantissa >> 53 || exponent < -22 || exponent > 22) return general_float(start, end, value);
-    const double exact = static_cast<double>(mantissa);
+    const double exact = double(mantissa);
     const double nearest = exponent < 0 ? exact / exact_powers[-exponent] : exact * exact_powers[exponent];
     // The double is correctly rounded (Clinger). Rounding it again to float is right too, unless it lies
     // exactly half way between two floats, where the digits behind it would have to decide.
     const bool half_way = (std::bit_cast<std::uint64_t>(nearest) & 0x1fffffffu) == 0x10000000u;
     if (half_way || nearest < FLT_MIN || nearest > FLT_MAX) return general_float(start, end, value);
-    value = static_cast<float>(negative ? -nearest : nearest);
+    value = float(negative ? -nearest : nearest);
     return p;
 }
 

@@ -187,7 +187,7 @@ std::string header_text(const SplatSet& set) {
 SplatSet read_pda_bytes(const fs::path& file, std::string_view bytes, const Progress& progress) {
     const PdaHeader header = read_header(file, bytes);
     const SplitRows rows = split_rows(header.data, header.data_line);
-    if (static_cast<std::uint64_t>(rows.rows) != header.particles)
+    if (std::uint64_t(rows.rows) != header.particles)
         bad_input(file.string(), "", fmt::format("{} rows, as NUMBER_OF_PARTICLES says", header.particles),
                   std::to_string(rows.rows));
     SplatTable table;
@@ -208,7 +208,7 @@ SplatColumns pda_columns(const fs::path& file) {
 std::int64_t pda_splat_count(const fs::path& file) {
     return read_mapped(file, [&](std::string_view bytes) {
         constexpr std::uint64_t most = std::numeric_limits<std::int64_t>::max();
-        return static_cast<std::int64_t>(std::min(most, read_header(file, bytes).particles));
+        return std::int64_t(std::min(most, read_header(file, bytes).particles));
     });
 }
 
@@ -221,8 +221,7 @@ void write_pda(const WriteTarget& target, const SplatSet& set, const Progress& p
     constexpr std::int64_t rows = 16384;  // about 1 MiB of text
     write_ordered(target, header_text(set), set.size(), rows, longest_row, progress,
                   [&](std::int64_t begin, std::int64_t end, char* out) {
-                      for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i)
-                          out = put_row(out, set, i);
+                      for (auto i = std::size_t(begin); i < std::size_t(end); ++i) out = put_row(out, set, i);
                       return out;
                   });
 }

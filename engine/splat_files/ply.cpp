@@ -79,7 +79,7 @@ bool is_read(const PlyElement& vertex, std::string_view name) {
     if (group == std::end(groups)) return true;
     const auto first_color =
         std::ranges::find_if(color_groups, [&](const auto& colors) { return has_all(vertex, colors); });
-    const bool is_color = group - std::begin(groups) < static_cast<std::ptrdiff_t>(color_groups.size());
+    const bool is_color = group - std::begin(groups) < std::ptrdiff_t(color_groups.size());
     return is_color ? first_color != color_groups.end() && holds(*first_color) : has_all(vertex, *group);
 }
 
@@ -87,8 +87,8 @@ bool is_read(const PlyElement& vertex, std::string_view name) {
 std::vector<float> code_table(std::size_t codes, bool srgb) {
     std::vector<float> values(codes);
     for (std::size_t code = 0; code < codes; ++code) {
-        const double fraction = static_cast<double>(code) / static_cast<double>(codes - 1);
-        values[code] = static_cast<float>(srgb ? real::srgb_to_linear(fraction) : fraction);
+        const double fraction = double(code) / double(codes - 1);
+        values[code] = float(srgb ? real::srgb_to_linear(fraction) : fraction);
     }
     return values;
 }
@@ -141,7 +141,7 @@ int rest_count(const PlyElement& vertex, const fs::path& file) {
         if (!has_scalar(vertex, fmt::format("{}{}", rest_prefix, i)))
             bad_input(file.string(), "", fmt::format("properties f_rest_0 to f_rest_{}", found - 1),
                       fmt::format("no {}{}", rest_prefix, i));
-    return static_cast<int>(found) / 3;
+    return int(found) / 3;
 }
 
 /// `rest`: coefficients beyond degree 0 that the vertex has a channel.
@@ -156,7 +156,7 @@ void assign_gaussian(Column& column, int rest) {
     for (int k = 0; k < 3; ++k)
         if (column.name == mean_names[k]) set({rest == 0 ? SplatColumn::color : SplatColumn::harmonics, k});
     if (!column.name.starts_with(rest_prefix)) return;
-    const auto number = static_cast<int>(parse_int64(column.name.substr(rest_prefix.size())).value_or(0));
+    const auto number = int(parse_int64(column.name.substr(rest_prefix.size())).value_or(0));
     set({SplatColumn::harmonics, 3 * (1 + number % rest) + number / rest});
 }
 
@@ -205,19 +205,19 @@ std::size_t find_vertex(const PlyHeader& header, const fs::path& file) {
 void read_ascii(const PlyHeader& header, std::size_t vertex, SplatTable& table, const fs::path& file,
                 const Progress& progress) {
     const SplitRows rows = split_rows(header.data, header.data_line);
-    std::uint64_t left = static_cast<std::uint64_t>(rows.rows);
+    std::uint64_t left = std::uint64_t(rows.rows);
     std::int64_t first = 0;
     for (std::size_t i = 0; i < header.elements.size(); ++i) {
         const PlyElement& element = header.elements[i];
         if (element.count > left)
             bad_input(file.string(), "", fmt::format("{} rows of element {}", element.count, element.name),
                       std::to_string(left));
-        if (i < vertex) first += static_cast<std::int64_t>(element.count);
+        if (i < vertex) first += std::int64_t(element.count);
         left -= element.count;
     }
     if (left > 0)
         bad_input(file.string(), "", "as many rows as the header says", std::to_string(left) + " more");
-    const auto count = static_cast<std::int64_t>(header.elements[vertex].count);
+    const auto count = std::int64_t(header.elements[vertex].count);
     open_table(table, count, file);
     read_text_rows(rows, first, first + count, table, file, progress);
 }
@@ -238,8 +238,8 @@ char* put_row(char* out, const SplatSet& set, bool wide_ids, std::size_t i) {
     if (!set.radius.empty()) out = put_bytes(out, set.radius[i]);
     if (!set.uv.empty()) out = put_bytes(out, set.uv[i]);
     if (!set.mesh.empty()) out = put_bytes(out, set.mesh[i]);
-    out = put_bytes(out, static_cast<std::uint32_t>(set.id[i]));
-    if (wide_ids) out = put_bytes(out, static_cast<std::uint32_t>(set.id[i] >> 32));
+    out = put_bytes(out, std::uint32_t(set.id[i]));
+    if (wide_ids) out = put_bytes(out, std::uint32_t(set.id[i] >> 32));
     return out;
 }
 
@@ -291,7 +291,7 @@ std::int64_t ply_splat_count(const fs::path& file) {
     return read_mapped(file, [&](std::string_view bytes) {
         constexpr std::uint64_t most = std::numeric_limits<std::int64_t>::max();
         const PlyHeader header = read_ply_header(file, bytes);
-        return static_cast<std::int64_t>(std::min(most, header.elements[find_vertex(header, file)].count));
+        return std::int64_t(std::min(most, header.elements[find_vertex(header, file)].count));
     });
 }
 
@@ -306,7 +306,7 @@ void write_ply(const WriteTarget& target, const SplatSet& set, const Progress& p
     constexpr std::size_t longest_row = 17 * sizeof(float);
     write_ordered(target, header_text(set, wide_ids), set.size(), rows_written_at_once, longest_row, progress,
                   [&](std::int64_t begin, std::int64_t end, char* out) {
-                      for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i)
+                      for (auto i = std::size_t(begin); i < std::size_t(end); ++i)
                           out = put_row(out, set, wide_ids, i);
                       return out;
                   });

@@ -54,7 +54,7 @@ std::vector<std::string_view> words_of(std::string_view line) {
     const char* const end = line.data() + line.size();
     for (const char* p = scan::skip_blanks(line.data(), end); p < end;) {
         const char* const stop = scan::token_end(p, end);
-        words.emplace_back(p, static_cast<std::size_t>(stop - p));
+        words.emplace_back(p, std::size_t(stop - p));
         p = scan::skip_blanks(stop, end);
     }
     return words;
@@ -174,13 +174,13 @@ std::size_t size_of(NumberType type) {
 
 template <class T>
 bool store_value(const Column& column, std::size_t row, T value) {
-    if (!is_whole(column)) return store(column, row, static_cast<float>(value));
+    if (!is_whole(column)) return store(column, row, float(value));
     if (!(value >= 0)) return false;
     if constexpr (std::is_floating_point_v<T>) {
         constexpr double exact = 9007199254740992.0;  // 2^53
         if (!(value <= exact) || value != std::floor(value)) return false;
     }
-    return store_whole(column, row, static_cast<std::uint64_t>(value));
+    return store_whole(column, row, std::uint64_t(value));
 }
 
 bool store_number(const Column& column, std::size_t row, const char* p, bool swap) {
@@ -249,9 +249,9 @@ struct BinaryReader {
         const std::size_t head = size_of(column.list_count);
         if (head > left) return too_many;
         const auto count = with_number(column.list_count, data.data() + at, swap, [](auto value) {
-            return value >= 0 ? static_cast<std::uint64_t>(value) : ~std::uint64_t{0};
+            return value >= 0 ? std::uint64_t(value) : ~std::uint64_t{0};
         });
-        return count <= (left - head) / size ? head + static_cast<std::size_t>(count) * size : too_many;
+        return count <= (left - head) / size ? head + std::size_t(count) * size : too_many;
     }
 
     /// Where the row behind the one at `at` begins, for rows with lists.
@@ -297,8 +297,7 @@ struct BinaryReader {
 
     bool read_by_column(const SplatTable& table, std::int64_t begin, std::int64_t end, std::size_t at,
                         std::size_t row_bytes) const {
-        Rows rows{static_cast<std::size_t>(begin), static_cast<std::size_t>(end - begin), data.data() + at,
-                  row_bytes};
+        Rows rows{std::size_t(begin), std::size_t(end - begin), data.data() + at, row_bytes};
         bool stored = true;
         for (const Column& column : table.columns) {
             if (column.field) stored &= store_column(column, rows, swap);
@@ -312,8 +311,7 @@ struct BinaryReader {
                          std::size_t at) const {
         for (std::int64_t row = begin; row < end; ++row) {
             for (const Column& column : table.columns) {
-                if (column.field &&
-                    !store_number(column, static_cast<std::size_t>(row), data.data() + at, swap))
+                if (column.field && !store_number(column, std::size_t(row), data.data() + at, swap))
                     bad_input(file, fmt::format("vertex {}", row), expectation(column), describe(column, at));
                 at += column.list ? property_bytes(column, at) : size_of(column.type);
             }
@@ -334,10 +332,10 @@ void read_binary_rows(const PlyHeader& header, std::size_t vertex, SplatTable& t
     std::size_t at = 0;
     for (std::size_t i = 0; i < vertex; ++i) at = reader.chunk_starts(header.elements[i], at).back();
     const std::vector<std::size_t> starts = reader.chunk_starts(header.elements[vertex], at);
-    const auto count = static_cast<std::int64_t>(header.elements[vertex].count);
+    const auto count = std::int64_t(header.elements[vertex].count);
     open_table(table, count, file);
     parallel_parts(starts.size() - 1, progress, [&](std::size_t chunk) {
-        const std::int64_t first = static_cast<std::int64_t>(chunk) * rows_read_at_once;
+        const std::int64_t first = std::int64_t(chunk) * rows_read_at_once;
         reader.read_rows(table, first, std::min(first + rows_read_at_once, count), starts[chunk]);
         forget_pages(header.data.substr(starts[chunk], starts[chunk + 1] - starts[chunk]));
     });

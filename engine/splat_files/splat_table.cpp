@@ -26,10 +26,9 @@ constexpr std::int64_t rows_per_chunk = 1 << 16;
 template <class T>
 void fill(Buffer<T>& array, std::size_t rows, const T& value) {
     array.resize(rows);
-    parallel_chunks(static_cast<std::int64_t>(rows), rows_per_chunk,
-                    [&](std::int64_t begin, std::int64_t end, int) {
-                        std::fill(array.begin() + begin, array.begin() + end, value);
-                    });
+    parallel_chunks(std::int64_t(rows), rows_per_chunk, [&](std::int64_t begin, std::int64_t end, int) {
+        std::fill(array.begin() + begin, array.begin() + end, value);
+    });
 }
 
 bool has_upper_ids(const SplatTable& table) {
@@ -43,7 +42,7 @@ std::int64_t bytes_per_row(const SplatTable& table) {
         const bool of_gaussians = column == SplatColumn::radius && table.has(SplatColumn::scale);
         return !is_optional(column) || table.has(column) || of_gaussians;
     });
-    return static_cast<std::int64_t>(bytes + (has_upper_ids(table) ? sizeof(std::uint32_t) : 0));
+    return std::int64_t(bytes + (has_upper_ids(table) ? sizeof(std::uint32_t) : 0));
 }
 
 void allocate(SplatTable& table, std::size_t rows) {
@@ -82,7 +81,7 @@ void bind(Column& column, SplatTable& table) {
 
 float largest(const Buffer<float>& values) {
     std::vector<float> of_chunk((values.size() + rows_per_chunk - 1) / rows_per_chunk, 0.0f);
-    parallel_chunks(static_cast<std::int64_t>(values.size()), rows_per_chunk,
+    parallel_chunks(std::int64_t(values.size()), rows_per_chunk,
                     [&](std::int64_t begin, std::int64_t end, int) {
                         of_chunk[begin / rows_per_chunk] =
                             *std::max_element(values.begin() + begin, values.begin() + end);
@@ -113,13 +112,13 @@ SplatColumns columns_held(const std::vector<Column>& columns) {
 void open_table(SplatTable& table, std::int64_t rows, const fs::path& file) {
     if (rows == 0) return;
     claim_memory(rows * bytes_per_row(table), "splats of " + file.string());
-    allocate(table, static_cast<std::size_t>(rows));
+    allocate(table, std::size_t(rows));
     for (Column& column : table.columns) bind(column, table);
 }
 
 SplatSet finish_table(SplatTable& table, const fs::path& file) {
     SplatSet& set = table.set;
-    const auto rows = static_cast<std::size_t>(set.size());
+    const auto rows = std::size_t(set.size());
     if (set.color.empty()) fill(set.color, rows, glm::vec3(1.0f));
     if (set.alpha.empty()) fill(set.alpha, rows, 1.0f);
     if (set.distance.empty()) fill(set.distance, rows, 0.0f);
@@ -163,7 +162,7 @@ struct Line {
 };
 
 const char* line_end(const char* p, const char* end) {
-    const void* newline = p < end ? std::memchr(p, '\n', static_cast<std::size_t>(end - p)) : nullptr;
+    const void* newline = p < end ? std::memchr(p, '\n', std::size_t(end - p)) : nullptr;
     return newline ? static_cast<const char*>(newline) : end;
 }
 
@@ -257,7 +256,7 @@ const char* read_row(const SplatTable& table, std::size_t row, const Line& line,
         if (column.list) wrong_length(table, file, line, end);
         const char* const stop = scan::token_end(token, end);
         bad_input(file.string(), std::to_string(line.number), expectation(column),
-                  quoted({token, static_cast<std::size_t>(stop - token)}));
+                  quoted({token, std::size_t(stop - token)}));
     }
     p = scan::skip_blanks(p, end);
     if (p < end && *p != '\n') wrong_length(table, file, line, end);
@@ -274,8 +273,7 @@ void read_chunk(const TextChunk& chunk, std::int64_t begin, std::int64_t end, co
         const bool blank = first == stop || *first == '\n';
         const bool wanted = !blank && row >= begin;
         const char* const after =
-            wanted ? read_row(table, static_cast<std::size_t>(row - begin), line, stop, file)
-                   : line_end(first, stop);
+            wanted ? read_row(table, std::size_t(row - begin), line, stop, file) : line_end(first, stop);
         if (!blank) ++row;
         line.begin = after + 1;
     }
@@ -285,8 +283,7 @@ void read_chunk(const TextChunk& chunk, std::int64_t begin, std::int64_t end, co
 
 SplitRows split_rows(std::string_view text, std::int64_t first_line) {
     SplitRows result{cut(text), 0};
-    parallel_for(static_cast<std::int64_t>(result.chunks.size()),
-                 [&](std::int64_t i, int) { count(result.chunks[i]); });
+    parallel_for(std::int64_t(result.chunks.size()), [&](std::int64_t i, int) { count(result.chunks[i]); });
     for (TextChunk& chunk : result.chunks) {
         const TextChunk counted = chunk;
         chunk.first_row = result.rows;

@@ -74,9 +74,9 @@ bool store_outside(const Column& column, std::size_t row, float value);
 /// Stores a real field. False when the field cannot take the value (not finite, negative radius or distance).
 inline bool store(const Column& column, std::size_t row, float value) {
     if (!column.codes.empty()) {
-        if (!(value >= 0.0f && value < static_cast<float>(column.codes.size()))) return false;
-        const auto code = static_cast<std::size_t>(value);
-        if (static_cast<float>(code) != value) return false;
+        if (!(value >= 0.0f && value < float(column.codes.size()))) return false;
+        const auto code = std::size_t(value);
+        if (float(code) != value) return false;
         value = column.codes[code];
     }
     if (!(value >= column.lowest && value <= column.highest)) return store_outside(column, row, value);
@@ -91,7 +91,7 @@ inline bool store_whole(const Column& column, std::size_t row, std::uint64_t val
         return true;
     }
     if (value > 0xffffffffu) return false;
-    column.whole[row] = static_cast<std::uint32_t>(value);
+    column.whole[row] = std::uint32_t(value);
     return true;
 }
 

@@ -82,7 +82,7 @@ int degree_of(const UsdText& text, const GaussianPrim& own, std::string_view lis
     const std::vector<double>& told = own.prim->attribute("radiance:sphericalHarmonicsDegree").value.numbers;
     if (told.size() == 1) {
         const double degree = told[0];
-        if (degree == 0.0 || degree == 1.0 || degree == 2.0 || degree == 3.0) return static_cast<int>(degree);
+        if (degree == 0.0 || degree == 1.0 || degree == 2.0 || degree == 3.0) return int(degree);
         text.fail(list.data(), "harmonics of degree 0 to 3", shortest(degree));
     }
     const std::int64_t each = own.count > 0 ? tuples_in(text, list, 3) / own.count : 0;
@@ -149,15 +149,15 @@ void read_list(const UsdText& text, const GaussianPrim& own, const std::string& 
         for (float& value : row)
             if (!numbers.next(value))
                 text.fail(list.data(), fmt::format("{} of {}", own.count, name), std::to_string(i));
-        take(static_cast<std::size_t>(i), row);
+        take(std::size_t(i), row);
     }
 }
 
 void read_harmonics(const UsdText& text, const GaussianPrim& own, std::size_t first, SplatSet& set) {
     const std::string_view list = list_of(*own.prim, coefficients);
     NumberList numbers(text, list);
-    const auto each = static_cast<std::size_t>((own.degree + 1) * (own.degree + 1));
-    for (std::size_t i = 0; i < static_cast<std::size_t>(own.count); ++i)
+    const auto each = std::size_t((own.degree + 1) * (own.degree + 1));
+    for (std::size_t i = 0; i < std::size_t(own.count); ++i)
         for (std::size_t j = 0; j < each; ++j) {
             glm::vec3 c;
             for (int k = 0; k < 3; ++k)
@@ -170,7 +170,7 @@ void read_harmonics(const UsdText& text, const GaussianPrim& own, std::size_t fi
 }
 
 void read_prim(const UsdText& text, const GaussianPrim& own, std::size_t first, SplatSet& set) {
-    const std::size_t end = first + static_cast<std::size_t>(own.count);
+    const std::size_t end = first + std::size_t(own.count);
     std::fill(set.scale.begin() + first, set.scale.begin() + end, glm::vec3(1.0f));
     std::fill(set.rotation.begin() + first, set.rotation.begin() + end, glm::vec4(0.0f, 0.0f, 0.0f, 1.0f));
     std::fill(set.alpha.begin() + first, set.alpha.begin() + end, 1.0f);

@@ -68,7 +68,7 @@ HarmonicsTurn harmonics_turn(const glm::dmat3& turn) {
         }
     HarmonicsTurn result;
     for (std::size_t k = 0; k < sum.size(); ++k)
-        for (std::size_t j = 0; j < sum.size(); ++j) result[k][j] = static_cast<float>(sum[k][j]);
+        for (std::size_t j = 0; j < sum.size(); ++j) result[k][j] = float(sum[k][j]);
     return result;
 }
 

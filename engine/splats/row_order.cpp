@@ -29,14 +29,14 @@ struct Parts {
 /// Where each part's first row of each bin goes: entry part * bin_count + bin.
 template <class Row>
 Buffer<Row> part_starts(const Buffer<std::uint32_t>& bins, std::size_t bin_count, const Parts& parts) {
-    Buffer<Row> starts(static_cast<std::size_t>(parts.count) * bin_count, 0);
+    Buffer<Row> starts(std::size_t(parts.count) * bin_count, 0);
     parallel_for(parts.count, [&](std::int64_t part, int) {
-        Row* const counts = starts.data() + static_cast<std::size_t>(part) * bin_count;
+        Row* const counts = starts.data() + std::size_t(part) * bin_count;
         for (std::int64_t i = parts.begin(part); i < parts.begin(part + 1); ++i) ++counts[bins[i]];
     });
     Row sum = 0;
     for (std::size_t bin = 0; bin < bin_count; ++bin) {
-        for (std::size_t part = 0; part < static_cast<std::size_t>(parts.count); ++part) {
+        for (std::size_t part = 0; part < std::size_t(parts.count); ++part) {
             const Row count = starts[part * bin_count + bin];
             starts[part * bin_count + bin] = sum;
             sum += count;
@@ -51,7 +51,7 @@ Buffer<Row> place_rows(const Buffer<std::uint32_t>& bins, std::size_t bin_count,
                        Buffer<Row>& starts) {
     Buffer<Row> order(bins.size());
     parallel_for(parts.count, [&](std::int64_t part, int) {
-        Row* const places = starts.data() + static_cast<std::size_t>(part) * bin_count;
+        Row* const places = starts.data() + std::size_t(part) * bin_count;
         for (std::int64_t i = parts.begin(part); i < parts.begin(part + 1); ++i)
             order[places[bins[i]]++] = static_cast<Row>(i);
     });
@@ -71,11 +71,10 @@ void sort_bins_by_id(Buffer<Row>& order, std::span<const Row> ends, const Buffer
 
 bool ids_ascend(const Buffer<std::uint64_t>& ids) {
     std::atomic<bool> ascend{true};
-    parallel_chunks(static_cast<std::int64_t>(ids.size()), 1 << 16,
-                    [&](std::int64_t begin, std::int64_t end, int) {
-                        const auto from = ids.begin() + std::max(begin - 1, std::int64_t{0});
-                        if (ascend && !std::is_sorted(from, ids.begin() + end)) ascend = false;
-                    });
+    parallel_chunks(std::int64_t(ids.size()), 1 << 16, [&](std::int64_t begin, std::int64_t end, int) {
+        const auto from = ids.begin() + std::max(begin - 1, std::int64_t{0});
+        if (ascend && !std::is_sorted(from, ids.begin() + end)) ascend = false;
+    });
     return ascend;
 }
 
@@ -84,7 +83,7 @@ Buffer<Row> rows_by_bin(const Buffer<std::uint32_t>& bins, std::size_t bin_count
                         const Buffer<std::uint64_t>& ids) {
     assert(bins.size() == ids.size() && bins.size() <= std::numeric_limits<Row>::max());
     if (bins.empty()) return {};
-    const Parts parts{static_cast<std::int64_t>(bins.size()), std::min(8, thread_count())};
+    const Parts parts{std::int64_t(bins.size()), std::min(8, thread_count())};
     Buffer<Row> places = part_starts<Row>(bins, bin_count, parts);
     Buffer<Row> order = place_rows(bins, bin_count, parts, places);
     if (!ids_ascend(ids)) sort_bins_by_id<Row>(order, std::span(places).last(bin_count), ids);
@@ -101,14 +100,14 @@ namespace {
 std::uint32_t cell_along(double offset, double edge) {
     const double cell = edge > 0.0 ? offset / edge : 0.0;
     if (!(cell > 0.0)) return 0;
-    return cell < SpatialCells::per_axis - 1 ? static_cast<std::uint32_t>(cell) : SpatialCells::per_axis - 1;
+    return cell < SpatialCells::per_axis - 1 ? std::uint32_t(cell) : SpatialCells::per_axis - 1;
 }
 
 /// spread_bits of every cell's number: looking it up takes a third of the instructions.
 constexpr auto spread_cell = [] {
     std::array<std::uint32_t, SpatialCells::per_axis> table{};
     for (std::uint32_t cell = 0; cell < SpatialCells::per_axis; ++cell)
-        table[cell] = static_cast<std::uint32_t>(spread_bits(cell));
+        table[cell] = std::uint32_t(spread_bits(cell));
     return table;
 }();
 
@@ -144,7 +143,7 @@ Bounds SpatialCells::cube(std::uint32_t first, std::uint32_t cells) const {
     double side = 1.0;
     for (std::uint32_t rest = cells; rest > 1; rest /= 8) side *= 2.0;
     for (int bit = 0; bit < 3 * levels; ++bit)
-        if (first >> bit & 1u) at[bit % 3] += static_cast<double>(1u << bit / 3);
+        if (first >> bit & 1u) at[bit % 3] += double(1u << bit / 3);
     return {lo_ + at * edge_, lo_ + (at + side) * edge_};
 }
 
@@ -176,11 +175,11 @@ class MortonCodes {
         lo_ = box.lo;
         const glm::dvec3 extent = box.extent();
         const double edge = std::max({extent.x, extent.y, extent.z});
-        cells_per_unit_ = edge > 0.0 ? static_cast<double>(last_cell) / edge : 0.0;
+        cells_per_unit_ = edge > 0.0 ? double(last_cell) / edge : 0.0;
         if (!set.is_on_lattice()) return;
         for (int k = 0; k < 3; ++k) {
             const double cells = extent[k] * cells_per_unit_;
-            double half = static_cast<double>(last_cell / 2 + 1);  // of the power of two that holds them
+            double half = double(last_cell / 2 + 1);  // of the power of two that holds them
             while (half > 1.0 && cells <= half) half *= 0.5;
             shift_[k] = half - 0.5 * cells;
         }
@@ -194,9 +193,7 @@ class MortonCodes {
 
   private:
     static constexpr std::uint64_t last_cell = (std::uint64_t{1} << morton_axis_bits) - 1;
-    static std::uint64_t cell(double x) {
-        return x > 0.0 ? std::min(static_cast<std::uint64_t>(x), last_cell) : 0;
-    }
+    static std::uint64_t cell(double x) { return x > 0.0 ? std::min(std::uint64_t(x), last_cell) : 0; }
 
     const SplatSet& set_;
     glm::dvec3 lo_{0.0};
@@ -204,7 +201,7 @@ class MortonCodes {
     glm::dvec3 shift_{0.0};  // cells
 };
 
-std::size_t part_of(std::uint64_t code) { return static_cast<std::size_t>(code >> (code_bits - part_bits)); }
+std::size_t part_of(std::uint64_t code) { return std::size_t(code >> (code_bits - part_bits)); }
 
 /// Rows grouped by the highest bits of their code, in order of row inside a part; starts[part] is where it
 /// begins. Codes are made twice: that costs less than the memory to keep them.
@@ -212,7 +209,7 @@ Buffer<MortonRow> scatter_to_parts(const SplatSet& set, const Progress& progress
                                    std::vector<std::int64_t>& starts) {
     const MortonCodes coded(set);
     const std::int64_t chunks = (set.size() + rows_a_chunk - 1) / rows_a_chunk;
-    std::vector<std::array<std::int64_t, parts>> next(static_cast<std::size_t>(chunks));
+    std::vector<std::array<std::int64_t, parts>> next(chunks);
     const auto each_row = [&](std::int64_t c, const auto& visit) {
         progress.check();
         const std::int64_t end = std::min(set.size(), (c + 1) * rows_a_chunk);
@@ -268,17 +265,16 @@ Buffer<MortonRow> morton_order(const SplatSet& set, const Progress& progress) {
     Buffer<MortonRow> rows = scatter_to_parts(set, progress, starts);
     progress.at(0.4);
     const bool by_id = ids_ascend(set.id);
-    std::vector<std::vector<MortonRow>> scratch(static_cast<std::size_t>(thread_count()));
-    parallel_chunks(
-        static_cast<std::int64_t>(parts), 8, [&](std::int64_t begin, std::int64_t end, int worker) {
-            progress.check();
-            for (auto part = static_cast<std::size_t>(begin); part < static_cast<std::size_t>(end); ++part) {
-                MortonRow* first = rows.data() + starts[part];
-                const auto count = static_cast<std::size_t>(starts[part + 1] - starts[part]);
-                sort_part(first, count, scratch[worker]);
-                if (!by_id) order_ties(set, first, count);
-            }
-        });
+    std::vector<std::vector<MortonRow>> scratch(std::size_t(thread_count()));
+    parallel_chunks(std::int64_t(parts), 8, [&](std::int64_t begin, std::int64_t end, int worker) {
+        progress.check();
+        for (auto part = std::size_t(begin); part < std::size_t(end); ++part) {
+            MortonRow* first = rows.data() + starts[part];
+            const auto count = std::size_t(starts[part + 1] - starts[part]);
+            sort_part(first, count, scratch[worker]);
+            if (!by_id) order_ties(set, first, count);
+        }
+    });
     progress.at(0.8);
     return rows;
 }

@@ -24,7 +24,7 @@ struct ShadedSplats {
     Buffer<glm::mat3> stretch;
     bool encoded = false;  // colours are display values (sRGB), composited as such: of isolated layers only
 
-    std::int64_t size() const { return static_cast<std::int64_t>(position.size()); }
+    std::int64_t size() const { return std::int64_t(position.size()); }
 };
 
 /// Calls visit(pointer to member) for all arrays but stretch, which look/apply.h adds.

@@ -23,7 +23,7 @@ constexpr std::int64_t splats_per_chunk = 1 << 16;
 template <class T, class Row>
 Buffer<T> taken_rows(const Buffer<T>& from, const Buffer<Row>& rows) {
     Buffer<T> taken(from.empty() ? 0 : rows.size());
-    parallel_chunks(static_cast<std::int64_t>(taken.size()), splats_per_chunk,
+    parallel_chunks(std::int64_t(taken.size()), splats_per_chunk,
                     [&](std::int64_t begin, std::int64_t end, int) {
                         gather(from.data(), std::span<const Row>(rows.data() + begin, rows.data() + end),
                                reinterpret_cast<char*>(taken.data() + begin));
@@ -41,8 +41,8 @@ struct IdSteps {
 IdSteps steps_of(const Buffer<std::uint64_t>& ids) {
     constexpr int step_bits = 16;
     const auto [lowest, highest] = std::ranges::minmax_element(ids);
-    const int shift = std::max(0, static_cast<int>(std::bit_width(*highest - *lowest)) - step_bits);
-    return {*lowest, shift, static_cast<std::size_t>((*highest - *lowest) >> shift) + 1};
+    const int shift = std::max(0, int(std::bit_width(*highest - *lowest)) - step_bits);
+    return {*lowest, shift, std::size_t((*highest - *lowest) >> shift) + 1};
 }
 
 template <class T>
@@ -54,9 +54,8 @@ template <class Row>
 void sort_rows(SplatSet& set) {
     const IdSteps steps = steps_of(set.id);
     Buffer<std::uint32_t> bins(set.id.size());
-    parallel_each(bins.size(), splats_per_chunk, [&](std::size_t i) {
-        bins[i] = static_cast<std::uint32_t>((set.id[i] - steps.lowest) >> steps.shift);
-    });
+    parallel_each(bins.size(), splats_per_chunk,
+                  [&](std::size_t i) { bins[i] = std::uint32_t((set.id[i] - steps.lowest) >> steps.shift); });
     const Buffer<Row> order = rows_by_bin<Row>(bins, steps.count, set.id);
     for_each_column([&](auto column, SplatColumn) { set.*column = taken_rows(set.*column, order); });
 }
@@ -86,7 +85,7 @@ void drop_columns(SplatSet& set, const OptionalColumns& wanted) {
 
 Bounds bounds(const SplatSet& set) {
     const std::int64_t chunks = (set.size() + splats_per_chunk - 1) / splats_per_chunk;
-    std::vector<Bounds> parts(static_cast<std::size_t>(chunks));
+    std::vector<Bounds> parts(chunks);
     parallel_for(chunks, [&](std::int64_t part, int) {
         Bounds box;  // kept apart from its neighbours in `parts`, which other threads write
         const std::int64_t end = std::min(set.size(), (part + 1) * splats_per_chunk);
@@ -126,18 +125,17 @@ SplatSet take_rows(const SplatSet& set, const Buffer<std::int64_t>& rows) {
 
 std::int64_t sampled_row(std::int64_t size, std::int64_t count, std::int64_t i) {
     const auto begin_of = [&](std::int64_t stretch) {
-        return static_cast<std::int64_t>(static_cast<double>(stretch) * static_cast<double>(size) /
-                                         static_cast<double>(count));
+        return std::int64_t(double(stretch) * double(size) / double(count));
     };
     const std::int64_t begin = begin_of(i), end = i + 1 < count ? begin_of(i + 1) : size;
-    const float chance = shared::as_uniform(shared::as_hash(1u, static_cast<std::uint32_t>(i), 0u, 0u));
-    const auto step = static_cast<std::int64_t>(chance * static_cast<float>(end - begin));
+    const float chance = shared::as_uniform(shared::as_hash(1u, std::uint32_t(i), 0u, 0u));
+    const auto step = std::int64_t(chance * float(end - begin));
     return std::min(begin + step, end - 1);
 }
 
 Buffer<std::int64_t> sampled_rows(std::int64_t size, std::int64_t count) {
-    Buffer<std::int64_t> rows(static_cast<std::size_t>(std::min(count, size)));
-    const auto sampled = static_cast<std::int64_t>(rows.size());
+    Buffer<std::int64_t> rows(std::size_t(std::min(count, size)));
+    const auto sampled = std::int64_t(rows.size());
     for (std::int64_t i = 0; i < sampled; ++i) rows[i] = sampled_row(size, sampled, i);
     return rows;
 }

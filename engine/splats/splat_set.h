@@ -71,7 +71,7 @@ struct SplatSet : SplatSetFacts {
     Buffer<Harmonics> harmonics;  // their colour by direction, of which `color` is the mean
     Buffer<std::uint32_t> face;   // number of the closest triangle, all meshes'; only while columns are made
 
-    std::int64_t size() const { return static_cast<std::int64_t>(position.size()); }
+    std::int64_t size() const { return std::int64_t(position.size()); }
 };
 
 /// The columns by number, in the order of splat_columns. Those from uv on are optional.
@@ -120,7 +120,7 @@ static_assert(sizeof(SplatSet) == sizeof(SplatSetFacts) + splat_column_count * s
 static_assert(std::apply(
                   [](const auto&... row) {
                       std::size_t number = 0;
-                      return ((static_cast<std::size_t>(row.column) == number++) && ...);
+                      return ((std::size_t(row.column) == number++) && ...);
                   },
                   splat_columns),
               "the rows are numbered as the columns are");
@@ -131,7 +131,7 @@ void for_each_column(Visit visit) {
     std::apply([&](const auto&... row) { (visit(row.array, row.column), ...); }, splat_columns);
 }
 
-constexpr std::size_t index_of(SplatColumn column) { return static_cast<std::size_t>(column); }
+constexpr std::size_t index_of(SplatColumn column) { return std::size_t(column); }
 
 constexpr const char* name_of(SplatColumn column) {
     const auto names = [](const auto&... row) { return std::array{row.name...}; };

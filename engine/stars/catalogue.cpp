@@ -27,7 +27,7 @@ std::string BadRows::text(std::int64_t rows) const {
     std::string where;
     for (std::size_t i = 0; i < lines.size(); ++i)
         where += (i == 0 ? "" : i + 1 == lines.size() ? " and " : ", ") + fmt::format("{}", lines[i]);
-    const bool more = count > static_cast<std::int64_t>(lines.size());
+    const bool more = count > std::int64_t(lines.size());
     return fmt::format("{} of {} cannot be used, {} line{} {} (line {}: {})", count, counted(rows, "row"),
                        more ? "first at" : "at", lines.size() == 1 ? "" : "s", where, lines.front(),
                        printable(problem));
@@ -291,7 +291,7 @@ std::string read_catalogue_text(const fs::path& file, const Progress& progress) 
     std::string text;
     for (Inflater inflater(bytes, file.string()); inflater.add_block(text);) {
         progress.check();
-        claim_memory(static_cast<std::int64_t>(text.size()), fmt::format("reading {}", file.string()));
+        claim_memory(std::int64_t(text.size()), fmt::format("reading {}", file.string()));
     }
     return text;
 }

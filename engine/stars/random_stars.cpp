@@ -155,7 +155,7 @@ SplatSet random_stars(const StarTube& tube, std::span<const StarKind> kinds, std
     parallel_chunks(count, stars_per_task, [&](std::int64_t begin, std::int64_t end, int) {
         progress.check();
         for (std::int64_t i = begin; i < end; ++i) {
-            const auto id = static_cast<std::uint64_t>(i);
+            const auto id = std::uint64_t(i);
             const std::uint64_t hash = shared::as_hash_of_id(seed, id, shared::PURPOSE_STAR_KIND);
             const StarKind& kind = kinds[(hash * kinds.size()) >> 32];
             const glm::vec3 position(tube.radius * place_in(capsules, Draws(seed, id)));

@@ -35,8 +35,7 @@ using MatchingTable = std::array<glm::dvec3, wavelengths>;
 
 MatchingTable make_matching_table() {
     MatchingTable table;
-    for (std::size_t i = 0; i < wavelengths; ++i)
-        table[i] = color_matching(first_nm + nm * static_cast<double>(i));
+    for (std::size_t i = 0; i < wavelengths; ++i) table[i] = color_matching(first_nm + nm * double(i));
     return table;
 }
 
@@ -64,20 +63,20 @@ glm::dvec3 black_body_color(double kelvin) {
     glm::dvec3 xyz(0.0);
     static const MatchingTable matching = make_matching_table();
     for (std::size_t i = 0; i < wavelengths; ++i)
-        xyz += planck(first_nm + nm * static_cast<double>(i), kelvin) * matching[i];
+        xyz += planck(first_nm + nm * double(i), kelvin) * matching[i];
     const glm::dvec3 light = glm::max(rec709(xyz / xyz.y), glm::dvec3(0.0));
     return light / luminance(light.x, light.y, light.z);
 }
 
 StarColors::StarColors() {
-    const int last = static_cast<int>(std::lround((highest - lowest) / step));
+    const int last = int(std::lround((highest - lowest) / step));
     for (int i = 0; i <= last; ++i) table_.push_back(black_body_color(star_temperature(lowest + i * step)));
 }
 
 glm::dvec3 StarColors::operator()(const std::optional<double>& color_index) const {
     const double at = (std::clamp(color_index.value_or(unknown), lowest, highest) - lowest) / step;
-    const auto i = std::min(static_cast<std::size_t>(at), table_.size() - 2);
-    return glm::mix(table_[i], table_[i + 1], at - static_cast<double>(i));
+    const auto i = std::min(std::size_t(at), table_.size() - 2);
+    return glm::mix(table_[i], table_[i + 1], at - double(i));
 }
 
 namespace {
@@ -100,7 +99,7 @@ glm::vec3 star_light(const glm::dvec3& color, double magnitude, double zero_poin
 }
 
 SplatSet empty_star_set(std::int64_t count) {
-    const auto size = static_cast<std::size_t>(count);
+    const auto size = std::size_t(count);
     constexpr std::int64_t bytes = 2 * sizeof(glm::vec3) + 3 * sizeof(float) + sizeof(std::uint64_t);
     claim_memory(count * bytes, "stars");
     SplatSet set;
@@ -119,7 +118,7 @@ SplatSet star_set(const StarCatalogue& catalogue, const StarScale& scale, StarCo
     std::vector<const CatalogueStar*> bright;
     for (const CatalogueStar& star : catalogue.stars)
         if (star.magnitude <= scale.limit) bright.push_back(&star);
-    SplatSet set = empty_star_set(static_cast<std::int64_t>(bright.size()));
+    SplatSet set = empty_star_set(std::int64_t(bright.size()));
     std::int64_t infinite = 0;
     for (std::size_t i = 0; i < bright.size(); ++i) {
         const CatalogueStar& star = *bright[i];
@@ -128,11 +127,10 @@ SplatSet star_set(const StarCatalogue& catalogue, const StarScale& scale, StarCo
         const glm::dvec3 direction = star_direction(star.ra_deg, star.dec_deg);
         set.position[i] = glm::vec3(direction * (known ? distance : star_infinity));
         set.color[i] = star_light(colors(star.color_index), star.magnitude, scale.zero_point);
-        set.id[i] = static_cast<std::uint64_t>(star.row);
+        set.id[i] = std::uint64_t(star.row);
         if (!known) ++infinite;
     }
-    if (counts)
-        *counts = {set.size(), static_cast<std::int64_t>(catalogue.stars.size()) - set.size(), infinite};
+    if (counts) *counts = {set.size(), std::int64_t(catalogue.stars.size()) - set.size(), infinite};
     return set;
 }
 

@@ -131,7 +131,7 @@ void StreamedSet::read_and_shade(std::size_t block, NativeBlocks::Check check, S
     file_.read(block, wanted_, check, set);
     for_each_array(out, [&](auto& array) { array.resize(set.position.size()); });
     const LookRun run{LookColumns(set), uniforms_, map_, out};
-    const auto kept = static_cast<std::size_t>(shade_run(run, 0, set.size()));
+    const auto kept = std::size_t(shade_run(run, 0, set.size()));
     for_each_array(out, [&](auto& array) { array.resize(kept); });
 }
 

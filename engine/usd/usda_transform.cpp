@@ -48,9 +48,9 @@ glm::dmat4 op_matrix(const std::string& kind, const std::vector<double>& v) {
     if (kind == "translate") {
         m[3] = {v[0], v[1], v[2], 1.0};
     } else if (kind == "scale") {
-        for (int i = 0; i < 3; ++i) m[i][i] = v[static_cast<std::size_t>(i)];
+        for (int i = 0; i < 3; ++i) m[i][i] = v[i];
     } else if (kind == "transform") {
-        for (std::size_t i = 0; i < 16; ++i) m[static_cast<int>(i / 4)][static_cast<int>(i % 4)] = v[i];
+        for (std::size_t i = 0; i < 16; ++i) m[int(i / 4)][int(i % 4)] = v[i];
     } else if (kind == "orient") {
         const glm::dvec4 q(v[1], v[2], v[3], v[0]);
         m = from_axes(matrix_of_quaternion(q / glm::length(q)));
@@ -58,7 +58,7 @@ glm::dmat4 op_matrix(const std::string& kind, const std::vector<double>& v) {
         m = turn(kind[6], v[0]);
     } else {
         for (const char axis : kind.substr(6))  // the first acts first; the angles are of x, y and z
-            m = turn(axis, v[static_cast<std::size_t>(axis - 'X')]) * m;
+            m = turn(axis, v[axis - 'X']) * m;
     }
     return m;
 }

@@ -52,7 +52,7 @@ double mean_deviation(const VoxelSplat& splat) {
 void add_voxel_splats(const RenderLayer& layer, const Camera& camera, double gain,
                       std::vector<VoxelSplat>& out, BakeCounts& counts) {
     const std::size_t all = out.size() + layer.splats->position.size();
-    claim_memory(static_cast<std::int64_t>(all * sizeof(VoxelSplat)), "splats that fill voxels");
+    claim_memory(std::int64_t(all * sizeof(VoxelSplat)), "splats that fill voxels");
     out.reserve(all);
     const LayerAppearance appearance(layer, camera, gain);
     const bool ball = layer.splats->stretch.empty();
@@ -65,8 +65,8 @@ void add_voxel_splats(const RenderLayer& layer, const Camera& camera, double gai
         const double square = seen.sigma * seen.sigma;
         splat.covariance = ball ? Symmetric{square, square, square, 0.0, 0.0, 0.0}
                                 : covariance_of(appearance.axes_of(i), square);
-        splat.shows = static_cast<float>(seen.shows);
-        splat.hides = static_cast<float>(seen.hides);
+        splat.shows = float(seen.shows);
+        splat.hides = float(seen.hides);
         splat.light = glm::vec3(seen.light);
         const bool shines = splat.light != glm::vec3(0.0f) || splat.hides > 0.0f;
         if (shines && footprint_area(splat.covariance, glm::dvec3(splat.ray)) > 0.0)
@@ -83,7 +83,7 @@ double default_voxel_size(const std::vector<VoxelSplat>& splats) {
     deviations.reserve(splats.size());
     for (const VoxelSplat& splat : splats) {
         const double deviation = mean_deviation(splat);
-        deviations.push_back(static_cast<float>(deviation));
+        deviations.push_back(float(deviation));
         lo = glm::min(lo, splat.place - reach * deviation);
         hi = glm::max(hi, splat.place + reach * deviation);
     }
@@ -183,9 +183,9 @@ VoxelBody voxel_body(const VoxelSplat& splat, double voxel_size, Brought& brough
         wide[k] = narrow[k] + (k < 3 ? filter_variance : 0.0);
     }
     for (int k = 0; k < 3; ++k) {
-        const double reach = cut * std::sqrt(wide[static_cast<std::size_t>(k)]);
-        body.lo[k] = static_cast<int>(std::ceil(body.centre[k] - reach));
-        body.hi[k] = static_cast<int>(std::floor(body.centre[k] + reach));
+        const double reach = cut * std::sqrt(wide[k]);
+        body.lo[k] = int(std::ceil(body.centre[k] - reach));
+        body.hi[k] = int(std::floor(body.centre[k] + reach));
     }
     body.precision = inverse(wide);
     const glm::dvec3 ray(splat.ray);
@@ -232,11 +232,10 @@ Buffer<Pair> sorted_pairs(const std::vector<VoxelBody>& bodies, const BlockBox& 
         const glm::ivec3 lo = block_of(bodies[i].lo), hi = block_of(bodies[i].hi);
         for (int x = lo.x; x <= hi.x; ++x)
             for (int y = lo.y; y <= hi.y; ++y)
-                for (int z = lo.z; z <= hi.z; ++z)
-                    pairs.push_back({box.number(x, y, z), static_cast<std::uint32_t>(i)});
+                for (int z = lo.z; z <= hi.z; ++z) pairs.push_back({box.number(x, y, z), std::uint32_t(i)});
     }
     scratch.resize(count);
-    const auto bits = static_cast<unsigned>(std::bit_width(box.number(box.hi.x, box.hi.y, box.hi.z)));
+    const auto bits = unsigned(std::bit_width(box.number(box.hi.x, box.hi.y, box.hi.z)));
     const Pair* sorted = radix_sort<11>(
         pairs.data(), scratch.data(), count, 0, bits, [](const Pair& pair) { return pair.block; },
         [&] { progress.check(); });
@@ -272,7 +271,7 @@ void add_body(const VoxelBody& body, const glm::ivec3& first, BlockSums& sums) {
 void store_block(const BlockSums& sums, std::size_t at, VoxelGrid& grid) {
     for (std::size_t i = 0; i < block_voxels; ++i) {
         const glm::dvec3 light(sums[1][i], sums[2][i], sums[3][i]);
-        grid.density[at + i] = static_cast<float>(sums[0][i]);
+        grid.density[at + i] = float(sums[0][i]);
         grid.emission[at + i] = glm::vec3(light);
         grid.color[at + i] = sums[4][i] > 0.0 ? glm::vec3(light / sums[4][i]) : glm::vec3(0.0f);
     }
@@ -293,8 +292,7 @@ void refuse_too_far(const std::vector<VoxelSplat>& splats, double voxel_size) {
 /// The bodies of all splats; what they bring goes into the grid.
 std::vector<VoxelBody> bodies_of(const std::vector<VoxelSplat>& splats, VoxelGrid& grid,
                                  const Progress& progress) {
-    claim_memory(static_cast<std::int64_t>(splats.size() * (sizeof(VoxelBody) + sizeof(Brought))),
-                 "bodies in voxels");
+    claim_memory(std::int64_t(splats.size() * (sizeof(VoxelBody) + sizeof(Brought))), "bodies in voxels");
     std::vector<VoxelBody> bodies(splats.size());
     std::vector<Brought> brought(splats.size());
     parallel_each(splats.size(), 1 << 10, [&](std::size_t i) {
@@ -330,7 +328,7 @@ std::int64_t pairs_of(const std::vector<VoxelBody>& bodies) {
 void make_room(VoxelGrid& grid) {
     const std::size_t voxels = grid.blocks.size() * block_voxels;
     // Once here, once in the tree that is written, and once more in the file's bytes.
-    claim_memory(static_cast<std::int64_t>(3 * voxels * (sizeof(float) + 2 * sizeof(glm::vec3))),
+    claim_memory(std::int64_t(3 * voxels * (sizeof(float) + 2 * sizeof(glm::vec3))),
                  fmt::format("{} voxels of {:.4g}", human_count(double(voxels)), grid.voxel_size));
     grid.density.resize(voxels);
     grid.emission.resize(voxels);
@@ -345,13 +343,13 @@ VoxelGrid fill_voxels(const std::vector<VoxelSplat>& splats, double voxel_size, 
     grid.voxel_size = voxel_size;
     const std::vector<VoxelBody> bodies = bodies_of(splats, grid, progress);
     const std::int64_t count = pairs_of(bodies);
-    claim_memory(count * static_cast<std::int64_t>(2 * sizeof(Pair)), "splats by blocks of voxels");
+    claim_memory(count * std::int64_t(2 * sizeof(Pair)), "splats by blocks of voxels");
     if (count > std::numeric_limits<std::uint32_t>::max())
         throw InputError(
             fmt::format("voxels of {:.4g} are too small: the splats would reach {} blocks of them",
                         voxel_size, human_count(double(count))));
     const BlockBox box = box_of(bodies);
-    const Buffer<Pair> pairs = sorted_pairs(bodies, box, static_cast<std::size_t>(count), progress);
+    const Buffer<Pair> pairs = sorted_pairs(bodies, box, std::size_t(count), progress);
     std::vector<std::size_t> begins;
     for (std::size_t i = 0; i < pairs.size(); ++i)
         if (i == 0 || pairs[i].block != pairs[i - 1].block) {
@@ -361,9 +359,9 @@ VoxelGrid fill_voxels(const std::vector<VoxelSplat>& splats, double voxel_size, 
     begins.push_back(pairs.size());
     make_room(grid);
     std::atomic<std::size_t> done{0};
-    parallel_for(static_cast<std::int64_t>(grid.blocks.size()), [&](std::int64_t block, int) {
+    parallel_for(std::int64_t(grid.blocks.size()), [&](std::int64_t block, int) {
         progress.check();
-        const auto b = static_cast<std::size_t>(block);
+        const auto b = std::size_t(block);
         const auto sums = std::make_unique<BlockSums>();
         for (std::size_t i = begins[b]; i < begins[b + 1]; ++i)
             add_body(bodies[pairs[i].body], block_side * grid.blocks[b], *sums);
