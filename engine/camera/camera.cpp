@@ -140,6 +140,31 @@ glm::dmat3 orientation(const CameraParams& params, const glm::dvec3& position, c
     return look_along(view, params.up, params.roll);
 }
 
+template <class AnyLens>
+AnyLens lens_of(const Camera& camera) {
+    static_assert(numbered_as<Projection>(shared::PROJECTION_PERSPECTIVE, shared::PROJECTION_ORTHOGRAPHIC,
+                                          shared::PROJECTION_FISHEYE, shared::PROJECTION_EQUIRECTANGULAR,
+                                          shared::PROJECTION_CYLINDRICAL));
+    using Number = decltype(AnyLens::near);
+    return {int(camera.projection),
+            static_cast<Number>(camera.focal_px),
+            static_cast<Number>(camera.center_x_px),
+            static_cast<Number>(camera.center_y_px),
+            static_cast<Number>(camera.near),
+            static_cast<Number>(camera.far),
+            static_cast<Number>(camera.near_fade),
+            static_cast<Number>(camera.edge),
+            static_cast<Number>(camera.parallax)};
+}
+
+/// i's digits to the base 2 behind the point, the last one first.
+double radical_inverse(std::uint32_t i) {
+    double inverse = 0.0;
+    for (double digit = 0.5; i != 0; i >>= 1, digit *= 0.5)
+        if (i & 1) inverse += digit;
+    return inverse;
+}
+
 }  // namespace
 
 Camera make_camera(const CameraParams& params, double width_px, double height_px, const Bounds& scene_box) {
@@ -191,27 +216,6 @@ Camera make_camera(const CameraParams& params, double width_px, double height_px
     move_to_eye(camera, params);
     return camera;
 }
-
-namespace {
-
-template <class AnyLens>
-AnyLens lens_of(const Camera& camera) {
-    static_assert(numbered_as<Projection>(shared::PROJECTION_PERSPECTIVE, shared::PROJECTION_ORTHOGRAPHIC,
-                                          shared::PROJECTION_FISHEYE, shared::PROJECTION_EQUIRECTANGULAR,
-                                          shared::PROJECTION_CYLINDRICAL));
-    using Number = decltype(AnyLens::near);
-    return {int(camera.projection),
-            static_cast<Number>(camera.focal_px),
-            static_cast<Number>(camera.center_x_px),
-            static_cast<Number>(camera.center_y_px),
-            static_cast<Number>(camera.near),
-            static_cast<Number>(camera.far),
-            static_cast<Number>(camera.near_fade),
-            static_cast<Number>(camera.edge),
-            static_cast<Number>(camera.parallax)};
-}
-
-}  // namespace
 
 Lens make_lens(const Camera& camera) { return lens_of<Lens>(camera); }
 ExactLens make_exact_lens(const Camera& camera) { return lens_of<ExactLens>(camera); }
@@ -295,18 +299,6 @@ glm::dmat3 rotation_from_quaternion(const glm::dvec4& q) {
             q.y, q.z, q.w));
     return matrix_of_quaternion(q / length);
 }
-
-namespace {
-
-/// i's digits to the base 2 behind the point, the last one first.
-double radical_inverse(std::uint32_t i) {
-    double inverse = 0.0;
-    for (double digit = 0.5; i != 0; i >>= 1, digit *= 0.5)
-        if (i & 1) inverse += digit;
-    return inverse;
-}
-
-}  // namespace
 
 CameraSample camera_sample(const CameraParams& params, int i, int n) {
     // The places go outwards; times are in the radical inverse's order, which does not.

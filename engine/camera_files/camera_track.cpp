@@ -41,6 +41,19 @@ glm::dvec4 quaternion_of(const glm::dmat3& m) {
     return q / glm::length(q);
 }
 
+using ReadTrack = CameraTrack (*)(const fs::path& file, const FrameRate& rate);
+
+constexpr std::pair<std::string_view, ReadTrack> readers[] = {
+    {"chan", read_chan}, {"gaia_sky", read_gaia_sky},          {"openspace", read_openspace},
+    {"gltf", read_gltf}, {"transforms", read_transforms_json}, {"usda", read_usda}};
+
+ReadTrack reader_of(const fs::path& file) {
+    const FileFormat* const format = format_by_name(file);
+    for (const auto& [id, read] : readers)
+        if (format && format->id == id) return read;
+    return nullptr;
+}
+
 }  // namespace
 
 bool quaternion_from_axes(const glm::dmat3& world_from_camera, glm::dvec4& quaternion) {
@@ -57,23 +70,6 @@ bool quaternion_from_view(const glm::dvec3& direction, const glm::dvec3& up, glm
     if (!normalise(back) || !normalise(above)) return false;
     return quaternion_from_axes(glm::dmat3(glm::cross(above, back), above, back), quaternion);
 }
-
-namespace {
-
-using ReadTrack = CameraTrack (*)(const fs::path& file, const FrameRate& rate);
-
-constexpr std::pair<std::string_view, ReadTrack> readers[] = {
-    {"chan", read_chan}, {"gaia_sky", read_gaia_sky},          {"openspace", read_openspace},
-    {"gltf", read_gltf}, {"transforms", read_transforms_json}, {"usda", read_usda}};
-
-ReadTrack reader_of(const fs::path& file) {
-    const FileFormat* const format = format_by_name(file);
-    for (const auto& [id, read] : readers)
-        if (format && format->id == id) return read;
-    return nullptr;
-}
-
-}  // namespace
 
 bool is_camera_file(const fs::path& file) { return reader_of(file) != nullptr; }
 

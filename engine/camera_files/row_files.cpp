@@ -45,6 +45,51 @@ double unrolled(double angle, double before) {
     return angle + 360.0 * std::floor((before - angle) / 360.0 + 0.5);
 }
 
+constexpr double gaia_sky_fps = 60.0;
+
+using Words = std::vector<std::string_view>;
+
+glm::dvec3 vector_of(const TextRows& rows, const Words& words, std::size_t first, const char* what) {
+    glm::dvec3 v;
+    for (int i = 0; i < 3; ++i) v[i] = rows.number(words[first + std::size_t(i)], what);
+    return v;
+}
+
+void check_count(const TextRows& rows, std::int64_t count) {
+    if (count >= most_camera_samples)
+        rows.fail(fmt::format("at most {} frames", most_camera_samples), "more");
+}
+
+/// Where an OpenSpace format has its numbers.
+struct Columns {
+    std::string_view version;  // as the first line ends
+    std::size_t time, place, quaternion, body, count;
+    bool w_first;
+};
+constexpr Columns openspace_columns[] = {{"01.00A", 2, 4, 7, 13, 14, false},
+                                         {"02.00A", 1, 3, 6, 12, 13, false},
+                                         {"03.00A", 1, 3, 6, 12, 13, true}};
+
+const Columns& columns_of(TextRows& rows) {
+    if (!rows.next()) rows.fail("an OpenSpace recording", "an empty file");
+    constexpr std::string_view begin = "OpenSpace_record/playback";
+    const std::string_view line = rows.text();
+    if (line.starts_with(begin))
+        for (const Columns& columns : openspace_columns)
+            if (line.substr(begin.size()) == columns.version) return columns;
+    rows.fail("OpenSpace_record/playback with format 01.00A, 02.00A or 03.00A (text)", shown(line));
+}
+
+glm::dvec4 unit_quaternion(const TextRows& rows, const Words& words, const Columns& columns) {
+    double q[4];
+    for (std::size_t i = 0; i < 4; ++i) q[i] = rows.number(words[columns.quaternion + i], "the rotation");
+    const glm::dvec4 turn =
+        columns.w_first ? glm::dvec4(q[1], q[2], q[3], q[0]) : glm::dvec4(q[0], q[1], q[2], q[3]);
+    const double length = glm::length(turn);
+    if (!(length > 1e-6 && length < 1e6)) rows.fail("a rotation of length 1", fmt::format("{:.4g}", length));
+    return turn / length;
+}
+
 }  // namespace
 
 CameraTrack read_chan(const fs::path& file, const FrameRate& rate) {
@@ -93,55 +138,6 @@ std::string chan_text(const CameraTrack& track) {
     }
     return text;
 }
-
-namespace {
-
-constexpr double gaia_sky_fps = 60.0;
-
-using Words = std::vector<std::string_view>;
-
-glm::dvec3 vector_of(const TextRows& rows, const Words& words, std::size_t first, const char* what) {
-    glm::dvec3 v;
-    for (int i = 0; i < 3; ++i) v[i] = rows.number(words[first + std::size_t(i)], what);
-    return v;
-}
-
-void check_count(const TextRows& rows, std::int64_t count) {
-    if (count >= most_camera_samples)
-        rows.fail(fmt::format("at most {} frames", most_camera_samples), "more");
-}
-
-/// Where an OpenSpace format has its numbers.
-struct Columns {
-    std::string_view version;  // as the first line ends
-    std::size_t time, place, quaternion, body, count;
-    bool w_first;
-};
-constexpr Columns openspace_columns[] = {{"01.00A", 2, 4, 7, 13, 14, false},
-                                         {"02.00A", 1, 3, 6, 12, 13, false},
-                                         {"03.00A", 1, 3, 6, 12, 13, true}};
-
-const Columns& columns_of(TextRows& rows) {
-    if (!rows.next()) rows.fail("an OpenSpace recording", "an empty file");
-    constexpr std::string_view begin = "OpenSpace_record/playback";
-    const std::string_view line = rows.text();
-    if (line.starts_with(begin))
-        for (const Columns& columns : openspace_columns)
-            if (line.substr(begin.size()) == columns.version) return columns;
-    rows.fail("OpenSpace_record/playback with format 01.00A, 02.00A or 03.00A (text)", shown(line));
-}
-
-glm::dvec4 unit_quaternion(const TextRows& rows, const Words& words, const Columns& columns) {
-    double q[4];
-    for (std::size_t i = 0; i < 4; ++i) q[i] = rows.number(words[columns.quaternion + i], "the rotation");
-    const glm::dvec4 turn =
-        columns.w_first ? glm::dvec4(q[1], q[2], q[3], q[0]) : glm::dvec4(q[0], q[1], q[2], q[3]);
-    const double length = glm::length(turn);
-    if (!(length > 1e-6 && length < 1e6)) rows.fail("a rotation of length 1", fmt::format("{:.4g}", length));
-    return turn / length;
-}
-
-}  // namespace
 
 CameraTrack read_gaia_sky(const fs::path& file, const FrameRate& rate) {
     const std::string text = read_file(file);

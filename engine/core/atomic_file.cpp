@@ -116,6 +116,13 @@ int rename_to_free_name(const fs::path& from, const fs::path& to) {
     return link(from.c_str(), to.c_str()) == 0 ? unlink(from.c_str()) : -1;
 }
 
+bool is_still_named(int descriptor, const fs::path& file) {
+    struct stat open_file {};
+    struct stat named {};
+    return ::fstat(descriptor, &open_file) == 0 && ::stat(file.c_str(), &named) == 0 &&
+           open_file.st_ino == named.st_ino && open_file.st_dev == named.st_dev;
+}
+
 }  // namespace
 
 AtomicFile::AtomicFile(const fs::path& target, Existing existing)
@@ -198,17 +205,6 @@ void refuse_other_than_file(const fs::path& target) {
     if (fs::is_directory(status)) fail_writing(target, "it is a folder");
     if (fs::exists(status) && !fs::is_regular_file(status)) fail_writing(target, "it is no regular file");
 }
-
-namespace {
-
-bool is_still_named(int descriptor, const fs::path& file) {
-    struct stat open_file {};
-    struct stat named {};
-    return ::fstat(descriptor, &open_file) == 0 && ::stat(file.c_str(), &named) == 0 &&
-           open_file.st_ino == named.st_ino && open_file.st_dev == named.st_dev;
-}
-
-}  // namespace
 
 FileLock::~FileLock() {
     if (descriptor_ < 0) return;

@@ -41,20 +41,6 @@ std::array<float, table_steps + 2> make_srgb_table() {
     return table;
 }
 
-}  // namespace
-
-float display_srgb(float linear) {
-    static const std::array<float, table_steps + 2> table = make_srgb_table();
-    const float x = linear > 0.0f ? (linear < 1.0f ? linear : 1.0f) : 0.0f;
-    if (x <= 0.0031308f) return x * 12.92f;
-    const float at = std::sqrt(x) * float(table_steps);
-    const float below = std::floor(at);
-    const auto i = std::size_t(below);
-    return table[i] + (table[i + 1] - table[i]) * (at - below);
-}
-
-namespace {
-
 // XYZ of a chromaticity at Y = 1.
 glm::dvec3 xyz_of(const glm::dvec2& c) { return {c.x / c.y, 1.0, (1.0 - c.x - c.y) / c.y}; }
 
@@ -76,6 +62,16 @@ glm::dmat3 adaptation(const glm::dvec2& from_white, const glm::dvec2& to_white) 
 }
 
 }  // namespace
+
+float display_srgb(float linear) {
+    static const std::array<float, table_steps + 2> table = make_srgb_table();
+    const float x = linear > 0.0f ? (linear < 1.0f ? linear : 1.0f) : 0.0f;
+    if (x <= 0.0031308f) return x * 12.92f;
+    const float at = std::sqrt(x) * float(table_steps);
+    const float below = std::floor(at);
+    const auto i = std::size_t(below);
+    return table[i] + (table[i + 1] - table[i]) * (at - below);
+}
 
 glm::dmat3 primaries_matrix(const Chromaticities& from, const Chromaticities& to) {
     return glm::inverse(to_xyz(to)) * adaptation(from.white, to.white) * to_xyz(from);

@@ -27,6 +27,15 @@ namespace {
     throw InputError(fmt::format("{}: cannot be read: {}", file.string(), reason));
 }
 
+// A relative folder in a variable does not count, as the XDG specification says.
+fs::path folder_in(const char* variable, const char* below_home) {
+    const char* base = std::getenv(variable);
+    if (base && fs::path(base).is_absolute()) return fs::path(base) / "astrosplat";
+    const char* home = std::getenv("HOME");
+    if (!home || !fs::path(home).is_absolute()) return {};
+    return fs::path(home) / below_home / "astrosplat";
+}
+
 }  // namespace
 
 InputFile::InputFile(const fs::path& file) : file_(file) {
@@ -100,19 +109,6 @@ std::string read_beginning(const fs::path& file, std::size_t size) {
     text.resize(have);
     return text;
 }
-
-namespace {
-
-// A relative folder in a variable does not count, as the XDG specification says.
-fs::path folder_in(const char* variable, const char* below_home) {
-    const char* base = std::getenv(variable);
-    if (base && fs::path(base).is_absolute()) return fs::path(base) / "astrosplat";
-    const char* home = std::getenv("HOME");
-    if (!home || !fs::path(home).is_absolute()) return {};
-    return fs::path(home) / below_home / "astrosplat";
-}
-
-}  // namespace
 
 fs::path state_folder() { return folder_in("XDG_STATE_HOME", ".local/state"); }
 fs::path config_folder() { return folder_in("XDG_CONFIG_HOME", ".config"); }

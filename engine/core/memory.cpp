@@ -89,6 +89,32 @@ std::int64_t least_group_room(const char* limit_file, const char* usage_file, co
     return least;
 }
 
+bool lists(const std::string& controllers, const std::string& wanted) {
+    return ("," + controllers + ",").find("," + wanted + ",") != std::string::npos;
+}
+
+struct Group {
+    fs::path root;  // where the hierarchy is mounted
+    fs::path path;  // the group below it
+};
+
+std::vector<Group> groups_of(const std::string& controller) {
+    std::vector<Group> groups;
+    std::ifstream lines("/proc/self/cgroup");
+    for (std::string line; std::getline(lines, line);) {
+        const std::size_t first = line.find(':');
+        const std::size_t second = first == std::string::npos ? first : line.find(':', first + 1);
+        if (second == std::string::npos) continue;
+        const std::string controllers = line.substr(first + 1, second - first - 1);
+        const fs::path path = fs::path(line.substr(second + 1)).relative_path();
+        if (controllers.empty())
+            groups.push_back({"/sys/fs/cgroup", path});
+        else if (lists(controllers, controller))
+            groups.push_back({fs::path("/sys/fs/cgroup") / controller, path});
+    }
+    return groups;
+}
+
 }  // namespace
 
 std::string human_bytes(double bytes) { return human(bytes, 1024.0, {"B", "KiB", "MiB", "GiB", "TiB"}); }
@@ -171,36 +197,6 @@ void claim_memory(std::int64_t bytes, const std::string& what) {
     }
     log_detail(fmt::format("{} takes {} of memory", what, need));
 }
-
-namespace {
-
-bool lists(const std::string& controllers, const std::string& wanted) {
-    return ("," + controllers + ",").find("," + wanted + ",") != std::string::npos;
-}
-
-struct Group {
-    fs::path root;  // where the hierarchy is mounted
-    fs::path path;  // the group below it
-};
-
-std::vector<Group> groups_of(const std::string& controller) {
-    std::vector<Group> groups;
-    std::ifstream lines("/proc/self/cgroup");
-    for (std::string line; std::getline(lines, line);) {
-        const std::size_t first = line.find(':');
-        const std::size_t second = first == std::string::npos ? first : line.find(':', first + 1);
-        if (second == std::string::npos) continue;
-        const std::string controllers = line.substr(first + 1, second - first - 1);
-        const fs::path path = fs::path(line.substr(second + 1)).relative_path();
-        if (controllers.empty())
-            groups.push_back({"/sys/fs/cgroup", path});
-        else if (lists(controllers, controller))
-            groups.push_back({fs::path("/sys/fs/cgroup") / controller, path});
-    }
-    return groups;
-}
-
-}  // namespace
 
 std::vector<std::string> cgroup_values(const std::string& controller, const std::string& file) {
     std::vector<std::string> values;

@@ -187,6 +187,29 @@ void run_alone(std::int64_t count, std::int64_t chunk, const Body& body, int wor
         body(begin, std::min(begin + chunk, count), worker);
 }
 
+struct Target {
+    const char* name;
+    std::int64_t bits;  // Highway's; a lower bit is a better target
+};
+
+// Highway 1.0 has no SSE2 target of its own: its portable fallback, compiled for the baseline of
+// x86-64, is that.
+constexpr std::array<Target, 4> targets = {
+    {{"avx512", HWY_AVX3}, {"avx2", HWY_AVX2}, {"sse4", HWY_SSE4}, {"sse2", HWY_EMU128 | HWY_SCALAR}}};
+
+// The best that the processor can do, whatever was chosen before.
+std::int64_t detected() {
+    static const std::int64_t bits = hwy::SupportedTargets() | HWY_STATIC_TARGET;
+    return bits;
+}
+
+bool compiled_and_supported(const Target& target) { return (target.bits & HWY_TARGETS & detected()) != 0; }
+
+void enable(std::int64_t bits) {
+    hwy::SetSupportedTargetsForTest(bits);
+    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+}
+
 }  // namespace
 
 int available_threads() { return std::max(1, quota_of_groups(std::max(1, affinity_threads()))); }
@@ -224,33 +247,6 @@ void parallel_parts(std::size_t count, const Progress& progress,
     for (const std::string& error : errors)
         if (!error.empty()) throw InputError(error);
 }
-
-namespace {
-
-struct Target {
-    const char* name;
-    std::int64_t bits;  // Highway's; a lower bit is a better target
-};
-
-// Highway 1.0 has no SSE2 target of its own: its portable fallback, compiled for the baseline of
-// x86-64, is that.
-constexpr std::array<Target, 4> targets = {
-    {{"avx512", HWY_AVX3}, {"avx2", HWY_AVX2}, {"sse4", HWY_SSE4}, {"sse2", HWY_EMU128 | HWY_SCALAR}}};
-
-// The best that the processor can do, whatever was chosen before.
-std::int64_t detected() {
-    static const std::int64_t bits = hwy::SupportedTargets() | HWY_STATIC_TARGET;
-    return bits;
-}
-
-bool compiled_and_supported(const Target& target) { return (target.bits & HWY_TARGETS & detected()) != 0; }
-
-void enable(std::int64_t bits) {
-    hwy::SetSupportedTargetsForTest(bits);
-    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-}
-
-}  // namespace
 
 void set_vector_target(const std::string& name) {
     const std::int64_t supported = detected();

@@ -30,6 +30,34 @@ std::string print_shortest(T value) {
     return std::string(text.data(), result.ptr);
 }
 
+constexpr std::string_view letters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+
+constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
+
+std::string_view without_quotes(std::string_view field) {
+    if (field.size() >= 2 && field.front() == '"' && field.back() == '"')
+        field = trim(field.substr(1, field.size() - 2));
+    return field;
+}
+
+bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\f' || c == '\v'; }
+
+void split_fields(std::string_view line, char separator, std::vector<std::string_view>& fields) {
+    fields.clear();
+    bool quoted = false;
+    std::size_t begin = 0;
+    const auto add = [&](std::size_t end) {
+        const std::string_view field = trim(line.substr(begin, end - begin));
+        if (separator != ' ' || !field.empty()) fields.push_back(without_quotes(field));
+        begin = end + 1;
+    };
+    for (std::size_t i = 0; i < line.size(); ++i) {
+        if (line[i] == '"') quoted = !quoted;
+        if (!quoted && (separator == ' ' ? is_blank(line[i]) : line[i] == separator)) add(i);
+    }
+    add(line.size());
+}
+
 }  // namespace
 
 std::string_view trim(std::string_view text) {
@@ -92,12 +120,6 @@ std::string shown(std::string_view word) {
     return "'" + printable(word.substr(0, most)) + (word.size() > most ? "...'" : "'");
 }
 
-namespace {
-
-constexpr std::string_view letters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-
-}  // namespace
-
 std::string base64(std::string_view bytes) {
     std::string text;
     for (std::size_t i = 0; i < bytes.size(); i += 3) {
@@ -128,36 +150,6 @@ std::optional<std::string> bytes_of_base64(std::string_view text) {
     }
     return bytes;
 }
-
-namespace {
-
-constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
-
-std::string_view without_quotes(std::string_view field) {
-    if (field.size() >= 2 && field.front() == '"' && field.back() == '"')
-        field = trim(field.substr(1, field.size() - 2));
-    return field;
-}
-
-bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\f' || c == '\v'; }
-
-void split_fields(std::string_view line, char separator, std::vector<std::string_view>& fields) {
-    fields.clear();
-    bool quoted = false;
-    std::size_t begin = 0;
-    const auto add = [&](std::size_t end) {
-        const std::string_view field = trim(line.substr(begin, end - begin));
-        if (separator != ' ' || !field.empty()) fields.push_back(without_quotes(field));
-        begin = end + 1;
-    };
-    for (std::size_t i = 0; i < line.size(); ++i) {
-        if (line[i] == '"') quoted = !quoted;
-        if (!quoted && (separator == ' ' ? is_blank(line[i]) : line[i] == separator)) add(i);
-    }
-    add(line.size());
-}
-
-}  // namespace
 
 char separator_of(std::string_view line) {
     char best = ',';

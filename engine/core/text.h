@@ -75,7 +75,7 @@ concept NamedEnum = std::is_enum_v<E> && requires(E value) {
 
 template <NamedEnum E>
 constexpr std::string_view name_of(E value) {
-    return names_of(value)[value];
+    return names_of(value)[std::size_t(value)];
 }
 
 /// Whether the values are numbered as the constants of a shader, all of them.

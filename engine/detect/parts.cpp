@@ -23,50 +23,6 @@ Region box_of(const std::vector<std::int64_t>& pixels, std::int64_t width) {
     return {left, top, right - left, bottom - top};
 }
 
-}  // namespace
-
-PixelMask make_mask(std::int64_t width, std::int64_t height) {
-    PixelMask mask{width, height, {}};
-    mask.pixels.assign(std::size_t(width * height), 0);
-    return mask;
-}
-
-PixelPart take_part(PixelMask& mask, std::int64_t first, Touching touching) {
-    PixelPart part;
-    const auto take = [&](std::int64_t i) {
-        unsigned char& there = mask.pixels[i];
-        if (there) part.pixels.push_back(i);
-        there = 0;
-    };
-    take(first);
-    for (std::size_t next = 0; next < part.pixels.size(); ++next) {
-        const std::int64_t x = part.pixels[next] % mask.width, y = part.pixels[next] / mask.width;
-        for_each_about(mask, x, y, 1, [&](std::int64_t i, std::int64_t j) {
-            if (touching == Touching::corners || i == x || j == y) take(j * mask.width + i);
-        });
-    }
-    if (!part.pixels.empty()) part.box = box_of(part.pixels, mask.width);
-    return part;
-}
-
-std::vector<PixelPart> connected_parts(PixelMask mask, Touching touching) {
-    std::vector<PixelPart> parts;
-    for (std::size_t i = 0; i < mask.pixels.size(); ++i)
-        if (mask.pixels[i]) parts.push_back(take_part(mask, std::int64_t(i), touching));
-    return parts;
-}
-
-PixelMask grown(const PixelMask& mask) {
-    PixelMask wider = mask;
-    for_each_between(mask, 0, 0, mask.width - 1, mask.height - 1, [&](std::int64_t x, std::int64_t y) {
-        if (mask.at(x, y))
-            for_each_about(mask, x, y, 1, [&](std::int64_t i, std::int64_t j) { wider.at(i, j) = 1; });
-    });
-    return wider;
-}
-
-namespace {
-
 constexpr float deviations = 2.5f;
 constexpr int margin_px = 2;
 constexpr std::size_t least_px = 3;
@@ -121,6 +77,46 @@ void share_light(const Image& picture, PictureObjects& found) {
 }
 
 }  // namespace
+
+PixelMask make_mask(std::int64_t width, std::int64_t height) {
+    PixelMask mask{width, height, {}};
+    mask.pixels.assign(std::size_t(width * height), 0);
+    return mask;
+}
+
+PixelPart take_part(PixelMask& mask, std::int64_t first, Touching touching) {
+    PixelPart part;
+    const auto take = [&](std::int64_t i) {
+        unsigned char& there = mask.pixels[i];
+        if (there) part.pixels.push_back(i);
+        there = 0;
+    };
+    take(first);
+    for (std::size_t next = 0; next < part.pixels.size(); ++next) {
+        const std::int64_t x = part.pixels[next] % mask.width, y = part.pixels[next] / mask.width;
+        for_each_about(mask, x, y, 1, [&](std::int64_t i, std::int64_t j) {
+            if (touching == Touching::corners || i == x || j == y) take(j * mask.width + i);
+        });
+    }
+    if (!part.pixels.empty()) part.box = box_of(part.pixels, mask.width);
+    return part;
+}
+
+std::vector<PixelPart> connected_parts(PixelMask mask, Touching touching) {
+    std::vector<PixelPart> parts;
+    for (std::size_t i = 0; i < mask.pixels.size(); ++i)
+        if (mask.pixels[i]) parts.push_back(take_part(mask, std::int64_t(i), touching));
+    return parts;
+}
+
+PixelMask grown(const PixelMask& mask) {
+    PixelMask wider = mask;
+    for_each_between(mask, 0, 0, mask.width - 1, mask.height - 1, [&](std::int64_t x, std::int64_t y) {
+        if (mask.at(x, y))
+            for_each_about(mask, x, y, 1, [&](std::int64_t i, std::int64_t j) { wider.at(i, j) = 1; });
+    });
+    return wider;
+}
 
 PictureObjects find_objects(const Image& picture, double longest_px) {
     PictureObjects found;

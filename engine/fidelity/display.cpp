@@ -16,48 +16,6 @@ float displayed_mean(const float* p) {
     return (display_srgb(p[0]) + display_srgb(p[1]) + display_srgb(p[2])) / 3.0f;
 }
 
-}  // namespace
-
-Image display_colors(const Image& linear) {
-    return made_by_pixel(linear, 3, [](const float* in, float* out) {
-        for (int c = 0; c < 3; ++c) out[c] = display_srgb(in[c]);
-    });
-}
-
-Image display_mean(const Image& linear) {
-    return made_by_pixel(linear, 1, [](const float* in, float* out) { *out = displayed_mean(in); });
-}
-
-Image display_max(const Image& linear) {
-    return made_by_pixel(linear, 1, [](const float* in, float* out) {
-        *out = display_srgb(std::max({in[0], in[1], in[2]}));
-    });
-}
-
-Image inner_colors(const Image& linear, std::int64_t margin_px) {
-    const std::int64_t margin = std::min({margin_px, (linear.width - 1) / 2, (linear.height - 1) / 2});
-    Image inner = make_image(linear.width - 2 * margin, linear.height - 2 * margin, 3);
-    for (std::int64_t y = 0; y < inner.height; ++y)
-        for (std::int64_t x = 0; x < inner.width; ++x)
-            std::copy_n(linear.at(x + margin, y + margin), 3, inner.at(x, y));
-    return inner;
-}
-
-Image signed_difference(const Image& a, const Image& b) {
-    constexpr float none[3] = {18, 18, 22}, more[3] = {255, 150, 40}, less[3] = {70, 160, 255};
-    Image shown = make_image(a.width, a.height, 4, 1.0f);
-    parallel_each(a.width * a.height, 1 << 14, [&](std::int64_t i) {
-        const float difference = displayed_mean(a.pixels.data() + i * a.channels) -
-                                 displayed_mean(b.pixels.data() + i * b.channels);
-        const float t = std::min(1.0f, std::fabs(difference) / float(full_difference));
-        const float* const full = difference > 0.0f ? more : less;
-        for (int c = 0; c < 3; ++c) shown.pixels[4 * i + c] = (none[c] + (full[c] - none[c]) * t) / 255.0f;
-    });
-    return shown;
-}
-
-namespace {
-
 constexpr std::int64_t most_compared_pixels = 500'000;
 
 // The cube root with its tangent below (6/29)^3, CIE 15.
@@ -97,6 +55,44 @@ double mean_hue_deg(double h1, double h2, bool grey) {  // equation 14
 }
 
 }  // namespace
+
+Image display_colors(const Image& linear) {
+    return made_by_pixel(linear, 3, [](const float* in, float* out) {
+        for (int c = 0; c < 3; ++c) out[c] = display_srgb(in[c]);
+    });
+}
+
+Image display_mean(const Image& linear) {
+    return made_by_pixel(linear, 1, [](const float* in, float* out) { *out = displayed_mean(in); });
+}
+
+Image display_max(const Image& linear) {
+    return made_by_pixel(linear, 1, [](const float* in, float* out) {
+        *out = display_srgb(std::max({in[0], in[1], in[2]}));
+    });
+}
+
+Image inner_colors(const Image& linear, std::int64_t margin_px) {
+    const std::int64_t margin = std::min({margin_px, (linear.width - 1) / 2, (linear.height - 1) / 2});
+    Image inner = make_image(linear.width - 2 * margin, linear.height - 2 * margin, 3);
+    for (std::int64_t y = 0; y < inner.height; ++y)
+        for (std::int64_t x = 0; x < inner.width; ++x)
+            std::copy_n(linear.at(x + margin, y + margin), 3, inner.at(x, y));
+    return inner;
+}
+
+Image signed_difference(const Image& a, const Image& b) {
+    constexpr float none[3] = {18, 18, 22}, more[3] = {255, 150, 40}, less[3] = {70, 160, 255};
+    Image shown = make_image(a.width, a.height, 4, 1.0f);
+    parallel_each(a.width * a.height, 1 << 14, [&](std::int64_t i) {
+        const float difference = displayed_mean(a.pixels.data() + i * a.channels) -
+                                 displayed_mean(b.pixels.data() + i * b.channels);
+        const float t = std::min(1.0f, std::fabs(difference) / float(full_difference));
+        const float* const full = difference > 0.0f ? more : less;
+        for (int c = 0; c < 3; ++c) shown.pixels[4 * i + c] = (none[c] + (full[c] - none[c]) * t) / 255.0f;
+    });
+    return shown;
+}
 
 Lab lab_of_linear(const float* rgb) {
     double c[3];

@@ -39,36 +39,6 @@ double ssim_of_pixel(const float* p) {
            ((a * a + b * b + luminance_constant) * (variances + contrast_constant));
 }
 
-}  // namespace
-
-double psnr_db(const Image& a, const Image& b) {
-    require_same_size(a, b);
-    const Image x = display_colors(a), y = display_colors(b);
-    const std::int64_t row = x.width * 3;
-    const double squares = sum_over_rows(x.height, [&](std::int64_t j) {
-        double sum = 0.0;
-        for (std::int64_t i = 0; i < row; ++i) {
-            const double d = double(x.at(0, j)[i]) - double(y.at(0, j)[i]);
-            sum += d * d;
-        }
-        return sum;
-    });
-    return -10.0 * real::log(squares / double(x.pixels.size()) + least_square_error) / real::log(10.0);
-}
-
-double ssim(const Image& a, const Image& b) {
-    require_same_size(a, b);
-    const Image blurred = convolved_with_gaussian(products(display_mean(a), display_mean(b)), window_px);
-    const double sum = sum_over_rows(blurred.height, [&](std::int64_t y) {
-        double row = 0.0;
-        for (std::int64_t x = 0; x < blurred.width; ++x) row += ssim_of_pixel(blurred.at(x, y));
-        return row;
-    });
-    return sum / double(blurred.width * blurred.height);
-}
-
-namespace {
-
 using ChannelSums = std::array<double, 3>;
 
 ChannelSums cell_light(const Image& image, std::int64_t column, std::int64_t row) {
@@ -94,35 +64,6 @@ double ratio(double light, double of) {
 }
 
 double total(const ChannelSums& sums) { return sums[0] + sums[1] + sums[2]; }
-
-}  // namespace
-
-FluxRatios flux_ratios(const Image& picture, const Image& reference) {
-    assert(picture.width == reference.width && picture.height == reference.height);
-    const std::vector<ChannelSums> ours = light_of_cells(picture), theirs = light_of_cells(reference);
-    const double cell_samples = 3.0 * double(picture.width * picture.height) / double(ours.size());
-    FluxRatios result;
-    ChannelSums our_sum{}, their_sum{};
-    std::vector<double> lit;
-    for (std::size_t i = 0; i < ours.size(); ++i) {
-        for (std::size_t c = 0; c < 3; ++c) {
-            our_sum[c] += ours[i][c];
-            their_sum[c] += theirs[i][c];
-        }
-        const bool dark = total(theirs[i]) < darkest_cell * cell_samples;
-        result.cells.push_back(dark ? std::numeric_limits<double>::quiet_NaN()
-                                    : ratio(total(ours[i]), total(theirs[i])));
-        if (!std::isnan(result.cells.back())) lit.push_back(result.cells.back());
-    }
-    for (std::size_t c = 0; c < 3; ++c) result.channels[c] = ratio(our_sum[c], their_sum[c]);
-    result.frame = ratio(total(our_sum), total(their_sum));
-    result.cells_5 = percentile(lit, 0.05);
-    result.cells_50 = percentile(lit, 0.5);
-    result.cells_95 = percentile(lit, 0.95);
-    return result;
-}
-
-namespace {
 
 constexpr double least_power = 1e-14;  // what rounding leaves of a picture without detail
 
@@ -152,6 +93,57 @@ std::vector<double> band_powers(const Image& picture, double widest) {
 }
 
 }  // namespace
+
+double psnr_db(const Image& a, const Image& b) {
+    require_same_size(a, b);
+    const Image x = display_colors(a), y = display_colors(b);
+    const std::int64_t row = x.width * 3;
+    const double squares = sum_over_rows(x.height, [&](std::int64_t j) {
+        double sum = 0.0;
+        for (std::int64_t i = 0; i < row; ++i) {
+            const double d = double(x.at(0, j)[i]) - double(y.at(0, j)[i]);
+            sum += d * d;
+        }
+        return sum;
+    });
+    return -10.0 * real::log(squares / double(x.pixels.size()) + least_square_error) / real::log(10.0);
+}
+
+double ssim(const Image& a, const Image& b) {
+    require_same_size(a, b);
+    const Image blurred = convolved_with_gaussian(products(display_mean(a), display_mean(b)), window_px);
+    const double sum = sum_over_rows(blurred.height, [&](std::int64_t y) {
+        double row = 0.0;
+        for (std::int64_t x = 0; x < blurred.width; ++x) row += ssim_of_pixel(blurred.at(x, y));
+        return row;
+    });
+    return sum / double(blurred.width * blurred.height);
+}
+
+FluxRatios flux_ratios(const Image& picture, const Image& reference) {
+    assert(picture.width == reference.width && picture.height == reference.height);
+    const std::vector<ChannelSums> ours = light_of_cells(picture), theirs = light_of_cells(reference);
+    const double cell_samples = 3.0 * double(picture.width * picture.height) / double(ours.size());
+    FluxRatios result;
+    ChannelSums our_sum{}, their_sum{};
+    std::vector<double> lit;
+    for (std::size_t i = 0; i < ours.size(); ++i) {
+        for (std::size_t c = 0; c < 3; ++c) {
+            our_sum[c] += ours[i][c];
+            their_sum[c] += theirs[i][c];
+        }
+        const bool dark = total(theirs[i]) < darkest_cell * cell_samples;
+        result.cells.push_back(dark ? std::numeric_limits<double>::quiet_NaN()
+                                    : ratio(total(ours[i]), total(theirs[i])));
+        if (!std::isnan(result.cells.back())) lit.push_back(result.cells.back());
+    }
+    for (std::size_t c = 0; c < 3; ++c) result.channels[c] = ratio(our_sum[c], their_sum[c]);
+    result.frame = ratio(total(our_sum), total(their_sum));
+    result.cells_5 = percentile(lit, 0.05);
+    result.cells_50 = percentile(lit, 0.5);
+    result.cells_95 = percentile(lit, 0.95);
+    return result;
+}
 
 std::vector<ScalePower> power_by_scale(const Image& picture, const Image& reference) {
     assert(picture.width == reference.width && picture.height == reference.height);

@@ -60,6 +60,14 @@ ShadedSplats with_opacity(const RenderLayer& layer) {
     return splats;
 }
 
+/// A Gaussian is its own nearest one.
+GaussianProfile profile_of(const RenderLayer& layer) {
+    const Falloff& falloff = layer.render.falloff;
+    if (layer.gaussians && falloff.shape == Falloff::Shape::gaussian)
+        return {1.0, std::sqrt(0.5 / double(falloff.sharpness))};
+    return nearest_gaussian(falloff);
+}
+
 }  // namespace
 
 std::vector<ShadedSplats> reduce_splats(std::span<const RenderLayer> layers,
@@ -93,18 +101,6 @@ std::vector<ShadedSplats> reduce_splats(std::span<const RenderLayer> layers,
     settings.width = settings.height = frame.width;
     return cut_splats(cuts, settings);
 }
-
-namespace {
-
-/// A Gaussian is its own nearest one.
-GaussianProfile profile_of(const RenderLayer& layer) {
-    const Falloff& falloff = layer.render.falloff;
-    if (layer.gaussians && falloff.shape == Falloff::Shape::gaussian)
-        return {1.0, std::sqrt(0.5 / double(falloff.sharpness))};
-    return nearest_gaussian(falloff);
-}
-
-}  // namespace
 
 LayerAppearance::LayerAppearance(const RenderLayer& layer, const Camera& camera, double gain)
     : layer_(layer),

@@ -48,6 +48,34 @@ Buffer<T> lit_rows(const Buffer<T>& all, const Buffer<float>& alpha,
     return lit;
 }
 
+// Adds what is kept to the set.
+void run_cull(const LatticeCull& cull, const Progress& progress, KeptWatcher* watcher, SplatSet& set) {
+    const std::vector<LatticeBlock> blocks = cull.blocks({}, progress);
+    reserve(set, blocks.size() * 2 * block_positions);
+    const auto append = [&](std::span<const KeptStore::Run> runs) { append_sorted(runs, set); };
+    set.zero_alpha += cull.run(blocks, progress, append, watcher);
+}
+
+/// Memory of so many positions, and of a batch of them that exists twice.
+double bytes_of_positions(double positions) {
+    constexpr double most_in_batch =
+        0.5 * LatticeCull::batch_blocks * block_positions;  // a surface keeps half of a block
+    return positions * double(bytes_per_splat(is_generated)) +
+           std::min(0.5 * positions, most_in_batch) * double(sizeof(KeptSplat));
+}
+
+// The facts of columns before any of them is made: zero_alpha is 0.
+SplatSetFacts facts_of_columns(std::span<const TexturedMesh> meshes, const Lattice& lattice,
+                               double max_distance) {
+    SplatSetFacts facts;
+    facts.spacing = lattice.spacing();
+    facts.max_distance = max_distance;
+    facts.generated = true;
+    facts.test_positions = lattice.positions();
+    describe_pictures(meshes, facts);
+    return facts;
+}
+
 }  // namespace
 
 void read_texels(std::span<const TexturedMesh> meshes, Columns& columns, const Progress& progress) {
@@ -86,38 +114,6 @@ SplatSet lit_splats(Columns columns) {
     });
     return set;
 }
-
-namespace {
-
-// Adds what is kept to the set.
-void run_cull(const LatticeCull& cull, const Progress& progress, KeptWatcher* watcher, SplatSet& set) {
-    const std::vector<LatticeBlock> blocks = cull.blocks({}, progress);
-    reserve(set, blocks.size() * 2 * block_positions);
-    const auto append = [&](std::span<const KeptStore::Run> runs) { append_sorted(runs, set); };
-    set.zero_alpha += cull.run(blocks, progress, append, watcher);
-}
-
-/// Memory of so many positions, and of a batch of them that exists twice.
-double bytes_of_positions(double positions) {
-    constexpr double most_in_batch =
-        0.5 * LatticeCull::batch_blocks * block_positions;  // a surface keeps half of a block
-    return positions * double(bytes_per_splat(is_generated)) +
-           std::min(0.5 * positions, most_in_batch) * double(sizeof(KeptSplat));
-}
-
-// The facts of columns before any of them is made: zero_alpha is 0.
-SplatSetFacts facts_of_columns(std::span<const TexturedMesh> meshes, const Lattice& lattice,
-                               double max_distance) {
-    SplatSetFacts facts;
-    facts.spacing = lattice.spacing();
-    facts.max_distance = max_distance;
-    facts.generated = true;
-    facts.test_positions = lattice.positions();
-    describe_pictures(meshes, facts);
-    return facts;
-}
-
-}  // namespace
 
 std::int64_t columns_memory_bytes(std::int64_t positions) {
     return std::int64_t(bytes_of_positions(double(positions)));

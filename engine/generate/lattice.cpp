@@ -95,6 +95,16 @@ double expected_in_band(const Lattice& lattice, std::span<const TexturedMesh> me
     return std::min(double(lattice.positions()), band);  // also where band is 0 / 0
 }
 
+constexpr double enough = 40000.0;           // positions kept: chance is then half a per cent
+constexpr double few = 400.0;                // so many tell how many cells give enough
+constexpr double most_measured = 1e18;       // positions of a lattice; ids fit 64 bits
+constexpr double first_positions = 20000.0;  // of the coarsest lattice
+
+// Fills the box exactly with cells of about this side.
+Lattice coarse_lattice(const Bounds& box, double side) {
+    return {box, glm::i64vec3(glm::max(glm::dvec3(1.0), glm::ceil(box.extent() / side - 1e-6))), 1.0};
+}
+
 }  // namespace
 
 double resolved_max_distance(const SourceParams& source, const Bounds& meshes_box) {
@@ -143,20 +153,6 @@ double expected_splats(const SourceParams& source, const Lattice& lattice,
     if (source.splats > 0 && has_automatic_voxels(source)) return double(source.splats);
     return expected_kept(lattice, meshes, max_distance);
 }
-
-namespace {
-
-constexpr double enough = 40000.0;           // positions kept: chance is then half a per cent
-constexpr double few = 400.0;                // so many tell how many cells give enough
-constexpr double most_measured = 1e18;       // positions of a lattice; ids fit 64 bits
-constexpr double first_positions = 20000.0;  // of the coarsest lattice
-
-// Fills the box exactly with cells of about this side.
-Lattice coarse_lattice(const Bounds& box, double side) {
-    return {box, glm::i64vec3(glm::max(glm::dvec3(1.0), glm::ceil(box.extent() / side - 1e-6))), 1.0};
-}
-
-}  // namespace
 
 Neighbourhood measure_neighbourhood(std::span<const TexturedMesh> meshes, const Bounds& box,
                                     double max_distance) {

@@ -70,6 +70,37 @@ SurfaceTriangle surface_triangle(const TexturedMesh& m, const Mesh::Triangle& fa
     return t;
 }
 
+// Blocks of the next finer level that begin inside the lattice and reach into the range; corners reach one
+// cell further than centres.
+std::vector<LatticeBlock> split(const std::vector<LatticeBlock>& parents, const Lattice& lattice,
+                                const CellRange& range, std::int64_t child_cells) {
+    const glm::i64vec3 first = range.lo / child_cells;
+    const glm::i64vec3 last = glm::min(lattice.n, range.hi - std::int64_t{1}) / child_cells;
+    std::vector<LatticeBlock> children;
+    children.reserve(parents.size() * 8);
+    for (const LatticeBlock& parent : parents) {
+        for (int child = 0; child < 8; ++child) {
+            const glm::i64vec3 at =
+                parent.at * std::int64_t{2} + glm::i64vec3(child & 1, child >> 1 & 1, child >> 2);
+            if (at.x >= first.x && at.y >= first.y && at.z >= first.z && at.x <= last.x && at.y <= last.y &&
+                at.z <= last.z)
+                children.push_back({at, parent.near_slot});
+        }
+    }
+    return children;
+}
+
+void drop_far(std::vector<LatticeBlock>& blocks, std::int64_t cells, const TriangleTree& tree,
+              const Lattice& lattice, const CullSettings& settings) {
+    parallel_each(blocks.size(), 256, [&](std::size_t i) {
+        LatticeBlock& block = blocks[i];
+        const BlockBall ball = block_ball(lattice, settings.jitter, block.at * cells, cells);
+        block.near_slot =
+            closest_point(tree, ball.center, settings.max_distance + ball.radius, block.near_slot).slot;
+    });
+    std::erase_if(blocks, [](const LatticeBlock& block) { return block.near_slot == ClosestPoint::none; });
+}
+
 }  // namespace
 
 Buffer<SurfaceTriangle> surface_triangles(std::span<const TexturedMesh> meshes, const glm::dvec3& spacing) {
@@ -115,41 +146,6 @@ std::optional<glm::vec2> uv_of(const SurfaceTriangle& triangle, const glm::dvec2
     if (!seen) return std::nullopt;
     return glm::vec2(seen->uv);
 }
-
-namespace {
-
-// Blocks of the next finer level that begin inside the lattice and reach into the range; corners reach one
-// cell further than centres.
-std::vector<LatticeBlock> split(const std::vector<LatticeBlock>& parents, const Lattice& lattice,
-                                const CellRange& range, std::int64_t child_cells) {
-    const glm::i64vec3 first = range.lo / child_cells;
-    const glm::i64vec3 last = glm::min(lattice.n, range.hi - std::int64_t{1}) / child_cells;
-    std::vector<LatticeBlock> children;
-    children.reserve(parents.size() * 8);
-    for (const LatticeBlock& parent : parents) {
-        for (int child = 0; child < 8; ++child) {
-            const glm::i64vec3 at =
-                parent.at * std::int64_t{2} + glm::i64vec3(child & 1, child >> 1 & 1, child >> 2);
-            if (at.x >= first.x && at.y >= first.y && at.z >= first.z && at.x <= last.x && at.y <= last.y &&
-                at.z <= last.z)
-                children.push_back({at, parent.near_slot});
-        }
-    }
-    return children;
-}
-
-void drop_far(std::vector<LatticeBlock>& blocks, std::int64_t cells, const TriangleTree& tree,
-              const Lattice& lattice, const CullSettings& settings) {
-    parallel_each(blocks.size(), 256, [&](std::size_t i) {
-        LatticeBlock& block = blocks[i];
-        const BlockBall ball = block_ball(lattice, settings.jitter, block.at * cells, cells);
-        block.near_slot =
-            closest_point(tree, ball.center, settings.max_distance + ball.radius, block.near_slot).slot;
-    });
-    std::erase_if(blocks, [](const LatticeBlock& block) { return block.near_slot == ClosestPoint::none; });
-}
-
-}  // namespace
 
 BlockBall block_ball(const Lattice& lattice, double jitter, const glm::i64vec3& first, std::int64_t cells) {
     const glm::i64vec3 last_corner = glm::min(first + (cells - 1), lattice.n);

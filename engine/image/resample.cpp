@@ -130,6 +130,34 @@ class RowWindow {
     Buffer<float> values_;
 };
 
+// Two neighbouring texels along an axis of n and the share of the second.
+struct Neighbours {
+    std::int64_t first, second;
+    float share;
+};
+
+Neighbours neighbours(double place, std::int64_t n) {
+    const double at = std::clamp(place - 0.5, 0.0, double(n - 1));
+    const double below = std::floor(at);
+    const auto first = std::int64_t(below);
+    return {first, std::min(first + 1, n - 1), float(at - below)};
+}
+
+void sample_linearly(const Image& image, const glm::dvec2& place, float* out) {
+    const bool inside =
+        place.x >= 0.0 && place.y >= 0.0 && place.x <= double(image.width) && place.y <= double(image.height);
+    if (!inside) return;
+    const Neighbours x = neighbours(place.x, image.width), y = neighbours(place.y, image.height);
+    const float* const a = image.at(x.first, y.first);
+    const float* const b = image.at(x.second, y.first);
+    const float* const c = image.at(x.first, y.second);
+    const float* const d = image.at(x.second, y.second);
+    for (int i = 0; i < image.channels; ++i) {
+        const float top = a[i] + (b[i] - a[i]) * x.share, bottom = c[i] + (d[i] - c[i]) * x.share;
+        out[i] = top + (bottom - top) * y.share;
+    }
+}
+
 }  // namespace
 
 ImageRows rows_of(Image image) {
@@ -201,38 +229,6 @@ Image enlarged(const Image& image, int times) {
     });
     return out;
 }
-
-namespace {
-
-// Two neighbouring texels along an axis of n and the share of the second.
-struct Neighbours {
-    std::int64_t first, second;
-    float share;
-};
-
-Neighbours neighbours(double place, std::int64_t n) {
-    const double at = std::clamp(place - 0.5, 0.0, double(n - 1));
-    const double below = std::floor(at);
-    const auto first = std::int64_t(below);
-    return {first, std::min(first + 1, n - 1), float(at - below)};
-}
-
-void sample_linearly(const Image& image, const glm::dvec2& place, float* out) {
-    const bool inside =
-        place.x >= 0.0 && place.y >= 0.0 && place.x <= double(image.width) && place.y <= double(image.height);
-    if (!inside) return;
-    const Neighbours x = neighbours(place.x, image.width), y = neighbours(place.y, image.height);
-    const float* const a = image.at(x.first, y.first);
-    const float* const b = image.at(x.second, y.first);
-    const float* const c = image.at(x.first, y.second);
-    const float* const d = image.at(x.second, y.second);
-    for (int i = 0; i < image.channels; ++i) {
-        const float top = a[i] + (b[i] - a[i]) * x.share, bottom = c[i] + (d[i] - c[i]) * x.share;
-        out[i] = top + (bottom - top) * y.share;
-    }
-}
-
-}  // namespace
 
 PixelMap map_to_width(const Image& image, std::int64_t width, std::int64_t height) {
     const double scale = double(image.width) / double(width);

@@ -99,6 +99,27 @@ void finish(const ShadedSplats& shaded, Clock::time_point start, LookStatistics*
     statistics->seconds = seconds_since(start);
 }
 
+constexpr std::int64_t splats_per_chunk = 1 << 14;
+
+/// The rows of the set that the splats are: both are in ascending order of id, and no row is there twice.
+Buffer<std::uint32_t> rows_of(const SplatSet& set, const ShadedSplats& shaded) {
+    Buffer<std::uint32_t> rows(shaded.id.size());
+    std::size_t row = 0;
+    for (std::size_t i = 0; i < rows.size(); ++i, ++row) {
+        while (set.id[row] != shaded.id[i]) ++row;
+        rows[i] = std::uint32_t(row);
+    }
+    return rows;
+}
+
+/// The matrix from the ball of the radius to the ellipsoid of three standard deviations.
+glm::mat3 shape_of(const SplatSet& set, std::size_t row) {
+    if (!(set.radius[row] > 0.0f)) return glm::mat3(0.0f);
+    glm::dmat3 m = matrix_of_quaternion(glm::dvec4(set.rotation[row]));
+    for (int k = 0; k < 3; ++k) m[k] *= 3.0 * double(set.scale[row][k]) / double(set.radius[row]);
+    return glm::mat3(m);
+}
+
 }  // namespace
 
 OptionalColumns columns_read(const Look& look) {
@@ -147,31 +168,6 @@ ShadedSplats apply_look(const SplatSet& set, const Look& look, const LookInputs&
     trim(shaded);
     return shaded;
 }
-
-namespace {
-
-constexpr std::int64_t splats_per_chunk = 1 << 14;
-
-/// The rows of the set that the splats are: both are in ascending order of id, and no row is there twice.
-Buffer<std::uint32_t> rows_of(const SplatSet& set, const ShadedSplats& shaded) {
-    Buffer<std::uint32_t> rows(shaded.id.size());
-    std::size_t row = 0;
-    for (std::size_t i = 0; i < rows.size(); ++i, ++row) {
-        while (set.id[row] != shaded.id[i]) ++row;
-        rows[i] = std::uint32_t(row);
-    }
-    return rows;
-}
-
-/// The matrix from the ball of the radius to the ellipsoid of three standard deviations.
-glm::mat3 shape_of(const SplatSet& set, std::size_t row) {
-    if (!(set.radius[row] > 0.0f)) return glm::mat3(0.0f);
-    glm::dmat3 m = matrix_of_quaternion(glm::dvec4(set.rotation[row]));
-    for (int k = 0; k < 3; ++k) m[k] *= 3.0 * double(set.scale[row][k]) / double(set.radius[row]);
-    return glm::mat3(m);
-}
-
-}  // namespace
 
 Buffer<glm::vec3> seen_colors(const SplatSet& set, const SeenFrom& from, const Progress& progress) {
     assert(!set.harmonics.empty());

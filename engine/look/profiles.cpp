@@ -53,23 +53,6 @@ std::array<double, LOOK_MAX_POINTS> tangents(std::span<const glm::vec2> points) 
     return tangent;
 }
 
-}  // namespace
-
-LookCurve make_curve(std::span<const glm::vec2> points, const std::string& key) {
-    check_points(points, key);
-    LookCurve curve{};
-    curve.count = 1;
-    curve.knots[0] = {0.0f, 1.0f, 0.0f, 0.0f};
-    if (points.empty()) return curve;
-    const auto tangent = tangents(points);
-    curve.count = int(points.size());
-    for (std::size_t i = 0; i < points.size(); ++i)
-        curve.knots[i] = {points[i].x, points[i].y, float(tangent[i]), 0.0f};
-    return curve;
-}
-
-namespace {
-
 constexpr int panels_per_piece = 8;
 
 // Where a profile may have a corner or a jump, in its own x.
@@ -100,6 +83,19 @@ double integrand(const ColumnProfile& column, double vertical_scale, double x) {
 }
 
 }  // namespace
+
+LookCurve make_curve(std::span<const glm::vec2> points, const std::string& key) {
+    check_points(points, key);
+    LookCurve curve{};
+    curve.count = 1;
+    curve.knots[0] = {0.0f, 1.0f, 0.0f, 0.0f};
+    if (points.empty()) return curve;
+    const auto tangent = tangents(points);
+    curve.count = int(points.size());
+    for (std::size_t i = 0; i < points.size(); ++i)
+        curve.knots[i] = {points[i].x, points[i].y, float(tangent[i]), 0.0f};
+    return curve;
+}
 
 double column_integral(const ColumnProfile& column, double vertical_scale) {
     const std::vector<double> ends = piece_ends(column);

@@ -46,6 +46,16 @@ double alpha_together(const DepthTable& depths, double n, double cover) {
     return depths.alpha(n * depths.depth(std::min(1.0, cover)));
 }
 
+/// The level down to which noise shows in the mean over a place so wide: of cells that are narrower than its
+/// spread the mean is 1, and a few samples would only miss that.
+int level_seen(const CloudPlace& place) {
+    const float spread = std::sqrt(glm::dot(place.spread, place.spread) / 3.0f);
+    const float octaves_per_unit = 1.44269504f;  // 1 / ln 2
+    const float octaves =
+        octaves_per_unit * shared::as_log(place.radius / std::max(spread, 0.01f * place.radius));
+    return std::max(0, int(std::floor(octaves)) + 3);
+}
+
 }  // namespace
 
 DepthTable::DepthTable(const Falloff& falloff) : of_faint_(falloff_integral(falloff)) {
@@ -121,20 +131,6 @@ NodeSplat splat_of(const MergeSettings& settings, const NodeSums& sums, const Ac
     splat.alpha = float(alpha);
     return splat;
 }
-
-namespace {
-
-/// The level down to which noise shows in the mean over a place so wide: of cells that are narrower than its
-/// spread the mean is 1, and a few samples would only miss that.
-int level_seen(const CloudPlace& place) {
-    const float spread = std::sqrt(glm::dot(place.spread, place.spread) / 3.0f);
-    const float octaves_per_unit = 1.44269504f;  // 1 / ln 2
-    const float octaves =
-        octaves_per_unit * shared::as_log(place.radius / std::max(spread, 0.01f * place.radius));
-    return std::max(0, int(std::floor(octaves)) + 3);
-}
-
-}  // namespace
 
 /// The mean at the corners of a box, which has the second moments of the place; as the final frame fades from
 /// one level to the next, so does this.

@@ -46,51 +46,6 @@ std::string one_line(std::string text) {
     return text;
 }
 
-}  // namespace
-
-MetadataEntries metadata_entries(const FrameMetadata& metadata) {
-    MetadataEntries entries = {
-        {"astrosplat/version", ASTROSPLAT_VERSION},
-        {"astrosplat/frameHash", metadata.frame_hash},
-        {"astrosplat/pixelHash", metadata.pixel_hash},
-        {"astrosplat/seed", std::to_string(metadata.seed)},
-        {"astrosplat/frame", std::to_string(metadata.frame)},
-        {"astrosplat/fps", shortest(metadata.fps)},
-    };
-    auto add = [&](const char* name, const std::string& value) {
-        if (!value.empty()) entries.emplace_back(name, one_line(value));
-    };
-    if (!metadata.hashed_text.empty())
-        entries.emplace_back("astrosplat/hashed", pack_hashed_text(metadata.hashed_text));
-    add("astrosplat/title", metadata.provenance.title);
-    add("astrosplat/credit", metadata.provenance.credit);
-    add("astrosplat/type", metadata.provenance.type);
-    return entries;
-}
-
-std::string metadata_lines(const MetadataEntries& entries) {
-    std::string lines;
-    for (const auto& [name, value] : entries) lines += fmt::format("{}={}\n", name, value);
-    return lines;
-}
-
-std::map<std::string, std::string> parse_metadata_lines(std::string_view lines) {
-    std::map<std::string, std::string> entries;
-    for (const auto& [name, value] : key_lines(lines, "=")) entries.emplace(name, value);
-    return entries;
-}
-
-Rational rational_fps(double fps) {
-    double ntsc = std::round(fps * 1.001);
-    if (std::fabs(ntsc * 1000.0 / 1001.0 - fps) < 0.0005 && std::fabs(ntsc - fps) > 0.0005)
-        return {int(ntsc) * 1000, 1001};
-    int thousandths = int(std::round(std::fmin(fps, 1e6) * 1000.0));
-    int common = std::gcd(thousandths, 1000);
-    return {thousandths / common, 1000 / common};
-}
-
-namespace {
-
 constexpr std::size_t longest_text = std::size_t{64} << 20;  // bytes; of a damaged file's promises
 
 std::vector<KeyLine> hashed_lines(std::string_view text) {
@@ -112,57 +67,6 @@ std::vector<std::pair<std::string, std::string>> values_by_key(const std::string
     }
     return values;
 }
-
-}  // namespace
-
-std::string pack_hashed_text(const std::string& text) {
-    uLongf size = compressBound(static_cast<uLong>(text.size()));
-    std::string bytes(size, '\0');
-    if (compress2(reinterpret_cast<Bytef*>(bytes.data()), &size, reinterpret_cast<const Bytef*>(text.data()),
-                  static_cast<uLong>(text.size()), Z_BEST_COMPRESSION) != Z_OK)
-        throw std::bad_alloc();  // the only way it can fail, with room for all of it
-    bytes.resize(size);
-    return base64(bytes);
-}
-
-std::optional<std::string> unpack_hashed_text(const std::string& packed) {
-    const std::optional<std::string> bytes = bytes_of_base64(packed);
-    if (!bytes || bytes->empty()) return std::nullopt;
-    z_stream stream = {};
-    if (inflateInit(&stream) != Z_OK) return std::nullopt;
-    stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes->data()));
-    stream.avail_in = static_cast<uInt>(bytes->size());
-    std::string text;
-    int state = Z_OK;
-    while (state == Z_OK && text.size() < longest_text) {
-        char portion[16384];
-        stream.next_out = reinterpret_cast<Bytef*>(portion);
-        stream.avail_out = sizeof portion;
-        state = inflate(&stream, Z_NO_FLUSH);
-        text.append(portion, sizeof portion - stream.avail_out);
-    }
-    inflateEnd(&stream);
-    return state == Z_STREAM_END ? std::optional(text) : std::nullopt;
-}
-
-std::optional<std::string> hashed_value(const std::string& text, const std::string& key) {
-    for (const KeyLine& line : hashed_lines(text))
-        if (line.key == key) return std::string(line.value);
-    return std::nullopt;
-}
-
-std::vector<KeyDifference> differing_keys(const std::string& first, const std::string& second) {
-    const auto a = values_by_key(first), b = values_by_key(second);
-    std::map<std::string, std::string> of_a(a.begin(), a.end()), of_b(b.begin(), b.end());
-    std::vector<KeyDifference> differences;
-    for (const auto& [key, value] : a)
-        if (!of_b.count(key) || of_b[key] != value) differences.push_back({key, value, of_b[key]});
-    for (const auto& [key, value] : b)
-        if (!of_a.count(key)) differences.push_back({key, "", value});
-    return differences;
-}
-
-namespace {
 
 Eye eye_of(std::string_view name) {
     for (const Eye eye : {Eye::left, Eye::right})
@@ -219,6 +123,94 @@ bool picture_is_whole(const fs::path& file) try {
 }
 
 }  // namespace
+
+MetadataEntries metadata_entries(const FrameMetadata& metadata) {
+    MetadataEntries entries = {
+        {"astrosplat/version", ASTROSPLAT_VERSION},
+        {"astrosplat/frameHash", metadata.frame_hash},
+        {"astrosplat/pixelHash", metadata.pixel_hash},
+        {"astrosplat/seed", std::to_string(metadata.seed)},
+        {"astrosplat/frame", std::to_string(metadata.frame)},
+        {"astrosplat/fps", shortest(metadata.fps)},
+    };
+    auto add = [&](const char* name, const std::string& value) {
+        if (!value.empty()) entries.emplace_back(name, one_line(value));
+    };
+    if (!metadata.hashed_text.empty())
+        entries.emplace_back("astrosplat/hashed", pack_hashed_text(metadata.hashed_text));
+    add("astrosplat/title", metadata.provenance.title);
+    add("astrosplat/credit", metadata.provenance.credit);
+    add("astrosplat/type", metadata.provenance.type);
+    return entries;
+}
+
+std::string metadata_lines(const MetadataEntries& entries) {
+    std::string lines;
+    for (const auto& [name, value] : entries) lines += fmt::format("{}={}\n", name, value);
+    return lines;
+}
+
+std::map<std::string, std::string> parse_metadata_lines(std::string_view lines) {
+    std::map<std::string, std::string> entries;
+    for (const auto& [name, value] : key_lines(lines, "=")) entries.emplace(name, value);
+    return entries;
+}
+
+Rational rational_fps(double fps) {
+    double ntsc = std::round(fps * 1.001);
+    if (std::fabs(ntsc * 1000.0 / 1001.0 - fps) < 0.0005 && std::fabs(ntsc - fps) > 0.0005)
+        return {int(ntsc) * 1000, 1001};
+    int thousandths = int(std::round(std::fmin(fps, 1e6) * 1000.0));
+    int common = std::gcd(thousandths, 1000);
+    return {thousandths / common, 1000 / common};
+}
+
+std::string pack_hashed_text(const std::string& text) {
+    uLongf size = compressBound(static_cast<uLong>(text.size()));
+    std::string bytes(size, '\0');
+    if (compress2(reinterpret_cast<Bytef*>(bytes.data()), &size, reinterpret_cast<const Bytef*>(text.data()),
+                  static_cast<uLong>(text.size()), Z_BEST_COMPRESSION) != Z_OK)
+        throw std::bad_alloc();  // the only way it can fail, with room for all of it
+    bytes.resize(size);
+    return base64(bytes);
+}
+
+std::optional<std::string> unpack_hashed_text(const std::string& packed) {
+    const std::optional<std::string> bytes = bytes_of_base64(packed);
+    if (!bytes || bytes->empty()) return std::nullopt;
+    z_stream stream = {};
+    if (inflateInit(&stream) != Z_OK) return std::nullopt;
+    stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes->data()));
+    stream.avail_in = static_cast<uInt>(bytes->size());
+    std::string text;
+    int state = Z_OK;
+    while (state == Z_OK && text.size() < longest_text) {
+        char portion[16384];
+        stream.next_out = reinterpret_cast<Bytef*>(portion);
+        stream.avail_out = sizeof portion;
+        state = inflate(&stream, Z_NO_FLUSH);
+        text.append(portion, sizeof portion - stream.avail_out);
+    }
+    inflateEnd(&stream);
+    return state == Z_STREAM_END ? std::optional(text) : std::nullopt;
+}
+
+std::optional<std::string> hashed_value(const std::string& text, const std::string& key) {
+    for (const KeyLine& line : hashed_lines(text))
+        if (line.key == key) return std::string(line.value);
+    return std::nullopt;
+}
+
+std::vector<KeyDifference> differing_keys(const std::string& first, const std::string& second) {
+    const auto a = values_by_key(first), b = values_by_key(second);
+    std::map<std::string, std::string> of_a(a.begin(), a.end()), of_b(b.begin(), b.end());
+    std::vector<KeyDifference> differences;
+    for (const auto& [key, value] : a)
+        if (!of_b.count(key) || of_b[key] != value) differences.push_back({key, value, of_b[key]});
+    for (const auto& [key, value] : b)
+        if (!of_a.count(key)) differences.push_back({key, "", value});
+    return differences;
+}
 
 ImageInfo read_image_info(const fs::path& file) {
     const auto in = open_picture(file);

@@ -41,7 +41,7 @@ void write_frame(const FrameFile& target, const RenderedFrame& frame, const Fram
     const FrameFormat format = resolve_format(target.output, target.file);
     check_frame(frame, target.output);
     make_folder(target.file);
-    frame_file_formats[format.kind].write(target, format, frame, metadata);
+    frame_file_formats[std::size_t(format.kind)].write(target, format, frame, metadata);
 }
 
 std::string pixel_hash(const Image& image) {

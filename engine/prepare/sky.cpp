@@ -87,6 +87,15 @@ Vector<6> fit_channel(std::vector<SkyCell> cells, int degree) {
     return surface;
 }
 
+// Multiplies all channels of every pixel by factor(x, y).
+template <class Factor>
+void fade(Image& image, const Factor& factor) {
+    for_each_pixel(image, [&](std::int64_t x, std::int64_t y) {
+        const float f = factor(x, y);
+        for (int c = 0; c < image.channels; ++c) image.at(x, y)[c] *= f;
+    });
+}
+
 }  // namespace
 
 double SkySurface::at(double u, double v, int channel) const { return value_of(coefficients[channel], u, v); }
@@ -108,19 +117,6 @@ void subtract_sky(Image& image, const SkySurface& sky) {
         for (int c = 0; c < 3; ++c) p[c] -= alpha * float(sky.at(u, v, c));
     });
 }
-
-namespace {
-
-// Multiplies all channels of every pixel by factor(x, y).
-template <class Factor>
-void fade(Image& image, const Factor& factor) {
-    for_each_pixel(image, [&](std::int64_t x, std::int64_t y) {
-        const float f = factor(x, y);
-        for (int c = 0; c < image.channels; ++c) image.at(x, y)[c] *= f;
-    });
-}
-
-}  // namespace
 
 double inside(const CutEllipse& ellipse, double x, double y) {
     const double angle = real::radians(ellipse.angle_deg), c = real::cos(angle), s = real::sin(angle);

@@ -200,6 +200,18 @@ bool start_trial(Trial& trial, const std::vector<Sample>& samples) {
     return true;
 }
 
+double squares_left(const std::vector<Sample>& samples, const PictureStar& star) {
+    Trial trial{star};
+    if (!start_trial(trial, samples)) return 1e30;
+    double squares = 0.0;
+    const double unit = unit_of(star.profile);
+    for (const Sample& sample : samples) {
+        const double d = sample.mean() - row_at(trial, unit, sample).model;
+        squares += d * d;
+    }
+    return squares / (star.pixel_noise * star.pixel_noise);
+}
+
 }  // namespace
 
 bool fit_star(const Image& image, const PixelMask& unusable, const StarWidths& widths, PictureStar& star) {
@@ -223,22 +235,6 @@ bool fit_star(const Image& image, const PixelMask& unusable, const StarWidths& w
     star = trial.star;
     return true;
 }
-
-namespace {
-
-double squares_left(const std::vector<Sample>& samples, const PictureStar& star) {
-    Trial trial{star};
-    if (!start_trial(trial, samples)) return 1e30;
-    double squares = 0.0;
-    const double unit = unit_of(star.profile);
-    for (const Sample& sample : samples) {
-        const double d = sample.mean() - row_at(trial, unit, sample).model;
-        squares += d * d;
-    }
-    return squares / (star.pixel_noise * star.pixel_noise);
-}
-
-}  // namespace
 
 double shape_misfit(const Image& image, const PixelMask& unusable, const PictureStar& star,
                     const StarProfile& window) {

@@ -276,33 +276,6 @@ void judge(Search& search, double threshold) {
     }
 }
 
-}  // namespace
-
-StarField find_stars(const Image& image, const StarSettings& settings, const Progress& progress) {
-    Search search = begin_search(image, settings);
-    std::vector<PictureStar> saturated = take_saturated_ones(search);
-    search_once(search, settings, progress);
-    for (int pass = 0; pass < 2; ++pass) {  // stars of another shape tell another profile
-        measure_profile(search);
-        choose_shapes(search, progress);
-        fit_all(search, 0, progress);
-    }
-    measure_profile(search);
-    progress.at(0.5);
-    for (int pass = 0; pass < 2; ++pass) {
-        search_once(search, settings, progress);
-        fit_all(search, 0, progress);
-        judge(search, settings.threshold);
-        progress.at(0.7 + 0.2 * pass);
-    }
-    StarField field{std::move(saturated), search.widths, std::move(search.image), std::move(search.covered)};
-    for (std::size_t i = 0; i < search.stars.size(); ++i)
-        if (!search.lost[i]) field.stars.push_back(search.stars[i]);
-    return field;
-}
-
-namespace {
-
 constexpr double trusted_height = 6.0;  // of a profile over a pixel's noise: above, its pixels are filled
 constexpr double least_trusted = 1.0;   // and below, they are what the picture shows
 constexpr double too_dark = 2.0;        // times the noise: profiles were wider or higher than the star
@@ -344,6 +317,29 @@ void keep_above_zero(const Image& before, Image& after) {
 double whole_flux(const PictureStar& star) { return star.flux(0) + star.flux(1) + star.flux(2); }
 
 }  // namespace
+
+StarField find_stars(const Image& image, const StarSettings& settings, const Progress& progress) {
+    Search search = begin_search(image, settings);
+    std::vector<PictureStar> saturated = take_saturated_ones(search);
+    search_once(search, settings, progress);
+    for (int pass = 0; pass < 2; ++pass) {  // stars of another shape tell another profile
+        measure_profile(search);
+        choose_shapes(search, progress);
+        fit_all(search, 0, progress);
+    }
+    measure_profile(search);
+    progress.at(0.5);
+    for (int pass = 0; pass < 2; ++pass) {
+        search_once(search, settings, progress);
+        fit_all(search, 0, progress);
+        judge(search, settings.threshold);
+        progress.at(0.7 + 0.2 * pass);
+    }
+    StarField field{std::move(saturated), search.widths, std::move(search.image), std::move(search.covered)};
+    for (std::size_t i = 0; i < search.stars.size(); ++i)
+        if (!search.lost[i]) field.stars.push_back(search.stars[i]);
+    return field;
+}
 
 StarRemoval remove_stars(const Image& image, const StarSettings& settings, const Progress& progress) {
     StarField field = find_stars(image, settings, progress);

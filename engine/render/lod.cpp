@@ -31,6 +31,27 @@ double centre_ball(int level) { return 1.0 - 0.5 * child_radius_scale(level); }
 
 float lerp(float a, float b, float t) { return a + (b - a) * t; }
 
+constexpr float octave_gain = 0.75f;          // amplitude of an octave over that of the one twice as wide
+constexpr float unit_gain = 0.66143783f;      // sqrt(1 - octave_gain^2): all octaves have variance 1 together
+constexpr float noise_deviation = 0.260521f;  // of as_noise over space
+constexpr float farthest_cell = 0x1p30f;      // as_noise counts cells in 32 bits
+constexpr float largest_exponent = 3.5f;      // times the strength; rarer than once in 2000 children
+
+// ln of the mean of e^(x N) over space, N = as_noise over its deviation: by its cumulants of order 2, 4 and
+// 6, within 0.002 for x <= 1.3.
+float log_mean_exponential(float x) {
+    const float x2 = x * x;
+    return x2 * (0.5f + x2 * (-0.019142f + x2 * 0.00179f));
+}
+
+// Share of an octave whose cells are 2^-t diameters of the splat wide: all from the diameter down to that of
+// the children, (level - 1) octaves below, and less over one octave beyond either, so that a growing splat
+// takes octaves up and drops them smoothly.
+float octave_share(float t, int level) {
+    const float last = float(level - 2);
+    return std::clamp(std::min(t + 1.0f, last + 1.0f - t), 0.0f, 1.0f);
+}
+
 }  // namespace
 
 int finest_level(int max_children) {
@@ -216,31 +237,6 @@ glm::vec3 LodTable::child_offset(int level, std::int64_t child, std::uint32_t se
     const real::OnCircle around = real::on_circle(uniform(2));
     return r * glm::vec3(ring * around.cosine, ring * around.sine, z);
 }
-
-namespace {
-
-constexpr float octave_gain = 0.75f;          // amplitude of an octave over that of the one twice as wide
-constexpr float unit_gain = 0.66143783f;      // sqrt(1 - octave_gain^2): all octaves have variance 1 together
-constexpr float noise_deviation = 0.260521f;  // of as_noise over space
-constexpr float farthest_cell = 0x1p30f;      // as_noise counts cells in 32 bits
-constexpr float largest_exponent = 3.5f;      // times the strength; rarer than once in 2000 children
-
-// ln of the mean of e^(x N) over space, N = as_noise over its deviation: by its cumulants of order 2, 4 and
-// 6, within 0.002 for x <= 1.3.
-float log_mean_exponential(float x) {
-    const float x2 = x * x;
-    return x2 * (0.5f + x2 * (-0.019142f + x2 * 0.00179f));
-}
-
-// Share of an octave whose cells are 2^-t diameters of the splat wide: all from the diameter down to that of
-// the children, (level - 1) octaves below, and less over one octave beyond either, so that a growing splat
-// takes octaves up and drops them smoothly.
-float octave_share(float t, int level) {
-    const float last = float(level - 2);
-    return std::clamp(std::min(t + 1.0f, last + 1.0f - t), 0.0f, 1.0f);
-}
-
-}  // namespace
 
 ChildNoise make_child_noise(float strength, float radius, int level, std::uint32_t seed) {
     ChildNoise noise;

@@ -297,7 +297,7 @@ void TileBins::scatter(std::span<const LayerProjection> layers, std::span<const 
                        const Progress& progress) {
     const std::vector<Chunk> chunks = chunks_of(layers, slab, blocks);
     sums_.assign(chunks.size(), {});
-    std::vector<Writer> writers(std::size_t(thread_count()));
+    std::vector<Writer> writers(thread_count());
     for (Writer& writer : writers) writer.cursors.resize(bins());
     parallel_for(std::int64_t(chunks.size()), [&](std::int64_t c, int worker) {
         const Chunk& chunk = chunks[c];

@@ -37,6 +37,31 @@ StarPsf star_psf(const StarsParams& stars) {
     return psf;
 }
 
+constexpr int places_on_path = 1024;  // about
+constexpr double tolerance = 0.01;    // of the distance that stars lie from the path
+
+const Track* position_track(const Scene& scene) { return moving_track(scene, "camera.position"); }
+
+/// Places of the scene's camera: of one that is animated, in equal steps between its keyframes; empty for one
+/// without a position.
+std::vector<glm::dvec3> camera_places(const Scene& scene) {
+    const Track* const track = position_track(scene);
+    if (!track)
+        return scene.camera.position ? std::vector{*scene.camera.position} : std::vector<glm::dvec3>();
+    const std::vector<Keyframe<glm::dvec3>> keyframes = position_keyframes(*track);
+    const auto parts = int(keyframes.size()) - 1;
+    const int steps = std::max(1, places_on_path / std::max(1, parts));  // between two keyframes
+    std::vector<glm::dvec3> places;
+    const auto add = [&](double frame) {
+        places.push_back(evaluate_position(keyframes, frame, track->ends, track->constant_speed));
+    };
+    for (std::size_t k = 0; k + 1 < keyframes.size(); ++k)
+        for (int i = 0; i < steps; ++i)
+            add(keyframes[k].frame + (keyframes[k + 1].frame - keyframes[k].frame) * i / steps);
+    add(keyframes.back().frame);
+    return places;
+}
+
 }  // namespace
 
 RenderLayer render_layer(const LayerParams& params) {
@@ -76,7 +101,7 @@ LookInputs look_inputs(const LayerParams& params) {
     inputs.seed = resolved_seed(params.source.seed, params.name);
     inputs.falloff_integral = falloff_integral(params.render.falloff);
     inputs.falloff_variance = falloff_variance(params.render.falloff);
-    inputs.column = column_laws[params.render.blend];
+    inputs.column = column_laws[std::size_t(params.render.blend)];
     return inputs;
 }
 
@@ -100,35 +125,6 @@ void check_extent(const Bounds& box, const std::string& layer, double farthest) 
 bool has_environment(const EnvironmentParams& params) {
     return !params.image.empty() || !params.cube.empty() || !params.tile.empty();
 }
-
-namespace {
-
-constexpr int places_on_path = 1024;  // about
-constexpr double tolerance = 0.01;    // of the distance that stars lie from the path
-
-const Track* position_track(const Scene& scene) { return moving_track(scene, "camera.position"); }
-
-/// Places of the scene's camera: of one that is animated, in equal steps between its keyframes; empty for one
-/// without a position.
-std::vector<glm::dvec3> camera_places(const Scene& scene) {
-    const Track* const track = position_track(scene);
-    if (!track)
-        return scene.camera.position ? std::vector{*scene.camera.position} : std::vector<glm::dvec3>();
-    const std::vector<Keyframe<glm::dvec3>> keyframes = position_keyframes(*track);
-    const auto parts = int(keyframes.size()) - 1;
-    const int steps = std::max(1, places_on_path / std::max(1, parts));  // between two keyframes
-    std::vector<glm::dvec3> places;
-    const auto add = [&](double frame) {
-        places.push_back(evaluate_position(keyframes, frame, track->ends, track->constant_speed));
-    };
-    for (std::size_t k = 0; k + 1 < keyframes.size(); ++k)
-        for (int i = 0; i < steps; ++i)
-            add(keyframes[k].frame + (keyframes[k + 1].frame - keyframes[k].frame) * i / steps);
-    add(keyframes.back().frame);
-    return places;
-}
-
-}  // namespace
 
 bool has_camera_places(const Scene& scene) { return scene.camera.position || position_track(scene); }
 

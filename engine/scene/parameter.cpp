@@ -62,6 +62,18 @@ std::string list_to_toml(const Value::List& list) {
     return text + "]";
 }
 
+std::string range_words(const ParameterSpec& spec) {
+    // The limits of all numbers are not repeated with each.
+    const bool low = spec.min != -largest_number, high = spec.max != largest_number;
+    if (low && high && !spec.below_max)
+        return fmt::format(" from {} to {}", short_number(spec.min), short_number(spec.max));
+    std::string words;
+    if (low) words += fmt::format(" of at least {}", short_number(spec.min));
+    if (low && high) words += " and";
+    if (high) words += fmt::format(" {} {}", spec.below_max ? "below" : "of at most", short_number(spec.max));
+    return words;
+}
+
 }  // namespace
 
 std::string to_toml(const Value& value) {
@@ -95,22 +107,6 @@ bool has_effect(const ParameterSpec& spec, const std::function<const Parameter*(
         return met == condition.wanted;
     });
 }
-
-namespace {
-
-std::string range_words(const ParameterSpec& spec) {
-    // The limits of all numbers are not repeated with each.
-    const bool low = spec.min != -largest_number, high = spec.max != largest_number;
-    if (low && high && !spec.below_max)
-        return fmt::format(" from {} to {}", short_number(spec.min), short_number(spec.max));
-    std::string words;
-    if (low) words += fmt::format(" of at least {}", short_number(spec.min));
-    if (low && high) words += " and";
-    if (high) words += fmt::format(" {} {}", spec.below_max ? "below" : "of at most", short_number(spec.max));
-    return words;
-}
-
-}  // namespace
 
 std::string expectation(const ParameterSpec& spec) {
     const std::string or_nothing = spec.nothing.text() ? " or \"" + *spec.nothing.text() + "\"" : "";
@@ -171,7 +167,7 @@ Value from_numbers(const ParameterSpec& spec, const std::vector<double>& numbers
     if (spec.type == Type::curve) return curve_from(numbers);
     if (spec.type == Type::choice) {
         const double last = double(spec.choices.size()) - 1.0;
-        return spec.choices[std::clamp(std::floor(first + 0.5), 0.0, last)];
+        return spec.choices[std::size_t(std::clamp(std::floor(first + 0.5), 0.0, last))];
     }
     Value::List list;
     for (const double x : numbers) list.emplace_back(clamped(x));

@@ -81,6 +81,89 @@ SplatSet read_source(const SourceParams& source, const Progress& progress) {
     return set;
 }
 
+constexpr std::int64_t enough_texels = 65536;  // only the pictures' shape counts
+
+bool has_automatic_height(const SourceParams& source) {
+    return source.structure.kind != StructureKind::columns && source.structure.height == 0.0;
+}
+
+bool has_automatic_width(const SourceParams& source) {
+    const bool planar =
+        source.uv == UvMode::planar_xy || source.uv == UvMode::planar_xz || source.uv == UvMode::planar_yz;
+    return planar && source.uv_width == 0.0;
+}
+
+double body_height(const SourceParams& source, const TexturedMesh& mesh) {
+    if (mesh.textures.empty()) return 0.0;
+    const Texture& texture = mesh.textures.front();
+    const bool known = texture.file_width > 0;
+    const std::int64_t width = known ? texture.file_width : texture.image.width,
+                       height = known ? texture.file_height : texture.image.height;
+    const UvSurface surface(mesh.mesh, 0, width, height, false, mesh.camera ? &*mesh.camera : nullptr);
+    const double texels_per_unit = surface.texels_per_unit();
+    if (!(texels_per_unit > 0.0)) return 0.0;
+    StructureParams params = source.structure;
+    if (mesh.mesh.name != "plane") params.margin = 0.0;  // as add_margins has it
+    const auto beyond = std::int64_t(2.0 * params.margin * double(width));
+    return placement_without_fields(width + beyond, height + beyond, params, texels_per_unit).height /
+           texels_per_unit;
+}
+
+constexpr double most_splats = 1 << 16;
+
+/// Mean of the texels [x, x + step) x [y, y + step) that there are, premultiplied.
+glm::vec4 mean_of(const Image& image, std::int64_t x, std::int64_t y, std::int64_t step) {
+    glm::vec4 sum(0.0f);
+    const std::int64_t right = std::min(x + step, image.width), below = std::min(y + step, image.height);
+    for (std::int64_t j = y; j < below; ++j)
+        for (std::int64_t i = x; i < right; ++i) {
+            const float* texel = image.at(i, j);
+            sum += glm::vec4(texel[0], texel[1], texel[2], texel[3]);
+        }
+    return sum / float((right - x) * (below - y));
+}
+
+/// The side of a part in texels, so that all pictures have so many together.
+std::int64_t step_of(std::span<const TexturedMesh> meshes) {
+    double texels = 0.0;
+    for (const TexturedMesh& mesh : meshes)
+        for (const Texture& texture : mesh.textures)
+            texels += double(texture.image.width) * double(texture.image.height);
+    return std::max<std::int64_t>(1, std::llround(std::ceil(std::sqrt(texels / most_splats))));
+}
+
+void add_picture(const TexturedMesh& mesh, std::uint32_t material, std::int64_t step, KeptStore& store) {
+    const Texture& texture = mesh.textures[material];
+    const Image& image = texture.image;
+    const UvSurface surface(mesh.mesh, material, image.width, image.height,
+                            texture.wrap == TextureSettings::Wrap::repeat,
+                            mesh.camera ? &*mesh.camera : nullptr);
+    std::uint64_t id = std::uint64_t{material} << 32;
+    for (std::int64_t y = 0; y < image.height; y += step)
+        for (std::int64_t x = 0; x < image.width; x += step, ++id) {
+            const glm::vec4 mean = mean_of(image, x, y, step);
+            if (!(mean.a > 0.0f)) continue;
+            const float half = 0.5f * float(step);
+            const glm::vec2 uv((float(x) + half) / float(image.width),
+                               1.0f - (float(y) + half) / float(image.height));
+            surface.at(uv, [&](const SurfacePlace& place) {
+                store.add(
+                    {place.position, glm::vec3(mean) / mean.a, mean.a, 0.0f, id, uv, place.normal, 0, 0});
+            });
+        }
+}
+
+/// Scene units from one part to the next, where the mesh has the most texels a unit.
+double spacing_of(const TexturedMesh& mesh, std::int64_t step) {
+    double texels_per_unit = 0.0;
+    for (std::uint32_t material = 0; material < mesh.textures.size(); ++material) {
+        const Image& image = mesh.textures[material].image;
+        const UvSurface surface(mesh.mesh, material, image.width, image.height, true);
+        texels_per_unit = std::max(texels_per_unit, surface.texels_per_unit());
+    }
+    return texels_per_unit > 0.0 ? double(step) / texels_per_unit : 0.0;
+}
+
 }  // namespace
 
 std::int64_t room_for_bodies() { return available_memory_bytes() / 10 * 9; }
@@ -165,38 +248,6 @@ SplatSet load_source(const SourceParams& source, const std::string& layer_name, 
     }
 }
 
-namespace {
-
-constexpr std::int64_t enough_texels = 65536;  // only the pictures' shape counts
-
-bool has_automatic_height(const SourceParams& source) {
-    return source.structure.kind != StructureKind::columns && source.structure.height == 0.0;
-}
-
-bool has_automatic_width(const SourceParams& source) {
-    const bool planar =
-        source.uv == UvMode::planar_xy || source.uv == UvMode::planar_xz || source.uv == UvMode::planar_yz;
-    return planar && source.uv_width == 0.0;
-}
-
-double body_height(const SourceParams& source, const TexturedMesh& mesh) {
-    if (mesh.textures.empty()) return 0.0;
-    const Texture& texture = mesh.textures.front();
-    const bool known = texture.file_width > 0;
-    const std::int64_t width = known ? texture.file_width : texture.image.width,
-                       height = known ? texture.file_height : texture.image.height;
-    const UvSurface surface(mesh.mesh, 0, width, height, false, mesh.camera ? &*mesh.camera : nullptr);
-    const double texels_per_unit = surface.texels_per_unit();
-    if (!(texels_per_unit > 0.0)) return 0.0;
-    StructureParams params = source.structure;
-    if (mesh.mesh.name != "plane") params.margin = 0.0;  // as add_margins has it
-    const auto beyond = std::int64_t(2.0 * params.margin * double(width));
-    return placement_without_fields(width + beyond, height + beyond, params, texels_per_unit).height /
-           texels_per_unit;
-}
-
-}  // namespace
-
 AutomaticValues automatic_values(const SourceParams& source, const Progress& progress) {
     AutomaticValues values;
     if (source.kind != SourceKind::mesh || !(has_automatic_height(source) || has_automatic_width(source)))
@@ -211,65 +262,6 @@ AutomaticValues automatic_values(const SourceParams& source, const Progress& pro
         values.uv_width = bounds(meshes).extent()[source.uv == UvMode::planar_yz ? 2 : 0];
     return values;
 }
-
-namespace {
-
-constexpr double most_splats = 1 << 16;
-
-/// Mean of the texels [x, x + step) x [y, y + step) that there are, premultiplied.
-glm::vec4 mean_of(const Image& image, std::int64_t x, std::int64_t y, std::int64_t step) {
-    glm::vec4 sum(0.0f);
-    const std::int64_t right = std::min(x + step, image.width), below = std::min(y + step, image.height);
-    for (std::int64_t j = y; j < below; ++j)
-        for (std::int64_t i = x; i < right; ++i) {
-            const float* texel = image.at(i, j);
-            sum += glm::vec4(texel[0], texel[1], texel[2], texel[3]);
-        }
-    return sum / float((right - x) * (below - y));
-}
-
-/// The side of a part in texels, so that all pictures have so many together.
-std::int64_t step_of(std::span<const TexturedMesh> meshes) {
-    double texels = 0.0;
-    for (const TexturedMesh& mesh : meshes)
-        for (const Texture& texture : mesh.textures)
-            texels += double(texture.image.width) * double(texture.image.height);
-    return std::max<std::int64_t>(1, std::llround(std::ceil(std::sqrt(texels / most_splats))));
-}
-
-void add_picture(const TexturedMesh& mesh, std::uint32_t material, std::int64_t step, KeptStore& store) {
-    const Texture& texture = mesh.textures[material];
-    const Image& image = texture.image;
-    const UvSurface surface(mesh.mesh, material, image.width, image.height,
-                            texture.wrap == TextureSettings::Wrap::repeat,
-                            mesh.camera ? &*mesh.camera : nullptr);
-    std::uint64_t id = std::uint64_t{material} << 32;
-    for (std::int64_t y = 0; y < image.height; y += step)
-        for (std::int64_t x = 0; x < image.width; x += step, ++id) {
-            const glm::vec4 mean = mean_of(image, x, y, step);
-            if (!(mean.a > 0.0f)) continue;
-            const float half = 0.5f * float(step);
-            const glm::vec2 uv((float(x) + half) / float(image.width),
-                               1.0f - (float(y) + half) / float(image.height));
-            surface.at(uv, [&](const SurfacePlace& place) {
-                store.add(
-                    {place.position, glm::vec3(mean) / mean.a, mean.a, 0.0f, id, uv, place.normal, 0, 0});
-            });
-        }
-}
-
-/// Scene units from one part to the next, where the mesh has the most texels a unit.
-double spacing_of(const TexturedMesh& mesh, std::int64_t step) {
-    double texels_per_unit = 0.0;
-    for (std::uint32_t material = 0; material < mesh.textures.size(); ++material) {
-        const Image& image = mesh.textures[material].image;
-        const UvSurface surface(mesh.mesh, material, image.width, image.height, true);
-        texels_per_unit = std::max(texels_per_unit, surface.texels_per_unit());
-    }
-    return texels_per_unit > 0.0 ? double(step) / texels_per_unit : 0.0;
-}
-
-}  // namespace
 
 void show_flat(std::span<const TexturedMesh> meshes, KeptWatcher& watcher) {
     const std::int64_t step = step_of(meshes);

@@ -35,6 +35,26 @@ ssize_t write_unless_quiet(void*, const char* text, std::size_t size) {
     return true;
 }();
 
+constexpr unsigned char start_of_image = 0xD8, end_of_image = 0xD9, first_restart = 0xD0;
+
+unsigned char byte_at(std::string_view bytes, std::size_t at) {
+    return static_cast<unsigned char>(bytes[at]);
+}
+
+// FF 00 is a data byte, FF D0 to D7 are restarts within the data, FF FF is padding.
+bool begins_segment(unsigned char code) {
+    return code != 0x00 && code != 0xFF && !(code >= first_restart && code < start_of_image);
+}
+
+// Where the next marker's code stands, npos where none follows.
+std::size_t next_marker(std::string_view bytes, std::size_t at) {
+    while ((at = bytes.find('\xFF', at)) != std::string_view::npos) {
+        ++at;
+        if (at < bytes.size() && begins_segment(byte_at(bytes, at))) return at;
+    }
+    return std::string_view::npos;
+}
+
 }  // namespace
 
 QuietStderr::QuietStderr() { ++quiet_depth; }
@@ -71,30 +91,6 @@ std::unique_ptr<OIIO::ImageInput> open_picture(const fs::path& file) {
             file, "its colour is stored at a lower resolution (subsampled luminance/chroma); save it as RGB");
     fail_picture(file, reason.empty() ? fmt::format("it is no {} file", format->name) : reason);
 }
-
-namespace {
-
-constexpr unsigned char start_of_image = 0xD8, end_of_image = 0xD9, first_restart = 0xD0;
-
-unsigned char byte_at(std::string_view bytes, std::size_t at) {
-    return static_cast<unsigned char>(bytes[at]);
-}
-
-// FF 00 is a data byte, FF D0 to D7 are restarts within the data, FF FF is padding.
-bool begins_segment(unsigned char code) {
-    return code != 0x00 && code != 0xFF && !(code >= first_restart && code < start_of_image);
-}
-
-// Where the next marker's code stands, npos where none follows.
-std::size_t next_marker(std::string_view bytes, std::size_t at) {
-    while ((at = bytes.find('\xFF', at)) != std::string_view::npos) {
-        ++at;
-        if (at < bytes.size() && begins_segment(byte_at(bytes, at))) return at;
-    }
-    return std::string_view::npos;
-}
-
-}  // namespace
 
 bool jpeg_is_whole(const fs::path& file) {
     const std::string text = read_file(file);

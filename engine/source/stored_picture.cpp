@@ -92,7 +92,7 @@ void linearise(Image& image, double max_integer) {
         const bool grey = p[0] == p[1] && p[1] == p[2];
         for (int c = 0; c < 3; ++c) {
             if (tabled)
-                p[c] = table[std::clamp(p[c], 0.0f, 1.0f) * scale + 0.5f];
+                p[c] = table[std::size_t(std::clamp(p[c], 0.0f, 1.0f) * scale + 0.5f)];
             else
                 p[c] = c > 0 && grey ? p[0] : float(real::srgb_to_linear(p[c]));
         }

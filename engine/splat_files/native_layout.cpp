@@ -111,7 +111,12 @@ NativePart part_of(const Header& header) {
 const char* name_of(NativePart part) {
     constexpr const char* names[] = {"a whole set", "the geometry of a set, from a cache",
                                      "the colours of a set, from a cache"};
-    return names[part];
+    return names[std::size_t(part)];
+}
+
+template <class T>
+std::string& append_bytes(const T& value, std::string& bytes) {
+    return bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
 }
 
 }  // namespace
@@ -172,15 +177,6 @@ Block block_at(const Layout& layout, std::size_t number) {
     const std::size_t per_splat = row_bytes(layout.header.flags);
     return {first, rows, layout.blocks.substr(first * per_splat, rows * per_splat)};
 }
-
-namespace {
-
-template <class T>
-std::string& append_bytes(const T& value, std::string& bytes) {
-    return bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
-}
-
-}  // namespace
 
 std::uint32_t flags_of(const SplatSetFacts& facts, const SplatColumns& held, RowOrder order,
                        NativePart part) {

@@ -67,6 +67,27 @@ void sort_bins_by_id(Buffer<Row>& order, std::span<const Row> ends, const Buffer
     });
 }
 
+std::uint32_t cell_along(double offset, double edge) {
+    const double cell = edge > 0.0 ? offset / edge : 0.0;
+    if (!(cell > 0.0)) return 0;
+    return cell < SpatialCells::per_axis - 1 ? std::uint32_t(cell) : SpatialCells::per_axis - 1;
+}
+
+/// spread_bits of every cell's number: looking it up takes a third of the instructions.
+constexpr auto spread_cell = [] {
+    std::array<std::uint32_t, SpatialCells::per_axis> table{};
+    for (std::uint32_t cell = 0; cell < SpatialCells::per_axis; ++cell)
+        table[cell] = std::uint32_t(spread_bits(cell));
+    return table;
+}();
+
+Buffer<std::uint32_t> cells_of(const SplatSet& set) {
+    const SpatialCells cells(bounds(set));
+    Buffer<std::uint32_t> bins(set.position.size());
+    parallel_each(bins.size(), 1 << 14, [&](std::size_t i) { bins[i] = cells.of(set.position[i]); });
+    return bins;
+}
+
 }  // namespace
 
 bool ids_ascend(const Buffer<std::uint64_t>& ids) {
@@ -94,31 +115,6 @@ template Buffer<std::uint32_t> rows_by_bin(const Buffer<std::uint32_t>&, std::si
                                            const Buffer<std::uint64_t>&);
 template Buffer<std::uint64_t> rows_by_bin(const Buffer<std::uint32_t>&, std::size_t,
                                            const Buffer<std::uint64_t>&);
-
-namespace {
-
-std::uint32_t cell_along(double offset, double edge) {
-    const double cell = edge > 0.0 ? offset / edge : 0.0;
-    if (!(cell > 0.0)) return 0;
-    return cell < SpatialCells::per_axis - 1 ? std::uint32_t(cell) : SpatialCells::per_axis - 1;
-}
-
-/// spread_bits of every cell's number: looking it up takes a third of the instructions.
-constexpr auto spread_cell = [] {
-    std::array<std::uint32_t, SpatialCells::per_axis> table{};
-    for (std::uint32_t cell = 0; cell < SpatialCells::per_axis; ++cell)
-        table[cell] = std::uint32_t(spread_bits(cell));
-    return table;
-}();
-
-Buffer<std::uint32_t> cells_of(const SplatSet& set) {
-    const SpatialCells cells(bounds(set));
-    Buffer<std::uint32_t> bins(set.position.size());
-    parallel_each(bins.size(), 1 << 14, [&](std::size_t i) { bins[i] = cells.of(set.position[i]); });
-    return bins;
-}
-
-}  // namespace
 
 SpatialCells::SpatialCells(const Bounds& box) : lo_(box.lo) {
     const glm::dvec3 extent = box.extent();
@@ -265,7 +261,7 @@ Buffer<MortonRow> morton_order(const SplatSet& set, const Progress& progress) {
     Buffer<MortonRow> rows = scatter_to_parts(set, progress, starts);
     progress.at(0.4);
     const bool by_id = ids_ascend(set.id);
-    std::vector<std::vector<MortonRow>> scratch(std::size_t(thread_count()));
+    std::vector<std::vector<MortonRow>> scratch(thread_count());
     parallel_chunks(std::int64_t(parts), 8, [&](std::int64_t begin, std::int64_t end, int worker) {
         progress.check();
         for (auto part = std::size_t(begin); part < std::size_t(end); ++part) {

@@ -53,6 +53,8 @@ glm::dvec3 rec709(const glm::dvec3& xyz) {
             0.0557101 * xyz.x - 0.2040211 * xyz.y + 1.0569959 * xyz.z};
 }
 
+constexpr double largest_flux = 1e18;  // squares and sums stay finite in 32 bits
+
 }  // namespace
 
 double star_temperature(double color_index) {
@@ -78,12 +80,6 @@ glm::dvec3 StarColors::operator()(const std::optional<double>& color_index) cons
     const auto i = std::min(std::size_t(at), table_.size() - 2);
     return glm::mix(table_[i], table_[i + 1], at - double(i));
 }
-
-namespace {
-
-constexpr double largest_flux = 1e18;  // squares and sums stay finite in 32 bits
-
-}  // namespace
 
 glm::dvec3 star_direction(double ra_deg, double dec_deg) {
     const double a = real::radians(ra_deg), d = real::radians(dec_deg);
