@@ -73,16 +73,6 @@ char* put_glb_row(char* out, const Gaussians& g, bool encoded, std::size_t i) {
     return put(out, {c.x, c.y, c.z, a});
 }
 
-template <class PutRow>
-void write_rows(const WriteTarget& target, const std::string& header, const Gaussians& g, int floats,
-                const Progress& progress, const PutRow& put_row) {
-    write_ordered(target, header, g.size(), rows_written_at_once, std::size_t(floats) * sizeof(float),
-                  progress, [&](std::int64_t begin, std::int64_t end, char* out) {
-                      for (auto i = std::size_t(begin); i < std::size_t(end); ++i) out = put_row(out, i);
-                      return out;
-                  });
-}
-
 std::string number_bytes(std::uint32_t value) {
     return {reinterpret_cast<const char*>(&value), sizeof value};
 }
@@ -149,8 +139,9 @@ void write_gaussian_ply(const WriteTarget& target, const Gaussians& gaussians, c
     for (int i = 0; i < 3 * rest_of(gaussians); ++i) name(fmt::format("f_rest_{}", i));
     for (const char* text : {"opacity", "scale_0", "scale_1", "scale_2", "rot_0", "rot_1", "rot_2", "rot_3"})
         name(text);
-    write_rows(target, header + "end_header\n", gaussians, ply_floats + 3 * rest_of(gaussians), progress,
-               [&](char* out, std::size_t i) { return put_ply_row(out, gaussians, i); });
+    const std::size_t row_bytes = (ply_floats + 3 * rest_of(gaussians)) * sizeof(float);
+    write_rows(target, header + "end_header\n", gaussians.size(), rows_written_at_once, row_bytes, progress,
+               [&](char* out, std::int64_t i) { return put_ply_row(out, gaussians, i); });
 }
 
 void write_gaussian_glb(const WriteTarget& target, const Gaussians& gaussians, bool encoded,
@@ -166,8 +157,8 @@ void write_gaussian_glb(const WriteTarget& target, const Gaussians& gaussians, b
     const std::string header = "glTF" + number_bytes(2) + number_bytes(std::uint32_t(all)) +
                                number_bytes(std::uint32_t(json.size())) + "JSON" + json +
                                number_bytes(std::uint32_t(bytes)) + std::string("BIN\0", 4);
-    write_rows(target, header, gaussians, floats, progress,
-               [&](char* out, std::size_t i) { return put_glb_row(out, gaussians, encoded, i); });
+    write_rows(target, header, gaussians.size(), rows_written_at_once, floats * sizeof(float), progress,
+               [&](char* out, std::int64_t i) { return put_glb_row(out, gaussians, encoded, i); });
 }
 
 namespace {
@@ -250,13 +241,9 @@ void write_gaussian_usda(const WriteTarget& target, const Gaussians& gaussians, 
         "\n    uniform token projectionModeHint = \"perspective\"\n"
         "    uniform token sortingModeHint = \"cameraDistance\"\n" +
         fmt::format("    uniform int radiance:sphericalHarmonicsDegree = {}\n", gaussians.degree);
-    write_ordered(
+    write_rows(
         target, header, (radiance + 1 + rest_of(gaussians)) * gaussians.size(), rows_written_at_once,
-        longest_row, progress,
-        [&](std::int64_t begin, std::int64_t end, char* out) {
-            for (std::int64_t row = begin; row < end; ++row) out = put_row(out, gaussians, row);
-            return out;
-        },
+        longest_row, progress, [&](char* out, std::int64_t row) { return put_row(out, gaussians, row); },
         [] { return std::string("}\n"); });
 }
 

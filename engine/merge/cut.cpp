@@ -175,22 +175,20 @@ struct Piece {
 
 /// Rounds over all pieces, in each of which those that look larger than a limit are divided: in order of the
 /// trees, which is the order of memory.
-class Cutter {
-  public:
-    Cutter(const std::vector<SeenLayer>& layers, const CutSettings& settings)
-        : layers_(layers),
-          settings_(settings),
-          in_rows_(std::ranges::any_of(layers, &SeenLayer::is_lattice)) {}
+struct Cutter {
+    const std::vector<SeenLayer>& layers;
+    const CutSettings& settings;
+    bool in_rows = std::ranges::any_of(layers, &SeenLayer::is_lattice);  // some nodes may be
+    std::vector<Piece> pieces = {};
 
     std::vector<Piece> cut() {
-        for (std::uint16_t l = 0; l < layers_.size(); ++l)
-            for (std::int64_t root = 0; root < layers_[l].merged().tree->root_count(); ++root)
-                add_node(root, l, endless, pieces_);
+        for (std::uint16_t l = 0; l < layers.size(); ++l)
+            for (std::int64_t root = 0; root < layers[l].merged().tree->root_count(); ++root)
+                add_node(root, l, endless, pieces);
         while (const std::optional<Round> round = next_round()) divide(*round);
-        return std::move(pieces_);
+        return std::move(pieces);
     }
 
-  private:
     static constexpr std::int64_t pieces_at_once = 1 << 9;
     static constexpr int bins = 256;  // of sizes
     static constexpr float endless = std::numeric_limits<float>::infinity();
@@ -204,31 +202,31 @@ class Cutter {
         // Pieces of half the size are up to eight times as many, each of up to four splats on a lattice:
         // while that leaves room, many sizes at once.
         constexpr double most_growth = 64.0;
-        const double margin = in_rows_ ? 0.0625 : 0.25, least_growth = in_rows_ ? 2.0 : 1.5;
+        const double margin = in_rows ? 0.0625 : 0.25, least_growth = in_rows ? 2.0 : 1.5;
         float largest = 0.0f, largest_node = 0.0f;
         std::int64_t splats = 0;
-        for (const Piece& piece : pieces_) {
+        for (const Piece& piece : pieces) {
             splats += piece.splats;
             largest = std::max(largest, piece.size_px);
             if (!piece.is_leaf) largest_node = std::max(largest_node, piece.size_px);
         }
-        const std::int64_t room = settings_.budget - splats;
-        if (room <= 0 || !(largest > settings_.least_px)) return std::nullopt;
-        const double growth = margin * double(settings_.budget) / double(splats);
-        if (growth < least_growth || !(largest_node > settings_.least_px))
+        const std::int64_t room = settings.budget - splats;
+        if (room <= 0 || !(largest > settings.least_px)) return std::nullopt;
+        const double growth = margin * double(settings.budget) / double(splats);
+        if (growth < least_growth || !(largest_node > settings.least_px))
             return round_with_room(largest, room);
         const auto step = float(1.0 / std::cbrt(std::min(growth, most_growth)));
-        return Round{std::max(settings_.least_px, step * largest_node), false};
+        return Round{std::max(settings.least_px, step * largest_node), false};
     }
 
     /// So few pieces are larger that dividing them has room.
     std::optional<Round> round_with_room(float largest, std::int64_t room) const {
-        const float lowest = std::max(0.8f * largest, settings_.least_px);
+        const float lowest = std::max(0.8f * largest, settings.least_px);
         if (!(largest > lowest))
             return std::nullopt;  // a round that divides nothing would be the next one, too
         const float bins_per_px = bins / (largest - lowest);
         std::array<std::int64_t, bins> more{};
-        for (const Piece& piece : pieces_)
+        for (const Piece& piece : pieces)
             if (piece.size_px > lowest)
                 more[std::min(bins - 1, int((piece.size_px - lowest) * bins_per_px))] += more_of(piece);
         int bin = bins;
@@ -238,29 +236,29 @@ class Cutter {
     }
 
     void divide(const Round& round) {
-        const auto count = std::int64_t(pieces_.size());
+        const auto count = std::int64_t(pieces.size());
         std::vector<std::vector<Piece>> parts(std::size_t((count + pieces_at_once - 1) / pieces_at_once));
         parallel_chunks(count, pieces_at_once, [&](std::int64_t begin, std::int64_t end, int) {
             std::vector<Piece>& part = parts[begin / pieces_at_once];
             for (std::int64_t i = begin; i < end; ++i) {
-                if (round.once && pieces_[i].size_px > round.limit_px)
-                    add_parts(pieces_[i], endless, part);
+                if (round.once && pieces[i].size_px > round.limit_px)
+                    add_parts(pieces[i], endless, part);
                 else
-                    add_piece(pieces_[i], round.once ? endless : round.limit_px, part);
+                    add_piece(pieces[i], round.once ? endless : round.limit_px, part);
             }
         });
-        pieces_.clear();
-        for (const std::vector<Piece>& part : parts) pieces_.insert(pieces_.end(), part.begin(), part.end());
+        pieces.clear();
+        for (const std::vector<Piece>& part : parts) pieces.insert(pieces.end(), part.begin(), part.end());
     }
 
     const MergeNode& node_of(const Piece& piece) const {
-        return layers_[piece.layer].merged().tree->nodes[piece.index];
+        return layers[piece.layer].merged().tree->nodes[piece.index];
     }
     /// Splats besides this one's that there are at most when it is divided.
     std::int64_t more_of(const Piece& piece) const {
         const MergeNode& node = node_of(piece);
         if (node.is_leaf()) return node.end - node.first - piece.splats;
-        const SeenLayer& layer = layers_[piece.layer];
+        const SeenLayer& layer = layers[piece.layer];
         const NodeSums* const parts = &layer.merged().sums[node.children];
         return layer.row_of(parts[0]).count + layer.row_of(parts[1]).count - piece.splats;
     }
@@ -275,7 +273,7 @@ class Cutter {
     }
 
     void add_parts(const Piece& piece, float limit_px, std::vector<Piece>& out) const {
-        const MergedSplats& merged = layers_[piece.layer].merged();
+        const MergedSplats& merged = layers[piece.layer].merged();
         const MergeNode& node = node_of(piece);
         if (!node.is_leaf()) {
             add_node(node.children, piece.layer, limit_px, out);
@@ -291,7 +289,7 @@ class Cutter {
     }
 
     void add_node(std::int64_t index, std::uint16_t l, float limit_px, std::vector<Piece>& out) const {
-        const SeenLayer& layer = layers_[l];
+        const SeenLayer& layer = layers[l];
         const NodeSums& sums = layer.merged().sums[index];
         if (!(sums.cover > 0.0f)) return;
         const glm::vec3 p = layer.to_camera(sums.centre);
@@ -300,11 +298,6 @@ class Cutter {
         add_piece({index, layer.size_px(sums, row, p), l, std::uint8_t(row.count), false, false}, limit_px,
                   out);
     }
-
-    const std::vector<SeenLayer>& layers_;
-    const CutSettings& settings_;
-    bool in_rows_;  // some nodes may be
-    std::vector<Piece> pieces_;
 };
 
 void resize(ShadedSplats& splats, std::size_t size) {
@@ -316,7 +309,7 @@ void resize(ShadedSplats& splats, std::size_t size) {
 std::vector<ShadedSplats> cut_splats(std::span<const CutLayer> layers, const CutSettings& settings) {
     std::vector<SeenLayer> seen;
     for (const CutLayer& layer : layers) seen.emplace_back(layer, settings);
-    const std::vector<Piece> pieces = Cutter(seen, settings).cut();
+    const std::vector<Piece> pieces = Cutter{seen, settings}.cut();
     std::vector<std::size_t> counts(layers.size(), 0);
     Buffer<std::size_t> places(pieces.size());
     for (std::size_t i = 0; i < pieces.size(); ++i) {

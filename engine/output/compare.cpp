@@ -110,50 +110,46 @@ bool read_values(OIIO::ImageInput& in, int begin, int end, std::vector<float>& v
 }
 
 /// Sums over rows.
-class StoredSums {
-  public:
-    explicit StoredSums(const OIIO::ImageSpec& spec) : spec_(spec) {}
+struct StoredSums {
+    const OIIO::ImageSpec& spec;
+    StoredComparison sums = {};
+    double squares = 0.0;     // of colours' differences
+    std::int64_t colors = 0;  // values of colours
 
     void add_rows(int begin, const std::vector<float>& a, const std::vector<float>& b) {
-        const auto channels = std::size_t(spec_.nchannels);
-        const auto width = std::size_t(spec_.width);
+        const auto channels = std::size_t(spec.nchannels);
+        const auto width = std::size_t(spec.width);
         for (std::size_t pixel = 0; pixel * channels < a.size(); ++pixel) {
             const int x = int(pixel % width), y = begin + int(pixel / width);
             bool differs = false;
             for (std::size_t c = 0; c < channels; ++c)
                 differs = add_value(x, y, c, a[pixel * channels + c], b[pixel * channels + c]) || differs;
-            sums_.differing_pixels += differs;
+            sums.differing_pixels += differs;
         }
     }
     StoredComparison result() const {
-        StoredComparison sums = sums_;
-        sums.pixels = std::int64_t{spec_.width} * spec_.height;
-        sums.psnr_db = psnr(squares_ / std::fmax(1.0, double(colors_)));
-        return sums;
+        StoredComparison result = sums;
+        result.pixels = std::int64_t{spec.width} * spec.height;
+        result.psnr_db = psnr(squares / std::fmax(1.0, double(colors)));
+        return result;
     }
 
-  private:
     /// True when the two are not the same.
     bool add_value(int x, int y, std::size_t channel, float a, float b) {
-        const std::string& name = spec_.channelnames[channel];
+        const std::string& name = spec.channelnames[channel];
         const bool color = name.size() == 1 && name.find_first_of("RGBA") == 0;
-        colors_ += color;
+        colors += color;
         if (same_bits(a, b)) return false;
         const double d = difference(a, b);
-        if (color) squares_ += d * d;
-        if (sums_.max_channel.empty() || d > sums_.max_difference) {
-            sums_.max_difference = d;
-            sums_.max_x = spec_.x + x;
-            sums_.max_y = spec_.y + y;
-            sums_.max_channel = name;
+        if (color) squares += d * d;
+        if (sums.max_channel.empty() || d > sums.max_difference) {
+            sums.max_difference = d;
+            sums.max_x = spec.x + x;
+            sums.max_y = spec.y + y;
+            sums.max_channel = name;
         }
         return true;
     }
-
-    const OIIO::ImageSpec& spec_;
-    StoredComparison sums_;
-    double squares_ = 0.0;     // of colours' differences
-    std::int64_t colors_ = 0;  // values of colours
 };
 
 OpenFrame open_if_readable(const fs::path& file) try {
@@ -175,7 +171,7 @@ StoredComparison compare_stored(const fs::path& first, const fs::path& second) {
         comparison.other_form = form_of(a->spec()) + " against " + form_of(spec);
         return comparison;
     }
-    StoredSums sums(spec);
+    StoredSums sums{spec};
     std::vector<float> rows_a, rows_b;
     constexpr int band = 256;  // rows
     for (int y = 0; y < spec.height; y += band) {

@@ -113,17 +113,17 @@ std::vector<double> panel_ends(const Falloff& falloff) {
 }
 
 /// The convolution of falloff and (untruncated) Gaussian filter at distance d, as a radial integral.
-class Profile {
-  public:
-    Profile(const Falloff& falloff, double radius_px, double sigma_px)
-        : falloff_(falloff), radius_(radius_px), sigma_(sigma_px), ends_(panel_ends(falloff)) {}
+struct Profile {
+    Falloff falloff;
+    double radius, sigma;  // px
+    std::vector<double> ends = panel_ends(falloff);
 
     double at(double d) const {
-        const double lo = std::max(0.0, d - 6.0 * sigma_), hi = std::min(radius_, d + 6.0 * sigma_);
+        const double lo = std::max(0.0, d - 6.0 * sigma), hi = std::min(radius, d + 6.0 * sigma);
         double sum = 0.0;
-        for (std::size_t i = 0; i + 1 < ends_.size(); ++i) {
-            const double a = std::max(lo, ends_[i] * radius_), b = std::min(hi, ends_[i + 1] * radius_);
-            const int parts = std::max(1, int(std::ceil((b - a) / (2.0 * sigma_))));
+        for (std::size_t i = 0; i + 1 < ends.size(); ++i) {
+            const double a = std::max(lo, ends[i] * radius), b = std::min(hi, ends[i + 1] * radius);
+            const int parts = std::max(1, int(std::ceil((b - a) / (2.0 * sigma))));
             for (int k = 0; k < parts && b > a; ++k)
                 sum += integrate_panel(a + (b - a) * k / parts, a + (b - a) * (k + 1) / parts,
                                        [&](double r) { return ring(r, d); });
@@ -134,29 +134,23 @@ class Profile {
     /// Spectrum of falloff and filter at `frequency` cycles per px, relative to frequency 0.
     double relative_spectrum(double frequency, double integral) const {
         double sum = 0.0;
-        for (std::size_t i = 0; i + 1 < ends_.size(); ++i) {
-            const double a = ends_[i], b = ends_[i + 1];
-            const int parts = 1 + int((b - a) * radius_ * frequency);
+        for (std::size_t i = 0; i + 1 < ends.size(); ++i) {
+            const double a = ends[i], b = ends[i + 1];
+            const int parts = 1 + int((b - a) * radius * frequency);
             for (int k = 0; k < parts; ++k)
                 sum += integrate_panel(a + (b - a) * k / parts, a + (b - a) * (k + 1) / parts, [&](double t) {
-                    return falloff_value(falloff_, t) * t *
-                           bessel_j0(2.0 * real::pi * frequency * radius_ * t);
+                    return falloff_value(falloff, t) * t * bessel_j0(2.0 * real::pi * frequency * radius * t);
                 });
         }
-        const double filter = 2.0 * real::pi * real::pi * sigma_ * sigma_ * frequency * frequency;
+        const double filter = 2.0 * real::pi * real::pi * sigma * sigma * frequency * frequency;
         return 2.0 * real::pi * sum / integral * real::exp(-filter);
     }
 
-  private:
     double ring(double r, double d) const {
-        const double s2 = sigma_ * sigma_;
-        return falloff_value(falloff_, r / radius_) * r / s2 * real::exp(-(r - d) * (r - d) / (2.0 * s2)) *
+        const double s2 = sigma * sigma;
+        return falloff_value(falloff, r / radius) * r / s2 * real::exp(-(r - d) * (r - d) / (2.0 * s2)) *
                bessel_i0_scaled(r * d / s2);
     }
-
-    Falloff falloff_;
-    double radius_, sigma_;
-    std::vector<double> ends_;
 };
 
 /// Range of d over which u runs from 0 to 1.
@@ -174,7 +168,7 @@ double distance_at(const FootprintTable& table, const exact::ProfileRange& range
 /// starts at exactly 1: the filter is cut off at four standard deviations.
 std::array<double, samples> sample_profile(const FootprintTable& table, const Falloff& falloff,
                                            double radius_px) {
-    const Profile profile(falloff, radius_px, table.pixel_filter_px);
+    const Profile profile{falloff, radius_px, table.pixel_filter_px};
     const exact::ProfileRange range = range_of(table, radius_px);
     std::array<double, samples> p;
     for (int i = 0; i < samples; ++i) p[i] = profile.at(distance_at(table, range, double(i) / (samples - 1)));
@@ -238,7 +232,7 @@ FootprintNode make_node(const FootprintTable& table, const Falloff& falloff, dou
     node.moments.edge_mean = float(moments[2] / segments);
     node.moments.edge_first_moment = float(moments[3] / segments);
     if (radius_px < ripple_limit_px) {
-        const Profile profile(falloff, radius_px, table.pixel_filter_px);
+        const Profile profile{falloff, radius_px, table.pixel_filter_px};
         for (int i = 0; i < 3; ++i) {
             node.moments.ripple[i] = float(profile.relative_spectrum(lattice_frequencies[i], table.integral));
             if (table.flat_core)

@@ -124,7 +124,7 @@ Footprint sphere_footprint_at(const FootprintTable& table, const Lens& lens, flo
                     return glm::dot(away, away) <= reach * reach;
                 };
                 const auto at = [&](const glm::dvec3& away) { return weight(glm::dot(away, away)); };
-                return RimPixels(lens, toward, f.support_px, near, at).sum();
+                return RimPixels{lens, toward, f.support_px, near, at}.sum();
             });
     }
     if (lens.projection == shared::PROJECTION_EQUIRECTANGULAR) {

@@ -20,19 +20,18 @@ double bend_of(const glm::dvec3& bend, const Ellipse& e) {
 /// to beyond what they would for a straight one. A thin gaussian on the map around a place, by its variances
 /// along and across, the pixel filter's included: a needle follows a row of pixels only as far as it is
 /// straight on the frame, which great circles are not.
-class BentNeedle {
-  public:
-    BentNeedle(const SphereAxes& axes, const Ellipse& e, double along_variance, double across_variance)
-        : along_(along_variance),
-          across_(across_variance),
-          along_px_(e.x * axes.first_px + e.y * axes.second_px),
-          across_px_(e.x * axes.second_px - e.y * axes.first_px),
-          bend_(bend_of(axes.bend_x, e), bend_of(axes.bend_y, e)) {}
+struct BentNeedle {
+    const SphereAxes& axes;
+    const Ellipse& e;
+    double along, across;  // variances
+    glm::dvec2 along_px = e.x * axes.first_px + e.y * axes.second_px;
+    glm::dvec2 across_px = e.x * axes.second_px - e.y * axes.first_px;
+    glm::dvec2 bend{bend_of(axes.bend_x, e), bend_of(axes.bend_y, e)};
 
     /// By how much the relative excess of its sum over pixels differs from that of a straight one.
     double excess(float x_px, float y_px) const {
-        const double turns = 2.0 * real::pi * along_ * (std::fabs(bend_.x) + std::fabs(bend_.y));
-        if (across_ > 1.0 || turns < 0.02) return 0.0;  // wide ones have none; short ones do not bend
+        const double turns = 2.0 * real::pi * along * (std::fabs(bend.x) + std::fabs(bend.y));
+        if (across > 1.0 || turns < 0.02) return 0.0;  // wide ones have none; short ones do not bend
         const double cx = pixel_cosine(x_px), cy = pixel_cosine(y_px);
         const double sx = pixel_cosine(x_px - 0.25f), sy = pixel_cosine(y_px - 0.25f);
         return 2.0 * (excess_at(1, 0, cx, sx) + excess_at(0, 1, cy, sy) +
@@ -42,15 +41,14 @@ class BentNeedle {
                       excess_at(0, 2, cy * cy - sy * sy, 2.0 * sy * cy));
     }
 
-  private:
     /// The part of the frequency (kx, ky) cycles per px, whose phase at the middle has this cosine and sine:
     /// the spectrum of a gaussian whose places go with the square of the way is that of one with a complex
-    /// variance, along_ / (1 + i t).
+    /// variance, along / (1 + i t).
     double excess_at(double kx, double ky, double cosine, double sine) const {
         const double turn = 2.0 * real::pi * real::pi;
-        const double g = kx * along_px_.x + ky * along_px_.y, h = kx * across_px_.x + ky * across_px_.y;
-        const double t = 2.0 * real::pi * along_ * (kx * bend_.x + ky * bend_.y), size = 1.0 + t * t;
-        const double thin = real::exp(-turn * h * h * across_), exponent = turn * g * g * along_;
+        const double g = kx * along_px.x + ky * along_px.y, h = kx * across_px.x + ky * across_px.y;
+        const double t = 2.0 * real::pi * along * (kx * bend.x + ky * bend.y), size = 1.0 + t * t;
+        const double thin = real::exp(-turn * h * h * across), exponent = turn * g * g * along;
         // 1 / sqrt(1 + i t): half the angle, the root of the length.
         const double root = std::sqrt(size), re = std::sqrt(0.5 * (1.0 + 1.0 / root) / root),
                      im = -0.5 * t / (size * re);
@@ -59,9 +57,6 @@ class BentNeedle {
         return bent * ((re * c - im * s) * cosine + (re * s + im * c) * sine) -
                thin * real::exp(-exponent) * cosine;
     }
-
-    double along_, across_;
-    glm::dvec2 along_px_, across_px_, bend_;
 };
 
 constexpr double least_sine = 1e-3;  // stretching around poles and rims ends there
@@ -144,7 +139,7 @@ class ShapeOnMap {
         if (is_at_rim())
             return both([&](const auto& weight) {
                 const auto near = [&](const glm::dvec3& away, double px) { return is_near(away, px); };
-                return RimPixels(lens_, axes_.toward, support_, near, weight).sum();
+                return RimPixels{lens_, axes_.toward, support_, near, weight}.sum();
             });
         if (!is_counted()) return straight_sums();
         if (small) return both([&](const auto& weight) { return rows(weight).sum(); });
@@ -208,7 +203,7 @@ class ShapeOnMap {
             return at_pole ? 0.0 : spectrum.ripple(of_edge, x_px_, y_px_);
         };
         const auto bent = [&](double share) {
-            const BentNeedle needle(axes_, e_, share * along_, share * across_);
+            const BentNeedle needle{axes_, e_, share * along_, share * across_};
             return at_pole ? 0.0 : needle.excess(x_px_, y_px_);
         };
         const double bent_profile = bent(1.0);

@@ -48,39 +48,37 @@ inline bool is_near_rim(const Lens& lens, const glm::dvec3& toward, double withi
 /// `near`(from `toward`, within_px) is false only where weights are 0 at all places so close to that one;
 /// `weight`(from `toward` to the pixel, px of the middle).
 template <class Near, class Weight>
-class RimPixels {
-  public:
-    RimPixels(const Lens& lens, const glm::dvec3& toward, double support_px, const Near& near,
-              const Weight& weight)
-        : lens_(exact_lens(lens)),
-          toward_(toward),
-          near_(near),
-          weight_(weight),
-          focal_(lens.focal_px),
-          rim_(real::pi * focal_),
-          inner_(std::fmax(0.0, focal_angle(lens, toward) - support_px - 1.0)) {}
+struct RimPixels {
+    const Lens& frame;
+    glm::dvec3 toward;
+    double support_px;
+    const Near& near;
+    const Weight& weight;
+    ExactLens lens = exact_lens(frame);
+    double focal = frame.focal_px, rim = real::pi * focal;
+    double inner = std::fmax(0.0, focal_angle(frame, toward) - support_px - 1.0);
+    double total = 0.0;
 
     /// Row by row; blocks that nothing reaches would add zeros.
     double sum() {
-        const double first = first_middle(double(lens_.center_y_px) - rim_);
-        for (double top = first; top <= double(lens_.center_y_px) + rim_; top += block_px) {
+        const double first = first_middle(double(lens.center_y_px) - rim);
+        for (double top = first; top <= double(lens.center_y_px) + rim; top += block_px) {
             const std::vector<double> blocks = blocks_of(top);
             for (double y = top; y < top + block_px; y += 1.0)
                 for (const double left : blocks) add_row(left, y);
         }
-        return sum_;
+        return total;
     }
 
-  private:
     static constexpr double block_px = 16.0;
 
     static double first_middle(double px) { return std::ceil(px - 0.5) + 0.5; }
 
     /// From `toward` to what a fisheye shows there, within its rim.
     glm::dvec3 away(double x, double y) const {
-        const double px = std::sqrt(x * x + y * y), angle = std::fmin(px / focal_, real::pi);
+        const double px = std::sqrt(x * x + y * y), angle = std::fmin(px / focal, real::pi);
         const double across = px > 0.0 ? real::sin(angle) / px : 0.0;
-        return focal_ * (glm::dvec3(across * x, -across * y, -real::cos(angle)) - toward_);
+        return focal * (glm::dvec3(across * x, -across * y, -real::cos(angle)) - toward);
     }
 
     /// The left middles of those in the band below `top` that may have weight. What is nearer on the frame is
@@ -88,42 +86,36 @@ class RimPixels {
     std::vector<double> blocks_of(double top) const {
         constexpr double half = 0.5 * (block_px - 1.0), reach_px = 1.5 * half + 0.1;
         std::vector<double> blocks;
-        const double y = top + half - double(lens_.center_y_px);
-        for (double left = first_middle(double(lens_.center_x_px) - rim_);
-             left <= double(lens_.center_x_px) + rim_; left += block_px) {
-            const double x = left + half - double(lens_.center_x_px), px = std::sqrt(x * x + y * y);
-            if (px + reach_px < inner_ || px - reach_px > rim_) continue;
-            if (near_(away(x, y), reach_px)) blocks.push_back(left);
+        const double y = top + half - double(lens.center_y_px);
+        for (double left = first_middle(double(lens.center_x_px) - rim);
+             left <= double(lens.center_x_px) + rim; left += block_px) {
+            const double x = left + half - double(lens.center_x_px), px = std::sqrt(x * x + y * y);
+            if (px + reach_px < inner || px - reach_px > rim) continue;
+            if (near(away(x, y), reach_px)) blocks.push_back(left);
         }
         return blocks;
     }
 
     /// The same from the rim, with which a series is good enough to see what is far.
     bool is_near(double x, double y, double px) const {
-        const double e = real::pi - px / focal_;
+        const double e = real::pi - px / focal;
         if (!(e < 0.5)) return true;
         const double q = e * e, sine = e * (1.0 - q * (1.0 / 6.0 - q / 120.0));
         const double cosine = 1.0 - q * (0.5 - q * (1.0 / 24.0 - q / 720.0));
-        return near_(focal_ * (glm::dvec3(sine * x / px, -sine * y / px, cosine) - toward_), 0.05);
+        return near(focal * (glm::dvec3(sine * x / px, -sine * y / px, cosine) - toward), 0.05);
     }
 
     void add_row(double left, double y_px) {
-        const double y = y_px - double(lens_.center_y_px);
+        const double y = y_px - double(lens.center_y_px);
         for (double x_px = left; x_px < left + block_px; x_px += 1.0) {
-            const double x = x_px - double(lens_.center_x_px), px = std::sqrt(x * x + y * y);
-            if (px < inner_ || px > rim_ || !(px > 0.0) || !is_near(x, y, px)) continue;
-            if (!exact::shows(lens_, x_px, y_px)) continue;
-            const glm::dvec3 ray = exact::ray_through(lens_, x_px, y_px);
-            const double angle = px / focal_;
-            sum_ += weight_(focal_ * (ray - toward_)) * real::sin(angle) / angle;
+            const double x = x_px - double(lens.center_x_px), px = std::sqrt(x * x + y * y);
+            if (px < inner || px > rim || !(px > 0.0) || !is_near(x, y, px)) continue;
+            if (!exact::shows(lens, x_px, y_px)) continue;
+            const glm::dvec3 ray = exact::ray_through(lens, x_px, y_px);
+            const double angle = px / focal;
+            total += weight(focal * (ray - toward)) * real::sin(angle) / angle;
         }
     }
-
-    ExactLens lens_;
-    glm::dvec3 toward_;
-    const Near& near_;
-    const Weight& weight_;
-    double focal_, rim_, inner_, sum_ = 0.0;
 };
 
 /// The pole of an equirectangular frame that is nearer to a row.
@@ -154,23 +146,19 @@ inline double row_area(double focal, double row_px) {
 /// Weights of pixels around a pole as far as `support_px` from `toward`; weight as in RimPixels, smooth over
 /// step_px.
 template <class Weight>
-class PoleRows {
-  public:
-    PoleRows(const Lens& lens, const NearPole& pole, const glm::dvec3& toward, double support_px,
-             double step_px, const Weight& weight)
-        : focal_(lens.focal_px),
-          pole_(pole),
-          toward_(toward),
-          support_px_(support_px),
-          step_px_(step_px),
-          weight_(weight),
-          first_(first_row_px(pole)) {}
+struct PoleRows {
+    const Lens& frame;
+    NearPole pole;
+    glm::dvec3 toward;
+    double support_px, step_px;
+    const Weight& weight;
+    double focal = frame.focal_px, first = first_row_px(pole);
 
     /// Over all pixels.
     double sum() const {
         double sum = 0.0;
-        for (double row = first_; row < pole_.from_pole_px + support_px_ + 1.0; row += 1.0)
-            if (row > pole_.from_pole_px - support_px_ - 1.0) sum += row_area(focal_, row) * mean(row);
+        for (double row = first; row < pole.from_pole_px + support_px + 1.0; row += 1.0)
+            if (row > pole.from_pole_px - support_px - 1.0) sum += row_area(focal, row) * mean(row);
         return sum;
     }
 
@@ -179,47 +167,39 @@ class PoleRows {
         constexpr double close_px = 4.0, end_px = 18.0;  // fades out: an end would have an excess of its own
         const auto fade = [](double row) { return real::exp(-0.5 * row * row / (close_px * close_px)); };
         double sum = 0.0;
-        for (double row = first_; row < end_px; row += 1.0)
-            sum += row_area(focal_, row) * fade(row) * mean(row);
+        for (double row = first; row < end_px; row += 1.0)
+            sum += row_area(focal, row) * fade(row) * mean(row);
         for (double from = 0.0; from < end_px; from += 2.0)
             sum -= integrate_panel(from, from + 2.0, [&](double row) {
-                return 2.0 * real::pi * focal_ * real::sin(row / focal_) * fade(row) * mean(row);
+                return 2.0 * real::pi * focal * real::sin(row / focal) * fade(row) * mean(row);
             });
         return sum;
     }
 
-  private:
     /// Over all longitudes, of which as many are looked at as the weight asks for.
     double mean(double row_px) const {
-        const double own = pole_.from_pole_px / focal_;
-        const double sine = real::sin(row_px / focal_), cosine = real::cos(row_px / focal_);
+        const double own = pole.from_pole_px / focal;
+        const double sine = real::sin(row_px / focal), cosine = real::cos(row_px / focal);
         // How far from its own longitude the row comes as near as the support.
-        const double chord = std::fmin(support_px_ / focal_, 2.0);
+        const double chord = std::fmin(support_px / focal, 2.0);
         const double reach =
             (1.0 - 0.5 * chord * chord - real::cos(own) * cosine) / std::fmax(real::sin(own) * sine, 1e-12);
         if (reach >= 1.0) return 0.0;
         const double half = real::acos(std::fmax(reach, -1.0));
-        const double places = std::ceil(16.0 + 2.0 * half * sine * focal_ / step_px_);
-        const double longitude = real::atan2(toward_.x, -toward_.z);
+        const double places = std::ceil(16.0 + 2.0 * half * sine * focal / step_px);
+        const double longitude = real::atan2(toward.x, -toward.z);
         // From one to the next by a turn: sines and cosines are expensive.
         const double begin = longitude + half * (1.0 / places - 1.0), step = 2.0 * half / places;
         const double turn_sine = real::sin(step), turn_cosine = real::cos(step);
         double right = real::sin(begin), ahead = real::cos(begin), sum = 0.0;
         for (double i = 0.0; i < places; i += 1.0) {
-            sum += weight_(focal_ * (glm::dvec3(sine * right, pole_.side * cosine, -sine * ahead) - toward_));
+            sum += weight(focal * (glm::dvec3(sine * right, pole.side * cosine, -sine * ahead) - toward));
             const double before = right;
             right = before * turn_cosine + ahead * turn_sine;
             ahead = ahead * turn_cosine - before * turn_sine;
         }
         return sum / places * (half / real::pi);
     }
-
-    double focal_;
-    NearPole pole_;
-    glm::dvec3 toward_;
-    double support_px_, step_px_;
-    const Weight& weight_;
-    double first_;
 };
 
 /// Gains of footprints whose pixels were counted one by one, for all threads together: around a panorama's

@@ -198,24 +198,22 @@ double texels_across(const std::vector<SeenFace>& faces) {
 }
 
 // One band of the picture with the depth of what it shows.
-class FrontBand {
-  public:
-    FrontBand(Image& picture, std::int64_t begin, std::int64_t end)
-        : picture_(picture),
-          begin_(begin),
-          end_(end),
-          scale_(double(picture.width)),
-          depth_(std::size_t((end - begin) * picture.width), -std::numeric_limits<double>::infinity()) {}
+struct FrontBand {
+    Image& picture;
+    std::int64_t from, to;                 // rows
+    double scale = double(picture.width);  // px per frame width
+    std::vector<double> depths =
+        std::vector(std::size_t((to - from) * picture.width), -std::numeric_limits<double>::infinity());
 
     void draw(const SeenFace& face) {
         const double area = face.twice_area();
         if (area == 0.0) return;
-        const auto [left, right] = covered(face.a.x, face.ab.x, face.ac.x, picture_.width, 0, picture_.width);
-        const auto [top, bottom] = covered(face.a.y, face.ab.y, face.ac.y, picture_.height, begin_, end_);
+        const auto [left, right] = covered(face.a.x, face.ab.x, face.ac.x, picture.width, 0, picture.width);
+        const auto [top, bottom] = covered(face.a.y, face.ab.y, face.ac.y, picture.height, from, to);
         for (std::int64_t y = top; y < bottom; ++y)
             for (std::int64_t x = left; x < right; ++x) {
-                const double px = place(x, picture_.width) - face.a.x,
-                             py = place(y, picture_.height) - face.a.y;
+                const double px = place(x, picture.width) - face.a.x,
+                             py = place(y, picture.height) - face.a.y;
                 const double b = (px * face.ac.y - py * face.ac.x) / area,
                              c = (py * face.ab.x - px * face.ab.y) / area;
                 constexpr double rounding = 1e-9;  // no pixel falls between two faces
@@ -224,10 +222,9 @@ class FrontBand {
             }
     }
 
-  private:
     // Of a pixel's centre, in frame widths from the middle.
     double place(std::int64_t i, std::int64_t size) const {
-        return (double(i) + 0.5 - 0.5 * double(size)) / scale_;
+        return (double(i) + 0.5 - 0.5 * double(size)) / scale;
     }
 
     // Pixels [first, second) of begin .. end that a face with these corners can touch along an axis.
@@ -235,7 +232,7 @@ class FrontBand {
                                                   std::int64_t begin, std::int64_t end) const {
         const double lo = a + std::min({0.0, ab, ac}), hi = a + std::max({0.0, ab, ac});
         const auto pixel = [&](double at) {
-            const double p = at * scale_ + 0.5 * double(size);
+            const double p = at * scale + 0.5 * double(size);
             return std::clamp(p, double(begin), double(end));
         };
         return {std::int64_t(std::floor(pixel(lo - 1e-9))), std::int64_t(std::ceil(pixel(hi + 1e-9)))};
@@ -243,18 +240,13 @@ class FrontBand {
 
     void show(const SeenFace& face, double b, double c, std::int64_t x, std::int64_t y) {
         const double z = face.a.z + b * face.ab.z + c * face.ac.z;
-        double& depth = depth_[(y - begin_) * picture_.width + x];
+        double& depth = depths[(y - from) * picture.width + x];
         if (!(z > depth)) return;
         depth = z;
         const TextureSample seen =
             sample(*face.texture, glm::vec2(face.uv + b * face.uv_ab + c * face.uv_ac));
-        for (int i = 0; i < 3; ++i) picture_.at(x, y)[i] = seen.color[i] * seen.alpha;
+        for (int i = 0; i < 3; ++i) picture.at(x, y)[i] = seen.color[i] * seen.alpha;
     }
-
-    Image& picture_;
-    std::int64_t begin_, end_;
-    double scale_;  // px per frame width
-    std::vector<double> depth_;
 };
 
 }  // namespace
@@ -273,7 +265,7 @@ Image front_picture(std::span<const TexturedMesh> meshes, const FrontFrame& fram
     Image picture = make_image(width, height, 3);
     parallel_chunks(height, rows_per_band, [&](std::int64_t begin, std::int64_t end, int) {
         progress.check();
-        FrontBand band(picture, begin, end);
+        FrontBand band{picture, begin, end};
         for (const SeenFace& face : faces) band.draw(face);
     });
     return picture;

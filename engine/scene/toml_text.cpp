@@ -10,51 +10,49 @@ namespace astrosplat {
 
 /// Finds the headers, keys and values of a text, of which toml++ says where each stands. A friend of
 /// TomlText, whose items it makes.
-class TomlScanner {
-  public:
-    TomlScanner(const std::string& text, std::vector<TomlText::Header>& headers,
-                std::vector<TomlText::Item>& items)
-        : text_(text), headers_(headers), items_(items) {}
+struct TomlScanner {
+    const std::string& text;
+    std::vector<TomlText::Header>& headers;
+    std::vector<TomlText::Item>& items;
+    std::vector<std::size_t> lines = {};  // where each begins
 
     void scan() {
-        const std::size_t begin = text_.starts_with("\xEF\xBB\xBF") ? 3 : 0;
-        lines_.push_back(begin);
-        for (std::size_t end = 0; (end = text_.find('\n', end)) != std::string::npos;)
-            lines_.push_back(++end);
-        headers_.push_back({{}, begin, begin});
-        table(parse_toml(text_, ""), {}, false);
+        const std::size_t begin = text.starts_with("\xEF\xBB\xBF") ? 3 : 0;
+        lines.push_back(begin);
+        for (std::size_t end = 0; (end = text.find('\n', end)) != std::string::npos;) lines.push_back(++end);
+        headers.push_back({{}, begin, begin});
+        table(parse_toml(text, ""), {}, false);
         order_headers();
-        std::ranges::sort(items_, {}, &TomlText::Item::begin);
-        for (TomlText::Item& item : items_)
+        std::ranges::sort(items, {}, &TomlText::Item::begin);
+        for (TomlText::Item& item : items)
             item.header = std::size_t(std::ranges::count_if(
-                              headers_, [&](const auto& header) { return header.begin <= item.begin; })) -
+                              headers, [&](const auto& header) { return header.begin <= item.begin; })) -
                           1;
     }
 
-  private:
     /// Columns count characters, which begin with any byte but 10xxxxxx.
     std::size_t offset(const toml::source_position& position) const {
-        std::size_t at = lines_[position.line - 1];
+        std::size_t at = lines[position.line - 1];
         for (auto column = position.column; column > 1; --column)
-            while (++at < text_.size() && (text_[at] & 0xC0) == 0x80) {
+            while (++at < text.size() && (text[at] & 0xC0) == 0x80) {
             }
         return at;
     }
 
     void add_item(const TomlPath& path, std::size_t begin, const toml::node& value, bool nested) {
-        items_.push_back({path, 0, begin, offset(value.source().begin), offset(value.source().end), nested});
+        items.push_back({path, 0, begin, offset(value.source().begin), offset(value.source().end), nested});
     }
 
     void add_header(const TomlPath& path, const toml::node& table) {
-        const std::size_t begin = offset(table.source().begin), end = text_.find('\n', begin);
-        headers_.push_back({path, begin, end == std::string::npos ? text_.size() : end + 1});
+        const std::size_t begin = offset(table.source().begin), end = text.find('\n', begin);
+        headers.push_back({path, begin, end == std::string::npos ? text.size() : end + 1});
     }
 
     /// Where a key begins: dotted ones with their first part, which may stand in more than one of them.
     std::size_t key_begin(const toml::key& key, bool nested) const {
         const std::size_t at = offset(key.source().begin);
         if (!nested) return at;
-        return text_.find_first_not_of(" \t\r", text_.find_last_of("{,\n", at - 1) + 1);
+        return text.find_first_not_of(" \t\r", text.find_last_of("{,\n", at - 1) + 1);
     }
 
     void table(const toml::table& table, const TomlPath& path, bool nested) {
@@ -65,7 +63,7 @@ class TomlScanner {
             const toml::array* const list = list_of_tables(node);
             if (inner && !inner->is_inline()) {
                 // Dotted keys make tables without a header.
-                if (text_[offset(node.source().begin)] == '[') add_header(own, node);
+                if (text[offset(node.source().begin)] == '[') add_header(own, node);
                 this->table(*inner, own, nested);
             } else if (list && !list->front().as_table()->is_inline()) {
                 elements(*list, own, false);
@@ -92,16 +90,11 @@ class TomlScanner {
 
     /// Of tables that one header makes, [a.b] perhaps a and b, the innermost has it.
     void order_headers() {
-        std::ranges::sort(headers_, {}, [](const auto& h) { return std::pair(h.body_begin, h.path.size()); });
+        std::ranges::sort(headers, {}, [](const auto& h) { return std::pair(h.body_begin, h.path.size()); });
         const auto same = [](const auto& a, const auto& b) { return a.body_begin == b.body_begin; };
-        const auto kept = std::unique(headers_.rbegin(), headers_.rend(), same);
-        headers_.erase(headers_.begin(), kept.base());
+        const auto kept = std::unique(headers.rbegin(), headers.rend(), same);
+        headers.erase(headers.begin(), kept.base());
     }
-
-    const std::string& text_;
-    std::vector<TomlText::Header>& headers_;
-    std::vector<TomlText::Item>& items_;
-    std::vector<std::size_t> lines_;  // where each begins
 };
 
 namespace {
@@ -137,7 +130,7 @@ TomlText::TomlText(std::string text) : text_(std::move(text)) { scan(); }
 void TomlText::scan() {
     headers_.clear();
     items_.clear();
-    TomlScanner(text_, headers_, items_).scan();
+    TomlScanner{text_, headers_, items_}.scan();
 }
 
 void TomlText::replace(std::size_t begin, std::size_t end, const std::string& text) {

@@ -45,7 +45,7 @@ class TomlText {
         TomlPath path;
         std::size_t begin, body_begin;  // of its line, of the line after it
     };
-    friend class TomlScanner;
+    friend struct TomlScanner;
 
     void scan();
     void replace(std::size_t begin, std::size_t end, const std::string& text);

@@ -56,112 +56,99 @@ FileLock::State wait_for(FileLock& lock, const std::string& layer_name, const Pr
 }
 
 /// One load_source() through the cache.
-class CachedLoad {
-  public:
-    CachedLoad(const SetCache& cache, const SourceParams& source, const std::string& layer_name,
-               const Progress& progress, KeptWatcher* watcher, const OptionalColumns& wanted)
-        : cache_(cache),
-          source_(source),
-          layer_name_(layer_name),
-          progress_(progress),
-          watcher_(watcher),
-          wanted_(wanted) {}
+struct CachedLoad {
+    const SetCache& cache;
+    const SourceParams& source;
+    const std::string& layer_name;
+    const Progress& progress;
+    KeptWatcher* watcher;
+    const OptionalColumns& wanted;
+    Recipe recipe = {};  // empty: nothing can be kept
 
     LoadedSet load() {
-        if (serves(cache_, source_)) recipe_ = recipe_of(source_, layer_name_, progress_);
-        if (recipe_.name.empty()) return {uncached()};
+        if (serves(cache, source)) recipe = recipe_of(source, layer_name, progress);
+        if (recipe.name.empty()) return {uncached()};
         if (auto found = find()) return std::move(*found);
         std::error_code error;
-        fs::create_directories(cache_.folder, error);
+        fs::create_directories(cache.folder, error);
         if (error) {
-            warn_unkept(cache_, "cannot be made: " + error.message());
+            warn_unkept(cache, "cannot be made: " + error.message());
             return {uncached()};
         }
-        FileLock lock(lock_file(cache_.folder, recipe_.name));
-        const bool locked = wait_for(lock, layer_name_, progress_) == FileLock::State::held;
+        FileLock lock(lock_file(cache.folder, recipe.name));
+        const bool locked = wait_for(lock, layer_name, progress) == FileLock::State::held;
         if (auto found = find()) return std::move(*found);
-        if (locked) remove_leftovers(cache_.folder, recipe_.name);
-        return makes_columns(source_) ? columns() : bodies();
+        if (locked) remove_leftovers(cache.folder, recipe.name);
+        return makes_columns(source) ? columns() : bodies();
     }
 
-  private:
     SplatSet uncached() const {
-        if (source_.kind == SourceKind::stars)
-            return load_stars(source_, layer_name_, progress_, kept_pictures(cache_), [&] {
-                return load_source(cache_, picture_source(source_), source_.stars.like, progress_).set;
+        if (source.kind == SourceKind::stars)
+            return load_stars(source, layer_name, progress, kept_pictures(cache), [&] {
+                return load_source(cache, picture_source(source), source.stars.like, progress).set;
             });
-        return load_source(source_, layer_name_, progress_, watcher_, kept_pictures(cache_));
+        return load_source(source, layer_name, progress, watcher, kept_pictures(cache));
     }
 
     /// False: a file was changed while it was used.
-    bool is_current() const { return recipe_text(source_, layer_name_, progress_) == recipe_.text; }
+    bool is_current() const { return recipe_text(source, layer_name, progress) == recipe.text; }
 
     /// With columns that are not wanted where the set had to be generated.
     LoadedSet bodies() const {
         LoadedSet loaded{uncached()};
         if (!loaded.set.of_this_machine && is_current())
-            keep(cache_, {{set_file(cache_, recipe_.name), NativePart::whole, recipe_.text}}, loaded.set,
-                 progress_);
+            keep(cache, {{set_file(cache, recipe.name), NativePart::whole, recipe.text}}, loaded.set,
+                 progress);
         return loaded;
     }
 
     /// Geometry that is kept gets other texels; else both are made, by one process while others wait.
     LoadedSet columns() const {
-        const ColumnPlan plan = plan_columns(source_, layer_name_, progress_, kept_pictures(cache_));
+        const ColumnPlan plan = plan_columns(source, layer_name, progress, kept_pictures(cache));
         const Recipe geometry = geometry_recipe(plan);
-        FileLock lock(lock_file(cache_.folder, geometry.name));
-        wait_for(lock, layer_name_, progress_);
-        std::optional<Columns> columns = read_geometry(cache_, geometry.name, progress_);
+        FileLock lock(lock_file(cache.folder, geometry.name));
+        wait_for(lock, layer_name, progress);
+        std::optional<Columns> columns = read_geometry(cache, geometry.name, progress);
         const bool known = columns.has_value();
         if (known) {
-            log_info(fmt::format("layer '{}': {} from the cache, pictures are read again", layer_name_,
+            log_info(fmt::format("layer '{}': {} from the cache, pictures are read again", layer_name,
                                  human_count(columns->splats.size(), "position")));
-            read_texels(plan.meshes, *columns, progress_);
-            if (watcher_) show_end(*columns, *watcher_);
+            read_texels(plan.meshes, *columns, progress);
+            if (watcher) show_end(*columns, *watcher);
         } else {
-            columns = make_columns(plan, layer_name_, progress_, watcher_);
+            columns = make_columns(plan, layer_name, progress, watcher);
         }
         if (is_current()) {
             std::vector<KeptFile> entries;
             if (!known)
-                entries.push_back({set_file(cache_, geometry.name), NativePart::geometry, geometry.text});
+                entries.push_back({set_file(cache, geometry.name), NativePart::geometry, geometry.text});
             entries.push_back(
-                {texel_file(cache_, recipe_.name), NativePart::colors, texel_recipe(recipe_, geometry.name)});
-            keep(cache_, entries, columns->splats, progress_);
+                {texel_file(cache, recipe.name), NativePart::colors, texel_recipe(recipe, geometry.name)});
+            keep(cache, entries, columns->splats, progress);
         }
         return {lit_splats(std::move(*columns)), false, known};
     }
 
     std::optional<LoadedSet> find() const {
         std::optional<SplatSet> set;
-        if (makes_columns(source_)) {
-            auto kept =
-                read_columns(cache_, recipe_, watcher_ ? watcher_->sample_limit() : 0, wanted_, progress_);
-            if (kept && watcher_) watcher_->ends(std::move(kept->sample), kept->positions);
+        if (makes_columns(source)) {
+            auto kept = read_columns(cache, recipe, watcher ? watcher->sample_limit() : 0, wanted, progress);
+            if (kept && watcher) watcher->ends(std::move(kept->sample), kept->positions);
             if (kept) set = std::move(kept->set);
         } else {
-            set = read_whole(cache_, recipe_, progress_, wanted_);
+            set = read_whole(cache, recipe, progress, wanted);
         }
         if (!set) return std::nullopt;
-        log_info(
-            fmt::format("layer '{}': {} from the cache", layer_name_, human_count(set->size(), "splat")));
+        log_info(fmt::format("layer '{}': {} from the cache", layer_name, human_count(set->size(), "splat")));
         return LoadedSet{std::move(*set), true, true};
     }
-
-    const SetCache& cache_;
-    const SourceParams& source_;
-    const std::string& layer_name_;
-    const Progress& progress_;
-    KeptWatcher* watcher_;
-    const OptionalColumns& wanted_;
-    Recipe recipe_;  // empty: nothing can be kept
 };
 
 }  // namespace
 
 LoadedSet load_source(const SetCache& cache, const SourceParams& source, const std::string& layer_name,
                       const Progress& progress, KeptWatcher* watcher, const OptionalColumns& wanted) {
-    LoadedSet loaded = CachedLoad(cache, source, layer_name, progress, watcher, wanted).load();
+    LoadedSet loaded = CachedLoad{cache, source, layer_name, progress, watcher, wanted}.load();
     drop_columns(loaded.set, wanted);
     return loaded;
 }

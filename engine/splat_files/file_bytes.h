@@ -70,4 +70,16 @@ void write_ordered(const WriteTarget& target, std::string_view header, std::int6
                    std::size_t row_bytes, const Progress& progress, const FormatRows& format,
                    const Footer& footer = {});
 
+/// The same row by row: put_row(out, row) writes one to `out` and returns the end of what it wrote.
+template <class PutRow>
+void write_rows(const WriteTarget& target, std::string_view header, std::int64_t count, std::int64_t chunk,
+                std::size_t row_bytes, const Progress& progress, const PutRow& put_row,
+                const Footer& footer = {}) {
+    const auto format = [&](std::int64_t begin, std::int64_t end, char* out) {
+        for (std::int64_t row = begin; row < end; ++row) out = put_row(out, row);
+        return out;
+    };
+    write_ordered(target, header, count, chunk, row_bytes, progress, format, footer);
+}
+
 }  // namespace astrosplat

@@ -165,7 +165,7 @@ char* put_text(char* out, std::uint64_t value) { return std::to_chars(out, out +
 /// The longest row: nine floats, a mesh, an id, blanks and the newline.
 constexpr std::size_t longest_row = 11 * (longest_number + 1);
 
-char* put_row(char* out, const SplatSet& set, std::size_t i) {
+char* put_row(char* out, const SplatSet& set, std::int64_t i) {
     const auto put = [&](const auto&... numbers) { ((out = put_text(out, numbers), *out++ = ' '), ...); };
     const glm::vec3 &p = set.position[i], &c = set.color[i];
     put(p.x, p.y, p.z, c.x, c.y, c.z, set.alpha[i], set.distance[i]);
@@ -219,11 +219,8 @@ SplatSet read_pda(const fs::path& file, const Progress& progress) {
 void write_pda(const WriteTarget& target, const SplatSet& set, const Progress& progress) {
     check_consistent(set);
     constexpr std::int64_t rows = 16384;  // about 1 MiB of text
-    write_ordered(target, header_text(set), set.size(), rows, longest_row, progress,
-                  [&](std::int64_t begin, std::int64_t end, char* out) {
-                      for (auto i = std::size_t(begin); i < std::size_t(end); ++i) out = put_row(out, set, i);
-                      return out;
-                  });
+    write_rows(target, header_text(set), set.size(), rows, longest_row, progress,
+               [&](char* out, std::int64_t i) { return put_row(out, set, i); });
 }
 
 }  // namespace astrosplat

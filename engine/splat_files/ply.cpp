@@ -230,7 +230,7 @@ char* put_bytes(char* out, const T& value) {
     return out + sizeof value;
 }
 
-char* put_row(char* out, const SplatSet& set, bool wide_ids, std::size_t i) {
+char* put_row(char* out, const SplatSet& set, bool wide_ids, std::int64_t i) {
     out = put_bytes(out, set.position[i]);
     out = put_bytes(out, set.color[i]);
     out = put_bytes(out, set.alpha[i]);
@@ -304,12 +304,8 @@ void write_ply(const WriteTarget& target, const SplatSet& set, const Progress& p
     check_consistent(set);
     const bool wide_ids = std::ranges::any_of(set.id, [](std::uint64_t id) { return id >> 32 != 0; });
     constexpr std::size_t longest_row = 17 * sizeof(float);
-    write_ordered(target, header_text(set, wide_ids), set.size(), rows_written_at_once, longest_row, progress,
-                  [&](std::int64_t begin, std::int64_t end, char* out) {
-                      for (auto i = std::size_t(begin); i < std::size_t(end); ++i)
-                          out = put_row(out, set, wide_ids, i);
-                      return out;
-                  });
+    write_rows(target, header_text(set, wide_ids), set.size(), rows_written_at_once, longest_row, progress,
+               [&](char* out, std::int64_t i) { return put_row(out, set, wide_ids, i); });
 }
 
 }  // namespace astrosplat
