@@ -128,8 +128,10 @@ class Properties {
     std::string prefix_;
 };
 
-std::optional<double> if_positive(std::optional<double> value) {
-    return value && *value > 0.0 ? value : std::nullopt;
+// Light years; nothing in the sky is farther.
+std::optional<double> if_distance(std::optional<double> value) {
+    constexpr double farthest = 1e12;
+    return value && *value > 0.0 && *value <= farthest ? value : std::nullopt;
 }
 
 std::vector<std::string> saying(std::vector<std::string> values) {
@@ -144,6 +146,59 @@ std::optional<std::array<double, 2>> pair_of(const Properties& avm, const char* 
     return a && b ? std::optional(std::array{*a, *b}) : std::nullopt;
 }
 
+// Degrees of the sky to the east and to the north that a pixel to the right and one upwards are: CD1_1,
+// CD1_2, CD2_1, CD2_2 of a FITS header.
+using SkyMatrix = std::array<double, 4>;
+
+// Towards north the right ascension stays: along (-east_up, east_right) / area.
+void set_matrix(ObjectMetadata& found, const SkyMatrix& sky) {
+    constexpr double least = 1e-15, most = 360.0;  // degrees a pixel; others are no picture's
+    const auto& [east_right, east_up, north_right, north_up] = sky;
+    const double area = east_right * north_up - east_up * north_right;
+    const double width = std::hypot(east_right, north_right);
+    const auto too_large = [](double degrees) { return !(std::fabs(degrees) <= most); };
+    if (std::ranges::any_of(sky, too_large) || width < least || std::fabs(area) < least * least) return;
+    found.degrees_per_px = width;
+    found.north_angle = real::degrees(real::atan2(east_up / area, east_right / area));
+}
+
+// Spatial.Scale has the signs of CDELT, so that two positive ones are a mirrored picture, and
+// Spatial.Rotation is CROTA2. One scale alone is of square pixels with east to the left.
+void set_scale(ObjectMetadata& found, const Properties& avm) {
+    std::optional<double> turn = avm.number("Spatial.Rotation");
+    if (turn) turn = std::remainder(*turn, 360.0);
+    found.north_angle = turn;
+    const std::optional<double> right = avm.number("Spatial.Scale", 0), up = avm.number("Spatial.Scale", 1);
+    if (!right) return;
+    const double x = up ? *right : -std::fabs(*right), y = up.value_or(-x);
+    const double angle = real::radians(turn.value_or(0.0)), c = real::cos(angle), s = real::sin(angle);
+    set_matrix(found, {x * c, -y * s, x * s, y * c});
+    if (!turn) found.north_angle.reset();
+}
+
+// AVM's older way, which has to have all four.
+std::optional<SkyMatrix> matrix_of(const Properties& avm) {
+    SkyMatrix matrix{};
+    for (std::size_t i = 0; i < matrix.size(); ++i) {
+        const std::optional<double> value = avm.number("Spatial.CDMatrix", i);
+        if (!value) return {};
+        matrix[i] = *value;
+    }
+    return matrix;
+}
+
+void set_sky(ObjectMetadata& found, const Properties& avm) {
+    set_scale(found, avm);
+    const std::optional<SkyMatrix> matrix = matrix_of(avm);
+    if (matrix && !found.degrees_per_px) set_matrix(found, *matrix);
+    found.reference_px = pair_of(avm, "Spatial.ReferenceDimension").value_or(std::array{0.0, 0.0});
+    found.sky_position = pair_of(avm, "Spatial.ReferenceValue");
+    const std::string frame = avm.text("Spatial.CoordinateFrame");
+    if (frame != "GAL" && frame != "SGAL" && frame != "ECL") return;
+    found.north_angle.reset();  // of another north, and another place
+    found.sky_position.reset();
+}
+
 ObjectMetadata metadata_of(const pugi::xml_document& packet) {
     const Properties avm(packet, avm_space, "avm"), core(packet, dublin_core_space, "dc"),
         photoshop(packet, photoshop_space, "photoshop");
@@ -154,12 +209,8 @@ ObjectMetadata metadata_of(const pugi::xml_document& packet) {
     found.title = first_of(core.text("title"), photoshop.text("Headline"));
     found.credit = first_of(photoshop.text("Credit"), first_of(core.text("creator"), core.text("rights")));
     found.type = avm.text("Type");
-    found.distance_ly = if_positive(avm.number("Distance"));
-    if (const std::optional<double> scale = avm.number("Spatial.Scale"))
-        found.degrees_per_px = if_positive(std::fabs(*scale));
-    found.reference_px = pair_of(avm, "Spatial.ReferenceDimension").value_or(std::array{0.0, 0.0});
-    found.north_angle = avm.number("Spatial.Rotation");
-    found.sky_position = pair_of(avm, "Spatial.ReferenceValue");
+    found.distance_ly = if_distance(avm.number("Distance"));
+    set_sky(found, avm);
     return found;
 }
 
@@ -189,14 +240,10 @@ ObjectMetadata read_fits_metadata(const fs::path& file) {
     ObjectMetadata found;
     if (!plane.object.empty()) found.names.push_back(plane.object);
     found.credit = plane.credit;
-    found.distance_ly = plane.distance_ly;
+    found.distance_ly = if_distance(plane.distance_ly);
     found.reference_px = {double(plane.width), double(plane.height)};
     if (!plane.sky) return found;
-    const auto& [east_x, east_y, north_x, north_y] = plane.sky->cd;
-    const double area = east_x * north_y - east_y * north_x;
-    found.degrees_per_px = std::sqrt(std::fabs(area));
-    // Towards north the right ascension stays: along (-east_y, east_x) / area.
-    found.north_angle = real::degrees(real::atan2(east_y / area, east_x / area));
+    set_matrix(found, plane.sky->cd);
     found.sky_position = plane.sky->crval;
     return found;
 }
@@ -204,8 +251,10 @@ ObjectMetadata read_fits_metadata(const fs::path& file) {
 std::optional<double> degrees_per_px_of(const ObjectMetadata& metadata, double width_px, double height_px) {
     if (!metadata.degrees_per_px || !(width_px > 0.0) || !(height_px > 0.0)) return {};
     const auto [reference_width, reference_height] = metadata.reference_px;
-    if (!(reference_width > 0.0) || !(reference_height > 0.0)) return metadata.degrees_per_px;
-    return *metadata.degrees_per_px / std::max(width_px / reference_width, height_px / reference_height);
+    const bool reduced = reference_width > 0.0 && reference_height > 0.0;
+    const double times = reduced ? std::max(width_px / reference_width, height_px / reference_height) : 1.0;
+    const double degrees = *metadata.degrees_per_px / times;
+    return degrees * std::max(width_px, height_px) <= 360.0 ? std::optional(degrees) : std::nullopt;
 }
 
 }  // namespace astrosplat

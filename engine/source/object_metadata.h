@@ -18,10 +18,11 @@ struct ObjectMetadata {
     std::vector<std::string> names;        // Subject.Name, or OBJECT: "M 104", "Sombrero Galaxy"
     std::string title, credit;             // as the file has them, in its first language
     std::string type;                      // "Observation", "Artwork", "Simulation" ...; may be empty
-    std::optional<double> distance_ly;     // light years, > 0
-    std::optional<double> degrees_per_px;  // Spatial.Scale, along the picture's width, > 0
+    std::optional<double> distance_ly;     // light years, above 0, at most 1e12
+    std::optional<double> degrees_per_px;  // along the picture's width, > 0
     std::array<double, 2> reference_px{};  // width and height of the picture that the scale is of; 0: unknown
-    std::optional<double> north_angle;     // Spatial.Rotation: degrees, of north counter-clockwise from up
+    std::optional<double> north_angle;     // degrees, of north counter-clockwise from up, also where the
+                                           // picture is mirrored; -180 to 180
     std::optional<std::array<double, 2>>
         sky_position;  // degrees: right ascension, declination of a place in it
 };
@@ -41,7 +42,7 @@ ObjectMetadata read_fits_metadata(const fs::path& file);
 
 /// How wide one pixel of a picture of this size is on the sky, in degrees: the scale is of the reference's
 /// pixels, which the picture may have reduced, or cut to other proportions after it was reduced to cover
-/// them.
+/// them. Nothing where none is known, or the picture would be wider or higher than the whole sky.
 std::optional<double> degrees_per_px_of(const ObjectMetadata& metadata, double width_px, double height_px);
 
 }  // namespace astrosplat

@@ -3,7 +3,10 @@
 #include <fitsio.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "source/picture.h"
 #include "support/temp_folder.h"
@@ -45,9 +48,9 @@ TEST(XmpMetadata, FromAttributesAndLists) {
     EXPECT_EQ(found.credit, "A & B");
     EXPECT_EQ(found.type, "Artwork");
     EXPECT_EQ(found.distance_ly, 4.6e7);
-    EXPECT_EQ(found.degrees_per_px, 1e-5);
+    EXPECT_DOUBLE_EQ(*found.degrees_per_px, 1e-5);
     EXPECT_EQ(found.reference_px, (std::array{4000.0, 3000.0}));
-    EXPECT_EQ(found.north_angle, 84.5);
+    EXPECT_NEAR(*found.north_angle, 84.5, 1e-12);
     EXPECT_EQ(found.sky_position, (std::array{140.5, -51.0}));
 }
 
@@ -73,7 +76,86 @@ TEST(XmpMetadata, FiguresThatSayNothingAreLeftOut) {
     EXPECT_FALSE(found.north_angle);
     EXPECT_FALSE(found.degrees_per_px);
     EXPECT_FALSE(found.distance_ly);
-    EXPECT_FALSE(find_xmp_metadata(packet("avm:Distance='inf'", "")).distance_ly);
+    for (const char* distance : {"inf", "-5", "1e13"})
+        EXPECT_FALSE(
+            find_xmp_metadata(packet(std::string("avm:Distance='") + distance + "'", "")).distance_ly)
+            << distance;
+}
+
+std::string list_of(const std::string& property, const std::string& values) {
+    std::string items;
+    for (std::size_t begin = 0, end = 0; end != std::string::npos; begin = end + 1) {
+        end = values.find(' ', begin);
+        items += "<rdf:li>" + values.substr(begin, end - begin) + "</rdf:li>";
+    }
+    return "<avm:" + property + "><rdf:Seq>" + items + "</rdf:Seq></avm:" + property + ">";
+}
+
+ObjectMetadata in_the_sky(const std::string& property, const std::string& values,
+                          const std::string& attributes = "") {
+    return find_xmp_metadata(packet(attributes, list_of(property, values)));
+}
+
+// Closed forms: pixel offsets (x, y) are where the sky's are (0, 1), and the angle is atan2(-x, y).
+struct OnTheSky {
+    const char *values, *rotation;
+    double north;  // degrees
+};
+
+TEST(XmpMetadata, NorthByScaleAndRotationAlsoInMirroredPictures) {
+    for (const auto& [values, rotation, north] :
+         {OnTheSky{"-1e-4 1e-4", "0", 0.0}, OnTheSky{"-1e-4 1e-4", "90", 90.0},
+          OnTheSky{"-1e-4 1e-4", "180", 180.0}, OnTheSky{"-1e-4 1e-4", "-30", -30.0},
+          OnTheSky{"-1e-4 1e-4", "330", -30.0}, OnTheSky{"1e-4 1e-4", "0", 0.0},
+          OnTheSky{"1e-4 1e-4", "30", -30.0}, OnTheSky{"1e-4 1e-4", "90", -90.0},
+          OnTheSky{"-1e-4 -1e-4", "0", 180.0}, OnTheSky{"-1e-4 -1e-4", "30", 150.0},
+          OnTheSky{"1e-4 -1e-4", "90", -90.0}, OnTheSky{"1e-4 -1e-4", "30", -150.0},
+          OnTheSky{"1e-4", "30", 30.0}, OnTheSky{"-1e-4", "30", 30.0}}) {
+        const ObjectMetadata found =
+            in_the_sky("Spatial.Scale", values, std::string("avm:Spatial.Rotation='") + rotation + "'");
+        SCOPED_TRACE(std::string(values) + ", " + rotation);
+        ASSERT_TRUE(found.north_angle && found.degrees_per_px);
+        EXPECT_NEAR(std::remainder(*found.north_angle - north, 360.0), 0.0, 1e-9);
+        EXPECT_NEAR(*found.degrees_per_px, 1e-4, 1e-16);
+    }
+    EXPECT_NEAR(*in_the_sky("Spatial.Scale", "-3e-4 1e-4", "avm:Spatial.Rotation='90'").degrees_per_px, 3e-4,
+                1e-16)
+        << "pixels that are wider than high";
+    EXPECT_FALSE(in_the_sky("Spatial.Scale", "-1e-4 1e-4").north_angle) << "nobody says it";
+    EXPECT_EQ(find_xmp_metadata(packet("avm:Spatial.Rotation='200'", "")).north_angle, -160.0);
+}
+
+TEST(XmpMetadata, ScaleAndNorthByAMatrixWhereThereIsNoScale) {
+    for (const auto& [values, rotation, north] :
+         {OnTheSky{"-2e-4 0 0 2e-4", "", 0.0}, OnTheSky{"2e-4 0 0 2e-4", "", 0.0},
+          OnTheSky{"2e-4 0 0 -2e-4", "", 180.0}, OnTheSky{"-2e-4 0 0 -2e-4", "", 180.0},
+          OnTheSky{"0 -2e-4 -2e-4 0", "", 90.0}, OnTheSky{"0 2e-4 2e-4 0", "", -90.0},
+          OnTheSky{"0 -2e-4 2e-4 0", "", -90.0}, OnTheSky{"0 2e-4 -2e-4 0", "", 90.0},
+          OnTheSky{"-1.6e-4 -1.2e-4 -1.2e-4 1.6e-4", "", 36.86989764584402}}) {
+        const ObjectMetadata found = in_the_sky("Spatial.CDMatrix", values);
+        SCOPED_TRACE(values);
+        ASSERT_TRUE(found.north_angle && found.degrees_per_px);
+        EXPECT_NEAR(std::remainder(*found.north_angle - north, 360.0), 0.0, 1e-9);
+        EXPECT_NEAR(*found.degrees_per_px, 2e-4, 1e-16);
+    }
+    const ObjectMetadata both = find_xmp_metadata(
+        packet("", list_of("Spatial.CDMatrix", "0 2e-4 2e-4 0") + list_of("Spatial.Scale", "-1e-4 1e-4")));
+    EXPECT_NEAR(*both.degrees_per_px, 1e-4, 1e-16);
+    for (const char* none : {"2e-4 0 0", "1 2 2 4", "0 0 0 0", "2e-4 - 0 2e-4", "1e300 0 0 1e300"})
+        EXPECT_FALSE(in_the_sky("Spatial.CDMatrix", none).degrees_per_px) << none;
+}
+
+// North of the Milky Way is another one.
+TEST(XmpMetadata, PlacesAndNorthAreThoseOfTheEarthsSky) {
+    for (const auto& [frame, known] : {std::pair("ICRS", true), std::pair("FK5", true),
+                                       std::pair("GAL", false), std::pair("ECL", false)}) {
+        const ObjectMetadata found = find_xmp_metadata(
+            packet(std::string("avm:Spatial.Rotation='10' avm:Spatial.CoordinateFrame='") + frame + "'",
+                   list_of("Spatial.Scale", "-1e-4 1e-4") + list_of("Spatial.ReferenceValue", "30 40")));
+        EXPECT_EQ(found.north_angle.has_value(), known) << frame;
+        EXPECT_EQ(found.sky_position.has_value(), known) << frame;
+        EXPECT_TRUE(found.degrees_per_px) << frame;
+    }
 }
 
 // By the creator where nobody is credited, by the rights where there is no creator.
@@ -105,6 +187,10 @@ TEST(DegreesPerPixel, FollowTheReferenceThatThePictureWasCutFrom) {
     EXPECT_DOUBLE_EQ(*degrees_per_px_of(metadata, 1920, 1200), 1e-5 * 4000 / 1920);
     EXPECT_DOUBLE_EQ(*degrees_per_px_of(metadata, 800, 1200), 1e-5 * 3000 / 1200);
     EXPECT_FALSE(degrees_per_px_of(metadata, 0, 1200));
+    metadata = {};
+    metadata.degrees_per_px = 0.5;
+    EXPECT_TRUE(degrees_per_px_of(metadata, 720, 360));
+    EXPECT_FALSE(degrees_per_px_of(metadata, 721, 360)) << "wider than the sky";
 }
 
 void put(fitsfile* out, const char* key, double value, const char* comment = "") {
@@ -113,8 +199,10 @@ void put(fitsfile* out, const char* key, double value, const char* comment = "")
     ASSERT_EQ(status, 0);
 }
 
-std::filesystem::path write_sky(const TempFolder& folder, const std::string& name,
-                                const char* distance_unit) {
+using Cards = std::vector<std::pair<const char*, double>>;
+
+std::filesystem::path write_sky(const TempFolder& folder, const char* name, const char* distance_unit,
+                                const Cards& cards) {
     const std::filesystem::path file = folder / name;
     fitsfile* out = nullptr;
     int status = 0;
@@ -127,9 +215,7 @@ std::filesystem::path write_sky(const TempFolder& folder, const std::string& nam
     fits_write_key_str(out, "CTYPE1", "RA---TAN", "", &status);
     fits_write_key_str(out, "CTYPE2", "DEC--TAN", "", &status);
     put(out, "CRPIX1", 2.0), put(out, "CRPIX2", 1.5), put(out, "CRVAL1", 202.5), put(out, "CRVAL2", 47.2);
-    // North lies 30 degrees to the left of up.
-    put(out, "CD1_1", -1e-4 * std::cos(0.5235987755982988)), put(out, "CD1_2", -1e-4 * 0.5);
-    put(out, "CD2_1", -1e-4 * 0.5), put(out, "CD2_2", 1e-4 * std::cos(0.5235987755982988));
+    for (const auto& [key, value] : cards) put(out, key, value);
     put(out, "DISTANCE", 2.0, distance_unit);
     fits_write_img(out, TFLOAT, 1, 12, values.data(), &status);
     fits_close_file(out, &status);
@@ -139,13 +225,47 @@ std::filesystem::path write_sky(const TempFolder& folder, const std::string& nam
 
 TEST(FitsMetadata, HasObjectPlaceAndDistance) {
     const TempFolder folder;
-    const ObjectMetadata found = read_fits_metadata(write_sky(folder, "a.fits", "[Mpc] to it"));
+    const Cards turned{{"CD1_1", -0.8e-4}, {"CD1_2", -0.6e-4}, {"CD2_1", -0.6e-4}, {"CD2_2", 0.8e-4}};
+    const ObjectMetadata found = read_fits_metadata(write_sky(folder, "a.fits", "[Mpc] to it", turned));
     EXPECT_EQ(found.names, Texts{"M 51"});
     EXPECT_NEAR(*found.degrees_per_px, 1e-4, 1e-12);
-    EXPECT_NEAR(*found.north_angle, 30.0, 1e-9);
+    EXPECT_NEAR(*found.north_angle, 36.86989764584402, 1e-9);
     EXPECT_EQ(found.sky_position, (std::array{202.5, 47.2}));
     EXPECT_NEAR(*found.distance_ly, 6.523127554e6, 1.0);
-    EXPECT_FALSE(read_fits_metadata(write_sky(folder, "b.fits", "to it")).distance_ly) << "it has no unit";
+    EXPECT_FALSE(read_fits_metadata(write_sky(folder, "b.fits", "to it", turned)).distance_ly)
+        << "it has no unit";
+    EXPECT_FALSE(read_fits_metadata(write_sky(folder, "c.fits", "", {})).north_angle);
+}
+
+// As XMP has them, in all the ways in which a header says it.
+TEST(FitsMetadata, NorthAndScaleAlsoInMirroredPictures) {
+    constexpr double s = 1e-4;
+    const TempFolder folder;
+    const auto expect = [&](const Cards& cards, double north) {
+        const std::string name = std::to_string(north) + std::to_string(cards.size()) + ".fits";
+        const ObjectMetadata found = read_fits_metadata(write_sky(folder, name.c_str(), "", cards));
+        std::filesystem::remove(folder / name);
+        ASSERT_TRUE(found.north_angle && found.degrees_per_px);
+        EXPECT_NEAR(std::remainder(*found.north_angle - north, 360.0), 0.0, 1e-9);
+        EXPECT_NEAR(*found.degrees_per_px, s, 1e-16);
+    };
+    expect({{"CD1_1", -s}, {"CD2_2", s}}, 0.0);
+    expect({{"CD1_1", s}, {"CD2_2", s}}, 0.0);
+    expect({{"CD1_1", s}, {"CD2_2", -s}}, 180.0);
+    expect({{"CD1_2", -s}, {"CD2_1", -s}}, 90.0);
+    expect({{"CD1_2", s}, {"CD2_1", -s}}, 90.0);
+    expect({{"CD1_2", s}, {"CD2_1", s}}, -90.0);
+    expect({{"CDELT1", -s}, {"CDELT2", s}}, 0.0);
+    expect({{"CDELT1", -s}, {"CDELT2", -s}}, 180.0);
+    expect({{"CDELT1", -s}, {"CDELT2", s}, {"CROTA2", 30.0}}, 30.0);
+    expect({{"CDELT1", -s}, {"CDELT2", s}, {"CROTA2", 90.0}}, 90.0);
+    expect({{"CDELT1", -s}, {"CDELT2", s}, {"CROTA2", 180.0}}, 180.0);
+    expect({{"CDELT1", s}, {"CDELT2", s}, {"CROTA2", 30.0}}, -30.0);
+    expect({{"CDELT1", s}, {"CDELT2", -s}, {"CROTA2", 30.0}}, -150.0);
+    expect({{"CDELT1", -s}, {"CDELT2", s}, {"PC1_1", 0.8}, {"PC1_2", 0.6}, {"PC2_1", -0.6}, {"PC2_2", 0.8}},
+           36.86989764584402);
+    expect({{"CDELT1", -s}, {"CDELT2", s}, {"PC1_1", 0.8}, {"PC1_2", -0.6}, {"PC2_1", 0.6}, {"PC2_2", 0.8}},
+           -36.86989764584402);
 }
 
 TEST(XmpMetadata, OfAPublishedPicture) {
