@@ -2,6 +2,7 @@
 
 #include <zlib.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <glm/geometric.hpp>
@@ -10,6 +11,7 @@
 #include "camera_files/formats.h"
 #include "core/text.h"
 #include "fuzz/targets.h"
+#include "source/object_metadata.h"
 #include "splat_files/formats.h"
 #include "stars/catalogue.h"
 #include "stars/star_set.h"
@@ -32,6 +34,34 @@ std::string binary_gltf(std::string json) {
     while (json.size() % 4) json += ' ';
     return "glTF" + test::little_endian(2) + test::little_endian(20 + json.size()) +
            test::little_endian(json.size()) + "JSON" + json;
+}
+
+/// How much of it says something.
+std::size_t check(const ObjectMetadata& found) {
+    demand(!found.distance_ly || (*found.distance_ly > 0.0 && *found.distance_ly <= 1e12), "a distance");
+    demand(!found.degrees_per_px || (*found.degrees_per_px > 0.0 && *found.degrees_per_px <= 1e3), "a scale");
+    demand(!found.north_angle || std::fabs(*found.north_angle) <= 180.0, "an angle");
+    if (found.sky_position)
+        for (const double degrees : *found.sky_position) demand(std::isfinite(degrees), "a finite place");
+    for (const auto& [width, height] : {std::pair(1.0, 1e5), std::pair(1e5, 3.0)}) {
+        const std::optional<double> degrees = degrees_per_px_of(found, width, height);
+        demand(!degrees || (*degrees >= 0.0 && *degrees * std::max(width, height) <= 360.0),
+               "a part of the sky");
+    }
+    for (const auto& list : {found.categories, found.names})
+        for (const std::string& text : list) demand(!text.empty() && text != "-", "words");
+    return found.categories.size() + found.names.size() + found.title.size() + found.credit.size() +
+           found.type.size() + found.distance_ly.has_value() + found.degrees_per_px.has_value() +
+           found.north_angle.has_value() + found.sky_position.has_value();
+}
+
+std::string xmp_packet(const std::string& attributes, const std::string& elements) {
+    return "<?xpacket begin='\xef\xbb\xbf'?><x:xmpmeta xmlns:x='adobe:ns:meta/'><rdf:RDF "
+           "xmlns:rdf='http://www.w3.org/1999/02/22-rdf-syntax-ns#'><rdf:Description "
+           "xmlns:avm='http://www.communicatingastronomy.org/avm/1.0/' "
+           "xmlns:dc='http://purl.org/dc/elements/1.1/' "
+           "xmlns:photoshop='http://ns.adobe.com/photoshop/1.0/' " +
+           attributes + ">" + elements + "</rdf:Description></rdf:RDF></x:xmpmeta><?xpacket end='w'?>";
 }
 
 std::size_t check(const CameraTrack& track) {
@@ -205,6 +235,70 @@ std::size_t read_usda_bytes(std::string_view bytes) {
 std::size_t read_gltf_bytes(std::string_view bytes) {
     return check_capture(
         read_gltf_splats(TemporaryFile(bytes, bytes.starts_with("{") ? ".gltf" : ".glb").path));
+}
+
+std::string fits(const std::vector<std::string>& cards) {
+    std::string bytes;
+    for (std::string card : cards) {
+        card.resize(80, ' ');
+        bytes += card;
+    }
+    bytes.resize((bytes.size() + 2879) / 2880 * 2880, ' ');
+    for (int i = 0; i < 12; ++i) bytes += std::string{char(i % 3), char(i * 21)};
+    bytes.resize((bytes.size() + 2879) / 2880 * 2880, '\0');
+    return bytes;
+}
+
+std::vector<std::string> xmp_seeds() {
+    const std::string lists = xmp_packet(
+        "avm:Type='Observation' avm:Spatial.Rotation='-30' avm:Spatial.CoordinateFrame='ICRS'",
+        "<avm:Subject.Category><rdf:Bag><rdf:li>C.5.1.1</rdf:li><rdf:li>-</rdf:li></rdf:Bag>"
+        "</avm:Subject.Category><avm:Distance><rdf:Seq><rdf:li>4.6e7</rdf:li><rdf:li>0.002</rdf:li></rdf:Seq>"
+        "</avm:Distance><avm:Spatial.Scale><rdf:Seq><rdf:li>-1e-5</rdf:li><rdf:li>1e-5</rdf:li></rdf:Seq>"
+        "</avm:Spatial.Scale><avm:Spatial.ReferenceDimension><rdf:Seq><rdf:li>400</rdf:li><rdf:li>300</"
+        "rdf:li>"
+        "</rdf:Seq></avm:Spatial.ReferenceDimension><avm:Spatial.ReferenceValue><rdf:Seq><rdf:li>140.5</"
+        "rdf:li>"
+        "<rdf:li>-51</rdf:li></rdf:Seq></avm:Spatial.ReferenceValue>"
+        "<dc:title><rdf:Alt><rdf:li xml:lang='x-default'>A\n  spiral</rdf:li></rdf:Alt></dc:title>");
+    const std::string matrix = xmp_packet(
+        "photoshop:Credit='A &amp; B' avm:Distance='1300'",
+        "<avm:Spatial.CDMatrix><rdf:Seq><rdf:li>-8e-5</rdf:li><rdf:li>-6e-5</rdf:li><rdf:li>-6e-5</rdf:li>"
+        "<rdf:li>8e-5</rdf:li></rdf:Seq></avm:Spatial.CDMatrix><avm:Subject.Name>M 42</avm:Subject.Name>");
+    return {lists, std::string("\xff\xd8\xff\xe1 <rdf:RDF><a></rdf:RDF>", 27) + matrix + lists};
+}
+
+std::size_t read_xmp_bytes(std::string_view bytes) {
+    return check(read_xmp_metadata(TemporaryFile(bytes, ".jpg").path));
+}
+
+std::vector<std::string> fits_metadata_seeds() {
+    const std::vector<std::string> picture{"SIMPLE  =                    T",
+                                           "BITPIX  =                   16",
+                                           "NAXIS   =                    2",
+                                           "NAXIS1  =                    4",
+                                           "NAXIS2  =                    3",
+                                           "OBJECT  = 'M 51    '",
+                                           "DISTANCE=                  8.6 / [Mpc] to it",
+                                           "CTYPE1  = 'RA---TAN'",
+                                           "CTYPE2  = 'DEC--TAN'",
+                                           "CRPIX1  =                  2.0",
+                                           "CRPIX2  =                  1.5",
+                                           "CRVAL1  =                202.5",
+                                           "CRVAL2  =                 47.2"};
+    const auto with = [&](std::vector<std::string> cards) {
+        cards.insert(cards.begin(), picture.begin(), picture.end());
+        cards.emplace_back("END");
+        return fits(cards);
+    };
+    return {with({"CD1_1   =              -8.0E-5", "CD1_2   =              -6.0E-5",
+                  "CD2_1   =              -6.0E-5", "CD2_2   =               8.0E-5"}),
+            with({"CDELT1  =              -1.0E-4", "CDELT2  =               1.0E-4",
+                  "CROTA2  =                 30.0"})};
+}
+
+std::size_t read_fits_metadata_bytes(std::string_view bytes) {
+    return check(read_fits_metadata(TemporaryFile(bytes, ".fits").path));
 }
 
 }  // namespace astrosplat::fuzz

@@ -1,5 +1,6 @@
-// Camera files, star catalogues and captures of every format for the fuzzer: seeds, and checks of what was
-// read. Readers throw InputError for bad input, std::logic_error for results that cannot be.
+// Camera files, star catalogues, captures of every format and metadata of pictures for the fuzzer: seeds, and
+// checks of what was read. Readers throw InputError for bad input, std::logic_error for results that cannot
+// be.
 #pragma once
 
 #include <cstddef>
@@ -24,5 +25,14 @@ std::vector<std::string> usda_seeds();
 std::size_t read_gaussian_ply_bytes(std::string_view bytes);
 std::size_t read_gltf_bytes(std::string_view bytes);
 std::size_t read_usda_bytes(std::string_view bytes);
+
+/// XMP packets with AVM, also among other bytes, as pictures have them; headers of FITS pictures.
+std::vector<std::string> xmp_seeds();
+std::vector<std::string> fits_metadata_seeds();
+std::size_t read_xmp_bytes(std::string_view bytes);
+std::size_t read_fits_metadata_bytes(std::string_view bytes);
+
+/// A FITS file by hand: cards of 80 characters in blocks of 2880 bytes, then 4 x 3 big-endian 16-bit numbers.
+std::string fits(const std::vector<std::string>& cards);
 
 }  // namespace astrosplat::fuzz

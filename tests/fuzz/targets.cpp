@@ -149,20 +149,7 @@ const char* const obj =
     "# box\nmtllib absent.mtl\no one\nv 0 0 0\nv 1 0 0\nv 1 1 0.5\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"
     "vn 0 0 1\nusemtl red\nf 1/1/1 2/2/1 3/3/1 4/4/1\ng two\nf -4//1 -3//1 -2//1\nf 1 3 4\n";
 
-/// A FITS file by hand: cards of 80 characters in blocks of 2880 bytes, then 4 x 3 big-endian 16-bit numbers.
-std::string fits(const std::vector<std::string>& cards) {
-    std::string bytes;
-    for (std::string card : cards) {
-        card.resize(80, ' ');
-        bytes += card;
-    }
-    bytes.resize((bytes.size() + 2879) / 2880 * 2880, ' ');
-    for (int i = 0; i < 12; ++i) bytes += std::string{static_cast<char>(i % 3), static_cast<char>(i * 21)};
-    bytes.resize((bytes.size() + 2879) / 2880 * 2880, '\0');
-    return bytes;
-}
-
-/// A tile-compressed one of 8 x 6 numbers.
+/// A tile-compressed FITS file of 8 x 6 numbers.
 std::string compressed_fits(int compression) {
     const TemporaryFile file("", ".fits");
     fs::remove(file.path);
@@ -215,6 +202,8 @@ const std::vector<Target>& targets() {
         {"gaussian_ply", gaussian_ply_seeds, read_gaussian_ply_bytes},
         {"gltf", gltf_seeds, read_gltf_bytes},
         {"usda", usda_seeds, read_usda_bytes},
+        {"xmp", xmp_seeds, read_xmp_bytes, false},
+        {"fits_metadata", fits_metadata_seeds, read_fits_metadata_bytes},
     };
     return all;
 }

@@ -23,6 +23,7 @@ struct Target {
     /// Reads the bytes as a file, checks what came out and returns how much that is: splats, triangles,
     /// stars. Throws InputError for bad input; anything else is a bug.
     std::size_t (*read)(std::string_view bytes);
+    bool refuses = true;  // whether there is anything that it does not take
 
     friend void PrintTo(const Target& given, std::ostream* out) { *out << given.name; }
 };
