@@ -187,14 +187,16 @@ Report describe_scene(const fs::path& file) {
     Report layers = Report::array(), animated = Report::array();
     for (const LayerParams& layer : scene.layers) layers.push_back(describe_layer(layer));
     for (const Track& track : scene.animation) animated.push_back(track.key.text());
-    return {{"kind", "scene"},
-            {"resolution", {scene.output.width, scene.output.height}},
-            {"frames", scene.output.frames},
-            {"frame_count", frames.size()},
-            {"fps", scene.output.fps},
-            {"output", scene.output.path},
-            {"layers", layers},
-            {"animated", animated}};
+    Report report = {{"kind", "scene"},
+                     {"resolution", {scene.output.width, scene.output.height}},
+                     {"frames", scene.output.frames},
+                     {"frame_count", frames.size()},
+                     {"fps", scene.output.fps},
+                     {"output", scene.output.path},
+                     {"layers", layers},
+                     {"animated", animated}};
+    if (scene.light_years_per_unit > 0.0) report["light_years_per_unit"] = number(scene.light_years_per_unit);
+    return report;
 }
 
 Report describe(const fs::path& file) {

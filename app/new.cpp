@@ -13,7 +13,6 @@
 #include "core/error.h"
 #include "core/file_format.h"
 #include "core/log.h"
-#include "core/real.h"
 #include "core/text.h"
 #include "exit.h"
 #include "scene/new_scene.h"
@@ -79,8 +78,7 @@ void add_sky(const ObjectMetadata& metadata, const PictureScene& scene, Report& 
     if (metadata.north_angle) report["north_angle"] = number(*metadata.north_angle);
     if (!degrees_per_px) return;
     report["width_degrees"] = number(*degrees_per_px * width);
-    if (const auto found = report.find("distance_ly"); found != report.end())
-        report["width_ly"] = number(found->get<double>() * real::radians(*degrees_per_px * width));
+    if (scene.light_years_per_px > 0.0) report["width_ly"] = number(scene.light_years_per_px * width);
 }
 
 Report to_report(const Identification& found, const PictureScene& scene) {

@@ -188,6 +188,9 @@ position = [0, 0, 0]
 target   = [0, 0, -10]            # declination 0, right ascension 90 degrees
 fov      = 60.0                   # degrees, vertical
 
+[scene]
+light_years_per_unit = 3.261564   # a unit is a parsec
+
 [[layer]]
 name = "{name}"
 

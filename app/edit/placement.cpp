@@ -1,5 +1,7 @@
 #include "edit/placement.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <glm/common.hpp>
@@ -10,6 +12,7 @@
 #include "camera/projection.h"
 #include "core/real.h"
 #include "core/rotation.h"
+#include "core/text.h"
 
 namespace astrosplat {
 namespace {
@@ -151,6 +154,9 @@ double round_step(double length) {
     return 10.0 * power;
 }
 
+/// The next smaller one.
+double round_step_below(double length) { return 1.0 / round_step(1.0 / length); }
+
 /// The two axes of the plane that a view faces, then the one across.
 std::array<int, 3> plane_of(ViewKind view) {
     if (view == ViewKind::front) return {0, 1, 2};
@@ -194,6 +200,19 @@ Grid grid_around(const Bounds& box, ViewKind view) {
     add_lines(u, v);
     add_lines(v, u);
     return grid;
+}
+
+ScaleBar scale_bar(double units_per_px, double light_years_per_unit, double most_px) {
+    const bool known = light_years_per_unit > 0.0;
+    const double per_px = units_per_px * (known ? light_years_per_unit : 1.0);
+    const double length = round_step_below(per_px * most_px);
+    return {length / per_px, known ? light_years_text(length) : length_text(length, 0.0)};
+}
+
+std::string length_text(double units, double light_years_per_unit) {
+    const std::string in_units = fmt::format("{:.4g} scene unit{}", units, units == 1.0 ? "" : "s");
+    if (light_years_per_unit == 0.0) return in_units;
+    return in_units + ", " + light_years_text(units * light_years_per_unit);
 }
 
 std::array<MarkLine, 3> axis_lines(const Bounds& box) {

@@ -7,6 +7,7 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "camera/camera.h"
@@ -69,6 +70,17 @@ struct Grid {
     std::vector<MarkLine> lines;
 };
 Grid grid_around(const Bounds& box, ViewKind view);
+
+/// A length to measure with: 1, 2 or 5 times a power of ten light years, or of scene units where none knows
+/// how long these are (0), and at most `most_px` long on the screen.
+struct ScaleBar {
+    double length_px = 0.0;
+    std::string text;  // "5 kly", "0.2 scene units"
+};
+ScaleBar scale_bar(double units_per_px, double light_years_per_unit, double most_px);
+
+/// "2.5 scene units", and how many light years these are where that is known: "2.5 scene units, 7.3 kly".
+std::string length_text(double units, double light_years_per_unit);
 
 /// From the origin along x, y and z, half as long as the box's longest side.
 std::array<MarkLine, 3> axis_lines(const Bounds& box);

@@ -145,6 +145,14 @@ CameraParams seen_camera(const Scene& scene, const ViewState& view, const Status
     return camera;
 }
 
+std::optional<FreeCamera> try_free_camera(const CameraParams& params, const Bounds& box, double aspect) {
+    try {
+        return free_camera(params, box, aspect);
+    } catch (const InputError&) {
+        return {};
+    }
+}
+
 FreeCamera with_height(FreeCamera camera, double factor) {
     camera.height *= factor;
     camera.fov_deg = 2.0 * real::degrees(real::atan(factor * real::tan(0.5 * real::radians(camera.fov_deg))));

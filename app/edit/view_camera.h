@@ -4,6 +4,7 @@
 
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <optional>
 
 #include "camera/camera.h"
 #include "core/bounds.h"
@@ -34,6 +35,8 @@ CameraParams camera_params(const FreeCamera& camera);
 /// rotation the point of its line of sight nearest to the box's middle. Throws InputError as make_camera
 /// does.
 FreeCamera free_camera(const CameraParams& params, const Bounds& box, double aspect);
+/// The same; none where it throws.
+std::optional<FreeCamera> try_free_camera(const CameraParams& params, const Bounds& box, double aspect);
 /// `base` moved to where `camera` is: position and direction, and the field of view or height. Everything
 /// else of `base` stays; a focal length above 0 is changed instead of the field of view.
 CameraParams moved_camera(const CameraParams& base, const FreeCamera& camera, double aspect);

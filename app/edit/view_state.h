@@ -90,7 +90,7 @@ struct ViewState : PanelSizes {
     OutputParams::View display = OutputParams::View::automatic;  // as [output] view has it
     bool gate = true, safe_areas = false, camera_path = true;
     bool selected_box = false, all_boxes = false;  // bounding boxes of layers
-    bool grid = false, axes = false;
+    bool grid = false, axes = false, scale_bar = false;
     HandleTool tool = HandleTool::none;  // handles in the view
     HandleTarget handle_target = HandleTarget::layer;
     std::size_t handle_crop = 0;  // of the selected layer

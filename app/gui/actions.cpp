@@ -377,6 +377,7 @@ const Action table[] = {
     flip<&ViewState::all_boxes>("View/Guides", "Boxes of all layers"),
     flip<&ViewState::grid>("View/Guides", "Grid"),
     flip<&ViewState::axes>("View/Guides", "Axes"),
+    flip<&ViewState::scale_bar>("View/Guides", "Scale bar"),
     flip<&ViewState::settle>("View", "Settle to the final frame"),
     below_line(flip<&ViewState::timeline_open>("View", "Timeline")),
     flip<&ViewState::snapshots_open>("View", "Snapshots"),

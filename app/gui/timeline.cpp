@@ -7,10 +7,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <glm/geometric.hpp>
 
+#include "edit/placement.h"
+#include "edit/view_camera.h"
 #include "gui/icons.h"
 #include "gui/key_codes.h"
 #include "gui/widgets.h"
+#include "scene/animate.h"
 #include "scene/describe.h"
 
 namespace astrosplat {
@@ -104,12 +108,15 @@ void play_choices(GuiFrame& frame) {
         view.show_rendered = !view.show_rendered;
 }
 
-/// Where there is room for it.
-void time_text(const GuiFrame& frame, float right) {
-    const std::string text = seconds_text(frame.document.scene(), frame.view.frame);
-    ImGui::SameLine(0, px(12));
-    if (ImGui::GetCursorScreenPos().x + ImGui::CalcTextSize(text.c_str()).x <= right)
-        row_text(text, px(header_control), color::dim);
+/// Each where there is room for it.
+void read_outs(const GuiFrame& frame, float right) {
+    const Scene& scene = frame.document.scene();
+    const double at = frame.view.frame;
+    for (const std::string& text : {seconds_text(scene, at), distance_text(scene, at, frame.status.box)}) {
+        ImGui::SameLine(0, px(12));
+        if (ImGui::GetCursorScreenPos().x + ImGui::CalcTextSize(text.c_str()).x <= right)
+            row_text(text, px(header_control), color::dim);
+    }
 }
 
 void draw_timeline_header(TimelineState& t, GuiFrame& frame, const Rect& area) {
@@ -129,7 +136,7 @@ void draw_timeline_header(TimelineState& t, GuiFrame& frame, const Rect& area) {
     rate_entry(t, frame);
     ImGui::PopStyleVar();
     play_choices(frame);
-    time_text(frame, right - 2 * control - px(12));
+    read_outs(frame, right - 2 * control - px(12));
     ImGui::SetCursorScreenPos({right - 2 * control - px(4), y});
     if (icon_button("graph", Icon::curve, {control, control}, px(13),
                     view.graph_open ? color::accent : color::dim, "Graph of the selected parameter")) {
@@ -285,6 +292,14 @@ void select_keyframe(TimelineState& t, const KeyframePlace& place) {
     } else if (std::erase(t.selected, place) == 0) {
         t.selected.push_back(place);
     }
+}
+
+std::string distance_text(const Scene& scene, double frame, const Bounds& box) {
+    if (scene.light_years_per_unit == 0.0) return "";
+    const auto camera = try_free_camera(scene_at(scene, frame).camera, box, aspect_of(scene.output));
+    if (!camera) return "";
+    const double distance = glm::distance(camera->position, camera->pivot);
+    return "target at " + length_text(distance, scene.light_years_per_unit);
 }
 
 double zoom_of(float wheel) { return wheel > 0 ? 1.0 / 1.25 : 1.25; }

@@ -168,6 +168,7 @@ void Viewport::draw(GuiFrame& frame, const Rect& area) {
     draw_wipe(frame, area, frame_area);
     if (places_reference(frame)) draw_placing(frame, frame_on_screen(frame_area));
     draw_view_line(frame, area, frame_area);
+    draw_scale_bar(frame, area, frame_area);
     draw_side_badge(frame, area, draw_badge(frame, area));
     ImGui::PopClipRect();
 }

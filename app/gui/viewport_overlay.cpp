@@ -66,6 +66,16 @@ std::string compare_text(const GuiFrame& frame) {
     }
 }
 
+/// Inside the gate where one is seen, clear of its line.
+Rect room_for_words(const GuiFrame& frame, const Rect& area, const Rect& frame_area) {
+    const ViewState& view = frame.view;
+    if (view.view != ViewKind::camera || !view.gate || view.compare == CompareMode::front) return area;
+    const Rect gate = gate_of(frame.document.scene(), frame_area);
+    const float left = std::max(area.x, gate.x), top = std::max(area.y, gate.y);
+    return {left, top, std::min(area.end().x, gate.end().x) - left,
+            std::min(area.end().y, gate.end().y) - top};
+}
+
 }  // namespace
 
 std::string aspect_text(std::int64_t width, std::int64_t height) {
@@ -143,14 +153,35 @@ void draw_view_line(const GuiFrame& frame, const Rect& area, const Rect& frame_a
     if (difference)
         text = "Front view: orange where it is brighter than the picture, blue where it is darker";
     if (frame.view.grid && frame.status.viewport_camera)
-        text +=
-            fmt::format("   grid {:g} scene units", grid_around(frame.status.box, frame.view.view).spacing);
+        text += "   grid " + length_text(grid_around(frame.status.box, frame.view.view).spacing,
+                                         frame.document.scene().light_years_per_unit);
     ImGui::PushFont(small_font());
-    // Inside the gate, clear of its line.
-    const bool gated = frame.view.view == ViewKind::camera && frame.view.gate && !difference;
-    const Rect gate = gated ? gate_of(frame.document.scene(), frame_area) : area;
-    const float left = std::max(area.x, gate.x), top = std::max(area.y, gate.y);
-    shadowed({left + px(inset), top + px(inset)}, color::dim, text);
+    const Rect room = room_for_words(frame, area, frame_area);
+    shadowed({room.x + px(inset), room.y + px(inset)}, color::dim, text);
+    ImGui::PopFont();
+}
+
+void draw_scale_bar(const GuiFrame& frame, const Rect& area, const Rect& frame_area) {
+    constexpr float longest = 160, above_badge = 48, tick = 4;  // px at scale 1
+    const Scene& scene = frame.document.scene();
+    const ViewState& view = frame.view;
+    if (!view.scale_bar || !frame.status.viewport_camera || view.compare == CompareMode::front) return;
+    const double aspect = aspect_of(scene.output);
+    const auto seen =
+        try_free_camera(view_camera(scene, view, frame.status.box, aspect), frame.status.box, aspect);
+    if (!seen) return;
+    const ScaleBar bar = scale_bar(units_per_px(*frame.status.viewport_camera, seen->pivot),
+                                   scene.light_years_per_unit, double(px(longest)));
+    const Rect room = room_for_words(frame, area, frame_area);
+    const float right = std::floor(room.end().x - px(inset)), y = std::floor(room.end().y - px(above_badge));
+    const float left = right - float(bar.length_px);
+    for (const auto& [ink, width] : {std::pair(IM_COL32_BLACK, 4.0f), std::pair(color::text, 2.0f)}) {
+        draw_line({left, y}, {right, y}, ink, px(width));
+        for (const float x : {left, right}) draw_line({x, y - px(tick)}, {x, y + px(tick)}, ink, px(width));
+    }
+    ImGui::PushFont(small_font());
+    const ImVec2 size = ImGui::CalcTextSize(bar.text.c_str());
+    shadowed({std::floor(0.5f * (left + right - size.x)), y - px(tick + 2) - size.y}, color::text, bar.text);
     ImGui::PopFont();
 }
 

@@ -1,7 +1,7 @@
 // Drawings over the frame: gate and safe areas, the camera's path, the wipe's edge, a line on the view; the
-// marks of the View menu: boxes of layers, grid and axes; and the badge in the corner, which says how final
-// the frame is. In: the frame's place and the status. Out: thin lines in ImGui's draw list, those in depth
-// the fainter the farther away, and words.
+// marks of the View menu: boxes of layers, grid and axes, a scale bar; and the badge in the corner, which
+// says how final the frame is. In: the frame's place and the status. Out: thin lines in ImGui's draw list,
+// those in depth the fainter the farther away, and words.
 #pragma once
 
 #include <imgui.h>
@@ -20,6 +20,8 @@ void draw_gate(const GuiFrame& frame, const Rect& area, const Rect& frame_area);
 void draw_overlay_lines(const GuiFrame& frame, const Rect& area);
 void draw_wipe(const GuiFrame& frame, const Rect& area, const Rect& frame_area);
 void draw_view_line(const GuiFrame& frame, const Rect& area, const Rect& frame_area);
+/// The length of a round number of light years where the view looks at, as far as the View menu asks for it.
+void draw_scale_bar(const GuiFrame& frame, const Rect& area, const Rect& frame_area);
 
 /// A line from depth to depth over the viewport in `area`, fainter towards the far end of the scene's box.
 void draw_deep_line(const GuiFrame& frame, const Rect& area, const glm::dvec3& from, const glm::dvec3& to,

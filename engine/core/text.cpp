@@ -89,6 +89,14 @@ std::string counted(std::int64_t count, std::string_view noun) {
     return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
 }
 
+std::string light_years_text(double light_years) {
+    constexpr double to_next = 999.5;  // which would be written "1e+03"
+    constexpr std::array<const char*, 4> units{"ly", "kly", "Mly", "Gly"};
+    std::size_t unit = 0;
+    for (; unit + 1 < units.size() && light_years >= to_next; ++unit) light_years *= 1e-3;
+    return fmt::format("{:.3g} {}", light_years, units[unit]);
+}
+
 std::string joined_once(const std::vector<std::string>& texts) {
     std::vector<std::string> known;
     for (const std::string& text : texts)

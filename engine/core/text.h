@@ -25,6 +25,9 @@ std::string printable(std::string_view text);
 /// "1 frame", "12 frames", of a noun that takes an s.
 std::string counted(std::int64_t count, std::string_view noun);
 
+/// A length in the sky, of three digits: "4.2 ly", "31.1 kly", "29.4 Mly", "13 Gly".
+std::string light_years_text(double light_years);
+
 /// The texts that are not empty, each once, joined with "; ".
 std::string joined_once(const std::vector<std::string>& texts);
 

@@ -23,8 +23,9 @@ bool is_elsewhere(const ParameterSpec& spec) {
     constexpr std::array<std::string_view, 6> keys = {"output.path",   "output.frames",      "output.fps",
                                                       "output.preset", "output.compression", "layer.preset"};
     return std::ranges::find(keys, spec.generic_key.text()) != keys.end() ||
-           spec.generic_key.text().starts_with("camera.file_") || spec.generic_key.is_below("provenance") ||
-           spec.generic_key.is_below("reference") || spec.generic_key.is_below("output.ocio");
+           spec.generic_key.text().starts_with("camera.file_") || spec.generic_key.is_below("scene") ||
+           spec.generic_key.is_below("provenance") || spec.generic_key.is_below("reference") ||
+           spec.generic_key.is_below("output.ocio");
 }
 
 /// Keys of lenses that the camera does not have, and of blurs that are off.
@@ -153,6 +154,7 @@ std::string FrameHasher::canonical_text(const FrameScene& frame) {
     if (region_.width > 0 && region_.height > 0)
         text += fmt::format("region = {} {} {} {}\n", region_.x, region_.y, region_.width, region_.height);
     Scene now = frame.scene;
+    for (LayerParams& layer : now.layers) layer.source.stars.unit = parsec_of(now, layer);
     const std::shared_ptr<const DisplayTransform> ocio = managed_view(now.output);
     for (const Parameter& parameter : describe(now).parameters) {
         if (is_hidden(parameter.spec, frame)) continue;

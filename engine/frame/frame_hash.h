@@ -39,7 +39,8 @@ class FrameHasher {
 
     /// The hashed text: lines "key = value" of every parameter that reaches the frame, evaluated there, files
     /// as their content's hash; under an open shutter again "sample key = value" of all that moves. Left out:
-    /// where and how often frames go (path, frames, fps, compression), provenance, presets (their values are
+    /// where and how often frames go (path, frames, fps, compression), provenance, the scene's scale (which
+    /// stands in the unit of stars that it decides), presets (their values are
     /// in the scene), layers and environments that do not show at any moment, and the animation's keyframes.
     std::string canonical_text(const FrameScene& frame);
 

@@ -6,6 +6,7 @@
 #include <array>
 #include <iterator>
 
+#include "core/real.h"
 #include "core/text.h"
 #include "objects/impression.h"
 #include "source/fits.h"
@@ -244,6 +245,12 @@ Identification identify(const ObjectClues& clues, const Image& light, std::optio
     found.why = believed == witnesses.end() ? seen.why : believed->why;
     if (believed != witnesses.end() && believed->objects.size() > 1) found.why += "; " + seen.why;
     return found;
+}
+
+std::optional<double> light_years_per_px(const Identification& found, double width_px, double height_px) {
+    const std::optional<double> degrees = degrees_per_px_of(found.metadata, width_px, height_px);
+    if (!degrees || !found.distance_ly) return {};
+    return *found.distance_ly * real::radians(*degrees);
 }
 
 }  // namespace astrosplat

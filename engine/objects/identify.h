@@ -50,6 +50,10 @@ struct Identification {
 /// `as`: what a person says that it is, which needs no reason.
 Identification identify(const ObjectClues& clues, const Image& light, std::optional<SkyObject> as = {});
 
+/// How long a pixel of a picture of this size is at the object's distance, where the picture's file tells its
+/// scale and the distance is known: an arc, so that it holds for large angles as well.
+std::optional<double> light_years_per_px(const Identification& found, double width_px, double height_px);
+
 /// The kinds that a category of AVM means, by its taxonomy ("C.5.1.4": an elliptical galaxy); none for
 /// instruments, people and the like.
 std::vector<SkyObject> objects_of_category(std::string_view category);

@@ -200,6 +200,13 @@ void describe_provenance(const Describer& d, ProvenanceParams& p) {
     d(p.type, "type", "Type", "", "What the pictures are.", one_of({"Artwork", "Simulation"}));
 }
 
+void describe_scale(const Describer& d, Scene& scene) {
+    d(scene.light_years_per_unit, "light_years_per_unit", "Scene unit", "light years",
+      "How long a scene unit is in the sky: for distances and scale bars in the window, and for stars whose "
+      "layer.source.unit is auto; 0: unknown.",
+      at_least(0), slider(0, 1e5), zero_is("Unknown"));
+}
+
 void describe_reference(const Describer& d, ReferenceParams& r) {
     d(r.file, "file", "Picture", "", "Picture that the window compares the view with; it reaches no frame.");
     const Describer placed = d.never_with("file", {""});
@@ -242,6 +249,7 @@ Description describe(Scene& scene, const std::function<bool(const ParameterKey& 
     }
     if (wanted("provenance"))
         describe_provenance(d.in("provenance", false).shown_in("Output", "Provenance"), scene.provenance);
+    if (wanted("scene")) describe_scale(d.in("scene", false).shown_in("Output", "Provenance"), scene);
     if (wanted("reference"))
         d.shown_in("Camera", "Reference").list("reference", scene.references, describe_reference);
     for (LayerParams& layer : scene.layers) {
@@ -284,7 +292,7 @@ const Parameter* find_parameter(const Description& description, const ParameterK
 ParameterKey section_of(const ParameterKey& generic_key) {
     for (const std::string_view section :
          {"layer.transform", "layer.source", "layer.look", "layer.render", "layer", "output", "camera",
-          "environment", "provenance", "reference", "animation", "look", "render"})
+          "environment", "provenance", "scene", "reference", "animation", "look", "render"})
         if (generic_key.is_below(section)) return section;
     return {};
 }

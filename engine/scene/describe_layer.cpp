@@ -138,8 +138,9 @@ void describe_stars(const Describer& d, StarsParams& stars) {
                "The stars of a picture lie within this depth around the surface, evenly; 0: as deep as their "
                "layer's own.",
                at_least(0), slider(0, 20), zero_is("Auto"));
-    d(stars.unit, "unit", "Parsec", "scene units", "Scene units per parsec.", within(1e-9, 1e9),
-      slider(0.001, 1000), logarithmic());
+    d(stars.unit, "unit", "Parsec", "scene units",
+      "Scene units per parsec; auto: by scene.light_years_per_unit where that is known, else 1.", or_auto(),
+      within(1e-9, 1e9), slider(0.001, 1000), logarithmic());
     d(stars.limit, "limit", "Faintest star", "magnitude",
       "Stars fainter than this, seen from the layer's origin, are left out.", slider(-2, 20));
     d(stars.zero_point, "zero_point", "Zero point", "magnitude",

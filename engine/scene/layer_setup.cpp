@@ -138,6 +138,15 @@ const LayerParams* like_layer(const Scene& scene, const LayerParams& layer) {
     return found == scene.layers.end() || found->source.kind != SourceKind::mesh ? nullptr : &*found;
 }
 
+double parsec_of(const Scene& scene, const LayerParams& layer) {
+    constexpr double least = 1e-9, most = 1e9;  // as the key has it
+    const StarsParams& stars = layer.source.stars;
+    const bool by_scene = !stars.unit && scene.light_years_per_unit > 0.0 &&
+                          layer.source.kind == SourceKind::stars && stars.like.empty();
+    return by_scene ? std::clamp(parsec_ly / scene.light_years_per_unit, least, most)
+                    : stars.unit.value_or(1.0);
+}
+
 SourceParams source_of(const Scene& scene, const LayerParams& layer) {
     SourceParams source = layer.source;
     if (const LayerParams* const like = like_layer(scene, layer)) {
@@ -147,6 +156,7 @@ SourceParams source_of(const Scene& scene, const LayerParams& layer) {
         source.stars = layer.source.stars;
         source.stars.like_seed = resolved_seed(like->source.seed, like->name);
     }
+    if (source.kind == SourceKind::stars) source.stars.unit = parsec_of(scene, layer);
     if (!follows_camera(source)) return source;
     const std::vector<glm::dvec3> places = camera_places(scene);
     if (!places.empty()) source.stars.path = simplified_path(places, tolerance * source.stars.spread);

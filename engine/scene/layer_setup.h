@@ -45,7 +45,12 @@ bool follows_camera(const SourceParams& source);
 /// The layer whose picture a layer's stars are of (source.like); null: none, or none with a picture.
 const LayerParams* like_layer(const Scene& scene, const LayerParams& layer);
 
-/// layer.source, of stars along the camera with its path, of those of a picture with the rest of its layer's.
+/// Scene units per parsec of a layer's stars: its own, else by scene.light_years_per_unit, else 1, as of
+/// layers without stars of a catalogue.
+double parsec_of(const Scene& scene, const LayerParams& layer);
+
+/// layer.source, of stars with a unit of their own, along the camera with its path, of those of a picture
+/// with the rest of its layer's.
 SourceParams source_of(const Scene& scene, const LayerParams& layer);
 
 /// The files that a source names: meshes, textures, pictures of masks, splats, catalogues. Not what is built

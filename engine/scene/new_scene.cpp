@@ -134,7 +134,7 @@ position = [0, {distance}, 0]
 target   = [0, 0, 0]
 up       = [0, 0, -1]
 fov      = {fov}                   # degrees, vertical
-
+{scale}
 [[layer]]
 name = {name}
 
@@ -322,6 +322,16 @@ std::string stars_text(const PictureScene& scene, const std::string& picture, do
         fmt::arg("psf", fmt::format("{:.2f}", std::max(least_px, scene.star_px * frame_px_per_px))));
 }
 
+// How long a scene unit is, where the picture's pixels have a length.
+std::string scale_text(const PictureScene& scene) {
+    if (scene.light_years_per_px == 0.0) return "";
+    const auto longest = double(std::max(scene.width_px, scene.height_px));
+    const double width = scene.light_years_per_px * double(scene.width_px);
+    return fmt::format(
+        "\n[scene]\nlight_years_per_unit = {:.6g}   # the picture is {} wide, by its scale on the sky\n",
+        scene.light_years_per_px * longest / longest_side, light_years_text(width));
+}
+
 // Of the picture's width: room for a galaxy to end round, and for a cloud to fray. An object alone on a
 // dark sky needs it where but an arm leaves the picture, or that would be cut off straight. One of many
 // pixels fades within its own edges: a margin would need too much memory.
@@ -359,6 +369,8 @@ PictureScene picture_scene(const fs::path& image, const PictureRequest& request,
     scene.structure = found.structure;
     scene.object = found.guesses.front().object;
     scene.subject = found.middle;
+    scene.light_years_per_px =
+        light_years_per_px(found, double(scene.width_px), double(scene.height_px)).value_or(0.0);
     return scene;
 }
 
@@ -377,7 +389,7 @@ std::string picture_scene_text(const PictureScene& scene, const fs::path& file) 
                                : "\"1\"                  # such as \"1-240\" or \"1-100,120,200-300x2\""),
         fmt::arg("path", to_toml("frames/" + name + ".####.exr")),
         fmt::arg("distance", fmt::format("{:.6g}", distance)),
-        fmt::arg("fov", fmt::format("{:.1f}", field_of_view)),
+        fmt::arg("fov", fmt::format("{:.1f}", field_of_view)), fmt::arg("scale", scale_text(scene)),
         fmt::arg("picture", to_toml(picture_path(scene.image, file))),
         fmt::arg("kind", to_toml(std::string(name_of(scene.structure)))),
         fmt::arg("split", std::lround(split_above_px(scene.structure, longest_side / height, margin))),

@@ -30,7 +30,8 @@ struct PictureScene {
     SkyObject object = SkyObject::galaxy;
     double lit_rim = 0.0;     // share of its rim beyond which what it shows goes on, as far as one can see
     double mean_light = 0.0;  // 0..1 of the displayed white
-    bool film = false;        // with a camera move of ten seconds
+    double light_years_per_px = 0.0;  // at the object's distance; 0: unknown
+    bool film = false;                // with a camera move of ten seconds
     /// That it passes close by, from the top left corner in shares of width and height.
     glm::dvec2 subject{0.5};
     fs::path stars = {};   // the table of those that `prepare` took away; empty: there is none

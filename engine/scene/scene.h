@@ -142,6 +142,7 @@ struct Scene {
     OutputParams output;
     CameraParams camera;
     EnvironmentParams environment;
+    double light_years_per_unit = 0.0;  // length of a scene unit in the sky; 0: unknown. Of [scene]
     ProvenanceParams provenance;
     std::vector<ReferenceParams> references;
     std::vector<LayerParams> layers;

@@ -43,7 +43,9 @@ StarCatalogue read_catalogue_of(const StarsParams& stars, const std::string& lay
     return catalogue;
 }
 
-StarScale scale_of(const StarsParams& stars) { return {stars.unit, stars.limit, stars.zero_point}; }
+StarScale scale_of(const StarsParams& stars) {
+    return {stars.unit.value_or(1.0), stars.limit, stars.zero_point};
+}
 
 SplatSet scatter_stars(const SourceParams& source, const std::string& layer_name, const Progress& progress) {
     const StarsParams& stars = source.stars;

@@ -65,10 +65,9 @@ std::string text_keyword(fitsfile* in, const char* keyword) {
 // DISTANCE with its unit in brackets at the beginning of the comment (FITS 4.0, section 4.3): light years.
 // Without one, or with another, it could be anything.
 std::optional<double> distance_ly_of(fitsfile* in) {
-    constexpr double parsec = 3.261563777;  // light years, by the definitions of the IAU
-    constexpr std::array<std::pair<std::string_view, double>, 6> units{{{"[Mpc]", 1e6 * parsec},
-                                                                        {"[kpc]", 1e3 * parsec},
-                                                                        {"[pc]", parsec},
+    constexpr std::array<std::pair<std::string_view, double>, 6> units{{{"[Mpc]", 1e6 * parsec_ly},
+                                                                        {"[kpc]", 1e3 * parsec_ly},
+                                                                        {"[pc]", parsec_ly},
                                                                         {"[Mlyr]", 1e6},
                                                                         {"[klyr]", 1e3},
                                                                         {"[lyr]", 1.0}}};

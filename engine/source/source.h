@@ -163,6 +163,8 @@ struct StarSpikes {
 };
 
 /// kind stars: a catalogue, the stars of a picture, or `SourceParams::count` random stars along something.
+inline constexpr double parsec_ly = 3.261563777;  // light years, by the definitions of the IAU
+
 struct StarsParams {
     enum class Depth { layer, magnitude };
     friend constexpr auto names_of(Depth) { return names_up_to<Depth::magnitude>("layer", "magnitude"); }
@@ -170,7 +172,7 @@ struct StarsParams {
     std::string like;            // name of the layer whose picture they are of; empty: of none
     Depth depth = Depth::layer;  // like: at random, or the brighter the nearer
     double slab = 0.0;           // like: scene units, nearest to farthest; 0: as the layer's own stars
-    double unit = 1.0;           // scene units per parsec
+    std::optional<double> unit;  // scene units per parsec; none: by the scene's light years, else 1
     double limit = 12.0;         // faintest magnitude of the catalogue
     double zero_point = 4.0;     // magnitude of flux 1
     std::string along;           // "camera": random stars around the camera's path; empty: the catalogue

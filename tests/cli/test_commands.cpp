@@ -165,6 +165,25 @@ TEST_F(Commands, NewSaysWhatAPictureShowsAndBecauseOfWhat) {
                 1000.0 * measured["width_degrees"].get<double>() * 0.0174532925, 1e-4);
 }
 
+// 32 columns of .01 degrees, mirrored and turned; a degree is as long as 1 at a distance of 180 / pi.
+TEST_F(Commands, NewSaysHowLargeTheSkyIsAndWritesTheScale) {
+    const std::string avm =
+        "<rdf:RDF xmlns:avm=\"http://www.communicatingastronomy.org/avm/1.0/\"><rdf:Description "
+        "avm:Subject.Category=\"C.5.1.1\" avm:Distance=\"57.29577951308232\" avm:Spatial.Rotation=\"30\">"
+        "<avm:Spatial.Scale><rdf:Seq><rdf:li>0.01</rdf:li><rdf:li>0.01</rdf:li></rdf:Seq></avm:Spatial.Scale>"
+        "</rdf:Description></rdf:RDF>";
+    write_text(folder / "a.ppm", small_picture() + avm);
+    const nlohmann::json said = nlohmann::json::parse(run({"new", "a.ppm", "--json"}).out);
+    constexpr double width = 0.32;
+    EXPECT_NEAR(said["width_degrees"].get<double>(), width, 1e-9);
+    EXPECT_NEAR(said["width_ly"].get<double>(), width, 1e-9);
+    EXPECT_NEAR(said["north_angle"].get<double>(), -30.0, 1e-9);
+    EXPECT_NEAR(info("a.toml").at("light_years_per_unit").get<double>(), 0.1 * width, 1e-6);
+    write_text(folder / "b.ppm", small_picture());
+    ASSERT_EQ(run({"new", "b.ppm"}).code, 0);
+    EXPECT_FALSE(info("b.toml").contains("light_years_per_unit"));
+}
+
 TEST_F(Commands, GenerateWritesALayer) {
     write_text(folder / "picture.ppm", small_picture());
     ASSERT_EQ(run({"new", "picture.ppm", "-o", "new.toml", "--shape", "plane"}).code, 0);

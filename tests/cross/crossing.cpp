@@ -316,6 +316,7 @@ Crossing crossing_of(std::uint32_t seed) {
     visit_scene(c, Draw{&numbers});
     c.layers.resize(1 + numbers.below(most_drawn_layers));
     for (CrossingLayer& layer : c.layers) visit_layer(layer, Draw{&numbers});
+    Draw{&numbers}("scaled", c.scaled, {});  // after all else, so that seeds keep their scenes; in no pair
     settle(c);
     return c;
 }
@@ -370,6 +371,7 @@ std::string scene_text(const Crossing& c) {
         to_toml(output_path(c)), channels_text(c.channels), 2 + c.seed % 3);
     if (c.deep == Answer::yes)
         text += fmt::format("depth = \"{}\"\n", c.ending == Ending::png ? "16" : "float");
+    if (c.scaled == Answer::yes) text += "\n[scene]\nlight_years_per_unit = 5.0\n";
     text += camera_text(c) + sky_text(c);
     for (std::size_t i = 0; i < c.layers.size(); ++i) text += layer_text(c, i);
     return text + animation_text(c);

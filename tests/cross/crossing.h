@@ -103,6 +103,7 @@ struct Crossing {
     Answer token_in_folder = Answer::no;  // the places stand in a folder's name, not in the file's
     Ending ending = Ending::exr;
     Answer deep = Answer::no;           // more bits than usual
+    Answer scaled = Answer::no;         // a unit has a length in the sky, by which stars are placed
     std::vector<CrossingLayer> layers;  // 1 to 4
 };
 

@@ -144,7 +144,8 @@ TEST_F(ViewHandles, BoxesGridAndAxesAreSwitched) {
     window.choose("View/Guides/Boxes of all layers");
     window.choose("View/Guides/Grid");
     window.choose("View/Guides/Axes");
-    EXPECT_TRUE(window.view.all_boxes && window.view.grid && window.view.axes);
+    window.choose("View/Guides/Scale bar");
+    EXPECT_TRUE(window.view.all_boxes && window.view.grid && window.view.axes && window.view.scale_bar);
     window.tap(key_code::escape);
     EXPECT_FALSE(window.view.selected_box);
 }
@@ -170,6 +171,36 @@ TEST_F(ViewHandles, MarksAreDrawnOnceTheyAreAskedFor) {
     EXPECT_GT(drawn(&ViewState::axes), 500);
     window.status.viewport_camera.reset();
     EXPECT_EQ(drawn(&ViewState::grid), 0) << "without a camera";
+}
+
+// 20 units of 7 light years over the height: the longest that is drawn is of 50, 20 or 10.
+TEST_F(ViewHandles, TheScaleBarIsAsLongAsItSays) {
+    window.view.view = ViewKind::free;
+    const auto longest_run = [&] {
+        window.move({5.0f, 5.0f});
+        window.frame(2);
+        const Picture8 picture = window.picture();
+        const ImVec4 ink = color4(color::text);
+        const int y = int(area.y + area.height) - 48;
+        int run = 0, longest = 0;
+        for (int x = int(area.x); x < int(area.x + area.width); ++x) {
+            const bool lit = std::abs(int(picture.at(x, y).r) - int(255 * ink.x)) < 6;
+            run = lit ? run + 1 : 0;
+            longest = std::max(longest, run);
+        }
+        return longest;
+    };
+    EXPECT_LT(longest_run(), 10);
+    window.view.scale_bar = true;
+    const double units_per_px = 20.0 / double(area.height);
+    EXPECT_NEAR(longest_run(), scale_bar(units_per_px, 0.0, 160.0).length_px, 3.0);
+    window.document.edit("Scale", [](Scene& scene) { scene.light_years_per_unit = 7.0; });
+    EXPECT_NEAR(longest_run(), scale_bar(units_per_px, 7.0, 160.0).length_px, 3.0);
+    EXPECT_GT(std::fabs(scale_bar(units_per_px, 7.0, 160.0).length_px -
+                        scale_bar(units_per_px, 0.0, 160.0).length_px),
+              10.0);
+    window.status.viewport_camera.reset();
+    EXPECT_LT(longest_run(), 10) << "without a camera";
 }
 
 TEST_F(ViewHandles, ANewCropFitsTheLayerAndHasHandles) {

@@ -4,11 +4,31 @@
 #include "edit/keyframes.h"
 #include "gui/key_codes.h"
 #include "gui/test_window.h"
+#include "gui/timeline.h"
 
 namespace astrosplat {
 namespace {
 
 class TimelineTest : public ExampleWindow {};
+
+TEST_F(TimelineTest, TheTargetsDistanceIsSaidWhereAUnitHasALength) {
+    Scene scene;
+    scene.camera.position = glm::dvec3(0.0, 3.0, 4.0);
+    EXPECT_EQ(distance_text(scene, 1.0, {}), "");
+    scene.light_years_per_unit = 2000.0;
+    EXPECT_EQ(distance_text(scene, 1.0, {}), "target at 5 scene units, 10 kly");
+    scene.camera.target = *scene.camera.position;
+    EXPECT_EQ(distance_text(scene, 1.0, {}), "") << "no camera stands in its own target";
+    const auto header = [&] {
+        window.frame(2);
+        const Rect area = make_layout(window.view, 1600.0f, 900.0f, 1.0f).timeline;
+        return cropped(window.picture(Style::schematic), int(area.x), int(area.y), int(area.width), 36)
+            .pixels;
+    };
+    const auto plain = header();
+    window.document.edit("Scale", [](Scene& edited) { edited.light_years_per_unit = 2000.0; });
+    EXPECT_FALSE(header() == plain);
+}
 
 // The timeline by mouse: playhead, keyframes, their menu and the graph.
 TEST_F(TimelineTest, ThePlayheadIsDragged) {

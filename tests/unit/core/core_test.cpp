@@ -103,6 +103,14 @@ TEST(Text, ControlCharactersAreShownAsText) {
     EXPECT_EQ(printable("\xc2"), "\xc2");
 }
 
+TEST(Text, LightYearsHaveThreeDigitsAndAUnit) {
+    for (const auto& [length, text] :
+         {std::pair(0.0421, "0.0421 ly"), std::pair(4.24, "4.24 ly"), std::pair(999.4, "999 ly"),
+          std::pair(999.6, "1 kly"), std::pair(26670.0, "26.7 kly"), std::pair(2.537e6, "2.54 Mly"),
+          std::pair(1.32e10, "13.2 Gly"), std::pair(0.0, "0 ly")})
+        EXPECT_EQ(light_years_text(length), text);
+}
+
 TEST(Text, NounsAreCounted) {
     EXPECT_EQ(counted(1, "frame"), "1 frame");
     EXPECT_EQ(counted(0, "frame"), "0 frames");

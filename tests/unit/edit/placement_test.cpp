@@ -96,6 +96,25 @@ TEST(SceneMarks, TheGridHasRoundStepsAndHoldsTheBox) {
     EXPECT_EQ(grid_around({{0.0, 0.0, 0.0}, {45.0, 1.0, 0.0}}, ViewKind::free).spacing, 5.0);
 }
 
+// 160 px of .01 units and 25 light years each are 40 ly long.
+TEST(SceneMarks, TheScaleBarIsTheLongestRoundOneThatFits) {
+    const auto expect_bar = [](const ScaleBar& bar, const char* text, double length_px) {
+        EXPECT_EQ(bar.text, text);
+        EXPECT_NEAR(bar.length_px, length_px, 1e-9);
+    };
+    expect_bar(scale_bar(0.01, 25.0, 160.0), "20 ly", 80.0);
+    expect_bar(scale_bar(0.01, 31.25, 160.0), "50 ly", 160.0);
+    expect_bar(scale_bar(0.01, 31.2, 160.0), "20 ly", 20.0 / 0.312);
+    expect_bar(scale_bar(0.01, 1e4, 160.0), "10 kly", 100.0);
+    expect_bar(scale_bar(0.01, 0.0, 160.0), "1 scene unit", 100.0);
+    expect_bar(scale_bar(1e-5, 0.0, 160.0), "0.001 scene units", 100.0);
+}
+
+TEST(SceneMarks, LengthsAreSaidInLightYearsAsWell) {
+    EXPECT_EQ(length_text(14.1519, 0.0), "14.15 scene units");
+    EXPECT_EQ(length_text(14.1519, 2520.0), "14.15 scene units, 35.7 kly");
+}
+
 TEST(SceneMarks, TheGridFacesTheView) {
     const Bounds box{{-4.0, 2.0, -3.0}, {6.0, 4.0, 5.0}};
     const auto flat_in = [&](ViewKind view, int axis, double place) {

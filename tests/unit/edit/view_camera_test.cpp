@@ -69,6 +69,17 @@ TEST(Navigation, PointsAreWhereTheEngineSeesThem) {
     }
 }
 
+TEST(Navigation, ACameraThatCannotBeMadeIsNone) {
+    CameraParams params;
+    params.position = glm::dvec3(0.0, 3.0, 4.0);
+    const std::optional<FreeCamera> seen = try_free_camera(params, {}, 1.0);
+    ASSERT_TRUE(seen);
+    EXPECT_EQ(seen->pivot, params.target);
+    EXPECT_EQ(seen->position, *params.position);
+    params.target = *params.position;
+    EXPECT_FALSE(try_free_camera(params, {}, 1.0));
+}
+
 TEST(Navigation, OrbitKeepsTheDistanceAndThePivot) {
     for (const FreeCamera& camera : cameras()) {
         FreeCamera turned = camera;

@@ -119,7 +119,26 @@ TEST_F(FrameHashTest, IgnoresWhereAndHowOftenFramesGo) {
     EXPECT_EQ(changed([](Scene& s) { s.output.compression = OutputParams::Compression::none; }), before);
     EXPECT_EQ(changed([](Scene& s) { s.provenance = {"a", "b", "Simulation"}; }), before);
     EXPECT_EQ(changed([](Scene& s) { s.references.resize(1); }), before);
+    EXPECT_EQ(changed([](Scene& s) { s.light_years_per_unit = 30.0; }), before);
     EXPECT_EQ(changed([](Scene& s) { s.layers[0].preset = "old.toml"; }), before);
+}
+
+// The scale of a scene reaches pixels where stars are placed by it, and is told as their unit.
+TEST_F(FrameHashTest, TheScaleCountsAsTheUnitOfStars) {
+    const auto of_stars = [&](double light_years_per_unit, std::optional<double> unit) {
+        return changed([&](Scene& s) {
+            s.light_years_per_unit = light_years_per_unit;
+            s.layers[0].source.kind = SourceKind::stars;
+            s.layers[0].source.stars.catalogue = folder_ / "stars.png";
+            s.layers[0].source.stars.unit = unit;
+        });
+    };
+    const std::string plain = of_stars(0.0, {});
+    EXPECT_EQ(of_stars(0.0, 1.0), plain) << "as before there was a scale";
+    EXPECT_NE(of_stars(30.0, {}), plain);
+    EXPECT_EQ(of_stars(30.0, {}), of_stars(0.0, parsec_ly / 30.0));
+    EXPECT_EQ(of_stars(30.0, 1.0), plain) << "its own unit wins";
+    EXPECT_NE(text(scene()).find("layer.stars.source.unit = 1.0\n"), std::string::npos);
 }
 
 TEST_F(FrameHashTest, EveryOtherParameterCounts) {
@@ -132,7 +151,8 @@ TEST_F(FrameHashTest, EveryOtherParameterCounts) {
         Description description = describe(other);
         const Parameter& parameter = description.parameters[i];
         const std::string& key = parameter.spec.generic_key;
-        if (key == "output.fps" || parameter.spec.key == "layer.dust.visible" || key == "camera.position")
+        if (key == "output.fps" || parameter.spec.key == "layer.dust.visible" || key == "camera.position" ||
+            key == "scene.light_years_per_unit")
             continue;
         if (key.starts_with("camera.file_")) continue;         // of no camera file
         if (parameter.spec.section == "Star image") continue;  // of layers that are stars

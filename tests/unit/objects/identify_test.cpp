@@ -79,6 +79,19 @@ TEST(Identify, KnowsTheObjectAndHowFarItIs) {
     EXPECT_FALSE(identify({}, spiral).known);
 }
 
+// A degree at a distance of 180 / pi is as long as 1.
+TEST(Identify, PixelsHaveALengthWhereScaleAndDistanceAreKnown) {
+    Identification found;
+    found.metadata.degrees_per_px = 0.5;
+    EXPECT_FALSE(light_years_per_px(found, 100, 80));
+    found.distance_ly = 57.29577951308232;
+    EXPECT_NEAR(*light_years_per_px(found, 100, 80), 0.5, 1e-15);
+    found.metadata.reference_px = {200.0, 160.0};
+    EXPECT_NEAR(*light_years_per_px(found, 100, 80), 1.0, 1e-15) << "of a reduced picture";
+    found.metadata.degrees_per_px.reset();
+    EXPECT_FALSE(light_years_per_px(found, 100, 80));
+}
+
 TEST(Identify, IsSureOfSharesThatAddUp) {
     for (const Image& light :
          {painted::galaxy(400, 250), painted::nebula(400, 250), make_image(8, 8, 3, 0.3f)}) {

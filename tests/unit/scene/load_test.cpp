@@ -6,6 +6,7 @@
 #include <set>
 
 #include "core/atomic_file.h"
+#include "scene/layer_setup.h"
 #include "scene/save.h"
 #include "scene/toml_text.h"
 #include "scene_texts.h"
@@ -128,6 +129,34 @@ TEST(Load, StarsAreUnderstood) {
     EXPECT_EQ(scene.layers[0].source.stars.catalogue, "hip_main.dat");
     EXPECT_EQ(scene.layers[0].source.stars.psf, 1.5);
     EXPECT_EQ(scene.layers[0].source.count, 800000);
+}
+
+// A parsec is 3.26 light years: by the scene's unit, unless the layer has one of its own. Stars of a picture
+// lie where that lies.
+TEST(Load, StarsTakeTheScenesScaleWhereTheyHaveNone) {
+    const auto units_of = [](const char* scale, const char* unit) {
+        const Scene scene = parse(std::string("astrosplat = 1\n") + scale +
+                                  "[[layer]]\nname = \"s\"\n[layer.source]\nkind = \"stars\"\n"
+                                  "catalogue = \"hip_main.dat\"\n" +
+                                  unit);
+        return source_of(scene, scene.layers[0]).stars.unit;
+    };
+    const char* const scaled = "[scene]\nlight_years_per_unit = 100.0\n";
+    EXPECT_EQ(units_of("", ""), 1.0);
+    EXPECT_EQ(units_of("", "unit = 3.0\n"), 3.0);
+    EXPECT_EQ(units_of(scaled, "unit = 3.0\n"), 3.0);
+    EXPECT_DOUBLE_EQ(*units_of(scaled, ""), 0.03261563777);
+    EXPECT_DOUBLE_EQ(*units_of(scaled, "unit = \"auto\"\n"), 0.03261563777);
+    EXPECT_DOUBLE_EQ(*units_of(scaled, "along = \"camera\"\n"), 0.03261563777);
+    EXPECT_EQ(units_of("[scene]\nlight_years_per_unit = 1e12\n", ""), 1e-9) << "the least that the key takes";
+    Scene scene = parse(small_scene());
+    scene.light_years_per_unit = 100.0;
+    EXPECT_EQ(parsec_of(scene, scene.layers[0]), 1.0) << "it has no stars of a catalogue";
+    EXPECT_EQ(source_of(scene, scene.layers[0]), scene.layers[0].source);
+    scene.layers[0].source.kind = SourceKind::stars;
+    scene.layers[0].source.stars.like = "other";
+    EXPECT_EQ(parsec_of(scene, scene.layers[0]), 1.0);
+    EXPECT_NE(message("astrosplat = 1\n[scene]\nlight_years_per_unit = -1.0\n"), "");
 }
 
 TEST(Load, SetTakesFractionsAsPeopleWriteThem) {

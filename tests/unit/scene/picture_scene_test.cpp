@@ -48,6 +48,19 @@ TEST(PictureScene, BeginsWithThePictureAsItIs) {
     }
 }
 
+// The picture's longer side is 10 units.
+TEST(PictureScene, HasAScaleWhereThePicturesPixelsHaveALength) {
+    PictureScene picture{"a.png", 1600, 1000};
+    EXPECT_EQ(parsed(picture).light_years_per_unit, 0.0);
+    EXPECT_EQ(picture_scene_text(picture, "a.toml").find("[scene]"), std::string::npos);
+    picture.light_years_per_px = 20.0;
+    EXPECT_EQ(parsed(picture).light_years_per_unit, 3200.0);
+    EXPECT_NE(picture_scene_text(picture, "a.toml").find("# the picture is 32 kly wide"), std::string::npos);
+    std::swap(picture.width_px, picture.height_px);
+    EXPECT_EQ(parsed(picture).light_years_per_unit, 3200.0);
+    EXPECT_NE(picture_scene_text(picture, "a.toml").find("# the picture is 20 kly wide"), std::string::npos);
+}
+
 TEST(PictureScene, StarsThatWereTakenOutAreALayerOfTheirOwn) {
     PictureScene picture{"ready/picture.exr", 960, 600, StructureKind::sheet};
     EXPECT_EQ(parsed(picture).layers.size(), 1u);

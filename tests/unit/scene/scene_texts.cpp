@@ -69,6 +69,9 @@ title = ""
 credit = ""
 type = "Artwork"
 
+[scene]
+light_years_per_unit = 0.0
+
 [[reference]]
 file = ""
 view = "any"
@@ -129,7 +132,7 @@ catalogue = ""
 like = ""
 depth = "layer"
 slab = 0.0
-unit = 1.0
+unit = "auto"
 limit = 12.0
 zero_point = 4.0
 along = ""
