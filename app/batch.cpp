@@ -4,17 +4,13 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <filesystem>
 #include <new>
 #include <nlohmann/json.hpp>
 #include <set>
-#include <string>
 #include <string_view>
-#include <vector>
 
 #include "batch_plan.h"
-#include "cli.h"
-#include "core/atomic_file.h"
+#include "command.h"
 #include "core/error.h"
 #include "core/log.h"
 #include "core/memory.h"
@@ -26,8 +22,6 @@
 #include "generate/generate.h"
 #include "output/write.h"
 #include "pipeline.h"
-#include "progress_report.h"
-#include "sampled_run.h"
 
 namespace astrosplat {
 

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <set>
 
 #include "core/error.h"
 #include "core/log.h"
@@ -21,7 +20,6 @@
 #include "scene/load.h"
 
 namespace astrosplat {
-namespace fs = std::filesystem;
 namespace {
 
 /// Exactly `count` whole numbers between separators, or none.

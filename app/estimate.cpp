@@ -5,13 +5,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdint>
-#include <filesystem>
 #include <string_view>
-#include <utility>
-#include <vector>
 
-#include "batch_plan.h"
 #include "bodies/bodies.h"
 #include "camera/camera.h"
 #include "command.h"
@@ -24,11 +19,8 @@
 #include "generate/generate.h"
 #include "generate/lattice.h"
 #include "output/format.h"
-#include "pipeline.h"
-#include "sampled_run.h"
 #include "scene/animate.h"
 #include "scene/layer_setup.h"
-#include "sets/kept.h"
 #include "sets/load_source.h"
 #include "source/picture.h"
 #include "splat_files/native.h"

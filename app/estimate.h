@@ -1,4 +1,5 @@
-// Memory, time and bytes that a batch run will take, before it takes them.
+// Memory, time and bytes that a batch run will take, before it takes them; told from a run over a hundredth
+// of its splats. In: a plan. Out: seconds, bytes of memory and bytes of files.
 #pragma once
 
 #include <cstdint>
@@ -7,9 +8,61 @@
 #include <vector>
 
 #include "batch_plan.h"
-#include "sampled_run.h"
+#include "pipeline.h"
 
 namespace astrosplat {
+
+/// Of one frame, a mean over some of the run.
+struct FrameCost {
+    double seconds = 0.0;
+    std::optional<std::int64_t> file_bytes;  // none: there is no place to write a sample to
+};
+
+class SampledRun {
+  public:
+    /// The layers that are sampled: those whose sets are in the cache or in .splats files, for a quick
+    /// answer; those of meshes too, whose sets are made small where they are missing; or all, for which other
+    /// inputs are read, with the environment.
+    enum class Layers { there, meshes, all };
+    /// Layers that no frame shows and stars of a picture, which are few, are left out. Throws as load_source
+    /// does, Cancelled.
+    SampledRun(const BatchPlan& plan, Layers layers);
+
+    struct Layer {
+        std::string name;
+        std::int64_t splats = 0;  // of the whole set, about
+        bool is_made = false;     // was not there
+        bool has_radius = false;  // of every splat
+    };
+    /// Null: it was not sampled.
+    const Layer* find(const std::string& name) const;
+
+    /// Of all sets that are not there, about.
+    double making_seconds() const { return making_seconds_; }
+
+    /// Of the projected splats in the fullest of some frames.
+    std::int64_t record_bytes();
+
+    FrameCost frame_cost();
+
+  private:
+    FrameScene scene_of(const FramePlan& frame) const {
+        return pipeline_.frame_scene(static_cast<double>(frame.frame), frame.eye);
+    }
+    RenderSettings settings(const FrameScene& frame) const;
+    double seconds_of(Pipeline& pipeline, const FrameScene& frame, RenderedFrame& rendered) const;
+    std::optional<std::int64_t> bytes_of(const std::filesystem::path& name, const FrameScene& frame,
+                                         const RenderedFrame& rendered) const;
+
+    const BatchPlan& plan_;
+    std::vector<const FramePlan*> frames_;  // that are looked at
+    std::vector<Layer> layers_;
+    double making_seconds_ = 0.0;
+    double each_ = 1.0;  // splats that a row stands for
+    Pipeline pipeline_;
+    Pipeline empty_;  // the same scene with a splat a layer
+    RenderCache cache_;
+};
 
 /// About how many splats the layers will have, and how many bytes are taken at most: while sets are made, or
 /// by sets, shaded splats, screen splats and pictures.

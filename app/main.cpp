@@ -8,18 +8,18 @@
 #include <cstdio>
 #include <exception>
 #include <new>
-#include <string>
 #include <system_error>
 
 #include "batch_plan.h"
-#include "cli.h"
+#include "command.h"
 #include "core/error.h"
+#include "core/file.h"
 #include "core/log.h"
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "core/text.h"
 #include "exit.h"
-#include "progress_report.h"
+#include "farm/child_process.h"
 #include "scene/animate.h"
 #include "scene/layer_setup.h"
 
@@ -112,6 +112,45 @@ int run_sets_only(const CommandOptions& options) {
     check_unchanged(plan.hasher.files(), stoppable());
     return exit_done;
 }
+
+#ifdef ASTROSPLAT_WINDOW
+
+void refuse_without_screenshot(const ScreenshotOptions& shot) {
+    const char* option = shot.size      ? "--size"
+                         : shot.frame   ? "--frame"
+                         : shot.ui      ? "--ui"
+                         : shot.settled ? "--settled"
+                         : shot.opengl  ? "--opengl"
+                                        : nullptr;
+    if (option) bad_input(option, "", "--screenshot OUT.png beside it", "none");
+}
+
+/// The window, or a screenshot of it.
+int run_window(Invocation& call) {
+    CommandOptions& options = call.options;
+    if (!options.input.empty()) options.input = find_by_name("scenes", options.input);
+    const ViewerOptions viewer{options.input, assignments_of(options), options.cache,
+                               own_program(), !call.threads.empty(),   !call.cache.empty() || call.no_cache};
+    ScreenshotOptions& shot = call.screenshot;
+    if (shot.output.empty()) {
+        refuse_without_screenshot(shot);
+        defer_interrupts();
+        return run_viewer(viewer, interrupted());
+    }
+    prove_writable(folder_of(shot.output));
+    shot.scene = viewer;
+    return run_screenshot(shot);
+}
+
+#else
+
+int run_window(Invocation&) {
+    throw InputError(
+        "this astrosplat was built without its window; --batch SCENE renders, --help names what else it "
+        "does");
+}
+
+#endif
 
 void apply_common(const Invocation& call) {
     if (call.quiet) set_log_level(LogLevel::warning);

@@ -1,15 +1,10 @@
 // new: a first scene around a picture, of bodies in depth or of columns on a shape.
-
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <nlohmann/json.hpp>
-#include <optional>
-#include <vector>
 
-#include "cli.h"
-#include "core/atomic_file.h"
+#include "command.h"
 #include "core/error.h"
 #include "core/file_format.h"
 #include "core/log.h"
@@ -20,7 +15,6 @@
 #include "source/picture.h"
 
 namespace astrosplat {
-namespace fs = std::filesystem;
 namespace {
 
 struct NewOptions {

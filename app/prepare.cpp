@@ -6,8 +6,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "cli.h"
-#include "core/atomic_file.h"
+#include "command.h"
 #include "core/error.h"
 #include "core/text.h"
 #include "exit.h"
@@ -23,8 +22,6 @@
 
 namespace astrosplat {
 namespace {
-
-namespace fs = std::filesystem;
 
 /// As typed; values are checked before any work.
 struct PrepareOptions {

@@ -11,7 +11,6 @@
 #include <utility>
 
 #include "core/log.h"
-#include "core/progress.h"
 #include "core/text.h"
 #include "exit.h"
 

@@ -1,4 +1,4 @@
-#include "sampled_run.h"
+#include "estimate.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -19,8 +19,6 @@
 
 namespace astrosplat {
 namespace {
-
-namespace fs = std::filesystem;
 
 /// Some of the frames that are rendered, evenly spread: the first, the last, and what lies between.
 std::vector<const FramePlan*> some_frames(const BatchPlan& plan, std::size_t most) {

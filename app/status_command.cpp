@@ -7,11 +7,9 @@
 #include <cstdint>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <utility>
-#include <vector>
 
 #include "batch_plan.h"
-#include "cli.h"
+#include "command.h"
 #include "core/text.h"
 #include "exit.h"
 #include "farm/submission.h"

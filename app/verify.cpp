@@ -5,12 +5,10 @@
 #include <algorithm>
 #include <array>
 #include <limits>
-#include <memory>
 #include <nlohmann/json.hpp>
-#include <optional>
 
 #include "batch_plan.h"
-#include "cli.h"
+#include "command.h"
 #include "core/error.h"
 #include "core/file.h"
 #include "core/log.h"
@@ -25,7 +23,6 @@
 namespace astrosplat {
 namespace {
 
-namespace fs = std::filesystem;
 using Compression = OutputParams::Compression;
 
 struct CompareOptions {

@@ -1,11 +1,10 @@
 // A move is a few Bezier keyframes that follow it to 0.1 % of its distance; the easing is in their handles,
 // so keyframes outside the move keep their own timing.
-#include "edit/camera_moves.h"
+#include "edit/view_camera.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <functional>
 #include <glm/geometric.hpp>
@@ -17,9 +16,7 @@
 #include "camera/keyframe.h"
 #include "core/real.h"
 #include "core/rotation.h"
-#include "edit/edit_rules.h"
-#include "edit/keyframes.h"
-#include "edit/view_camera.h"
+#include "edit/edits.h"
 #include "scene/animate.h"
 #include "scene/describe.h"
 #include "scene/frames.h"
@@ -267,9 +264,7 @@ void turn_up(Scene& scene, const glm::dvec3& up, double frame, double end) {
 void add_path(Scene& scene, const Move& move, double frame, LaterKeys later) {
     const double frames = film_frames(scene.output);
     const bool shifts = later == LaterKeys::shift && !later_frames(scene, frame).empty();
-    const double end =
-        shifts ? static_cast<double>(parse_frames(scene.output.frames, "output.frames").back()) + frames
-               : frame + frames - 1.0;
+    const double end = shifts ? frame_range(scene.output).last + frames : frame + frames - 1.0;
     remove_track(scene, rotation_key);  // it would replace the target
     scene.camera.rotation.reset();
     const char* const keys[] = {position_key, target_key, up_key};

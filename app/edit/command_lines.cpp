@@ -6,14 +6,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string_view>
 #include <system_error>
-#include <vector>
 
 #include "core/error.h"
-#include "core/file.h"
 #include "core/file_format.h"
-#include "edit/keyframes.h"
+#include "edit/edits.h"
 #include "frame/output_pattern.h"
 #include "scene/describe.h"
 #include "scene/describe_layer.h"
@@ -23,7 +20,6 @@
 #include "source/fits.h"
 
 namespace astrosplat {
-namespace fs = std::filesystem;
 namespace {
 
 /// Of [output] path, with an absolute folder.

@@ -1,29 +1,87 @@
-// The history is a row of whole scenes: undo and redo walk along it, nothing is ever computed backwards.
+// The history is a row of whole scenes: undo and redo walk along it, nothing is ever computed backwards. Of
+// files date and size are looked at first, then the bytes.
 #include "edit/document.h"
-
-#include <fmt/format.h>
 
 #include <algorithm>
 #include <atomic>
 #include <cassert>
 #include <deque>
+#include <utility>
 
 #include "core/atomic_file.h"
 #include "core/error.h"
-#include "core/file.h"
-#include "edit/disk_files.h"
-#include "edit/edit_rules.h"
-#include "edit/keyframes.h"
+#include "core/hash.h"
+#include "edit/edits.h"
 #include "edit/layers.h"
 #include "scene/camera_file.h"
 #include "scene/describe.h"
 #include "scene/entries.h"
-#include "scene/layer_setup.h"
 #include "scene/parameter_key.h"
 #include "scene/save.h"
 
 namespace astrosplat {
-namespace fs = std::filesystem;
+
+DiskFile::DiskFile(const fs::path& file, std::string_view content)
+    : file_(file), checked_(stamp_of(file)), hash_(Sha256().add(content).hex()) {}
+
+bool DiskFile::changed() {
+    if (file_.empty()) return false;
+    const FileStamp now = stamp_of(file_);
+    if (now == FileStamp{}) return false;
+    if (now == checked_) return changed_;
+    try {
+        changed_ = sha256_of_file(file_) != hash_;
+    } catch (const InputError&) {
+        return false;
+    }
+    checked_ = now;
+    return changed_;
+}
+
+void DiskFile::accept() {
+    if (file_.empty()) return;
+    try {
+        checked_ = stamp_of(file_);
+        hash_ = sha256_of_file(file_);
+        changed_ = false;
+    } catch (const InputError&) {
+        // gone: nothing to accept
+    }
+}
+
+bool WatchedFiles::due(double now) {
+    constexpr double every_s = 1.0;
+    if (now - checked_at_s_ < every_s) return false;
+    checked_at_s_ = now;
+    return true;
+}
+
+void WatchedFiles::watch(const std::vector<fs::path>& files) {
+    std::map<fs::path, Entry> watched;
+    for (const fs::path& file : files) {
+        const auto known = files_.find(file);
+        if (known != files_.end()) {
+            watched.insert(*known);
+        } else if (!watched.count(file)) {
+            const FileStamp now = stamp_of(file);
+            watched[file] = {now, now};
+        }
+    }
+    files_ = std::move(watched);
+}
+
+std::vector<fs::path> WatchedFiles::changed() {
+    std::vector<fs::path> found;
+    for (auto& [file, entry] : files_) {
+        const FileStamp now = stamp_of(file), before = std::exchange(entry.seen, now);
+        if (now == FileStamp{} || now == entry.known || now != before) continue;
+        entry.known = now;
+        found.push_back(file);
+    }
+    if (!found.empty()) ++changes_;
+    return found;
+}
+
 namespace {
 
 constexpr std::size_t most_undo_steps = 500;

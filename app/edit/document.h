@@ -1,22 +1,68 @@
 // The scene being edited: the scene itself, the text it came from, undo and redo, what is saved and what is
 // not. In: a scene file, or the text of one that has no file yet; then edits. Out: a plain Scene after every
-// edit. Knows no window.
+// edit. Knows no window. And files that other programs may write while they are in use here, its own and
+// those that its scene reads: whether they were changed.
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <memory>
-#include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "core/file.h"
 #include "scene/load.h"
 #include "scene/parameter.h"
 #include "scene/scene.h"
 
 namespace astrosplat {
+
+/// A file as it was last seen. Two calls of changed() cost two look-ups in its folder; its bytes are read
+/// only when date or size say that it was touched.
+class DiskFile {
+  public:
+    DiskFile() = default;
+    /// `content` is what the file holds.
+    DiskFile(const std::filesystem::path& file, std::string_view content);
+
+    /// Its bytes differ from those last seen. A file that is gone or unreadable has not changed.
+    bool changed();
+    /// The file as it is now counts as seen.
+    void accept();
+
+  private:
+    std::filesystem::path file_;  // empty: there is none
+    FileStamp checked_;           // at the last look
+    std::string hash_;
+    bool changed_ = false;  // what that look found
+};
+
+class WatchedFiles {
+  public:
+    /// A second has passed since it was last due: it is time to look; `now` in seconds.
+    bool due(double now);
+    /// Watches these from now on; what is known of those watched already stays.
+    void watch(const std::vector<std::filesystem::path>& files);
+    /// Files whose date or size differ from those when they were first watched or last returned, or that have
+    /// appeared, and that lie there as they did at the call before. A file that is gone is waited for: many
+    /// programs write a file by replacing it.
+    std::vector<std::filesystem::path> changed();
+    /// Differs whenever changed() gave some: what is kept of them is to be read again.
+    std::uint64_t changes() const { return changes_; }
+
+  private:
+    struct Entry {
+        FileStamp known, seen;  // as returned last; at the last call
+    };
+
+    std::map<std::filesystem::path, Entry> files_;
+    double checked_at_s_ = 0.0;
+    std::uint64_t changes_ = 0;
+};
 
 /// Edits that belong together (one drag of a slider) carry the same id and make one undo step; 0: a step of
 /// its own.

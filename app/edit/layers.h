@@ -1,10 +1,13 @@
 // Edits of the list of layers: functions on a scene, and the same as undo steps of a document. Names stay
-// unique and valid; tracks follow a layer's name.
+// unique and valid; tracks follow a layer's name. And first scenes for a file that is dropped on the window
+// or named on the command line, and for a built-in shape.
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <string>
 
+#include "core/file_format.h"
 #include "edit/document.h"
 #include "edit/view_state.h"
 #include "scene/scene.h"
@@ -18,7 +21,7 @@ std::string free_layer_name(const Scene& scene, const std::string& wanted);
 /// A layer for a picture (on the built-in plane), a mesh (with its own texture) or a splat file, at the end
 /// of the list. Throws InputError for another kind of file. Returns its index.
 std::size_t add_layer(Scene& scene, const std::filesystem::path& file);
-/// The same of one of shape_names (new_from_file.h), in neutral grey.
+/// The same of one of shape_names, in neutral grey.
 std::size_t add_shape(Scene& scene, const std::string& shape);
 std::size_t duplicate_layer(Scene& scene, std::size_t index);
 void remove_layer(Scene& scene, std::size_t index);
@@ -41,5 +44,32 @@ void move_layer(Document& document, ViewState& view, std::size_t from, std::size
 
 /// Only layers that are solo are seen, while there are any; of the window, not of the scene.
 void toggle_solo(ViewState& view, const std::string& layer);
+
+/// By content or ending (core/file_format.h); a .toml is a look when it has a [look] or [render] and no
+/// layers, else a scene. Unreadable files are what their ending says.
+FileKind kind_of_file(const std::filesystem::path& file);
+
+/// The text of a scene file `place` around a picture (on the built-in plane), an OBJ (with its own pictures,
+/// else with the picture of the same name beside it or the only one in its folder, else in neutral grey;
+/// projected along its thinnest axis where it has no texture coordinates) or a splat file (radii of half the
+/// mean spacing where it has no radii). Reads the mesh, and splat files without radii, as a whole. Throws
+/// InputError for other files, looks among them.
+std::string scene_text_for(const std::filesystem::path& file, const std::filesystem::path& place);
+
+/// Built-in shapes that need no picture of their own.
+inline constexpr std::array shape_names{"plane", "disk",   "sphere",    "spheroid",
+                                        "shell", "bubble", "hourglass", "ring"};
+/// The same as menus have them.
+inline constexpr std::array shape_labels{"Plane", "Disk",   "Sphere",    "Spheroid",
+                                         "Shell", "Bubble", "Hourglass", "Ring"};
+static_assert(shape_names.size() == shape_labels.size());
+
+/// The text of a scene of one such shape in neutral grey, and of one without layers.
+std::string shape_scene_text(const std::string& shape);
+std::string empty_scene_text();
+
+/// Neutral grey stands for the picture of the layer's first mesh. Reads the mesh where it may have pictures
+/// of its own; throws InputError.
+bool lacks_picture(const LayerParams& layer);
 
 }  // namespace astrosplat

@@ -15,10 +15,17 @@
 
 #include "camera/camera.h"
 #include "core/bounds.h"
-#include "edit/listed_picture.h"
 #include "scene/scene.h"
 
 namespace astrosplat {
+
+/// A picture file as a folder lists it: what a small picture of it is kept under.
+struct ListedPicture {
+    std::filesystem::path file;
+    std::filesystem::file_time_type changed{};
+    std::uintmax_t bytes = 0;
+    auto operator<=>(const ListedPicture&) const = default;
+};
 
 /// How many of a layer's splats lie at each distance, and how its picture's values spread.
 struct LayerHistograms {
@@ -67,9 +74,8 @@ struct FrontStatus {
     bool working = false;
     bool measured = false;
     double psnr_db = 0.0, ssim = 0.0;
-    double light = 1.0;         // over the picture's
-    std::int64_t width_px = 0;  // of the view that was compared
-    std::string error;          // why there is nothing to compare with, one line
+    double light = 1.0;  // over the picture's
+    std::string error;   // why there is nothing to compare with, one line
 };
 
 /// The selected layer's picture before and after its preparation, while the panel shows that.
@@ -204,6 +210,13 @@ inline const QueuedJob* running_job(const Status& status) {
     for (const QueuedJob& job : status.jobs)
         if (job.state == QueuedJob::State::running) return &job;
     return nullptr;
+}
+
+/// The one with a number, else the newest; null: there is none.
+inline const QueuedJob* chosen_job(const Status& status, std::uint64_t number) {
+    for (const QueuedJob& job : status.jobs)
+        if (job.number == number) return &job;
+    return status.jobs.empty() ? nullptr : &status.jobs.back();
 }
 
 /// The view's reference; null where it has none, or where an edit of this very frame took it away.

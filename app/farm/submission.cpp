@@ -19,7 +19,6 @@
 #include "scene/frames.h"
 
 namespace astrosplat {
-namespace fs = std::filesystem;
 
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Submission, name, output, options, sets_job, frames_job, chunks)
 

@@ -15,7 +15,6 @@
 
 #include "core/real.h"
 #include "gl/objects.h"
-#include "gl/program.h"
 #include "ocio/display_transform.h"
 
 namespace astrosplat {

@@ -1,6 +1,8 @@
 // OpenGL's objects as values that own them: each is created where it is first needed, moves, and goes with
 // its owner. They know nothing but their name; what is done with them stays plain OpenGL. Among them images
-// that the processor fills: images in, textures out.
+// that the processor fills, and programs from the files of shaders/, whose errors name our file and line
+// where the driver only counts strings. And a context without a window: surfaceless EGL, for screenshots and
+// tests. (GLFW 3.3 needs a display.)
 #pragma once
 
 #include <glad/gl.h>
@@ -9,12 +11,44 @@
 #include <functional>
 #include <glm/vec2.hpp>
 #include <memory>
+#include <stdexcept>
+#include <string>
 #include <utility>
 #include <vector>
 
 #include "core/image.h"
 
 namespace astrosplat {
+
+/// No OpenGL context of the version needed can be had; what() is one line.
+struct NoContext : std::runtime_error {
+    using std::runtime_error::runtime_error;
+};
+
+struct GlInfo {
+    int major = 0, minor = 0;
+    std::string renderer;   // "llvmpipe (LLVM 15.0.6, 256 bits)"
+    bool software = false;  // drawn by the processor: llvmpipe, softpipe, SwiftShader
+};
+
+class OffscreenContext {
+  public:
+    /// OpenGL 4.1 core or later, current on this thread, functions loaded. Throws NoContext.
+    OffscreenContext();
+    ~OffscreenContext();
+    OffscreenContext(const OffscreenContext&) = delete;
+    OffscreenContext& operator=(const OffscreenContext&) = delete;
+    const GlInfo& info() const;
+
+  private:
+    struct State;
+    std::unique_ptr<State> state_;
+};
+
+/// Of the current context, whose functions this loads through `loader` (glfwGetProcAddress). Throws
+/// NoContext below 4.1.
+using GlLoader = void (*(*)(const char* name))(void);
+GlInfo load_gl(GlLoader loader);
 
 /// One object of the kind that these two of OpenGL's functions, as glad has loaded them, make and delete.
 template <auto* generate, auto* destroy>
@@ -138,5 +172,51 @@ class ShownPicture {
 inline void* to_handle(GLuint texture) {
     return reinterpret_cast<void*>(static_cast<std::uintptr_t>(texture));
 }
+
+/// The GLSL of shaders/ and shaders/shared, which is compiled into the program: text of "look.glsl" and the
+/// like. Asking for one that does not exist is our own mistake (std::logic_error).
+std::string shader_text(const std::string& name);
+
+/// The parts of a program. Each stage is "#version 410 core", the defines and its files one after the other.
+struct ProgramSource {
+    std::vector<std::string> defines = {};   // "QUADS" or "KIND 2"
+    std::vector<std::string> vertex = {};    // names for shader_text()
+    std::vector<std::string> fragment = {};  // empty: no fragment stage
+    std::vector<std::string> feedback = {};  // vertex outputs to capture, each into its own buffer
+    /// Values instead of those in the texts, for lines "const int NAME = 8;".
+    std::vector<std::pair<std::string, int>> constants = {};
+    std::string fragment_head = {};  // GLSL before the files of the fragment stage, from elsewhere
+    std::vector<std::pair<std::string, int>> samplers = {};  // and the texture unit that each reads
+    std::string block = {};                                  // of uniforms, read from binding point 0
+};
+
+/// The files of projection.glsl and what it needs, followed by `more`.
+std::vector<std::string> after_projections(const std::vector<std::string>& more);
+
+class GlProgram {
+  public:
+    /// Throws std::runtime_error: "shader look.glsl:12: ..." in the driver's words.
+    explicit GlProgram(const ProgramSource& source);
+    ~GlProgram();
+    GlProgram(const GlProgram&) = delete;
+    GlProgram& operator=(const GlProgram&) = delete;
+
+    void use() const { glUseProgram(program_); }
+    GLuint name() const { return program_; }
+    /// -1 where the program does not use it, which OpenGL's glUniform calls ignore.
+    GLint uniform(const char* name) const { return glGetUniformLocation(program_, name); }
+
+  private:
+    GLuint program_ = 0;
+};
+
+/// Where a file begins in a shader's text, lines counted from 1.
+struct FileStart {
+    std::string name;
+    int line = 1;
+};
+/// The driver's compile log as one line, with "0:117" or "0(117)" at the start of its lines written
+/// as "look.glsl:17".
+std::string readable_log(const std::string& log, const std::vector<FileStart>& files);
 
 }  // namespace astrosplat

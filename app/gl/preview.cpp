@@ -4,16 +4,14 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <map>
 
 #include "camera/projection.h"
 #include "core/log.h"
-#include "gl/draw_pass.h"
-#include "gl/look_pass.h"
 #include "gl/objects.h"
+#include "gl/passes.h"
 #include "render/resolve.h"
 
 namespace astrosplat {

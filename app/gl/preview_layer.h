@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <cstdint>
 #include <memory>
-#include <string>
-#include <vector>
 
 #include "camera/camera.h"
 #include "core/image.h"

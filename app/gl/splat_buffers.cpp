@@ -2,9 +2,7 @@
 
 #include <algorithm>
 #include <bit>
-#include <cmath>
 #include <cstddef>
-#include <glm/vec4.hpp>
 #include <numeric>
 
 #include "camera/projection.h"

@@ -1,17 +1,14 @@
 // The table of actions, in the end, and what they do; the loop that finds the one a shortcut means.
-#include "gui/actions.h"
+#include "gui/parts.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "edit/camera_moves.h"
-#include "edit/keyframes.h"
+#include "edit/edits.h"
 #include "edit/layers.h"
-#include "edit/new_from_file.h"
 #include "edit/view_camera.h"
-#include "gui/parts.h"
 #include "scene/animate.h"
 #include "scene/describe.h"
 
@@ -162,8 +159,8 @@ void next_frame(F f) { go_to(f, std::floor(f.view.frame) + 1.0); }
 void previous_frame(F f) { go_to(f, std::ceil(f.view.frame) - 1.0); }
 void next_keyframe(F f) { f.view.frame = frame_of_next_keyframe(f.document.scene(), f.view.frame); }
 void previous_keyframe(F f) { f.view.frame = frame_of_previous_keyframe(f.document.scene(), f.view.frame); }
-void first_frame(F f) { f.view.frame = frame_range(f.document.scene()).first; }
-void last_frame(F f) { f.view.frame = frame_range(f.document.scene()).last; }
+void first_frame(F f) { f.view.frame = frame_range(f.document.scene().output).first; }
+void last_frame(F f) { f.view.frame = frame_range(f.document.scene().output).last; }
 
 void set_in_point(F f) {
     f.view.play_first = f.view.frame;

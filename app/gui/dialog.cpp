@@ -1,7 +1,7 @@
 // The frame of dialogs, and the small ones: the settings, a row each from setting_rows(); the sheet of
 // shortcuts, from the table of actions and one of the mouse; the log as it is; what becomes of keyframes when
 // a move is added.
-#include "gui/dialog.h"
+#include "gui/parts.h"
 
 #include <fmt/format.h>
 #include <imgui_stdlib.h>
@@ -11,11 +11,8 @@
 #include <string_view>
 #include <vector>
 
-#include "edit/camera_moves.h"
-#include "gui/actions.h"
-#include "gui/key_codes.h"
+#include "edit/view_camera.h"
 #include "gui/parts.h"
-#include "gui/widgets.h"
 
 namespace astrosplat {
 namespace {

@@ -7,15 +7,11 @@
 #include <cmath>
 #include <optional>
 
-#include "gui/actions.h"
-#include "gui/dialog.h"
 #include "gui/file_dialog.h"
-#include "gui/gui_frame.h"
-#include "gui/panel/panel.h"
+#include "gui/panel/context.h"
 #include "gui/parts.h"
 #include "gui/timeline.h"
 #include "gui/viewport.h"
-#include "gui/widgets.h"
 
 namespace astrosplat {
 

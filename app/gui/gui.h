@@ -5,12 +5,10 @@
 #include <memory>
 #include <vector>
 
-#include "edit/commands.h"
 #include "edit/document.h"
 #include "edit/status.h"
 #include "edit/view_state.h"
 #include "gui/gui_frame.h"
-#include "gui/layout.h"
 
 namespace astrosplat {
 

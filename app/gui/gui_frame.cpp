@@ -7,10 +7,6 @@
 
 #include "core/error.h"
 #include "core/log.h"
-#include "edit/edit_rules.h"
-#include "gui/key_codes.h"
-#include "gui/widgets.h"
-#include "scene/frames.h"
 
 namespace astrosplat {
 
@@ -120,22 +116,6 @@ std::string short_count(std::int64_t count) {
 
 std::string splat_count(std::int64_t count) {
     return short_count(count) + (count == 1 ? " splat" : " splats");
-}
-
-FrameRange frame_range(const Scene& scene) {
-    try {
-        const std::vector<std::int64_t> frames = parse_frames(scene.output.frames, "output.frames");
-        if (!frames.empty()) return {static_cast<double>(frames.front()), static_cast<double>(frames.back())};
-    } catch (const InputError&) {
-        // Said where it is typed; the timeline shows one frame meanwhile.
-    }
-    return {};
-}
-
-FrameRange shown_range(const Scene& scene) {
-    FrameRange range = frame_range(scene);
-    if (range.first == range.last) range.last += film_frames(scene.output) - 1.0;
-    return range;
 }
 
 }  // namespace astrosplat

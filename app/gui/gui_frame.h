@@ -2,6 +2,7 @@
 // edit without letting an error out, say where a control lies and how many splats there are.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <glm/vec2.hpp>
@@ -10,15 +11,13 @@
 #include <string>
 #include <vector>
 
-#include "edit/commands.h"
 #include "edit/document.h"
 #include "edit/status.h"
 #include "edit/view_state.h"
-#include "gui/layout.h"
+#include "gui/widgets.h"
+#include "scene/reference_place.h"
 
 namespace astrosplat {
-
-struct Segment;  // widgets.h
 
 /// Mouse and keyboard over the viewport in this frame. px are relative to the viewport's upper left.
 struct ViewportInput {
@@ -112,13 +111,5 @@ int segmented(GuiFrame& frame, const std::string& prefix, std::initializer_list<
 std::string short_count(std::int64_t count);
 /// "2.9 M splats", "1 splat".
 std::string splat_count(std::int64_t count);
-
-/// First and last frame of [output] frames; 1, 1 where they cannot be read.
-struct FrameRange {
-    double first = 1.0, last = 1.0;
-};
-FrameRange frame_range(const Scene& scene);
-/// Those that the timeline shows: of a still as many as it has once something moves (edit/edit_rules.h).
-FrameRange shown_range(const Scene& scene);
 
 }  // namespace astrosplat

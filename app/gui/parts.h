@@ -1,12 +1,15 @@
-// The parts of the window, each of which draws itself and puts what was asked for into the frame. Those with
-// an area draw into the current ImGui window, over it. Only the status bar keeps something from one frame to
-// the next.
+// The parts of the window, each of which draws itself and puts what was asked for into the frame: those with
+// an area draw into the current ImGui window, over it; only the status bar keeps something from one frame to
+// the next. Then the frame of every dialog, and the table of all that menus and shortcuts do.
 #pragma once
 
 #include <cstdint>
+#include <initializer_list>
+#include <span>
 #include <string>
 
 #include "gui/gui_frame.h"
+#include "gui/widgets.h"
 
 namespace astrosplat {
 
@@ -58,5 +61,53 @@ void draw_queue(GuiFrame& frame);
 
 /// "2:05", "1:02:05".
 std::string duration_text(double seconds);
+
+/// Begins a modal dialog `width` px wide at scale 1 (`height` 0: as high as its content). `id` is opened when
+/// `open` turns true. True while it is shown; then call end_dialog().
+bool begin_dialog(const char* id, const std::string& title, bool open, float width, float height);
+/// `closes`: it is not to be seen any more, and `open` will be false.
+void end_dialog(bool closes);
+
+/// A quiet line below the title, `gap` px at scale 1 above what follows.
+void dialog_note(const char* text, float gap);
+
+/// A button as wide as its text and at least `least` px; the accent for what Enter would do.
+bool dialog_button(const char* label, bool is_default, float least);
+
+/// Escape was pressed in the dialog, with no text field to leave first.
+bool dialog_escape();
+
+/// Buttons at the right of the line, from left to right: index of the one chosen, else -1. Escape chooses the
+/// one of index `escape` (-1: none); Enter, where it is taken, the last one.
+int dialog_buttons(GuiFrame& frame, const char* id, std::initializer_list<const char*> labels, int escape,
+                   bool enter = true);
+
+/// Everything a menu or a shortcut does, once: the menus, the shortcuts and the sheet of shortcuts are loops
+/// over a table of these. The row of tools does the same to the view by the functions below.
+struct Action {
+    const char* menu;  // "File"; "Camera/Add move" for a submenu; "" where only the shortcut does it
+    const char* label;
+    Shortcut shortcut = {};
+    void (*run)(GuiFrame&);
+    bool (*enabled)(const GuiFrame&) = nullptr;           // nullptr: always
+    bool (*checked)(const GuiFrame&) = nullptr;           // nullptr: not a switch
+    std::string (*label_now)(const GuiFrame&) = nullptr;  // in place of label where it says more
+    bool line_above = false;
+    bool repeats = false;  // while it is held
+    Shortcut also = {};    // does the same
+};
+
+/// In the order of the menus.
+std::span<const Action> actions();
+
+/// Runs the shortcuts pressed this frame. Call it only while no text is typed and nothing is dragged.
+void run_shortcuts(GuiFrame& frame);
+
+void toggle_one_to_one(GuiFrame& f);
+void set_compare(GuiFrame& f, CompareMode mode);   // asks for a reference where there is none yet
+void compare_with(GuiFrame& f, CompareWith with);  // likewise
+bool compares_with_reference(const GuiFrame& f);
+bool has_reference(const GuiFrame& f);
+void toggle_placing(GuiFrame& f);
 
 }  // namespace astrosplat

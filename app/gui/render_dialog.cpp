@@ -8,9 +8,6 @@
 #include <cmath>
 
 #include "core/error.h"
-#include "gui/dialog.h"
-#include "gui/icons.h"
-#include "gui/widgets.h"
 #include "scene/frames.h"
 
 namespace astrosplat {

@@ -11,8 +11,6 @@
 
 #include "edit/placement.h"
 #include "edit/view_camera.h"
-#include "gui/icons.h"
-#include "gui/key_codes.h"
 #include "gui/widgets.h"
 #include "scene/animate.h"
 #include "scene/describe.h"
@@ -29,7 +27,7 @@ constexpr float header_control = 24, entry_gap = 8;
 
 std::string seconds_text(const Scene& scene, double frame) {
     const double fps = scene.output.fps > 0 ? scene.output.fps : 24.0;
-    return fmt::format("{:.2f} s", (frame - frame_range(scene).first) / fps);
+    return fmt::format("{:.2f} s", (frame - frame_range(scene.output).first) / fps);
 }
 
 void frame_entry(GuiFrame& frame) {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "edit/keyframes.h"
+#include "edit/edits.h"
 #include "gui/gui_frame.h"
 #include "scene/parameter.h"
 

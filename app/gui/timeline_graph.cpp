@@ -6,7 +6,7 @@
 #include <functional>
 #include <limits>
 
-#include "edit/keyframes.h"
+#include "edit/edits.h"
 #include "gui/timeline.h"
 #include "gui/widgets.h"
 #include "scene/animate.h"

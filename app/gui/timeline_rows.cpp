@@ -8,8 +8,7 @@
 #include <functional>
 #include <optional>
 
-#include "edit/keyframes.h"
-#include "gui/key_codes.h"
+#include "edit/edits.h"
 #include "gui/timeline.h"
 #include "gui/widgets.h"
 

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
-#include "gui/key_codes.h"
 #include "gui/viewport_overlay.h"
 #include "gui/widgets.h"
 

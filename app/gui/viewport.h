@@ -7,8 +7,8 @@
 #include <optional>
 #include <vector>
 
-#include "edit/handles.h"
-#include "edit/keyframes.h"
+#include "edit/edits.h"
+#include "edit/placement.h"
 #include "gui/gui_frame.h"
 #include "scene/reference_place.h"
 

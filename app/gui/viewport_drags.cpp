@@ -3,7 +3,6 @@
 
 #include <array>
 #include <cmath>
-#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <utility>
 

@@ -1,13 +1,178 @@
-// Shared controls.
+// Colours, spacing and fonts into ImGui's style and font atlas; shared controls; icons as strokes in a unit
+// square, one short function each; the words on keycaps; places: sizes at content scale 1, hidden parts left
+// out, the rest for the viewport.
 #include "gui/widgets.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <iterator>
+#include <map>
+#include <optional>
 #include <vector>
 
-#include "gui/key_codes.h"
-
 namespace astrosplat {
+
+namespace {
+
+constexpr float regular_px = 15.0f;
+constexpr float small_px = 13.0f;
+
+float scale = 1.0f;  // of the window's monitor; there is one window
+int contrast = 0;
+
+// Folders that hold fonts/, most specific first, as the XDG base directory specification has them.
+std::vector<fs::path> data_folders() {
+    std::vector<fs::path> folders;
+    if (const char* home = std::getenv("HOME")) folders.push_back(fs::path(home) / ".local/share");
+    const char* listed = std::getenv("XDG_DATA_DIRS");
+    const std::string text = listed && *listed ? listed : "/usr/local/share:/usr/share";
+    for (std::size_t begin = 0; begin < text.size();) {
+        const std::size_t end = std::min(text.find(':', begin), text.size());
+        if (end > begin) folders.push_back(text.substr(begin, end - begin));
+        begin = end + 1;
+    }
+    folders.push_back("/usr/share");
+    return folders;
+}
+
+// Roboto of this weight, where distributions and people put it, else DejaVu.
+std::optional<fs::path> find_font(const std::string& weight, const std::string& dejavu) {
+    const std::string roboto = "Roboto-" + weight + ".ttf";
+    for (const std::string& name :
+         {"truetype/roboto/unhinted/RobotoTTF/" + roboto, "truetype/roboto/" + roboto, "Roboto/" + roboto,
+          roboto, "truetype/dejavu/" + dejavu})
+        for (const fs::path& folder : data_folders()) {
+            std::error_code ignored;
+            const fs::path file = folder / "fonts" / name;
+            if (fs::is_regular_file(file, ignored)) return file;
+        }
+    return std::nullopt;
+}
+
+// Latin-1, Latin Extended-A for names of files, dashes and quotes, a few signs.
+const ImWchar* glyph_ranges() {
+    static constexpr std::array<ImWchar, 15> ranges{0x0020, 0x00FF, 0x0100, 0x017F, 0x2010,
+                                                    0x2026, 0x2032, 0x2033, 0x2190, 0x2193,
+                                                    0x2212, 0x2212, 0x2264, 0x2265, 0};
+    return ranges.data();
+}
+
+ImFont* add_font(const std::optional<fs::path>& file, float size_px) {
+    ImFontAtlas& atlas = *ImGui::GetIO().Fonts;
+    ImFontConfig config;
+    config.OversampleH = 3;
+    config.RasterizerMultiply = 1.1f;
+    config.SizePixels = size_px;
+    if (file)
+        if (ImFont* font = atlas.AddFontFromFileTTF(file->c_str(), size_px, &config, glyph_ranges()))
+            return font;
+    return atlas.AddFontDefault(&config);
+}
+
+void add_fonts(float content_scale) {
+    const auto regular = find_font("Regular", "DejaVuSans.ttf");
+    ImGui::GetIO().Fonts->Clear();
+    const float size = std::round(regular_px * content_scale);
+    add_font(regular, size);
+    add_font(find_font("Medium", "DejaVuSans-Bold.ttf"), size);
+    add_font(regular, std::round(small_px * content_scale));
+}
+
+void set_colors(ImGuiStyle& style) {
+    const auto set = [&](ImGuiCol which, ImU32 c) { style.Colors[which] = color4(c); };
+    for (ImVec4& c : style.Colors) c = color4(color::field);
+    set(ImGuiCol_Text, color::text);
+    set(ImGuiCol_TextDisabled, color::dim);
+    for (const ImGuiCol c : {ImGuiCol_WindowBg, ImGuiCol_ChildBg, ImGuiCol_MenuBarBg}) set(c, color::panel);
+    set(ImGuiCol_PopupBg, color::panel);
+    for (const ImGuiCol c :
+         {ImGuiCol_Border, ImGuiCol_Separator, ImGuiCol_TableBorderLight, ImGuiCol_TableBorderStrong})
+        set(c, color::line);
+    for (const ImGuiCol c : {ImGuiCol_BorderShadow, ImGuiCol_TableRowBg, ImGuiCol_ScrollbarBg, ImGuiCol_Tab,
+                             ImGuiCol_NavWindowingHighlight, ImGuiCol_ResizeGrip})
+        set(c, color::none);
+    for (const ImGuiCol c : {ImGuiCol_FrameBgHovered, ImGuiCol_ButtonHovered, ImGuiCol_HeaderHovered,
+                             ImGuiCol_ScrollbarGrab, ImGuiCol_TabHovered})
+        set(c, color::hover);
+    for (const ImGuiCol c : {ImGuiCol_FrameBgActive, ImGuiCol_ButtonActive, ImGuiCol_Header,
+                             ImGuiCol_HeaderActive, ImGuiCol_TextSelectedBg, ImGuiCol_TabActive})
+        set(c, color::selection);
+    for (const ImGuiCol c : {ImGuiCol_CheckMark, ImGuiCol_SliderGrab, ImGuiCol_SliderGrabActive,
+                             ImGuiCol_DragDropTarget, ImGuiCol_NavHighlight, ImGuiCol_PlotHistogram})
+        set(c, color::accent);
+    for (const ImGuiCol c : {ImGuiCol_ScrollbarGrabHovered, ImGuiCol_ScrollbarGrabActive}) set(c, color::dim);
+    for (const ImGuiCol c : {ImGuiCol_TitleBg, ImGuiCol_TitleBgActive, ImGuiCol_TitleBgCollapsed})
+        set(c, color::panel);
+    set(ImGuiCol_ModalWindowDimBg, color::with_opacity(color::window, 0.55f));
+    style.Colors[ImGuiCol_TableRowBgAlt] = ImVec4(1, 1, 1, 0.02f);
+}
+
+void set_sizes(ImGuiStyle& style) {
+    style.WindowPadding = {12, 12};
+    style.FramePadding = {8, 4};
+    style.ItemSpacing = {8, 4};
+    style.ItemInnerSpacing = {4, 4};
+    style.CellPadding = {4, 2};
+    style.IndentSpacing = 12;
+    style.ScrollbarSize = 10;
+    style.GrabMinSize = 8;
+    style.WindowRounding = style.PopupRounding = style.FrameRounding = style.GrabRounding = 3;
+    style.ChildRounding = 0;
+    style.TabRounding = 0;
+    style.ScrollbarRounding = 5;
+    style.WindowBorderSize = style.PopupBorderSize = 1;
+    style.ChildBorderSize = style.FrameBorderSize = 0;
+    style.WindowTitleAlign = {0.0f, 0.5f};
+    style.WindowMenuButtonPosition = ImGuiDir_None;
+    style.DisabledAlpha = 0.45f;
+}
+
+}  // namespace
+
+void set_contrast(int wanted) {
+    struct Shade {
+        ImU32* color;
+        ImU32 normal, high;
+    };
+    static const Shade shades[] = {{&color::window, color::window, IM_COL32(0x08, 0x09, 0x0A, 255)},
+                                   {&color::panel, color::panel, IM_COL32(0x12, 0x14, 0x16, 255)},
+                                   {&color::field, color::field, IM_COL32(0x26, 0x2A, 0x2F, 255)},
+                                   {&color::hover, color::hover, IM_COL32(0x38, 0x3E, 0x45, 255)},
+                                   {&color::line, color::line, IM_COL32(0x5C, 0x63, 0x6A, 255)},
+                                   {&color::text, color::text, IM_COL32(0xFF, 0xFF, 0xFF, 255)},
+                                   {&color::dim, color::dim, IM_COL32(0xC4, 0xC9, 0xCE, 255)},
+                                   {&color::accent, color::accent, IM_COL32(0x7D, 0xB3, 0xF2, 255)},
+                                   {&color::attention, color::attention, IM_COL32(0xFF, 0xC1, 0x4D, 255)},
+                                   {&color::good, color::good, IM_COL32(0x7F, 0xD6, 0x9A, 255)},
+                                   {&color::error, color::error, IM_COL32(0xFF, 0x8F, 0x7E, 255)}};
+    contrast = wanted;
+    for (const Shade& shade : shades) *shade.color = wanted == 1 ? shade.high : shade.normal;
+    color::selection = color::with_opacity(color::accent, 0.28f);
+    color::fill = color::with_opacity(color::accent, 0.25f);
+    set_colors(ImGui::GetStyle());
+}
+
+int theme_contrast() { return contrast; }
+
+void apply_theme(float content_scale, int wanted_contrast) {
+    scale = content_scale;
+    ImGuiStyle& style = ImGui::GetStyle();
+    style = ImGuiStyle();
+    set_contrast(wanted_contrast);
+    set_sizes(style);
+    style.ScaleAllSizes(content_scale);
+    add_fonts(content_scale);
+    ImGui::GetIO().IniFilename = nullptr;
+}
+
+ImFont* medium_font() { return ImGui::GetIO().Fonts->Fonts[1]; }
+ImFont* small_font() { return ImGui::GetIO().Fonts->Fonts[2]; }
+
+float px(float length) { return length * scale; }
+
 namespace {
 
 constexpr float segment_padding = 10.0f;
@@ -130,6 +295,214 @@ std::string fitting(const std::string& text, float width) {
         if (ImGui::CalcTextSize(shorter.c_str()).x <= width) return shorter;
     }
     return "\xE2\x80\xA6";
+}
+
+namespace {
+
+// Icon coordinates run from -1 to 1, x right, y down.
+struct Pen {
+    ImDrawList* list;
+    ImVec2 center;
+    float half;
+    ImU32 color;
+    float width;
+
+    ImVec2 at(float x, float y) const { return {center.x + x * half, center.y + y * half}; }
+    void line(float x0, float y0, float x1, float y1) const {
+        list->AddLine(at(x0, y0), at(x1, y1), color, width);
+    }
+    void triangle(float x0, float y0, float x1, float y1, float x2, float y2) const {
+        list->AddTriangleFilled(at(x0, y0), at(x1, y1), at(x2, y2), color);
+    }
+    void path(std::initializer_list<ImVec2> points, bool closed) const {
+        for (const ImVec2& p : points) list->PathLineTo(at(p.x, p.y));
+        list->PathStroke(color, closed ? ImDrawFlags_Closed : ImDrawFlags_None, width);
+    }
+    void circle(float radius) const { list->AddCircle(center, radius * half, color, 0, width); }
+    void arc(ImVec2 from, ImVec2 control, ImVec2 to) const {
+        list->PathLineTo(at(from.x, from.y));
+        list->PathBezierQuadraticCurveTo(at(control.x, control.y), at(to.x, to.y));
+        list->PathStroke(color, ImDrawFlags_None, width);
+    }
+};
+
+void eye(const Pen& pen) {
+    for (const float lid : {-1.15f, 1.15f}) pen.arc({-1, 0}, {0, lid}, {1, 0});
+    pen.list->AddCircleFilled(pen.center, 0.3f * pen.half, pen.color);
+}
+void eye_closed(const Pen& pen) { pen.arc({-1, -0.1f}, {0, 0.95f}, {1, -0.1f}); }
+void diamond(const Pen& pen) {
+    pen.list->AddQuadFilled(pen.at(0, -0.85f), pen.at(0.85f, 0), pen.at(0, 0.85f), pen.at(-0.85f, 0),
+                            pen.color);
+}
+void diamond_empty(const Pen& pen) { pen.path({{0, -0.75f}, {0.75f, 0}, {0, 0.75f}, {-0.75f, 0}}, true); }
+void play(const Pen& pen) { pen.triangle(-0.6f, -0.85f, 0.85f, 0.0f, -0.6f, 0.85f); }
+void pause(const Pen& pen) {
+    pen.list->AddRectFilled(pen.at(-0.7f, -0.8f), pen.at(-0.2f, 0.8f), pen.color);
+    pen.list->AddRectFilled(pen.at(0.2f, -0.8f), pen.at(0.7f, 0.8f), pen.color);
+}
+void chevron_right(const Pen& pen) { pen.path({{-0.3f, -0.65f}, {0.4f, 0}, {-0.3f, 0.65f}}, false); }
+void chevron_down(const Pen& pen) { pen.path({{-0.65f, -0.3f}, {0, 0.4f}, {0.65f, -0.3f}}, false); }
+void chevron_up(const Pen& pen) { pen.path({{-0.65f, 0.3f}, {0, -0.4f}, {0.65f, 0.3f}}, false); }
+void plus(const Pen& pen) {
+    pen.line(-0.8f, 0, 0.8f, 0);
+    pen.line(0, -0.8f, 0, 0.8f);
+}
+void cross(const Pen& pen) {
+    pen.line(-0.6f, -0.6f, 0.6f, 0.6f);
+    pen.line(-0.6f, 0.6f, 0.6f, -0.6f);
+}
+void ring(const Pen& pen) { pen.circle(0.7f); }
+void ring_cut(const Pen& pen) {
+    ring(pen);
+    pen.list->PathArcTo(pen.center, 0.7f * pen.half, -0.785f, 2.356f);
+    pen.list->PathFillConvex(pen.color);
+}
+void curve(const Pen& pen) {
+    pen.list->PathLineTo(pen.at(-0.85f, 0.7f));
+    pen.list->PathBezierCubicCurveTo(pen.at(0.1f, 0.7f), pen.at(-0.1f, -0.7f), pen.at(0.85f, -0.7f));
+    pen.list->PathStroke(pen.color, ImDrawFlags_None, pen.width);
+}
+void warning(const Pen& pen) {
+    pen.path({{0, -0.8f}, {0.9f, 0.75f}, {-0.9f, 0.75f}}, true);
+    pen.line(0, -0.25f, 0, 0.25f);
+    pen.line(0, 0.45f, 0, 0.55f);
+}
+void folder(const Pen& pen) {
+    pen.path(
+        {{-0.85f, -0.6f}, {-0.25f, -0.6f}, {0, -0.35f}, {0.85f, -0.35f}, {0.85f, 0.65f}, {-0.85f, 0.65f}},
+        true);
+}
+void file(const Pen& pen) {
+    pen.path({{-0.6f, -0.85f}, {0.2f, -0.85f}, {0.6f, -0.4f}, {0.6f, 0.85f}, {-0.6f, 0.85f}}, true);
+}
+void dots(const Pen& pen) {
+    for (const float x : {-0.7f, 0.0f, 0.7f})
+        pen.list->AddCircleFilled(pen.at(x, 0), 0.18f * pen.half, pen.color);
+}
+
+using Draw = void (*)(const Pen&);
+constexpr Draw drawings[] = {eye,           eye_closed,   diamond,    diamond_empty, play,  pause,
+                             chevron_right, chevron_down, chevron_up, plus,          cross, ring,
+                             ring_cut,      curve,        warning,    folder,        file,  dots};
+static_assert(std::size(drawings) == static_cast<std::size_t>(Icon::dots) + 1);
+
+}  // namespace
+
+void draw_icon(ImDrawList* list, Icon icon, ImVec2 center, float size, ImU32 color) {
+    // Odd line centres fall on pixel centres and stay sharp.
+    const ImVec2 snapped{std::floor(center.x) + 0.5f, std::floor(center.y) + 0.5f};
+    drawings[static_cast<std::size_t>(icon)]({list, snapped, size * 0.5f, color, px(1.3f)});
+}
+
+void draw_bracket(ImDrawList* list, float x, float y0, float y1, ImU32 color) {
+    const float tip = x + px(4.0f);
+    for (const ImVec2 corner : {ImVec2(tip, y0), ImVec2(x, y0), ImVec2(x, y1), ImVec2(tip, y1)})
+        list->PathLineTo(corner);
+    list->PathStroke(color, ImDrawFlags_None, px(1.0f));
+}
+
+bool icon_button(const char* id, Icon icon, ImVec2 size, float icon_px, ImU32 color, const char* says) {
+    const ImVec2 corner = ImGui::GetCursorScreenPos();
+    const bool clicked = ImGui::InvisibleButton(id, size);
+    ImDrawList* list = ImGui::GetWindowDrawList();
+    if (ImGui::IsItemHovered())
+        list->AddRectFilled(corner, {corner.x + size.x, corner.y + size.y}, color::hover, px(3.0f));
+    tooltip(says);
+    draw_icon(list, icon, {corner.x + size.x * 0.5f, corner.y + size.y * 0.5f}, icon_px, color);
+    return clicked;
+}
+
+namespace {
+
+std::string key_name(int code) {
+    using namespace key_code;
+    static const std::map<int, std::string> words = {
+        {0, ""},          {space, "Space"}, {escape, "Esc"}, {tab, "Tab"}, {del, "Del"},
+        {right, "Right"}, {left, "Left"},   {down, "Down"},  {up, "Up"},   {home, "Home"},
+        {end, "End"},     {f1, "F1"},       {f11, "F11"},    {f12, "F12"}};
+    if (const auto word = words.find(code); word != words.end()) return word->second;
+    return code > 0 && code < 128 ? std::string(1, static_cast<char>(code)) : "";  // letters and digits
+}
+
+}  // namespace
+
+bool key_pressed(int code, bool repeats) { return ImGui::IsKeyPressed(static_cast<ImGuiKey>(code), repeats); }
+
+bool key_down(int code) { return ImGui::IsKeyDown(static_cast<ImGuiKey>(code)); }
+
+bool shortcut_pressed(const Shortcut& s, bool repeats) {
+    const ImGuiIO& io = ImGui::GetIO();
+    if (s.code == 0 || io.KeyAlt || io.KeyCtrl != s.ctrl || io.KeyShift != s.shift) return false;
+    return key_pressed(s.code, repeats);
+}
+
+std::string shortcut_text(const Shortcut& s) {
+    return std::string(s.ctrl ? "Ctrl+" : "") + (s.shift ? "Shift+" : "") + key_name(s.code);
+}
+
+namespace {
+
+constexpr float menu_height = 28, tool_height = 32, status_height = 24, notice_height = 30;
+constexpr float snapshots_height = 124, timeline_closed = 36, timeline_with_graph = 240;
+constexpr float smallest_viewport = 160;
+
+// Cuts a strip off `rest` and returns it.
+Rect cut_top(Rect& rest, float height) {
+    height = std::min(height, rest.height);
+    const Rect strip{rest.x, rest.y, rest.width, height};
+    rest.y += height;
+    rest.height -= height;
+    return strip;
+}
+Rect cut_bottom(Rect& rest, float height) {
+    height = std::min(height, rest.height);
+    rest.height -= height;
+    return {rest.x, rest.end().y, rest.width, height};
+}
+Rect cut_right(Rect& rest, float width) {
+    width = std::min(width, rest.width);
+    rest.width -= width;
+    return {rest.end().x, rest.y, width, rest.height};
+}
+
+float timeline_size(const ViewState& view) {
+    if (!view.panels) return 0.0f;
+    if (!view.timeline_open) return timeline_closed;
+    return view.graph_open ? std::max(view.timeline_height, timeline_with_graph) : view.timeline_height;
+}
+
+}  // namespace
+
+Layout make_layout(const ViewState& view, float width_px, float height_px, float content_scale) {
+    const auto scaled = [&](float length) { return std::round(length * content_scale); };
+    Layout layout;
+    Rect rest{0, 0, width_px, height_px};
+    layout.menu = cut_top(rest, scaled(menu_height));
+    layout.status = cut_bottom(rest, scaled(status_height));
+    layout.panel = cut_right(rest, view.panels ? scaled(view.panel_width) : 0.0f);
+    layout.tools = cut_top(rest, view.panels ? scaled(tool_height) : 0.0f);
+    const bool notice = view.hint_open || view.changed_on_disk || !view.grey_layer.empty();
+    layout.notice = cut_top(rest, notice ? scaled(notice_height) : 0.0f);
+    const float most = std::max(rest.height - scaled(smallest_viewport), scaled(timeline_closed));
+    layout.timeline = cut_bottom(rest, std::min(scaled(timeline_size(view)), view.panels ? most : 0.0f));
+    layout.snapshots = cut_bottom(rest, view.panels && view.snapshots_open ? scaled(snapshots_height) : 0.0f);
+    layout.viewport = rest;
+    return layout;
+}
+
+Rect place_frame(const ViewState& view, const Rect& viewport, int width_px, int height_px) {
+    const double w = std::max(width_px, 1), h = std::max(height_px, 1);
+    double scale = view.zoom, shift_x = view.pan_px.x, shift_y = view.pan_px.y;
+    if (view.size == SizeMode::fit) {
+        scale = std::min(viewport.width / w, viewport.height / h);
+        shift_x = shift_y = 0.0;
+    }
+    // Whole pixels, so that a frame of the viewport's own size is shown pixel by pixel.
+    const double x = viewport.x + std::floor((viewport.width - w * scale) * 0.5 + shift_x + 0.5);
+    const double y = viewport.y + std::floor((viewport.height - h * scale) * 0.5 + shift_y + 0.5);
+    return {static_cast<float>(x), static_cast<float>(y), static_cast<float>(w * scale),
+            static_cast<float>(h * scale)};
 }
 
 }  // namespace astrosplat

@@ -9,7 +9,7 @@
 #include <system_error>
 
 #include "batch_plan.h"
-#include "cli.h"
+#include "command.h"
 #include "core/atomic_file.h"
 #include "core/error.h"
 #include "core/log.h"
@@ -23,7 +23,6 @@
 #include "scene/frames.h"
 
 namespace astrosplat {
-namespace fs = std::filesystem;
 namespace {
 
 using Frames = std::vector<std::int64_t>;

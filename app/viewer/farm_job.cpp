@@ -1,4 +1,4 @@
-#include "viewer/farm_job.h"
+#include "viewer/render_queue.h"
 
 #include <fmt/format.h>
 
@@ -13,7 +13,6 @@
 #include "scene/frames.h"
 
 namespace astrosplat {
-namespace fs = std::filesystem;
 namespace {
 
 using Json = nlohmann::json;

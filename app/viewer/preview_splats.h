@@ -1,8 +1,9 @@
-// The splats that a preview draws. How many: in motion a budget that follows the measured time of a frame, at
-// rest a few steps of more; plain numbers in and out, no clock. Which of each layer: a cut through its tree
-// (merge/README.md), of the whole set where its sums are there, else of a sample, whose sums take no time.
-// In: layers, a camera and a number of splats. Out: shaded splats; and at rest, until the final frame comes,
-// images of the same view with more of them.
+// The splats that a preview draws, and the frame made of them by the engine's own compositor. How many: in
+// motion a budget that follows the measured time of a frame, at rest a few steps of more; plain numbers in
+// and out, no clock. Which of each layer: a cut through its tree (merge/README.md), of the whole set where
+// its sums are there, else of a sample, whose sums take no time. In: layers, a camera and a number of splats.
+// Out: shaded splats; the frame in motion, the light of each layer at a pixel; and at rest, until the final
+// frame comes, images of the same view with more of them.
 #pragma once
 
 #include <cstdint>
@@ -14,11 +15,39 @@
 
 #include "gl/preview_layer.h"
 #include "merge/cut.h"
+#include "render/render.h"
 #include "viewer/background_work.h"
-#include "viewer/cpu_preview.h"
 #include "viewer/loaded_layer.h"
 
 namespace astrosplat {
+
+/// For machines whose OpenGL is drawn by the processor anyway, where it is the faster of the two. The same
+/// splats as GlPreview draws.
+class CpuPreview {
+  public:
+    /// Renders the layers' splats into an image that stays valid until the next call. Splats are not split up
+    /// by level of detail. Throws Cancelled.
+    const Image& draw(const std::vector<PreviewLayer>& layers, const PreviewView& view,
+                      const Progress& progress = {});
+
+  private:
+    RenderCache cache_;
+    Image frame_, backdrop_;
+};
+
+/// Of each of the layers, which must have their splats, the light that arrives from it within a pixel of
+/// (x, y), or where that is more the light that it keeps from arriving: dust and holdouts are seen by what
+/// they hide. 0 outside the frame.
+std::vector<float> light_of_layers(const std::vector<PreviewLayer>& layers, const PreviewView& view,
+                                   std::int64_t x, std::int64_t y);
+
+/// Indices of the layers whose light is more than a fiftieth of the brightest one's, brightest first.
+std::vector<std::size_t> seen_layers(const std::vector<float>& light);
+
+/// The layer that a click selects: the brightest, or `behind` the next one after the selected layer, after
+/// the last one the first again. None where nothing is seen.
+std::optional<std::size_t> clicked_layer(const std::vector<std::size_t>& seen, std::size_t selected,
+                                         bool behind);
 
 /// Follows a target time, damped, and stays where it is within an eighth of the target: the frame's grain
 /// changes under the eye with every move.

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <optional>
 #include <regex>
 #include <system_error>
 #include <utility>
@@ -13,13 +12,11 @@
 #include "core/file.h"
 #include "core/hash.h"
 #include "core/text.h"
-#include "edit/command_lines.h"
+#include "edit/edits.h"
 #include "scene/frames.h"
 
 namespace astrosplat {
 namespace {
-
-namespace fs = std::filesystem;
 
 /// "frame 12 (3/10)" of "frame 12 (3/10) 37% eta 00:04:10".
 std::string without_share(const std::string& line) {
@@ -182,12 +179,11 @@ void RenderQueue::add_to_farm(const RenderTask& task, const Document& document) 
 void RenderQueue::list_earlier(const Document& document) {
     lookup_.reset();
     if (document.file().empty()) return;
-    const auto first =
-        static_cast<double>(parse_frames(document.scene().output.frames, "output.frames").front());
     Lookup& lookup = lookup_.emplace();
     lookup.title = document.name();
     lookup.command = {program_, "status", document.file().string(), "--json"};
-    append(lookup.command, frame_arguments(make_render_task(document, RenderKind::frame, first)));
+    append(lookup.command, frame_arguments(make_render_task(document, RenderKind::frame,
+                                                            frame_range(document.scene().output).first)));
 }
 
 void RenderQueue::take_earlier() try {

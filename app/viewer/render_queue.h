@@ -1,7 +1,9 @@
-// Jobs that write files while the window stays usable: renderings and prepared pictures, one after the other,
-// by the program itself as a child process, and renderings that a farm has. A copy of the scene as it stands
-// is rendered with --batch: so a frame of the viewer is a frame of the farm, and a cancelled or crashed job
-// harms nothing. In: a request and the document as it stood then. Out: each job's progress and its result.
+// Jobs that write files while the window stays usable: renderings and prepared pictures, one after the
+// other, by the program itself as a child process. A copy of the scene as it stands is rendered with
+// --batch: so a frame of the viewer is a frame of the farm, and a cancelled or crashed job harms nothing. A
+// rendering on the machines of a farm is handed to Slurm (--submit slurm) and asked for (status --json)
+// until all frames are there; it goes on when the window is closed. In: a request and the document as it
+// stood then. Out: each job's progress and its result.
 #pragma once
 
 #include <cstdint>
@@ -16,10 +18,77 @@
 #include "edit/settings.h"
 #include "edit/status.h"
 #include "farm/child_process.h"
+#include "farm/submission.h"
 #include "sets/kept.h"
-#include "viewer/farm_job.h"
 
 namespace astrosplat {
+
+/// The state of the frames that a farm was given.
+struct FarmReport {
+    bool complete = false;  // every frame is there
+    bool active = false;    // a task waits or runs, or that is not known
+    std::int64_t frames = 0, done = 0;
+    std::vector<std::int64_t> done_frames;   // their numbers, ascending; of pairs those of the first eye
+    std::vector<std::int64_t> jobs;          // in Slurm's queue, of submissions that are not over
+    std::string output;                      // the pattern of their files, with an absolute folder
+    std::vector<SubmittedFrames> submitted;  // of this pattern, whatever their options
+    std::string text;                        // "12 of 240 done, in the queue: 3 running, 21 pending"
+};
+
+/// Of what `status --json` has written; nothing where that is no report.
+std::optional<FarmReport> read_farm_report(const std::string& output);
+
+/// Jobs of "30 frames in 3 tasks submitted as job 2, which waits for the sets of job 1": 2, 1. None where
+/// nothing was submitted.
+std::vector<std::int64_t> submitted_jobs(const std::string& output);
+
+struct FarmCommands {
+    std::vector<std::string> submit, status;  // [0] is the program; submit is empty: that was done before
+    std::string pattern;                      // of the frames' files
+};
+
+class FarmJob {
+  public:
+    /// Begins to submit, or to watch what was submitted. Throws OutputError where the program cannot be
+    /// started.
+    explicit FarmJob(FarmCommands commands);
+
+    /// Takes what came, and asks anew where it is time. Cheap; call every frame. `now` in seconds.
+    void poll(double now);
+    /// Takes the tasks out of the queue; finished frames stay.
+    void cancel();
+
+    using State = QueuedJob::State;  // running, done, failed or cancelled
+    State state() const { return state_; }
+    const std::string& text() const { return text_; }  // one line
+    float progress() const;                            // 0..1, of frames
+    const FarmCommands& commands() const { return commands_; }
+    /// At the last look a task waited or ran.
+    bool is_active() const { return report_.active; }
+    /// Of frames that are there.
+    const std::vector<std::filesystem::path>& files() const { return files_; }
+
+  private:
+    enum class Task { submit, watch, cancel };
+
+    void begin(Task task, double now);
+    void end(int code, double now);
+    void take_report(const FarmReport& report);
+    std::vector<std::string> cancel_command() const;
+    void fail(std::string why);
+
+    FarmCommands commands_;
+    State state_ = State::running;
+    Task task_ = Task::submit;
+    std::optional<ChildProcess> process_;  // none: waits for the time to ask again
+    std::string output_, text_ = "Submitting";
+    std::vector<std::int64_t> jobs_;  // its own in Slurm's queue; none: others had taken all frames
+    FarmReport report_;
+    std::vector<std::filesystem::path> files_;
+    double began_s_ = 0.0, next_s_ = 0.0;
+    int idle_reports_ = 0;  // that found frames missing and nothing in the queue
+    bool cancelled_ = false;
+};
 
 struct ProcessStep {
     std::string name;                    // "Rendering", "Writing the movie"

@@ -3,21 +3,19 @@
 #include <algorithm>
 #include <cmath>
 #include <new>
-#include <utility>
 
 #include "camera_files/camera_track.h"
 #include "core/error.h"
 #include "core/file.h"
 #include "core/memory.h"
 #include "core/text.h"
-#include "edit/new_from_file.h"
+#include "edit/edits.h"
+#include "edit/layers.h"
 #include "source/write_image.h"
 
 namespace astrosplat {
 
 namespace {
-
-namespace fs = std::filesystem;
 
 /// Splats of a layer that previews know until its tree is there.
 constexpr std::int64_t sample_limit = 1 << 18;
@@ -61,8 +59,8 @@ void read_again(Session& session, const std::vector<fs::path>& files) {
 }
 
 void watch_files(Session& session) {
-    session.disk.watch(session.document.scene(), session.sets.loader(),
-                       session.comparison.reference().file());
+    session.disk.watch(
+        files_in_use(session.document.scene(), session.sets.loader(), session.comparison.reference().file()));
 }
 
 /// The system counts page by page, which takes it some 10 ms of a large set.
@@ -142,7 +140,7 @@ Session::Session(const ViewerOptions& options, const GlInfo& gl_info)
     static_cast<PanelSizes&>(view) = preferences;
     view.settle = view.settings.settles != 0;
     view.engine = static_cast<PreviewEngine>(view.settings.engine);
-    view.frame = first_frame(document.scene());
+    view.frame = frame_range(document.scene().output).first;
     if (!options.input.empty()) choose_first_view(view, document, options.input);
     if (!options.input.empty() && kind_of_file(options.input) == FileKind::mesh) offer_picture(*this, 0);
     find_recoveries(status);
@@ -184,7 +182,7 @@ void forget_old_message(Status& status, MessageAge& age, double now) {
 void take_document(Session& session, Document next) {
     session.document = std::move(next);
     ViewState& view = session.view;
-    view.frame = first_frame(session.document.scene());
+    view.frame = frame_range(session.document.scene().output).first;
     view.layer = 0;
     view.view = ViewKind::camera;
     view.solo.clear();

@@ -17,24 +17,20 @@
 #include <utility>
 #include <vector>
 
-#include "edit/autosave.h"
-#include "edit/commands.h"
 #include "edit/document.h"
+#include "edit/kept_files.h"
 #include "edit/preferences.h"
 #include "edit/status.h"
 #include "edit/view_state.h"
 #include "farm/child_process.h"
-#include "gl/context.h"
 #include "gl/display.h"
 #include "gl/objects.h"
 #include "gui/gui.h"
 #include "output/metadata.h"
-#include "viewer/compared_pictures.h"
 #include "viewer/comparison.h"
-#include "viewer/file_pictures.h"
+#include "viewer/files.h"
 #include "viewer/render_queue.h"
-#include "viewer/scene_files.h"
-#include "viewer/set_wishes.h"
+#include "viewer/set_loader.h"
 #include "viewer/view_frame.h"
 #include "viewer/view_motion.h"
 #include "viewer/viewer.h"
@@ -74,7 +70,7 @@ struct Session {
     CameraOverlay overlay;
     Navigator navigator;
     Playback playback;
-    DiskWatch disk;
+    WatchedFiles disk;
     RenderQueue jobs;
     /// Revision and file of the document, and the task, that the command in the status is of.
     std::optional<std::tuple<std::uint64_t, std::filesystem::path, RenderTask>> command_source;

@@ -1,5 +1,4 @@
 // Commands of menus and shortcuts to a session: a table from commands to functions.
-
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -8,10 +7,9 @@
 #include "core/atomic_file.h"
 #include "core/error.h"
 #include "core/text.h"
-#include "edit/camera_moves.h"
 #include "edit/command_lines.h"
 #include "edit/layers.h"
-#include "edit/new_from_file.h"
+#include "edit/view_camera.h"
 #include "scene/animate.h"
 #include "scene/camera_file.h"
 #include "scene/frames.h"
@@ -171,9 +169,10 @@ void snapshot(State& s, const Command&) {
     DisplaySettings alone = s.displayed;
     alone.b = 0;
     s.display.draw(alone, s.viewport_px.x, s.viewport_px.y);
-    snapshots.add(store_look(snapshots.next_name(), s.document, s.view.frame),
-                  thumbnail_of(s.display.read(), s.viewport_px.x, s.viewport_px.y, thumbnail_px),
-                  final ? shown.total : shown.shown, final ? shown.seconds : 0.0);
+    snapshots.add(store_look({snapshots.next_name(), s.view.frame, final ? shown.total : shown.shown,
+                              final ? shown.seconds : 0.0},
+                             s.document),
+                  thumbnail_of(s.display.read(), s.viewport_px.x, s.viewport_px.y, thumbnail_px));
 }
 
 void store_b(State& s, const Command& c) {

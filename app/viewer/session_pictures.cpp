@@ -5,10 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
-#include <optional>
-#include <utility>
-#include <vector>
 
 #include "core/error.h"
 #include "edit/command_lines.h"
@@ -19,8 +15,6 @@
 
 namespace astrosplat {
 namespace {
-
-namespace fs = std::filesystem;
 
 /// B alone, as large as `place` has room for it.
 void show_alone(unsigned texture, bool is_display, glm::vec2 size_px, const Rect& place,
@@ -132,13 +126,6 @@ void fill_command(Session& session) {
     session.status.no_render_command = command.reason;
 }
 
-const QueuedJob* job_looked_at(const Session& session) {
-    const std::vector<QueuedJob>& jobs = session.status.jobs;
-    const auto chosen = std::ranges::find(jobs, session.view.queue_job, &QueuedJob::number);
-    if (chosen != jobs.end()) return &*chosen;
-    return jobs.empty() ? nullptr : &jobs.back();
-}
-
 /// As the viewport shows that frame of the scene that is open.
 FinishedRequest request_for(Session& session, const fs::path& file) {
     if (session.finished_header.first != file) session.finished_header = {file, read_frame_header(file)};
@@ -155,7 +142,8 @@ FinishedRequest request_for(Session& session, const fs::path& file) {
 
 void show_finished_frame(Session& session) {
     FinishedFrame& shown = session.status.finished;
-    const QueuedJob* const job = session.view.queue_open ? job_looked_at(session) : nullptr;
+    const QueuedJob* const job =
+        session.view.queue_open ? chosen_job(session.status, session.view.queue_job) : nullptr;
     if (!job || job->files.empty()) {
         shown = {};
         return session.finished.cancel();

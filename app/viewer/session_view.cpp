@@ -1,15 +1,10 @@
 // The viewport: the view becomes a request for a frame; the frame and its comparison are placed in the
 // viewport, with lines of the camera over them; and the widgets get the state of both.
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <glm/gtc/type_precision.hpp>
-#include <memory>
-#include <optional>
-#include <utility>
-#include <vector>
 
 #include "core/error.h"
 #include "core/parallel.h"
@@ -17,7 +12,7 @@
 #include "edit/view_camera.h"
 #include "scene/animate.h"
 #include "scene/layer_setup.h"
-#include "viewer/cpu_preview.h"
+#include "viewer/preview_splats.h"
 #include "viewer/session.h"
 
 namespace astrosplat {

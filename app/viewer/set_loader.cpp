@@ -6,14 +6,12 @@
 #include <algorithm>
 #include <exception>
 #include <new>
-#include <utility>
 
 #include "core/error.h"
 #include "generate/lattice.h"
 #include "pipeline.h"
 #include "scene/animate.h"
 #include "scene/layer_setup.h"
-#include "viewer/kept_trees.h"
 
 namespace astrosplat {
 namespace {

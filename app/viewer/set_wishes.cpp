@@ -1,13 +1,10 @@
-#include "viewer/set_wishes.h"
+#include "viewer/set_loader.h"
 
 #include <time.h>
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <tuple>
-#include <utility>
-#include <vector>
 
 #include "core/parallel.h"
 #include "core/real.h"
@@ -18,8 +15,6 @@
 
 namespace astrosplat {
 namespace {
-
-namespace fs = std::filesystem;
 
 constexpr std::int64_t most_pixels = 200'000;  // of a picture in a preview: splats hardly lie closer
 constexpr std::int64_t live_rows_at_once = 1 << 13;

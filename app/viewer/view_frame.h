@@ -1,5 +1,7 @@
-// One frame of the viewport: the preview while something changes, then the final frame, tile by tile,
-// once the hand rests (DESIGN 10). In: what is to be seen. Out: a texture, and how far it is.
+// One frame of the viewport: the preview while something changes, then the final frame, tile by tile, once
+// the hand rests (DESIGN 10). In: what is to be seen. Out: a texture, and how far it is. The final frame is
+// made in the background, by the offline renderer on a thread of its own: the pixels are the very bits of
+// `--batch` at that size.
 #pragma once
 
 #include <cstdint>
@@ -9,16 +11,72 @@
 #include <string>
 #include <vector>
 
+#include "core/image.h"
 #include "edit/status.h"
 #include "edit/view_state.h"
 #include "gl/objects.h"
 #include "gl/preview.h"
+#include "render/render.h"
 #include "scene/scene.h"
-#include "viewer/final_frame.h"
+#include "splats/splat_set.h"
+#include "viewer/background_work.h"
+#include "viewer/files.h"
 #include "viewer/preview_splats.h"
-#include "viewer/scene_files.h"
 
 namespace astrosplat {
+
+class Pipeline;
+
+/// A frame that is asked for, or a part of it.
+struct FrameRequest {
+    Scene scene;
+    double frame = 1.0;         // at which the scene's animation, if it has kept any, is evaluated
+    int width = 0, height = 0;  // px of the whole frame
+    Region region;              // the part of it; empty: all
+    std::uint64_t files = 0;    // another number: files were changed, and what is kept of them is read again
+    /// The same part, never empty.
+    Region part() const { return region.width > 0 ? region : Region{0, 0, width, height}; }
+};
+
+/// One frame to compute.
+struct FinalRequest : FrameRequest {
+    std::vector<std::shared_ptr<const SplatSet>> sets;  // one a layer; null: the layer is not drawn
+    std::shared_ptr<const Environment> environment;     // of the scene, where it is loaded already
+    bool depth = false;  // also RenderedFrame::depth; changes no pixel of the beauty
+};
+
+class FinalFrame {
+  public:
+    /// Cancels what is under way and begins again. Returns at once.
+    void start(FinalRequest request);
+    /// Cancels and returns at once: state() is idle from then on, and the thread stops within 50 ms of work.
+    void cancel();
+
+    enum class State { idle, running, done, failed };
+    struct Outcome {
+        State state = State::idle;
+        std::string error;  // failed
+        // When done:
+        double seconds = 0.0;  // from the thread's taking up the request to the last pixel
+        std::shared_ptr<const RenderedFrame> frame;  // its beauty is region-sized
+    };
+    /// Once it is done before take_tiles(), that call makes the image whole.
+    Outcome outcome() const;
+    float progress() const;
+
+    /// Tiles finished since the last call, copied into `image` (resized to the request's). Returns their
+    /// regions, px of `image`. Never blocks on the renderer.
+    std::vector<Region> take_tiles(Image& image);
+
+  private:
+    struct Run;
+    using Work = LatestWork<std::shared_ptr<Run>, Outcome>;
+    static Outcome render(Pipeline& pipeline, Run& run, Progress progress);
+    static Work::Work renderer();
+
+    std::shared_ptr<Run> run_;  // the latest; null before the first and after cancel()
+    Work work_{renderer()};
+};
 
 /// A frame to be shown: the scene as it stands, with the view's camera; layers that are not to be seen are
 /// invisible. Requests that ask for the same and have the same sets show equal frames.
@@ -69,7 +127,7 @@ class ViewFrame {
     /// The same, read back from the GPU where need be.
     Image read() const;
     /// Light of every layer of the scene at a pixel of the whole frame, by the splats of the preview
-    /// (cpu_preview.h).
+    /// (preview_splats.h).
     std::vector<float> layer_light(std::int64_t x, std::int64_t y);
     /// The final frame, when status says so.
     std::shared_ptr<const RenderedFrame> final_frame() const;

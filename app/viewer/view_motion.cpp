@@ -4,18 +4,15 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <utility>
-#include <vector>
 
 #include "camera/projection.h"
 #include "core/error.h"
 #include "core/real.h"
-#include "edit/keyframes.h"
+#include "edit/edits.h"
 #include "edit/placement.h"
 #include "edit/view_camera.h"
 #include "scene/animate.h"
 #include "scene/describe.h"
-#include "scene/frames.h"
-#include "scene/load.h"
 
 namespace astrosplat {
 namespace {
@@ -99,8 +96,7 @@ Scene camera_part(const Scene& scene) {
 /// Places of the scene's camera over the frames of [output], at most 256 of them; one where it does not move.
 std::vector<glm::dvec3> camera_path(const Scene& scene, const Bounds& box) {
     constexpr double most = 256.0;
-    const std::vector<std::int64_t> frames = parse_frames(scene.output.frames, "output.frames");
-    const auto first = static_cast<double>(frames.front()), last = static_cast<double>(frames.back());
+    const auto [first, last] = frame_range(scene.output);
     const double step = std::max(1.0, (last - first) / (most - 1.0));
     std::vector<glm::dvec3> path;
     for (double frame = first; frame <= last; frame += step) {
@@ -131,16 +127,11 @@ std::vector<std::vector<glm::dvec3>> frustum(const Camera& camera, double width_
     return lines;
 }
 
-struct PlayRange {
-    double first, last;
-};
-
 /// Between the in and out points, where they lie within the frames.
-PlayRange play_range(const ViewState& view, const OutputParams& output) {
-    const std::vector<std::int64_t> frames = parse_frames(output.frames, "output.frames");
-    const auto first = static_cast<double>(frames.front()), last = static_cast<double>(frames.back());
-    PlayRange range{std::clamp(view.play_first.value_or(first), first, last),
-                    std::clamp(view.play_last.value_or(last), first, last)};
+FrameRange play_range(const ViewState& view, const OutputParams& output) {
+    const auto [first, last] = frame_range(output);
+    FrameRange range{std::clamp(view.play_first.value_or(first), first, last),
+                     std::clamp(view.play_last.value_or(last), first, last)};
     if (range.first > range.last) range.last = last;
     return range;
 }
@@ -259,7 +250,7 @@ void Playback::advance(ViewState& view, const OutputParams& output, double now) 
     }
     if (played_at_ < 0.0) {
         played_at_ = now;
-        const PlayRange range = play_range(view, output);
+        const FrameRange range = play_range(view, output);
         if (view.play_mode == PlayMode::once && view.frame >= range.last) view.frame = range.first;
         return;
     }
@@ -275,10 +266,6 @@ void Playback::advance(ViewState& view, const OutputParams& output, double now) 
 double Playback::shown_fps() const {
     if (shown_at_.size() < 2) return 0.0;
     return static_cast<double>(shown_at_.size() - 1) / (shown_at_.back() - shown_at_.front());
-}
-
-double first_frame(const Scene& scene) {
-    return static_cast<double>(parse_frames(scene.output.frames, "output.frames").front());
 }
 
 }  // namespace astrosplat

@@ -83,7 +83,4 @@ class Playback {
     std::deque<double> shown_at_;  // seconds of the last frames
 };
 
-/// The first of [output] frames.
-double first_frame(const Scene& scene);
-
 }  // namespace astrosplat

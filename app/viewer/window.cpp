@@ -14,9 +14,8 @@
 #include <utility>
 
 #include "core/hash.h"
-#include "gl/objects.h"
 #include "gui/gui.h"
-#include "gui/theme.h"
+#include "gui/widgets.h"
 
 // glad before GLFW, which would bring the system's OpenGL header.
 

@@ -6,12 +6,9 @@
 #include <cstdint>
 #include <deque>
 #include <filesystem>
-#include <functional>
-#include <memory>
 #include <string>
 #include <vector>
 
-#include "gl/context.h"
 #include "gl/objects.h"
 
 struct GLFWwindow;

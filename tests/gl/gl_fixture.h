@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "gl/context.h"
+#include "gl/objects.h"
 
 namespace astrosplat::test {
 

@@ -9,7 +9,7 @@
 #include <unordered_map>
 
 #include "gl/gl_fixture.h"
-#include "gl/look_pass.h"
+#include "gl/passes.h"
 #include "gl/picture_scenes.h"
 #include "look/prepare.h"
 

@@ -5,10 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "gl/context.h"
-#include "gl/draw_pass.h"
 #include "gl/gl_fixture.h"
-#include "gl/program.h"
+#include "gl/objects.h"
+#include "gl/passes.h"
 #include "support/temp_folder.h"
 
 namespace astrosplat {

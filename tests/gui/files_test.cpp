@@ -6,10 +6,9 @@
 #include <sstream>
 
 #include "gui/file_dialog.h"
-#include "gui/file_list.h"
-#include "gui/key_codes.h"
 #include "gui/reference_screens.h"
 #include "gui/test_window.h"
+#include "gui/widgets.h"
 #include "scene/describe.h"
 #include "support/temp_folder.h"
 

@@ -3,11 +3,10 @@
 
 #include <cmath>
 
-#include "edit/keyframes.h"
+#include "edit/edits.h"
 #include "edit/placement.h"
-#include "gui/key_codes.h"
 #include "gui/test_window.h"
-#include "gui/theme.h"
+#include "gui/widgets.h"
 
 namespace astrosplat {
 namespace {

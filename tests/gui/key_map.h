@@ -3,7 +3,7 @@
 
 #include <imgui.h>
 
-#include "gui/key_codes.h"
+#include "gui/widgets.h"
 
 namespace astrosplat {
 

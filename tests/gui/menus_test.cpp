@@ -7,11 +7,10 @@
 
 #include "core/color.h"
 #include "core/real.h"
-#include "edit/camera_moves.h"
-#include "gui/actions.h"
-#include "gui/key_codes.h"
+#include "edit/view_camera.h"
+#include "gui/parts.h"
 #include "gui/test_window.h"
-#include "gui/theme.h"
+#include "gui/widgets.h"
 
 namespace astrosplat {
 namespace {

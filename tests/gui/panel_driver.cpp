@@ -6,7 +6,7 @@
 
 #include "gui/gui.h"
 #include "gui/key_map.h"
-#include "gui/theme.h"
+#include "gui/widgets.h"
 #include "scene/describe.h"
 
 namespace astrosplat {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "gui/panel/panel.h"
+#include "gui/panel/context.h"
 
 namespace astrosplat {
 

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "gui/panel/panel.h"
+#include "gui/panel/context.h"
 #include "gui/panel/parts.h"
 #include "gui/panel_driver.h"
 #include "gui/reference_screens.h"

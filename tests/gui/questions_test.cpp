@@ -1,8 +1,8 @@
 // Unsaved changes, recovery, files changed on disk, the hint, snapshots.
 #include <gtest/gtest.h>
 
-#include "gui/key_codes.h"
 #include "gui/test_window.h"
+#include "gui/widgets.h"
 #include "support/temp_folder.h"
 
 namespace astrosplat {

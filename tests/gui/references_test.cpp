@@ -3,12 +3,10 @@
 // here. With $ASTROSPLAT_GUI_PICTURES all pictures are kept to be looked at.
 #include <gtest/gtest.h>
 
-#include "gui/icons.h"
-#include "gui/key_codes.h"
 #include "gui/panel_driver.h"
 #include "gui/reference_screens.h"
 #include "gui/test_window.h"
-#include "gui/theme.h"
+#include "gui/widgets.h"
 
 namespace astrosplat {
 namespace {

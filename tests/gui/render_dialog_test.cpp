@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "gui/key_codes.h"
 #include "gui/test_window.h"
+#include "gui/widgets.h"
 
 namespace astrosplat {
 namespace {

@@ -3,13 +3,12 @@
 
 #include <map>
 
-#include "edit/camera_moves.h"
-#include "edit/keyframes.h"
+#include "edit/edits.h"
 #include "edit/view_camera.h"
-#include "gui/actions.h"
-#include "gui/key_codes.h"
-#include "gui/panel/panel.h"
+#include "gui/panel/context.h"
+#include "gui/parts.h"
 #include "gui/test_window.h"
+#include "gui/widgets.h"
 #include "scene/animate.h"
 
 namespace astrosplat {

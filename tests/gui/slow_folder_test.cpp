@@ -9,9 +9,9 @@
 #include <chrono>
 #include <thread>
 
-#include "gui/file_list.h"
-#include "gui/key_codes.h"
+#include "gui/file_dialog.h"
 #include "gui/test_window.h"
+#include "gui/widgets.h"
 #include "support/temp_folder.h"
 
 namespace {

@@ -7,7 +7,7 @@
 #include <cstdlib>
 
 #include "gui/key_map.h"
-#include "gui/theme.h"
+#include "gui/widgets.h"
 
 namespace astrosplat {
 namespace {

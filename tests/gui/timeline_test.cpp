@@ -1,10 +1,10 @@
 // The timeline and its graph by mouse and keys.
 #include <gtest/gtest.h>
 
-#include "edit/keyframes.h"
-#include "gui/key_codes.h"
+#include "edit/edits.h"
 #include "gui/test_window.h"
 #include "gui/timeline.h"
+#include "gui/widgets.h"
 
 namespace astrosplat {
 namespace {

@@ -4,7 +4,6 @@
 #include <limits>
 
 #include "gui/gui_frame.h"
-#include "gui/key_codes.h"
 #include "gui/test_window.h"
 #include "gui/viewport.h"
 #include "gui/viewport_overlay.h"

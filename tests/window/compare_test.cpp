@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "gui/theme.h"
+#include "gui/widgets.h"
 #include "output/metadata.h"
 #include "source/texture.h"
 #include "source/write_image.h"

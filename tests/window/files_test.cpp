@@ -3,7 +3,7 @@
 #include <thread>
 
 #include "edit/preferences.h"
-#include "gui/theme.h"
+#include "gui/widgets.h"
 #include "source/write_image.h"
 #include "window/window_test.h"
 

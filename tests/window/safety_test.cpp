@@ -1,8 +1,8 @@
 // What survives a crash: unsaved changes and snapshots.
 #include <gtest/gtest.h>
 
-#include "edit/snapshots.h"
-#include "gui/theme.h"
+#include "edit/kept_files.h"
+#include "gui/widgets.h"
 #include "window/window_test.h"
 
 namespace astrosplat::test {
@@ -117,9 +117,9 @@ TEST_F(WindowDisk, AnEnvironmentThatCannotBeReadEndsNothing) {
 
 class WindowSnapshots : public WindowTest {
   protected:
-    std::vector<KeptSnapshot> kept() const {
+    std::vector<StoredLook> kept() const {
         std::vector<std::string> problems;
-        std::vector<KeptSnapshot> found = read_snapshots(snapshot_folder(scene_file), problems);
+        std::vector<StoredLook> found = read_snapshots(snapshot_folder(scene_file), problems);
         EXPECT_EQ(problems, std::vector<std::string>());
         return found;
     }
@@ -145,8 +145,8 @@ TEST_F(WindowSnapshots, SurviveACrashAndAreComparedAfterIt) {
     EXPECT_TRUE(comes_true([&] { return fs::exists(snapshot_folder(scene_file) / "0001.png"); }));
     end(SIGKILL);
     ASSERT_EQ(kept().size(), 1u);
-    EXPECT_EQ(kept()[0].facts.name, "Look 1");
-    EXPECT_GT(kept()[0].scene.layers[0].look.alpha.power, saved().layers[0].look.alpha.power);
+    EXPECT_EQ(kept()[0].name, "Look 1");
+    EXPECT_GT(kept()[0].scene->layers[0].look.alpha.power, saved().layers[0].look.alpha.power);
 
     fs::remove_all(folder / "home/state");  // its autosave, which would be offered
     start();

@@ -1,8 +1,8 @@
 // Scenes edited in the window: begun, dragged, typed, animated and saved.
 
 #include "core/atomic_file.h"
-#include "edit/keyframes.h"
-#include "gui/theme.h"
+#include "edit/edits.h"
+#include "gui/widgets.h"
 #include "sets/kept.h"
 #include "support/fits_text.h"
 #include "window/window_test.h"

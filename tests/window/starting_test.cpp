@@ -1,5 +1,5 @@
 // Starting the window: its scale, slow frames, and refusals in one line.
-#include "edit/keyframes.h"
+#include "edit/edits.h"
 #include "edit/preferences.h"
 #include "window/window_test.h"
 

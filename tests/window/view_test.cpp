@@ -4,9 +4,9 @@
 #include <fstream>
 #include <sstream>
 
-#include "edit/keyframes.h"
+#include "edit/edits.h"
 #include "edit/placement.h"
-#include "gui/theme.h"
+#include "gui/widgets.h"
 #include "source/write_image.h"
 #include "support/color_config.h"
 #include "window/window_test.h"

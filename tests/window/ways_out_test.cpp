@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "edit/command_lines.h"
-#include "gui/key_codes.h"
+#include "gui/widgets.h"
 #include "output/metadata.h"
 #include "source/texture.h"
 #include "window/window_test.h"

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "edit/preferences.h"
-#include "gui/theme.h"
+#include "gui/widgets.h"
 #include "source/write_image.h"
 
 namespace astrosplat::test {

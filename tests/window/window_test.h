@@ -6,7 +6,7 @@
 #include <csignal>
 #include <optional>
 
-#include "gui/panel/panel.h"
+#include "gui/panel/context.h"
 #include "gui/test_window.h"
 #include "scene/load.h"
 #include "support/bits.h"

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "edit/edit_rules.h"
+#include "edit/edits.h"
 #include "look/prepare.h"
 #include "look/shared_look.h"
 #include "scene/animate.h"

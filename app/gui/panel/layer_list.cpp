@@ -11,11 +11,6 @@
 
 #include "core/color.h"
 #include "edit/layers.h"
-#include "edit/new_from_file.h"
-#include "gui/icons.h"
-#include "gui/key_codes.h"
-#include "gui/panel/controls.h"
-#include "gui/widgets.h"
 
 namespace astrosplat::panel {
 namespace {

@@ -1,12 +1,7 @@
 // The panel as a whole: the layers with the tabs of the selected one, or the tabs of the scene.
-#include "gui/panel/panel.h"
-
 #include <algorithm>
 
-#include "gui/panel/context.h"
-#include "gui/panel/controls.h"
 #include "gui/panel/parts.h"
-#include "gui/widgets.h"
 
 namespace astrosplat::panel {
 namespace {
@@ -134,44 +129,31 @@ void draw_all(Context& context) {
 
 namespace astrosplat {
 
-Panel::Panel() : memory_(std::make_unique<panel::Memory>()) {}
-Panel::~Panel() = default;
-
 void Panel::draw(const GuiFrame& frame) {
-    panel::Memory& memory = *memory_;
-    panel::describe_current(memory, frame.document, frame.view.frame);
-    memory.rows.clear();
-    memory.plots.clear();
-    memory.touch.seen = false;
+    panel::describe_current(memory_, frame.document, frame.view.frame);
+    memory_.rows.clear();
+    memory_.plots.clear();
+    memory_.touch.seen = false;
     frame.view.preparation_open = false;
-    panel::Context context{frame, memory};
+    panel::Context context{frame, memory_};
     panel::draw_all(context);
 }
 
-std::optional<ParameterKey> Panel::take_request() { return std::exchange(memory_->request, std::nullopt); }
-
 void Panel::answer(const ParameterKey& key, const std::filesystem::path& file, const GuiFrame& frame) {
-    panel::describe_current(*memory_, frame.document, frame.view.frame);
-    panel::Context context{frame, *memory_};
+    panel::describe_current(memory_, frame.document, frame.view.frame);
+    panel::Context context{frame, memory_};
     panel::set_value(context, key, file.string());
 }
 
-void Panel::open_all() { memory_->all_open = true; }
-
-const std::vector<DrawnRow>& Panel::rows() const { return memory_->rows; }
-
 glm::vec4 Panel::plot_area(const std::string& key) const {
-    const auto found = memory_->plots.find(key);
-    const Rect area = found == memory_->plots.end() ? Rect() : found->second;
+    const auto found = memory_.plots.find(key);
+    const Rect area = found == memory_.plots.end() ? Rect() : found->second;
     return {area.x, area.y, area.width, area.height};
 }
 
-const std::string& Panel::message() const { return memory_->error; }
-
 bool Panel::busy() const {
-    const panel::Memory& memory = *memory_;
-    return memory.touch.drag != 0 || memory.touch.entry != 0 || memory.dragged_layer >= 0 ||
-           !memory.renaming.empty();
+    return memory_.touch.drag != 0 || memory_.touch.entry != 0 || memory_.dragged_layer >= 0 ||
+           !memory_.renaming.empty();
 }
 
 }  // namespace astrosplat

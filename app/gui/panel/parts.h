@@ -1,15 +1,20 @@
 // The parts of the side panel, each drawn at the cursor of the current ImGui window: the list of layers,
-// tabs, and the row of one parameter with its widget, its plot and its words. All of a row follows from the
-// parameter's description.
+// tabs, and the row of one parameter with its widget, its plot and its words, all from the parameter's
+// description. Beneath these, what knows nothing of parameters: a field for one value, folding sections,
+// heads, notes, buttons; and values in words, which do not depend on the locale.
 #pragma once
 
+#include <cstdint>
+#include <functional>
+#include <initializer_list>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "gui/panel/context.h"
-#include "gui/panel/controls.h"
+#include "gui/widgets.h"
+#include "scene/parameter.h"
 
 namespace astrosplat::panel {
 
@@ -109,5 +114,111 @@ void load_line(Context& context, std::size_t i, float width, const std::string& 
 
 /// Height the whole list would take, px.
 float layer_list_height(const Context& context);
+
+inline constexpr float plot_height = 84.0f;  // px at scale 1
+
+/// The next plot's area across the panel; draws its ground.
+Rect begin_plot(float height = plot_height);
+
+/// Bars over [0, 1] of the width; `stretch` widens the bins' own range: bin i covers
+/// [i, i + 1] * stretch / count. Shares of the fullest bin.
+void draw_bars(const Rect& area, std::span<const float> shares, double stretch = 1.0);
+
+/// A line through values spread evenly over `stretch` of the width; 0 is the bottom, `top` the upper edge.
+void draw_curve(const Rect& area, std::span<const float> values, float top, ImU32 color,
+                float stretch = 1.0f);
+
+/// A plot of the curve whose points the parameter `key` holds: click adds, drag moves, right click deletes,
+/// arrows nudge. `samples` is the curve itself, over x in 0..1. The area takes the mouse.
+void edit_curve(Context& context, const ParameterKey& key, const Rect& area, std::span<const float> samples);
+
+/// Small texts below a plot, at its left and right edge. Leaves the cursor below.
+void captions(const std::string& left, const std::string& right);
+
+inline constexpr float row_height = 24.0f, row_space = 2.0f;  // px at scale 1
+
+// A field: dragging changes a number, a double click types it. Draws the faint fill and the unit.
+
+struct BoxContent {
+    std::string shown, unit;
+    std::string typed;   // what typing begins with
+    double value = 0.0;  // what dragging begins with
+    double step = 0.0;   // per px of dragging; 0: cannot be dragged
+    double min = 0.0, max = 0.0;
+    bool whole = false;   // whole numbers
+    float fill = -1.0f;   // 0..1 of the width; below 0: none
+    bool dimmed = false;  // not set: "Auto"
+};
+
+struct BoxEvent {
+    enum class Kind { none, dragged, typed } kind = Kind::none;
+    double value = 0.0;
+    std::string text;
+};
+
+BoxEvent value_box(Context& context, const char* id, const Rect& area, const BoxContent& content);
+
+/// Whether a box of this size shows all of the text, without a unit.
+bool fits_box(const Rect& area, const std::string& text);
+
+/// Where the mouse is from left to right, 0..1.
+float share_at_mouse(const Rect& area);
+
+/// Text at the left, ended by "..." where it is too long; returns its width.
+float clipped_text(const Rect& area, float padding, ImU32 color, const std::string& text);
+
+/// Head of a folding section, with its state at the right while it is closed. True when open.
+bool section(Context& context, const char* title, const std::string& state, bool open_at_first = false);
+
+/// Head of one element of a list; true when its cross was clicked.
+bool element_head(const char* title);
+
+/// ImGui's popup with the room of a menu between its items; end_menu_popup (widgets.h) only after true.
+bool begin_popup(const char* id);
+
+/// A line or more of small, quiet text.
+void note(const std::string& text, ImU32 ink = color::dim);
+
+/// A button as wide as `width` (0: as its text). True when clicked.
+bool text_button(const char* label, float width = 0.0f);
+
+/// Buttons that share one line evenly, remembered as "panel/LABEL": index of the one clicked, -1 none.
+int button_line(Context& context, std::initializer_list<const char*> labels);
+
+/// A quiet "+ label" that adds an element to a list; true when clicked.
+bool add_line(const char* label);
+
+/// A bar with text over it, and a button at its right; true when the button was clicked. A share of 0 is no
+/// progress but something that waits for the button.
+bool progress_line(float width, float share, const std::string& text, const char* button);
+
+/// Three figures at least, five where the number has them: "0.350", "45.0", "12.345", "2 000 000".
+std::string figures(double number);
+
+/// Of an integer: groups of three from 10,000 on.
+std::string figures(std::int64_t number);
+
+/// As above, with fewer figures (4, 3, 2, 1) until `fits` says yes; the shortest of them where none fits. In
+/// a narrow box 1.2346 is "1.23"; digits before the point are never dropped.
+std::string figures_that_fit(double number, const std::function<bool(const std::string&)>& fits);
+
+/// "61 %"; `share` 0..1.
+std::string percent(double share);
+
+/// A choice as people write it: "gaussian" -> "Gaussian", "srgb" -> "sRGB".
+std::string choice_label(const std::string& choice);
+
+/// A value on one line, for tooltips and boxes that take any text: files by their names, nothing as "Auto".
+std::string in_words(const ParameterSpec& spec, const Value& value);
+
+/// Help, range and key: what a row's tooltip says.
+std::string tooltip_text(const ParameterSpec& spec, const Value& standard);
+
+/// `--set key=value` as one word of a shell.
+std::string set_option(const std::string& key, const Value& value);
+
+/// How much a parameter changes per pixel of dragging at `value`: a share of its range where that is short,
+/// of itself where it spans magnitudes.
+double drag_step(const ParameterSpec& spec, double value);
 
 }  // namespace astrosplat::panel

@@ -1,12 +1,9 @@
 // Grounds, bars, curves and captions; the samples come from shaders/shared. The points of a curve that a
 // person drags live in the document; the panel remembers only which one is selected.
-#include "gui/panel/plot.h"
+#include "gui/panel/parts.h"
 
 #include <algorithm>
 
-#include "edit/edit_rules.h"
-#include "gui/key_codes.h"
-#include "gui/widgets.h"
 #include "look/shared_uniforms.h"
 #include "scene/describer.h"
 

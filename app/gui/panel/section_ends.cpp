@@ -4,10 +4,7 @@
 #include <cmath>
 
 #include "core/text.h"
-#include "gui/panel/controls.h"
 #include "gui/panel/parts.h"
-#include "gui/panel/plot.h"
-#include "gui/widgets.h"
 
 namespace astrosplat::panel {
 namespace {

@@ -1,17 +1,13 @@
 // Loops over the description: a parameter appears in the section that it names, in the order it was described
-// in, where it has an effect. Lists of tables come from a table here; other content of sections is in
-// tab_sections.h and parts.h.
+// in, where it has an effect. Lists of tables come from a table here; what else sections hold: parts.h.
 #include "gui/panel/parts.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <functional>
 
 #include "core/text.h"
-#include "gui/panel/context.h"
-#include "gui/panel/controls.h"
-#include "gui/panel/words.h"
+#include "edit/edits.h"
 
 namespace astrosplat::panel {
 
@@ -20,28 +16,18 @@ namespace {
 // Lists of tables within a layer (meshes, noises, thickness stops): their place in a tab, and how elements
 // come and go.
 
-/// A list within each element of a list.
-struct InnerRows {
-    const char* key;      // below the element
-    const char* title;    // of an element, before its number
-    const char* element;  // in the names of edits
-    std::size_t (*size)(const LayerParams&, std::size_t outer);
-    void (*add)(LayerParams&, std::size_t outer);
-    void (*remove)(LayerParams&, std::size_t outer, std::size_t index);
-};
-
 struct ListRows {
     ParameterKey key;       // generic: "layer.look.noise"
     std::string section;    // that shows it
-    ParameterKey after;     // generic key of the row before it; "": it comes first
+    ParameterKey after{};   // generic key of the row before it; "": it comes first
     const char* title;      // of an element, before its number
     const char* element;    // in the names of edits
     std::size_t least = 0;  // so many stay, and have no head while there are no more
-    void (*add)(LayerParams&, const LayerStatus&);
+    void (*add)(LayerParams&, const LayerStatus&) = nullptr;  // nullptr: as new ones are
     void (*added)(ViewState&, const LayerParams&) = nullptr;  // what the view does then
     bool (*can_grow)(const LayerParams&) = nullptr;           // nullptr: always
     bool (*is_shown)(const LayerParams&) = nullptr;           // likewise
-    const InnerRows* inner = nullptr;                         // nullptr: none
+    const char* inner = nullptr;                              // key of the alternatives in each element
     std::size_t (*size)(const LayerParams&) = nullptr;        // these two by list_of_tables()
     void (*remove)(LayerParams&, std::size_t index) = nullptr;
 };
@@ -51,13 +37,20 @@ void erase_at(std::vector<T>& list, std::size_t index) {
     list.erase(list.begin() + static_cast<std::ptrdiff_t>(index));
 }
 
-/// `list` finds it in a layer.
+/// `list` finds it in a layer. What is added is as new elements are, unless `rows` says more.
 template <auto list>
 ListRows list_of_tables(ListRows rows) {
     rows.size = [](const LayerParams& layer) { return list(layer).size(); };
     rows.remove = [](LayerParams& layer, std::size_t index) { erase_at(list(layer), index); };
+    if (!rows.add) rows.add = [](LayerParams& layer, const LayerStatus&) { list(layer).emplace_back(); };
     return rows;
 }
+
+constexpr auto meshes_of = [](auto& layer) -> auto& { return layer.source.meshes; };
+constexpr auto masks_of = [](auto& layer) -> auto& { return layer.source.texture.mask; };
+constexpr auto noises_of = [](auto& layer) -> auto& { return layer.look.noise; };
+constexpr auto crops_of = [](auto& layer) -> auto& { return layer.look.crop; };
+constexpr auto stops_of = [](auto& layer) -> auto& { return layer.look.thickness.stops; };
 
 bool is_mesh(const LayerParams& layer) { return layer.source.kind == SourceKind::mesh; }
 
@@ -94,70 +87,47 @@ void handle_last_crop(ViewState& view, const LayerParams& layer) {
     view.handle_crop = layer.look.crop.size() - 1;
 }
 
-constexpr auto masks_of = [](auto& layer) -> auto& { return layer.source.texture.mask; };
+void add_mesh(LayerParams& layer, const LayerStatus&) { layer.source.meshes.push_back({"plane", {}, 0.15}); }
 
-const InnerRows mask_alternatives = {
-    .key = "any",
-    .title = "Or",
-    .element = "alternative",
-    .size = [](const LayerParams& layer, std::size_t i) { return masks_of(layer)[i].any.size(); },
-    .add = [](LayerParams& layer, std::size_t i) { masks_of(layer)[i].any.emplace_back(); },
-    .remove = [](LayerParams& layer, std::size_t i, std::size_t k) { erase_at(masks_of(layer)[i].any, k); }};
+template <auto list, std::size_t most>
+bool has_less_than(const LayerParams& layer) {
+    return list(layer).size() < most;
+}
 
-const ListRows lists[] = {list_of_tables < [](auto& layer) -> auto& {return layer.source.meshes;
-}  // namespace
-> ({.key = "layer.source.meshes",
-    .section = "Files",
-    .after = "layer.source.kind",
-    .title = "Mesh",
-    .element = "mesh",
-    .least = 1,
-    .add =
-        [](LayerParams& layer, const LayerStatus&) {
-            layer.source.meshes.push_back({"plane", {}, 0.15});
-        },
-    .is_shown = is_mesh}),
-    list_of_tables<masks_of>({.key = "layer.source.mask",
-                              .section = "Masks",
-                              .after = "layer.source.detail",
-                              .title = "Mask",
-                              .element = "mask",
-                              .add = [](LayerParams& layer,
-                                        const LayerStatus&) { masks_of(layer).emplace_back(); },
-                              .is_shown = is_mesh,
-                              .inner = &mask_alternatives}),
-    list_of_tables < [](auto& layer) -> auto& {
-    return layer.look.noise;
-}
-> ({.key = "layer.look.noise",
-    .section = "Noise",
-    .after = "",
-    .title = "Noise",
-    .element = "noise",
-    .add = [](LayerParams& layer, const LayerStatus&) { layer.look.noise.emplace_back(); },
-    .can_grow = [](const LayerParams& layer) { return layer.look.noise.size() < 4; }}),
-    list_of_tables < [](auto& layer) -> auto& {
-    return layer.look.crop;
-}
-> ({.key = "layer.look.crop",
-    .section = "Crop",
-    .after = "",
-    .title = "Crop",
-    .element = "crop",
-    .add = add_crop,
-    .added = handle_last_crop,
-    .can_grow = [](const LayerParams& layer) { return layer.look.crop.size() < 8; }}),
-    list_of_tables < [](auto& layer) -> auto& {
-    return layer.look.thickness.stops;
-}
-> ({.key = "layer.look.thickness.keys",
-    .section = "Thickness map",
-    .after = "layer.look.thickness.map",
-    .title = "Stop",
-    .element = "thickness stop",
-    .add = add_thickness_stop,
-    .can_grow = can_take_thickness_stop})
-};  // namespace astrosplat::panel
+const ListRows lists[] = {list_of_tables<meshes_of>({.key = "layer.source.meshes",
+                                                     .section = "Files",
+                                                     .after = "layer.source.kind",
+                                                     .title = "Mesh",
+                                                     .element = "mesh",
+                                                     .least = 1,
+                                                     .add = add_mesh,
+                                                     .is_shown = is_mesh}),
+                          list_of_tables<masks_of>({.key = "layer.source.mask",
+                                                    .section = "Masks",
+                                                    .after = "layer.source.detail",
+                                                    .title = "Mask",
+                                                    .element = "mask",
+                                                    .is_shown = is_mesh,
+                                                    .inner = "any"}),
+                          list_of_tables<noises_of>({.key = "layer.look.noise",
+                                                     .section = "Noise",
+                                                     .title = "Noise",
+                                                     .element = "noise",
+                                                     .can_grow = has_less_than<noises_of, 4>}),
+                          list_of_tables<crops_of>({.key = "layer.look.crop",
+                                                    .section = "Crop",
+                                                    .title = "Crop",
+                                                    .element = "crop",
+                                                    .add = add_crop,
+                                                    .added = handle_last_crop,
+                                                    .can_grow = has_less_than<crops_of, 8>}),
+                          list_of_tables<stops_of>({.key = "layer.look.thickness.keys",
+                                                    .section = "Thickness map",
+                                                    .after = "layer.look.thickness.map",
+                                                    .title = "Stop",
+                                                    .element = "thickness stop",
+                                                    .add = add_thickness_stop,
+                                                    .can_grow = can_take_thickness_stop})};
 
 /// Whether a section shows a list.
 bool has_list(std::string_view section) {
@@ -221,19 +191,20 @@ void draw_rows_below(Context& context, const ParameterKey& element, const Rows& 
             draw_row(context, *row);
 }
 
-void draw_inner_list(Context& context, const InnerRows& list, const ParameterKey& element, std::size_t outer,
-                     const Rows& tab_rows) {
-    for (std::size_t i = 0; i < list.size(context.layer(), outer); ++i) {
-        ImGui::PushID(static_cast<int>(i));
-        const bool removed = numbered_head(list.title, i);
-        draw_rows_below(context, element / list.key / i, tab_rows, {});
+/// The alternatives of mask i, a list within the list.
+void draw_alternatives(Context& context, const ParameterKey& list, std::size_t i, const Rows& tab_rows) {
+    for (std::size_t k = 0; k < masks_of(context.layer())[i].any.size(); ++k) {
+        ImGui::PushID(static_cast<int>(k));
+        const bool removed = numbered_head("Or", k);
+        draw_rows_below(context, list / k, tab_rows, {});
         ImGui::PopID();
         if (removed)
-            edit_list(context, "Remove", list.element,
-                      [&](LayerParams& layer) { list.remove(layer, outer, i); });
+            edit_list(context, "Remove", "alternative",
+                      [&](LayerParams& layer) { erase_at(masks_of(layer)[i].any, k); });
     }
-    if (add_line(fmt::format("Add {}", list.element).c_str()))
-        edit_list(context, "Add", list.element, [&](LayerParams& layer) { list.add(layer, outer); });
+    if (add_line("Add alternative"))
+        edit_list(context, "Add", "alternative",
+                  [&](LayerParams& layer) { masks_of(layer)[i].any.emplace_back(); });
 }
 
 void draw_list(Context& context, const ListRows& list, const Rows& tab_rows) {
@@ -241,8 +212,9 @@ void draw_list(Context& context, const ListRows& list, const Rows& tab_rows) {
         ImGui::PushID(static_cast<int>(i));
         const bool removed = list.size(context.layer()) > list.least && numbered_head(list.title, i);
         const ParameterKey element = list.key.moved("layer", context.layer_key()) / i;
-        draw_rows_below(context, element, tab_rows, list.inner ? element / list.inner->key : ParameterKey());
-        if (list.inner) draw_inner_list(context, *list.inner, element, i, tab_rows);
+        const ParameterKey alternatives = list.inner ? element / list.inner : ParameterKey();
+        draw_rows_below(context, element, tab_rows, alternatives);
+        if (list.inner) draw_alternatives(context, alternatives, i, tab_rows);
         ImGui::PopID();
         if (removed)
             edit_list(context, "Remove", list.element, [&](LayerParams& layer) { list.remove(layer, i); });

@@ -1,18 +1,13 @@
-
 #include <fmt/format.h>
 
 #include <algorithm>
 
 #include "core/file_format.h"
 #include "core/text.h"
-#include "edit/camera_moves.h"
-#include "edit/keyframes.h"
-#include "gui/panel/context.h"
-#include "gui/panel/controls.h"
+#include "edit/edits.h"
+#include "edit/view_camera.h"
 #include "gui/panel/parts.h"
-#include "gui/panel/words.h"
 #include "gui/parts.h"
-#include "gui/widgets.h"
 
 namespace astrosplat::panel {
 

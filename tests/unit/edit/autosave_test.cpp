@@ -5,10 +5,9 @@
 #include <unistd.h>
 
 #include "core/log.h"
-#include "edit/autosave.h"
-#include "edit/keyframes.h"
+#include "edit/edits.h"
+#include "edit/kept_files.h"
 #include "edit/layers.h"
-#include "edit/snapshots.h"
 #include "scenes.h"
 #include "support/quiet.h"
 #include "support/run_program.h"
@@ -272,11 +271,11 @@ const std::string power = "layer.dust.look.alpha.power";
 struct Snapshots : testing::Test {
     test::SceneFolder f;
     Document document = Document::open(f.file);
-    StoredLook first = store_look("Erster Blick", document, 1.0);
+    StoredLook first = store_look({"Erster Blick", 1.0}, document);
 };
 
 TEST_F(Snapshots, HoldTheMoment) {
-    const StoredLook later = store_look("Later", document, 12.0);
+    const StoredLook later = store_look({"Later", 12.0}, document);
     document.set(opacity, 0.25, 1.0);
     EXPECT_EQ(later.name, "Later");
     EXPECT_EQ(later.frame, 12.0);
@@ -353,12 +352,12 @@ TEST_F(SnapshotFiles, WhatIsWrittenIsReadAgain) {
     document.set(test::opacity, 0.25, 1.0);
     const fs::path file = write(facts);
     EXPECT_EQ(file, folder / "0001.toml");
-    const std::vector<KeptSnapshot> kept = read_snapshots(folder, problems);
+    const std::vector<StoredLook> kept = read_snapshots(folder, problems);
     ASSERT_EQ(kept.size(), 1u);
     EXPECT_TRUE(problems.empty());
     EXPECT_EQ(kept[0].file, file);
-    EXPECT_EQ(kept[0].facts, facts);
-    EXPECT_EQ(with_look_of(load_scene(f.file), kept[0].scene), document.scene());
+    EXPECT_EQ(static_cast<const SnapshotFacts&>(kept[0]), facts);
+    EXPECT_EQ(with_look_of(load_scene(f.file), *kept[0].scene), document.scene());
     EXPECT_EQ(test::text_of(snapshot_picture(file)), "png");
 }
 
@@ -377,7 +376,7 @@ TEST_F(SnapshotFiles, ANewOneComesAfterTheLastAndOverwritesNone) {
     EXPECT_FALSE(fs::exists(snapshot_picture(second)));
     EXPECT_EQ(write({"vier"}), folder / "0004.toml");
     std::vector<std::string> names;
-    for (const KeptSnapshot& kept : read_snapshots(folder, problems)) names.push_back(kept.facts.name);
+    for (const StoredLook& kept : read_snapshots(folder, problems)) names.push_back(kept.name);
     EXPECT_EQ(names, (std::vector<std::string>{facts.name, "drei", "vier"}));
 }
 
@@ -385,12 +384,12 @@ TEST_F(SnapshotFiles, AnotherNameChangesNothingElse) {
     const fs::path file = write(facts);
     const Scene before = load_scene(file);
     rename_snapshot(file, "Kälter\nblau");
-    const std::vector<KeptSnapshot> kept = read_snapshots(folder, problems);
+    const std::vector<StoredLook> kept = read_snapshots(folder, problems);
     ASSERT_EQ(kept.size(), 1u);
     SnapshotFacts renamed = facts;
     renamed.name = "Kälter\nblau";
-    EXPECT_EQ(kept[0].facts, renamed);
-    EXPECT_EQ(kept[0].scene, before);
+    EXPECT_EQ(static_cast<const SnapshotFacts&>(kept[0]), renamed);
+    EXPECT_EQ(*kept[0].scene, before);
 }
 
 TEST_F(SnapshotFiles, ABrokenOneIsToldAndTheOthersAreThere) {

@@ -1,5 +1,5 @@
 // Camera keyframes and moves: circles are round, ends rest, keyframes outside the move stay.
-#include "edit/camera_moves.h"
+#include "edit/view_camera.h"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,7 @@
 
 #include "camera/camera.h"
 #include "core/real.h"
-#include "edit/edit_rules.h"
-#include "edit/keyframes.h"
+#include "edit/edits.h"
 #include "scene/animate.h"
 #include "scenes.h"
 

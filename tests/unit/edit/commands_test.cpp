@@ -7,7 +7,7 @@
 
 #include "core/error.h"
 #include "edit/command_lines.h"
-#include "edit/keyframes.h"
+#include "edit/edits.h"
 #include "edit/layers.h"
 #include "scenes.h"
 #include "support/errors.h"

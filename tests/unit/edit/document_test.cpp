@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "edit/keyframes.h"
+#include "edit/edits.h"
 #include "scenes.h"
 
 namespace astrosplat {

@@ -2,8 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "edit/document.h"
-#include "edit/edit_rules.h"
-#include "edit/keyframes.h"
+#include "edit/edits.h"
 #include "scene/animate.h"
 #include "scenes.h"
 

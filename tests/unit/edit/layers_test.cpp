@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "edit/document.h"
-#include "edit/keyframes.h"
+#include "edit/edits.h"
 #include "edit/layers.h"
 #include "scenes.h"
 #include "support/random_values.h"

@@ -1,12 +1,11 @@
 // First scenes: what a dropped file becomes, and what the engine then makes of it.
-#include "edit/new_from_file.h"
+#include "edit/layers.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <glm/geometric.hpp>
 
-#include "edit/layers.h"
 #include "scenes.h"
 #include "source/textured_mesh.h"
 #include "splat_files/splat_file.h"

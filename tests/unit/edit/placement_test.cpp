@@ -6,8 +6,7 @@
 
 #include "core/real.h"
 #include "core/rotation.h"
-#include "edit/edit_rules.h"
-#include "edit/handles.h"
+#include "edit/edits.h"
 #include "edit/placement.h"
 #include "unit/edit/scenes.h"
 

@@ -7,8 +7,8 @@
 
 #include "core/file.h"
 #include "core/log.h"
-#include "edit/autosave.h"
-#include "edit/disk_files.h"
+#include "edit/document.h"
+#include "edit/kept_files.h"
 #include "edit/preferences.h"
 #include "scene/layer_setup.h"
 #include "scenes.h"

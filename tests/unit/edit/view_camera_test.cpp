@@ -7,8 +7,7 @@
 #include <glm/geometric.hpp>
 
 #include "core/real.h"
-#include "edit/camera_moves.h"
-#include "edit/keyframes.h"
+#include "edit/edits.h"
 #include "scene/animate.h"
 #include "scenes.h"
 

@@ -165,7 +165,7 @@ TEST(Structure, LibrariesStayBehindTheFilesThatWrapThem) {
         {std::regex("^pugixml"), std::regex("^engine/source/object_metadata\\.cpp$")},
         {std::regex("^toml"), std::regex("^engine/scene/")},
         {std::regex("^tiny_obj"), std::regex("^engine/source/[^/]*\\.cpp$")},
-        {std::regex("^CLI/"), std::regex("^app/(cli|main|command_words)\\.(cpp|h)$")},
+        {std::regex("^CLI/"), std::regex("^app/(command|main|manual)\\.(cpp|h)$")},
     };
     std::vector<Include> includes = includes_below("engine");
     for (const Include& include : includes_below("app")) includes.push_back(include);
@@ -263,7 +263,7 @@ TEST(Structure, IdeasOfTheWindowPointOneWay) {
     const std::map<std::string, std::size_t> allowed = {{"app/gui", 0}, {"app/viewer", 0}};
     for (const auto& [folder, most] : allowed) {
         auto arrows = ideas_below(folder);
-        ASSERT_GT(arrows.size(), 15u);
+        ASSERT_GT(arrows.size(), 10u);
         // Reached from each, at last.
         for (std::size_t grown = 1; grown > 0;) {
             grown = 0;

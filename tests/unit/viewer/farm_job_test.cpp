@@ -1,6 +1,6 @@
 // A farm's job in the window's queue: what is asked of the program, what it answers, and what becomes of it.
 // The program is a stand-in here; tests/window has the real one.
-#include "viewer/farm_job.h"
+#include "viewer/render_queue.h"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,6 @@
 
 #include "support/run_program.h"
 #include "support/temp_folder.h"
-#include "viewer/render_queue.h"
 
 namespace astrosplat {
 namespace {

@@ -8,10 +8,9 @@
 #include "core/color.h"
 #include "support/splats.h"
 #include "support/temp_folder.h"
-#include "viewer/compared_pictures.h"
 #include "viewer/comparison.h"
-#include "viewer/cpu_preview.h"
 #include "viewer/loaded_layer.h"
+#include "viewer/preview_splats.h"
 
 namespace astrosplat {
 namespace {

@@ -1,5 +1,5 @@
 // Picture files, small: how each kind looks, frames that play, what is read again, kept and let go.
-#include "viewer/file_pictures.h"
+#include "viewer/files.h"
 
 #include <gtest/gtest.h>
 

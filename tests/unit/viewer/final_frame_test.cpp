@@ -1,5 +1,5 @@
 // The settled picture is the pipeline's, bit for bit, whatever was begun and cancelled before it.
-#include "viewer/final_frame.h"
+#include "viewer/view_frame.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // What the badge says of the front: the measures of the engine; and before and after in the panel: what the
 // engine prepares, small. Both of the last request and of no other.
-#include "viewer/compared_pictures.h"
+#include "viewer/comparison.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // Previews under other levels than the set was made with: what needs a set and what does not, the colours
 // that come of it, and a hand that never rests.
-#include "viewer/set_wishes.h"
+#include "viewer/set_loader.h"
 
 #include <gtest/gtest.h>
 

@@ -13,7 +13,6 @@
 #include "scene/layer_setup.h"
 #include "sets/load_source.h"
 #include "support/small_scene.h"
-#include "viewer/cpu_preview.h"
 #include "viewer/preview_splats.h"
 
 namespace astrosplat {

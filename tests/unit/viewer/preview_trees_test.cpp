@@ -22,9 +22,8 @@
 #include "support/quiet.h"
 #include "support/splats.h"
 #include "support/temp_folder.h"
-#include "viewer/cpu_preview.h"
-#include "viewer/kept_trees.h"
 #include "viewer/loaded_layer.h"
+#include "viewer/preview_splats.h"
 #include "viewer/set_loader.h"
 
 namespace astrosplat {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "edit/edits.h"
 #include "edit/view_camera.h"
 #include "unit/edit/scenes.h"
 #include "viewer/view_motion.h"
@@ -230,7 +231,7 @@ TEST_F(PlaybackTest, EveryFrameIsShownAndTheRateToldAsItIs) {
 TEST(FirstFrame, IsTheEarliest) {
     Scene scene;
     scene.output.frames = "7-9,3";
-    EXPECT_EQ(first_frame(scene), 3.0);
+    EXPECT_EQ(frame_range(scene.output).first, 3.0);
 }
 
 }  // namespace

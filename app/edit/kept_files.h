@@ -1,9 +1,12 @@
-// Unsaved edits survive a crash: a copy of the scene in the person's state folder, and the way back from it.
-// In: the document, once a frame. Out: files NAME-PID-HASH.toml that any astrosplat can load, whose first
-// line says what they are of.
+// What is kept of a scene besides its file. Unsaved edits survive a crash: a copy of the scene in the
+// person's state folder, NAME-PID-HASH.toml, that any astrosplat can load, and the way back from it.
+// Snapshots are named looks to compare with and to go back to: each is a scene file in the folder
+// SCENE.snapshots with a small picture beside it. The first line of both says what they are of. Files appear
+// complete or not at all.
 #pragma once
 
 #include <chrono>
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -12,6 +15,7 @@
 #include "core/atomic_file.h"
 #include "edit/document.h"
 #include "edit/settings.h"
+#include "scene/scene.h"
 
 namespace astrosplat {
 
@@ -66,5 +70,49 @@ std::vector<Recovery> recoveries(const std::filesystem::path& folder = autosave_
 /// discard_recovery(): write a new one (Autosave::write) first. Throws InputError.
 Document recover(const std::filesystem::path& autosave);
 void discard_recovery(const std::filesystem::path& autosave);
+
+/// Data of a snapshot besides its scene.
+struct SnapshotFacts {
+    std::string name;
+    double frame = 1.0;
+    std::int64_t splats = 0;
+    double seconds = 0.0;  // render time; 0: from the preview
+    bool operator==(const SnapshotFacts&) const = default;
+};
+
+/// Everything as it was when it was taken.
+struct StoredLook : SnapshotFacts {
+    std::shared_ptr<const Scene> scene;
+    std::filesystem::path file{};  // empty: not kept
+};
+
+StoredLook store_look(const SnapshotFacts& facts, const Document& document);
+
+/// `scene` with the look of `stored`: look, render and visibility of the layers that both have by name, the
+/// output's exposure, and the animation of all these. Camera, sources, transforms and layers that `stored`
+/// lacks stay.
+Scene with_look_of(const Scene& scene, const Scene& stored);
+
+/// with_look_of as one undo step. Throws InputError as Document::edit does.
+void restore_look(Document& document, const StoredLook& stored);
+
+/// "galaxy.snapshots" beside galaxy.toml.
+std::filesystem::path snapshot_folder(const std::filesystem::path& scene_file);
+/// The picture beside a snapshot's file.
+std::filesystem::path snapshot_picture(const std::filesystem::path& snapshot);
+
+/// Oldest first; none where there is no folder. Each one that cannot be read is left out, and a line about it
+/// added to `problems`.
+std::vector<StoredLook> read_snapshots(const std::filesystem::path& folder,
+                                       std::vector<std::string>& problems);
+
+/// Writes the scene with all its values, presets dissolved, and `png`, under the next free number; creates
+/// the folder. Returns the file. Throws OutputError.
+std::filesystem::path write_snapshot(const std::filesystem::path& folder, const SnapshotFacts& facts,
+                                     const Scene& scene, const std::string& png);
+/// Another name; all else stays. Throws InputError, OutputError.
+void rename_snapshot(const std::filesystem::path& snapshot, const std::string& name);
+/// Both files. Throws OutputError.
+void remove_snapshot(const std::filesystem::path& snapshot);
 
 }  // namespace astrosplat

@@ -1,27 +1,20 @@
-// Jobs at the left, the newest last; the finished frames of the chosen one at the right.
-#include "gui/parts.h"
-
+// Cards: the jobs of the queue at the left, the newest last, with the finished frames of the chosen one at
+// the right; and a row of snapshots that scrolls sideways, with the button that takes another.
 #include <fmt/format.h>
+#include <imgui.h>
+#include <imgui_stdlib.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "gui/dialog.h"
-#include "gui/icons.h"
-#include "gui/widgets.h"
+#include "gui/parts.h"
 
 namespace astrosplat {
+
 namespace {
 
 using JobState = QueuedJob::State;
 constexpr float queue_width = 940, queue_height = 520, list_width = 400, job_height = 76, card_gap = 8;
-
-const QueuedJob* chosen_job(const GuiFrame& frame) {
-    const std::vector<QueuedJob>& jobs = frame.status.jobs;
-    for (const QueuedJob& job : jobs)
-        if (job.number == frame.view.queue_job) return &job;
-    return jobs.empty() ? nullptr : &jobs.back();
-}
 
 std::string state_text(const QueuedJob& job) {
     if (job.state == JobState::waiting) return "Waits";
@@ -128,7 +121,7 @@ std::string duration_text(double seconds) {
 void draw_queue(GuiFrame& frame) {
     bool& open = frame.view.queue_open;
     if (!begin_dialog("queue", "Render queue", open, queue_width, queue_height)) return;
-    const QueuedJob* const chosen = chosen_job(frame);
+    const QueuedJob* const chosen = chosen_job(frame.status, frame.view.queue_job);
     draw_list(frame, chosen);
     ImGui::SameLine(0, px(12));
     ImGui::BeginChild("frames", {0, -px(44)}, false, ImGuiWindowFlags_NoScrollbar);
@@ -139,6 +132,103 @@ void draw_queue(GuiFrame& frame) {
     if (button == 0 && chosen) request_path(frame, Command::Kind::open_folder, chosen->target.parent_path());
     if (button == 1) open = frame.view.queue_playing = false;
     end_dialog(!open);
+}
+
+namespace {
+
+constexpr float thumbnail_width = 128, thumbnail_height = 72, card_height = 108, margin = 8;
+
+std::string snapshot_line(const Snapshot& snapshot) {
+    const std::string splats = short_count(snapshot.splats);
+    return snapshot.seconds > 0 ? fmt::format("{}, {:.1f} s", splats, snapshot.seconds)
+                                : splats + ", preview";
+}
+
+// In place of the name: Enter takes what was typed, Escape or a click elsewhere drops it.
+void name_entry(GuiFrame& frame, std::size_t index, ImVec2 corner) {
+    ViewState& view = frame.view;
+    ImGui::SetCursorScreenPos(corner);
+    ImGui::SetNextItemWidth(px(thumbnail_width));
+    if (!any_popup() && !ImGui::IsAnyItemActive()) ImGui::SetKeyboardFocusHere();
+    const bool entered = ImGui::InputText(
+        "##name", &view.typed_name, ImGuiInputTextFlags_AutoSelectAll | ImGuiInputTextFlags_EnterReturnsTrue);
+    note_item(frame, "snapshot name");
+    if (entered && !view.typed_name.empty())
+        request_text(frame, Command::Kind::rename_snapshot, view.typed_name, index);
+    if (ImGui::IsItemDeactivated()) view.renamed_snapshot = -1;
+}
+
+void card_menu(GuiFrame& frame, std::size_t index) {
+    ImGui::OpenPopupOnItemClick("card menu");
+    if (!begin_menu_popup("card menu")) return;
+    const auto entry = [&](const char* label) { return noted_menu_item(frame, "snapshot", label); };
+    if (entry("Show")) request(frame, Command::Kind::show_snapshot, index);
+    if (entry("Compare as B")) request(frame, Command::Kind::compare_snapshot, index);
+    if (entry("Restore")) request(frame, Command::Kind::restore_snapshot, index);
+    ImGui::Separator();
+    if (entry("Rename")) {
+        frame.view.renamed_snapshot = static_cast<int>(index);
+        frame.view.typed_name = frame.status.snapshots[index].name;
+    }
+    if (entry("Delete")) request(frame, Command::Kind::delete_snapshot, index);
+    end_menu_popup();
+}
+
+void draw_card(GuiFrame& frame, std::size_t index) {
+    const Snapshot& snapshot = frame.status.snapshots[index];
+    ImGui::PushID(static_cast<int>(index));
+    ImGui::BeginGroup();
+    const ImVec2 corner = ImGui::GetCursorScreenPos();
+    if (ImGui::InvisibleButton("card", {px(thumbnail_width), px(card_height)}))
+        request(frame, Command::Kind::compare_snapshot, index);
+    note_item(frame, fmt::format("snapshot {}", index));
+    const bool hovered = ImGui::IsItemHovered(), is_b = frame.status.b_snapshot == static_cast<int>(index);
+    tooltip("Click: compare as B. Right click: show, restore, rename, delete");
+    ImGui::SetItemAllowOverlap();
+    ImDrawList* list = ImGui::GetWindowDrawList();
+    const Rect area(corner, {px(thumbnail_width), px(thumbnail_height)});
+    picture_box(area, snapshot.thumbnail, snapshot.aspect, 3);
+    const ImVec2 end = area.end();
+    if (is_b || hovered) list->AddRect(corner, end, is_b ? color::accent : color::dim, px(3), 0, px(1.5f));
+    ImGui::PushFont(small_font());
+    const bool is_renamed = frame.view.renamed_snapshot == static_cast<int>(index);
+    const std::string name = (is_b ? "B  " : "") + snapshot.name;
+    if (!is_renamed)
+        draw_text({corner.x, end.y + px(3)}, is_b ? color::accent : color::text,
+                  fitting(name, px(thumbnail_width)));
+    draw_text({corner.x, end.y + px(18)}, color::dim, snapshot_line(snapshot));
+    ImGui::PopFont();
+    card_menu(frame, index);
+    if (is_renamed) name_entry(frame, index, {corner.x, end.y + px(2)});
+    ImGui::EndGroup();
+    ImGui::PopID();
+}
+
+void draw_take_button(GuiFrame& frame) {
+    const ImVec2 corner = ImGui::GetCursorScreenPos(), size{px(72), px(thumbnail_height)};
+    if (icon_button("take snapshot", Icon::plus, size, px(14), color::dim,
+                    "Keep the look and the view as they are now"))
+        request(frame, Command::Kind::take_snapshot);
+    note_item(frame, "take snapshot");
+    ImGui::GetWindowDrawList()->AddRect(corner, {corner.x + size.x, corner.y + size.y}, color::hover, px(3));
+}
+
+}  // namespace
+
+void draw_snapshots(GuiFrame& frame, const Rect& area) {
+    if (!begin_part("snapshots", area, ImGuiWindowFlags_HorizontalScrollbar)) return;
+    ImGui::SetCursorPos({px(margin), px(margin)});
+    draw_take_button(frame);
+    for (std::size_t i = 0; i < frame.status.snapshots.size(); ++i) {
+        ImGui::SameLine(0, px(margin));
+        draw_card(frame, i);
+    }
+    if (frame.status.snapshots.empty()) {
+        ImGui::SameLine(0, px(12));
+        row_text("Snapshots keep a look with its thumbnail, to compare with and to come back to.",
+                 px(thumbnail_height), color::dim);
+    }
+    ImGui::EndChild();
 }
 
 }  // namespace astrosplat

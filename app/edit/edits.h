@@ -1,16 +1,61 @@
-// Edits of a scene's animation: keyframes, and the handles of Bezier ones (camera/keyframe.h). Frames are
-// whole unless dragged otherwise; a track that loses its last keyframe is removed and the parameter keeps the
-// value it had there. Without such a track or keyframe nothing changes.
+// What edits of a scene are made of. Rules that every edit keeps: the scene can be saved and read again,
+// values that depend on the edited ones follow, and what a drag makes has no digits that nobody chose. Then
+// keyframes, and the handles of Bezier ones (camera/keyframe.h): frames are whole unless dragged otherwise;
+// a track that loses its last keyframe is removed and the parameter keeps the value it had there; without
+// such a track or keyframe nothing changes.
 #pragma once
+
+#include <fmt/format.h>
 
 #include <string>
 #include <vector>
 
 #include "camera/keyframe.h"
+#include "core/error.h"
 #include "scene/parameter.h"
 #include "scene/scene.h"
 
 namespace astrosplat {
+
+/// What `act` returns. A ValueError becomes an InputError, which names the parameter.
+template <class Act>
+auto naming(const ParameterKey& key, const Act& act) {
+    try {
+        return act();
+    } catch (const ValueError& error) {
+        throw InputError(fmt::format("{}: {}", key, error.what()));
+    }
+}
+
+/// Takes out tracks whose parameter is gone (a noise entry or layer that was removed), then checks everything
+/// that loading the saved scene would check. Throws InputError; `name` begins the messages that have no
+/// better place.
+void check_edited_scene(Scene& scene, const std::string& name);
+
+/// Writes the values of the scene's output.preset, of [output] and [camera], into the scene; nothing where it
+/// names none. Throws InputError.
+void apply_output_preset(Scene& scene);
+
+/// Makes the frame of a dome master square again where one side of it was changed, by that side.
+void keep_dome_square(Scene& scene, const Scene& before);
+
+/// Frames of ten seconds: how long a film is that nobody chose a length for.
+double film_frames(const OutputParams& output);
+
+/// A still's first keyframe at a later frame makes it a film of film_frames(), or up to that keyframe.
+/// Changes nothing where the edit itself chose frames, or where keyframes lay elsewhere before it.
+void film_still(const Scene& before, Scene& after);
+
+/// First and last frame of [output] frames; 1, 1 where they cannot be read.
+struct FrameRange {
+    double first = 1.0, last = 1.0;
+};
+FrameRange frame_range(const OutputParams& output);
+/// Those that the timeline shows: of a still as many as it has once something moves.
+FrameRange shown_range(const Scene& scene);
+
+/// `value` without the digits that a step this small cannot mean.
+double rounded_to_step(double value, double step);
 
 /// The track of a full parameter key; nullptr when it is not animated.
 const Track* find_track(const Scene& scene, const std::string& key);
