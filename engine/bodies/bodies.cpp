@@ -28,8 +28,7 @@ namespace astrosplat {
 namespace {
 
 constexpr int picture_bit = 56, instance_bit = 42;
-constexpr int most_faces = 64;             // that show one splat: ids hold 6 bits of which
-constexpr float nearest_approach = 0.95f;  // of the way to the picture's camera that a splat comes at most
+constexpr int most_faces = 64;  // that show one splat: ids hold 6 bits of which
 
 glm::vec2 uv_of(const glm::vec3& texel, const Image& image) {
     return {texel.x / float(image.width) + 0.5f, texel.y / float(image.height) + 0.5f};
@@ -59,8 +58,8 @@ void add_splats(const PictureLight& picture, const UvSurface& surface, const Bod
     progress.check();
     progress.at(0.1);
     const Image brightest = brightest_channel(picture.light), without_stars = brightest_channel(rest);
-    const Placement placement = make_placement(without_stars, params, surface.texels_per_unit(),
-                                               surface.flat(), task.seed, stars.all);
+    const Placement placement =
+        make_placement(rest, params, surface.texels_per_unit(), surface.flat(), task.seed, stars.all);
     const Opacity opacity{float(params.opacity), float(params.density)};
     const std::vector<Band> bands = make_bands(rest.width);
     const double dust = dust_of(params);
@@ -134,7 +133,7 @@ void put_on_surface(const UvSurface& surface, const PictureOnMesh& picture, std:
     const glm::vec3 p = set.position[row];
     const glm::vec2 uv = uv_of(p, picture.texture().image);
     const SurfacePlace place = place_of_row(surface, uv, set.id[row]);
-    const float z = place.approach > 0.0f ? std::min(p.z, nearest_approach / place.approach) : p.z;
+    const float z = along_rays(place, p.z);
     const float scale = place.units_per_texel * (1.0f - place.approach * z);  // nearer splats are smaller
     set.position[row] = place.position + place.rise * (z * place.units_per_texel);
     set.distance[row] *= scale;

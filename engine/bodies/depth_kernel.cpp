@@ -5,6 +5,7 @@
 // after foreach_target
 #include <hwy/highway.h>
 
+#include <algorithm>
 #include <climits>
 #include <vector>
 
@@ -175,16 +176,29 @@ ASTROSPLAT_DEPTH_LOOP choose(const float* HWY_RESTRICT weight, const float* HWY_
     }
 }
 
-// One draw among `candidates` places, which rise, with octaves [first, end) as weights.
+ASTROSPLAT_DEPTH_LOOP widen(const float* HWY_RESTRICT place, int count, float* HWY_RESTRICT lowest,
+                            float* HWY_RESTRICT highest) {
+    for (int i = 0; i < count; ++i) {
+        lowest[i] = min(lowest[i], place[i]);
+        highest[i] = max(highest[i], place[i]);
+    }
+}
+
+// One draw among `candidates` places, with octaves [first, end) as weights. places(candidate, z, weight) sets
+// them; weights are 0 before.
 template <int candidates, class Places>
 void draw(const NoiseStack& noise, int first, int end, int which, DepthBlock& block, Places places) {
-    Lane place[candidates], weight[candidates], rest;
+    Lane place[candidates], weight[candidates], rest, lowest, highest;
     for (int candidate = 0; candidate < candidates; ++candidate) {
-        places(candidate, place[candidate]);
         clear(weight[candidate], block.count);
+        places(candidate, place[candidate], weight[candidate]);
     }
+    std::copy_n(place[0], block.count, lowest);
+    std::copy_n(place[0], block.count, highest);
+    for (int candidate = 1; candidate < candidates; ++candidate)
+        widen(place[candidate], block.count, lowest, highest);
     for (int octave = first; octave < end; ++octave) {
-        const ColumnNoise column = column_noise(noise, octave, block, place[0], place[candidates - 1]);
+        const ColumnNoise column = column_noise(noise, octave, block, lowest, highest);
         for (int candidate = 0; candidate < candidates; ++candidate)
             add_column(column, place[candidate], block.count, weight[candidate]);
     }
@@ -205,14 +219,27 @@ ASTROSPLAT_DEPTH_LOOP add_spread(float spread, DepthBlock& block) {
 
 }  // namespace
 
-void disk_depths_target(const NoiseStack& noise, DepthBlock& block) {
+template <class Places>
+void draw_twice(const NoiseStack& noise, DepthBlock& block, Places places) {
     constexpr int choices = coarse_candidates + fine_candidates;
-    draw<coarse_candidates>(noise, 0, min(noise.count, coarse_octaves), choices, block,
-                            [&](int candidate, float* z) { coarse_places(block, candidate, z); });
+    draw<coarse_candidates>(noise, 0, min(noise.count, coarse_octaves), choices, block, places);
     if (noise.count <= coarse_octaves) return;
     const float longest = 1.0f / noise.frequency[coarse_octaves];
-    draw<fine_candidates>(noise, coarse_octaves, noise.count, choices + 1, block,
-                          [&](int candidate, float* z) { fine_places(block, longest, candidate, z); });
+    draw<fine_candidates>(
+        noise, coarse_octaves, noise.count, choices + 1, block,
+        [&](int candidate, float* z, float*) { fine_places(block, longest, candidate, z); });
+}
+
+void disk_depths_target(const NoiseStack& noise, DepthBlock& block) {
+    draw_twice(noise, block, [&](int candidate, float* z, float*) { coarse_places(block, candidate, z); });
+}
+
+void line_depths_target(const NoiseStack& noise, const DepthCandidates& candidates, DepthBlock& block) {
+    static_assert(coarse_candidates == DepthCandidates::count);
+    draw_twice(noise, block, [&](int candidate, float* z, float* weight) {
+        std::copy_n(candidates.z[candidate], block.count, z);
+        std::copy_n(candidates.weight[candidate], block.count, weight);
+    });
 }
 
 void noise_sum_target(const NoiseStack& noise, DepthBlock& block) {
@@ -235,11 +262,16 @@ HWY_AFTER_NAMESPACE();
 namespace astrosplat {
 
 HWY_EXPORT(disk_depths_target);
+HWY_EXPORT(line_depths_target);
 HWY_EXPORT(noise_sum_target);
 HWY_EXPORT(sheet_depths_target);
 
 void disk_depths(const NoiseStack& noise, DepthBlock& block) {
     HWY_DYNAMIC_DISPATCH(disk_depths_target)(noise, block);
+}
+
+void line_depths(const NoiseStack& noise, const DepthCandidates& candidates, DepthBlock& block) {
+    HWY_DYNAMIC_DISPATCH(line_depths_target)(noise, candidates, block);
 }
 
 void noise_sum(const NoiseStack& noise, DepthBlock& block) {

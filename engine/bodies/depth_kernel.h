@@ -26,6 +26,18 @@ struct DepthBlock {
     float z[size];               // out
 };
 
+/// Places along the lines of sight of a block's splats, one of which each takes.
+struct DepthCandidates {
+    static constexpr int count = 24;
+    float u[DepthBlock::size], v[DepthBlock::size];  // of the line of sight, for whoever makes the places
+    float z[count][DepthBlock::size];
+    float weight[count][DepthBlock::size];  // logarithm
+};
+
+/// z drawn from the candidates, each as likely as exp(weight + sum of gain N(x, y, z)), by the first three
+/// octaves; then from eight places about the one chosen, H_k apart at most, by the others.
+void line_depths(const NoiseStack& noise, const DepthCandidates& candidates, DepthBlock& block);
+
 /// z drawn from sech^2(z / H_k) exp(clumping * sum of gain N(x, y, z)), normalised in every column: 24
 /// stratified candidates by the first three octaves, then eight about the one chosen by the others.
 void disk_depths(const NoiseStack& noise, DepthBlock& block);

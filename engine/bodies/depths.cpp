@@ -72,12 +72,20 @@ namespace {
 
 constexpr float least_sigma = 0.45f;      // texels; .62 as published ends 2 dB below
 constexpr double widest_filament = 45.0;  // texels at a width of 1920; what is wider is glow
-constexpr double crowd_in_bulges = 32.0;  // times as many wide splats there, or its outline would be ragged
 // Amplitude over brightness below which splats are thinned out: of fine bands, and of others over how many
 // there are (DEPTH 3).
 constexpr double fine_threshold = 0.05, threshold_of_one = 0.25;
 // About a sheet, of a feature: half of DEPTH 4's, which made a quarter more needles of the Bubble.
 constexpr float sheet_spread = 0.25f;
+
+float spacing_of(float sigma, double each) {
+    const double area = 2.0 * real::pi * double(sigma) * double(sigma);
+    return float(std::sqrt(std::max(1.0, area / each)));
+}
+
+float threshold_of(const Band& band, double each) {
+    return float(band.index <= 1 ? fine_threshold : threshold_of_one / each);
+}
 
 BandSplats splats_of_size(const Band& band, bool glow, double sigma, double each) {
     BandSplats splats;
@@ -86,10 +94,38 @@ BandSplats splats_of_size(const Band& band, bool glow, double sigma, double each
     splats.spread = sheet_spread * splats.feature;
     splats.glow = glow;
     splats.sigma = band.index == 0 ? least_sigma : std::max(least_sigma, float(sigma));
-    const double s = double(splats.sigma), area = 2.0 * real::pi * s * s;
-    splats.spacing = float(std::sqrt(std::max(1.0, area / each)));
-    splats.threshold = float(band.index <= 1 ? fine_threshold : threshold_of_one / each);
+    splats.spacing = spacing_of(splats.sigma, each);
+    splats.threshold = threshold_of(band, each);
     return splats;
+}
+
+}  // namespace
+
+namespace {
+
+// A spheroid is seen into and through, so its splats are large and soft (INCLINED 3, by band).
+constexpr double spheroid_sigmas[] = {1.2, 1.6, 2.4, 5.0, 9.0, 14.0, 20.0, widest_in_spheroid_px};
+constexpr double thickest_small_px = 4.0;  // sigma of the widest splats of the disk's finer bands
+constexpr int last_fine_band = 3;          // the widest of what is as thin as the disk's small things
+
+std::vector<BandSplats> splats_of_galaxy(const Band& band, double usual, const GalaxyBody& galaxy) {
+    constexpr double most_behind = 12.0;
+    const double thick = double(galaxy.thickness);
+    const double widest = band.index > last_fine_band ? std::max(2.0, widest_in_disk * thick)
+                                                      : std::max(thickest_small_px, widest_in_disk * thick);
+    // So many bodies behind each other: from along the normal fewer would be grains.
+    const double behind = std::min(most_behind, std::round(1.0 / std::max(0.08, double(galaxy.cos_i))));
+    BandSplats disk =
+        splats_of_size(band, false, std::min(band.feature / 4.0, widest), usual * real::pow(behind, 0.7));
+    disk.family = GalaxyFamily::disk;
+    const int last = int(std::size(spheroid_sigmas)) - 1;
+    BandSplats spheroid = disk;
+    spheroid.sigma = float(spheroid_sigmas[std::min(band.index, last)]);
+    spheroid.spacing = spacing_of(spheroid.sigma, usual);
+    spheroid.threshold = threshold_of(band, usual);
+    spheroid.size = 1;
+    spheroid.family = GalaxyFamily::spheroid;
+    return {disk, spheroid};
 }
 
 }  // namespace
@@ -102,17 +138,21 @@ std::vector<BandSplats> band_splats(const Band& band, bool coarsest, const Place
     const double natural = coarsest ? 4.0 * widest : band.feature / 4.0;
     const double usual =
         by_feature(splats_each, band.index == 0 ? 2.0 : std::max(4.0, band.feature / placement.scale));
-    std::vector<BandSplats> sizes{splats_of_size(band, glow, std::min(natural, widest), usual)};
-    if (placement.kind != StructureKind::disk) return sizes;
-    for (const float thickness : wider_in_bulges) {
-        const double sigma = std::min(natural, double(thickness) * widest);
-        if (float(sigma) <= sizes.back().sigma) break;
-        sizes.back().thickness_to = thickness;
-        sizes.push_back(splats_of_size(band, glow, sigma, crowd_in_bulges * usual));
-        sizes.back().thickness_from = thickness;
-        sizes.back().size = int(sizes.size()) - 1;
+    if (!placement.galaxies.empty()) return splats_of_galaxy(band, usual, placement.galaxies.front());
+    return {splats_of_size(band, glow, std::min(natural, widest), usual)};
+}
+
+float share_of(const Placement& placement, const BandSplats& splats, float x, float y) {
+    constexpr float sharp = 3.0f;  // times as likely is what is sharp the disk's (INCLINED 2)
+    if (splats.family == GalaxyFamily::all) return 1.0f;
+    float spheroid = 0.0f;
+    for (const GalaxyBody& galaxy : placement.galaxies) {
+        const float f = galaxy.value_at(galaxy.spheroid, x, y);
+        const float mine = galaxy.share.pixels.empty() ? 1.0f : galaxy.value_at(galaxy.share, x, y);
+        spheroid += mine * (splats.index > last_fine_band ? f : f / (f + sharp * (1.0f - f)));
     }
-    return sizes;
+    spheroid = std::min(spheroid, 1.0f);
+    return splats.family == GalaxyFamily::spheroid ? spheroid : 1.0f - spheroid;
 }
 
 namespace {
@@ -122,28 +162,16 @@ namespace {
 struct BandHeights {
     float finest, rise;
 };
-constexpr BandHeights heights_in_disks{0.45f, 0.55f}, heights_elsewhere{0.6f, 0.4f};
+constexpr BandHeights band_heights{0.6f, 0.4f};
 constexpr float least_square = 0.09f;         // of H(x, y)
 constexpr float splats_own_thickness = 1.2f;  // square of it, of that of their sigma
 
-// Of a splat in a bulge, where the disk alone would be `disk` thick: most are near the plane and few high up,
-// as in a ball of stars. All as high as the bulge would be a tower.
-float height_in_bulge(float disk, float bulge, std::uint32_t random) {
-    return disk + (bulge - disk) * as_uniform(as_mix(random ^ 0x1b56c4e9u));
-}
-
 // Scale heights of a band's splats: fine bands are thinner, and wide splats bring a thickness of their own.
 void set_heights(const Placement& placement, const BandSplats& splats, DepthBlock& block) {
-    const bool bulges = placement.kind == StructureKind::disk;
-    const BandHeights& heights = bulges ? heights_in_disks : heights_elsewhere;
-    const float share = heights.finest + heights.rise * std::min(1.0f, float(splats.index) / 5.0f);
+    const float share = band_heights.finest + band_heights.rise * std::min(1.0f, float(splats.index) / 5.0f);
     const float own = splats.index > 2 ? splats_own_thickness * splats.sigma * splats.sigma : 0.0f;
     for (int i = 0; i < block.count; ++i) {
-        const float whole = placement.scale_height(block.x[i], block.y[i]);
-        const float disk = placement.height_without_bulge(block.x[i], block.y[i]);
-        const float height = bulges && whole > disk ? height_in_bulge(disk, whole, block.random[i]) : whole;
-        const float h = height * share, flat = std::min(1.0f, disk / whole);
-        block.clumping[i] = flat * flat * flat * flat;  // a bulge is smooth
+        const float height = placement.scale_height(block.x[i], block.y[i]), h = height * share;
         block.height[i] = std::sqrt(std::max(h * h - own, least_square * height * height));
     }
 }
@@ -167,26 +195,67 @@ void fill_between_walls(const Placement& placement, double feature, PlacedBlock&
     spread_in_clouds(placement, feature, block);
 }
 
+// Splats [begin, end) of the galaxy's own: depths of a spheroid are even, those of a disk gather in clouds.
+void place_in_galaxy(const Placement& placement, const GalaxyBody& galaxy, const BandSplats& splats,
+                     PlacedBlock& block) {
+    if (splats.family == GalaxyFamily::spheroid) {
+        for (int i = 0; i < block.count; ++i)
+            block.z[i] = depth_of(galaxy, GalaxyPart::spheroid, block.x[i], block.y[i], block.even[i].x,
+                                  block.even[i].y);
+        return;
+    }
+    constexpr double longest_wave = 10.0;  // of what is small in the disk: INCLINED 3
+    constexpr float forces[] = {1.4f, 1.4f, 1.4f, 1.0f, 0.6f, 0.25f, 0.08f};  // by band
+    const float force = forces[std::min<std::size_t>(std::size_t(splats.index), std::size(forces) - 1)];
+    const bool fine = splats.index <= last_fine_band;
+    DepthCandidates candidates;
+    set_candidates(galaxy, fine ? GalaxyPart::fine : GalaxyPart::disk, force, block, candidates);
+    // Strong clumps are flat across the line of sight; in a disk that is seen aslant they would be seen to
+    // be.
+    const double aslant = double(galaxy.sin_i * galaxy.sin_i);
+    const double gain =
+        double(galaxy.roughness) * std::lerp(clump_gain(placement, splats.feature),
+                                             whole_gain * placement.clumps * double(force), aslant);
+    line_depths(stack(placement, longest_wave * double(galaxy.thickness), splats.feature, gain, steady_ratio),
+                candidates, block);
+}
+
+void place_in_galaxies(const Placement& placement, const BandSplats& splats, PlacedBlock& block) {
+    place_by_galaxy(placement, block, [&](const GalaxyBody& galaxy, PlacedBlock& own) {
+        place_in_galaxy(placement, galaxy, splats, own);
+        if (galaxy.hidden > 0.0f && splats.family == GalaxyFamily::disk) gather_in_clouds(galaxy, own);
+        for (int i = 0; i < own.count; ++i)
+            own.distance[i] = std::fabs(galaxy.in_disk(own.x[i], own.y[i], own.z[i]).z);
+    });
+    for (int i = 0; i < block.count; ++i) block.z[i] += middle_plane(placement, block.x[i], block.y[i]);
+}
+
 }  // namespace
 
+void place_small_in_galaxy(const Placement& placement, const GalaxyBody& galaxy, PlacedBlock& block) {
+    BandSplats like;
+    like.index = 1;
+    like.feature = float(4.0 * placement.scale);
+    like.family = GalaxyFamily::disk;
+    place_in_galaxy(placement, galaxy, like, block);
+}
+
 void place_freely(const Placement& placement, const BandSplats& splats, PlacedBlock& block) {
-    constexpr double disk_wave = 4.0, sheet_wave = 7.0;      // of H, the longest of the noise: DEPTH 4
+    if (!placement.galaxies.empty()) {
+        place_in_galaxies(placement, splats, block);
+        return;
+    }
+    constexpr double sheet_wave = 7.0;                       // of H, the longest of the noise: DEPTH 4
     constexpr double sheet_folds = 0.22, sheet_ratio = 0.5;  // of that wave, their height; DEPTH 4
     set_heights(placement, splats, block);
     const double feature = splats.feature, h = placement.height;
-    if (placement.kind == StructureKind::disk) {
-        const double gain = clump_gain(placement, feature);
-        disk_depths(stack(placement, disk_wave * h, feature, gain, steady_ratio), block);
-    } else if (splats.glow) {
+    if (splats.glow) {
         fill_between_walls(placement, feature, block);
     } else {
         const double gain = sheet_folds * octave_deviation * sheet_wave * h * placement.clumps;
         sheet_depths(stack(placement, sheet_wave * h, feature, gain, sheet_ratio), splats.spread, block);
     }
-    for (int i = 0; i < block.count; ++i) {
-        block.distance[i] = std::fabs(block.z[i]);
-        block.z[i] += middle_plane(placement, block.x[i], block.y[i]);
-    }
+    for (int i = 0; i < block.count; ++i) block.distance[i] = std::fabs(block.z[i]);
 }
 
 namespace {
@@ -195,16 +264,34 @@ namespace {
 // the other from aslant: each taller, they are one needle. Found by the needles of the Bubble and the
 // Pillars: below .2 knots are lenses.
 constexpr float knot_depth = 0.6f, knot_depth_on_sheets = 0.35f;
-constexpr float widest_in_knots = 5.0f;  // texels, sigma of the largest splats that follow their knot
-constexpr float side_sharpness = 8.0f;   // of the change from one wall to the other
+constexpr float round_knot_depth = 1.1f;  // sech^2 of that has the deviation of a Gaussian
+constexpr float widest_in_knots = 5.0f;   // texels, sigma of the largest splats that follow their knot
+constexpr float side_sharpness = 8.0f;    // of the change from one wall to the other
 constexpr float least_side = 0.15f;  // share of a filament's splats on the other one: no wall is ever bare
 
 const Knot& knot_of(const Placement& placement, std::int32_t knot) { return placement.knots.knots[knot]; }
 
+// How many of a knot's splats follow it: all, but none of a smooth galaxy's, nor of its spheroid's. Beyond
+// the galaxy, where knots are background galaxies, all of its light does.
+float share_in_knots(const Placement& placement, const BandSplats& splats, const Knot& knot) {
+    if (placement.galaxies.empty()) return 1.0f;
+    const GalaxyBody& galaxy = placement.galaxy_at(knot.x, knot.y, 0.5f);
+    const float beyond = 1.0f - galaxy.value_at(galaxy.lit, knot.x, knot.y);
+    return splats.family == GalaxyFamily::spheroid ? beyond : std::max(beyond, galaxy.roughness);
+}
+
+// Scale height over sigma. In a disk that is seen aslant knots are as deep as wide, or from above they were
+// flat across the line of sight.
+float depth_of_knots(const Placement& placement, const Knot& knot) {
+    if (placement.kind == StructureKind::sheet) return knot_depth_on_sheets;
+    if (placement.galaxies.empty()) return knot_depth;
+    const float aslant = placement.galaxy_at(knot.x, knot.y, 0.5f).sin_i;
+    return std::lerp(knot_depth, round_knot_depth, aslant * aslant);
+}
+
 // On walls pieces of filaments are no knots, or these would be strings of beads.
-void follow_knots(const Placement& placement, PlacedBlock& block) {
+void follow_knots(const Placement& placement, const BandSplats& splats, PlacedBlock& block) {
     const bool walls = placement.kind == StructureKind::walls;
-    const float depth = placement.kind == StructureKind::sheet ? knot_depth_on_sheets : knot_depth;
     for (int i = 0; i < block.count; ++i) {
         const auto x = std::min(std::int64_t(block.x[i]), placement.picture_width - 1);
         const auto y = std::min(std::int64_t(block.y[i]), placement.picture_height - 1);
@@ -213,9 +300,11 @@ void follow_knots(const Placement& placement, PlacedBlock& block) {
         if (owner < 0) continue;
         const Knot& knot = knot_of(placement, owner);
         const std::uint32_t random = as_mix(block.random[i] ^ 0x2c1b3c6du);
-        if (as_uniform(random) >= placement.knots.weight[at] * (walls ? knot.ballness : 1.0f)) continue;
+        const float follows = share_in_knots(placement, splats, knot) * (walls ? knot.ballness : 1.0f);
+        if (as_uniform(random) >= follows * placement.knots.weight[at]) continue;
         block.knot[i] = owner;
-        block.z[i] = placement.knot_z[owner] + logistic(as_uniform(as_mix(random)), depth * knot.sigma);
+        block.z[i] = placement.knot_z[owner] +
+                     logistic(as_uniform(as_mix(random)), depth_of_knots(placement, knot) * knot.sigma);
     }
 }
 
@@ -295,10 +384,25 @@ void add_walls(const Placement& placement, double feature, PlacedBlock& block) {
 
 }  // namespace
 
+void copy_splat(const DepthBlock& from, int i, DepthBlock& to, int k) {
+    to.x[k] = from.x[i];
+    to.y[k] = from.y[i];
+    to.random[k] = from.random[i];
+    to.z[k] = from.z[i];
+}
+
+void copy_splat(const PlacedBlock& from, int i, PlacedBlock& to, int k) {
+    copy_splat(static_cast<const DepthBlock&>(from), i, static_cast<DepthBlock&>(to), k);
+    to.even[k] = from.even[i];
+    to.distance[k] = from.distance[i];
+    to.knot[k] = from.knot[i];
+}
+
 void place(const Placement& placement, const BandSplats& splats, PlacedBlock& block) {
     place_freely(placement, splats, block);
     std::fill_n(block.knot, block.count, -1);
-    if (splats.sigma <= widest_in_knots && !placement.knots.knots.empty()) follow_knots(placement, block);
+    if (splats.sigma <= widest_in_knots && !placement.knots.knots.empty())
+        follow_knots(placement, splats, block);
     if (placement.kind == StructureKind::sheet) add_relief(placement, block);
     if (placement.kind == StructureKind::walls && !splats.glow)
         add_walls(placement, double(splats.feature), block);

@@ -11,6 +11,7 @@
 
 #include "bodies/picture_splats.h"
 #include "core/parallel.h"
+#include "core/real.h"
 #include "core/shared_maths.h"
 #include "image/blur.h"
 #include "image/channels.h"
@@ -33,6 +34,7 @@ constexpr std::size_t light_parts = 8;  // of the splats, whose light is added u
 constexpr float splat_sigma = 1.3f, splats_each_texel = 0.6f;
 constexpr float most_opaque = 0.9f;    // a splat's middle
 constexpr float least_kept = 1e-3f;    // share of splats: where fewer would be, there is none
+constexpr float dust_force = 1.0f;     // of what is invented of a galaxy's plane
 constexpr float certain_depth = 0.1f;  // optical depth from which no splat is left out
 
 // Optical depth of the sheet's middle line, and how far that stands out, bent by waves of its own so that
@@ -46,10 +48,62 @@ void bend(const Placement& placement, DepthBlock& block) {
     }
 }
 
-// Channel 0: light before the sheet, 1: all light, of cells of share_cell_px, blurred.
+// A galaxy's dust lies in its disk, a little before the middle of it, or the light of the near half would
+// hide every lane of a galaxy that is seen from above.
+void place_in_galaxy(const Placement& placement, const GalaxyBody& galaxy, DepthBlock& block) {
+    constexpr float before_middle = 0.5f;  // of the thickness of what is small in the disk
+    DepthCandidates candidates;
+    set_candidates(galaxy, GalaxyPart::dust, dust_force, block, candidates);
+    const double wave = sheet_wave * placement.scale;
+    line_depths(stack(placement, wave, wave, whole_gain * placement.clumps, 1.0), candidates, block);
+    for (int i = 0; i < block.count; ++i) block.z[i] += before_middle * galaxy.thickness * galaxy.cos_i;
+}
+
+// Fills z from x, y and random, over the middle plane.
+void place_dust(const Placement& placement, DepthBlock& block) {
+    if (!placement.galaxies.empty()) {
+        place_by_galaxy(placement, block, [&](const GalaxyBody& galaxy, DepthBlock& own) {
+            place_in_galaxy(placement, galaxy, own);
+        });
+        return;
+    }
+    for (int i = 0; i < block.count; ++i) {
+        block.height[i] = lane_thickness * placement.scale_height(block.x[i], block.y[i]);
+        block.clumping[i] = 1.0f;
+    }
+    const double wave = sheet_wave * placement.scale;
+    disk_depths(stack(placement, wave, wave, whole_gain * placement.clumps, 1.0), block);
+    bend(placement, block);
+}
+
+constexpr int depths_a_cell = 8;
+
+// Some depths of the dust in each cell of share_cell_px.
+Image dust_depths(const Placement& placement) {
+    Image depths =
+        unfilled_image((placement.picture_width + share_cell_px - 1) / share_cell_px,
+                       (placement.picture_height + share_cell_px - 1) / share_cell_px, depths_a_cell);
+    constexpr std::int64_t cells_at_once = DepthBlock::size / depths_a_cell;
+    parallel_chunks(
+        depths.width * depths.height, cells_at_once, [&](std::int64_t begin, std::int64_t end, int) {
+            DepthBlock block;
+            for (std::int64_t cell = begin; cell < end; ++cell)
+                for (int k = 0; k < depths_a_cell; ++k) {
+                    block.x[block.count] = (float(cell % depths.width) + 0.5f) * float(share_cell_px);
+                    block.y[block.count] = (float(cell / depths.width) + 0.5f) * float(share_cell_px);
+                    block.random[block.count++] =
+                        placement.hash_of(std::uint64_t(cell) << 8 | std::uint64_t(k), shared::PURPOSE_SHEET);
+                }
+            place_dust(placement, block);
+            std::copy_n(block.z, block.count, depths.pixels.data() + begin * depths_a_cell);
+        });
+    return depths;
+}
+
+// Channel 0: light before the dust, 1: all light, of cells of share_cell_px, blurred.
 Image light_before(const Placement& placement, const PictureSplats& set) {
-    const Image none = make_image((placement.picture_width + share_cell_px - 1) / share_cell_px,
-                                  (placement.picture_height + share_cell_px - 1) / share_cell_px, 2);
+    const Image sheet = dust_depths(placement);
+    const Image none = make_image(sheet.width, sheet.height, 2);
     std::vector<Image> parts(light_parts, none);
     const float middle_x = 0.5f * float(placement.picture_width),
                 middle_y = 0.5f * float(placement.picture_height);
@@ -60,10 +114,10 @@ Image light_before(const Placement& placement, const PictureSplats& set) {
         const auto cell_along = [](float at, std::int64_t count) {
             return std::clamp<std::int64_t>(std::int64_t(at) / share_cell_px, 0, count - 1);
         };
-        float* const cell = cells.at(cell_along(x, cells.width), cell_along(y, cells.height));
+        const std::int64_t column = cell_along(x, cells.width), row = cell_along(y, cells.height);
+        float* const cell = cells.at(column, row);
         cell[1] += light;
-        if (p.z - middle_plane(placement, x, y) > lane_height * placement.scale_height(x, y))
-            cell[0] += light;
+        if (p.z - middle_plane(placement, x, y) > sheet.at(column, row)[i % depths_a_cell]) cell[0] += light;
     };
     const std::size_t count = set.splats.position.size();
     parallel_each(parts.size(), 1, [&](std::size_t part) {
@@ -141,16 +195,12 @@ struct DustMaker {
             const Candidate splat = *candidate_of(cells[i]);
             block.x[i] = splat.x;
             block.y[i] = splat.y;
-            block.height[i] = lane_thickness * placement.scale_height(splat.x, splat.y);
-            block.clumping[i] = 1.0f;
             block.random[i] = placement.hash_of(splat.id, shared::PURPOSE_DEPTH);
             out.splats.alpha[first + i] = splat.alpha;
             out.splats.color[first + i] = -exponents;
             out.splats.id[first + i] = splat.id;
         }
-        const double wave = sheet_wave * placement.scale;
-        disk_depths(stack(placement, wave, wave, whole_gain * placement.clumps, 1.0), block);
-        bend(placement, block);
+        place_dust(placement, block);
         for (std::size_t i = 0; i < cells.size(); ++i) {
             const float z = block.z[i] + middle_plane(placement, block.x[i], block.y[i]);
             out.splats.position[first + i] = placement.among_splats(block.x[i], block.y[i], z);
@@ -193,10 +243,53 @@ float expected_dust_splats(float transmittance, double amount) {
     return splats_each_texel * kept_dust(float(amount) * sheet_depth(transmittance, usual_before));
 }
 
+namespace {
+
+// The far half and the sides of a galaxy that is seen from its edge, which no picture shows, have the dust of
+// the near side (INCLINED 4): what lies within 55 degrees of the direction to it, turned about the normal.
+void turn_dust(const GalaxyBody& galaxy, const Placement& placement, std::int64_t begin, PictureSplats& out) {
+    constexpr double turns_deg[] = {110.0, 220.0};
+    constexpr float along_near = 0.57357644f;  // cosine of 55 degrees
+    const std::int64_t end = out.splats.size();
+    std::vector<std::int64_t> near;
+    const auto in_disk = [&](std::int64_t i) {
+        const glm::vec3 p = out.splats.position[i];
+        return galaxy.in_disk(p.x + 0.5f * float(placement.picture_width),
+                              0.5f * float(placement.picture_height) - p.y, p.z);
+    };
+    for (std::int64_t i = begin; i < end; ++i) {
+        const glm::vec3 p = in_disk(i);
+        const bool nearer = p.y > along_near * std::sqrt(p.x * p.x + p.y * p.y);
+        if (nearer && as_uniform(placement.hash_of(out.splats.id[i], shared::PURPOSE_SHEET)) < galaxy.hidden)
+            near.push_back(i);
+    }
+    const auto count = std::ssize(near);
+    resize_splats(out, end + 2 * count);
+    parallel_each(2 * count, 4096, [&](std::int64_t k) {
+        const std::int64_t from = near[k % count], to = end + k;
+        const double turn = real::radians(turns_deg[k / count]);
+        const auto c = float(real::cos(turn)), s = float(real::sin(turn));
+        const glm::vec3 p = in_disk(from), q = galaxy.in_picture({c * p.x - s * p.y, s * p.x + c * p.y, p.z});
+        out.splats.position[to] = placement.among_splats(q.x, q.y, q.z);
+        out.splats.color[to] = out.splats.color[from];
+        out.splats.alpha[to] = out.splats.alpha[from];
+        out.splats.radius[to] = out.splats.radius[from];
+        out.splats.id[to] = out.splats.id[from] | std::uint64_t(1 + k / count) << 40;
+        out.distance[to] = out.distance[from];
+    });
+}
+
+}  // namespace
+
 void add_dust(const Image& transmittance, double amount, const glm::vec3& exponents,
               const Placement& placement, PictureSplats& out) {
     const Image before = light_before(placement, out);
-    add_on_lattice(DustMaker{transmittance, before, float(amount), exponents, placement}, splat_sigma, out);
+    const std::int64_t begin =
+        add_on_lattice(DustMaker{transmittance, before, float(amount), exponents, placement}, splat_sigma,
+                       out)
+            .begin;
+    if (placement.galaxies.size() == 1 && placement.galaxies.front().hidden > 0.0f)
+        turn_dust(placement.galaxies.front(), placement, begin, out);
     out.absorbs = true;
 }
 

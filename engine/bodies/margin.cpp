@@ -4,9 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
+#include <span>
 #include <utility>
 
+#include "bodies/galaxies.h"
 #include "core/log.h"
 #include "core/real.h"
 #include "core/shared_maths.h"
@@ -19,7 +23,7 @@ namespace {
 // Found in films of W5, the Bubble, M42 and Sh2-106: no straight edge and no corner stands out.
 constexpr std::int64_t local_px = 48;     // pixels along the longer side of the local brightness
 constexpr float brightest_detail = 1.6f;  // times the local brightness; what is brighter is a star
-constexpr float least_reach_of_disks = 0.2f, least_reach_of_clouds = 0.6f;  // of the margin: what is lit
+constexpr float least_reach = 0.6f;       // of the margin, that what is lit goes on
 constexpr float dark_light = 0.004f, dark_share = 0.1f;  // light that is dark, and of the brightest rim
 constexpr std::uint32_t outline_seed = 0xed6eu;
 
@@ -55,8 +59,6 @@ struct Surroundings {
     float brightest = 0.0f;  // of `local` along the rim, as light
     glm::vec2 middle{0.0f};  // of the picture, px
     float margin_px = 0.0f;
-    float least_reach = 0.0f;        // share of the margin that light goes on at least
-    float nearer_at_corners = 0.0f;  // times; 0: corners are round
 
     glm::vec3 light_at(std::int64_t x, std::int64_t y) const {
         const LinearSample near(local, (float(x) + 0.5f) * to_local, (float(y) + 0.5f) * to_local);
@@ -67,11 +69,8 @@ struct Surroundings {
 
 float brightest_of(const glm::vec3& light) { return std::max({light.r, light.g, light.b}); }
 
-Surroundings surroundings_of(const Image& image, std::int64_t margin_px, StructureKind kind) {
+Surroundings surroundings_of(const Image& image, std::int64_t margin_px) {
     Surroundings around;
-    const bool disk = kind == StructureKind::disk;
-    around.least_reach = disk ? least_reach_of_disks : least_reach_of_clouds;
-    around.nearer_at_corners = disk ? 1.0f : 0.0f;
     around.local = local_brightness(image);
     around.to_local = float(around.local.width) / float(image.width);
     around.middle = 0.5f * glm::vec2(float(image.width), float(image.height));
@@ -84,18 +83,17 @@ Surroundings surroundings_of(const Image& image, std::int64_t margin_px, Structu
     return around;
 }
 
-// How far light goes on from a place on the rim, as a share of the margin: as far as a disk whose light falls
-// exponentially takes to grow dark, so that outlines follow the galaxy and not the frame of its picture.
-float reach_of(float rim_light, float brightest_rim, float least) {
+// How far light goes on from a place on the rim, as a share of the margin: the farther the brighter it is.
+float reach_of(float rim_light, float brightest_rim) {
     const float dark = std::min(dark_light, dark_share * brightest_rim);
-    if (dark <= 0.0f) return least;
+    if (dark <= 0.0f) return least_reach;
     const float share =
         shared::as_log(std::max(rim_light, dark) / dark) / shared::as_log(brightest_rim / dark);
-    return least + (1.0f - least) * std::min(share, 1.0f);
+    return least_reach + (1.0f - least_reach) * std::min(share, 1.0f);
 }
 
-// 1 at the picture's edge, 0 at most `reach_px` away from it: an outline with bays of several sizes, nearer
-// to the picture at its corners. In: px from the picture's upper left.
+// 1 at the picture's edge, 0 at most `reach_px` away from it: an outline with bays of several sizes. In: px
+// from the picture's upper left.
 float fade_at(const Surroundings& around, glm::vec2 px, float away_px, float reach_px) {
     constexpr float bays[] = {0.45f, 0.3f, 0.2f}, raggedness = 1.1f, steepness = 1.0f;
     constexpr float widest_bay = 2.0f, bay_ratio = 2.2f;  // in margins; of each size to the next
@@ -103,24 +101,21 @@ float fade_at(const Surroundings& around, glm::vec2 px, float away_px, float rea
     for (std::uint32_t octave = 0; octave < 3; ++octave, frequency *= bay_ratio)
         noise +=
             bays[octave] * shared::as_noise(px.x * frequency, px.y * frequency, 0.5f, outline_seed + octave);
-    const glm::vec2 from_middle = px / around.middle - 1.0f;
-    const float corner = std::fabs(from_middle.x * from_middle.y), way = away_px / reach_px;
-    const float ragged = way * (steepness + around.nearer_at_corners * corner * corner +
-                                raggedness * std::clamp(noise, -1.0f, 1.0f));
+    const float way = away_px / reach_px;
+    const float ragged = way * (steepness + raggedness * std::clamp(noise, -1.0f, 1.0f));
     return real::smoothstep(1.0f - std::clamp(ragged, 0.0f, 1.0f)) *
            real::smoothstep(1.0f - std::min(way, 1.0f));
 }
 
 // The texel at x, y of the picture, which lies beyond it: its mirrored details on the light of the rim, which
-// would otherwise rise again towards a galaxy mirrored.
+// would otherwise rise again towards what is bright.
 void continue_texel(const Surroundings& around, const Image& image, std::int64_t x, std::int64_t y,
                     float* to) {
     const std::int64_t from_x = mirrored(x, image.width), from_y = mirrored(y, image.height);
     const auto dx = float(beyond(x, image.width)), dy = float(beyond(y, image.height));
     const glm::vec3 rim = around.light_at(std::clamp<std::int64_t>(x, 0, image.width - 1),
                                           std::clamp<std::int64_t>(y, 0, image.height - 1));
-    const float reach_px =
-        around.margin_px * reach_of(brightest_of(rim), around.brightest, around.least_reach);
+    const float reach_px = around.margin_px * reach_of(brightest_of(rim), around.brightest);
     const float away_px = std::sqrt(dx * dx + dy * dy);
     if (away_px >= reach_px) {  // where fade_at() is 0
         std::fill_n(to, 4, 0.0f);
@@ -136,9 +131,80 @@ void continue_texel(const Surroundings& around, const Image& image, std::int64_t
     to[3] *= fade;
 }
 
-Image continued(const Texture& texture, std::int64_t margin_px, StructureKind kind) {
+// A galaxy beyond the frame is the galaxy itself, turned in its disk's plane (INCLINED 5).
+struct TurnedGalaxy {
+    GalaxyBody body;          // in the picture's texels
+    float outline_px = 0.0f;  // radius in its plane beyond which there is nothing
+};
+
+TurnedGalaxy turned_galaxy(const Image& picture, const StructureParams& structure) {
+    constexpr float farthest = 1.3f;  // of what is seen along the major axis
+    const Image light = made_by_pixel(picture, 3, [](const float* from, float* to) {
+        for (int c = 0; c < 3; ++c) to[c] = from[c] > 0.0f && std::isfinite(from[c]) ? from[c] : 0.0f;
+    });
+    TurnedGalaxy turned;
+    turned.body = make_galaxy_body({}, galaxy_planes(light, structure).front(), {}, double(picture.width));
+    for (const float x : {0.0f, float(picture.width)})
+        for (const float y : {0.0f, float(picture.height)})
+            turned.outline_px =
+                std::max(turned.outline_px, farthest * std::fabs(turned.body.in_disk(x, y, 0.0f).x));
+    return turned;
+}
+
+constexpr float least_cosine_of_turns = 0.26f;
+
+// A place of the picture as the galaxy has it that is turned by so many eighths of a whole turn.
+glm::vec2 turned_place(const GalaxyBody& body, glm::vec2 px, int eighths) {
+    constexpr float diagonal = 0.70710678f, least_cosine = 0.05f;
+    constexpr float cosines[] = {1.0f, diagonal, 0.0f, -diagonal, -1.0f, -diagonal, 0.0f, diagonal};
+    const float c = std::max(least_cosine, body.cos_i);
+    const float cosine = cosines[eighths], sine = cosines[(eighths + 6) % 8];
+    const glm::vec2 uv = along_and_across(body, px.x, px.y);
+    return place_of(body, {cosine * uv.x - sine * uv.y / c, c * sine * uv.x + cosine * uv.y});
+}
+
+// Light of the texel at x, y beyond the picture: of the first turn that leads into it. Near the rim it is as
+// bright as there, for no galaxy is the same on all sides.
+void turn_texel(const TurnedGalaxy& turned, const Surroundings& around, const Image& image, std::int64_t x,
+                std::int64_t y, float* to) {
+    constexpr float fades_over = 0.5f, own_from = 0.7f, most_times = 3.0f;  // of the outline; of the margin
+    std::fill_n(to, 4, 0.0f);
+    const GalaxyBody& body = turned.body;
+    const glm::vec2 px(float(x) + 0.5f, float(y) + 0.5f), uv = along_and_across(body, px.x, px.y);
+    const float v = uv.y / std::max(0.05f, body.cos_i), r = std::sqrt(uv.x * uv.x + v * v);
+    const float fade = std::clamp((turned.outline_px - r) / (fades_over * turned.outline_px), 0.0f, 1.0f);
+    if (fade <= 0.0f) return;
+    const glm::vec2 size(float(image.width), float(image.height));
+    const glm::vec2 rim = glm::clamp(px, glm::vec2(0.5f), size - 0.5f);
+    const float away = std::min(1.0f, glm::length(px - rim) / (own_from * around.margin_px));
+    const auto light_at = [&](glm::vec2 p) {
+        const glm::vec2 in = glm::clamp(p, glm::vec2(0.5f), size - 0.5f);
+        return around.light_at(std::int64_t(in.x), std::int64_t(in.y));
+    };
+    constexpr int turns[] = {4, 2, 6, 3, 5, 1, 7};
+    // Of a disk seen from its edge, only half a turn leads to what is at the same place of a line of sight.
+    const std::size_t count = body.cos_i < least_cosine_of_turns ? 1 : std::size(turns);
+    for (const int eighths : std::span(turns).first(count)) {
+        const glm::vec2 from = turned_place(body, px, eighths);
+        if (!(from.x >= 0.0f && from.y >= 0.0f && from.x < size.x && from.y < size.y)) continue;
+        const float* const there = image.at(std::int64_t(from.x), std::int64_t(from.y));
+        const glm::vec3 near = light_at(from), at_rim = light_at(rim),
+                        rim_there = light_at(turned_place(body, rim, eighths));
+        for (int k = 0; k < 3; ++k) {
+            const float times =
+                std::clamp(at_rim[k] / std::max(rim_there[k], 1e-6f), 1.0f / most_times, most_times);
+            to[k] = fade * std::lerp(times, 1.0f, away) * std::min(there[k], brightest_detail * near[k]);
+        }
+        to[3] = fade;
+        return;
+    }
+}
+
+Image continued(const Texture& texture, std::int64_t margin_px, const StructureParams& structure) {
     const Image& image = texture.image;
-    const Surroundings around = surroundings_of(image, margin_px, kind);
+    const Surroundings around = surroundings_of(image, margin_px);
+    const bool disk = structure.kind == StructureKind::disk;
+    const TurnedGalaxy galaxy = disk ? turned_galaxy(image, structure) : TurnedGalaxy();
     Image out = unfilled_image(image.width + 2 * margin_px, image.height + 2 * margin_px, image.channels);
     for_each_pixel(out, [&](std::int64_t column, std::int64_t row) {
         const std::int64_t x = column - margin_px, y = row - margin_px;
@@ -146,17 +212,21 @@ Image continued(const Texture& texture, std::int64_t margin_px, StructureKind ki
         float* const to = out.at(column, row);
         std::copy_n(image.at(mirrored(x, image.width), mirrored(y, image.height)), image.channels, to);
         if (texture.alpha_from_light) to[3] = 1.0f;
-        if (!inside) continue_texel(around, image, x, y, to);
+        if (inside) return;
+        if (disk)
+            turn_texel(galaxy, around, image, x, y, to);
+        else
+            continue_texel(around, image, x, y, to);
     });
     return out;
 }
 
-glm::dvec2 add_margin(TexturedMesh& mesh, double margin, StructureKind kind) {
+glm::dvec2 add_margin(TexturedMesh& mesh, const StructureParams& structure) {
     Texture& texture = mesh.textures.front();
     const auto width = double(texture.image.width), height = double(texture.image.height);
-    const std::int64_t margin_px = std::llround(margin * width);
+    const std::int64_t margin_px = std::llround(structure.margin * width);
     if (margin_px == 0) return {1.0, 1.0};
-    texture.image = continued(texture, margin_px, kind);
+    texture.image = continued(texture, margin_px, structure);
     texture.alpha_from_light = false;
     const glm::dvec2 times(double(texture.image.width) / width, double(texture.image.height) / height);
     for (glm::vec3& p : mesh.mesh.positions) p = {float(p.x * times.x), p.y, float(p.z * times.y)};
@@ -179,13 +249,13 @@ Image mirrored_margin(const Image& image, double margin) {
     return out;
 }
 
-std::vector<glm::dvec2> add_margins(std::vector<TexturedMesh>& meshes, double margin, StructureKind kind,
+std::vector<glm::dvec2> add_margins(std::vector<TexturedMesh>& meshes, const StructureParams& structure,
                                     const std::string& layer_name) {
     std::vector<glm::dvec2> times(meshes.size(), glm::dvec2(1.0));
-    if (margin <= 0.0) return times;
+    if (structure.margin <= 0.0) return times;
     for (std::size_t i = 0; i < meshes.size(); ++i) {
         if (meshes[i].mesh.name == "plane")
-            times[i] = add_margin(meshes[i], margin, kind);
+            times[i] = add_margin(meshes[i], structure);
         else
             log_warning(fmt::format("layer '{}': source.structure.margin acts on planes only, not on '{}'",
                                     layer_name, meshes[i].mesh.name));

@@ -18,10 +18,9 @@ using shared::as_exp, shared::as_log, shared::as_pow, shared::as_uniform;
 constexpr float cell_jitter = 0.5f;         // of the lattice's spacing
 constexpr float least_brightness = 0.002f;  // below which opacity falls to 0: empty sky hides nothing
 constexpr float greatest_opacity = 0.985f;
-constexpr float star_opacity = 0.25f;      // of a star's own
-constexpr float glowing_thickness = 0.7f;  // of H, from which the light of a disk is that of its bulge
-constexpr float clearest_bulge = 8.0f;     // times; clearer still, it would burn out where it is seen aslant
-constexpr float glow_hiding = 0.5f;        // share of its optical depth that the glow between two walls keeps
+constexpr float star_opacity = 0.25f;     // of a star's own
+constexpr float spheroid_hiding = 0.35f;  // share of its optical depth that a spheroid keeps (INCLINED 3)
+constexpr float glow_hiding = 0.5f;       // and the glow between two walls
 
 // A splat before it has a depth.
 struct Candidate {
@@ -30,7 +29,6 @@ struct Candidate {
     float amplitude;      // the brightest of it
     float brightest;      // of the picture there
     float opacity_limit;  // the picture's alpha
-    float hiding;         // share of the column's optical depth
     std::uint64_t id;
 };
 
@@ -38,19 +36,15 @@ struct Candidate {
 // light comes from all of its depth, not from a surface as a cloud's would. So does what is between two
 // walls: were it a fog, the fit would raise the filaments of the back wall by what is lost in it, and from
 // behind they would burn out.
-float hiding_of(const BandSplats& splats, const Placement& placement, float thickness) {
-    if (placement.kind == StructureKind::disk) {
-        const float bulge = thickness / glowing_thickness;
-        return 1.0f / std::clamp(bulge * bulge * bulge * bulge, 1.0f, clearest_bulge);
-    }
-    return splats.glow ? glow_hiding : 1.0f;
+float hiding_of(const BandSplats& splats) {
+    return splats.family == GalaxyFamily::spheroid ? spheroid_hiding : splats.glow ? glow_hiding : 1.0f;
 }
 
 // The optical depth a splat adds to its column is its share of the column's light.
-void shade(const Candidate& splat, float footprint, const Opacity& opacity, std::size_t at,
+void shade(const Candidate& splat, float hiding, float footprint, const Opacity& opacity, std::size_t at,
            ShadedSplats& out) {
     const float brightest = std::max(least_brightness, splat.brightest);
-    const float tau = splat.hiding * opacity.depth_of(splat.brightest, splat.opacity_limit);
+    const float tau = hiding * opacity.depth_of(splat.brightest, splat.opacity_limit);
     const float alpha = std::clamp(tau * (splat.amplitude / brightest) / footprint, 1e-6f, 1.0f);
     const float boost = tau > 1e-4f ? tau / (1.0f - as_exp(-tau)) : 1.0f;  // what lies before it takes away
     out.alpha[at] = alpha;
@@ -66,7 +60,6 @@ struct BandMaker {
     const Placement& placement;
     const Opacity& opacity;
     SplatLattice lattice{band.width, band.height, splats.spacing};
-    bool of_any_thickness = splats.thickness_from <= 0.0f && std::isinf(splats.thickness_to);
 
     // A cell's splat, where there is light and it is not thinned out.
     std::optional<Candidate> candidate_of(const LatticeCell& cell) const {
@@ -80,12 +73,9 @@ struct BandMaker {
         splat.x = place_in(cell.column, shared::PURPOSE_JITTER_X);
         splat.y = place_in(cell.row, shared::PURPOSE_JITTER_Y);
         if (splat.x >= float(band.width) || splat.y >= float(band.height)) return {};
-        if (!of_any_thickness) {
-            const float thickness = placement.thickness_at(splat.x, splat.y);
-            if (thickness < splats.thickness_from || thickness >= splats.thickness_to) return {};
-        }
         const LinearSample place(band, splat.x, splat.y);
-        splat.light = {place.of(band, 0), place.of(band, 1), place.of(band, 2)};
+        splat.light = share_of(placement, splats, splat.x, splat.y) *
+                      glm::vec3(place.of(band, 0), place.of(band, 1), place.of(band, 2));
         splat.amplitude = std::max({splat.light.x, splat.light.y, splat.light.z});
         if (splat.amplitude <= 0.0f) return {};
         splat.opacity_limit = alpha.pixels.empty() ? 1.0f : place.of(alpha);
@@ -99,17 +89,33 @@ struct BandMaker {
         return splat;
     }
 
+    // Each block of 8x8 cells has one number of each 64th, in an order of its own: even from every side, and
+    // no pattern (INCLINED 3).
+    float even_number(const LatticeCell& cell, std::uint32_t purpose) const {
+        const std::uint64_t block =
+            lattice.number({cell.column / 8, cell.row / 8}) << 8 | std::uint64_t(splats.index);
+        const std::uint32_t key = placement.hash_of(block, purpose);
+        std::uint32_t n = std::uint32_t(cell.row % 8 * 8 + cell.column % 8) ^ (key & 63u);
+        n = n * (key >> 6 | 1u) & 63u;
+        n ^= n >> 3;
+        n = n * (key >> 12 | 1u) & 63u;
+        const float within = as_uniform(placement.hash_of(lattice.number(cell), purpose));
+        return (float(n) + within) / 64.0f;
+    }
+
     void make_splats(std::span<const LatticeCell> cells, std::size_t first, PictureSplats& out) const {
         const float footprint = footprint_share * float(2.0 * real::pi) * splats.sigma * splats.sigma;
         PlacedBlock block;
         block.count = int(cells.size());
         for (std::size_t i = 0; i < cells.size(); ++i) {
-            Candidate splat = *candidate_of(cells[i]);
-            splat.hiding = hiding_of(splats, placement, placement.thickness_at(splat.x, splat.y));
+            const Candidate splat = *candidate_of(cells[i]);
             block.x[i] = splat.x;
             block.y[i] = splat.y;
             block.random[i] = placement.hash_of(splat.id, shared::PURPOSE_DEPTH);
-            shade(splat, footprint, opacity, first + i, out.splats);
+            if (splats.family == GalaxyFamily::spheroid)
+                block.even[i] = {even_number(cells[i], shared::PURPOSE_EVEN),
+                                 even_number(cells[i], shared::PURPOSE_EVEN + 1u)};
+            shade(splat, hiding_of(splats), footprint, opacity, first + i, out.splats);
         }
         place(placement, splats, block);
         for (std::size_t i = 0; i < cells.size(); ++i) {

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <glm/vec2.hpp>
 
+#include "bodies/bodies.h"
+#include "bodies/galaxies.h"
 #include "bodies/margin.h"
 #include "core/parallel.h"
 #include "core/shared_maths.h"
@@ -21,11 +23,6 @@ constexpr float sky_reach = 0.8f;                             // around a shell,
 glm::vec2 from_middle(const Placement& placement, float x, float y) {
     const auto w = float(placement.picture_width), h = float(placement.picture_height);
     return glm::vec2(x - 0.5f * w, y - 0.5f * h) * (2.0f / std::max(w, h));
-}
-
-float flare_at(const Placement& placement, float x, float y) {
-    const glm::vec2 p = from_middle(placement, x, y);
-    return 1.0f + float(placement.flare) * (p.x * p.x + p.y * p.y);
 }
 
 // Of a field of the picture's, at a place of the picture.
@@ -57,6 +54,34 @@ std::vector<Knot> around_stars(std::span<const Star> stars) {
     return knots;
 }
 
+// Depths of a galaxy's clouds, as those of splats of the second finest band.
+void set_cloud_depths(Placement& placement, GalaxyBody& galaxy) {
+    constexpr double length = 0.045;  // of the width: INCLINED 3
+    GalaxyClouds& clouds = galaxy.clouds;
+    clouds.length = float(length * double(placement.picture_width));
+    clouds.columns = clouds.rows = 2 * std::int64_t(std::ceil(1.0 / length)) + 1;
+    clouds.rows = std::int64_t(float(clouds.rows) / cloud_flat);
+    clouds.z.resize(std::size_t(clouds.columns * clouds.rows));
+    parallel_chunks(std::ssize(clouds.z), DepthBlock::size, [&](std::int64_t begin, std::int64_t end, int) {
+        PlacedBlock block;
+        block.count = int(end - begin);
+        for (int i = 0; i < block.count; ++i) {
+            const glm::vec2 place = place_of(galaxy, clouds.middle(std::size_t(begin + i)));
+            block.x[i] = place.x;
+            block.y[i] = place.y;
+            block.random[i] = as_hash(placement.seed, std::uint32_t(begin + i), 2u, shared::PURPOSE_KNOT);
+        }
+        place_small_in_galaxy(placement, galaxy, block);
+        std::copy_n(block.z, block.count, clouds.z.data() + begin);
+    });
+}
+
+// Whether a knot is not the galaxy's but lies somewhere behind or before it.
+bool is_beyond(const Placement& placement, float x, float y, std::uint32_t random) {
+    const GalaxyBody& galaxy = placement.galaxy_at(x, y, 0.5f);
+    return as_uniform(as_mix(random ^ 0x1f83d9abu)) >= galaxy.value_at(galaxy.lit, x, y);
+}
+
 // Those of splats of the second finest band, and of stars their own.
 void set_knot_depths(Placement& placement, std::span<const Star> stars) {
     BandSplats like;
@@ -75,18 +100,33 @@ void set_knot_depths(Placement& placement, std::span<const Star> stars) {
             block.random[i] = as_hash(placement.seed, std::uint32_t(begin + i), 0u, shared::PURPOSE_KNOT);
         }
         place_freely(placement, like, block);
-        std::copy_n(block.z, block.count, placement.knot_z.data() + begin);
+        for (int i = 0; i < block.count; ++i) {
+            if (!placement.galaxies.empty() && is_beyond(placement, block.x[i], block.y[i], block.random[i]))
+                block.z[i] =
+                    star_height(placement, block.x[i], block.y[i], as_uniform(as_mix(block.random[i])));
+            placement.knot_z[begin + i] = block.z[i];
+        }
     });
     for (const Star& star : stars)
         placement.knot_z[star.body] = star_height(placement, star) + middle_plane(placement, star.x, star.y);
 }
 
-void flare_out(Placement& placement) {
-    const auto step = float(1 << placement.field_halvings);
-    for_each_pixel(placement.thickness, [&](std::int64_t x, std::int64_t y) {
-        *placement.thickness.at(x, y) *=
-            flare_at(placement, (float(x) + 0.5f) * step, (float(y) + 0.5f) * step);
-    });
+// The picture without its margin.
+Image inside_margin(const Image& light, std::int64_t margin_px) {
+    Image out = unfilled_image(light.width - 2 * margin_px, light.height - 2 * margin_px, light.channels);
+    for (std::int64_t y = 0; y < out.height; ++y)
+        std::copy_n(light.at(margin_px, y + margin_px), out.width * out.channels, out.at(0, y));
+    return out;
+}
+
+// How many times as thick as by itself the scene wants a disk to be.
+double times_as_thick(const StructureParams& params, double texels_per_unit, const Placement& placement) {
+    if (!(params.height > 0.0)) return 1.0;
+    StructureParams automatic = params;
+    automatic.height = 0.0;
+    return placement.height / placement_without_fields(placement.picture_width, placement.picture_height,
+                                                       automatic, texels_per_unit)
+                                  .height;
 }
 
 }  // namespace
@@ -111,21 +151,24 @@ Placement placement_without_fields(std::int64_t width, std::int64_t height, cons
     return placement;
 }
 
-Placement make_placement(const Image& brightest, const StructureParams& params, double texels_per_unit,
-                         bool flat, std::uint32_t seed, std::span<const Star> stars) {
-    Placement placement =
-        placement_without_fields(brightest.width, brightest.height, params, texels_per_unit);
+Placement make_placement(const Image& light, const StructureParams& params, double texels_per_unit, bool flat,
+                         std::uint32_t seed, std::span<const Star> stars) {
+    Placement placement = placement_without_fields(light.width, light.height, params, texels_per_unit);
+    const Image brightest = brightest_channel(light);
     placement.field_halvings = field_halvings(brightest);
     placement.seed = seed;
     // Fields follow what the picture shows, not how its margin fades.
     const Image mirrored = params.margin > 0.0 ? mirrored_margin(brightest, params.margin) : Image();
     const Image& shown = params.margin > 0.0 ? mirrored : brightest;
-    placement.thickness = thickness_field(shown, placement.height);
     if (params.kind == StructureKind::disk) {
-        placement.warp = params.warp * double(brightest.width);
-        placement.flare = params.flare;
-        flare_out(placement);
+        placement.warp = params.warp * double(light.width);
+        const auto margin_px =
+            std::llround(double(light.width) * params.margin / (1.0 + 2.0 * params.margin));
+        placement.galaxies = galaxies_of(margin_px > 0 ? inside_margin(light, margin_px) : light, params,
+                                         times_as_thick(params, texels_per_unit, placement),
+                                         light.width - 2 * margin_px, margin_px, seed);
     } else {
+        placement.thickness = thickness_field(shown, placement.height);
         stars = {};
     }
     if (params.kind == StructureKind::walls) {
@@ -134,8 +177,26 @@ Placement make_placement(const Image& brightest, const StructureParams& params, 
     }
     if (params.kind == StructureKind::sheet && flat)
         placement.relief = relief_field(shown, placement.depth, steepest_relief);
+    for (GalaxyBody& galaxy : placement.galaxies)
+        if (galaxy.hidden > 0.0f) set_cloud_depths(placement, galaxy);
     placement.knots = find_knots(brightest, around_stars(stars));
     set_knot_depths(placement, stars);
+    return placement;
+}
+
+Placement placement_to_count(const Texture& texture, const StructureParams& params) {
+    constexpr double enough_texels = 512.0 * 512.0;  // to fit a galaxy in
+    const Image& image = texture.image;
+    Placement placement = placement_without_fields(image.width, image.height, params, 0.0);
+    if (params.kind != StructureKind::disk) return placement;
+    Texture small;
+    small.alpha_from_light = texture.alpha_from_light;
+    small.image = at_area(image, std::min(enough_texels, double(image.width * image.height)), 1.0);
+    const auto share = params.margin / (1.0 + 2.0 * params.margin);
+    const auto margin_px = [&](std::int64_t width) { return std::llround(share * double(width)); };
+    placement.galaxies =
+        galaxies_of(inside_margin(picture_light(small, 0.0).light, margin_px(small.image.width)), params, 1.0,
+                    image.width - 2 * margin_px(image.width), margin_px(image.width), 0);
     return placement;
 }
 
@@ -154,12 +215,15 @@ DepthReach Placement::reach_at(float x, float y, std::uint32_t random, bool glow
     return {DepthReach::Of::walls, relief_at(x, y)};
 }
 
-float Placement::height_without_bulge(float x, float y) const {
-    return float(height) * flare_at(*this, x, y);
+const GalaxyBody& Placement::galaxy_at(float x, float y, float random) const {
+    for (const GalaxyBody& galaxy : galaxies)
+        if (galaxy.share.pixels.empty() || (random -= galaxy.value_at(galaxy.share, x, y)) < 0.0f)
+            return galaxy;
+    return galaxies.back();
 }
 
-float Placement::thickness_at(float x, float y) const {
-    return scale_height(x, y) / height_without_bulge(x, y);
+const GalaxyBody& Placement::galaxy_at(float x, float y, std::uint32_t random) const {
+    return galaxy_at(x, y, as_uniform(as_mix(random ^ 0x6a09e667u)));
 }
 
 float middle_plane(const Placement& placement, float x, float y) {
@@ -169,12 +233,15 @@ float middle_plane(const Placement& placement, float x, float y) {
     const glm::vec2 p = from_middle(placement, x, y);
     const float r = std::sqrt(p.x * p.x + p.y * p.y);
     const float beyond = std::max(0.0f, (r - begins) / (1.0f - begins));
-    return float(placement.warp) * beyond * beyond * (p.x * rises.x - p.y * rises.y) / std::max(r, 1e-6f);
+    const float rise = (p.x * rises.x - p.y * rises.y) / std::max(r, 1e-6f);
+    return float(placement.warp) * beyond * beyond * rise * placement.galaxies.front().cos_i;
 }
 
 float star_height(const Placement& placement, float x, float y, float u) {
     if (placement.kind != StructureKind::disk) return (2.0f * u - 1.0f) * float(placement.depth);
-    return logistic(u, placement.scale_height(x, y));
+    const GalaxyBody& galaxy = placement.galaxy_at(x, y, 0.5f);
+    const float in_disk = galaxy.value_at(galaxy.lit, x, y) * (1.0f - galaxy.value_at(galaxy.spheroid, x, y));
+    return star_depth(galaxy, x, y, u, in_disk);
 }
 
 float star_height(const Placement& placement, const Star& star) {

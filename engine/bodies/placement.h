@@ -3,21 +3,23 @@
 #pragma once
 
 #include <cstdint>
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <initializer_list>
-#include <limits>
 #include <span>
 #include <utility>
 #include <vector>
 
 #include "bodies/depth_kernel.h"
 #include "bodies/fields.h"
+#include "bodies/galaxy_body.h"
 #include "bodies/picture_light.h"
 #include "bodies/stars.h"
 #include "core/image.h"
 #include "core/shared_maths.h"
 #include "detect/peaks.h"
 #include "source/source.h"
+#include "source/texture.h"
 
 namespace astrosplat {
 
@@ -27,8 +29,10 @@ inline constexpr double disk_thickness = 0.018, sheet_thickness = 0.011;
 inline constexpr double widest_sigma_share = 0.45;
 /// The same of the glow between two walls, of how far each of them stands out.
 inline constexpr double widest_glow_share = 0.06;
-/// Where a disk is so many times as thick, those are as much wider.
-inline constexpr float wider_in_bulges[] = {1.3f, 1.7f};
+/// The same of a galaxy's disk, of the thickness of what is small in it (INCLINED 3).
+inline constexpr double widest_in_disk = 1.3;
+/// Sigma of the widest splats of its spheroid, texels.
+inline constexpr double widest_in_spheroid_px = 28.0;
 
 /// How far from the middle light of a shell lies: on its two walls, or anywhere between in a core or the sky.
 struct DepthReach {
@@ -43,12 +47,12 @@ struct Placement {
     double height = 0.0;  // texels, typical scale height H
     double depth = 0.0;   // texels, from the middle to the front of a relief or a wall
     double clumps = 1.0;
-    double flare = 0.0;  // of a disk: scale height at the rim over that in the middle, less 1
-    double warp = 0.0;   // texels, of a disk's plane at its rim
+    double warp = 0.0;  // texels, of a disk's plane at its rim
     std::uint32_t seed = 0;
     std::int64_t picture_width = 0, picture_height = 0;  // texels
     int field_halvings = 0;                              // of the size of the fields:
-    Image thickness;                                     // H(x, y), texels
+    std::vector<GalaxyBody> galaxies;                    // of a disk; else empty
+    Image thickness;                                     // H(x, y), texels, of other kinds
     Image relief;        // how far the middle of a sheet or a wall stands out, texels; empty: not at all
     FilledLight filled;  // of what has walls; empty: none
     Knots knots;         // each at one depth; first those around stars, by their bodies
@@ -57,10 +61,9 @@ struct Placement {
     /// Values of the fields at a place of the picture.
     float scale_height(float x, float y) const;
     float relief_at(float x, float y) const;
-    /// Texels, what the scale height of a disk would be there without its bulge: H and its flare.
-    float height_without_bulge(float x, float y) const;
-    /// The scale height over that: more than 1 where a disk is a bulge.
-    float thickness_at(float x, float y) const;
+    /// The galaxy that light at a place belongs to, by a random number where there are several; 0..1.
+    const GalaxyBody& galaxy_at(float x, float y, float random) const;
+    const GalaxyBody& galaxy_at(float x, float y, std::uint32_t random) const;
     /// Of a splat, by the shares of its column's light; `glow`: of the light between the walls, not details.
     DepthReach reach_at(float x, float y, std::uint32_t random, bool glow) const;
     /// Where a place at this height is among splats: from the middle of the picture, y up.
@@ -76,19 +79,22 @@ struct Placement {
 /// `texels_per_unit`: of the surface that carries the picture; `flat`: it is a plane, so a sheet takes its
 /// relief from the picture instead. What `stars` of a disk leave around themselves stays at their depth: a
 /// profile is never quite that of their Gaussians, and would be a row of splats in depth.
-Placement make_placement(const Image& brightest, const StructureParams& params, double texels_per_unit,
-                         bool flat, std::uint32_t seed, std::span<const Star> stars = {});
+Placement make_placement(const Image& light, const StructureParams& params, double texels_per_unit, bool flat,
+                         std::uint32_t seed, std::span<const Star> stars = {});
+
+/// What the number of splats depends on, besides the light: no fields, but the galaxies of a disk.
+Placement placement_to_count(const Texture& texture, const StructureParams& params);
 
 /// The part of it that no picture has to be looked at for.
 Placement placement_without_fields(std::int64_t width, std::int64_t height, const StructureParams& params,
                                    double texels_per_unit);
 
-/// Height of a disk's middle plane, texels: bent like an integral sign from .4 of the way to the rim on,
-/// which is half the longest side from the middle. 0 for other kinds.
+/// Height of a disk's middle plane over that of its galaxy, texels: bent like an integral sign from .4 of the
+/// way to the rim on, which is half the longest side from the middle. 0 for other kinds.
 float middle_plane(const Placement& placement, float x, float y);
 
 /// Height over the middle plane below which the share `u` (0..1) of the layer's stars lies, texels: of a disk
-/// from sech^2(z / H), of others even over the whole depth.
+/// by the galaxy's disk and spheroid, of others even over the whole depth.
 float star_height(const Placement& placement, float x, float y, float u);
 /// The same of a star of the picture; its share is a random number of the pixel that it is in.
 float star_height(const Placement& placement, const Star& star);
@@ -105,6 +111,9 @@ NoiseStack waves(const Placement& placement, std::uint32_t field,
 /// (DEPTH 4).
 inline constexpr double whole_gain = 1.6;
 
+/// What light of a galaxy is; of other kinds: all.
+enum class GalaxyFamily { all, disk, spheroid };
+
 /// How the splats of one band are made (DEPTH 3), lengths in texels.
 struct BandSplats {
     int index = 0, size = 0;  // of the band; of its sizes
@@ -114,24 +123,51 @@ struct BandSplats {
     float feature = 0.0f;
     float spread = 0.0f;  // about a sheet
     bool glow = false;    // fills what is between two walls, and hides little
-    float thickness_from = 0.0f,
-          thickness_to = std::numeric_limits<float>::infinity();  // H(x, y) / H where such splats belong
+    GalaxyFamily family = GalaxyFamily::all;
 };
-/// One size for each thickness: the widest splats of a disk grow with it, or those high up in a bulge would
-/// stand alone, as smoke.
+/// One size; of a galaxy one for its disk and one for its spheroid.
 std::vector<BandSplats> band_splats(const Band& band, bool coarsest, const Placement& placement);
 
 /// A block's splats with their distances from the middle of what they belong to.
 struct PlacedBlock : DepthBlock {
+    glm::vec2 even[size];     // 0..1, spread evenly over neighbours; of a spheroid's splats
     float distance[size];     // texels, >= 0
     std::int32_t knot[size];  // whose depth it has; or -1
 };
+
+/// Values of one splat of a block, to another's place.
+void copy_splat(const DepthBlock& from, int i, DepthBlock& to, int k);
+void copy_splat(const PlacedBlock& from, int i, PlacedBlock& to, int k);
+
+/// The share of the light at a place of the picture that such splats show, 0..1.
+float share_of(const Placement& placement, const BandSplats& splats, float x, float y);
+
+/// Calls place(galaxy, own) for each galaxy, with those splats of a block that are its own, and takes what it
+/// placed.
+template <class Block, class Place>
+void place_by_galaxy(const Placement& placement, Block& block, const Place& place) {
+    if (placement.galaxies.size() == 1) return place(placement.galaxies.front(), block);
+    for (const GalaxyBody& galaxy : placement.galaxies) {
+        Block own;
+        int from[Block::size];
+        for (int i = 0; i < block.count; ++i) {
+            if (&placement.galaxy_at(block.x[i], block.y[i], block.random[i]) != &galaxy) continue;
+            from[own.count] = i;
+            copy_splat(block, i, own, own.count++);
+        }
+        if (own.count > 0) place(galaxy, own);
+        for (int k = 0; k < own.count; ++k) copy_splat(own, k, block, from[k]);
+    }
+}
 
 /// Fills z and distance from x, y and random; splats of fine bands that belong to a knot take its depth.
 void place(const Placement& placement, const BandSplats& splats, PlacedBlock& block);
 
 /// The same without knots and without the relief or the walls that the depths are about.
 void place_freely(const Placement& placement, const BandSplats& splats, PlacedBlock& block);
+
+/// Fills z of what is small in a galaxy's disk, from x, y and random, as of the second finest band.
+void place_small_in_galaxy(const Placement& placement, const GalaxyBody& galaxy, PlacedBlock& block);
 
 /// Quantile `u` of sech^2(z / height) / (2 height).
 float logistic(float u, float height);

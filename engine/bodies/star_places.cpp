@@ -86,8 +86,8 @@ PlacedStars place_stars(const TexturedMesh& mesh, std::span<const SeenStar> star
     Heights heights{picture, depths.slab};
     if (!(depths.slab > 0.0))
         heights.placement =
-            make_placement(brightest_channel(picture_light(texture, depths.structure.border).light),
-                           depths.structure, surface.texels_per_unit(), surface.flat(), depths.seed);
+            make_placement(picture_light(texture, depths.structure.border).light, depths.structure,
+                           surface.texels_per_unit(), surface.flat(), depths.seed);
     placed.height_texels = double(picture.height);
     const double aspect = double(picture.width) / double(picture.height);
     glm::dvec3 toward(0.0);
@@ -97,7 +97,7 @@ PlacedStars place_stars(const TexturedMesh& mesh, std::span<const SeenStar> star
         if (!place || !(place->units_per_texel > 0.0f)) continue;
         const float from_middle = heights.from_middle(stars[i], place->units_per_texel);
         float z = from_middle + heights.middle(stars[i]);
-        if (place->approach > 0.0f) z = std::min(z, nearest_star / place->approach);
+        z = std::min(along_rays(*place, z), place->approach > 0.0f ? nearest_star / place->approach : z);
         placed.star.push_back(i);
         placed.position.push_back(place->position + place->rise * (z * place->units_per_texel));
         placed.distance.push_back(std::fabs(from_middle) * place->units_per_texel);

@@ -225,6 +225,11 @@ SurfacePlace UvSurface::seen_on(const Face& face, const glm::dvec3& weights) con
     return place;
 }
 
+float along_rays(const SurfacePlace& place, float z) {
+    constexpr float least = 0.2f;
+    return z / std::max(least, 1.0f + place.approach * z);
+}
+
 UvSurface surface_of(const TexturedMesh& mesh, std::uint32_t material) {
     const Texture& texture = mesh.textures[material];
     return {mesh.mesh,

@@ -23,6 +23,10 @@ struct SurfacePlace {
     float depth = 0.0f;     // scene units before the camera, if there is one
 };
 
+/// Depth along the rays to a camera, of one along parallel rays, texels: the projective map by which what is
+/// plane stays plane; never as far as the camera, and no farther than four times that behind the picture.
+float along_rays(const SurfacePlace& place, float z);
+
 class UvSurface {
   public:
     /// The faces of one material under a picture of width x height texels. `repeats`: the picture goes on

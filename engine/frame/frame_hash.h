@@ -15,7 +15,7 @@
 namespace astrosplat {
 
 /// Raised whenever the program's own arithmetic changes a pixel of any scene.
-inline constexpr int pixel_version = 3;
+inline constexpr int pixel_version = 4;
 
 /// Input files as they were when they were hashed.
 struct HashedFile {

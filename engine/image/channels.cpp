@@ -11,6 +11,7 @@ Image copied(const Image& image) {
 }
 
 Image brightest_channel(const Image& light) {
+    if (light.channels < 3) return channel_of(light, 0);
     return made_by_pixel(light, 1, [](const float* in, float* out) {
         *out = std::max({in[0], in[1], in[2]});
     });

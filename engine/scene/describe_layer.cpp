@@ -179,6 +179,22 @@ void describe_star_image(const Describer& d, StarsParams& stars) {
            within(0.1, 10000), slider(1, 200));
 }
 
+void describe_galaxy(const Describer& d, GalaxyParams& g) {
+    d(g.inclination, "inclination", "Inclination", "degrees",
+      "How far a galaxy's disk is turned from the picture's plane: 0 face-on, 90 edge-on; auto: found.",
+      or_auto(), within(0, 90));
+    d(g.position_angle, "position_angle", "Position angle", "degrees",
+      "Of its major axis in the picture, counter-clockwise from right; auto: found.", or_auto(),
+      within(-360, 360), slider(0, 180));
+    d(g.center, "center", "Galaxy's middle", "of the picture",
+      "Its middle, from the lower left corner; auto: found.", or_auto(), slider(0, 1));
+    d(g.near_side, "near_side", "Near side", "degrees",
+      "The direction of its nearer side, counter-clockwise from right; auto: where more dust is seen.",
+      or_auto(), within(-360, 360), slider(0, 360));
+    d(g.bulge, "bulge", "Bulge", "of the light", "Share of its spheroid; 1: no disk; auto: found.", or_auto(),
+      within(0, 1));
+}
+
 void describe_structure(const Describer& d, StructureParams& s) {
     const Describer bodies = d.only_with("kind", {"disk", "sheet", "walls"});
     d(s.kind, "kind", "Structure", "",
@@ -198,6 +214,11 @@ void describe_structure(const Describer& d, StructureParams& s) {
     disk(s.warp, "warp", "Warp", "of the width",
          "How far the disk's plane rises at the rim, and sinks on the other side.", within(-1, 1),
          slider(-0.1, 0.1));
+    describe_galaxy(disk, s.galaxy);
+    disk.list("galaxies", s.galaxies, describe_galaxy);
+    disk(s.spiral, "spiral", "Invented arms", "",
+         "How strongly arms are invented where a disk is seen from its edge, which no picture shows.",
+         within(0, 10), slider(0, 3));
     bodies(s.stars, "stars", "Stars apart", "",
            "Stars are found and become single splats; auto: unless prepare removes them.");
     bodies(s.dust, "dust", "Dust", "",

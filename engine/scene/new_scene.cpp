@@ -12,6 +12,7 @@
 #include <system_error>
 #include <vector>
 
+#include "bodies/galaxy_fit.h"
 #include "bodies/picture_light.h"
 #include "bodies/picture_splats.h"
 #include "core/error.h"
@@ -115,6 +116,9 @@ namespace {
 constexpr double longest_side = 10.0;  // scene units, of the built-in plane
 constexpr std::int64_t longest_px = 1920;
 constexpr double field_of_view = 40.0;  // degrees
+// Of what is as deep as it is wide: from near by its front would be large and its back small.
+constexpr double field_of_view_of_deep = 12.0;
+constexpr double deep_from_deg = 35.0;  // inclination
 constexpr double points_within = 0.8;   // of the distance to the picture's camera: no star is as near to it
 constexpr double wall_depth = 0.26;     // whole depth of a shell, of the picture's width
 
@@ -142,7 +146,7 @@ name = {name}
 meshes    = [ {{ mesh = "plane", texture = {picture} }} ]  # 10 units along its longer side
 uv        = "camera"              # depth goes along the rays to this camera, so that from there one sees the picture:
 uv_camera = {{ position = [0, {distance}, 0], up = [0, 0, -1], fov = {fov} }}
-structure = {{ kind = {kind}, clumps = {clumps}, {extent}, {opacity}, {edges}{stars} }}  # disk, sheet, walls; columns extrudes it
+structure = {{ kind = {kind}, {galaxies}clumps = {clumps}, {extent}, {opacity}, {edges}{stars} }}  # {because}
 stretch   = "auto"                # from data values to display values: asinh for FITS; or linear, asinh, log
 black     = "auto"                # data value shown as black
 white     = "auto"                # data value shown as white
@@ -232,6 +236,48 @@ std::vector<CameraKeyframe> flight(double distance, const PictureScene& scene, c
     return keyframes;
 }
 
+bool is_deep(const PictureScene& scene) {
+    return std::ranges::any_of(
+        scene.galaxies, [](const GalaxyParams& g) { return g.inclination.value_or(0.0) >= deep_from_deg; });
+}
+
+glm::dvec3 turned(const glm::dvec3& v, const glm::dvec3& about, double angle) {  // Rodrigues' formula
+    const double c = real::cos(angle), s = real::sin(angle);
+    return c * v + s * glm::cross(about, v) + (1.0 - c) * glm::dot(about, v) * about;
+}
+
+// Ten seconds at 24 frames/s about the first galaxy's own axes: the front, a turn until its disk is seen from
+// above, and down to its edge while the camera goes round. From above and from the edge less of it shines in
+// each pixel than in the picture of an inclined one, which the exposure makes up for (INCLINED 6).
+std::vector<CameraKeyframe> orbit(double distance, const PictureScene& scene, double height) {
+    constexpr int first = 30, above = 120, last = 230, step = 10;
+    constexpr double lowest_deg = 86.0, nearer = 0.22, round_deg = 70.0;
+    constexpr double stops_above = 0.9, stops_at_edge = 0.3;
+    const GalaxyParams& galaxy = scene.galaxies.front();
+    const double i = real::radians(*galaxy.inclination), near = real::radians(*galaxy.near_side);
+    const double width = height * double(scene.width_px) / double(scene.height_px);
+    const glm::dvec3 center((galaxy.center->x - 0.5) * width, 0.0, (0.5 - galaxy.center->y) * height);
+    const glm::dvec3 front(0.0, 1.0, 0.0), up_in_picture(0.0, 0.0, -1.0);
+    const glm::dvec3 axis = glm::cross(front, glm::dvec3(real::cos(near), 0.0, -real::sin(near)));
+    const glm::dvec3 normal = turned(front, axis, -i);
+    std::vector<CameraKeyframe> keyframes;
+    for (int frame = first; frame <= last; frame += step) {
+        const double over = real::smoothstep(std::min(1.0, double(frame - first) / (above - first)));
+        const double down = real::smoothstep(std::max(0.0, double(frame - above) / (last - above)));
+        const glm::dvec3 away = turned(front, axis, -over * i), up = turned(up_in_picture, axis, -over * i);
+        const auto lowered = [&](const glm::dvec3& v) {
+            const glm::dvec3 low = turned(v, glm::cross(up, away), real::radians(down * lowest_deg));
+            return turned(low, normal, real::radians(down * round_deg));
+        };
+        keyframes.push_back({frame, over * center + (1.0 - nearer * over) * distance * lowered(away),
+                             over * center, lowered(up),
+                             real::sin(i) * ((1.0 - down) * over * stops_above + down * stops_at_edge)});
+    }
+    keyframes.insert(keyframes.begin(), keyframes.front());
+    keyframes.front().frame = 1;
+    return keyframes;
+}
+
 // In scene units on the plane, no nearer to the picture's edges than a fifth of its sides.
 glm::dvec3 subject_in_scene(const PictureScene& scene, double height) {
     const double width = height * double(scene.width_px) / double(scene.height_px);
@@ -273,17 +319,17 @@ std::int64_t side_px(std::int64_t side, std::int64_t longest) {
 }
 
 // Sigma of the widest splats, of the picture's longest side.
-double widest_sigma(StructureKind structure, double margin) {
-    if (structure == StructureKind::disk)  // is thicker with its margin
-        return (1.0 + margin) * widest_sigma_share * disk_thickness * double(wider_in_bulges[1]);
+double widest_sigma(StructureKind structure, std::int64_t longest) {
+    if (structure == StructureKind::disk) return widest_in_spheroid_px / double(longest);
     const double in_sheet = widest_sigma_share * sheet_thickness;
     return structure == StructureKind::walls ? std::max(in_sheet, widest_glow_share * 0.5 * wall_depth)
                                              : in_sheet;
 }
 
 // Pixels at 1080 lines that the widest splats have from the front, and a little more: there they stay whole.
-double split_above_px(StructureKind structure, double longest_over_height, double margin) {
-    return 1.1 * 2.0 * double(radius_sigmas) * widest_sigma(structure, margin) * longest_over_height * 1080.0;
+double split_above_px(StructureKind structure, double longest_over_height, std::int64_t longest) {
+    return 1.1 * 2.0 * double(radius_sigmas) * widest_sigma(structure, longest) * longest_over_height *
+           1080.0;
 }
 
 // Low powers of brightness and a dense disk: its dim parts are then not as bright as its middle from the
@@ -292,6 +338,23 @@ double split_above_px(StructureKind structure, double longest_over_height, doubl
 std::string_view opacity_of(StructureKind structure) {
     if (structure == StructureKind::walls) return "opacity = 0.4, density = 0.4";
     return structure == StructureKind::disk ? "opacity = 0.42, density = 0.8" : "opacity = 0.55";
+}
+
+std::string galaxy_text(const GalaxyParams& g) {
+    return fmt::format(
+        "inclination = {:.1f}, position_angle = {:.1f}, center = [{:.4f}, {:.4f}], near_side = {:.0f}{}",
+        *g.inclination, *g.position_angle, g.center->x, g.center->y, *g.near_side,
+        g.bulge ? fmt::format(", bulge = {:.2f}", *g.bulge) : "");
+}
+
+// Of one its keys, of several a list.
+std::string galaxies_text(const PictureScene& scene) {
+    if (scene.galaxies.empty()) return "";
+    if (scene.galaxies.size() == 1) return galaxy_text(scene.galaxies.front()) + ", ";
+    std::string list;
+    for (const GalaxyParams& g : scene.galaxies)
+        list += fmt::format("{}{{ {} }}", list.empty() ? "" : ", ", galaxy_text(g));
+    return fmt::format("galaxies = [ {} ], ", list);
 }
 
 // How far bodies reach along the line of sight. What lies between the things of a field is a thin, flat
@@ -339,7 +402,45 @@ double margin_of(const PictureScene& scene) {
     constexpr std::int64_t most_px = std::int64_t{24} << 20;
     constexpr double lit = 0.1;
     if (scene.lit_rim <= lit || scene.width_px * scene.height_px > most_px) return 0.0;
-    return scene.structure == StructureKind::disk ? 0.08 : 0.16;  // a cloud does not grow dim outward
+    if (scene.structure != StructureKind::disk) return 0.16;  // a cloud does not grow dim outward
+    return is_deep(scene) ? 0.2 : 0.08;  // seen from above, an inclined one was cut off nearer to its middle
+}
+
+GalaxyParams as_params(const GalaxyPlane& plane, double height_over_width) {
+    const double axis_deg = real::degrees(plane.angle), near_deg = axis_deg + 90.0 * plane.near_side;
+    return {plane.inclination_deg, axis_deg, glm::dvec2(plane.x, 1.0 - plane.y / height_over_width),
+            near_deg - 360.0 * std::floor(near_deg / 360.0), std::nullopt};
+}
+
+// How the galaxies of a picture lie, and because of what.
+void find_galaxies(const Image& light, const Identification& found, PictureScene& scene) {
+    constexpr double least_sure = 0.15, most_differs_deg = 10.0;  // INCLINED 8
+    const double height_over_width = double(light.height) / double(light.width);
+    const bool round = scene.object == SkyObject::elliptical || scene.object == SkyObject::cluster;
+    const std::vector<GalaxyFit> fits =
+        round ? std::vector<GalaxyFit>{fit_galaxy(light)} : fit_galaxies(light);
+    for (const GalaxyFit& fit : fits) scene.galaxies.push_back(as_params(fit.plane, height_over_width));
+    const GalaxyFit& first = fits.front();
+    GalaxyParams& galaxy = scene.galaxies.front();
+    scene.galaxies_by = fits.size() > 1
+                            ? fmt::format("{} galaxies, by their light", fits.size())
+                            : fmt::format("its light: {:.0f} degrees{}", first.plane.inclination_deg,
+                                          first.inclination_differs_deg > most_differs_deg ? ", unsure" : "");
+    if (round) {
+        galaxy.inclination = 90.0;
+        galaxy.bulge = 1.0;
+        scene.galaxies_by = "a spheroid: no disk, as flat in depth as it is seen";
+    } else if (fits.size() == 1 && found.known && found.known->inclination_deg) {
+        galaxy.inclination = std::min(*found.known->inclination_deg, 90.0);
+        scene.galaxies_by =
+            fmt::format("{} in the table: {:.0f} degrees; its light: {:.0f}", found.known->names.front(),
+                        *galaxy.inclination, first.plane.inclination_deg);
+    } else if (fits.size() == 1 && is_unsure(first)) {
+        galaxy.inclination = 0.0;
+        scene.galaxies_by = "how it lies is unsure: in the picture's plane";
+    }
+    if (!round && *galaxy.inclination > 0.0 && first.near_sure < least_sure)
+        scene.galaxies_by += "; which side is nearer is a guess";
 }
 
 }  // namespace
@@ -369,6 +470,7 @@ PictureScene picture_scene(const fs::path& image, const PictureRequest& request,
     scene.structure = found.structure;
     scene.object = found.guesses.front().object;
     scene.subject = found.middle;
+    if (scene.structure == StructureKind::disk) find_galaxies(light, found, scene);
     scene.light_years_per_px =
         light_years_per_px(found, double(scene.width_px), double(scene.height_px)).value_or(0.0);
     return scene;
@@ -378,7 +480,8 @@ std::string picture_scene_text(const PictureScene& scene, const fs::path& file) 
     const std::string name = layer_name_of(scene.image.stem().string(), "picture");
     const std::int64_t longest = std::max(scene.width_px, scene.height_px);
     const double height = longest_side * double(scene.height_px) / double(longest);
-    const double distance = 0.5 * height / real::tan(real::radians(0.5 * field_of_view));
+    const double fov = is_deep(scene) ? field_of_view_of_deep : field_of_view;
+    const double distance = 0.5 * height / real::tan(real::radians(0.5 * fov));
     const double margin = margin_of(scene);
     std::string text = fmt::format(
         text_format, fmt::arg("title", name), fmt::arg("name", to_toml(name)),
@@ -388,11 +491,14 @@ std::string picture_scene_text(const PictureScene& scene, const fs::path& file) 
                                ? "\"1-240\""
                                : "\"1\"                  # such as \"1-240\" or \"1-100,120,200-300x2\""),
         fmt::arg("path", to_toml("frames/" + name + ".####.exr")),
-        fmt::arg("distance", fmt::format("{:.6g}", distance)),
-        fmt::arg("fov", fmt::format("{:.1f}", field_of_view)), fmt::arg("scale", scale_text(scene)),
-        fmt::arg("picture", to_toml(picture_path(scene.image, file))),
+        fmt::arg("distance", fmt::format("{:.6g}", distance)), fmt::arg("fov", fmt::format("{:.1f}", fov)),
+        fmt::arg("scale", scale_text(scene)), fmt::arg("picture", to_toml(picture_path(scene.image, file))),
         fmt::arg("kind", to_toml(std::string(name_of(scene.structure)))),
-        fmt::arg("split", std::lround(split_above_px(scene.structure, longest_side / height, margin))),
+        fmt::arg("galaxies", galaxies_text(scene)),
+        fmt::arg("because",
+                 scene.galaxies_by.empty() ? "disk, sheet, walls; columns extrudes it" : scene.galaxies_by),
+        fmt::arg("split", std::lround(split_above_px(scene.structure, longest_side / height,
+                                                     std::max(scene.width_px, scene.height_px)))),
         fmt::arg("points", fmt::format("{:.3g}", points_within * distance)),
         fmt::arg("edges", margin > 0.0 ? fmt::format("margin = {}", margin) : "border = 0.03"),
         fmt::arg("stars", scene.stars.empty() ? "" : ", stars = false"), fmt::arg("extent", extent_of(scene)),
@@ -402,8 +508,9 @@ std::string picture_scene_text(const PictureScene& scene, const fs::path& file) 
         const double frame_px = double(side_px(longest, longest));
         text += stars_text(scene, name, frame_px / double(longest), file);
     }
-    return scene.film ? text + animation_text(flight(distance, scene, subject_in_scene(scene, height)))
-                      : text;
+    if (!scene.film) return text;
+    return text + animation_text(is_deep(scene) ? orbit(distance, scene, height)
+                                                : flight(distance, scene, subject_in_scene(scene, height)));
 }
 
 }  // namespace astrosplat

@@ -28,6 +28,8 @@ struct PictureScene {
     std::int64_t width_px = 0, height_px = 0;  // the picture's
     StructureKind structure = StructureKind::disk;
     SkyObject object = SkyObject::galaxy;
+    std::vector<GalaxyParams> galaxies = {};  // how those of a disk lie, with all values
+    std::string galaxies_by = {};             // because of what
     double lit_rim = 0.0;     // share of its rim beyond which what it shows goes on, as far as one can see
     double mean_light = 0.0;  // 0..1 of the displayed white
     double light_years_per_px = 0.0;  // at the object's distance; 0: unknown

@@ -180,7 +180,7 @@ BodiesPlan plan_bodies(const SourceParams& source, std::vector<TexturedMesh> mes
     plan.structure.stars = finds_stars(source) ? StructureParams::Stars::yes : StructureParams::Stars::no;
     const bool read_whole = have_all_texels(plan.meshes, source.structure.most_texels);
     enlarge_small_pictures(plan.meshes, layer_name);
-    plan.times = add_margins(plan.meshes, plan.structure.margin, plan.structure.kind, layer_name);
+    plan.times = add_margins(plan.meshes, plan.structure, layer_name);
     if (std::ranges::all_of(plan.times, is_one)) plan.structure.margin = 0.0;
     reduce_to(plan.meshes, plan.structure.most_texels, layer_name);
     if (source.splats > 0)

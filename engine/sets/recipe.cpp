@@ -131,16 +131,30 @@ std::string lattice_lines(const SourceParams& source) {
     return size + line("buffer", source.buffer ? text_of(*source.buffer) : "auto");
 }
 
+std::string galaxy_line(const GalaxyParams& galaxy) {
+    const auto& [inclination, position_angle, center, near_side, bulge] = galaxy;
+    return line("galaxy", inclination, position_angle, range_text(center), near_side, bulge);
+}
+
+// How the galaxies of a disk lie.
+std::string galaxy_lines(const StructureParams& params) {
+    if (params.kind != StructureKind::disk) return "";
+    if (params.galaxies.empty()) return galaxy_line(params.galaxy) + line("spiral", params.spiral);
+    std::string text = line("spiral", params.spiral);
+    for (const GalaxyParams& galaxy : params.galaxies) text += galaxy_line(galaxy);
+    return text;
+}
+
 // Nothing for columns, so that sets made before there was a choice keep their names.
 std::string structure_lines(const SourceParams& source) {
-    const auto& [kind, height, depth, clumps, flare, warp, stars, dust, opacity, density, border, margin,
-                 most_texels] = source.structure;
+    [[maybe_unused]] const auto& [kind, height, depth, clumps, flare, warp, galaxy, galaxies, spiral, stars,
+                                  dust, opacity, density, border, margin, most_texels] = source.structure;
     if (kind == StructureKind::columns) return "";
     return line("structure", kind) + line("height", height) + line("depth", depth) + line("clumps", clumps) +
            line("stars", finds_stars(source)) +
            (flare != 0.0 || warp != 0.0 ? line("flare", flare) + line("warp", warp) : "") +
-           line("dust", dust) + line("opacity", opacity) + line("density", density) + line("border", border) +
-           (margin > 0.0 ? line("margin", margin) : "") +
+           galaxy_lines(source.structure) + line("dust", dust) + line("opacity", opacity) +
+           line("density", density) + line("border", border) + (margin > 0.0 ? line("margin", margin) : "") +
            (most_texels > 0 ? line("most texels", most_texels) : "");
 }
 

@@ -207,6 +207,16 @@ constexpr auto names_of(StructureKind) {
     return names_up_to<StructureKind::walls>("columns", "disk", "sheet", "walls");
 }
 
+/// How a galaxy lies in its picture; empty: found when its set is made.
+struct GalaxyParams {
+    std::optional<double> inclination = 0.0;  // degrees, 0 face-on .. 90 edge-on
+    std::optional<double> position_angle;     // of the major axis, degrees from right counter-clockwise
+    std::optional<glm::dvec2> center;         // u, v in the picture, 0..1
+    std::optional<double> near_side;          // direction that is nearer, degrees counter-clockwise
+    std::optional<double> bulge;              // share of the light that is the spheroid's
+    bool operator==(const GalaxyParams&) const = default;
+};
+
 struct StructureParams {
     enum class Stars { automatic, yes, no };
     friend constexpr auto names_of(Stars) { return names_up_to<Stars::no>("auto", "true", "false"); }
@@ -217,6 +227,9 @@ struct StructureParams {
     double clumps = 1.0;  // how strongly depths follow the noise
     double flare = 0.0;   // disk: scale height at the rim over that in the middle, less 1
     double warp = 0.0;    // disk: of the width, how far its plane rises at the rim, and sinks opposite
+    GalaxyParams galaxy;  // disk: the only one of its picture
+    std::vector<GalaxyParams> galaxies;  // disk: or several, each with a centre
+    double spiral = 1.0;                 // disk: of the arms invented where the picture cannot tell its plane
     Stars stars =
         Stars::automatic;  // found and made into single splats; automatic: unless prepare removes them
     std::optional<double>

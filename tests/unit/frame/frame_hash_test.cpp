@@ -424,7 +424,7 @@ TEST_F(FrameHashTest, TheRegionCounts) {
 
 TEST_F(FrameHashTest, CanonicalTextShowsWhatIsHashed) {
     const std::string text = this->text(scene());
-    EXPECT_EQ(text.rfind("pixels = 3\n", 0), 0u);
+    EXPECT_EQ(text.rfind("pixels = 4\n", 0), 0u);
     EXPECT_NE(text.find("\ncamera.position = [0.0, 0.0, 30.0]\n"), std::string::npos) << text;
     EXPECT_NE(text.find("\nlayer.stars.source.meshes.0.mesh = \"plane\"\n"), std::string::npos) << text;
     EXPECT_EQ(text.find(folder_.string()), std::string::npos) << text;

@@ -136,7 +136,10 @@ Bits flat_light() {
 
 Bits margins() {
     std::vector<TexturedMesh> meshes = lit("plane");
-    add_margins(meshes, 0.1, StructureKind::disk, "gas");
+    StructureParams params;
+    params.kind = StructureKind::disk;
+    params.margin = 0.1;
+    add_margins(meshes, params, "gas");
     return Bits() << meshes[0].textures[0].image;
 }
 

@@ -46,6 +46,7 @@ Scene defaults() {
     layer.source.meshes[0].mesh = "disk.obj";
     layer.source.texture.mask.resize(1);
     layer.source.texture.mask[0].any.resize(1);
+    layer.source.structure.galaxies.resize(1);
     layer.look.thickness.stops.resize(1);
     layer.look.noise.resize(1);
     scene.file = "scene.toml";

@@ -133,6 +133,38 @@ TEST(PictureScene, FilmsHoldThePictureAndThenFly) {
     }
 }
 
+// An inclined galaxy is seen along its own normal, then from its edge, and its light makes up for it.
+TEST(PictureScene, FilmsOfInclinedGalaxiesGoAboutTheirOwnAxes) {
+    PictureScene picture{"a.png", 1600, 1000, StructureKind::disk};
+    picture.galaxies = {{60.0, 20.0, glm::dvec2(0.55, 0.4), 110.0, {}}};
+    picture.galaxies_by = "its light: 60 degrees";
+    picture.film = true;
+    const Scene film = parsed(picture);
+    EXPECT_EQ(film.layers.at(0).source.structure.galaxy, picture.galaxies[0]);
+    EXPECT_LT(film.camera.fov, 20.0) << "seen from far away, as it is";
+    const double near = 110.0 * 3.14159265358979 / 180.0, i = 3.14159265358979 / 3.0;
+    const glm::dvec3 b(std::cos(near), 0.0, -std::sin(near));
+    const glm::dvec3 normal = glm::dvec3(0.0, std::cos(i), 0.0) - std::sin(i) * b;
+    const auto rise_deg = [&](double frame) {  // of the camera over the disk's plane
+        const CameraParams& camera = scene_at(film, frame).camera;
+        return std::asin(glm::dot(glm::normalize(*camera.position - camera.target), normal)) * 57.29577951;
+    };
+    EXPECT_NEAR(rise_deg(1.0), 30.0, 0.1) << "the picture";
+    EXPECT_NEAR(rise_deg(120.0), 90.0, 0.5);
+    EXPECT_NEAR(rise_deg(230.0), 4.0, 0.5);
+    EXPECT_EQ(scene_at(film, 1.0).output.exposure, 0.0);
+    EXPECT_GT(scene_at(film, 120.0).output.exposure, 0.5);
+    const glm::dvec3 center(0.5, 0.0, 0.625);
+    EXPECT_LT(glm::length(scene_at(film, 120.0).camera.target - center), 1e-3);
+}
+
+TEST(PictureScene, SeveralGalaxiesAreAList) {
+    PictureScene picture{"a.png", 1600, 1000, StructureKind::disk};
+    picture.galaxies = {{60.0, 20.0, glm::dvec2(0.25, 0.4), 110.0, {}},
+                        {10.0, 40.0, glm::dvec2(0.75, 0.6), 310.0, 1.0}};
+    EXPECT_EQ(parsed(picture).layers.at(0).source.structure.galaxies, picture.galaxies);
+}
+
 TEST(PictureScene, TheApertureOfDarkShellsStaysOpen) {
     PictureScene picture{"a.png", 1600, 1000, StructureKind::walls};
     picture.film = true;

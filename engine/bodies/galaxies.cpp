@@ -1,0 +1,171 @@
+#include "bodies/galaxies.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/vec2.hpp>
+
+#include "bodies/galaxy_fit.h"
+#include "core/log.h"
+#include "core/real.h"
+#include "core/shared_maths.h"
+#include "core/sorting.h"
+#include "image/blur.h"
+#include "image/channels.h"
+#include "image/resample.h"
+
+namespace astrosplat {
+namespace {
+
+// What the scene says of one galaxy, where it says it.
+GalaxyPlane as_told(const GalaxyParams& told, const GalaxyPlane& found, double height_over_width) {
+    GalaxyPlane plane = found;
+    if (told.inclination) plane.inclination_deg = std::min(*told.inclination, 89.9);
+    if (told.center) {
+        plane.x = told.center->x;
+        plane.y = (1.0 - told.center->y) * height_over_width;
+    }
+    if (told.position_angle) {
+        const double turns = *told.position_angle / 180.0;
+        plane.angle = real::pi * (turns - std::floor(turns));
+    }
+    if (told.near_side) {
+        const double from_axis = real::radians(*told.near_side) - plane.angle;
+        plane.near_side = real::sin(from_axis) >= 0.0 ? 1 : -1;
+    }
+    return plane;
+}
+
+bool needs_fit(const GalaxyParams& told) {
+    const bool flat = told.inclination && *told.inclination == 0.0;
+    return !flat && !(told.inclination && told.position_angle && told.center && told.near_side);
+}
+
+// Of a galaxy that lies in the picture's plane only its middle counts: the brightest place.
+GalaxyPlane face_on(const Image& to_fit) {
+    const Image smooth = gaussian_blur(to_fit, 0.02 * double(to_fit.width));
+    const auto top = std::ranges::max_element(smooth.pixels) - smooth.pixels.begin();
+    GalaxyPlane plane;
+    plane.x = (double(top % to_fit.width) + 0.5) / double(to_fit.width);
+    plane.y = (double(top / to_fit.width) + 0.5) / double(to_fit.width);
+    return plane;
+}
+
+void say(const GalaxyFit& fit) {
+    constexpr double least_sure = 0.15, most_differs_deg = 10.0;  // INCLINED 8
+    log_detail(fmt::format("a galaxy at {:.0f} degrees, its major axis at {:.0f}{}{}",
+                           fit.plane.inclination_deg, real::degrees(fit.plane.angle),
+                           fit.near_sure < least_sure ? ", which side is nearer is a guess" : "",
+                           fit.inclination_differs_deg > most_differs_deg ? ", unsure" : ""));
+}
+
+// Of the light where a galaxy is lit, how much details change it along the major axis (across it, a disk that
+// is seen from the edge changes by itself): 0 where it is as smooth as a lenticular's, 1 as a spiral's. The
+// 85th percentile of the logarithm's distance from the mean of two neighbours: .02 and .03 for a lenticular
+// and a comet, .08 to .25 for six spirals.
+double roughness_of(const Image& light, const GalaxyPlane& plane) {
+    constexpr std::int64_t width = 960;  // px: INCLINED's pictures
+    constexpr double apart_px = 10.0, noise_px = 2.0, lit_share = 0.25, share_of_top = 0.1;
+    constexpr double smooth = 0.02, rough = 0.1, least = 0.12;
+    const Image small =
+        light.width > width
+            ? reduced_by_area(light, width, std::max<std::int64_t>(1, light.height * width / light.width))
+            : copied(light);
+    Image logarithm = brightest_channel(small);
+    const Image wide = gaussian_blur(logarithm, 12.0);
+    for (float& value : logarithm.pixels) value = shared::as_log(value + 0.01f);
+    logarithm = gaussian_blur(logarithm, noise_px);
+    const auto lit = float(std::max(lit_share * percentile({wide.pixels.begin(), wide.pixels.end()}, 0.98),
+                                    share_of_top * double(std::ranges::max(wide.pixels))));
+    const auto dx = float(apart_px * real::cos(plane.angle)), dy = float(-apart_px * real::sin(plane.angle));
+    std::vector<float> away{0.0f};
+    for (std::int64_t y = 0; y < wide.height; ++y)
+        for (std::int64_t x = 0; x < wide.width; ++x) {
+            if (!(*wide.at(x, y) > lit)) continue;
+            const float px = float(x) + 0.5f, py = float(y) + 0.5f;
+            const float around =
+                0.5f * (bilinear(logarithm, 0, px + dx, py + dy) + bilinear(logarithm, 0, px - dx, py - dy));
+            away.push_back(std::fabs(*logarithm.at(x, y) - around));
+        }
+    return std::clamp((percentile({away.begin(), away.end()}, 0.85) - smooth) / (rough - smooth), least, 1.0);
+}
+
+// What the picture tells of each place of a galaxy: fields of the size of the light that was fitted.
+void set_fields(const Image& to_fit, double texels, double offset, GalaxyBody& body) {
+    constexpr float expected = 1.2f;                    // of the smooth galaxy's light, that is not above it
+    constexpr float dark_sky = 0.02f, sky_fade = 1.5f;  // INCLINED 2: where all is halo
+    constexpr double halo_from_deg = 35.0, halo_to_deg = 66.0;
+    const Image soft = gaussian_blur(to_fit, 6.0 * double(to_fit.width) / 960.0),
+                wide = gaussian_blur(to_fit, 12.0 * double(to_fit.width) / 960.0);
+    const double i = real::degrees(real::acos(double(body.cos_i)));
+    const auto halo = float(std::clamp((i - halo_from_deg) / (halo_to_deg - halo_from_deg), 0.0, 1.0));
+    body.spheroid = unfilled_image(to_fit.width, to_fit.height, 1);
+    body.excess = unfilled_image(to_fit.width, to_fit.height, 1);
+    body.lit = unfilled_image(to_fit.width, to_fit.height, 1);
+    for_each_pixel(to_fit, [&](std::int64_t x, std::int64_t y) {
+        const auto texel = [&](std::int64_t px) { return float((double(px) + 0.5) * texels + offset); };
+        const GalaxyLightAt light = light_at(body, texel(x), texel(y));
+        const float sum = light.disk + light.spheroid, f = light.spheroid / std::max(sum, 1e-12f);
+        const float sky = halo * std::clamp(sky_fade - *wide.at(x, y) / dark_sky, 0.0f, 1.0f);
+        *body.spheroid.at(x, y) = f + sky * (1.0f - f);
+        *body.excess.at(x, y) =
+            body.roughness * std::clamp(1.0f - expected * sum / (*soft.at(x, y) + 0.01f), 0.0f, 1.0f);
+        *body.lit.at(x, y) = std::clamp(*wide.at(x, y) / 0.06f, 0.0f, 1.0f);
+    });
+    body.to_field = float(1.0 / texels);
+    body.field_begins = float(offset);
+}
+
+}  // namespace
+
+std::vector<GalaxyPlane> galaxy_planes(const Image& light, const StructureParams& params) {
+    const Image to_fit = light_to_fit(light);
+    const double height_over_width = double(light.height) / double(light.width);
+    std::vector<GalaxyPlane> planes;
+    if (!params.galaxies.empty()) {
+        for (const GalaxyParams& told : params.galaxies) {
+            GalaxyParams whole = told;  // in a list each galaxy says where it is, and lies face-on by default
+            planes.push_back(as_told(whole, face_on(to_fit), height_over_width));
+        }
+        return planes;
+    }
+    if (!needs_fit(params.galaxy)) return {as_told(params.galaxy, face_on(to_fit), height_over_width)};
+    GalaxyFit fit = fit_galaxy(light);
+    if (!params.galaxy.inclination && is_unsure(fit)) {
+        log_detail("how the galaxy lies is unsure, so it lies in the picture's plane");
+        fit.plane.inclination_deg = 0.0;
+    } else {
+        say(fit);
+    }
+    return {as_told(params.galaxy, fit.plane, height_over_width)};
+}
+
+std::vector<GalaxyBody> galaxies_of(const Image& light, const StructureParams& params, double thicker,
+                                    std::int64_t width, std::int64_t margin_px, std::uint32_t seed) {
+    const std::vector<GalaxyPlane> planes = galaxy_planes(light, params);
+    const Image to_fit = light_to_fit(light);
+    std::vector<glm::dvec2> centers;
+    for (const GalaxyPlane& plane : planes) centers.push_back({plane.x, plane.y});
+    std::vector<Image> shares = shares_of(to_fit, centers);
+    const double texels = double(width) / double(to_fit.width);
+    std::vector<GalaxyBody> bodies;
+    for (std::size_t k = 0; k < planes.size(); ++k) {
+        const GalaxyParams& told = params.galaxies.empty() ? params.galaxy : params.galaxies[k];
+        const bool only_spheroid = told.bulge == 1.0;
+        const GalaxyLight gaussians = light_of_galaxy(to_fit, shares[k], planes[k], only_spheroid);
+        GalaxyBody body = make_galaxy_body(gaussians, planes[k],
+                                           {thicker, params.flare, told.bulge.value_or(-1.0)}, double(width));
+        body.center += float(margin_px);
+        const double roughness = roughness_of(light, planes[k]);
+        body.roughness = float(roughness);
+        set_fields(to_fit, texels, double(margin_px), body);
+        if (planes.size() > 1) body.share = std::move(shares[k]);
+        if (body.hidden > 0.0f)
+            invent_plane(body, params.spiral * roughness * double(body.hidden), seed + std::uint32_t(k));
+        bodies.push_back(std::move(body));
+    }
+    return bodies;
+}
+
+}  // namespace astrosplat

@@ -1,0 +1,24 @@
+// The galaxies of a picture as its scene says they lie, or as they are found. In: a picture's light and what
+// the scene says of its structure. Out: bodies, with what the picture tells of each place.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "bodies/galaxy_body.h"
+#include "core/image.h"
+#include "source/source.h"
+
+namespace astrosplat {
+
+/// How the galaxies of a picture lie: as many as the scene lists, or one; where it says "auto", as they are
+/// found in `light` (RGB, linear, >= 0, without a margin). Says at detail level what was found, and where
+/// that is a guess.
+std::vector<GalaxyPlane> galaxy_planes(const Image& light, const StructureParams& params);
+
+/// Their bodies, in texels of the picture with a margin of so many around `width` texels, which `light`
+/// shows, perhaps smaller. `thicker`: than they are by themselves.
+std::vector<GalaxyBody> galaxies_of(const Image& light, const StructureParams& params, double thicker,
+                                    std::int64_t width, std::int64_t margin_px, std::uint32_t seed);
+
+}  // namespace astrosplat

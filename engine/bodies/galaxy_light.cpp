@@ -1,0 +1,441 @@
+#include "bodies/galaxy_light.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/vec2.hpp>
+#include <queue>
+#include <tuple>
+#include <utility>
+
+#include "core/parallel.h"
+#include "core/real.h"
+#include "core/shared_maths.h"
+#include "core/sorting.h"
+#include "image/blur.h"
+#include "image/channels.h"
+#include "image/resample.h"
+
+namespace astrosplat {
+namespace {
+
+constexpr double edge_on_ratio = 0.13;      // of a disk that is seen from its edge (INCLINED 1)
+constexpr std::int64_t fitted_width = 240;  // px
+
+// What is compact, by the median around it.
+bool stands_out(const Image& grey, const Image& median, std::int64_t x, std::int64_t y) {
+    const auto brighter = [&](std::int64_t i, std::int64_t j) {
+        return i >= 0 && j >= 0 && i < grey.width &&
+               j<grey.height&& * grey.at(i, j)> 1.35f * *median.at(i, j) + 0.02f;
+    };
+    return brighter(x, y) || brighter(x - 1, y) || brighter(x + 1, y) || brighter(x, y - 1) ||
+           brighter(x, y + 1);
+}
+
+Image medians_about(const Image& grey, std::int64_t reach_px) {
+    Image medians = grey;
+    for_each_pixel(grey, [&](std::int64_t x, std::int64_t y) {
+        std::vector<float> values;
+        for_each_about(grey, x, y, reach_px,
+                       [&](std::int64_t i, std::int64_t j) { values.push_back(*grey.at(i, j)); });
+        *medians.at(x, y) = median(values);
+    });
+    return medians;
+}
+
+}  // namespace
+
+Image light_to_fit(const Image& light) {
+    const std::int64_t width = std::min(fitted_width, light.width);
+    const std::int64_t height = std::max<std::int64_t>(1, light.height * width / light.width);
+    const int green = std::min(1, light.channels - 1), blue = std::min(2, light.channels - 1);
+    const Image grey = made_by_pixel(
+        reduced_by_area(light, width, height), 1,
+        [&](const float* c, float* to) { *to = 0.6f * c[0] + 0.3f * c[green] + 0.1f * c[blue]; });
+    const Image medians = medians_about(grey, 4), wide = gaussian_blur(grey, 6.0);
+    const float core = 0.6f * std::ranges::max(wide.pixels);
+    Image clean = grey;
+    for_each_pixel(grey, [&](std::int64_t x, std::int64_t y) {
+        if (*wide.at(x, y) < core && stands_out(grey, medians, x, y)) *clean.at(x, y) = *medians.at(x, y);
+    });
+    return clean;
+}
+
+std::vector<Image> shares_of(const Image& to_fit, const std::vector<glm::dvec2>& centers) {
+    std::vector<Image> shares(centers.size(), make_image(to_fit.width, to_fit.height, 1, 1.0f));
+    if (centers.size() < 2) return shares;
+    constexpr double smooth = 0.03, soft = 0.008;  // of the width: of the light, of the shares' edges
+    const auto width = double(to_fit.width);
+    const Image light = gaussian_blur(to_fit, smooth * width);
+    using Place = std::tuple<float, std::int64_t, std::size_t>;  // its light, pixel, whose
+    std::priority_queue<Place> next;
+    for (std::size_t k = 0; k < centers.size(); ++k) {
+        const auto x = std::clamp<std::int64_t>(std::int64_t(centers[k].x * width), 0, to_fit.width - 1);
+        const auto y = std::clamp<std::int64_t>(std::int64_t(centers[k].y * width), 0, to_fit.height - 1);
+        next.emplace(*light.at(x, y), -(y * to_fit.width + x), k);
+    }
+    for (Image& share : shares) std::ranges::fill(share.pixels, 0.0f);
+    std::vector<bool> taken(to_fit.pixels.size(), false);
+    while (!next.empty()) {
+        const auto [level, negative, owner] = next.top();
+        next.pop();
+        const std::int64_t pixel = -negative, x = pixel % to_fit.width, y = pixel / to_fit.width;
+        if (taken[pixel]) continue;
+        taken[pixel] = true;
+        *shares[owner].at(x, y) = 1.0f;
+        for_each_about(light, x, y, 1, [&](std::int64_t i, std::int64_t j) {
+            if (i == x || j == y) next.emplace(*light.at(i, j), -(j * to_fit.width + i), owner);
+        });
+    }
+    for (Image& share : shares) share = gaussian_blur(share, soft * width);
+    return shares;
+}
+
+double ratio_of_inclination(double degrees) {
+    constexpr double thin2 = edge_on_ratio * edge_on_ratio;
+    const double c = real::cos(real::radians(degrees));
+    return std::sqrt(c * c * (1.0 - thin2) + thin2);
+}
+
+double inclination_of_ratio(double ratio) {
+    constexpr double thin2 = edge_on_ratio * edge_on_ratio;
+    const double cos2 = std::clamp((ratio * ratio - thin2) / (1.0 - thin2), 0.0, 1.0);
+    return real::degrees(real::acos(std::sqrt(cos2)));
+}
+
+Ellipses ellipses_of(const GalaxyPlane& plane, std::int64_t width) {
+    const auto w = double(width);
+    return bounded({plane.x * w - 0.5, plane.y * w - 0.5, -plane.angle,
+                    ratio_of_inclination(plane.inclination_deg), 0.8});
+}
+
+Ellipses bounded(Ellipses e) {
+    e.disk = std::clamp(e.disk, 0.04, 0.98);
+    e.spheroid = std::clamp(e.spheroid, std::max(0.5, std::min(e.disk + 0.1, 0.95)), 1.0);
+    return e;
+}
+
+Ellipses at_half_size(Ellipses e) {
+    e.x = 0.5 * (e.x + 0.5) - 0.5;
+    e.y = 0.5 * (e.y + 0.5) - 0.5;
+    return e;
+}
+
+Image at_half_size(const Image& image) {
+    const auto half = [](std::int64_t px) { return std::max<std::int64_t>(1, px / 2); };
+    return reduced_by_area(image, half(image.width), half(image.height));
+}
+
+namespace {
+
+constexpr double darker = 0.35;  // weight of what is darker than the sum: dust only takes away
+
+double power_of_three_halves(double x) { return x * std::sqrt(x); }
+
+}  // namespace
+
+double misfit(const Ellipses& e, const Image& light, const Image& share, const std::vector<double>& sigmas) {
+    const GaussianBasis basis = basis_of(e, light, sigmas);
+    const std::size_t pixels = light.pixels.size();
+    const std::vector<bool> all(std::size_t(basis.count), true);
+    std::vector<double> weights(pixels), model, away(pixels);
+    for (std::size_t p = 0; p < pixels; ++p)
+        weights[p] = double(share.pixels[p]) / power_of_three_halves(double(light.pixels[p]) + 0.03);
+    for (int turn = 0; turn < 3; ++turn) {
+        model = sum_of(basis, nonnegative_amplitudes(basis, light, weights, all));
+        for (std::size_t p = 0; p < pixels; ++p) {
+            const double r = away[p] = (double(light.pixels[p]) - model[p]) / (model[p] + 0.02);
+            weights[p] = double(share.pixels[p]) / power_of_three_halves(model[p] + 0.03) *
+                         (r < 0.0 ? darker : 1.0) / (1.0 + (r / 0.4) * (r / 0.4));
+        }
+    }
+    double sum = 0.0, whole = 1e-300;
+    for (std::size_t p = 0; p < pixels; ++p) {
+        const double weight = double(share.pixels[p]) * std::sqrt(model[p] + 0.01);
+        const double off = power_of_three_halves(std::min(std::fabs(away[p]), 1.5));
+        sum += off * (away[p] < 0.0 ? darker : 1.0) * weight;
+        whole += weight;
+    }
+    return sum / whole;
+}
+
+namespace {
+
+constexpr double shape_tells = 75.0;    // degrees, from which on disk and spheroid differ in shape
+constexpr double usual_spheroid = 0.7;  // axis ratio of its own, where it is not seen
+
+// The sum for the light as it is, core included.
+struct FittedSum {
+    std::vector<double> sigmas, amplitudes, model;  // px; of disk, spheroid, constant; of every pixel
+    Ellipses ellipses;                              // their ratios, where the shape cannot tell them
+};
+
+// Parts the families by size: the disk's rms width times .4 lies between them (INCLINED 2).
+void allow_by_size(const FittedSum& found, double width, std::vector<bool>& allowed) {
+    const std::size_t n = found.sigmas.size();
+    double all = 1e-300, square = 0.0;
+    for (std::size_t k = 0; k < n; ++k) {
+        const double s = found.sigmas[k], seen = std::min(s, 0.4 * width);
+        const double flux = found.amplitudes[k] * seen * seen;
+        all += flux;
+        square += flux * seen * seen;
+    }
+    const double parting = 0.4 * std::sqrt(square / all);
+    for (std::size_t k = 0; k < n; ++k) {
+        allowed[k] = found.sigmas[k] > parting;
+        allowed[n + k] = found.sigmas[k] < 0.85 * parting;
+    }
+}
+
+// `dusty`: what is darker counts little.
+FittedSum fitted_sum(Ellipses e, const Image& light, const Image& share, bool dusty) {
+    const auto width = double(light.width);
+    FittedSum found{geometric(0.9, 0.6 * width, 16), {}, {}, e};
+    const double i = real::radians(inclination_of_ratio(e.disk)), s = real::sin(i), c = real::cos(i);
+    const bool by_size = inclination_of_ratio(e.disk) < shape_tells;
+    if (by_size) found.ellipses.spheroid = std::sqrt(usual_spheroid * usual_spheroid * s * s + c * c);
+    const GaussianBasis basis = basis_of(found.ellipses, light, found.sigmas);
+    std::vector<bool> allowed(std::size_t(basis.count), true);
+    std::vector<double> weights(light.pixels.size());
+    for (int turn = 0; turn < (by_size ? 2 : 1); ++turn) {
+        for (std::size_t p = 0; p < weights.size(); ++p)
+            weights[p] = double(share.pixels[p]) / (double(light.pixels[p]) + 0.02);
+        for (int round = 0; round < 4; ++round) {
+            found.amplitudes = nonnegative_amplitudes(basis, light, weights, allowed);
+            found.model = sum_of(basis, found.amplitudes);
+            for (std::size_t p = 0; p < weights.size(); ++p) {
+                const bool dark = double(light.pixels[p]) < found.model[p];
+                weights[p] = double(share.pixels[p]) / (found.model[p] + 0.02) * (dusty && dark ? 0.3 : 1.0);
+            }
+        }
+        allow_by_size(found, width, allowed);
+    }
+    return found;
+}
+
+// Optical depth: darker than the model and than what is around, where the galaxy shines.
+Image dust_map(const Image& light, const std::vector<double>& model, const Image& share) {
+    const auto width = double(light.width);
+    Image logarithm = gaussian_blur(light, 0.6);
+    for (float& value : logarithm.pixels) value = shared::as_log(value + 0.01f);
+    const Image near = gaussian_blur(logarithm, 0.02 * width), far = gaussian_blur(logarithm, 0.04 * width);
+    const double lit = 0.12 * percentile(model, 0.995);
+    Image dust = make_image(light.width, light.height, 1);
+    for (std::size_t p = 0; p < dust.pixels.size(); ++p) {
+        if (model[p] <= lit || share.pixels[p] <= 0.5f) continue;
+        const float below = shared::as_log(float(model[p]) + 0.01f) - logarithm.pixels[p] + 0.15f;
+        const float around = std::max(near.pixels[p], far.pixels[p]) - logarithm.pixels[p];
+        dust.pixels[p] = std::clamp(std::min(below, around) - 0.05f, 0.0f, 2.0f);
+    }
+    return dust;
+}
+
+// The sum without the light that dust takes, and the dust.
+struct SumAndDust {
+    FittedSum sum;
+    Image dust;
+};
+SumAndDust sum_and_dust(const Ellipses& e, const Image& light, const Image& share) {
+    const Image first = dust_map(light, fitted_sum(e, light, share, true).model, share);
+    Image undimmed = share;
+    for (std::size_t p = 0; p < undimmed.pixels.size(); ++p)
+        if (first.pixels[p] >= 0.03f) undimmed.pixels[p] = 0.0f;
+    FittedSum sum = fitted_sum(e, light, undimmed, false);
+    Image dust = dust_map(light, sum.model, share);
+    return {std::move(sum), std::move(dust)};
+}
+
+// A lane is the near half of a ring of dust: v = R cos i sqrt(1 - (u / R)^2) + t u.
+struct Lane {
+    double angle = 0.0;        // of the major axis
+    double inclination = 0.0;  // degrees
+    double radius = 0.0;       // px
+    double spread = 9.0;       // of the dust about it, of the radius
+};
+
+struct DustAt {
+    double u, v, depth;
+};
+
+// Within so many px of the major axis; by |u|.
+std::vector<DustAt> dust_near_axis(const Ellipses& e, const Image& dust, double within_px) {
+    std::vector<DustAt> points;
+    for (std::int64_t y = 0; y < dust.height; ++y)
+        for (std::int64_t x = 0; x < dust.width; ++x) {
+            const AlongEllipses a = along(e, double(x), double(y));
+            if (*dust.at(x, y) > 0.0f && std::fabs(a.v) < within_px &&
+                std::fabs(a.u) < 0.45 * double(dust.width))
+                points.push_back({a.u, a.v, double(*dust.at(x, y))});
+        }
+    std::ranges::sort(points, {}, [](const DustAt& p) { return std::fabs(p.u); });
+    return points;
+}
+
+// The lane through these, by least squares; false where there are too few.
+bool fit_lane(const std::vector<DustAt>& points, Lane& lane) {
+    double all = 0.0, sum = 0.0;
+    for (const DustAt& p : points) all += p.depth;
+    if (all < 3.0) return false;
+    for (const DustAt& p : points) {
+        if ((sum += p.depth) < 0.95 * all) continue;
+        lane.radius = 1.05 * std::fabs(p.u) + 1.0;
+        break;
+    }
+    const auto ring = [&](double u) {
+        return std::sqrt(std::max(0.0, 1.0 - (u / lane.radius) * (u / lane.radius)));
+    };
+    double rr = 0.0, ru = 0.0, uu = 0.0, rv = 0.0, uv = 0.0, square = 0.0;
+    for (const auto& [u, v, d] : points) {
+        const double r = ring(u);
+        rr += d * r * r, ru += d * r * u, uu += d * u * u, rv += d * r * v, uv += d * u * v;
+    }
+    const double whole = rr * uu - ru * ru;
+    if (!(std::fabs(whole) > 0.0)) return false;
+    const double height = (rv * uu - uv * ru) / whole, slope = (rr * uv - ru * rv) / whole;
+    for (const auto& [u, v, d] : points) {
+        const double rest = v - height * ring(u) - slope * u;
+        square += d * rest * rest;
+    }
+    lane.spread = std::sqrt(square / all) / lane.radius;
+    lane.angle += 0.7 * real::atan2(slope, 1.0);
+    lane.inclination = real::degrees(real::acos(std::min(1.0, std::fabs(height) / lane.radius)));
+    return true;
+}
+
+double degrees_between_axes(double a, double b) {
+    const double turns = (a - b) / real::pi;
+    return std::fabs(turns - std::round(turns)) * 180.0;
+}
+
+double lost_share(const Image& dust, const std::vector<double>& model) {
+    double lost = 0.0, all = 1e-300;
+    for (std::size_t p = 0; p < model.size(); ++p) {
+        lost += model[p] * (1.0 - double(shared::as_exp(-dust.pixels[p])));
+        all += model[p];
+    }
+    return lost / all;
+}
+
+std::optional<Lane> find_lane(const Ellipses& e, const SumAndDust& seen) {
+    constexpr double least_deg = 72.0, most_turn_deg = 12.0, most_spread = 0.03, least_lost = 0.008;
+    if (inclination_of_ratio(e.disk) <= least_deg) return {};
+    const auto width = double(seen.dust.width);
+    Lane lane{e.angle};
+    Ellipses turned = e;
+    double narrow = 0.12 * width;
+    for (int turn = 0; turn < 8; ++turn, narrow *= 0.6) {
+        turned.angle = lane.angle;
+        if (!fit_lane(dust_near_axis(turned, seen.dust, std::max(narrow, 0.03 * width)), lane)) return {};
+    }
+    if (lane.inclination > least_deg && degrees_between_axes(lane.angle, e.angle) < most_turn_deg &&
+        lane.spread < most_spread && lost_share(seen.dust, seen.sum.model) > least_lost)
+        return lane;
+    return {};
+}
+
+// By the light that dust takes away on either side of the major axis: positive where v is.
+double more_dust_below(const Ellipses& e, const SumAndDust& seen) {
+    const double q = std::max(e.disk, 0.1), reach = 0.3 * double(seen.dust.width);
+    double below = 0.0, above = 0.0;
+    for (std::int64_t y = 0; y < seen.dust.height; ++y)
+        for (std::int64_t x = 0; x < seen.dust.width; ++x) {
+            const AlongEllipses a = along(e, double(x), double(y));
+            if (std::hypot(a.u, a.v / q) >= reach || std::fabs(a.v) <= 0.3 * q * std::fabs(a.u)) continue;
+            const double taken = seen.sum.model[y * seen.dust.width + x] *
+                                 (1.0 - double(shared::as_exp(-*seen.dust.at(x, y))));
+            (a.v > 0.0 ? below : above) += taken;
+        }
+    return (below - above) / (below + above + 1e-9);
+}
+
+std::vector<GaussianLight> gaussians(const FittedSum& sum, std::size_t first, double ratio, double width) {
+    std::vector<GaussianLight> found;
+    for (std::size_t k = 0; k < sum.sigmas.size(); ++k) {
+        const double sigma = sum.sigmas[k] / width;
+        if (sum.amplitudes[first + k] > 0.0)
+            found.push_back({sigma, sigma * sigma * ratio * sum.amplitudes[first + k]});
+    }
+    return found;
+}
+
+double flux_within_picture(const std::vector<GaussianLight>& gaussians) {
+    double sum = 0.0;
+    for (const GaussianLight& g : gaussians) sum += g.flux * std::min(1.0, 0.25 / (g.sigma * g.sigma));
+    return sum;
+}
+
+// Seen from the edge, how thick a disk and how round a spheroid is shows in the light.
+Ellipses with_ratios_seen(Ellipses e, const Image& light, const Image& share) {
+    const Image half = at_half_size(light), half_share = at_half_size(share);
+    const std::vector<double> sigmas = geometric(0.8, 0.55 * double(light.width), 12);
+    Ellipses best = e;
+    double least = 1e300;
+    const auto try_ratios = [&](double disk, double spheroid) {
+        e.disk = disk;
+        e.spheroid = spheroid;
+        const double loss = misfit(at_half_size(bounded(e)), half, half_share, sigmas);
+        if (loss < least) least = loss, best = bounded(e);
+    };
+    for (const double disk : {0.06, 0.1, 0.16, 0.25, 0.38})
+        for (const double spheroid : {0.5, 0.65, 0.8, 1.0}) try_ratios(disk, spheroid);
+    const Ellipses about = best;
+    for (const double times : {0.8, 0.89, 1.12, 1.26}) try_ratios(times * about.disk, about.spheroid);
+    return best;
+}
+
+// Of light that is round in space, both families are alike.
+Ellipses as_one_spheroid(Ellipses e, const Image& light, const Image& share) {
+    const Image half = at_half_size(light), half_share = at_half_size(share);
+    const std::vector<double> sigmas = geometric(0.8, 0.55 * double(light.width), 12);
+    double least = 1e300, best = 1.0;
+    for (double ratio = 0.3; ratio <= 1.0; ratio += 0.05) {
+        e.disk = e.spheroid = ratio;
+        const double loss = misfit(at_half_size(e), half, half_share, sigmas);
+        if (loss < least) least = loss, best = ratio;
+    }
+    e.disk = e.spheroid = best;
+    return e;
+}
+
+}  // namespace
+
+DustSeen dust_seen(const Ellipses& e, const Image& to_fit, const Image& share) {
+    const SumAndDust seen = sum_and_dust(e, to_fit, share);
+    DustSeen found;
+    Ellipses turned = e;
+    if (const std::optional<Lane> lane = find_lane(e, seen)) {
+        found.angle = turned.angle = lane->angle;
+        found.inclination_deg = lane->inclination;
+        found.ring_px = lane->radius;
+    }
+    found.more_below = more_dust_below(turned, seen);
+    return found;
+}
+
+GalaxyLight light_of_galaxy(const Image& to_fit, const Image& share, const GalaxyPlane& plane,
+                            bool only_spheroid) {
+    const auto width = double(to_fit.width);
+    Ellipses e = ellipses_of(plane, to_fit.width);
+    if (only_spheroid)
+        e = as_one_spheroid(e, to_fit, share);
+    else if (plane.inclination_deg >= shape_tells)
+        e = with_ratios_seen(e, to_fit, share);
+    const SumAndDust seen = sum_and_dust(e, to_fit, share);
+    const FittedSum& sum = seen.sum;
+    GalaxyLight found;
+    found.disk_ratio = e.disk;
+    found.spheroid_ratio = sum.ellipses.spheroid;
+    found.disk = gaussians(sum, 0, found.disk_ratio, width);
+    found.spheroid = gaussians(sum, sum.sigmas.size(), found.spheroid_ratio, width);
+    if (only_spheroid) {
+        found.spheroid.insert(found.spheroid.end(), found.disk.begin(), found.disk.end());
+        found.disk.clear();
+    } else if (const std::optional<Lane> lane = find_lane(e, seen)) {
+        found.ring = lane->radius / width;
+    }
+    const double disk = flux_within_picture(found.disk), ball = flux_within_picture(found.spheroid);
+    found.bulge = ball / std::max(1e-300, disk + ball);
+    return found;
+}
+
+}  // namespace astrosplat

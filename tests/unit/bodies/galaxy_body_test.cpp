@@ -1,0 +1,203 @@
+#include "bodies/galaxy_body.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "bodies/galaxies.h"
+#include "bodies/picture_splats.h"
+#include "bodies/placement.h"
+#include "core/shared_maths.h"
+#include "image/channels.h"
+#include "support/painted_picture.h"
+
+namespace astrosplat {
+namespace {
+
+constexpr double degree = 3.14159265358979 / 180.0;
+
+GalaxyPlane plane_of(double inclination_deg, double angle_deg = 30.0, int near_side = 1) {
+    return {0.5, 0.4, angle_deg * degree, inclination_deg, near_side};
+}
+
+GalaxyBody body_of(double inclination_deg, double angle_deg = 30.0, int near_side = 1) {
+    GalaxyLight light;
+    light.disk = {{0.05, 1.0}, {0.15, 2.0}};
+    light.spheroid = {{0.03, 1.0}};
+    light.disk_ratio = std::cos(inclination_deg * degree);
+    light.spheroid_ratio = 0.8;
+    light.bulge = 0.25;
+    return make_galaxy_body(light, plane_of(inclination_deg, angle_deg, near_side), {}, 1000.0);
+}
+
+TEST(GalaxyBody, PlacesGoToItsDiskAndBack) {
+    for (const int near_side : {1, -1}) {
+        const GalaxyBody body = body_of(62.0, 130.0, near_side);
+        const glm::vec3 p(610.0f, 333.0f, -41.0f), back = body.in_picture(body.in_disk(p.x, p.y, p.z));
+        for (int k = 0; k < 3; ++k) EXPECT_NEAR(back[k], p[k], 1e-3f);
+        EXPECT_NEAR(glm::dot(body.major, body.near), 0.0f, 1e-6f);
+        // A place on the near side of the plane is nearer to the viewer.
+        const glm::vec3 near = body.in_picture({0.0f, 100.0f, 0.0f});
+        EXPECT_NEAR(near.z, 100.0 * std::sin(62.0 * degree), 1e-3);
+        EXPECT_GT(glm::dot(glm::vec2(near) - body.center, body.near), 0.0f);
+    }
+    // From right, 30 degrees counter-clockwise; rows count down.
+    EXPECT_NEAR(body_of(40.0).major.y, -0.5f, 1e-6f);
+    EXPECT_NEAR(body_of(40.0).near.x, -0.5f, 1e-6f);
+}
+
+// A Gaussian in space along a line of sight is a Gaussian: against sums over its depth.
+TEST(GalaxyBody, DepthsAreThoseOfGaussiansInSpace) {
+    const double c = std::cos(70.0 * degree), s = std::sin(70.0 * degree);
+    const GalaxyBody body = body_of(70.0);
+    for (const GalaxyPart part : {GalaxyPart::disk, GalaxyPart::spheroid}) {
+        for (const LineGaussian& g : body.parts[std::size_t(part)]) {
+            const double S2 = 0.5 / static_cast<double>(g.u2), V = 0.5 / static_cast<double>(g.v2);
+            const double t2 = (V - S2 * c * c) / (s * s), v = 37.0;
+            double all = 0.0, mean = 0.0, square = 0.0;
+            for (double z = -900.0; z <= 900.0; z += 0.5) {
+                const double y = v * c + z * s, h = z * c - v * s;
+                const double density = std::exp(-0.5 * (y * y / S2 + h * h / t2));
+                all += density, mean += density * z, square += density * z * z;
+            }
+            mean /= all;
+            EXPECT_NEAR(v * static_cast<double>(g.slope), mean, 1e-3 * std::fabs(mean) + 1e-3);
+            EXPECT_NEAR(g.deviation, std::sqrt(square / all - mean * mean), 2e-3 * g.deviation);
+        }
+    }
+}
+
+TEST(GalaxyBody, WhatIsSmallLiesInItsPlane) {
+    for (const double inclination : {0.0, 45.0, 75.0}) {
+        const GalaxyBody body = body_of(inclination);
+        double square = 0.0;
+        constexpr int count = 2000;
+        for (int i = 0; i < count; ++i) {
+            const auto random = [&](std::uint32_t k) {
+                return shared::as_uniform(shared::as_hash(7u, static_cast<std::uint32_t>(i), k, 1u));
+            };
+            const float x = 500.0f + 60.0f * (random(0) - 0.5f), y = 400.0f + 20.0f * (random(1) - 0.5f);
+            const float z = depth_of(body, GalaxyPart::fine, x, y, random(2), random(3));
+            square += std::pow(body.in_disk(x, y, z).z, 2) / count;
+        }
+        EXPECT_NEAR(std::sqrt(square), body.thickness, 0.15 * body.thickness) << inclination;
+    }
+}
+
+TEST(GalaxyBody, StarsFollowTheirShares) {
+    const GalaxyBody body = body_of(60.0);
+    float before = -1e9f;
+    for (const float u : {0.01f, 0.25f, 0.5f, 0.75f, 0.99f}) {
+        const float z = star_depth(body, 520.0f, 380.0f, u, 0.6f);
+        EXPECT_GT(z, before);
+        before = z;
+    }
+    const auto within = [&](float in_disk) {  // of half of the stars
+        return star_depth(body, 500.0f, 400.0f, 0.75f, in_disk) -
+               star_depth(body, 500.0f, 400.0f, 0.25f, in_disk);
+    };
+    EXPECT_LT(within(1.0f), 0.5f * within(0.0f));
+}
+
+StructureParams galaxy_params(double inclination) {
+    StructureParams params;
+    params.kind = StructureKind::disk;
+    params.galaxy = {inclination, 20.0, glm::dvec2(0.5, 0.5), 110.0, {}};
+    return params;
+}
+
+// Splats of one band of a painted galaxy with a bulge, by family.
+struct Families {
+    Image light = painted::tilted_galaxy(320, 200, {60.0, 20.0, true, 6.0, 0.0});
+    Placement placement = make_placement(light, galaxy_params(60.0), 32.0, true, 1u);
+    PictureSplats of(GalaxyFamily family, int band_index) const {
+        const Image brightest = brightest_channel(light);
+        PictureSplats set;
+        const std::vector<Band> bands = make_bands(light.width);
+        split_bands(light, bands, false, [&](const Band& band, const Image& image) {
+            for (const BandSplats& splats : band_splats(band, false, placement))
+                if (band.index == band_index && splats.family == family)
+                    add_band(image, splats, brightest, {}, placement, {}, set);
+        });
+        return set;
+    }
+};
+
+// About the normal a disk's light is flat, and a spheroid's nearly as high as wide.
+TEST(GalaxyFamilies, ASpheroidIsRoundAndADiskFlat) {
+    const Families families;
+    const GalaxyBody& body = families.placement.galaxies.at(0);
+    const auto flatness = [&](GalaxyFamily family) {
+        const PictureSplats set = families.of(family, 4);
+        double along = 0.0, up = 0.0, all = 0.0;
+        for (std::size_t i = 0; i < set.splats.position.size(); ++i) {
+            const glm::vec3 p = set.splats.position[i];
+            const double light = static_cast<double>(set.splats.color[i].y * set.splats.alpha[i] *
+                                                     set.splats.radius[i] * set.splats.radius[i]);
+            const glm::vec3 q = body.in_disk(p.x + 160.0f, 100.0f - p.y, p.z);
+            along += light * static_cast<double>(q.x * q.x), up += light * static_cast<double>(q.z * q.z),
+                all += light;
+        }
+        return std::sqrt(up / along);
+    };
+    EXPECT_LT(flatness(GalaxyFamily::disk), 0.3);
+    EXPECT_GT(flatness(GalaxyFamily::spheroid), 0.4);
+    EXPECT_LT(flatness(GalaxyFamily::spheroid), 1.1);
+}
+
+// Both families together are the band's light, and a spheroid hides .35 of what a disk does.
+TEST(GalaxyFamilies, ShareTheLight) {
+    const Families families;
+    const auto sums = [&](GalaxyFamily family) {
+        const PictureSplats set = families.of(family, 3);
+        std::pair<double, double> sum;  // light and opacity
+        for (std::size_t i = 0; i < set.splats.position.size(); ++i) {
+            const auto covers =
+                static_cast<double>(set.splats.radius[i] * set.splats.radius[i] * set.splats.alpha[i]);
+            sum.first += covers * static_cast<double>(set.splats.color[i].y);
+            sum.second += covers;
+        }
+        return sum;
+    };
+    const auto disk = sums(GalaxyFamily::disk), spheroid = sums(GalaxyFamily::spheroid);
+    EXPECT_GT(disk.first, 0.0);
+    EXPECT_GT(spheroid.first, 0.05 * disk.first);
+    EXPECT_LT(spheroid.second / spheroid.first, 0.6 * disk.second / disk.first);
+}
+
+TEST(Galaxies, WhatTheSceneSaysIsFollowedAndTheRestIsFound) {
+    const Image light = painted::tilted_galaxy(240, 150, {70.0, 25.0, false, 4.0, 2.0});
+    StructureParams params = galaxy_params(64.0);
+    params.galaxy = {std::nullopt, std::nullopt, std::nullopt, std::nullopt, std::nullopt};
+    const GalaxyPlane found = galaxy_planes(light, params).at(0);
+    EXPECT_NEAR(found.inclination_deg, 70.0, 8.0);
+    EXPECT_NEAR(found.angle / degree, 25.0, 8.0);
+    EXPECT_EQ(found.near_side, -1);
+    params.galaxy.inclination = 50.0;
+    params.galaxy.near_side = 115.0;
+    const GalaxyPlane told = galaxy_planes(light, params).at(0);
+    EXPECT_EQ(told.inclination_deg, 50.0);
+    EXPECT_EQ(told.near_side, 1);
+    EXPECT_EQ(told.angle, found.angle);
+    params.galaxies = {{20.0, 10.0, glm::dvec2(0.25, 0.75), 100.0, {}},
+                       {70.0, 190.0, glm::dvec2(0.75, 0.5), 280.0, 0.4}};
+    const std::vector<GalaxyPlane> two = galaxy_planes(light, params);
+    ASSERT_EQ(two.size(), 2u);
+    EXPECT_NEAR(two[0].y, 0.25 * 150.0 / 240.0, 1e-12);
+    EXPECT_NEAR(two[1].angle, 10.0 * degree, 1e-9);
+    EXPECT_EQ(two[1].near_side, -1);
+}
+
+TEST(Galaxies, ABulgeOfOneLeavesNoDisk) {
+    const Image light = painted::tilted_galaxy(280, 175, {0.0, 0.0, true, 3.0, 0.0});
+    StructureParams params = galaxy_params(90.0);
+    params.galaxy.bulge = 1.0;
+    const GalaxyBody body = galaxies_of(light, params, 1.0, 280, 0, 1u).at(0);
+    EXPECT_GT(body.value_at(body.spheroid, 140.0f, 87.0f), 0.999f);
+    EXPECT_GT(body.value_at(body.spheroid, 100.0f, 87.0f), 0.999f);
+}
+
+}  // namespace
+}  // namespace astrosplat
