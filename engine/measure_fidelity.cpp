@@ -2,10 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
-#include <utility>
-
 #include "core/error.h"
 #include "image/resample.h"
 #include "look/apply.h"

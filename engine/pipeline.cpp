@@ -1,10 +1,6 @@
 #include "pipeline.h"
 
-#include <algorithm>
-#include <cassert>
 #include <glm/matrix.hpp>
-#include <optional>
-#include <utility>
 
 #include "camera/camera.h"
 #include "core/buffer.h"

@@ -1,9 +1,6 @@
 #include "camera_files/camera_track.h"
 
-#include <cmath>
 #include <glm/geometric.hpp>
-#include <string_view>
-#include <utility>
 
 #include "camera_files/formats.h"
 #include "core/error.h"

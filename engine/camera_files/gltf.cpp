@@ -2,14 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <array>
-#include <cmath>
 #include <cstring>
-#include <functional>
 #include <glm/geometric.hpp>
 #include <glm/mat4x4.hpp>
-#include <optional>
 
 #include "core/error.h"
 #include "core/real.h"

@@ -3,8 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
-#include <functional>
 #include <set>
 
 #include "camera/camera.h"

@@ -3,7 +3,8 @@
 #pragma once
 
 #include <stdexcept>
-#include <string_view>
+
+#include "core/standard.h"
 
 namespace astrosplat {
 

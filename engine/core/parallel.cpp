@@ -9,8 +9,6 @@
 #include <hwy/targets.h>
 #include <sched.h>
 
-#include <algorithm>
-#include <array>
 #include <atomic>
 #include <condition_variable>
 #include <cstdlib>

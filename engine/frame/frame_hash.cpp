@@ -3,10 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <array>
-#include <string_view>
-
 #include "core/error.h"
 #include "core/hash.h"
 #include "output/format.h"

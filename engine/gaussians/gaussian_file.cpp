@@ -4,15 +4,9 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <bit>
-#include <cassert>
 #include <cstring>
 #include <glm/common.hpp>
 #include <initializer_list>
-#include <limits>
-#include <string>
-#include <string_view>
 
 #include "core/bounds.h"
 #include "core/color.h"

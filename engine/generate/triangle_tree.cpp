@@ -6,8 +6,6 @@
 
 #include <fmt/format.h>
 
-#include <array>
-#include <cmath>
 #include <glm/geometric.hpp>
 
 #include "core/bounds.h"

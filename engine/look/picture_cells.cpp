@@ -1,9 +1,6 @@
 // Each row of blocks is summed by one thread, which takes the positions in the set's order. A set is in the
 // order of its lattice, so a chunk of it lies in few rows and the others pass it by.
 
-#include <algorithm>
-#include <cmath>
-
 #include "core/parallel.h"
 #include "core/real.h"
 #include "image/blur.h"

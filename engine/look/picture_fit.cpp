@@ -4,9 +4,6 @@
 // factor, a few times over. A splat adding `a` (alpha times weight) has depth -ln(1 - a).
 #include "look/picture_fit.h"
 
-#include <algorithm>
-#include <cmath>
-
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "image/channels.h"
@@ -194,32 +191,29 @@ class Fit {
                 wanted[i] = inside_[i] > 0.0f && count > 0.0f ? wanted[i] / count : 0.0f;
             });
         }
-
-        // Noise and crops of the look change depth, and are to be seen.
-        void vary_wanted() {
-            blur_(cells_.varied);
-            blur_(cells_.plain);
-            const bool sums = match_ == shared_types::MATCH_LIGHT,
-                       screens = match_ == shared_types::MATCH_SCREEN;
-            each_cell(cells_.plain, [&](std::size_t i) {
-                const float share = cells_.plain[i] > 0.0f ? cells_.varied[i] / cells_.plain[i] : 1.0f;
-                const auto changed = [&](float light) {
-                    return sums ? light * share
-                                : 1.0f - shared::as_exp(-share * shared::look_small_depth(light));
-                };
-                const float before = cells_.wanted[0][i], opacity = changed(before);
-                for (std::size_t c = 0; c < picture_channels; ++c) {
-                    float& light = cells_.wanted[c][i];
-                    if (c == 0 || screens)
-                        light = changed(light);
-                    else
-                        light *= before > 0.0f ? opacity / before : 0.0f;
-                }
-            });
-        }
+        if (!cells_.plain.empty()) vary_wanted();
     }
 
-    void vary_wanted();
+    // Noise and crops of the look change depth, and are to be seen.
+    void vary_wanted() {
+        blur_(cells_.varied);
+        blur_(cells_.plain);
+        const bool sums = match_ == shared_types::MATCH_LIGHT, screens = match_ == shared_types::MATCH_SCREEN;
+        each_cell(cells_.plain, [&](std::size_t i) {
+            const float share = cells_.plain[i] > 0.0f ? cells_.varied[i] / cells_.plain[i] : 1.0f;
+            const auto changed = [&](float light) {
+                return sums ? light * share : 1.0f - shared::as_exp(-share * shared::look_small_depth(light));
+            };
+            const float before = cells_.wanted[0][i], opacity = changed(before);
+            for (std::size_t c = 0; c < picture_channels; ++c) {
+                float& light = cells_.wanted[c][i];
+                if (c == 0 || screens)
+                    light = changed(light);
+                else
+                    light *= before > 0.0f ? opacity / before : 0.0f;
+            }
+        });
+    }
 
     void draw(std::size_t channel) {
         if (match_ == shared_types::MATCH_LIGHT)
@@ -282,7 +276,7 @@ class Fit {
     std::vector<float> whole_;    // positions a cell of each block has where nothing is black
     CellValues inside_, around_;  // 1 where there is a picture; one over its mean over a footprint
     CellValues light_, other_;    // as drawn; and room for more
-    CellValues depth_, shown_;    // of opacity, as it stands: linear depth, and opacity over it
+    CellValues shown_;            // of opacity, as it stands, over linear depth
     ChannelValues factors_;
 };
 

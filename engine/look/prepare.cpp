@@ -3,11 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cassert>
-#include <cmath>
-#include <vector>
-
 #include "core/error.h"
 #include "core/log.h"
 #include "core/parallel.h"

@@ -5,11 +5,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <vector>
-
 #include "core/error.h"
 #include "core/real.h"
 #include "look/shared_look.h"

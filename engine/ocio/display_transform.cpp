@@ -5,8 +5,6 @@
 #include <OpenColorIO/OpenColorIO.h>
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
 #include <cstdlib>
 #include <list>
 #include <mutex>

@@ -5,14 +5,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <bit>
-#include <cassert>
-#include <cmath>
-#include <limits>
-#include <memory>
-#include <vector>
-
 #include "core/error.h"
 #include "core/real.h"
 #include "source/open_picture.h"

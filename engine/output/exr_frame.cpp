@@ -15,14 +15,8 @@
 #include <fmt/format.h>
 #include <half.h>
 
-#include <algorithm>
-#include <cassert>
-#include <cstdint>
 #include <cstring>
-#include <limits>
 #include <new>
-#include <string>
-#include <vector>
 
 #include "core/atomic_file.h"
 #include "core/color.h"

@@ -5,11 +5,8 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
-#include <utility>
 
 #include "core/error.h"
 #include "core/memory.h"

@@ -2,11 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <array>
 #include <cstdlib>
 #include <tuple>
-#include <utility>
 
 #include "core/error.h"
 #include "core/file.h"

@@ -5,12 +5,6 @@
 #include <fmt/format.h>
 #include <zlib.h>
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <memory>
-#include <string_view>
-
 #include "core/error.h"
 #include "core/file.h"
 #include "core/file_format.h"

@@ -1,9 +1,6 @@
 // Polygons are split by ear clipping in their own plane, in double precision.
 #include "source/mesh.h"
 
-#include <algorithm>
-#include <cassert>
-#include <cmath>
 #include <glm/geometric.hpp>
 #include <numeric>
 

@@ -6,8 +6,6 @@
 #include <fmt/format.h>
 #include <tiny_obj_loader.h>
 
-#include <algorithm>
-#include <cmath>
 #include <map>
 #include <sstream>
 

@@ -3,12 +3,6 @@
 // (This line keeps clang-format from sorting the two.)
 #include "source/open_picture.h"
 
-#include <algorithm>
-#include <array>
-#include <memory>
-#include <string_view>
-#include <utility>
-
 #include "core/color.h"
 #include "core/error.h"
 #include "core/log.h"

@@ -4,11 +4,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <utility>
-
 #include "core/color.h"
 #include "core/error.h"
 #include "core/log.h"

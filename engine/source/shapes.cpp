@@ -2,10 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <array>
-#include <cassert>
-#include <cmath>
 #include <glm/geometric.hpp>
 
 #include "core/color.h"

@@ -3,14 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <bit>
-#include <cassert>
-#include <cmath>
-#include <cstdint>
-#include <limits>
-#include <vector>
-
 #include "core/error.h"
 #include "core/real.h"
 

@@ -3,10 +3,7 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <atomic>
-#include <cmath>
-#include <functional>
 
 #include "core/color.h"
 #include "core/error.h"

@@ -1,9 +1,6 @@
 // Projections are in double; a face's coordinates are affine in the picture, not on the face.
 #include "source/textured_mesh.h"
 
-#include <algorithm>
-#include <cassert>
-#include <functional>
 #include <glm/matrix.hpp>
 
 #include "camera/projection.h"

@@ -6,13 +6,9 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <algorithm>
-#include <cassert>
 #include <cerrno>
 #include <cfloat>
 #include <cstring>
-#include <string_view>
-#include <utility>
 
 #include "core/file.h"
 #include "core/hash.h"

@@ -4,11 +4,7 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <charconv>
-#include <limits>
-#include <string>
-#include <vector>
 
 #include "core/error.h"
 #include "splat_files/file_bytes.h"

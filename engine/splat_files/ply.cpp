@@ -4,13 +4,7 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <bit>
 #include <cstring>
-#include <limits>
-#include <span>
-#include <string>
-#include <vector>
 
 #include "core/color.h"
 #include "core/error.h"

@@ -5,10 +5,7 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <bit>
 #include <charconv>
-#include <cmath>
 #include <cstring>
 #include <tuple>
 #include <type_traits>

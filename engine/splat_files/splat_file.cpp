@@ -3,10 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cassert>
-#include <string_view>
-
 #include "core/error.h"
 #include "core/file.h"
 #include "core/file_format.h"

@@ -4,11 +4,8 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
 #include <cstring>
 #include <type_traits>
-#include <utility>
 
 #include "core/error.h"
 #include "core/log.h"

@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <array>
 #include <glm/mat4x4.hpp>
 
 #include "core/error.h"

@@ -5,11 +5,6 @@
 #include <fmt/format.h>
 #include <zlib.h>
 
-#include <algorithm>
-#include <cmath>
-#include <memory>
-#include <utility>
-
 #include "core/error.h"
 #include "core/file.h"
 #include "core/memory.h"
