@@ -73,7 +73,7 @@ bool is_camera_file(const fs::path& file) { return reader_of(file) != nullptr; }
 CameraTrack read_camera(const fs::path& file, const FrameRate& rate) {
     const ReadTrack read = reader_of(file);
     if (!read)
-        bad_input(file.string(), "", "a name ending in " + alternatives(endings_of(FileUse::camera_read)),
+        bad_input(file, "a name ending in " + alternatives(endings_of(FileUse::camera_read)),
                   "'" + printable(file.extension().string()) + "'");
     return read(file, rate);
 }

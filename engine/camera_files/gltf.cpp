@@ -225,7 +225,7 @@ CameraTrack read_gltf(const fs::path& file, const FrameRate& rate) {
     try {
         return read_checked_gltf(file, rate);
     } catch (const Json::exception& error) {  // a value of another type than glTF says
-        bad_input(file.string(), "", "a glTF 2.0 file", printable(error.what()));
+        bad_input(file, "a glTF 2.0 file", printable(error.what()));
     }
 }
 

@@ -35,7 +35,7 @@ std::optional<double> vertical_fov_deg(const Json& frame, const Json& all) {
 
 CameraTrack read_checked_transforms(const fs::path& file) {
     const auto fail = [&](const std::string& expected, const std::string& found) {
-        bad_input(file.string(), "", expected, found);
+        bad_input(file, expected, found);
     };
     const Json json = Json::parse(read_file(file), nullptr, false);
     if (!json.is_object() || !json.contains("frames"))
@@ -77,7 +77,7 @@ CameraTrack read_transforms_json(const fs::path& file, const FrameRate&) {
     try {
         return read_checked_transforms(file);
     } catch (const Json::exception& error) {  // a value of another type
-        bad_input(file.string(), "", "a transforms.json", printable(error.what()));
+        bad_input(file, "a transforms.json", printable(error.what()));
     }
 }
 

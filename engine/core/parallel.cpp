@@ -254,7 +254,7 @@ void set_vector_target(const std::string& name) {
         not_above |= target->bits & supported;
         if (name == target->name && compiled_and_supported(*target)) return enable(not_above);
     }
-    bad_input("vector target", "",
+    bad_input("vector target",
               fmt::format("one that this processor has (best, {})", fmt::join(vector_targets(), ", ")),
               "'" + name + "'");
 }

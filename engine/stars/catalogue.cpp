@@ -249,7 +249,7 @@ class Inflater {
             const bool more = stream_.avail_in >= 2 && stream_.next_in[0] == 0x1f;
             done_ = !more;
         } else if (result != Z_OK) {
-            bad_input(name_, "", "a whole gzip file", "damaged data");
+            bad_input(name_, "a whole gzip file", "damaged data");
         }
     }
 
@@ -268,11 +268,11 @@ bool is_catalogue(std::string_view first_line) {
 
 StarCatalogue parse_catalogue(std::string_view text, const std::string& name, const Progress& progress) {
     TextRows first(text);
-    if (!first.next()) bad_input(name, "", "a star catalogue", "an empty file");
+    if (!first.next()) bad_input(name, "a star catalogue", "an empty file");
     StarCatalogue catalogue =
         is_hipparcos(first.text()) ? parse_hipparcos(text, progress) : parse_columns(text, name, progress);
     if (catalogue.stars.empty())
-        bad_input(name, "", "at least one star",
+        bad_input(name, "at least one star",
                   catalogue.rows == 0 ? "none" : "none: " + catalogue.bad.text(catalogue.rows));
     return catalogue;
 }
