@@ -2,10 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
-#include <utility>
-
 #include "core/error.h"
 #include "image/resample.h"
 #include "look/apply.h"
@@ -28,8 +24,8 @@ const LayerParams& layer_with_picture(const Scene& now) {
         if (!found) found = &layer;
     }
     if (!found)
-        bad_input(now.file.string(), "",
-                  "a layer of kind \"mesh\", whose picture the front view is compared with", "none");
+        bad_input(now.file, "a layer of kind \"mesh\", whose picture the front view is compared with",
+                  "none");
     return *found;
 }
 
@@ -38,7 +34,7 @@ void require_proportions(const FidelityReference& reference) {
     const double height = double(reference.picture.height);
     const double stretch = width * reference.frame.height / (height * reference.frame.width);
     if (std::fabs(stretch - 1.0) > 0.01)
-        bad_input(reference.file.string(), "",
+        bad_input(reference.file,
                   fmt::format("the proportions of layer '{}', {:.4g} x {:.4g}", reference.layer,
                               reference.frame.width, reference.frame.height),
                   fmt::format("{} x {} px", reference.picture.width, reference.picture.height));

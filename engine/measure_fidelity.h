@@ -3,14 +3,7 @@
 // were taken of.
 #pragma once
 
-#include <functional>
-#include <memory>
-#include <optional>
-#include <string>
-#include <vector>
-
 #include "core/image.h"
-#include "core/path.h"
 #include "core/progress.h"
 #include "fidelity/front.h"
 #include "fidelity/side.h"

@@ -1,10 +1,6 @@
 #include "pipeline.h"
 
-#include <algorithm>
-#include <cassert>
 #include <glm/matrix.hpp>
-#include <optional>
-#include <utility>
 
 #include "camera/camera.h"
 #include "core/buffer.h"
@@ -25,10 +21,7 @@ constexpr double farthest_in_world = 1000.0 * largest_number;  // scene units, o
 /// All that reaches apply_look besides the set: while it stays equal, the shaded splats stay.
 struct ShadingInputs {
     Look look;
-    glm::vec3 axis{0.0f};
-    std::uint32_t seed = 0;
-    double falloff_integral = 0.0, falloff_variance = 0.0;
-    ColumnLaw column = ColumnLaw::transmittance;
+    LookInputs inputs;                  // without what is loaded for them
     std::optional<SeenFrom> seen_from;  // of colours that depend on it
     bool encoded = false;
     bool operator==(const ShadingInputs&) const = default;
@@ -88,161 +81,169 @@ struct Pipeline::State {
     bool drawn(const Scene& now, std::size_t index) const {
         return now.layers[index].visible && has_splats(index);
     }
-    std::vector<std::size_t> drawn_layers(const FrameScene& frame) const;
-    LoadedSet load_set(const LayerParams& params, const SetCache& cache, const Progress& progress) const;
-    void open_layer(std::size_t index);
-    void load_layer(std::size_t index, const SetCache& cache, const Progress& progress);
-    std::vector<std::size_t> find_layers(const Scene& wanted, const SetList& sets) const;
-    void shade(std::size_t index, const LayerParams& params, const Camera& seen, const Progress& progress);
-    void shade_visible(const Scene& now, const Camera& seen, const Progress& progress);
-    std::vector<RenderLayer> visible_layers(const Scene& now) const;
-    Camera camera(const Scene& now, const RenderSettings& settings) const;
+
+    /// Those of a frame that are visible at some moment, in file order.
+    std::vector<std::size_t> drawn_layers(const FrameScene& frame) const {
+        std::vector<std::size_t> drawn = shown_layers(frame);
+        std::erase_if(drawn, [&](std::size_t i) { return !has_splats(i); });
+        return drawn;
+    }
+
+    /// Stars of a picture whose layer is there already look through that.
+    LoadedSet load_set(const LayerParams& params, const SetCache& cache, const Progress& progress) const {
+        const SourceParams source = source_of(scene, params);
+        const LayerParams* const like = like_layer(scene, params);
+        const SplatSet* const there = like ? layers[like - scene.layers.data()].set.get() : nullptr;
+        if (there) return {load_picture_stars(cache, source, params.name, *there, progress)};
+        return load_source(cache, source, params.name, progress, nullptr, columns_read(look_of(params)));
+    }
+
+    /// Of a layer that is streamed.
+    void open_layer(std::size_t index) {
+        const LayerParams& params = scene.layers[index];
+        LayerState& layer = layers[index];
+        statistics[index].name = params.name;
+        try {
+            layer.streamed = std::make_unique<StreamedSet>(params.source.file);
+            layer.box = layer.streamed->bounds();
+            const std::string reason = why_not_streamed(layer.streamed->file(), look_of(params));
+            if (!reason.empty()) throw InputError(reason);
+            if (is_mixed_in_display_space(params.render))
+                throw InputError("display values are made of all splats at once");
+        } catch (const InputError& error) {
+            throw InputError("layer '" + params.name + "': " + error.what());
+        }
+        check_extent(layer.box, params.name);
+        load_thickness_map(layer, look_of(params).thickness);
+        count_set(facts_of(layer), layer.streamed->file().splats(), statistics[index]);
+    }
+
+    void load_layer(std::size_t index, const SetCache& cache, const Progress& progress) {
+        const LayerParams& params = scene.layers[index];
+        LayerState& layer = layers[index];
+        LayerStatistics& counts = statistics[index];
+        counts.name = params.name;
+        if (!ever_visible(scene, params)) return;
+        const auto start = Clock::now();
+        LoadedSet loaded = load_set(params, cache, progress);
+        const auto set = std::make_shared<SplatSet>(std::move(loaded.set));
+        layer.set = set;
+        if (is_shaded_alike(scene, params.name) && !holds_gaussians(*set)) layer.to_use_up = set;
+        layer.box = bounds(*layer.set);
+        check_extent(layer.box, params.name);
+        load_thickness_map(layer, look_of(params).thickness);
+        count_set(*layer.set, layer.set->size(), counts);
+        counts.cached = loaded.cached;
+        counts.geometry_cached = loaded.geometry_cached;
+        counts.generate_seconds = seconds_since(start);
+        release_spare_pages();  // nothing of their sizes comes again, and frames are long
+    }
+
+    /// For every set the index of a layer that has it, of the same name if there are several, each once; else
+    /// their number.
+    std::vector<std::size_t> find_layers(const Scene& wanted, const SetList& sets) const {
+        std::vector<std::size_t> found(sets.size(), layers.size());
+        std::vector<char> used(layers.size(), 0);
+        for (std::size_t i = 0; i < sets.size(); ++i) {
+            for (std::size_t l = 0; sets[i] && l < layers.size(); ++l) {
+                if (layers[l].set != sets[i] || used[l]) continue;
+                if (found[i] == layers.size() || scene.layers[l].name == wanted.layers[i].name) found[i] = l;
+            }
+            if (found[i] < layers.size()) used[found[i]] = 1;
+        }
+        return found;
+    }
+
+    /// Applies the look where anything that it depends on has changed since the last frame.
+    void shade(std::size_t index, const LayerParams& params, const Camera& seen, const Progress& progress) {
+        LayerState& layer = layers[index];
+        LookInputs inputs = look_inputs(params);
+        ShadingInputs shading{
+            look_of(params), inputs, {}, is_mixed_in_display_space(params.render) && !facts_of(layer).stars};
+        if (layer.set && !layer.set->harmonics.empty())
+            shading.seen_from = seen_from(seen, render_layer(params));
+        if (layer.shaded_with == shading) return;
+        load_thickness_map(layer, shading.look.thickness);
+        inputs.thickness_map = layer.thickness_file.empty() ? nullptr : &layer.thickness_map;
+        layer.shaded_with.reset();  // should an exception below leave old splats
+        LookStatistics counts;
+        Buffer<glm::vec3> colors;
+        if (shading.seen_from) {
+            colors = seen_colors(*layer.set, *shading.seen_from, progress);
+            inputs.seen_colors = &colors;
+        }
+        if (layer.streamed) {
+            const auto start = Clock::now();
+            layer.streamed->set_look(shading.look, inputs, progress.silent());
+            counts = {layer.streamed->splats(), seconds_since(start)};
+        } else if (layer.to_use_up) {
+            layer.shaded = apply_look_in_place(*layer.to_use_up, shading.look, inputs, progress, &counts);
+            layer.to_use_up.reset();
+        } else {
+            apply_look(*layer.set, shading.look, inputs, layer.shaded, progress, &counts);
+        }
+        if (layer.set && holds_gaussians(*layer.set)) add_shapes(*layer.set, layer.shaded);
+        layer.shaded.encoded = false;
+        if (shading.encoded) encode_colors(layer.shaded);
+        layer.shaded_with = shading;
+        statistics[index].drawn = layer.streamed ? layer.streamed->splats() : layer.shaded.size();
+        statistics[index].look_seconds += counts.seconds;
+    }
+
+    void shade_visible(const Scene& now, const Camera& seen, const Progress& progress) {
+        for (std::size_t i = 0; i < now.layers.size(); ++i) {
+            progress.check();
+            if (!drawn(now, i)) continue;
+            const LayerParams& layer = now.layers[i];
+            check_extent(world_bounds(layers[i].box, render_layer(now, layer)), layer.name,
+                         farthest_in_world);
+            shade(i, layer, seen, progress);
+        }
+    }
+
+    /// The layers to draw at a frame, in file order.
+    std::vector<RenderLayer> visible_layers(const Scene& now) const {
+        std::vector<RenderLayer> visible;
+        for (std::size_t i = 0; i < now.layers.size(); ++i) {
+            if (!drawn(now, i)) continue;
+            const LayerState& state = layers[i];
+            RenderLayer& layer = visible.emplace_back(render_layer(now, now.layers[i]));
+            if (state.streamed)
+                layer.blocks = state.streamed.get();
+            else
+                layer.splats = &state.shaded;
+            layer.absorbs = facts_of(state).absorbs;
+            layer.gaussians = state.set && holds_gaussians(*state.set);
+            if (state.set && !state.set->harmonics.empty()) layer.directional = state.set.get();
+            layer.star_pixels = facts_of(state).star_pixels;
+        }
+        return visible;
+    }
+
+    Camera camera(const Scene& now, const RenderSettings& settings) const {
+        Bounds box;
+        for (std::size_t i = 0; i < now.layers.size(); ++i) {
+            if (drawn(now, i)) box.add(world_bounds(layers[i].box, render_layer(now, now.layers[i])));
+        }
+        return make_camera(now.camera, double(settings.width), double(settings.height), box);
+    }
+
     /// One rendering of the scene as it stands, through a place of the lens.
     RenderedFrame rendering(const Scene& now, const glm::dvec2& lens, const RenderSettings& settings,
-                            const Progress& progress, const TileDone& tile_done);
-    const Environment* environment_at(const Scene& now);
+                            const Progress& progress, const TileDone& tile_done) {
+        const Camera middle = camera(now, settings);
+        shade_visible(now, middle, progress);
+        const Camera seen = through_lens(middle, now.camera, lens, double(settings.width));
+        return render(visible_layers(now), seen, environment_at(now), settings, progress, &render_cache,
+                      tile_done);
+    }
+
+    const Environment* environment_at(const Scene& now) {
+        if (!environment || !now.environment.visible) return nullptr;
+        set_environment_params(*environment, now.environment);
+        return &*environment;
+    }
 };
-
-/// Stars of a picture whose layer is there already look through that.
-LoadedSet Pipeline::State::load_set(const LayerParams& params, const SetCache& cache,
-                                    const Progress& progress) const {
-    const SourceParams source = source_of(scene, params);
-    const LayerParams* const like = like_layer(scene, params);
-    const SplatSet* const there = like ? layers[like - scene.layers.data()].set.get() : nullptr;
-    if (there) return {load_picture_stars(cache, source, params.name, *there, progress)};
-    return load_source(cache, source, params.name, progress, nullptr, columns_read(look_of(params)));
-}
-
-/// Of a layer that is streamed.
-void Pipeline::State::open_layer(std::size_t index) {
-    const LayerParams& params = scene.layers[index];
-    LayerState& layer = layers[index];
-    statistics[index].name = params.name;
-    try {
-        layer.streamed = std::make_unique<StreamedSet>(params.source.file);
-        layer.box = layer.streamed->bounds();
-        const std::string reason = why_not_streamed(layer.streamed->file(), look_of(params));
-        if (!reason.empty()) throw InputError(reason);
-        if (is_mixed_in_display_space(params.render))
-            throw InputError("display values are made of all splats at once");
-    } catch (const InputError& error) {
-        throw InputError("layer '" + params.name + "': " + error.what());
-    }
-    check_extent(layer.box, params.name);
-    load_thickness_map(layer, look_of(params).thickness);
-    count_set(facts_of(layer), layer.streamed->file().splats(), statistics[index]);
-}
-
-void Pipeline::State::load_layer(std::size_t index, const SetCache& cache, const Progress& progress) {
-    const LayerParams& params = scene.layers[index];
-    LayerState& layer = layers[index];
-    LayerStatistics& counts = statistics[index];
-    counts.name = params.name;
-    if (!ever_visible(scene, params)) return;
-    const auto start = Clock::now();
-    LoadedSet loaded = load_set(params, cache, progress);
-    const auto set = std::make_shared<SplatSet>(std::move(loaded.set));
-    layer.set = set;
-    if (is_shaded_alike(scene, params.name) && !holds_gaussians(*set)) layer.to_use_up = set;
-    layer.box = bounds(*layer.set);
-    check_extent(layer.box, params.name);
-    load_thickness_map(layer, look_of(params).thickness);
-    count_set(*layer.set, layer.set->size(), counts);
-    counts.cached = loaded.cached;
-    counts.geometry_cached = loaded.geometry_cached;
-    counts.generate_seconds = seconds_since(start);
-    release_spare_pages();  // nothing of their sizes comes again, and frames are long
-}
-
-/// For every set the index of a layer that has it, of the same name if there are several, each once; else
-/// their number.
-std::vector<std::size_t> Pipeline::State::find_layers(const Scene& wanted, const SetList& sets) const {
-    std::vector<std::size_t> found(sets.size(), layers.size());
-    std::vector<char> used(layers.size(), 0);
-    for (std::size_t i = 0; i < sets.size(); ++i) {
-        for (std::size_t l = 0; sets[i] && l < layers.size(); ++l) {
-            if (layers[l].set != sets[i] || used[l]) continue;
-            if (found[i] == layers.size() || scene.layers[l].name == wanted.layers[i].name) found[i] = l;
-        }
-        if (found[i] < layers.size()) used[found[i]] = 1;
-    }
-    return found;
-}
-
-/// Applies the look where anything that it depends on has changed since the last frame.
-void Pipeline::State::shade(std::size_t index, const LayerParams& params, const Camera& seen,
-                            const Progress& progress) {
-    LayerState& layer = layers[index];
-    LookInputs inputs = look_inputs(params);
-    ShadingInputs shading{look_of(params),
-                          inputs.axis,
-                          inputs.seed,
-                          inputs.falloff_integral,
-                          inputs.falloff_variance,
-                          inputs.column,
-                          {},
-                          is_mixed_in_display_space(params.render) && !facts_of(layer).stars};
-    if (layer.set && !layer.set->harmonics.empty()) shading.seen_from = seen_from(seen, render_layer(params));
-    if (layer.shaded_with == shading) return;
-    load_thickness_map(layer, shading.look.thickness);
-    inputs.thickness_map = layer.thickness_file.empty() ? nullptr : &layer.thickness_map;
-    layer.shaded_with.reset();  // should an exception below leave old splats
-    LookStatistics counts;
-    Buffer<glm::vec3> colors;
-    if (shading.seen_from) {
-        colors = seen_colors(*layer.set, *shading.seen_from, progress);
-        inputs.seen_colors = &colors;
-    }
-    if (layer.streamed) {
-        const auto start = Clock::now();
-        layer.streamed->set_look(shading.look, inputs, progress.silent());
-        counts = {layer.streamed->splats(), seconds_since(start)};
-    } else if (layer.to_use_up) {
-        layer.shaded = apply_look_in_place(*layer.to_use_up, shading.look, inputs, progress, &counts);
-        layer.to_use_up.reset();
-    } else {
-        apply_look(*layer.set, shading.look, inputs, layer.shaded, progress, &counts);
-    }
-    if (layer.set && holds_gaussians(*layer.set)) add_shapes(*layer.set, layer.shaded);
-    layer.shaded.encoded = false;
-    if (shading.encoded) encode_colors(layer.shaded);
-    layer.shaded_with = shading;
-    statistics[index].drawn = layer.streamed ? layer.streamed->splats() : layer.shaded.size();
-    statistics[index].look_seconds += counts.seconds;
-}
-
-/// The layers to draw at a frame, in file order.
-std::vector<RenderLayer> Pipeline::State::visible_layers(const Scene& now) const {
-    std::vector<RenderLayer> visible;
-    for (std::size_t i = 0; i < now.layers.size(); ++i) {
-        if (!drawn(now, i)) continue;
-        const LayerState& state = layers[i];
-        RenderLayer& layer = visible.emplace_back(render_layer(now, now.layers[i]));
-        if (state.streamed)
-            layer.blocks = state.streamed.get();
-        else
-            layer.splats = &state.shaded;
-        layer.absorbs = facts_of(state).absorbs;
-        layer.gaussians = state.set && holds_gaussians(*state.set);
-        if (state.set && !state.set->harmonics.empty()) layer.directional = state.set.get();
-        layer.star_pixels = facts_of(state).star_pixels;
-    }
-    return visible;
-}
-
-Camera Pipeline::State::camera(const Scene& now, const RenderSettings& settings) const {
-    Bounds box;
-    for (std::size_t i = 0; i < now.layers.size(); ++i) {
-        if (drawn(now, i)) box.add(world_bounds(layers[i].box, render_layer(now, now.layers[i])));
-    }
-    return make_camera(now.camera, double(settings.width), double(settings.height), box);
-}
-
-const Environment* Pipeline::State::environment_at(const Scene& now) {
-    if (!environment || !now.environment.visible) return nullptr;
-    set_environment_params(*environment, now.environment);
-    return &*environment;
-}
 
 Pipeline::Pipeline() : state_(std::make_unique<State>()) {}
 
@@ -302,13 +303,6 @@ FrameScene Pipeline::frame_scene(double number, std::optional<Eye> eye) const {
     return astrosplat::frame_scene(state_->scene, number, eye);
 }
 
-/// Those of a frame that are visible at some moment, in file order.
-std::vector<std::size_t> Pipeline::State::drawn_layers(const FrameScene& frame) const {
-    std::vector<std::size_t> drawn = shown_layers(frame);
-    std::erase_if(drawn, [&](std::size_t i) { return !has_splats(i); });
-    return drawn;
-}
-
 RenderedFrame Pipeline::frame(const FrameScene& frame, const RenderSettings& settings,
                               const Progress& progress, const TileDone& tile_done) {
     if (!frame.is_blurred()) return state_->rendering(frame.scene, {}, settings, progress, tile_done);
@@ -333,30 +327,10 @@ RenderedFrame Pipeline::frame(const FrameScene& frame, const RenderSettings& set
     return sum;
 }
 
-void Pipeline::State::shade_visible(const Scene& now, const Camera& seen, const Progress& progress) {
-    for (std::size_t i = 0; i < now.layers.size(); ++i) {
-        progress.check();
-        if (!drawn(now, i)) continue;
-        const LayerParams& layer = now.layers[i];
-        check_extent(world_bounds(layers[i].box, render_layer(now, layer)), layer.name, farthest_in_world);
-        shade(i, layer, seen, progress);
-    }
-}
-
 std::vector<RenderLayer> Pipeline::shaded_layers(const FrameScene& frame, const Progress& progress) {
     const Scene& now = frame.scene;
     state_->shade_visible(now, state_->camera(now, render_settings(now.output)), progress);
     return state_->visible_layers(now);
-}
-
-RenderedFrame Pipeline::State::rendering(const Scene& now, const glm::dvec2& lens,
-                                         const RenderSettings& settings, const Progress& progress,
-                                         const TileDone& tile_done) {
-    const Camera middle = camera(now, settings);
-    shade_visible(now, middle, progress);
-    const Camera seen = through_lens(middle, now.camera, lens, double(settings.width));
-    return render(visible_layers(now), seen, environment_at(now), settings, progress, &render_cache,
-                  tile_done);
 }
 
 RenderSettings render_settings(const OutputParams& output) {

@@ -1,11 +1,6 @@
 // The whole flow: sources -> SplatSets -> look -> ShadedSplats -> render -> RenderedFrame.
 #pragma once
 
-#include <cstdint>
-#include <memory>
-#include <string>
-#include <vector>
-
 #include "core/progress.h"
 #include "frame/frame_scene.h"
 #include "render/render.h"

@@ -4,9 +4,6 @@
 
 #include <fmt/format.h>
 
-#include <array>
-#include <cmath>
-#include <cstdint>
 #include <glm/geometric.hpp>
 
 #include "camera/projection.h"

@@ -6,11 +6,9 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
-#include <optional>
 
 #include "camera/lens.h"
 #include "core/bounds.h"
-#include "core/path.h"
 #include "core/text.h"
 
 namespace astrosplat {

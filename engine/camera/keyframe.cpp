@@ -4,9 +4,6 @@
 // backwards.
 #include "camera/keyframe.h"
 
-#include <array>
-#include <cassert>
-#include <cmath>
 #include <glm/geometric.hpp>
 
 #include "core/real.h"

@@ -4,11 +4,8 @@
 // k alone.
 #pragma once
 
-#include <algorithm>
-#include <cstddef>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
-#include <span>
 #include <type_traits>
 
 #include "core/text.h"

@@ -2,8 +2,6 @@
 // Each translation unit gets its own copy with internal linkage.
 #pragma once
 
-#include <cmath>
-
 #include "camera/lens.h"
 #include "core/real.h"
 #include "core/shared_maths.h"

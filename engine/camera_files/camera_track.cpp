@@ -1,9 +1,6 @@
 #include "camera_files/camera_track.h"
 
-#include <cmath>
 #include <glm/geometric.hpp>
-#include <string_view>
-#include <utility>
 
 #include "camera_files/formats.h"
 #include "core/error.h"
@@ -76,7 +73,7 @@ bool is_camera_file(const fs::path& file) { return reader_of(file) != nullptr; }
 CameraTrack read_camera(const fs::path& file, const FrameRate& rate) {
     const ReadTrack read = reader_of(file);
     if (!read)
-        bad_input(file.string(), "", "a name ending in " + alternatives(endings_of(FileUse::camera_read)),
+        bad_input(file, "a name ending in " + alternatives(endings_of(FileUse::camera_read)),
                   "'" + printable(file.extension().string()) + "'");
     return read(file, rate);
 }

@@ -3,14 +3,11 @@
 // their angles into quaternions and their lenses into vertical fields of view; nothing else is converted.
 #pragma once
 
-#include <cstdint>
 #include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
-#include <string>
-#include <vector>
 
-#include "core/path.h"
+#include "core/standard.h"
 
 namespace astrosplat {
 

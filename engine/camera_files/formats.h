@@ -5,8 +5,6 @@
 // core/file_format.cpp.
 #pragma once
 
-#include <string>
-
 #include "camera_files/camera_track.h"
 
 namespace astrosplat {

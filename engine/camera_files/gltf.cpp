@@ -2,14 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <array>
-#include <cmath>
 #include <cstring>
-#include <functional>
 #include <glm/geometric.hpp>
 #include <glm/mat4x4.hpp>
-#include <optional>
 
 #include "core/error.h"
 #include "core/real.h"
@@ -189,7 +184,18 @@ void set_lens(const GltfFile& file, const Json& camera, CameraTrack& track) {
             track.orthographic ? 2.0 * value : real::degrees(value);
 }
 
-CameraTrack read_checked_gltf(const fs::path& path, const FrameRate& rate) {
+void add_floats(std::string& bytes, std::initializer_list<double> values) {
+    for (const double value : values) {
+        const auto number = float(value);
+        char raw[sizeof number];
+        std::memcpy(raw, &number, sizeof number);
+        bytes.append(raw, sizeof number);
+    }
+}
+
+}  // namespace
+
+CameraTrack read_gltf(const fs::path& path, const FrameRate& rate) try {
     GltfFile file(path);
     const std::vector<std::int64_t> way = way_to_camera(file);
     std::vector<MovedNode> nodes;
@@ -213,25 +219,8 @@ CameraTrack read_checked_gltf(const fs::path& path, const FrameRate& rate) {
     }
     set_lens(file, file.element("cameras", file.element("nodes", way.back()).at("camera")), track);
     return track;
-}
-
-void add_floats(std::string& bytes, std::initializer_list<double> values) {
-    for (const double value : values) {
-        const auto number = float(value);
-        char raw[sizeof number];
-        std::memcpy(raw, &number, sizeof number);
-        bytes.append(raw, sizeof number);
-    }
-}
-
-}  // namespace
-
-CameraTrack read_gltf(const fs::path& file, const FrameRate& rate) {
-    try {
-        return read_checked_gltf(file, rate);
-    } catch (const Json::exception& error) {  // a value of another type than glTF says
-        bad_input(file.string(), "", "a glTF 2.0 file", printable(error.what()));
-    }
+} catch (const Json::exception& error) {  // a value of another type than glTF says
+    bad_input(path, "a glTF 2.0 file", printable(error.what()));
 }
 
 std::string gltf_text(const CameraTrack& track, double aspect, double near, double far) {

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
-#include <optional>
 
 #include "core/error.h"
 #include "core/file.h"
@@ -34,9 +33,11 @@ std::optional<double> vertical_fov_deg(const Json& frame, const Json& all) {
     return fov(real::tan(0.5 * *angle) * (w && h ? *h / *w : 1.0));
 }
 
-CameraTrack read_checked_transforms(const fs::path& file) {
+}  // namespace
+
+CameraTrack read_transforms_json(const fs::path& file, const FrameRate&) try {
     const auto fail = [&](const std::string& expected, const std::string& found) {
-        bad_input(file.string(), "", expected, found);
+        bad_input(file, expected, found);
     };
     const Json json = Json::parse(read_file(file), nullptr, false);
     if (!json.is_object() || !json.contains("frames"))
@@ -70,16 +71,8 @@ CameraTrack read_checked_transforms(const fs::path& file) {
         track.samples.push_back(sample);
     }
     return track;
-}
-
-}  // namespace
-
-CameraTrack read_transforms_json(const fs::path& file, const FrameRate&) {
-    try {
-        return read_checked_transforms(file);
-    } catch (const Json::exception& error) {  // a value of another type
-        bad_input(file.string(), "", "a transforms.json", printable(error.what()));
-    }
+} catch (const Json::exception& error) {  // a value of another type
+    bad_input(file, "a transforms.json", printable(error.what()));
 }
 
 }  // namespace astrosplat

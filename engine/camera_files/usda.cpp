@@ -3,8 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
-#include <functional>
 #include <set>
 
 #include "camera/camera.h"
@@ -49,7 +47,7 @@ std::vector<double> time_codes(const Chain& chain, const std::string& file) {
     const double first = *times.begin(), last = *times.rbegin();
     if (!(last - first + double(times.size()) <= double(most_camera_samples)) ||
         !(std::fmax(std::fabs(first), std::fabs(last)) <= 1e12))
-        bad_input(file, "", fmt::format("at most {} frames, near 0", most_camera_samples),
+        bad_input(file, fmt::format("at most {} frames, near 0", most_camera_samples),
                   fmt::format("time codes from {} to {}", shortest(first), shortest(last)));
     for (double time = std::ceil(first); time < last; time += 1.0) times.insert(time);
     return {times.begin(), times.end()};
@@ -82,7 +80,7 @@ class CameraReader {
     double positive(const char* name, double time, double usual) const {
         const std::vector<double> numbers = numbers_at(camera_, name, time, {usual});
         if (numbers.size() == 1 && numbers[0] > 0.0 && std::isfinite(numbers[0])) return numbers[0];
-        bad_input(file_, "", fmt::format("{} above 0 at time code {}", name, shortest(time)),
+        bad_input(file_, fmt::format("{} above 0 at time code {}", name, shortest(time)),
                   numbers.size() == 1 ? shortest(numbers[0]) : "another value");
     }
 
@@ -94,7 +92,7 @@ class CameraReader {
         const bool placed =
             std::isfinite(sample.eye.x) && std::isfinite(sample.eye.y) && std::isfinite(sample.eye.z);
         if (!placed || !quaternion_from_axes(glm::dmat3(world), sample.rotation))
-            bad_input(file_, "",
+            bad_input(file_,
                       fmt::format("a place and axes of '{}' at time code {}", printable(camera_.name),
                                   shortest(time)),
                       "none");
@@ -147,7 +145,7 @@ CameraTrack read_usda(const fs::path& file, const FrameRate& rate) {
     Chain here, first;
     std::int64_t count = 0;
     find_cameras(stage.prims, here, first, count);
-    if (count == 0) bad_input(name, "", "a camera", stage.none_found());
+    if (count == 0) bad_input(name, "a camera", stage.none_found());
     CameraReader reader(stage, first, name, rate);
     CameraTrack track = reader.track();
     if (count > 1)

@@ -9,9 +9,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <atomic>
-#include <cassert>
 #include <cctype>
 #include <cerrno>
 #include <chrono>
@@ -19,7 +17,6 @@
 #include <cstring>
 #include <mutex>
 #include <set>
-#include <string>
 
 #include "core/file.h"
 

@@ -3,14 +3,9 @@
 // next one that writes into the same folder. Also locks that processes share through files.
 #pragma once
 
-#include <cstddef>
-#include <cstdint>
 #include <exception>
-#include <string_view>
-#include <utility>
 
 #include "core/error.h"
-#include "core/path.h"
 
 namespace astrosplat {
 

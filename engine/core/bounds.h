@@ -3,7 +3,8 @@
 
 #include <glm/common.hpp>
 #include <glm/vec3.hpp>
-#include <limits>
+
+#include "core/standard.h"
 
 namespace astrosplat {
 

@@ -6,10 +6,6 @@
 
 #include <sys/mman.h>
 
-#include <algorithm>
-#include <bit>
-#include <cstdint>
-#include <limits>
 #include <mutex>
 
 namespace astrosplat {

@@ -3,11 +3,10 @@
 // advised for 2 MiB pages, because page faults cost as much as projecting a splat.
 #pragma once
 
-#include <cstddef>
 #include <new>
 #include <type_traits>
-#include <utility>
-#include <vector>
+
+#include "core/standard.h"
 
 namespace astrosplat {
 

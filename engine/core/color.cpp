@@ -2,9 +2,6 @@
 // two whites, and back.
 #include "core/color.h"
 
-#include <array>
-#include <cmath>
-#include <cstddef>
 #include <glm/matrix.hpp>
 #include <glm/vec3.hpp>
 

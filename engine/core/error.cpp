@@ -5,10 +5,15 @@
 
 namespace astrosplat {
 
-void bad_input(std::string_view file, std::string_view place, std::string_view expected,
+void bad_input(const fs::path& file, std::string_view place, std::string_view expected,
                std::string_view found) {
-    const std::string where = place.empty() ? std::string(file) : fmt::format("{}:{}", file, place);
-    throw InputError(fmt::format("{}: expected {}, found {}", where, expected, found));
+    const std::string colon = place.empty() ? "" : ":";
+    throw InputError(
+        fmt::format("{}{}{}: expected {}, found {}", file.string(), colon, place, expected, found));
+}
+
+void bad_input(const fs::path& file, std::string_view expected, std::string_view found) {
+    bad_input(file, "", expected, found);
 }
 
 }  // namespace astrosplat

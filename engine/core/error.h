@@ -3,7 +3,8 @@
 #pragma once
 
 #include <stdexcept>
-#include <string_view>
+
+#include "core/standard.h"
 
 namespace astrosplat {
 
@@ -29,8 +30,9 @@ struct Cancelled : std::runtime_error {
 };
 
 /// Throws InputError with the line "FILE:PLACE: expected EXPECTED, found FOUND". `place` may be empty (then
-/// it is left out, with its colon); it is usually a line number, "line 12" or a key.
-[[noreturn]] void bad_input(std::string_view file, std::string_view place, std::string_view expected,
+/// it is left out, with its colon) or missing; it is usually a line number, "line 12" or a key.
+[[noreturn]] void bad_input(const fs::path& file, std::string_view place, std::string_view expected,
                             std::string_view found);
+[[noreturn]] void bad_input(const fs::path& file, std::string_view expected, std::string_view found);
 
 }  // namespace astrosplat

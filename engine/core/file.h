@@ -4,11 +4,6 @@
 // ones.
 #pragma once
 
-#include <cstdint>
-#include <string>
-#include <vector>
-
-#include "core/path.h"
 #include "core/progress.h"
 
 namespace astrosplat {

@@ -1,8 +1,6 @@
 // The table, and its look-up by name and by content.
 #include "core/file_format.h"
 
-#include <algorithm>
-
 #include "core/file.h"
 #include "core/text.h"
 

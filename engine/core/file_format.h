@@ -3,12 +3,8 @@
 #pragma once
 
 #include <initializer_list>
-#include <span>
-#include <string>
-#include <string_view>
-#include <vector>
 
-#include "core/path.h"
+#include "core/standard.h"
 
 namespace astrosplat {
 

@@ -4,9 +4,7 @@
 #include <fmt/format.h>
 #include <openssl/evp.h>
 
-#include <cassert>
 #include <new>
-#include <vector>
 
 #include "core/file.h"
 

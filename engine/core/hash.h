@@ -5,13 +5,6 @@
 
 #include <xxhash.h>
 
-#include <cstddef>
-#include <cstdint>
-#include <memory>
-#include <string>
-#include <string_view>
-
-#include "core/path.h"
 #include "core/progress.h"
 
 namespace astrosplat {

@@ -2,8 +2,6 @@
 // light, Rec. 709 primaries, premultiplied by alpha.
 #pragma once
 
-#include <cstdint>
-
 #include "core/buffer.h"
 
 namespace astrosplat {

@@ -3,11 +3,9 @@
 
 #include <fmt/format.h>
 
-#include <cstdint>
 #include <cstdio>
 #include <map>
 #include <mutex>
-#include <utility>
 
 #include "core/text.h"
 

@@ -2,8 +2,7 @@
 // stdout elsewhere; nothing here reaches a pixel or a file.
 #pragma once
 
-#include <functional>
-#include <string>
+#include "core/standard.h"
 
 namespace astrosplat {
 

@@ -7,18 +7,11 @@
 #include <malloc.h>
 #include <unistd.h>
 
-#include <algorithm>
-#include <array>
 #include <atomic>
-#include <cmath>
 #include <fstream>
-#include <limits>
-#include <string_view>
-#include <utility>
 
 #include "core/error.h"
 #include "core/log.h"
-#include "core/path.h"
 #include "core/text.h"
 
 namespace astrosplat {

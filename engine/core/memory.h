@@ -2,9 +2,7 @@
 // around this process, which `nproc` and /proc/meminfo do not show, count.
 #pragma once
 
-#include <cstdint>
-#include <string>
-#include <vector>
+#include "core/standard.h"
 
 namespace astrosplat {
 

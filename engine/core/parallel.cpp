@@ -9,8 +9,6 @@
 #include <hwy/targets.h>
 #include <sched.h>
 
-#include <algorithm>
-#include <array>
 #include <atomic>
 #include <condition_variable>
 #include <cstdlib>
@@ -256,7 +254,7 @@ void set_vector_target(const std::string& name) {
         not_above |= target->bits & supported;
         if (name == target->name && compiled_and_supported(*target)) return enable(not_above);
     }
-    bad_input("vector target", "",
+    bad_input("vector target",
               fmt::format("one that this processor has (best, {})", fmt::join(vector_targets(), ", ")),
               "'" + name + "'");
 }

@@ -4,12 +4,6 @@
 // prove that.
 #pragma once
 
-#include <cstddef>
-#include <cstdint>
-#include <functional>
-#include <string>
-#include <vector>
-
 #include "core/progress.h"
 
 namespace astrosplat {

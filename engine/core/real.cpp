@@ -4,10 +4,7 @@
 // leading term as a second double where it would show.
 #include "core/real.h"
 
-#include <cmath>
-#include <cstdint>
 #include <cstring>
-#include <limits>
 
 namespace astrosplat::real {
 namespace {

@@ -4,8 +4,7 @@
 // versions that the shaders share are in shaders/shared/maths.glsl. Also integrals by Gauss and Legendre.
 #pragma once
 
-#include <array>
-#include <cstddef>
+#include "core/standard.h"
 
 namespace astrosplat::real {
 

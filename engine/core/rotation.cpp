@@ -1,9 +1,5 @@
 #include "core/rotation.h"
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-
 #include "core/real.h"
 
 namespace astrosplat {

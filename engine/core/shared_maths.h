@@ -4,12 +4,12 @@
 // namespace that says `using namespace astrosplat::glsl;`.
 #pragma once
 
-#include <cmath>
-#include <cstdint>
 #include <cstring>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
+
+#include "core/standard.h"
 
 namespace astrosplat::glsl {
 

@@ -1,16 +1,9 @@
 // Values in order, on one thread: a stable radix sort in linear time, medians and percentiles.
 #pragma once
 
-#include <algorithm>
-#include <array>
-#include <cassert>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <limits>
 #include <ranges>
-#include <utility>
-#include <vector>
+
+#include "core/standard.h"
 
 namespace astrosplat {
 

@@ -2,16 +2,10 @@
 // text files and the names of enums.
 #pragma once
 
-#include <array>
-#include <cstddef>
-#include <cstdint>
 #include <initializer_list>
-#include <optional>
-#include <string>
-#include <string_view>
 #include <type_traits>
-#include <utility>
-#include <vector>
+
+#include "core/standard.h"
 
 namespace astrosplat {
 

@@ -1,7 +1,5 @@
 #include "core/worker.h"
 
-#include <utility>
-
 namespace astrosplat {
 
 Worker::Worker(NextTask next_task, std::chrono::milliseconds at_least_every)

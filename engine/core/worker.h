@@ -5,9 +5,10 @@
 
 #include <chrono>
 #include <condition_variable>
-#include <functional>
 #include <mutex>
 #include <thread>
+
+#include "core/standard.h"
 
 namespace astrosplat {
 

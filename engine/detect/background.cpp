@@ -1,11 +1,5 @@
 #include "detect/background.h"
 
-#include <algorithm>
-#include <array>
-#include <bit>
-#include <cmath>
-#include <limits>
-
 #include "core/parallel.h"
 #include "core/sorting.h"
 #include "image/channels.h"

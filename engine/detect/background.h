@@ -3,8 +3,6 @@
 // 1996, A&AS 117, 393).
 #pragma once
 
-#include <vector>
-
 #include "core/image.h"
 
 namespace astrosplat {

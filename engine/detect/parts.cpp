@@ -1,8 +1,6 @@
 #include "detect/parts.h"
 
-#include <algorithm>
 #include <glm/geometric.hpp>
-#include <utility>
 
 #include "core/sorting.h"
 #include "detect/background.h"

@@ -3,9 +3,7 @@
 // parts; objects with their pixels, and the picture without.
 #pragma once
 
-#include <cstdint>
 #include <glm/vec2.hpp>
-#include <vector>
 
 #include "core/buffer.h"
 #include "core/image.h"

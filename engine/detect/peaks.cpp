@@ -1,11 +1,6 @@
 // Heights are sums with Gaussian and with equal weights, both along rows, then along columns.
 #include "detect/peaks.h"
 
-#include <algorithm>
-#include <cmath>
-#include <functional>
-#include <optional>
-
 #include "core/real.h"
 #include "image/blur.h"
 #include "image/channels.h"

@@ -3,9 +3,7 @@
 // at one depth, not a column of splats, which pixels belong to which.
 #pragma once
 
-#include <cstdint>
 #include <type_traits>
-#include <vector>
 
 #include "core/image.h"
 #include "core/parallel.h"

@@ -1,9 +1,5 @@
 #include "fidelity/display.h"
 
-#include <algorithm>
-#include <cassert>
-#include <cmath>
-
 #include "core/color.h"
 #include "core/real.h"
 #include "core/sorting.h"

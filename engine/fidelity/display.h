@@ -4,9 +4,6 @@
 // in [0, 1], one of them for eyes: where a picture is brighter or darker than another; differences.
 #pragma once
 
-#include <cstdint>
-#include <vector>
-
 #include "core/image.h"
 #include "core/parallel.h"
 

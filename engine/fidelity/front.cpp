@@ -1,10 +1,5 @@
 #include "fidelity/front.h"
 
-#include <algorithm>
-#include <cassert>
-#include <cmath>
-#include <limits>
-
 #include "core/parallel.h"
 #include "core/real.h"
 #include "core/sorting.h"

@@ -3,9 +3,6 @@
 // numbers.
 #pragma once
 
-#include <array>
-#include <vector>
-
 #include "core/image.h"
 #include "fidelity/display.h"
 

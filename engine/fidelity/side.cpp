@@ -1,11 +1,6 @@
 #include "fidelity/side.h"
 
-#include <algorithm>
-#include <array>
-#include <cmath>
 #include <numeric>
-#include <optional>
-#include <vector>
 
 #include "core/color.h"
 #include "core/sorting.h"

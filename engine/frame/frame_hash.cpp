@@ -3,10 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <array>
-#include <string_view>
-
 #include "core/error.h"
 #include "core/hash.h"
 #include "output/format.h"
@@ -109,8 +105,7 @@ void check_unchanged(const HashedFiles& files, const Progress& progress) {
         if (stamp_of(file) == hashed.stamp) continue;
         std::error_code ignored;
         if (fs::is_regular_file(file, ignored) && sha256_of_file(file, progress) == hashed.hash) continue;
-        bad_input(file.string(), "", "the file that the frames were planned with",
-                  "a change since; start again");
+        bad_input(file, "the file that the frames were planned with", "a change since; start again");
     }
 }
 

@@ -3,11 +3,9 @@
 #pragma once
 
 #include <map>
-#include <string>
 
 #include "core/file.h"
 #include "core/image.h"
-#include "core/path.h"
 #include "core/progress.h"
 #include "frame/frame_scene.h"
 #include "scene/parameter.h"

@@ -1,8 +1,5 @@
 #include "frame/frame_scene.h"
 
-#include <algorithm>
-#include <utility>
-
 #include "core/parallel.h"
 #include "scene/animate.h"
 

@@ -3,11 +3,6 @@
 // others.
 #pragma once
 
-#include <cstddef>
-#include <optional>
-#include <span>
-#include <vector>
-
 #include "camera/camera.h"
 #include "render/frame.h"
 #include "scene/scene.h"

@@ -2,9 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <optional>
-
 #include "core/error.h"
 
 namespace astrosplat {
@@ -132,7 +129,7 @@ OutputPattern output_pattern(const fs::path& base, const std::string& text) {
 std::vector<Eye> eyes_of(const OutputPattern& pattern, const CameraParams& camera) {
     if (!pattern.is_stereo()) return {camera.eye};
     if (!has_two_eyes(camera.projection))
-        bad_input(pattern.text(), "",
+        bad_input(pattern.text(),
                   "no %V, for only perspective, equirectangular and cylindrical cameras have a left and a "
                   "right eye",
                   std::string(name_of(camera.projection)));

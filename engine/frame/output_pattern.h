@@ -2,12 +2,7 @@
 // and the eye. Batch, verify, farm and window all ask here.
 #pragma once
 
-#include <cstdint>
-#include <string>
-#include <vector>
-
 #include "camera/camera.h"
-#include "core/path.h"
 
 namespace astrosplat {
 

@@ -4,11 +4,7 @@
 // evaluated all around and fitted again.
 #include "gaussians/gaussians.h"
 
-#include <algorithm>
-#include <array>
-#include <cmath>
 #include <glm/common.hpp>
-#include <vector>
 
 #include "core/color.h"
 #include "core/parallel.h"

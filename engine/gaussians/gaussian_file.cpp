@@ -4,15 +4,9 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <bit>
-#include <cassert>
 #include <cstring>
 #include <glm/common.hpp>
 #include <initializer_list>
-#include <limits>
-#include <string>
-#include <string_view>
 
 #include "core/bounds.h"
 #include "core/color.h"
@@ -151,7 +145,7 @@ void write_gaussian_glb(const WriteTarget& target, const Gaussians& gaussians, b
     const std::string json = glb_json(gaussians, encoded, bytes);
     const std::int64_t all = 28 + std::int64_t(json.size()) + bytes;
     if (all > std::numeric_limits<std::uint32_t>::max())
-        bad_input(target.file.string(), "",
+        bad_input(target.file,
                   fmt::format("at most 4 GiB, some {} million splats (see --count)", 1073 / floats),
                   fmt::format("{} splats", gaussians.size()));
     const std::string header = "glTF" + number_bytes(2) + number_bytes(std::uint32_t(all)) +

@@ -1,11 +1,7 @@
 // Fewer splats in the place of many; how each looks on a frame; the Gaussians that are made of them.
 #include "gaussians/gaussians.h"
 
-#include <algorithm>
-#include <cassert>
-#include <cmath>
 #include <glm/geometric.hpp>
-#include <memory>
 
 #include "core/bounds.h"
 #include "core/color.h"

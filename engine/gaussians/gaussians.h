@@ -4,13 +4,9 @@
 // Also how each splat looks on a frame, as a Gaussian, for whatever is written for other programs.
 #pragma once
 
-#include <cstddef>
-#include <cstdint>
 #include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
-#include <span>
-#include <vector>
 
 #include "camera/camera.h"
 #include "core/buffer.h"

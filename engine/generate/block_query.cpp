@@ -8,12 +8,8 @@
 // after foreach_target.h
 #include <hwy/highway.h>
 
-#include <algorithm>
-#include <bit>
-#include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
-#include <limits>
 
 #include "core/lanes-inl.h"
 

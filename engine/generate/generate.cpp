@@ -3,11 +3,7 @@
 // of the lattice that reaches into it.
 #include "generate/generate.h"
 
-#include <algorithm>
 #include <cfloat>
-#include <cmath>
-#include <utility>
-#include <vector>
 
 #include "core/memory.h"
 #include "core/parallel.h"

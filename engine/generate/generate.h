@@ -4,9 +4,6 @@
 // those to be seen, in memory or straight into a native file, part of space by part.
 #pragma once
 
-#include <cstdint>
-#include <span>
-
 #include "core/atomic_file.h"
 #include "core/progress.h"
 #include "generate/lattice.h"

@@ -1,8 +1,6 @@
 // Appending kept splats to a set, in order and in parallel.
 #include "generate/kept_store.h"
 
-#include <algorithm>
-
 #include "core/parallel.h"
 
 namespace astrosplat {

@@ -3,11 +3,6 @@
 // SplatSet.
 #pragma once
 
-#include <cstddef>
-#include <cstdint>
-#include <span>
-#include <vector>
-
 #include "core/bounds.h"
 #include "splats/splat_set.h"
 

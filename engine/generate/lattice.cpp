@@ -3,8 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
 #include <glm/common.hpp>
 
 #include "core/error.h"
@@ -18,7 +16,7 @@ namespace {
 constexpr double most_positions = 4611686018427387904.0;  // 2^62: ids and their sums fit 64 bits
 
 [[noreturn]] void bad_key(const char* key, const std::string& expected, const std::string& found) {
-    bad_input(fmt::format("source.{}", key), "", expected, found);
+    bad_input(fmt::format("source.{}", key), expected, found);
 }
 
 double total_area(std::span<const TexturedMesh> meshes) {

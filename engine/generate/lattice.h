@@ -3,10 +3,7 @@
 // kept. In: source parameters and meshes. Out: Lattice, and positions by id.
 #pragma once
 
-#include <cstdint>
 #include <glm/vec3.hpp>
-#include <span>
-#include <string>
 
 #include "core/bounds.h"
 #include "source/source.h"

@@ -3,13 +3,9 @@
 // blocks; what they write depends on the row alone.
 #include "generate/lattice_cull.h"
 
-#include <algorithm>
 #include <atomic>
-#include <cassert>
-#include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
-#include <string>
 #include <tuple>
 
 #include "core/parallel.h"

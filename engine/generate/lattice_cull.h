@@ -7,16 +7,8 @@
 // (generate.h).
 #pragma once
 
-#include <array>
-#include <cstddef>
-#include <cstdint>
-#include <functional>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
-#include <limits>
-#include <optional>
-#include <span>
-#include <vector>
 
 #include "core/buffer.h"
 #include "core/progress.h"

@@ -6,8 +6,6 @@
 
 #include <fmt/format.h>
 
-#include <array>
-#include <cmath>
 #include <glm/geometric.hpp>
 
 #include "core/bounds.h"
@@ -122,8 +120,7 @@ Buffer<TriangleCorners> corners_of(std::span<const Mesh* const> meshes) {
     std::size_t count = 0;
     for (const Mesh* mesh : meshes) count += mesh->triangles.size();
     if (count > most_triangles) {
-        bad_input("meshes", "", fmt::format("at most {} triangles", most_triangles),
-                  fmt::format("{}", count));
+        bad_input("meshes", fmt::format("at most {} triangles", most_triangles), fmt::format("{}", count));
     }
     Buffer<TriangleCorners> corners(count);
     std::size_t first = 0;

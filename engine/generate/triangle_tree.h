@@ -4,13 +4,9 @@
 // (distance squared, triangle number).
 #pragma once
 
-#include <algorithm>
-#include <cstdint>
 #include <glm/common.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
-#include <span>
-#include <vector>
 
 #include "core/buffer.h"
 #include "source/mesh.h"

@@ -2,9 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cstring>
-#include <limits>
 
 #include "core/error.h"
 #include "core/file.h"
@@ -77,7 +75,7 @@ GltfFile::GltfFile(const fs::path& file) : file_(file) {
 }
 
 void GltfFile::fail(const std::string& expected, const std::string& found) const {
-    bad_input(file_.string(), "", expected, found);
+    bad_input(file_, expected, found);
 }
 
 const Json& GltfFile::element(const char* name, const Json& index) const {

@@ -2,17 +2,13 @@
 // nodes place what they hold.
 #pragma once
 
-#include <cstdint>
 #include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <optional>
-#include <string>
-#include <vector>
 
-#include "core/path.h"
+#include "core/standard.h"
 
 namespace astrosplat {
 

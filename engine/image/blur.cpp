@@ -2,11 +2,6 @@
 // Windows of the opening grow by doubling: from n to 2n.
 #include "image/blur.h"
 
-#include <algorithm>
-#include <cassert>
-#include <cmath>
-#include <vector>
-
 #include "core/parallel.h"
 #include "core/real.h"
 

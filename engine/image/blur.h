@@ -3,9 +3,6 @@
 // set. For a blur an image is mirrored beyond its edges (half-sample symmetric).
 #pragma once
 
-#include <cstdint>
-#include <span>
-
 #include "core/image.h"
 
 namespace astrosplat {

@@ -2,8 +2,6 @@
 // its pixels, or a visit to all of them or to those about a place.
 #pragma once
 
-#include <algorithm>
-
 #include "core/image.h"
 #include "core/parallel.h"
 

@@ -1,14 +1,7 @@
 #include "image/resample.h"
 
-#include <algorithm>
-#include <cassert>
-#include <cmath>
 #include <glm/matrix.hpp>
-#include <memory>
 #include <numeric>
-#include <span>
-#include <utility>
-#include <vector>
 
 #include "core/parallel.h"
 #include "image/blur.h"

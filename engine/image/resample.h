@@ -3,7 +3,6 @@
 // another.
 #pragma once
 
-#include <functional>
 #include <glm/mat2x2.hpp>
 #include <glm/vec2.hpp>
 

@@ -2,13 +2,7 @@
 // in the output. Afterwards the gaps are closed in order, so the result does not depend on who did what.
 #include "look/apply.h"
 
-#include <algorithm>
 #include <atomic>
-#include <cassert>
-#include <cmath>
-#include <functional>
-#include <utility>
-#include <vector>
 
 #include "core/color.h"
 #include "core/memory.h"

@@ -4,7 +4,6 @@
 // before the look, and shapes, which come after it.
 #pragma once
 
-#include <cstdint>
 #include <glm/vec3.hpp>
 
 #include "core/buffer.h"

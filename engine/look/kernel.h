@@ -1,8 +1,6 @@
 // The look over a run of splats, compiled once per instruction set with the same bits on each.
 #pragma once
 
-#include <cstdint>
-
 #include "core/image.h"
 #include "look/shared_uniforms.h"
 #include "splats/shaded_splats.h"

@@ -4,9 +4,7 @@
 
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
-#include <vector>
 
-#include "core/path.h"
 #include "core/text.h"
 #include "source/source.h"
 

@@ -1,9 +1,6 @@
 // Each row of blocks is summed by one thread, which takes the positions in the set's order. A set is in the
 // order of its lattice, so a chunk of it lies in few rows and the others pass it by.
 
-#include <algorithm>
-#include <cmath>
-
 #include "core/parallel.h"
 #include "core/real.h"
 #include "image/blur.h"
@@ -119,98 +116,94 @@ struct CellSums {
     PictureCells cells = {};
     std::vector<CellRange> ranges = {};  // of chunks
 
-    PictureCells sums();
-    void find_ranges();
-    void sum_rows(std::int64_t band);
-    void add(std::int64_t i, std::size_t cell, std::size_t block);
-    void add_wanted(std::size_t cell, double opacity, double matched_depth, const glm::vec3& color);
+    PictureCells sums() {
+        const auto zero = [&](CellValues& values) { values.assign(std::size_t(chart.cells()), 0.0f); };
+        for (std::size_t c = 0; c < picture_channels; ++c) zero(cells.depth[c]), zero(cells.wanted[c]);
+        zero(cells.squares), zero(cells.positions);
+        if (varied) zero(cells.varied), zero(cells.plain);
+        cells.cover.resize(chart.blocks.size());
+        cells.cell_of.resize(std::size_t(set.size()));
+        find_ranges();
+        parallel_for(chart.meshes * chart_side, [&](std::int64_t band, int) { sum_rows(band); });
+        return std::move(cells);
+    }
+
+    void find_ranges() {
+        const std::int64_t count = set.size();
+        ranges.resize(std::size_t((count + cells_chunk - 1) / cells_chunk));
+        parallel_chunks(count, cells_chunk, [&](std::int64_t begin, std::int64_t end, int) {
+            CellRange range{chart.cells(), -1};
+            for (std::int64_t i = begin; i < end; ++i) {
+                const std::int64_t cell = chart.cell_of(set, i);
+                range.least = std::min(range.least, cell), range.most = std::max(range.most, cell);
+            }
+            ranges[begin / cells_chunk] = range;
+        });
+    }
+
+    // A band is a row of blocks of one mesh.
+    void sum_rows(std::int64_t band) {
+        const std::int64_t mesh = band / chart_side, block_row = band % chart_side, columns = chart.columns;
+        const std::int64_t first =
+            (mesh * chart.rows + PictureChart::block_begin(block_row, chart.rows)) * columns;
+        const std::int64_t end =
+            (mesh * chart.rows + PictureChart::block_begin(block_row + 1, chart.rows)) * columns;
+        for (std::size_t chunk = 0; chunk < ranges.size(); ++chunk) {
+            if (ranges[chunk].most < first || ranges[chunk].least >= end) continue;
+            const std::int64_t begin = std::int64_t(chunk) * cells_chunk;
+            for (std::int64_t i = begin; i < std::min(begin + cells_chunk, set.size()); ++i) {
+                const std::int64_t cell = chart.cell_of(set, i);
+                if (cell < first || cell >= end) continue;
+                const std::int64_t block =
+                    band * chart_side + PictureChart::block_at(cell % columns, columns);
+                add(i, std::size_t(cell), std::size_t(block));
+            }
+        }
+    }
+
+    void add(std::int64_t i, std::size_t cell, std::size_t block) {
+        const LookUniforms& u = run.uniforms;
+        const OneSplat look = look_at(run, u, i);
+        const bool beyond = PictureChart::on_edge(set, i);
+        const std::uint32_t kept_in = beyond ? beyond_cells : std::uint32_t(cell);
+        cells.cell_of[i] = look.keep ? kept_in : no_cell;
+        const float alpha = shared::look_horizontal(run.in.alpha[i], u.alpha);
+        const bool sums = u.match == shared_types::MATCH_LIGHT;
+        const double depth = double(sums ? alpha : shared::look_small_depth(alpha));
+        if (!(depth > 0.0) || beyond) return;
+        const OneSplat even = varied ? look_at(run, plain, i) : look;
+        const auto squared = [](float x) { return double(x) * double(x); };
+        const double in_cells = falloff_integral / chart.blocks[block].cell_area;
+        const double even_due = double(even.probability) * double(even.alpha) * squared(even.radius);
+        const double opacity = sums ? depth : 1.0 - double(shared::as_exp(-float(depth)));
+        cells.positions[cell] += 1.0f;
+        add_wanted(cell, opacity, depth, look.color);
+        CoverSums& cover = cells.cover[block];
+        if (even.alpha < 1.0f) cover.due += even_due * in_cells / depth, cover.unclamped += 1.0;
+        if (varied) {
+            cells.plain[cell] += float(even_due);
+            cells.varied[cell] += float(double(look.probability) * double(look.alpha) * squared(look.radius));
+        }
+        if (!look.keep) return;
+        const double shown = double(look.alpha) * squared(look.radius) * in_cells;
+        cells.depth[0][cell] += float(shown);
+        for (int c = 0; c < 3; ++c)
+            cells.depth[std::size_t(c) + 1][cell] += float(shown * double(look.color[c]));
+        cells.squares[cell] += float(shown * shown);
+    }
+
+    // Light of a column of splats of the position's own alpha and color, as the blend has it.
+    void add_wanted(std::size_t cell, double opacity, double matched_depth, const glm::vec3& color) {
+        cells.wanted[0][cell] += float(opacity);
+        for (int c = 0; c < 3; ++c) {
+            const auto light = double(color[c]);
+            const bool screened = run.uniforms.match == shared_types::MATCH_SCREEN;
+            const double shown =
+                screened ? 1.0 - double(shared::as_exp(-float(matched_depth * light))) : opacity * light;
+            cells.wanted[std::size_t(c) + 1][cell] += float(shown);
+        }
+    }
 };
-
-void CellSums::find_ranges() {
-    const std::int64_t count = set.size();
-    ranges.resize(std::size_t((count + cells_chunk - 1) / cells_chunk));
-    parallel_chunks(count, cells_chunk, [&](std::int64_t begin, std::int64_t end, int) {
-        CellRange range{chart.cells(), -1};
-        for (std::int64_t i = begin; i < end; ++i) {
-            const std::int64_t cell = chart.cell_of(set, i);
-            range.least = std::min(range.least, cell), range.most = std::max(range.most, cell);
-        }
-        ranges[begin / cells_chunk] = range;
-    });
-}
-
-// Light of a column of splats of the position's own alpha and color, as the blend has it.
-void CellSums::add_wanted(std::size_t cell, double opacity, double matched_depth, const glm::vec3& color) {
-    cells.wanted[0][cell] += float(opacity);
-    for (int c = 0; c < 3; ++c) {
-        const auto light = double(color[c]);
-        const bool screened = run.uniforms.match == shared_types::MATCH_SCREEN;
-        const double shown =
-            screened ? 1.0 - double(shared::as_exp(-float(matched_depth * light))) : opacity * light;
-        cells.wanted[std::size_t(c) + 1][cell] += float(shown);
-    }
-}
-
-void CellSums::add(std::int64_t i, std::size_t cell, std::size_t block) {
-    const LookUniforms& u = run.uniforms;
-    const OneSplat look = look_at(run, u, i);
-    const bool beyond = PictureChart::on_edge(set, i);
-    const std::uint32_t kept_in = beyond ? beyond_cells : std::uint32_t(cell);
-    cells.cell_of[i] = look.keep ? kept_in : no_cell;
-    const float alpha = shared::look_horizontal(run.in.alpha[i], u.alpha);
-    const bool sums = u.match == shared_types::MATCH_LIGHT;
-    const double depth = double(sums ? alpha : shared::look_small_depth(alpha));
-    if (!(depth > 0.0) || beyond) return;
-    const OneSplat even = varied ? look_at(run, plain, i) : look;
-    const auto squared = [](float x) { return double(x) * double(x); };
-    const double in_cells = falloff_integral / chart.blocks[block].cell_area;
-    const double even_due = double(even.probability) * double(even.alpha) * squared(even.radius);
-    const double opacity = sums ? depth : 1.0 - double(shared::as_exp(-float(depth)));
-    cells.positions[cell] += 1.0f;
-    add_wanted(cell, opacity, depth, look.color);
-    CoverSums& cover = cells.cover[block];
-    if (even.alpha < 1.0f) cover.due += even_due * in_cells / depth, cover.unclamped += 1.0;
-    if (varied) {
-        cells.plain[cell] += float(even_due);
-        cells.varied[cell] += float(double(look.probability) * double(look.alpha) * squared(look.radius));
-    }
-    if (!look.keep) return;
-    const double shown = double(look.alpha) * squared(look.radius) * in_cells;
-    cells.depth[0][cell] += float(shown);
-    for (int c = 0; c < 3; ++c) cells.depth[std::size_t(c) + 1][cell] += float(shown * double(look.color[c]));
-    cells.squares[cell] += float(shown * shown);
-}
-
-// A band is a row of blocks of one mesh.
-void CellSums::sum_rows(std::int64_t band) {
-    const std::int64_t mesh = band / chart_side, block_row = band % chart_side, columns = chart.columns;
-    const std::int64_t first =
-        (mesh * chart.rows + PictureChart::block_begin(block_row, chart.rows)) * columns;
-    const std::int64_t end =
-        (mesh * chart.rows + PictureChart::block_begin(block_row + 1, chart.rows)) * columns;
-    for (std::size_t chunk = 0; chunk < ranges.size(); ++chunk) {
-        if (ranges[chunk].most < first || ranges[chunk].least >= end) continue;
-        const std::int64_t begin = std::int64_t(chunk) * cells_chunk;
-        for (std::int64_t i = begin; i < std::min(begin + cells_chunk, set.size()); ++i) {
-            const std::int64_t cell = chart.cell_of(set, i);
-            if (cell < first || cell >= end) continue;
-            const std::int64_t block = band * chart_side + PictureChart::block_at(cell % columns, columns);
-            add(i, std::size_t(cell), std::size_t(block));
-        }
-    }
-}
-
-PictureCells CellSums::sums() {
-    const auto zero = [&](CellValues& values) { values.assign(std::size_t(chart.cells()), 0.0f); };
-    for (std::size_t c = 0; c < picture_channels; ++c) zero(cells.depth[c]), zero(cells.wanted[c]);
-    zero(cells.squares), zero(cells.positions);
-    if (varied) zero(cells.varied), zero(cells.plain);
-    cells.cover.resize(chart.blocks.size());
-    cells.cell_of.resize(std::size_t(set.size()));
-    find_ranges();
-    parallel_for(chart.meshes * chart_side, [&](std::int64_t band, int) { sum_rows(band); });
-    return std::move(cells);
-}
 
 }  // namespace
 

@@ -3,8 +3,6 @@
 // cells a footprint is wide.
 #include "look/picture_fit.h"
 
-#include <algorithm>
-#include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>

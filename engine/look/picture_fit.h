@@ -6,10 +6,7 @@
 // colour for each splat that is kept.
 #pragma once
 
-#include <array>
-#include <cstdint>
 #include <glm/vec3.hpp>
-#include <vector>
 
 #include "core/buffer.h"
 #include "look/kernel.h"

@@ -3,11 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cassert>
-#include <cmath>
-#include <vector>
-
 #include "core/error.h"
 #include "core/log.h"
 #include "core/parallel.h"
@@ -50,11 +45,11 @@ vec3 unit_axis(const glm::vec3& axis) {
 void prepare_stops(const SplatSet& set, const Look& look, const LookInputs& inputs, LookUniforms& u) {
     const Thickness& thickness = look.thickness;
     if (thickness.stops.size() > std::size_t(LOOK_MAX_STOPS))
-        bad_input("look.thickness.keys", "", fmt::format("at most {} stops", LOOK_MAX_STOPS),
+        bad_input("look.thickness.keys", fmt::format("at most {} stops", LOOK_MAX_STOPS),
                   fmt::format("{}", thickness.stops.size()));
     const bool has_map = !thickness.map.empty();
     if (has_map && set.uv.empty())
-        bad_input("look.thickness.map", "", "splats with texture coordinates", "a set without");
+        bad_input("look.thickness.map", "splats with texture coordinates", "a set without");
     assert(!has_map || inputs.thickness_map);
     (void)inputs;
     std::vector<ThicknessStop> stops = thickness.stops;
@@ -103,7 +98,7 @@ void prepare_noises(const Look& look, LookUniforms& u) {
     for (const Noise& noise : look.noise) {
         if (!changes_anything(noise)) continue;
         if (u.noise_count == LOOK_MAX_NOISES)
-            bad_input("look.noise", "", fmt::format("at most {} noises", LOOK_MAX_NOISES),
+            bad_input("look.noise", fmt::format("at most {} noises", LOOK_MAX_NOISES),
                       fmt::format("{}", look.noise.size()));
         u.noises[u.noise_count++] = prepare_noise(noise);
     }
@@ -133,7 +128,7 @@ LookCrop prepare_crop(const Crop& crop) {
 
 void prepare_crops(const Look& look, LookUniforms& u) {
     if (look.crop.size() > std::size_t(LOOK_MAX_CROPS))
-        bad_input("look.crop", "", fmt::format("at most {} crops", LOOK_MAX_CROPS),
+        bad_input("look.crop", fmt::format("at most {} crops", LOOK_MAX_CROPS),
                   fmt::format("{}", look.crop.size()));
     for (const Crop& crop : look.crop) u.crops[u.crop_count++] = prepare_crop(crop);
 }
@@ -155,7 +150,7 @@ void prepare_radius(const SplatSet& set, const Radius& radius, LookUniforms& u) 
     u.radius.own = set.radius.empty() ? 0 : 1;
     if (u.radius.own) return;
     if (!set.generated && set.size() > 0)
-        bad_input("look.radius", "", "min and max, since the splat file holds no radius", "0 and 0");
+        bad_input("look.radius", "min and max, since the splat file holds no radius", "0 and 0");
     const glm::dvec3 s = set.spacing;
     u.radius.smallest = u.radius.largest = float(0.6 * std::sqrt(s.x * s.x + s.y * s.y + s.z * s.z));
 }
@@ -215,8 +210,7 @@ void prepare_match(const SplatSet& set, const Look& look, const LookInputs& inpu
     u.match = match_kind(resolved_match(set, look.vertical), inputs.column);
     if (u.match == MATCH_NONE) return;
     if (!(set.spacing.x > 0.0 && set.spacing.y > 0.0 && set.spacing.z > 0.0))
-        bad_input("look.vertical.match", "",
-                  "none, since the spacing of the splat file's lattice is not known",
+        bad_input("look.vertical.match", "none, since the spacing of the splat file's lattice is not known",
                   std::string(name_of(resolved_match(set, look.vertical))));
     const double factor = column_factor(set, inputs, u);
     const double vertical_scale = u.match == MATCH_PLANES ? 1.0 : double(u.radius.vertical_scale);

@@ -6,8 +6,6 @@
 #pragma once
 
 #include <glm/vec2.hpp>
-#include <span>
-#include <string>
 
 #include "look/apply.h"
 #include "look/shared_uniforms.h"

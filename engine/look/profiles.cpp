@@ -5,11 +5,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <vector>
-
 #include "core/error.h"
 #include "core/real.h"
 #include "look/shared_look.h"
@@ -21,11 +16,10 @@ using shared_types::LOOK_MAX_POINTS;
 
 void check_points(std::span<const glm::vec2> points, const std::string& key) {
     if (points.size() > std::size_t(LOOK_MAX_POINTS))
-        bad_input(key, "", fmt::format("at most {} points", LOOK_MAX_POINTS),
-                  fmt::format("{}", points.size()));
+        bad_input(key, fmt::format("at most {} points", LOOK_MAX_POINTS), fmt::format("{}", points.size()));
     for (std::size_t i = 1; i < points.size(); ++i)
         if (!(points[i].x > points[i - 1].x))
-            bad_input(key, "", "points in ascending order of x",
+            bad_input(key, "points in ascending order of x",
                       fmt::format("{} after {}", points[i].x, points[i - 1].x));
 }
 

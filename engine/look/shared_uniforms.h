@@ -2,8 +2,6 @@
 // that kernels compiled for several instruction sets share them.
 #pragma once
 
-#include <cstddef>
-
 #include "core/shared_maths.h"
 
 namespace astrosplat::shared_types {

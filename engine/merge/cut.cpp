@@ -2,14 +2,9 @@
 // pieces as wanted.
 #include "merge/cut.h"
 
-#include <algorithm>
-#include <cmath>
 #include <glm/common.hpp>
 #include <glm/exponential.hpp>
 #include <glm/geometric.hpp>
-#include <limits>
-#include <optional>
-#include <utility>
 
 #include "core/parallel.h"
 #include "render/shared_render.h"

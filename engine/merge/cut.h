@@ -2,11 +2,7 @@
 // In: merged layers, a camera and a number of splats. Out: splats for the renderer, which stand for all.
 #pragma once
 
-#include <array>
-#include <cstdint>
 #include <glm/vec3.hpp>
-#include <span>
-#include <vector>
 
 #include "merge/tree.h"
 #include "render/frame.h"

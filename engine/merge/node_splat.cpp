@@ -1,8 +1,6 @@
 // Optical depths are tabulated once for a falloff; a faint one takes three look-ups and no logarithm.
 #include "merge/cut.h"
 
-#include <algorithm>
-#include <cmath>
 #include <glm/geometric.hpp>
 
 #include "core/real.h"

@@ -3,11 +3,7 @@
 // of additions is that of the tree.
 #include "merge/tree.h"
 
-#include <algorithm>
-#include <bit>
-#include <cassert>
 #include <glm/geometric.hpp>
-#include <utility>
 
 #include "core/memory.h"
 #include "core/parallel.h"

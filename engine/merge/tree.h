@@ -3,10 +3,7 @@
 // along a Morton curve and the nodes over them; MergedSplats, of which any cut (cut.h) has all the light.
 #pragma once
 
-#include <cstdint>
 #include <glm/vec3.hpp>
-#include <memory>
-#include <vector>
 
 #include "core/buffer.h"
 #include "core/progress.h"

@@ -5,8 +5,6 @@
 #include <OpenColorIO/OpenColorIO.h>
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
 #include <cstdlib>
 #include <list>
 #include <mutex>
@@ -52,7 +50,7 @@ ocio::ConstConfigRcPtr load_config(const fs::path& file) {
     try {
         return ocio::Config::CreateFromFile(file.c_str());
     } catch (const std::exception& error) {
-        bad_input(file.string(), "", "a configuration of OpenColorIO", one_line(error.what()));
+        bad_input(file, "a configuration of OpenColorIO", one_line(error.what()));
     }
 }
 
@@ -213,8 +211,7 @@ DisplayTransform::DisplayTransform(const OcioParams& params) : state_(std::make_
         state.processor = processor_for(*config, entry, state.display, state.view);
         state.cpu = state.processor->getOptimizedCPUProcessor(ocio::OPTIMIZATION_LOSSLESS);
     } catch (const std::exception& error) {
-        bad_input(file.string(), "", fmt::format("a view '{}' that can be made", state.view),
-                  one_line(error.what()));
+        bad_input(file, fmt::format("a view '{}' that can be made", state.view), one_line(error.what()));
     }
     state.files = files_of(state.processor, file);
 }

@@ -3,13 +3,7 @@
 // has to choose from; and all that it depends on, for the frame hash.
 #pragma once
 
-#include <cstdint>
-#include <memory>
-#include <string>
-#include <vector>
-
 #include "core/error.h"
-#include "core/path.h"
 
 namespace astrosplat {
 

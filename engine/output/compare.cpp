@@ -5,14 +5,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <bit>
-#include <cassert>
-#include <cmath>
-#include <limits>
-#include <memory>
-#include <vector>
-
 #include "core/error.h"
 #include "core/real.h"
 #include "source/open_picture.h"
@@ -83,8 +75,7 @@ ImageComparison compare_images(const Image& a, const Image& b) {
 ImageComparison compare_files(const fs::path& a, const fs::path& b) {
     Image first = load_linear_image(a), second = load_linear_image(b);
     if (first.width != second.width || first.height != second.height)
-        bad_input(b.string(), "",
-                  fmt::format("{} x {} pixels as in {}", first.width, first.height, a.string()),
+        bad_input(b, fmt::format("{} x {} pixels as in {}", first.width, first.height, a.string()),
                   fmt::format("{} x {}", second.width, second.height));
     return compare_images(first, second);
 }

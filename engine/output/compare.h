@@ -3,11 +3,7 @@
 // size. Out: where and how much they differ.
 #pragma once
 
-#include <cstdint>
-#include <string>
-
 #include "core/image.h"
-#include "core/path.h"
 
 namespace astrosplat {
 

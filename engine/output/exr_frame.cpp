@@ -15,14 +15,8 @@
 #include <fmt/format.h>
 #include <half.h>
 
-#include <algorithm>
-#include <cassert>
-#include <cstdint>
 #include <cstring>
-#include <limits>
 #include <new>
-#include <string>
-#include <vector>
 
 #include "core/atomic_file.h"
 #include "core/color.h"
@@ -35,13 +29,11 @@ namespace {
 
 /// The threads that OpenEXR may pack and unpack pixels with: as many as the program's own; none where there
 /// are none to be had, and it does without.
-int exr_threads() {
-    try {
-        if (Imf::globalThreadCount() != thread_count()) Imf::setGlobalThreadCount(thread_count());
-        return Imf::globalThreadCount();
-    } catch (const std::exception&) {
-        return 0;
-    }
+int exr_threads() try {
+    if (Imf::globalThreadCount() != thread_count()) Imf::setGlobalThreadCount(thread_count());
+    return Imf::globalThreadCount();
+} catch (const std::exception&) {
+    return 0;
 }
 
 constexpr std::int64_t band_rows = 256;  // a multiple of every compression's block height

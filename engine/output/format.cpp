@@ -4,12 +4,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <string>
-#include <string_view>
-
 #include "core/color.h"
 #include "core/error.h"
 #include "core/file_format.h"

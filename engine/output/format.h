@@ -2,12 +2,7 @@
 // the numbers that a file of that format stores: alpha rule, exposure, view transform, dither and rounding.
 #pragma once
 
-#include <cstdint>
-#include <memory>
-#include <vector>
-
 #include "core/image.h"
-#include "core/path.h"
 #include "scene/scene.h"
 
 namespace astrosplat {

@@ -4,10 +4,6 @@
 // at all; of a file its header, and whether it is whole.
 #pragma once
 
-#include <optional>
-#include <string_view>
-
-#include "core/path.h"
 #include "output/format.h"
 #include "output/metadata.h"
 #include "output/write.h"

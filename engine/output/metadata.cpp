@@ -5,8 +5,6 @@
 #include <fmt/format.h>
 #include <zlib.h>
 
-#include <algorithm>
-#include <cmath>
 #include <new>
 #include <numeric>
 

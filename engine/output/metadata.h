@@ -3,17 +3,10 @@
 // stored frame, whatever its format, which keys differ between two frames, and of pictures of any kind.
 #pragma once
 
-#include <cstdint>
 #include <map>
-#include <optional>
-#include <string>
-#include <string_view>
-#include <utility>
-#include <vector>
 
 #include "camera/camera.h"
 #include "core/image.h"
-#include "core/path.h"
 #include "output/write.h"
 
 namespace astrosplat {

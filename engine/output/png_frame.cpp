@@ -3,15 +3,8 @@
 #include <fmt/format.h>
 #include <png.h>
 
-#include <algorithm>
-#include <array>
-#include <bit>
 #include <cstdio>
-#include <memory>
 #include <new>
-#include <span>
-#include <utility>
-#include <vector>
 
 #include "core/atomic_file.h"
 #include "core/error.h"

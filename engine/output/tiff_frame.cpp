@@ -4,14 +4,10 @@
 #include <tiffio.h>
 #include <zlib.h>
 
-#include <algorithm>
-#include <array>
 #include <cstdarg>
 #include <cstdio>
 #include <cstring>
-#include <memory>
 #include <new>
-#include <vector>
 
 #include "core/atomic_file.h"
 #include "core/error.h"

@@ -2,15 +2,9 @@
 // atomically (temporary name, fsync, rename).
 #pragma once
 
-#include <cstdint>
-#include <optional>
-#include <string>
-#include <vector>
-
 #include "camera/camera.h"
 #include "core/atomic_file.h"
 #include "core/image.h"
-#include "core/path.h"
 #include "render/frame.h"
 #include "scene/scene.h"
 

@@ -4,11 +4,6 @@
 // editing").
 #include "prepare/stages.h"
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <optional>
-
 #include "core/parallel.h"
 #include "core/real.h"
 

@@ -2,10 +2,6 @@
 // pixel for all three channels.
 #include "prepare/stages.h"
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-
 #include "core/color.h"
 #include "core/real.h"
 #include "image/blur.h"

@@ -1,10 +1,7 @@
 // Small systems of normal equations. In: rows of a design with their values. Out: the coefficients.
 #pragma once
 
-#include <array>
-#include <cmath>
-#include <cstddef>
-#include <optional>
+#include "core/standard.h"
 
 namespace astrosplat {
 

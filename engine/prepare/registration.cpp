@@ -4,12 +4,6 @@
 // gain and offset.
 #include "prepare/registration.h"
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <utility>
-#include <vector>
-
 #include "core/parallel.h"
 #include "core/real.h"
 #include "image/blur.h"

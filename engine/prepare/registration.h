@@ -3,7 +3,6 @@
 #pragma once
 
 #include <glm/vec2.hpp>
-#include <optional>
 
 #include "core/image.h"
 #include "core/progress.h"

@@ -1,10 +1,6 @@
 // Patches of saturated pixels, judged by shape and by the fall of the light around them.
 #include "prepare/star_removal.h"
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
-
 #include "core/real.h"
 #include "core/sorting.h"
 #include "image/channels.h"

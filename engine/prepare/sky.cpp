@@ -1,11 +1,6 @@
 // Least squares over cells, and a clip that forgets what stands above the sky.
 #include "prepare/stages.h"
 
-#include <algorithm>
-#include <cassert>
-#include <cmath>
-#include <vector>
-
 #include "core/color.h"
 #include "core/real.h"
 #include "core/sorting.h"

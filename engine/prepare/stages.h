@@ -4,9 +4,7 @@
 // parts keep their colour (Lupton et al. 2004, PASP 116, 133); surfaces of second degree.
 #pragma once
 
-#include <array>
 #include <glm/vec2.hpp>
-#include <optional>
 
 #include "core/image.h"
 #include "core/progress.h"

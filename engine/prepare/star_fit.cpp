@@ -2,12 +2,6 @@
 // numbers a star: height, place, logarithm of the width, and a plane as background.
 #include "prepare/star_fit.h"
 
-#include <algorithm>
-#include <cassert>
-#include <cmath>
-#include <optional>
-#include <vector>
-
 #include "core/real.h"
 #include "image/channels.h"
 #include "prepare/least_squares.h"

@@ -2,8 +2,6 @@
 // Moffat profiles, round, of peak 1. In: a picture and about where the star is. Out: its numbers.
 #pragma once
 
-#include <array>
-
 #include "core/image.h"
 #include "detect/parts.h"
 

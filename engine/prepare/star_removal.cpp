@@ -5,11 +5,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
-#include <functional>
-#include <optional>
-
 #include "core/parallel.h"
 #include "core/real.h"
 #include "core/sorting.h"

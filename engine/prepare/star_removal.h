@@ -3,12 +3,6 @@
 // in the other. Of stars too bright for the picture what can be seen is fitted: their wings.
 #pragma once
 
-#include <limits>
-#include <span>
-#include <string>
-#include <string_view>
-#include <vector>
-
 #include "core/progress.h"
 #include "prepare/star_fit.h"
 

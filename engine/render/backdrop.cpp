@@ -2,9 +2,7 @@
 // linear, are looked up pixel by pixel.
 #include "render/environment.h"
 
-#include <algorithm>
 #include <glm/vec2.hpp>
-#include <vector>
 
 #include "core/parallel.h"
 #include "core/real.h"

@@ -1,7 +1,5 @@
 #include "render/bin_rects.h"
 
-#include <cassert>
-
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "render/bin_rects.cpp"
 #include <hwy/foreach_target.h>

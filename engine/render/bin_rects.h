@@ -2,10 +2,6 @@
 // reach; gives each a rectangle of bins on one level.
 #pragma once
 
-#include <cstddef>
-#include <cstdint>
-#include <span>
-
 #include "core/buffer.h"
 
 namespace astrosplat {

@@ -5,11 +5,8 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
-#include <utility>
 
 #include "core/error.h"
 #include "core/memory.h"
@@ -196,7 +193,7 @@ void check_cube(const std::vector<fs::path>& files, const std::vector<std::vecto
     for (std::size_t face = 0; face < 6; ++face) {
         std::int64_t w = inner(faces[face][0].width), h = inner(faces[face][0].height);
         if (w != n || h != n)
-            bad_input(files[face].string(), "environment.cube",
+            bad_input(files[face], "environment.cube",
                       fmt::format("{} x {} pixels, as the first picture's width", n, n),
                       fmt::format("{} x {}", w, h));
     }
@@ -239,7 +236,7 @@ Environment load_environment(const EnvironmentParams& params, const Progress& pr
     for (const fs::path& file : files) {
         std::vector<Image> pictures = load_environment_pictures(file, border, progress);
         if (files.size() == 6 && pictures.size() != 1)
-            bad_input(file.string(), "environment.cube", "a picture of one face",
+            bad_input(file, "environment.cube", "a picture of one face",
                       "a cube map, which environment.image takes");
         for (Image& picture : pictures) faces.emplace_back().push_back(std::move(picture));
     }

@@ -5,12 +5,9 @@
 #include <glm/mat3x3.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
-#include <memory>
-#include <vector>
 
 #include "camera/camera.h"
 #include "core/image.h"
-#include "core/path.h"
 #include "core/progress.h"
 #include "source/tiled_sky.h"
 

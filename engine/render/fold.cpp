@@ -1,11 +1,5 @@
 #include "render/fold.h"
 
-#include <algorithm>
-#include <array>
-#include <bit>
-#include <memory>
-#include <utility>
-
 #include "render/fold_batch.h"
 #include "render/shape.h"
 #include "render/sphere_shape.h"

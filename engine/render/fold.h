@@ -6,10 +6,6 @@
 // time; then each block folds those of them that touch it, with its pixels in registers.
 #pragma once
 
-#include <cstdint>
-#include <span>
-#include <vector>
-
 #include "camera/lens.h"
 #include "core/buffer.h"
 #include "core/image.h"

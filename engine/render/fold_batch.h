@@ -1,11 +1,6 @@
 // The splats that are about to be folded: up to 128 at a time, in total order, value by value.
 #pragma once
 
-#include <algorithm>
-#include <bit>
-#include <cstddef>
-#include <cstdint>
-
 #include "core/buffer.h"
 #include "render/bin_rects.h"
 #include "render/fold.h"

@@ -1,9 +1,5 @@
 #include "render/footprint.h"
 
-#include <bit>
-#include <cmath>
-#include <limits>
-
 #include "core/parallel.h"
 
 namespace astrosplat {

@@ -14,11 +14,6 @@
 // summing pixels first.
 #pragma once
 
-#include <algorithm>
-#include <array>
-#include <span>
-#include <vector>
-
 #include "core/progress.h"
 #include "core/real.h"
 #include "render/frame.h"

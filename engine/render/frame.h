@@ -2,12 +2,8 @@
 // scenes, writers and the preview share with the renderer (render.h).
 #pragma once
 
-#include <cstdint>
 #include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
-#include <optional>
-#include <string>
-#include <vector>
 
 #include "core/image.h"
 #include "core/text.h"

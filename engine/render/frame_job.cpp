@@ -1,6 +1,5 @@
 #include "render/frame_job.h"
 
-#include <algorithm>
 #include <cstdlib>
 
 #include "camera/projection.h"

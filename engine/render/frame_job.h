@@ -5,12 +5,8 @@
 // are put in order, folded group by group, and resolved into the frame's pixels.
 #pragma once
 
-#include <cstdint>
 #include <map>
-#include <memory>
-#include <span>
 #include <tuple>
-#include <vector>
 
 #include "core/progress.h"
 #include "render/fold.h"

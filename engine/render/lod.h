@@ -4,12 +4,7 @@
 // theirs (DEPTH 6). A star's splat is only the telescope's blur, so its image grows less.
 #pragma once
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstdint>
 #include <glm/vec3.hpp>
-#include <vector>
 
 #include "core/progress.h"
 #include "render/frame.h"

@@ -1,8 +1,5 @@
 #include "render/project.h"
 
-#include <algorithm>
-#include <bit>
-#include <cmath>
 #include <glm/common.hpp>
 
 #include "camera/projection.h"

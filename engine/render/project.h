@@ -3,10 +3,7 @@
 #pragma once
 
 #include <atomic>
-#include <cstdint>
 #include <glm/vec2.hpp>
-#include <span>
-#include <vector>
 
 #include "camera/camera.h"
 #include "core/buffer.h"

@@ -1,7 +1,5 @@
 #include "render/project.h"
 
-#include <bit>
-
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "render/project_vector.cpp"
 #include <hwy/foreach_target.h>

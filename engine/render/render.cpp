@@ -2,11 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <atomic>
-#include <cassert>
-#include <cstdint>
-#include <optional>
 
 #include "core/error.h"
 #include "core/memory.h"

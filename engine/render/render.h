@@ -2,10 +2,6 @@
 // projected splats into their tiles, sort inside each tile, fold near to far.
 #pragma once
 
-#include <functional>
-#include <memory>
-#include <span>
-
 #include "camera/camera.h"
 #include "core/image.h"
 #include "core/progress.h"

@@ -1,7 +1,5 @@
 #include "render/resolve.h"
 
-#include <algorithm>
-
 #include "core/color.h"
 
 namespace astrosplat {

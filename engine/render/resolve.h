@@ -2,9 +2,6 @@
 // isolated layers).
 #pragma once
 
-#include <cstdint>
-#include <vector>
-
 #include "camera/camera.h"
 #include "render/environment.h"
 #include "render/fold.h"

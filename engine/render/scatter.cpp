@@ -1,7 +1,5 @@
 #include "render/scatter.h"
 
-#include <algorithm>
-#include <functional>
 #include <numeric>
 
 #include "core/parallel.h"

@@ -7,12 +7,7 @@
 // later collects the blocks of the bins above it.
 #pragma once
 
-#include <cstddef>
-#include <cstdint>
-#include <limits>
 #include <mutex>
-#include <span>
-#include <vector>
 
 #include "core/buffer.h"
 #include "core/progress.h"

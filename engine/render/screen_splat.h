@@ -2,11 +2,6 @@
 // order of such splats, into which a tile's are sorted.
 #pragma once
 
-#include <bit>
-#include <cstdint>
-#include <span>
-#include <vector>
-
 #include "core/buffer.h"
 #include "core/progress.h"
 

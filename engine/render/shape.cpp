@@ -1,7 +1,5 @@
 #include "render/shape.h"
 
-#include <algorithm>
-#include <cmath>
 #include <glm/geometric.hpp>
 
 #include "core/real.h"

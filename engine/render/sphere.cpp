@@ -1,7 +1,5 @@
 #include "render/sphere_shape.h"
 
-#include <algorithm>
-#include <cmath>
 #include <glm/geometric.hpp>
 
 #include "camera/projection.h"

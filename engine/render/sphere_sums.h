@@ -4,16 +4,8 @@
 // gains that came of such sums, kept for the next time.
 #pragma once
 
-#include <algorithm>
-#include <array>
-#include <bit>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
 #include <mutex>
 #include <unordered_map>
-#include <utility>
-#include <vector>
 
 #include "camera/projection.h"
 #include "core/real.h"

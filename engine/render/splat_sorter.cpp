@@ -1,8 +1,5 @@
 #include "render/screen_splat.h"
 
-#include <algorithm>
-#include <bit>
-
 #include "core/sorting.h"
 
 namespace astrosplat {

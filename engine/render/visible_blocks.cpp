@@ -2,11 +2,6 @@
 // margin for the largest radius, within which children lie, and for what floats round away.
 #include "render/scatter.h"
 
-#include <algorithm>
-#include <bit>
-#include <cmath>
-#include <limits>
-
 #include "camera/projection.h"
 
 namespace astrosplat {

@@ -2,10 +2,6 @@
 // component; booleans, choices and whole numbers step.
 #include "scene/animate.h"
 
-#include <algorithm>
-#include <cmath>
-#include <span>
-
 #include "camera/keyframe.h"
 #include "scene/describe.h"
 

@@ -1,9 +1,7 @@
 // Animation: the scene as it stands at one frame.
 #pragma once
 
-#include <functional>
 #include <glm/vec3.hpp>
-#include <vector>
 
 #include "scene/parameter.h"
 #include "scene/scene.h"

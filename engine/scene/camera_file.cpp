@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
 #include <glm/geometric.hpp>
 
 #include "camera/camera.h"
@@ -55,7 +53,7 @@ void add_keyframe(Track& track, double frame, std::vector<double> value) {
 void check_sizes(const std::vector<double>& numbers, const char* key, const fs::path& file, double frame) {
     for (const double x : numbers)
         if (!(std::fabs(x) <= largest_number))
-            bad_input(file.string(), fmt::format("frame {}", short_number(frame)),
+            bad_input(file, fmt::format("frame {}", short_number(frame)),
                       fmt::format("{} within {:.4g}", key, largest_number),
                       fmt::format("{:.4g}", x) + " (camera.file_scale makes it smaller)");
 }
@@ -232,7 +230,7 @@ std::string camera_text(const CameraTrack& track, const Scene& scene, const fs::
             fmt::format("{}: expected a perspective camera, for .chan has no other, found orthographic",
                         printable(file.string())));
     if (id == "chan") return chan_text(track);
-    bad_input(file.string(), "", "a name ending in " + alternatives(endings_of(FileUse::camera_written)),
+    bad_input(file, "a name ending in " + alternatives(endings_of(FileUse::camera_written)),
               "'" + printable(file.extension().string()) + "'");
 }
 

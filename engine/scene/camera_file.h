@@ -4,13 +4,7 @@
 // such a file.
 #pragma once
 
-#include <cstdint>
-#include <span>
-#include <string>
-#include <vector>
-
 #include "camera_files/camera_track.h"
-#include "core/path.h"
 #include "scene/scene.h"
 
 namespace astrosplat {

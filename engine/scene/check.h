@@ -1,9 +1,6 @@
 // Rules between parameters, which one parameter's own range cannot say.
 #pragma once
 
-#include <optional>
-#include <string>
-
 #include "scene/parameter_key.h"
 #include "scene/scene.h"
 

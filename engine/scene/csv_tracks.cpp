@@ -3,11 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <optional>
-
 #include "core/error.h"
 #include "core/file.h"
 #include "core/text.h"

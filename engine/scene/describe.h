@@ -3,10 +3,6 @@
 // list. To add a parameter: a field, one line in a describe_*.cpp, and its use.
 #pragma once
 
-#include <functional>
-#include <string>
-#include <vector>
-
 #include "scene/parameter.h"
 #include "scene/scene.h"
 

@@ -1,8 +1,6 @@
 // The description of one layer, one line per parameter: [[layer]], transform and source.
 #include "scene/describe_layer.h"
 
-#include <algorithm>
-
 #include "core/file_format.h"
 #include "core/text.h"
 #include "source/mesh.h"

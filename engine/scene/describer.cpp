@@ -1,9 +1,6 @@
 // The checks behind Field<T>: a Value either fits a parameter or is refused with what was expected and found.
 #include "scene/describer.h"
 
-#include <algorithm>
-#include <cmath>
-
 #include "scene/parameter_key.h"
 
 namespace astrosplat {

@@ -9,9 +9,7 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
-#include <optional>
 
-#include "core/path.h"
 #include "core/text.h"
 #include "scene/parameter.h"
 #include "scene/scene.h"

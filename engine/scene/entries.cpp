@@ -4,7 +4,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <charconv>
 
 #include "core/error.h"
@@ -31,13 +30,11 @@ static std::string plain_words(std::string message) {
     return "not valid TOML: " + message;
 }
 
-toml::table parse_toml(const std::string& text, const std::string& name) {
-    try {
-        return toml::parse(std::string_view(text), std::string_view(name));
-    } catch (const toml::parse_error& error) {
-        throw InputError(fmt::format("{}: {}", place_of(name, error.source()),
-                                     plain_words(std::string(error.description()))));
-    }
+toml::table parse_toml(const std::string& text, const std::string& name) try {
+    return toml::parse(std::string_view(text), std::string_view(name));
+} catch (const toml::parse_error& error) {
+    throw InputError(
+        fmt::format("{}: {}", place_of(name, error.source()), plain_words(std::string(error.description()))));
 }
 
 std::string place_of(const std::string& name, const toml::source_region& source) {

@@ -5,10 +5,6 @@
 
 #include <toml++/toml.h>
 
-#include <functional>
-#include <string>
-
-#include "core/path.h"
 #include "scene/parameter.h"
 #include "scene/scene.h"
 

@@ -1,9 +1,7 @@
 // Lists of frames as people write them: "1-100,120,200-300x2".
 #pragma once
 
-#include <cstdint>
-#include <string>
-#include <vector>
+#include "core/standard.h"
 
 namespace astrosplat {
 

@@ -2,12 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cassert>
-#include <cmath>
 #include <glm/geometric.hpp>
-#include <limits>
-#include <vector>
 
 #include "core/error.h"
 #include "core/memory.h"

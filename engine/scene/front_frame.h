@@ -4,9 +4,6 @@
 // splats is to look.
 #pragma once
 
-#include <optional>
-#include <span>
-
 #include "camera/camera.h"
 #include "core/image.h"
 #include "core/progress.h"

@@ -2,9 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
-
 #include "camera/keyframe.h"
 #include "core/error.h"
 #include "core/rotation.h"

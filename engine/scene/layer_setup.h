@@ -4,10 +4,7 @@
 // for before a run, and hashed.
 #pragma once
 
-#include <vector>
-
 #include "core/bounds.h"
-#include "core/path.h"
 #include "look/apply.h"
 #include "render/frame.h"
 #include "scene/parameter.h"

@@ -5,10 +5,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
-#include <functional>
-#include <optional>
-
 #include "core/error.h"
 #include "core/file.h"
 #include "core/log.h"

@@ -3,10 +3,6 @@
 // returned.
 #pragma once
 
-#include <span>
-#include <string>
-
-#include "core/path.h"
 #include "scene/parameter.h"
 #include "scene/parameter_key.h"
 #include "scene/scene.h"

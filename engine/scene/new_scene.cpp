@@ -4,13 +4,9 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
 #include <glm/common.hpp>
 #include <glm/vec3.hpp>
-#include <string_view>
 #include <system_error>
-#include <vector>
 
 #include "bodies/galaxy_fit.h"
 #include "bodies/picture_light.h"

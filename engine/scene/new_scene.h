@@ -3,12 +3,8 @@
 // scene file's text.
 #pragma once
 
-#include <cstdint>
 #include <glm/vec2.hpp>
-#include <optional>
-#include <string>
 
-#include "core/path.h"
 #include "core/progress.h"
 #include "objects/identify.h"
 #include "source/source.h"

@@ -4,14 +4,9 @@
 // only read them, and speak only Values.
 #pragma once
 
-#include <cstdint>
-#include <functional>
-#include <string>
 #include <variant>
-#include <vector>
 
 #include "core/error.h"
-#include "core/path.h"
 #include "core/text.h"
 #include "scene/parameter_key.h"
 

@@ -1,10 +1,6 @@
 // Keys are kept as text: they are shown far more often than they are taken apart.
 #include "scene/parameter_key.h"
 
-#include <algorithm>
-#include <cassert>
-#include <utility>
-
 namespace astrosplat {
 namespace {
 

@@ -7,10 +7,8 @@
 
 #include <compare>
 #include <map>
-#include <span>
-#include <string>
-#include <string_view>
-#include <vector>
+
+#include "core/standard.h"
 
 namespace astrosplat {
 

@@ -1,7 +1,5 @@
 #include "scene/reference_place.h"
 
-#include <algorithm>
-#include <cmath>
 #include <glm/geometric.hpp>
 
 #include "core/real.h"

@@ -4,7 +4,6 @@
 #pragma once
 
 #include <glm/vec2.hpp>
-#include <optional>
 
 #include "scene/scene.h"
 

@@ -2,9 +2,6 @@
 // defaults stay and only changed keys are touched. load(save(x)) == x.
 #pragma once
 
-#include <string>
-
-#include "core/path.h"
 #include "scene/scene.h"
 
 namespace astrosplat {

@@ -3,17 +3,11 @@
 // frame k.
 #pragma once
 
-#include <algorithm>
-#include <array>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
-#include <memory>
-#include <string>
-#include <vector>
 
 #include "camera/camera.h"
 #include "camera/keyframe.h"
-#include "core/path.h"
 #include "core/text.h"
 #include "look/look.h"
 #include "ocio/display_transform.h"

@@ -2,8 +2,6 @@
 // file.
 #include "scene/toml_text.h"
 
-#include <algorithm>
-
 #include "scene/entries.h"
 
 namespace astrosplat {

@@ -3,9 +3,7 @@
 // it).
 #pragma once
 
-#include <cstddef>
-#include <string>
-#include <vector>
+#include "core/standard.h"
 
 namespace astrosplat {
 

@@ -3,10 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
-#include <vector>
-
 #include "camera/keyframe.h"
 #include "core/error.h"
 #include "scene/describe.h"

@@ -2,11 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <array>
 #include <cstdlib>
 #include <tuple>
-#include <utility>
 
 #include "core/error.h"
 #include "core/file.h"
@@ -109,7 +106,7 @@ bool write_entry(const SetCache& cache, std::int64_t bytes, const Write& write) 
 }
 
 void require_own(const fs::path& file, bool is_own) {
-    if (!is_own) bad_input(file.string(), "recipe", "that of the set asked for", "another");
+    if (!is_own) bad_input(file, "recipe", "that of the set asked for", "another");
 }
 
 bool is_geometry(const std::string& text, const std::string& name) {

@@ -6,12 +6,6 @@
 // written costs a warning, never a run.
 #pragma once
 
-#include <cstdint>
-#include <optional>
-#include <string>
-#include <vector>
-
-#include "core/path.h"
 #include "core/progress.h"
 #include "generate/generate.h"
 #include "sets/load_source.h"

@@ -4,11 +4,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <utility>
-
 #include "bodies/bodies.h"
 #include "bodies/margin.h"
 #include "bodies/placement.h"

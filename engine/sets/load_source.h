@@ -4,12 +4,6 @@
 // picture that another layer shows; and the values that keys of 0 (automatic) stand for.
 #pragma once
 
-#include <cstdint>
-#include <functional>
-#include <span>
-#include <string>
-#include <vector>
-
 #include "core/atomic_file.h"
 #include "core/progress.h"
 #include "generate/generate.h"

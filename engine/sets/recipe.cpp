@@ -3,10 +3,7 @@
 
 #include <fmt/format.h>
 
-#include <cassert>
-#include <string_view>
 #include <type_traits>
-#include <utility>
 
 #include "core/error.h"
 #include "core/hash.h"

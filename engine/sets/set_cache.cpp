@@ -6,8 +6,6 @@
 
 #include <chrono>
 #include <thread>
-#include <utility>
-#include <vector>
 
 #include "core/atomic_file.h"
 #include "core/error.h"

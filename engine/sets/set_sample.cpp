@@ -1,14 +1,8 @@
 #include "sets/set_sample.h"
 
-#include <algorithm>
-#include <cmath>
-#include <string_view>
-#include <utility>
-
 #include "bodies/bodies.h"
 #include "core/error.h"
 #include "core/file_format.h"
-#include "core/path.h"
 #include "generate/generate.h"
 #include "sets/load_source.h"
 #include "splat_files/native.h"

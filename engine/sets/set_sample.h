@@ -3,10 +3,6 @@
 // or of a coarser lattice, as wide as those of the whole set, and how long the whole will take to make.
 #pragma once
 
-#include <cstdint>
-#include <optional>
-#include <string>
-
 #include "core/progress.h"
 #include "sets/kept.h"
 #include "source/source.h"

@@ -2,10 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
 #include <numeric>
-#include <vector>
 
 #include "bodies/star_places.h"
 #include "core/error.h"
@@ -55,7 +52,7 @@ SplatSet scatter_stars(const SourceParams& source, const std::string& layer_name
         from_catalogue ? kinds_of(read_catalogue_of(stars, layer_name, progress), stars.limit)
                        : main_sequence();
     if (kinds.empty())
-        bad_input(stars.catalogue.string(), "",
+        bad_input(stars.catalogue,
                   fmt::format("stars of magnitude {} or brighter with a distance", stars.limit), "none");
     log_info(fmt::format("layer '{}': {} within {:.4g} of the camera's path, of {}", layer_name,
                          human_count(source.count, "random star"), stars.spread,

@@ -1,9 +1,5 @@
 #include "source/texture.h"
 
-#include <algorithm>
-#include <array>
-#include <cassert>
-#include <cmath>
 #include <glm/vec2.hpp>
 
 #include "core/color.h"

@@ -5,12 +5,6 @@
 #include <fmt/format.h>
 #include <zlib.h>
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <memory>
-#include <string_view>
-
 #include "core/error.h"
 #include "core/file.h"
 #include "core/file_format.h"
@@ -122,7 +116,7 @@ std::int64_t product(const fs::path& file, const std::vector<std::int64_t>& axes
     std::int64_t count = 1;
     for (const std::int64_t n : axes)
         if (n < 0 || __builtin_mul_overflow(count, n, &count))
-            bad_input(file.string(), "", "axes of a picture", fmt::format("{}", fmt::join(axes, " x ")));
+            bad_input(file, "axes of a picture", fmt::format("{}", fmt::join(axes, " x ")));
     return count;
 }
 
@@ -191,8 +185,8 @@ void check_column(const fs::path& file, fitsfile* in, const char* name, std::int
         }
         if (!possible || status != 0 || !inflates(bytes, most)) {
             fits_clear_errmsg();
-            bad_input(file.string(), fmt::format("tile {}", row),
-                      fmt::format("gzip data of at most {} bytes", most), "something else");
+            bad_input(file, fmt::format("tile {}", row), fmt::format("gzip data of at most {} bytes", most),
+                      "something else");
         }
     }
 }
@@ -214,7 +208,7 @@ void check_tiles(const fs::path& file, fitsfile* in) {
 // Memory for so many values, announced.
 Buffer<double> room_for(const fs::path& file, std::int64_t count) {
     if (count > std::numeric_limits<std::int64_t>::max() / 64)
-        bad_input(file.string(), "", "a picture that fits into memory", fmt::format("{} values", count));
+        bad_input(file, "a picture that fits into memory", fmt::format("{} values", count));
     claim_memory(count * 8, fmt::format("reading {}", file.string()));
     return Buffer<double>(std::size_t(count));
 }
@@ -223,22 +217,18 @@ FitsHdu find_hdu(const fs::path& file, fitsfile* in, const std::string& wanted) 
     const int count = hdu_count(file, in);
     const std::optional<std::int64_t> number = parse_int64(wanted);
     if (number && (*number < 0 || *number >= count))
-        bad_input(file.string(), "", fmt::format("an HDU from 0 to {}", count - 1),
-                  fmt::format("hdu = {}", wanted));
+        bad_input(file, fmt::format("an HDU from 0 to {}", count - 1), fmt::format("hdu = {}", wanted));
     for (int i = 0; i < count; ++i) {
         const FitsHdu hdu = go_to_hdu(file, in, i);
         const bool asked = wanted == "auto" ? hdu.picture
                            : number         ? *number == i
                                             : lower_case(hdu.name) == lower_case(wanted);
         if (!asked) continue;
-        if (!hdu.picture)
-            bad_input(file.string(), fmt::format("HDU {}", i), "a picture", "none (" + hdu.kind + ")");
+        if (!hdu.picture) bad_input(file, fmt::format("HDU {}", i), "a picture", "none (" + hdu.kind + ")");
         return hdu;
     }
-    if (wanted == "auto")
-        bad_input(file.string(), "", "an HDU with a picture", fmt::format("none in {} HDUs", count));
-    bad_input(file.string(), "", fmt::format("an HDU named '{}'", wanted),
-              fmt::format("none in {} HDUs", count));
+    if (wanted == "auto") bad_input(file, "an HDU with a picture", fmt::format("none in {} HDUs", count));
+    bad_input(file, fmt::format("an HDU named '{}'", wanted), fmt::format("none in {} HDUs", count));
 }
 
 // A plane's rows lie from its lowest one on.
@@ -325,8 +315,8 @@ FitsRows open_fits_rows(const fs::path& file, const std::string& hdu, int plane,
     const std::int64_t pixels = product(file, {axes[0], axes[1]});
     const std::int64_t planes = product(file, found.axes) / pixels;
     if (plane < 0 || plane >= planes)
-        bad_input(file.string(), fmt::format("HDU {}", found.number),
-                  fmt::format("a plane from 0 to {}", planes - 1), fmt::format("plane = {}", plane));
+        bad_input(file, fmt::format("HDU {}", found.number), fmt::format("a plane from 0 to {}", planes - 1),
+                  fmt::format("plane = {}", plane));
     FitsRows rows;
     rows.plane.width = axes[0];
     rows.plane.height = axes[1];

@@ -3,16 +3,7 @@
 // BSCALE.)
 #pragma once
 
-#include <array>
-#include <cstdint>
-#include <functional>
-#include <optional>
-#include <span>
-#include <string>
-#include <vector>
-
 #include "core/buffer.h"
-#include "core/path.h"
 #include "core/progress.h"
 #include "source/source.h"
 

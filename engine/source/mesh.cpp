@@ -1,9 +1,6 @@
 // Polygons are split by ear clipping in their own plane, in double precision.
 #include "source/mesh.h"
 
-#include <algorithm>
-#include <cassert>
-#include <cmath>
 #include <glm/geometric.hpp>
 #include <numeric>
 
@@ -32,7 +29,7 @@ void require_uv(const Mesh& mesh) {
         for (const std::uint32_t uv : triangle.uv)
             if (uv == Mesh::no_uv)
                 bad_input(
-                    mesh.name, "",
+                    mesh.name,
                     "texture coordinates ('vt') at every face, or uv = \"planar-xz\" or another projection",
                     "a face without them");
 }

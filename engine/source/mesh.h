@@ -2,17 +2,10 @@
 // polygons split into triangles. In: a file or a name, a mesh, or corners. Out: a mesh, or numbers.
 #pragma once
 
-#include <array>
-#include <cstdint>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
-#include <span>
-#include <string>
-#include <string_view>
-#include <vector>
 
 #include "core/bounds.h"
-#include "core/path.h"
 #include "core/progress.h"
 #include "source/source.h"
 

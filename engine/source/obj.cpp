@@ -6,8 +6,6 @@
 #include <fmt/format.h>
 #include <tiny_obj_loader.h>
 
-#include <algorithm>
-#include <cmath>
 #include <map>
 #include <sstream>
 
@@ -60,7 +58,7 @@ struct Reader {
 };
 
 [[noreturn]] void bad_line(const Reader& r, std::string_view expected, std::string_view found) {
-    bad_input(r.file.string(), std::to_string(r.line), expected, found);
+    bad_input(r.file, std::to_string(r.line), expected, found);
 }
 
 void split(std::string_view text, Words& words) {
@@ -258,11 +256,11 @@ void triangulate_polygons(Reader& r) {
 
 void check_whole(Reader& r) {
     const std::string name = r.file.string();
-    if (r.mesh.positions.empty()) bad_input(name, "", "an OBJ mesh with vertices ('v x y z')", "none");
-    if (r.mesh.triangles.empty()) bad_input(name, "", "an OBJ mesh with faces ('f')", "none");
+    if (r.mesh.positions.empty()) bad_input(name, "an OBJ mesh with vertices ('v x y z')", "none");
+    if (r.mesh.triangles.empty()) bad_input(name, "an OBJ mesh with faces ('f')", "none");
     const std::size_t most = std::max({r.mesh.positions.size(), r.mesh.uvs.size(), r.mesh.triangles.size()});
     if (most > std::size_t(max_elements))
-        bad_input(name, "", fmt::format("at most {} vertices and triangles", max_elements),
+        bad_input(name, fmt::format("at most {} vertices and triangles", max_elements),
                   fmt::format("{}", most));
     check_range(r, r.position, r.mesh.positions.size(), "vertex");
     check_range(r, r.uv, r.mesh.uvs.size(), "texture coordinate");

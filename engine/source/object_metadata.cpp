@@ -4,8 +4,6 @@
 
 #include <unistd.h>
 
-#include <algorithm>
-#include <cmath>
 #include <pugixml.hpp>
 
 #include "core/file.h"

@@ -3,13 +3,7 @@
 // FITS header. In: a file. Out: plain values.
 #pragma once
 
-#include <array>
-#include <optional>
-#include <string>
-#include <string_view>
-#include <vector>
-
-#include "core/path.h"
+#include "core/standard.h"
 
 namespace astrosplat {
 

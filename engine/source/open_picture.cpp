@@ -7,7 +7,6 @@
 
 #include <unistd.h>
 
-#include <cstddef>
 #include <cstdio>
 
 #include "core/error.h"

@@ -6,10 +6,8 @@
 #pragma once
 
 #include <OpenImageIO/imageio.h>
-#include <memory>
-#include <string>
 
-#include "core/path.h"
+#include "core/standard.h"
 
 namespace astrosplat {
 

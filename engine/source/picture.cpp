@@ -3,12 +3,6 @@
 // (This line keeps clang-format from sorting the two.)
 #include "source/open_picture.h"
 
-#include <algorithm>
-#include <array>
-#include <memory>
-#include <string_view>
-#include <utility>
-
 #include "core/color.h"
 #include "core/error.h"
 #include "core/log.h"
@@ -96,7 +90,7 @@ void check_window(const fs::path& file, const ImageSpec& spec) {
     const std::int64_t stored_px = std::int64_t{spec.width} * spec.height;
     if (window.width <= std::max(largest_frame_px, most_times * stored_px) / window.height) return;
     bad_input(
-        file.string(), "display window",
+        file, "display window",
         fmt::format("at most {} px for the {}x{} px that it has", largest_frame_px, spec.width, spec.height),
         fmt::format("{}x{} px", window.width, window.height));
 }

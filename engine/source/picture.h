@@ -1,10 +1,7 @@
 // Picture files as stored, before any colour or alpha treatment: OpenImageIO behind one plain struct.
 #pragma once
 
-#include <string>
-
 #include "core/image.h"
-#include "core/path.h"
 #include "core/progress.h"
 #include "image/resample.h"
 

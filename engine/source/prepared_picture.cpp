@@ -4,11 +4,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <utility>
-
 #include "core/color.h"
 #include "core/error.h"
 #include "core/log.h"
@@ -136,7 +131,7 @@ PrepareInput read_three_filters(const std::array<fs::path, 3>& files, const Text
             filter.image.width == rgb.image.width && filter.image.height == rgb.image.height;
         const bool known = filter.grid && first.grid;
         if (!same_size && !known)
-            bad_input(files[c].string(), "",
+            bad_input(files[c],
                       fmt::format("{}x{} px like {}, or where the sky is on both", rgb.image.width,
                                   rgb.image.height, files[0].string()),
                       fmt::format("{}x{} px", filter.image.width, filter.image.height));
@@ -153,7 +148,7 @@ PrepareInput read_three_filters(const std::array<fs::path, 3>& files, const Text
 void align_to(const fs::path& reference, const TextureSettings& settings, PrepareInput& input,
               const Progress& progress) {
     const auto require_sky = [](const std::string& name, bool known) {
-        if (!known) bad_input(name, "", "a FITS picture whose header tells the sky (RA---TAN)", "none");
+        if (!known) bad_input(name, "a FITS picture whose header tells the sky (RA---TAN)", "none");
     };
     require_sky(input.name, input.grid.has_value());
     require_sky(reference.string(), is_fits(reference));

@@ -3,13 +3,7 @@
 // taken away.
 #pragma once
 
-#include <functional>
-#include <optional>
-#include <string>
-#include <vector>
-
 #include "core/image.h"
-#include "core/path.h"
 #include "core/progress.h"
 #include "prepare/stages.h"
 #include "prepare/star_fit.h"

@@ -1,8 +1,6 @@
 // Filtered lookup in a texture: premultiplied texels are weighted, then the colour is divided by alpha once.
 #include "source/texture.h"
 
-#include <algorithm>
-#include <cmath>
 #include <glm/vec4.hpp>
 
 namespace astrosplat {

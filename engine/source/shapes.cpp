@@ -2,10 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <array>
-#include <cassert>
-#include <cmath>
 #include <glm/geometric.hpp>
 
 #include "core/color.h"
@@ -82,8 +78,7 @@ Outline divided(const std::vector<glm::dvec2>& points) {
 Mesh revolution(const ShapeParams& shape) {
     std::vector<glm::dvec2> points(shape.outline.begin(), shape.outline.end());
     if (points.size() < 2)
-        bad_input("revolution", "", "an outline of at least 2 points [r, y]",
-                  fmt::format("{}", points.size()));
+        bad_input("revolution", "an outline of at least 2 points [r, y]", fmt::format("{}", points.size()));
     if (points.front().y > points.back().y) std::ranges::reverse(points);
     return turned(divided(points), 1.0);
 }

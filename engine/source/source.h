@@ -1,15 +1,10 @@
 // The values of [layer.source] in a scene file; what is left out there has the defaults here.
 #pragma once
 
-#include <cstdint>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
-#include <optional>
-#include <string>
-#include <vector>
 
-#include "core/path.h"
 #include "core/text.h"
 
 namespace astrosplat {

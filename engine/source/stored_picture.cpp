@@ -2,10 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <utility>
-#include <vector>
-
 #include "core/color.h"
 #include "core/parallel.h"
 #include "image/channels.h"

@@ -2,11 +2,6 @@
 // begin with. In: a file. Out: its values, FITS stretched, and then linear ones.
 #pragma once
 
-#include <functional>
-#include <optional>
-#include <string>
-
-#include "core/path.h"
 #include "source/fits.h"
 #include "source/picture.h"
 #include "source/source.h"

@@ -3,14 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <bit>
-#include <cassert>
-#include <cmath>
-#include <cstdint>
-#include <limits>
-#include <vector>
-
 #include "core/error.h"
 #include "core/real.h"
 
@@ -115,7 +107,7 @@ Limits choose_limits(const ValueRange& range, const TextureSettings& settings, c
     const bool set = settings.black || settings.white;
     if (!set && !(limits.black < limits.white)) limits.white = limits.black + 1.0;
     if (!std::isfinite(limits.black) || !std::isfinite(limits.white) || !(limits.black < limits.white))
-        bad_input(file, "", "a black point below the white point",
+        bad_input(file, "a black point below the white point",
                   fmt::format("black = {} and white = {}", limits.black, limits.white));
     return limits;
 }

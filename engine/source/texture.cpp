@@ -3,10 +3,7 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <atomic>
-#include <cmath>
-#include <functional>
 
 #include "core/color.h"
 #include "core/error.h"
@@ -36,8 +33,7 @@ StoredRows combine(const std::vector<fs::path>& files,
         channels.push_back(std::move(one.rows));
         const ImageRows &first = channels.front(), &here = channels.back();
         if (here.width != first.width || here.height != first.height)
-            bad_input(file.string(), "",
-                      fmt::format("{}x{} px like {}", first.width, first.height, files[0].string()),
+            bad_input(file, fmt::format("{}x{} px like {}", first.width, first.height, files[0].string()),
                       fmt::format("{}x{} px", here.width, here.height));
         if (channels.size() == 1)
             rgb.stored = std::move(one.stored);
@@ -91,7 +87,7 @@ Settings::Alpha choose_alpha(const fs::path& file, const Picture& picture, Setti
     if (wanted == Settings::Alpha::automatic)
         return picture.has_alpha() ? Settings::Alpha::file : Settings::Alpha::max;
     if (wanted == Settings::Alpha::file && !picture.has_alpha())
-        bad_input(file.string(), "", "an alpha channel (alpha = \"file\")", "none");
+        bad_input(file, "an alpha channel (alpha = \"file\")", "none");
     return wanted;
 }
 

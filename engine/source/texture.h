@@ -7,12 +7,8 @@
 
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
-#include <span>
-#include <string>
-#include <vector>
 
 #include "core/image.h"
-#include "core/path.h"
 #include "core/progress.h"
 #include "source/mesh.h"
 #include "source/prepared_picture.h"

@@ -1,9 +1,6 @@
 // Projections are in double; a face's coordinates are affine in the picture, not on the face.
 #include "source/textured_mesh.h"
 
-#include <algorithm>
-#include <cassert>
-#include <functional>
 #include <glm/matrix.hpp>
 
 #include "camera/projection.h"
@@ -245,7 +242,7 @@ Bounds bounds(std::span<const TexturedMesh> meshes) {
 
 std::vector<TexturedMesh> load_meshes(const SourceParams& source, const Progress& progress,
                                       const PictureReaders& readers) {
-    if (source.meshes.empty()) bad_input("source.meshes", "", "at least one mesh", "none");
+    if (source.meshes.empty()) bad_input("source.meshes", "at least one mesh", "none");
     const PictureLoader load = [&](const std::vector<fs::path>& files, Wrap wrap) {
         return load_picture(files, source, wrap, progress, readers);
     };

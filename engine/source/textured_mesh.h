@@ -7,10 +7,6 @@
 #pragma once
 
 #include <glm/vec2.hpp>
-#include <optional>
-#include <span>
-#include <string>
-#include <vector>
 
 #include "camera/camera.h"
 #include "source/mesh.h"

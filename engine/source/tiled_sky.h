@@ -3,17 +3,11 @@
 // direction; six faces of a cube around the eye, in the order +x -x +y -y +z -z, as pictures of them have it.
 #pragma once
 
-#include <array>
-#include <cstdint>
-#include <functional>
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
-#include <span>
-#include <vector>
 
 #include "core/image.h"
-#include "core/path.h"
 #include "core/progress.h"
 
 namespace astrosplat {

@@ -4,10 +4,6 @@
 #include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cassert>
-#include <memory>
-
 #include "core/error.h"
 #include "source/open_picture.h"
 

@@ -1,13 +1,8 @@
 // Plain pictures: of 8 bits, as they stand on a screen (screenshots and thumbnails), and of linear light.
 #pragma once
 
-#include <cstdint>
-#include <span>
-#include <string>
-
 #include "core/atomic_file.h"
 #include "core/image.h"
-#include "core/path.h"
 
 namespace astrosplat {
 

@@ -5,16 +5,9 @@
 // complete, so that the bytes do not depend on threads.
 #pragma once
 
-#include <cstddef>
-#include <cstdint>
-#include <functional>
-#include <string>
-#include <string_view>
-
 #include "core/atomic_file.h"
 #include "core/error.h"
 #include "core/file.h"
-#include "core/path.h"
 #include "core/progress.h"
 
 namespace astrosplat {

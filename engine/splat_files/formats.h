@@ -5,11 +5,7 @@
 // splat_file.cpp.
 #pragma once
 
-#include <cstdint>
-#include <string_view>
-
 #include "core/atomic_file.h"
-#include "core/path.h"
 #include "core/progress.h"
 #include "splats/splat_set.h"
 

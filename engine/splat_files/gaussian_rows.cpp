@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
 #include <glm/matrix.hpp>
 
 #include "core/color.h"

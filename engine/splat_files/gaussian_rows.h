@@ -2,14 +2,9 @@
 // for a set, and rows as the program draws them.
 #pragma once
 
-#include <algorithm>
-#include <cstdint>
 #include <glm/mat3x3.hpp>
 #include <glm/mat4x4.hpp>
-#include <optional>
-#include <string>
 
-#include "core/path.h"
 #include "core/progress.h"
 #include "splats/splat_set.h"
 

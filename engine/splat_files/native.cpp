@@ -4,10 +4,7 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cassert>
 #include <cstring>
-#include <limits>
 
 #include "core/memory.h"
 #include "core/parallel.h"

@@ -3,15 +3,9 @@
 // an order that keeps neighbours together.
 #pragma once
 
-#include <cstdint>
-#include <memory>
-#include <span>
-#include <vector>
-
 #include "core/atomic_file.h"
 #include "core/bounds.h"
 #include "core/buffer.h"
-#include "core/path.h"
 #include "core/progress.h"
 #include "splats/splat_set.h"
 

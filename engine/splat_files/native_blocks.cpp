@@ -6,13 +6,9 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <algorithm>
-#include <cassert>
 #include <cerrno>
 #include <cfloat>
 #include <cstring>
-#include <string_view>
-#include <utility>
 
 #include "core/file.h"
 #include "core/hash.h"
@@ -46,22 +42,21 @@ struct NativeBlocks::State {
         return native::data_offset(layout.header.credit_bytes) +
                block * layout.header.block * native::row_bytes(layout.header.flags);
     }
-    void read_at(std::size_t offset, char* out, std::size_t bytes) const;
-};
 
-void NativeBlocks::State::read_at(std::size_t offset, char* out, std::size_t bytes) const {
-    while (bytes > 0) {
-        const ssize_t got = ::pread(file.descriptor(), out, bytes, static_cast<off_t>(offset));
-        if (got < 0 && errno == EINTR) continue;
-        if (got <= 0)
-            throw InputError(
-                fmt::format("{}: cannot be read: {}", path.string(),
-                            got < 0 ? std::strerror(errno) : "it became shorter while it was read"));
-        offset += std::size_t(got);
-        out += got;
-        bytes -= std::size_t(got);
+    void read_at(std::size_t offset, char* out, std::size_t bytes) const {
+        while (bytes > 0) {
+            const ssize_t got = ::pread(file.descriptor(), out, bytes, static_cast<off_t>(offset));
+            if (got < 0 && errno == EINTR) continue;
+            if (got <= 0)
+                throw InputError(
+                    fmt::format("{}: cannot be read: {}", path.string(),
+                                got < 0 ? std::strerror(errno) : "it became shorter while it was read"));
+            offset += std::size_t(got);
+            out += got;
+            bytes -= std::size_t(got);
+        }
     }
-}
+};
 
 NativeBlocks::NativeBlocks(const fs::path& file, NativePart part)
     : state_(std::make_unique<State>(file, part)) {}

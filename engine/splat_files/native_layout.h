@@ -3,17 +3,8 @@
 // and table. For the readers and the writers alone.
 #pragma once
 
-#include <algorithm>
-#include <array>
 #include <cfloat>
-#include <cmath>
-#include <cstdint>
-#include <functional>
 #include <glm/vec3.hpp>
-#include <span>
-#include <string>
-#include <string_view>
-#include <vector>
 
 #include "splat_files/native.h"
 #include "splats/splat_set.h"

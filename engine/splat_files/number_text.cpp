@@ -4,11 +4,6 @@
 // choice among candidates is taken). Digits are made eight at a time in a register.
 #include "splat_files/number_text.h"
 
-#include <array>
-#include <cmath>
-#include <limits>
-#include <string_view>
-
 namespace astrosplat::scan {
 
 const char* general_float(const char* p, const char* end, float& value) {

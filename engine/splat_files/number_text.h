@@ -4,12 +4,11 @@
 // (std::to_chars: 325); all else is left to the library.
 #pragma once
 
-#include <bit>
 #include <cfloat>
 #include <charconv>
-#include <cstddef>
-#include <cstdint>
 #include <cstring>
+
+#include "core/standard.h"
 
 namespace astrosplat::scan {
 

@@ -4,11 +4,7 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <charconv>
-#include <limits>
-#include <string>
-#include <vector>
 
 #include "core/error.h"
 #include "splat_files/file_bytes.h"
@@ -188,7 +184,7 @@ SplatSet read_pda_bytes(const fs::path& file, std::string_view bytes, const Prog
     const PdaHeader header = read_header(file, bytes);
     const SplitRows rows = split_rows(header.data, header.data_line);
     if (std::uint64_t(rows.rows) != header.particles)
-        bad_input(file.string(), "", fmt::format("{} rows, as NUMBER_OF_PARTICLES says", header.particles),
+        bad_input(file, fmt::format("{} rows, as NUMBER_OF_PARTICLES says", header.particles),
                   std::to_string(rows.rows));
     SplatTable table;
     table.columns = columns_of(header.attributes);

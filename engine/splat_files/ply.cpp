@@ -4,13 +4,7 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <bit>
 #include <cstring>
-#include <limits>
-#include <span>
-#include <string>
-#include <vector>
 
 #include "core/color.h"
 #include "core/error.h"
@@ -113,8 +107,7 @@ void assign_field(Column& column, const PlyElement& vertex, const fs::path& file
     const SplatColumn to = known->field.column;
     if ((to != SplatColumn::color && to != SplatColumn::alpha) || is_float(column.type)) return;
     if (column.type != NumberType::u8 && column.type != NumberType::u16)
-        bad_input(file.string(), "", fmt::format("{} as float, double, uchar or ushort", column.name),
-                  "another type");
+        bad_input(file, fmt::format("{} as float, double, uchar or ushort", column.name), "another type");
     column.codes = codes_for(to, column.type);
 }
 
@@ -136,10 +129,10 @@ int rest_count(const PlyElement& vertex, const fs::path& file) {
     const auto found = std::ranges::count_if(
         vertex.properties, [](const Column& c) { return c.name.starts_with(rest_prefix) && !c.list; });
     if (found != 0 && found != 9 && found != 24 && found != 45)
-        bad_input(file.string(), "", "0, 9, 24 or 45 properties f_rest_*", std::to_string(found));
+        bad_input(file, "0, 9, 24 or 45 properties f_rest_*", std::to_string(found));
     for (int i = 0; i < found; ++i)
         if (!has_scalar(vertex, fmt::format("{}{}", rest_prefix, i)))
-            bad_input(file.string(), "", fmt::format("properties f_rest_0 to f_rest_{}", found - 1),
+            bad_input(file, fmt::format("properties f_rest_0 to f_rest_{}", found - 1),
                       fmt::format("no {}{}", rest_prefix, i));
     return int(found) / 3;
 }
@@ -170,8 +163,7 @@ bool holds_gaussians(const PlyElement& vertex) {
 std::vector<Column> gaussian_columns(const PlyElement& vertex, const fs::path& file) {
     const auto require = [&](std::string_view name) {
         if (!has_scalar(vertex, name))
-            bad_input(file.string(), "",
-                      "Gaussians with x y z, f_dc_0 to 2, opacity, scale_0 to 2 and rot_0 to 3",
+            bad_input(file, "Gaussians with x y z, f_dc_0 to 2, opacity, scale_0 to 2 and rot_0 to 3",
                       fmt::format("no {}", name));
     };
     for (const auto& [name, field] : gaussian_properties) require(name);
@@ -187,10 +179,10 @@ std::vector<Column> gaussian_columns(const PlyElement& vertex, const fs::path& f
 std::vector<Column> columns_of(const PlyElement& vertex, const fs::path& file) {
     if (holds_gaussians(vertex)) return gaussian_columns(vertex, file);
     if (has_scalar(vertex, "packed_position"))
-        bad_input(file.string(), "", "Gaussians that are not compressed", "packed_position and others");
+        bad_input(file, "Gaussians that are not compressed", "packed_position and others");
     for (const std::string_view name : {"x", "y", "z"})
         if (!has_scalar(vertex, name))
-            bad_input(file.string(), "", "vertex properties x, y and z", "no " + std::string(name));
+            bad_input(file, "vertex properties x, y and z", "no " + std::string(name));
     std::vector<Column> columns = vertex.properties;
     for (Column& column : columns) assign_field(column, vertex, file);
     return columns;
@@ -199,7 +191,7 @@ std::vector<Column> columns_of(const PlyElement& vertex, const fs::path& file) {
 std::size_t find_vertex(const PlyHeader& header, const fs::path& file) {
     for (std::size_t i = 0; i < header.elements.size(); ++i)
         if (header.elements[i].name == "vertex") return i;
-    bad_input(file.string(), "", "an element vertex", "none");
+    bad_input(file, "an element vertex", "none");
 }
 
 void read_ascii(const PlyHeader& header, std::size_t vertex, SplatTable& table, const fs::path& file,
@@ -210,13 +202,12 @@ void read_ascii(const PlyHeader& header, std::size_t vertex, SplatTable& table, 
     for (std::size_t i = 0; i < header.elements.size(); ++i) {
         const PlyElement& element = header.elements[i];
         if (element.count > left)
-            bad_input(file.string(), "", fmt::format("{} rows of element {}", element.count, element.name),
+            bad_input(file, fmt::format("{} rows of element {}", element.count, element.name),
                       std::to_string(left));
         if (i < vertex) first += std::int64_t(element.count);
         left -= element.count;
     }
-    if (left > 0)
-        bad_input(file.string(), "", "as many rows as the header says", std::to_string(left) + " more");
+    if (left > 0) bad_input(file, "as many rows as the header says", std::to_string(left) + " more");
     const auto count = std::int64_t(header.elements[vertex].count);
     open_table(table, count, file);
     read_text_rows(rows, first, first + count, table, file, progress);

@@ -5,10 +5,7 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <bit>
 #include <charconv>
-#include <cmath>
 #include <cstring>
 #include <tuple>
 #include <type_traits>
@@ -236,7 +233,7 @@ struct BinaryReader {
     bool swap;
 
     [[noreturn]] void truncated(const std::string& element, std::uint64_t count) const {
-        bad_input(file, "", fmt::format("{} {} elements, as the header says", count, element),
+        bad_input(file, fmt::format("{} {} elements, as the header says", count, element),
                   "the end of the file");
     }
 

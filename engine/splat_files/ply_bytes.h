@@ -2,13 +2,6 @@
 // whose columns know their fields.
 #pragma once
 
-#include <cstddef>
-#include <cstdint>
-#include <string>
-#include <string_view>
-#include <vector>
-
-#include "core/path.h"
 #include "core/progress.h"
 #include "splat_files/splat_table.h"
 

@@ -3,10 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cassert>
-#include <string_view>
-
 #include "core/error.h"
 #include "core/file.h"
 #include "core/file_format.h"
@@ -44,8 +40,7 @@ const Functions& functions_of(const FileFormat* format, const fs::path& file, Fi
     for (const Functions& each : functions)
         if (format && format->id == each.format && (use == FileUse::read || each.write)) return each;
     const std::string ending = file.extension().string();
-    bad_input(file.string(), "",
-              fmt::format("one of the endings {}", fmt::join(endings_of({FileKind::splats}, use), " ")),
+    bad_input(file, fmt::format("one of the endings {}", fmt::join(endings_of({FileKind::splats}, use), " ")),
               ending.empty() ? "none" : ending);
 }
 

@@ -2,11 +2,7 @@
 // This is the front door; formats.h and native.h have the readers and writers.
 #pragma once
 
-#include <string>
-#include <vector>
-
 #include "core/atomic_file.h"
-#include "core/path.h"
 #include "core/progress.h"
 #include "splats/splat_set.h"
 

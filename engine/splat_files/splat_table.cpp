@@ -4,11 +4,8 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
 #include <cstring>
 #include <type_traits>
-#include <utility>
 
 #include "core/error.h"
 #include "core/log.h"
@@ -209,7 +206,7 @@ std::string describe(const SplatTable& table) {
         p = scan::skip_blanks(scan::token_end(p, stop), stop);
     const bool lists = std::ranges::any_of(table.columns, [](const Column& c) { return c.list; });
     bad_input(
-        file.string(), std::to_string(line.number),
+        file, std::to_string(line.number),
         fmt::format("{}{} numbers ({})", lists ? "at least " : "", table.columns.size(), describe(table)),
         std::to_string(found));
 }
@@ -255,7 +252,7 @@ const char* read_row(const SplatTable& table, std::size_t row, const Line& line,
         if (p) continue;
         if (column.list) wrong_length(table, file, line, end);
         const char* const stop = scan::token_end(token, end);
-        bad_input(file.string(), std::to_string(line.number), expectation(column),
+        bad_input(file, std::to_string(line.number), expectation(column),
                   quoted({token, std::size_t(stop - token)}));
     }
     p = scan::skip_blanks(p, end);

@@ -6,14 +6,7 @@
 
 #include <atomic>
 #include <cfloat>
-#include <cstdint>
-#include <optional>
-#include <span>
-#include <string>
-#include <string_view>
-#include <vector>
 
-#include "core/path.h"
 #include "core/progress.h"
 #include "splats/splat_set.h"
 

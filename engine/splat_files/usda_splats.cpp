@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <array>
 #include <glm/mat4x4.hpp>
 
 #include "core/error.h"
@@ -94,12 +92,12 @@ GaussianPrim prim_of(const UsdText& text, const UsdPrim& prim, const glm::dmat4&
     own.prim = &prim;
     const std::optional<GaussianPlacement> placement = gaussian_placement(world);
     if (!placement)
-        bad_input(text.file, "", "prims that scale Gaussians alike along all axes",
+        bad_input(text.file, "prims that scale Gaussians alike along all axes",
                   fmt::format("others above '{}'", printable(prim.name)));
     own.placement = *placement;
     const std::string_view list = list_of(prim, positions);
     if (list.empty())
-        bad_input(text.file, "", fmt::format("positions of '{}' (no time samples)", printable(prim.name)),
+        bad_input(text.file, fmt::format("positions of '{}' (no time samples)", printable(prim.name)),
                   "none");
     own.count = tuples_in(text, list, 3);
     const std::string_view harmonics = list_of(prim, coefficients);
@@ -133,8 +131,7 @@ std::vector<GaussianPrim> prims_of(const UsdText& text, const UsdStage& stage) {
     std::vector<GaussianPrim> all;
     std::vector<const UsdPrim*> chain;
     add_prims(text, stage.prims, chain, y_up_from(stage), all);
-    if (all.empty())
-        bad_input(text.file, "", fmt::format("Gaussians ({})", usd_gaussians), stage.none_found());
+    if (all.empty()) bad_input(text.file, fmt::format("Gaussians ({})", usd_gaussians), stage.none_found());
     return all;
 }
 

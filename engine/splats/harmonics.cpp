@@ -1,6 +1,5 @@
 #include "splats/harmonics.h"
 
-#include <cmath>
 #include <glm/common.hpp>
 #include <glm/matrix.hpp>
 

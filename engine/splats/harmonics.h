@@ -2,9 +2,10 @@
 // real spherical harmonics and a direction. Out: the colour.
 #pragma once
 
-#include <array>
 #include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
+
+#include "core/standard.h"
 
 namespace astrosplat {
 

@@ -3,13 +3,8 @@
 // codes, then each of those parts by itself in cache, stable throughout.
 #include "splats/row_order.h"
 
-#include <array>
 #include <atomic>
-#include <cassert>
-#include <limits>
 #include <tuple>
-#include <utility>
-#include <vector>
 
 #include "core/memory.h"
 #include "core/parallel.h"

@@ -3,11 +3,7 @@
 // Morton curve, on which neighbours mostly lie together; and arrays gathered in such an order.
 #pragma once
 
-#include <algorithm>
-#include <cstddef>
-#include <cstdint>
 #include <cstring>
-#include <span>
 
 #include "core/bounds.h"
 #include "core/buffer.h"

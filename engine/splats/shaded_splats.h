@@ -2,11 +2,8 @@
 // a whole, in blocks of neighbours, each made anew whenever it is asked for.
 #pragma once
 
-#include <cstddef>
-#include <cstdint>
 #include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
-#include <vector>
 
 #include "core/bounds.h"
 #include "core/buffer.h"

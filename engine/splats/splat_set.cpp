@@ -2,12 +2,6 @@
 // counted, and then in each step by all of them.
 #include "splats/splat_set.h"
 
-#include <algorithm>
-#include <bit>
-#include <cassert>
-#include <limits>
-#include <span>
-
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "core/shared_maths.h"

@@ -2,16 +2,11 @@
 // and sets made of some of the rows of another.
 #pragma once
 
-#include <array>
 #include <bitset>
-#include <cstddef>
-#include <cstdint>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
-#include <string>
 #include <tuple>
-#include <vector>
 
 #include "core/bounds.h"
 #include "core/buffer.h"

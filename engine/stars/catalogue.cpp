@@ -5,11 +5,6 @@
 #include <fmt/format.h>
 #include <zlib.h>
 
-#include <algorithm>
-#include <cmath>
-#include <memory>
-#include <utility>
-
 #include "core/error.h"
 #include "core/file.h"
 #include "core/memory.h"
@@ -68,39 +63,36 @@ struct StarRow {
     std::optional<double> ra_deg, dec_deg, magnitude, distance_pc, parallax_mas, color_index;
 
     /// The first field that is no number, as "expected ..., found ..."; empty where all are.
-    std::string read(const StarFields& fields, RowUnits units);
+    std::string read(const StarFields& fields, RowUnits units) {
+        if (!read_number(fields.ra, ra_deg)) return no_number("right ascension", fields.ra);
+        if (ra_deg && units == RowUnits::hours) *ra_deg *= 15.0;
+        if (!read_number(fields.dec, dec_deg)) return no_number("declination", fields.dec);
+        if (!read_number(fields.magnitude, magnitude)) return no_number("the magnitude", fields.magnitude);
+        if (!read_number(fields.distance, distance_pc)) return no_number("the distance", fields.distance);
+        if (!read_number(fields.parallax, parallax_mas)) return no_number("the parallax", fields.parallax);
+        if (!read_number(fields.color_index, color_index)) return no_number("B-V", fields.color_index);
+        return {};
+    }
+
     /// The fault that keeps the row from being a star, likewise.
-    std::string to_star(CatalogueStar& star) const;
+    std::string to_star(CatalogueStar& star) const {
+        if (!within(ra_deg, -360.0, 360.0)) return wrong("right ascension", "0 to 360 degrees", ra_deg);
+        if (!within(dec_deg, -90.0, 90.0)) return wrong("declination", "-90 to 90 degrees", dec_deg);
+        if (!within(magnitude, brightest, faintest)) return wrong("the magnitude", "-60 to 60", magnitude);
+        if (color_index && !within(color_index, -largest_index, largest_index))
+            return wrong("B-V", "-20 to 20", color_index);
+        star.ra_deg = *ra_deg;
+        star.dec_deg = *dec_deg;
+        star.magnitude = *magnitude;
+        star.color_index = color_index;
+        star.distance_pc = usable(distance_pc)          ? *distance_pc
+                           : usable(parallax_mas)       ? 1000.0 / *parallax_mas
+                           : *magnitude < sun_magnitude ? au_pc
+                                                        : 0.0;
+        if (!std::isfinite(star.distance_pc)) star.distance_pc = 0.0;
+        return {};
+    }
 };
-
-std::string StarRow::read(const StarFields& fields, RowUnits units) {
-    if (!read_number(fields.ra, ra_deg)) return no_number("right ascension", fields.ra);
-    if (ra_deg && units == RowUnits::hours) *ra_deg *= 15.0;
-    if (!read_number(fields.dec, dec_deg)) return no_number("declination", fields.dec);
-    if (!read_number(fields.magnitude, magnitude)) return no_number("the magnitude", fields.magnitude);
-    if (!read_number(fields.distance, distance_pc)) return no_number("the distance", fields.distance);
-    if (!read_number(fields.parallax, parallax_mas)) return no_number("the parallax", fields.parallax);
-    if (!read_number(fields.color_index, color_index)) return no_number("B-V", fields.color_index);
-    return {};
-}
-
-std::string StarRow::to_star(CatalogueStar& star) const {
-    if (!within(ra_deg, -360.0, 360.0)) return wrong("right ascension", "0 to 360 degrees", ra_deg);
-    if (!within(dec_deg, -90.0, 90.0)) return wrong("declination", "-90 to 90 degrees", dec_deg);
-    if (!within(magnitude, brightest, faintest)) return wrong("the magnitude", "-60 to 60", magnitude);
-    if (color_index && !within(color_index, -largest_index, largest_index))
-        return wrong("B-V", "-20 to 20", color_index);
-    star.ra_deg = *ra_deg;
-    star.dec_deg = *dec_deg;
-    star.magnitude = *magnitude;
-    star.color_index = color_index;
-    star.distance_pc = usable(distance_pc)          ? *distance_pc
-                       : usable(parallax_mas)       ? 1000.0 / *parallax_mas
-                       : *magnitude < sun_magnitude ? au_pc
-                                                    : 0.0;
-    if (!std::isfinite(star.distance_pc)) star.distance_pc = 0.0;
-    return {};
-}
 
 // ---- Hipparcos
 
@@ -257,7 +249,7 @@ class Inflater {
             const bool more = stream_.avail_in >= 2 && stream_.next_in[0] == 0x1f;
             done_ = !more;
         } else if (result != Z_OK) {
-            bad_input(name_, "", "a whole gzip file", "damaged data");
+            bad_input(name_, "a whole gzip file", "damaged data");
         }
     }
 
@@ -276,11 +268,11 @@ bool is_catalogue(std::string_view first_line) {
 
 StarCatalogue parse_catalogue(std::string_view text, const std::string& name, const Progress& progress) {
     TextRows first(text);
-    if (!first.next()) bad_input(name, "", "a star catalogue", "an empty file");
+    if (!first.next()) bad_input(name, "a star catalogue", "an empty file");
     StarCatalogue catalogue =
         is_hipparcos(first.text()) ? parse_hipparcos(text, progress) : parse_columns(text, name, progress);
     if (catalogue.stars.empty())
-        bad_input(name, "", "at least one star",
+        bad_input(name, "at least one star",
                   catalogue.rows == 0 ? "none" : "none: " + catalogue.bad.text(catalogue.rows));
     return catalogue;
 }

@@ -4,16 +4,10 @@
 // and named. Also which files hold stars at all.
 #pragma once
 
-#include <cstdint>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
-#include <optional>
-#include <string>
-#include <string_view>
-#include <vector>
 
 #include "core/color.h"
-#include "core/path.h"
 #include "core/progress.h"
 
 namespace astrosplat {

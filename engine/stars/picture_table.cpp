@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "core/error.h"
 #include "core/file.h"
 #include "core/sorting.h"
@@ -73,7 +71,7 @@ PictureTable parse_picture_table(std::string_view text, const std::string& name,
     PictureTable result;
     while (table.next())
         result.add(table.line(), progress, [&](TableStar& star) { return read_star(table, columns, star); });
-    if (result.stars.empty() && result.rows > 0) bad_input(name, "", "stars", result.bad.text(result.rows));
+    if (result.stars.empty() && result.rows > 0) bad_input(name, "stars", result.bad.text(result.rows));
     return result;
 }
 

@@ -2,9 +2,6 @@
 // counts unless an earlier capsule holds it too. So each place of the union is as likely as any other.
 #include "stars/star_set.h"
 
-#include <algorithm>
-#include <cassert>
-#include <cmath>
 #include <glm/geometric.hpp>
 
 #include "core/parallel.h"

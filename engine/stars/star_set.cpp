@@ -1,8 +1,5 @@
 #include "stars/star_set.h"
 
-#include <algorithm>
-#include <array>
-#include <cmath>
 #include <glm/common.hpp>
 
 #include "core/color.h"

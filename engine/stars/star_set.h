@@ -4,11 +4,7 @@
 // around a path, as such a set, of what kinds of stars there are.
 #pragma once
 
-#include <cstdint>
 #include <glm/vec3.hpp>
-#include <optional>
-#include <span>
-#include <vector>
 
 #include "core/progress.h"
 #include "splats/splat_set.h"

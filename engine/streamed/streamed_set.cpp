@@ -1,10 +1,7 @@
 // Whether a block shows anything is found out once for a look; rendering makes only the blocks that it needs.
 #include "streamed/streamed_set.h"
 
-#include <algorithm>
 #include <atomic>
-#include <limits>
-#include <utility>
 
 #include "core/parallel.h"
 #include "look/kernel.h"

@@ -2,10 +2,7 @@
 // for one. In: the file and a look. Out: ShadedBlocks, whose splats have the bits that apply_look gives them.
 #pragma once
 
-#include <string>
-
 #include "core/bounds.h"
-#include "core/path.h"
 #include "core/progress.h"
 #include "look/apply.h"
 #include "look/shared_uniforms.h"

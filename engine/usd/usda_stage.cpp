@@ -4,10 +4,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <array>
-#include <optional>
-
 #include "core/error.h"
 #include "core/text.h"
 
@@ -379,7 +375,7 @@ std::string UsdStage::none_found() const {
 
 UsdStage parse_usda(std::string_view text, const std::string& file) {
     if (text.starts_with("PXR-USDC") || text.starts_with("PK\x03\x04"))
-        bad_input(file, "", "USD as text (usdcat FILE -o FILE.usda makes it)", "a binary file");
+        bad_input(file, "USD as text (usdcat FILE -o FILE.usda makes it)", "a binary file");
     return Parser(text, file).stage();
 }
 

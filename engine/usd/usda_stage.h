@@ -6,11 +6,8 @@
 #include <glm/mat4x4.hpp>
 #include <map>
 #include <set>
-#include <span>
-#include <string>
-#include <string_view>
-#include <utility>
-#include <vector>
+
+#include "core/standard.h"
 
 namespace astrosplat {
 

@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
@@ -77,14 +75,14 @@ glm::dmat4 op_at(const UsdPrim& prim, const std::string& name, double time, cons
     const std::string kind = kind_of_op(name);
     const std::size_t wanted = numbers_of_op(kind);
     if (wanted == 0)
-        bad_input(file, "", fmt::format("a transform operation of USD in '{}'", printable(prim.name)),
+        bad_input(file, fmt::format("a transform operation of USD in '{}'", printable(prim.name)),
                   "'" + printable(name) + "'");
     const std::vector<double> numbers = numbers_at(prim, name, time, {});
     const bool zero = kind == "orient" && std::ranges::all_of(numbers, [](double x) { return x == 0.0; });
     if (numbers.size() != wanted || zero ||
         !std::ranges::all_of(numbers, [](double x) { return std::isfinite(x); }))
         bad_input(
-            file, "",
+            file,
             fmt::format("{} finite numbers as {} of '{}'", wanted, printable(name), printable(prim.name)),
             zero ? "zeros" : std::to_string(numbers.size()));
     return op_matrix(kind, numbers);
@@ -103,11 +101,11 @@ glm::dmat4 parent_from_prim(const UsdPrim& prim, double time, const std::string&
         const bool inverted = word.starts_with(inverse_prefix);
         const std::string name = inverted ? word.substr(inverse_prefix.size()) : word;
         if (!name.starts_with(op_prefix))
-            bad_input(file, "", fmt::format("a transform operation of USD in '{}'", printable(prim.name)),
+            bad_input(file, fmt::format("a transform operation of USD in '{}'", printable(prim.name)),
                       "'" + printable(name) + "'");
         const glm::dmat4 op = op_at(prim, name, time, file);
         if (inverted && !(std::fabs(glm::determinant(op)) > 0.0))
-            bad_input(file, "",
+            bad_input(file,
                       fmt::format("{} of '{}' that has an inverse", printable(name), printable(prim.name)),
                       "none");
         m = m * (inverted ? glm::inverse(op) : op);

@@ -3,11 +3,9 @@
 #include <dlfcn.h>
 #include <fmt/format.h>
 
-#include <cassert>
 #include <system_error>
 
 #include "core/hash.h"
-#include "core/path.h"
 
 namespace astrosplat {
 namespace {

@@ -3,10 +3,6 @@
 // it. Out: a .vdb file that volume renderers read; the same bytes for any number of threads.
 #pragma once
 
-#include <string>
-#include <utility>
-#include <vector>
-
 #include "core/atomic_file.h"
 #include "core/progress.h"
 #include "volumes/voxel_grid.h"

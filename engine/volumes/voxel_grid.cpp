@@ -4,12 +4,7 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <bit>
-#include <cmath>
 #include <glm/common.hpp>
-#include <limits>
-#include <memory>
 
 #include "core/memory.h"
 #include "core/parallel.h"

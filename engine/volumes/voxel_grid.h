@@ -4,9 +4,7 @@
 // any number of threads.
 #pragma once
 
-#include <array>
 #include <glm/vec3.hpp>
-#include <vector>
 
 #include "core/buffer.h"
 #include "core/progress.h"
