@@ -247,7 +247,8 @@ LayerStatus SetList::status(const LayerParams& layer) const {
     if (found == entries_.end()) return status;
     const Entry& entry = found->second;
     SourceParams source = layer.source;
-    source.stars.path = entry.source.stars.path;  // which only the whole scene knows
+    source.stars.path = entry.source.stars.path;  // which only the whole scene knows, as what a parsec is
+    if (!source.stars.unit) source.stars.unit = entry.source.stars.unit;
     const SourceParams identity = identity_of(source, layer.name);
     const bool current = entry.identity == identity;
     status.loading = current && (entry.stage == Stage::waiting || entry.stage == Stage::loading);

@@ -16,7 +16,7 @@ using shared::as_exp, shared::as_log, shared::as_mix, shared::as_uniform;
 constexpr double disk_flatness = 0.085, thinnest_disk = 0.05, thickest_disk = 0.35;
 // Of the disk's rms width: wider Gaussians, which are the tail of its light, are no thicker, or from the edge
 // they were a slab.
-constexpr double widest_thickening = 0.8;
+constexpr double widest_thickening = 0.7;
 constexpr double fine_thickness = 0.022, dust_thickness = 0.012;
 constexpr double least_dust = 1.2;  // texels
 constexpr double flattest_spheroid = 0.35;
@@ -76,8 +76,11 @@ double own_flatness(const GalaxyLight& light, double i_deg, double c, double s) 
     return std::sqrt(std::clamp(square, thinnest_disk * thinnest_disk, thickest_disk * thickest_disk));
 }
 
+// Of a spheroid that is seen from above nothing tells how flat it is.
 double own_roundness(const GalaxyLight& light, double c, double s) {
-    const double square = (light.spheroid_ratio * light.spheroid_ratio - c * c) / std::max(s * s, 0.05);
+    constexpr double least_square = 0.05;
+    if (s * s < least_square) return usual_roundness;
+    const double square = (light.spheroid_ratio * light.spheroid_ratio - c * c) / (s * s);
     return std::sqrt(std::clamp(square, flattest_spheroid * flattest_spheroid, 1.0));
 }
 

@@ -161,8 +161,7 @@ double misfit(const Ellipses& e, const Image& light, const Image& share, const s
 
 namespace {
 
-constexpr double shape_tells = 75.0;    // degrees, from which on disk and spheroid differ in shape
-constexpr double usual_spheroid = 0.7;  // axis ratio of its own, where it is not seen
+constexpr double shape_tells = 75.0;  // degrees, from which on disk and spheroid differ in shape
 
 // The sum for the light as it is, core included.
 struct FittedSum {
@@ -193,7 +192,7 @@ FittedSum fitted_sum(Ellipses e, const Image& light, const Image& share, bool du
     FittedSum found{geometric(0.9, 0.6 * width, 16), {}, {}, e};
     const double i = real::radians(inclination_of_ratio(e.disk)), s = real::sin(i), c = real::cos(i);
     const bool by_size = inclination_of_ratio(e.disk) < shape_tells;
-    if (by_size) found.ellipses.spheroid = std::sqrt(usual_spheroid * usual_spheroid * s * s + c * c);
+    if (by_size) found.ellipses.spheroid = std::sqrt(usual_roundness * usual_roundness * s * s + c * c);
     const GaussianBasis basis = basis_of(found.ellipses, light, found.sigmas);
     std::vector<bool> allowed(std::size_t(basis.count), true);
     std::vector<double> weights(light.pixels.size());

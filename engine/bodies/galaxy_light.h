@@ -21,6 +21,9 @@ struct GalaxyPlane {
     bool operator==(const GalaxyPlane&) const = default;
 };
 
+/// A spheroid's axis ratio of its own, where it is not seen (INCLINED 2).
+inline constexpr double usual_roundness = 0.7;
+
 /// One Gaussian of the sum, as it is seen: exp(-(u^2 + (v / ratio)^2) / (2 sigma^2)).
 struct GaussianLight {
     double sigma = 0.0;  // along the major axis, picture widths

@@ -97,7 +97,8 @@ PlacedStars place_stars(const TexturedMesh& mesh, std::span<const SeenStar> star
         if (!place || !(place->units_per_texel > 0.0f)) continue;
         const float from_middle = heights.from_middle(stars[i], place->units_per_texel);
         float z = from_middle + heights.middle(stars[i]);
-        z = std::min(along_rays(*place, z), place->approach > 0.0f ? nearest_star / place->approach : z);
+        if (heights.placement) z = along_rays(*place, z);  // a slab is as deep as the scene says
+        if (place->approach > 0.0f) z = std::min(z, nearest_star / place->approach);
         placed.star.push_back(i);
         placed.position.push_back(place->position + place->rise * (z * place->units_per_texel));
         placed.distance.push_back(std::fabs(from_middle) * place->units_per_texel);

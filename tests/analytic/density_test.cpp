@@ -233,7 +233,7 @@ resolution = [{}, {}]
 fov = 53.13010235415598
 {}
 [[layer]]
-name = "splats"
+name = "dots"
 [layer.source]
 kind = "splats"
 file = "splats.pda"

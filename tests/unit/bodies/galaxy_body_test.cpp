@@ -69,6 +69,11 @@ TEST(GalaxyBody, DepthsAreThoseOfGaussiansInSpace) {
     }
 }
 
+TEST(GalaxyBody, ABulgeSeenFromAboveIsAsHighAsOthers) {
+    const LineGaussian g = body_of(0.0).parts[std::size_t(GalaxyPart::spheroid)].at(0);
+    EXPECT_NEAR(g.deviation, 0.7 * 30.0, 0.01);
+}
+
 TEST(GalaxyBody, WhatIsSmallLiesInItsPlane) {
     for (const double inclination : {0.0, 45.0, 75.0}) {
         const GalaxyBody body = body_of(inclination);
