@@ -356,7 +356,7 @@ std::string galaxies_text(const PictureScene& scene) {
 // How far bodies reach along the line of sight. What lies between the things of a field is a thin, flat
 // sheet: folds of it would be drawn as lines across the sky.
 std::string extent_of(const PictureScene& scene) {
-    if (scene.structure == StructureKind::disk) return "flare = 0.25, warp = 0.01";
+    if (scene.structure == StructureKind::disk) return "flare = 0.05, warp = 0.003";
     if (scene.structure == StructureKind::walls) return fmt::format("depth = {}", wall_depth);
     if (scene.object == SkyObject::thin) return "height = 0.02, depth = 0.0";
     return scene.object == SkyObject::field ? "height = 0.05, depth = 0.01" : "depth = 0.15";
