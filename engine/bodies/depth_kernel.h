@@ -29,7 +29,6 @@ struct DepthBlock {
 /// Places along the lines of sight of a block's splats, one of which each takes.
 struct DepthCandidates {
     static constexpr int count = 24;
-    float u[DepthBlock::size], v[DepthBlock::size];  // of the line of sight, for whoever makes the places
     float z[count][DepthBlock::size];
     float weight[count][DepthBlock::size];  // logarithm
 };

@@ -42,22 +42,45 @@ bool needs_fit(const GalaxyParams& told) {
     return !flat && !(told.inclination && told.position_angle && told.center && told.near_side);
 }
 
-// Of a galaxy that lies in the picture's plane only its middle counts: the brightest place.
-GalaxyPlane face_on(const Image& to_fit) {
-    const Image smooth = gaussian_blur(to_fit, 0.02 * double(to_fit.width));
-    const auto top = std::ranges::max_element(smooth.pixels) - smooth.pixels.begin();
+// A picture's galaxies: what the scene says of each, the light that is its own, and how it lies.
+struct PictureGalaxies {
+    std::vector<GalaxyParams> told;
+    Image to_fit;
+    std::vector<Image> shares;
+    std::vector<GalaxyPlane> planes;
+};
+
+GalaxyPlane plane_in(const PictureGalaxies& galaxies, std::size_t k, glm::dvec2 center) {
+    const GalaxyParams& told = galaxies.told[k];
     GalaxyPlane plane;
-    plane.x = (double(top % to_fit.width) + 0.5) / double(to_fit.width);
-    plane.y = (double(top / to_fit.width) + 0.5) / double(to_fit.width);
+    plane.x = center.x;
+    plane.y = center.y;
+    if (!needs_fit(told)) return plane;
+    const GalaxyFit fit = fit_galaxy(galaxies.to_fit, galaxies.shares[k]);
+    const bool taken = told.inclination || !is_unsure(fit);
+    log_detail("a galaxy by its light: " + words_of(fit) +
+               (taken ? "" : "; so it lies in the picture's plane"));
+    plane = fit.plane;
+    if (!taken) plane.inclination_deg = 0.0;
     return plane;
 }
 
-void say(const GalaxyFit& fit) {
-    constexpr double least_sure = 0.15, most_differs_deg = 10.0;  // INCLINED 8
-    log_detail(fmt::format("a galaxy at {:.0f} degrees, its major axis at {:.0f}{}{}",
-                           fit.plane.inclination_deg, real::degrees(fit.plane.angle),
-                           fit.near_sure < least_sure ? ", which side is nearer is a guess" : "",
-                           fit.inclination_differs_deg > most_differs_deg ? ", unsure" : ""));
+PictureGalaxies galaxies_in(const Image& light, const StructureParams& params) {
+    PictureGalaxies galaxies{params.galaxies, light_to_fit(light), {}, {}};
+    if (galaxies.told.empty()) galaxies.told.push_back(params.galaxy);
+    const double height_over_width = double(light.height) / double(light.width);
+    const std::vector<glm::dvec2> found = galaxy_centers(galaxies.to_fit);
+    std::vector<glm::dvec2> centers;
+    for (std::size_t k = 0; k < galaxies.told.size(); ++k) {
+        const std::optional<glm::dvec2>& told = galaxies.told[k].center;
+        centers.push_back(told ? glm::dvec2(told->x, (1.0 - told->y) * height_over_width)
+                               : found[std::min(k, found.size() - 1)]);
+    }
+    galaxies.shares = shares_of(galaxies.to_fit, centers);
+    for (std::size_t k = 0; k < centers.size(); ++k)
+        galaxies.planes.push_back(
+            as_told(galaxies.told[k], plane_in(galaxies, k, centers[k]), height_over_width));
+    return galaxies;
 }
 
 // Of the light where a galaxy is lit, how much details change it along the major axis (across it, a disk that
@@ -120,49 +143,26 @@ void set_fields(const Image& to_fit, double texels, double offset, GalaxyBody& b
 }  // namespace
 
 std::vector<GalaxyPlane> galaxy_planes(const Image& light, const StructureParams& params) {
-    const Image to_fit = light_to_fit(light);
-    const double height_over_width = double(light.height) / double(light.width);
-    std::vector<GalaxyPlane> planes;
-    if (!params.galaxies.empty()) {
-        for (const GalaxyParams& told : params.galaxies) {
-            GalaxyParams whole = told;  // in a list each galaxy says where it is, and lies face-on by default
-            planes.push_back(as_told(whole, face_on(to_fit), height_over_width));
-        }
-        return planes;
-    }
-    if (!needs_fit(params.galaxy)) return {as_told(params.galaxy, face_on(to_fit), height_over_width)};
-    GalaxyFit fit = fit_galaxy(light);
-    if (!params.galaxy.inclination && is_unsure(fit)) {
-        log_detail("how the galaxy lies is unsure, so it lies in the picture's plane");
-        fit.plane.inclination_deg = 0.0;
-    } else {
-        say(fit);
-    }
-    return {as_told(params.galaxy, fit.plane, height_over_width)};
+    return galaxies_in(light, params).planes;
 }
 
 std::vector<GalaxyBody> galaxies_of(const Image& light, const StructureParams& params, double thicker,
                                     std::int64_t width, std::int64_t margin_px, std::uint32_t seed) {
-    const std::vector<GalaxyPlane> planes = galaxy_planes(light, params);
-    const Image to_fit = light_to_fit(light);
-    std::vector<glm::dvec2> centers;
-    for (const GalaxyPlane& plane : planes) centers.push_back({plane.x, plane.y});
-    std::vector<Image> shares = shares_of(to_fit, centers);
-    const double texels = double(width) / double(to_fit.width);
+    PictureGalaxies galaxies = galaxies_in(light, params);
+    const double texels = double(width) / double(galaxies.to_fit.width);
     std::vector<GalaxyBody> bodies;
-    for (std::size_t k = 0; k < planes.size(); ++k) {
-        const GalaxyParams& told = params.galaxies.empty() ? params.galaxy : params.galaxies[k];
-        const bool only_spheroid = told.bulge == 1.0;
-        const GalaxyLight gaussians = light_of_galaxy(to_fit, shares[k], planes[k], only_spheroid);
-        GalaxyBody body = make_galaxy_body(gaussians, planes[k],
-                                           {thicker, params.flare, told.bulge.value_or(-1.0)}, double(width));
+    for (std::size_t k = 0; k < galaxies.planes.size(); ++k) {
+        const GalaxyPlane& plane = galaxies.planes[k];
+        const std::optional<double> bulge = galaxies.told[k].bulge;
+        const GalaxyLight gaussians =
+            light_of_galaxy(galaxies.to_fit, galaxies.shares[k], plane, bulge == 1.0);
+        GalaxyBody body = make_galaxy_body(gaussians, plane, {thicker, params.flare, bulge}, double(width));
         body.center += float(margin_px);
-        const double roughness = roughness_of(light, planes[k]);
-        body.roughness = float(roughness);
-        set_fields(to_fit, texels, double(margin_px), body);
-        if (planes.size() > 1) body.share = std::move(shares[k]);
+        body.roughness = float(roughness_of(light, plane));
+        set_fields(galaxies.to_fit, texels, double(margin_px), body);
+        if (galaxies.planes.size() > 1) body.share = std::move(galaxies.shares[k]);
         if (body.hidden > 0.0f)
-            invent_plane(body, params.spiral * roughness * double(body.hidden), seed + std::uint32_t(k));
+            invent_plane(body, params.spiral * double(body.roughness * body.hidden), seed + std::uint32_t(k));
         bodies.push_back(std::move(body));
     }
     return bodies;

@@ -64,11 +64,10 @@ double rms_width(const std::vector<SpaceGaussian>& gaussians) {
 struct FamilyScale {
     double disk = 1.0, spheroid = 1.0;
 };
-FamilyScale scale_to(double wanted, double found) {
-    if (wanted < 0.0) return {};
+FamilyScale scale_to(std::optional<double> wanted, double found) {
     constexpr double none = 1e-9;
-    if (found <= none || found >= 1.0 - none) return {};
-    return {std::max(none, (1.0 - wanted) / (1.0 - found)), std::max(none, wanted / found)};
+    if (!wanted || found <= none || found >= 1.0 - none) return {};
+    return {std::max(none, (1.0 - *wanted) / (1.0 - found)), std::max(none, *wanted / found)};
 }
 
 // Of a disk's thickness over its width: seen, where it is seen from the edge.
@@ -146,44 +145,52 @@ glm::vec3 GalaxyBody::in_picture(const glm::vec3& p) const {
     return {place.x, place.y, p.y * sin_i + p.z * cos_i};
 }
 
+namespace {
+
+GalaxyBody lying_as(const GalaxyPlane& plane, double width) {
+    const double i = real::radians(plane.inclination_deg);
+    const auto ca = float(real::cos(plane.angle)), sa = float(real::sin(plane.angle));
+    GalaxyBody body;
+    body.center = {float(plane.x * width), float(plane.y * width)};
+    body.major = {ca, -sa};
+    body.near = float(plane.near_side) * glm::vec2(-sa, -ca);
+    body.cos_i = float(real::cos(i));
+    body.sin_i = float(real::sin(i));
+    body.hidden = float(
+        std::clamp((plane.inclination_deg - hidden_from_deg) / (hidden_to_deg - hidden_from_deg), 0.0, 1.0));
+    return body;
+}
+
+}  // namespace
+
 GalaxyBody make_galaxy_body(const GalaxyLight& light, const GalaxyPlane& plane, const GalaxyShape& shape,
                             double width) {
     const double i = real::radians(plane.inclination_deg), c = real::cos(i), s = real::sin(i);
-    GalaxyBody body;
-    body.center = {float(plane.x * width), float(plane.y * width)};
-    const auto ca = float(real::cos(plane.angle)), sa = float(real::sin(plane.angle));
-    body.major = {ca, -sa};
-    body.near = float(plane.near_side) * glm::vec2(-sa, -ca);
-    body.cos_i = float(c);
-    body.sin_i = float(s);
-    body.hidden = float(
-        std::clamp((plane.inclination_deg - hidden_from_deg) / (hidden_to_deg - hidden_from_deg), 0.0, 1.0));
+    GalaxyBody body = lying_as(plane, width);
     if (light.ring) body.ring = float(*light.ring * width);
     const FamilyScale scale = scale_to(shape.bulge, light.bulge);
-    std::vector<SpaceGaussian> disk = in_space(light.disk, width, scale.disk, 0.2 * widest);
-    std::vector<SpaceGaussian> ball = in_space(light.spheroid, width, scale.spheroid, 0.05 * widest);
+    const std::vector<SpaceGaussian> disk = in_space(light.disk, width, scale.disk, 0.2 * widest),
+                                     ball = in_space(light.spheroid, width, scale.spheroid, 0.05 * widest);
     const double radius = rms_width(light.disk.empty() ? ball : disk),
                  fine = std::max(fine_thickness * radius, double(least_disk_thickness)),
-                 dust = std::max(dust_thickness * radius, least_dust);
+                 dust = std::max(dust_thickness * radius, least_dust),
+                 flatness = own_flatness(light, plane.inclination_deg, c, s),
+                 roundness = own_roundness(light, c, s);
     body.radius = float(radius);
     body.thickness = float(shape.thicker * fine);
-    const double ratio = own_flatness(light, plane.inclination_deg, c, s),
-                 own_ratio = own_roundness(light, c, s);
     const auto add = [&](GalaxyPart part, SpaceGaussian g, double thickness) {
-        // Where a Gaussian is what is seen, a disk that flares is thicker than in its middle.
-        const double out = std::min(1.0, 3.0 * g.width / width);
-        g.thickness = shape.thicker * (1.0 + shape.flare * out * out) * thickness;
+        g.thickness = thickness;
         body.parts[std::size_t(part)].push_back(on_lines_of_sight(g, c, s));
     };
     for (const SpaceGaussian& g : disk) {
-        add(GalaxyPart::disk, g, ratio * std::min(g.width, widest_thickening * radius));
-        add(GalaxyPart::fine, g, std::min(fine, 0.5 * g.width));
-        add(GalaxyPart::dust, g, std::min(dust, 0.5 * g.width));
+        // Where a Gaussian is what is seen, a disk that flares is thicker than in its middle.
+        const double out = std::min(1.0, 3.0 * g.width / width),
+                     times = shape.thicker * (1.0 + shape.flare * out * out);
+        add(GalaxyPart::disk, g, times * flatness * std::min(g.width, widest_thickening * radius));
+        add(GalaxyPart::fine, g, times * std::min(fine, 0.5 * g.width));
+        add(GalaxyPart::dust, g, times * std::min(dust, 0.5 * g.width));
     }
-    for (SpaceGaussian g : ball) {
-        g.thickness = own_ratio * g.width;
-        body.parts[std::size_t(GalaxyPart::spheroid)].push_back(on_lines_of_sight(g, c, s));
-    }
+    for (const SpaceGaussian& g : ball) add(GalaxyPart::spheroid, g, roundness * g.width);
     return body;
 }
 
@@ -244,37 +251,47 @@ void gather_in_clouds(const GalaxyBody& body, DepthBlock& block) {
     }
 }
 
-float star_depth(const GalaxyBody& body, float x, float y, float u, float in_disk) {
-    const glm::vec2 uv = along_and_across(body, x, y);
-    struct Layer {
-        float share, middle, height;
-    };
-    std::vector<Layer> layers;
-    const auto add = [&](GalaxyPart part, float share, float thicker) {
+namespace {
+
+// A part of a place's stars, spread as a logistic of that scale height.
+struct StarLayer {
+    float share, middle, height;
+};
+
+std::vector<StarLayer> star_layers(const GalaxyBody& body, glm::vec2 uv, float in_disk) {
+    constexpr float thicker = 1.5f;       // than what is small in the disk: INCLINED 3
+    constexpr float least_depth = 0.15f;  // of the sky's stars, of the disk's radius
+    std::vector<StarLayer> layers;
+    const auto add = [&](GalaxyPart part, float share, float times) {
         const float sum = std::max(sum_there(part_of(body, part), uv), 1e-30f);
         for (const LineGaussian& g : part_of(body, part))
-            layers.push_back({share * light_there(g, uv) / sum, uv.y * g.slope,
-                              thicker * g.deviation / logistic_deviation});
+            layers.push_back(
+                {share * light_there(g, uv) / sum, uv.y * g.slope, times * g.deviation / logistic_deviation});
     };
-    add(GalaxyPart::fine, in_disk, 1.5f);
-    add(GalaxyPart::spheroid, 0.5f * (1.0f - in_disk), 1.0f);
-    // The sky's, about a galaxy that lies in the picture's plane less deep, or they would float before it.
-    constexpr float least_depth = 0.15f;
-    layers.push_back({0.5f * (1.0f - in_disk), 0.0f,
-                      std::max(least_depth, body.sin_i) * body.radius / logistic_deviation});
-    float low = 0.0f, high = 0.0f;
-    for (const Layer& layer : layers) {
-        if (layer.share < 1e-4f) continue;
+    const float around = 0.5f * (1.0f - in_disk);
+    add(GalaxyPart::fine, in_disk, thicker);
+    add(GalaxyPart::spheroid, around, 1.0f);
+    // About a galaxy that lies in the picture's plane less deep, or they would float before it.
+    layers.push_back({around, 0.0f, std::max(least_depth, body.sin_i) * body.radius / logistic_deviation});
+    std::erase_if(layers, [](const StarLayer& layer) { return layer.share < 1e-4f; });
+    return layers;
+}
+
+}  // namespace
+
+float star_depth(const GalaxyBody& body, float x, float y, float u, float in_disk) {
+    const std::vector<StarLayer> layers = star_layers(body, along_and_across(body, x, y), in_disk);
+    float low = 0.0f, high = 0.0f, all = 0.0f;
+    for (const StarLayer& layer : layers) {
         low = std::min(low, layer.middle - 6.0f * layer.height);
         high = std::max(high, layer.middle + 6.0f * layer.height);
+        all += layer.share;
     }
     for (int turn = 0; turn < 24; ++turn) {
         const float z = 0.5f * (low + high);
-        float below = 0.0f, all = 0.0f;
-        for (const Layer& layer : layers) {
+        float below = 0.0f;
+        for (const StarLayer& layer : layers)
             below += layer.share / (1.0f + as_exp(std::min((layer.middle - z) / layer.height, 80.0f)));
-            all += layer.share;
-        }
         (below < u * all ? low : high) = z;
     }
     return 0.5f * (low + high);
@@ -283,11 +300,12 @@ float star_depth(const GalaxyBody& body, float x, float y, float u, float in_dis
 namespace {
 
 // Candidates of even shares of each splat's light: Gaussian by Gaussian those that fall into its share.
-void spread_candidates(const std::vector<LineGaussian>& gaussians, DepthBlock& block,
+void spread_candidates(const GalaxyBody& body, GalaxyPart part, DepthBlock& block,
                        DepthCandidates& candidates) {
     constexpr int count = DepthCandidates::count;
+    const std::vector<LineGaussian>& gaussians = part_of(body, part);
     for (int i = 0; i < block.count; ++i) {
-        const glm::vec2 uv(candidates.u[i], candidates.v[i]);
+        const glm::vec2 uv = along_and_across(body, block.x[i], block.y[i]);
         const float all = std::max(sum_there(gaussians, uv), 1e-30f);
         float begin = 0.0f, deviations = 0.0f;
         int next = 0;
@@ -334,20 +352,15 @@ float dust_weight(const GalaxyBody& body, const glm::vec3& p, float z) {
 
 void set_candidates(const GalaxyBody& body, GalaxyPart part, float force, DepthBlock& block,
                     DepthCandidates& candidates) {
-    for (int i = 0; i < block.count; ++i) {
-        const glm::vec2 uv = along_and_across(body, block.x[i], block.y[i]);
-        candidates.u[i] = uv.x;
-        candidates.v[i] = uv.y;
-        block.clumping[i] = 1.0f;
-    }
-    spread_candidates(part_of(body, part), block, candidates);
-    const bool weighs = body.hidden > 0.0f && !body.plane.pixels.empty();
+    spread_candidates(body, part, block, candidates);
+    std::fill_n(block.clumping, block.count, 1.0f);
+    const bool weighs = !body.plane.pixels.empty();
     for (int k = 0; k < DepthCandidates::count; ++k)
         for (int i = 0; i < block.count; ++i) {
             float& weight = candidates.weight[k][i] = 0.0f;
             if (!weighs) continue;
-            const float z = candidates.z[k][i], v = candidates.v[i];
-            const glm::vec3 p(candidates.u[i], v * body.cos_i + z * body.sin_i, 0.0f);
+            const float z = candidates.z[k][i];
+            const glm::vec3 p = body.in_disk(block.x[i], block.y[i], z);
             weight = force * invented_at(body, p);
             if (part == GalaxyPart::dust) weight += dust_weight(body, p, z);
         }

@@ -77,9 +77,9 @@ struct GalaxyBody {
 
 /// What a galaxy's scene says of it besides how it lies.
 struct GalaxyShape {
-    double thicker = 1.0;  // times the usual
-    double flare = 0.0;    // how much thicker at the rim than in the middle, less 1
-    double bulge = -1.0;   // 0..1, share of the spheroid in the light; below 0: as found
+    double thicker = 1.0;         // times the usual
+    double flare = 0.0;           // how much thicker at the rim than in the middle, less 1
+    std::optional<double> bulge;  // 0..1, share of the spheroid in the light; empty: as found
 };
 
 /// `width`: of the picture the light was fitted in, texels. Without the images.

@@ -1,5 +1,7 @@
 #include "bodies/galaxy_fit.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -217,7 +219,9 @@ Ellipses mended_by_arms(const Image& light, Ellipses e, double& differs_deg) {
     return bounded(e);
 }
 
-GalaxyFit fit_one(const Image& to_fit, const Image& share) {
+}  // namespace
+
+GalaxyFit fit_galaxy(const Image& to_fit, const Image& share) {
     constexpr double most_deg = 89.0;
     const FoundEllipses found = find_ellipses(to_fit, share);
     GalaxyFit fit;
@@ -241,7 +245,7 @@ GalaxyFit fit_one(const Image& to_fit, const Image& share) {
 
 // Peaks of wide light that are parted from every brighter one by a saddle: galaxies of their own (INCLINED
 // 1).
-std::vector<glm::dvec2> centers_in(const Image& to_fit) {
+std::vector<glm::dvec2> galaxy_centers(const Image& to_fit) {
     constexpr double smooth = 0.03, least_peak = 0.2, deepest_saddle = 0.35, farthest = 0.6, reach = 0.06;
     constexpr int steps = 60;
     const auto width = double(to_fit.width);
@@ -265,22 +269,20 @@ std::vector<glm::dvec2> centers_in(const Image& to_fit) {
         });
         if (parted) centers.push_back(peak / width);
     }
+    if (centers.empty()) {
+        const auto brightest = std::ranges::max_element(light.pixels) - light.pixels.begin();
+        centers.push_back(
+            glm::dvec2(double(brightest % light.width) + 0.5, double(brightest / light.width) + 0.5) / width);
+    }
     return centers;
 }
 
-}  // namespace
-
-GalaxyFit fit_galaxy(const Image& light) {
+std::vector<GalaxyFit> fit_galaxies(const Image& light, Galaxies which) {
     const Image to_fit = light_to_fit(light);
-    return fit_one(to_fit, make_image(to_fit.width, to_fit.height, 1, 1.0f));
-}
-
-std::vector<GalaxyFit> fit_galaxies(const Image& light) {
-    const Image to_fit = light_to_fit(light);
-    const std::vector<glm::dvec2> centers = centers_in(to_fit);
-    if (centers.size() < 2) return {fit_galaxy(light)};
+    std::vector<glm::dvec2> centers = galaxy_centers(to_fit);
+    if (which == Galaxies::one) centers.resize(1);
     std::vector<GalaxyFit> fits;
-    for (const Image& share : shares_of(to_fit, centers)) fits.push_back(fit_one(to_fit, share));
+    for (const Image& share : shares_of(to_fit, centers)) fits.push_back(fit_galaxy(to_fit, share));
     return fits;
 }
 
@@ -288,6 +290,13 @@ bool is_unsure(const GalaxyFit& fit) {
     constexpr double most_misfit = 0.12, farthest_outside = 0.1;  // INCLINED 8
     const GalaxyPlane& p = fit.plane;
     return fit.misfit > most_misfit || std::min(p.x, p.y) < -farthest_outside || p.x > 1.0 + farthest_outside;
+}
+
+std::string words_of(const GalaxyFit& fit) {
+    constexpr double least_sure = 0.15, most_differs_deg = 10.0;  // INCLINED 8
+    return fmt::format("{:.0f} degrees{}{}", fit.plane.inclination_deg,
+                       fit.inclination_differs_deg > most_differs_deg ? ", unsure" : "",
+                       fit.near_sure < least_sure ? "; which side is nearer is a guess" : "");
 }
 
 }  // namespace astrosplat

@@ -2,6 +2,8 @@
 // and how sure they are.
 #pragma once
 
+#include <glm/vec2.hpp>
+#include <string>
 #include <vector>
 
 #include "bodies/galaxy_light.h"
@@ -17,14 +19,21 @@ struct GalaxyFit {
     double bulge = 0.0;                    // share of the spheroid in the light
 };
 
-/// The galaxy that is the only one in the picture. `light`: RGB, linear, >= 0. The same bits with any number
-/// of threads.
-GalaxyFit fit_galaxy(const Image& light);
+/// One galaxy of a picture; `to_fit` and `share` as light_to_fit() and shares_of() have them. The same bits
+/// with any number of threads.
+GalaxyFit fit_galaxy(const Image& to_fit, const Image& share);
 
-/// The galaxies in a picture, the brightest first; at least one.
-std::vector<GalaxyFit> fit_galaxies(const Image& light);
+/// Middles of a picture's galaxies, the brightest first, as GalaxyPlane has them; at least one.
+std::vector<glm::dvec2> galaxy_centers(const Image& to_fit);
+
+/// All galaxies of a picture, the brightest first, or it as one. `light`: RGB, linear, >= 0.
+enum class Galaxies { all, one };
+std::vector<GalaxyFit> fit_galaxies(const Image& light, Galaxies which = Galaxies::all);
 
 /// Whether it is so unsure how a galaxy lies that it is better taken for face-on (INCLINED 8).
 bool is_unsure(const GalaxyFit& fit);
+
+/// Such as "64 degrees, unsure; which side is nearer is a guess".
+std::string words_of(const GalaxyFit& fit);
 
 }  // namespace astrosplat

@@ -408,35 +408,28 @@ GalaxyParams as_params(const GalaxyPlane& plane, double height_over_width) {
             near_deg - 360.0 * std::floor(near_deg / 360.0), std::nullopt};
 }
 
-// How the galaxies of a picture lie, and because of what.
+// How the galaxies of a picture lie, and because of what. The table's inclination is better than the light's.
 void find_galaxies(const Image& light, const Identification& found, PictureScene& scene) {
-    constexpr double least_sure = 0.15, most_differs_deg = 10.0;  // INCLINED 8
     const double height_over_width = double(light.height) / double(light.width);
     const bool round = scene.object == SkyObject::elliptical || scene.object == SkyObject::cluster;
-    const std::vector<GalaxyFit> fits =
-        round ? std::vector<GalaxyFit>{fit_galaxy(light)} : fit_galaxies(light);
+    const std::vector<GalaxyFit> fits = fit_galaxies(light, round ? Galaxies::one : Galaxies::all);
     for (const GalaxyFit& fit : fits) scene.galaxies.push_back(as_params(fit.plane, height_over_width));
-    const GalaxyFit& first = fits.front();
     GalaxyParams& galaxy = scene.galaxies.front();
-    scene.galaxies_by = fits.size() > 1
-                            ? fmt::format("{} galaxies, by their light", fits.size())
-                            : fmt::format("its light: {:.0f} degrees{}", first.plane.inclination_deg,
-                                          first.inclination_differs_deg > most_differs_deg ? ", unsure" : "");
+    scene.galaxies_by = "its light: " + words_of(fits.front());
     if (round) {
         galaxy.inclination = 90.0;
         galaxy.bulge = 1.0;
         scene.galaxies_by = "a spheroid: no disk, as flat in depth as it is seen";
-    } else if (fits.size() == 1 && found.known && found.known->inclination_deg) {
-        galaxy.inclination = std::min(*found.known->inclination_deg, 90.0);
-        scene.galaxies_by =
-            fmt::format("{} in the table: {:.0f} degrees; its light: {:.0f}", found.known->names.front(),
-                        *galaxy.inclination, first.plane.inclination_deg);
-    } else if (fits.size() == 1 && is_unsure(first)) {
+    } else if (fits.size() > 1) {
+        scene.galaxies_by = fmt::format("{} galaxies, by their light", fits.size());
+    } else if (found.known && found.known->inclination_deg) {
+        galaxy.inclination = *found.known->inclination_deg;
+        scene.galaxies_by = fmt::format("{} in the table: {:.0f} degrees; {}", found.known->names.front(),
+                                        *galaxy.inclination, scene.galaxies_by);
+    } else if (is_unsure(fits.front())) {
         galaxy.inclination = 0.0;
         scene.galaxies_by = "how it lies is unsure: in the picture's plane";
     }
-    if (!round && *galaxy.inclination > 0.0 && first.near_sure < least_sure)
-        scene.galaxies_by += "; which side is nearer is a guess";
 }
 
 }  // namespace

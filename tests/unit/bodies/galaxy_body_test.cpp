@@ -186,6 +186,9 @@ TEST(Galaxies, WhatTheSceneSaysIsFollowedAndTheRestIsFound) {
     EXPECT_EQ(told.inclination_deg, 50.0);
     EXPECT_EQ(told.near_side, 1);
     EXPECT_EQ(told.angle, found.angle);
+    // In a list, too: what is not said is found.
+    params.galaxies = {GalaxyParams{std::nullopt, std::nullopt, std::nullopt, std::nullopt, std::nullopt}};
+    EXPECT_EQ(galaxy_planes(light, params).at(0), found);
     params.galaxies = {{20.0, 10.0, glm::dvec2(0.25, 0.75), 100.0, {}},
                        {70.0, 190.0, glm::dvec2(0.75, 0.5), 280.0, 0.4}};
     const std::vector<GalaxyPlane> two = galaxy_planes(light, params);

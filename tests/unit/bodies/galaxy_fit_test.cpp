@@ -16,7 +16,9 @@ double degrees_between(double a_deg, double b_deg) {
     return 180.0 * std::fabs(turns - std::round(turns));
 }
 
-GalaxyFit fit_of(const painted::Tilted& t) { return fit_galaxy(painted::tilted_galaxy(240, 150, t)); }
+GalaxyFit fit_of(const painted::Tilted& t) {
+    return fit_galaxies(painted::tilted_galaxy(240, 150, t), Galaxies::one).front();
+}
 
 TEST(GalaxyFit, FindsTheTiltOfPaintedGalaxies) {
     std::vector<double> errors;
@@ -61,9 +63,9 @@ TEST(GalaxyFit, PartsTheBulgeFromTheDisk) {
 TEST(GalaxyFit, IsTheSameWithAnyNumberOfThreads) {
     const Image light = painted::tilted_galaxy(240, 150, {70.0, 33.0});
     set_thread_count(1);
-    const GalaxyFit one = fit_galaxy(light);
+    const GalaxyFit one = fit_galaxies(light, Galaxies::one).front();
     set_thread_count(3);
-    const GalaxyFit three = fit_galaxy(light);
+    const GalaxyFit three = fit_galaxies(light, Galaxies::one).front();
     set_thread_count(0);
     EXPECT_EQ(one.plane.inclination_deg, three.plane.inclination_deg);
     EXPECT_EQ(one.plane.angle, three.plane.angle);
@@ -72,7 +74,7 @@ TEST(GalaxyFit, IsTheSameWithAnyNumberOfThreads) {
 }
 
 TEST(GalaxyFit, OfNoLightIsNothing) {
-    const GalaxyFit fit = fit_galaxy(make_image(64, 40, 3));
+    const GalaxyFit fit = fit_galaxies(make_image(64, 40, 3), Galaxies::one).front();
     EXPECT_TRUE(std::isfinite(fit.plane.inclination_deg) && std::isfinite(fit.misfit));
 }
 
