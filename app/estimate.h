@@ -65,7 +65,7 @@ class SampledRun {
 };
 
 /// About how many splats the layers will have, and how many bytes are taken at most: while sets are made, or
-/// by sets, shaded splats, screen splats and pictures.
+/// by sets, shaded splats, screen splats and images.
 struct JobEstimate {
     struct Layer {
         std::string name;

@@ -1,5 +1,5 @@
 // How true a scene is to the telescope: what its splats look like from the front against its picture, and
-// whether they hold from the side and from the edge. In: a scene. Out: numbers and the pictures that they
+// whether they hold from the side and from the edge. In: a scene. Out: numbers and the images that they
 // were taken of.
 #pragma once
 
@@ -55,7 +55,7 @@ struct FidelitySettings {
     std::function<Progress(const std::string& step)> begin_step;
 };
 
-/// Bytes of pictures and measures at their peak, about: what comes on top of the splats.
+/// Bytes of images and measures at their peak, about: what comes on top of the splats.
 std::int64_t fidelity_bytes(const FidelityReference& reference, const FidelitySettings& settings = {});
 
 /// A front view beside what it is compared with, both as linear light on black.

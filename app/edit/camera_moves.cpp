@@ -325,7 +325,7 @@ glm::dvec3 thin_direction(const Scene& scene) {
 }
 
 /// From above the thin direction to its side. Begins where the camera is, if that is face-on already; else at
-/// a distance that holds the whole box. What is up in the picture stays up in every frame of it, and in the
+/// a distance that holds the whole box. What is up in the first frame stays up in every one, and in the
 /// last one the axis is, so that a disk lies in the frame: an up across the axis, as of a picture's own
 /// camera, turns to it on the way.
 Move face_on_to_edge_on(const Scene& scene, const CameraParams& camera, const Bounds& box,

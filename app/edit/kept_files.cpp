@@ -282,7 +282,7 @@ fs::path snapshot_folder(const fs::path& scene_file) {
     return fs::path(scene_file).replace_extension(".snapshots");
 }
 
-fs::path snapshot_picture(const fs::path& snapshot) { return fs::path(snapshot).replace_extension(".png"); }
+fs::path snapshot_image(const fs::path& snapshot) { return fs::path(snapshot).replace_extension(".png"); }
 
 std::vector<StoredLook> read_snapshots(const fs::path& folder, std::vector<std::string>& problems) {
     std::vector<StoredLook> found;
@@ -309,7 +309,7 @@ fs::path write_snapshot(const fs::path& folder, const SnapshotFacts& facts, cons
         } catch (const AlreadyExists&) {
             continue;  // another window took the number
         }
-        write_file_atomically(snapshot_picture(file), png);
+        write_file_atomically(snapshot_image(file), png);
         return file;
     }
 }
@@ -323,7 +323,7 @@ void rename_snapshot(const fs::path& snapshot, const std::string& name) {
 }
 
 void remove_snapshot(const fs::path& snapshot) {
-    for (const fs::path& file : {snapshot, snapshot_picture(snapshot)}) {
+    for (const fs::path& file : {snapshot, snapshot_image(snapshot)}) {
         std::error_code error;
         fs::remove(file, error);
         if (error)

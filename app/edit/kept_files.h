@@ -1,7 +1,7 @@
 // What is kept of a scene besides its file. Unsaved edits survive a crash: a copy of the scene in the
 // person's state folder, NAME-PID-HASH.toml, that any astrosplat can load, and the way back from it.
 // Snapshots are named looks to compare with and to go back to: each is a scene file in the folder
-// SCENE.snapshots with a small picture beside it. The first line of both says what they are of. Files appear
+// SCENE.snapshots with a small image beside it. The first line of both says what they are of. Files appear
 // complete or not at all.
 #pragma once
 
@@ -98,8 +98,8 @@ void restore_look(Document& document, const StoredLook& stored);
 
 /// "galaxy.snapshots" beside galaxy.toml.
 std::filesystem::path snapshot_folder(const std::filesystem::path& scene_file);
-/// The picture beside a snapshot's file.
-std::filesystem::path snapshot_picture(const std::filesystem::path& snapshot);
+/// The image beside a snapshot's file.
+std::filesystem::path snapshot_image(const std::filesystem::path& snapshot);
 
 /// Oldest first; none where there is no folder. Each one that cannot be read is left out, and a line about it
 /// added to `problems`.

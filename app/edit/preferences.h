@@ -1,5 +1,5 @@
 // Settings of the window that are kept between sessions: sizes, recent files and folders, nothing that
-// reaches a scene or a picture. A small JSON file in the person's configuration folder.
+// reaches a scene or a frame. A small JSON file in the person's configuration folder.
 #pragma once
 
 #include <filesystem>

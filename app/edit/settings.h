@@ -1,6 +1,6 @@
 // Settings of the window that do not depend on the scene: size and contrast of text, threads, memory, cache,
 // autosave, how a view begins. One table feeds the dialog and the file of preferences; nothing of it reaches
-// a picture, but for a limit of memory, which acts as a smaller machine does.
+// a frame, but for a limit of memory, which acts as a smaller machine does.
 #pragma once
 
 #include <span>

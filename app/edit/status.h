@@ -19,7 +19,7 @@
 
 namespace astrosplat {
 
-/// A picture file as a folder lists it: what a small picture of it is kept under.
+/// A picture file as a folder lists it: what its thumbnail is kept under.
 struct ListedPicture {
     std::filesystem::path file;
     std::filesystem::file_time_type changed{};
@@ -148,7 +148,7 @@ struct FinishedFrame {
 /// A picture file as it looks. Zeros and nothing: it cannot be read.
 struct ListedThumbnail {
     void* texture = nullptr;             // handle for the widgets, top row first
-    std::int64_t width = 0, height = 0;  // px of the picture in the file
+    std::int64_t width = 0, height = 0;  // px, in the file
 };
 
 /// An autosave that may be wanted.

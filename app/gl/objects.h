@@ -139,12 +139,11 @@ class ImageTexture {
     std::int64_t width_ = 0, height_ = 0;
 };
 
-/// Something that was found, with its picture on the GPU, where it goes once.
+/// Something that was found, with its image on the GPU, where it goes once.
 template <class Found>
-class ShownPicture {
+class UploadedImage {
   public:
-    /// Shows the picture `image_of(*found)`, a function's or a member, unless it is what is shown; null:
-    /// nothing is shown.
+    /// Shows `image_of(*found)`, a function's or a member, unless it is shown; null: nothing is.
     template <class ImageOf>
     void show(std::shared_ptr<const Found> found, const ImageOf& image_of) {
         if (found == found_) return;
@@ -159,7 +158,7 @@ class ShownPicture {
     GLuint texture() const { return found_ ? texture_.handle() : 0; }
     glm::vec2 size_px() const { return texture_.size_px(); }
     float aspect() const { return size_px().x / size_px().y; }  // width / height
-    /// Grows whenever another picture is shown.
+    /// Grows whenever another one is shown.
     std::uint64_t version() const { return version_; }
 
   private:

@@ -89,7 +89,7 @@ void draw_frames(GuiFrame& frame, const QueuedJob& job) {
     const float width = ImGui::GetContentRegionAvail().x;
     const FinishedFrame& finished = frame.status.finished;
     const ImVec2 size{width, ImGui::GetContentRegionAvail().y - px(76)};
-    picture_box({ImGui::GetCursorScreenPos(), size}, finished.texture, finished.aspect, 3);
+    image_box({ImGui::GetCursorScreenPos(), size}, finished.texture, finished.aspect, 3);
     ImGui::Dummy(size);
     if (!finished.error.empty()) ImGui::TextColored(color4(color::error), "%s", finished.error.c_str());
     if (count == 0) return ImGui::TextColored(color4(color::dim), "%s", "No frame is finished yet.");
@@ -187,7 +187,7 @@ void draw_card(GuiFrame& frame, std::size_t index) {
     ImGui::SetItemAllowOverlap();
     ImDrawList* list = ImGui::GetWindowDrawList();
     const Rect area(corner, {px(thumbnail_width), px(thumbnail_height)});
-    picture_box(area, snapshot.thumbnail, snapshot.aspect, 3);
+    image_box(area, snapshot.thumbnail, snapshot.aspect, 3);
     const ImVec2 end = area.end();
     if (is_b || hovered) list->AddRect(corner, end, is_b ? color::accent : color::dim, px(3), 0, px(1.5f));
     ImGui::PushFont(small_font());

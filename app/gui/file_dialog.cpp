@@ -337,10 +337,10 @@ void FileDialog::scroll_to_typed() {
     if (!std::exchange(typed_anew_, false)) return;
     const std::optional<std::size_t> entry = entry_begun(entries_, typed_);
     if (!entry) return;
-    const float row = px(*entry >= folders_ && pictures_ ? picture_row_height : file_row_height);
+    const float row = px(*entry >= folders_ && pictures_ ? thumbnail_row_height : file_row_height);
     const std::size_t high = *entry > folders_ ? *entry - folders_ : 0;
     const float top = px(file_row_height) * static_cast<float>(*entry - high) +
-                      px(pictures_ ? picture_row_height : file_row_height) * static_cast<float>(high);
+                      px(pictures_ ? thumbnail_row_height : file_row_height) * static_cast<float>(high);
     const float seen = ImGui::GetScrollY(), room = ImGui::GetWindowHeight();
     if (top < seen) ImGui::SetScrollY(top);
     if (top + row > seen + room) ImGui::SetScrollY(top + row - room);
@@ -388,7 +388,7 @@ bool FileDialog::draw_entries(GuiFrame& frame) {
             }
     };
     draw_rows(0, folders_, file_row_height);
-    draw_rows(folders_, entries_.size(), pictures_ ? picture_row_height : file_row_height);
+    draw_rows(folders_, entries_.size(), pictures_ ? thumbnail_row_height : file_row_height);
     if (entries_.empty()) {
         ImGui::SetCursorPosX(px(12));
         row_text(contents_.is_open() ? "Reading the folder..."

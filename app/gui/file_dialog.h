@@ -143,7 +143,7 @@ std::optional<FileQuery> query_for(Command::Kind kind, const Document& document)
 /// The request for the value of a parameter.
 FileQuery query_for(const ParameterKey& key, const Document& document);
 
-inline constexpr float file_row_height = 26, picture_row_height = 54;  // px at scale 1
+inline constexpr float file_row_height = 26, thumbnail_row_height = 54;  // px at scale 1
 
 struct FileRow {
     Icon icon = Icon::file;

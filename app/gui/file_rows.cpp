@@ -142,7 +142,7 @@ FileQuery query_for(const ParameterKey& key, const Document& document) {
 namespace {
 
 constexpr float time_width = 128, size_width = 76;
-constexpr float row_picture_width = 72, row_picture_height = 48;
+constexpr float row_thumbnail_width = 72, row_thumbnail_height = 48;
 
 struct FileColumn {
     const char* label;
@@ -170,15 +170,15 @@ bool draw_column(GuiFrame& frame, const FileColumn& column, const ImVec2& corner
 }
 
 // As large as its frame allows; the sign of a file where it cannot be read.
-void draw_picture(ImVec2 corner, const ListedThumbnail* thumbnail) {
-    const Rect area(corner, {px(row_picture_width), px(row_picture_height)});
+void draw_thumbnail(ImVec2 corner, const ListedThumbnail* thumbnail) {
+    const Rect area(corner, {px(row_thumbnail_width), px(row_thumbnail_height)});
     if (!thumbnail || !thumbnail->texture) {
-        picture_box(area, {}, 0.0f, 2);
+        image_box(area, {}, 0.0f, 2);
         if (thumbnail) draw_icon(ImGui::GetWindowDrawList(), Icon::file, area.middle(), px(13), color::dim);
         return;
     }
     const float aspect = static_cast<float>(thumbnail->width) / static_cast<float>(thumbnail->height);
-    picture_box(area, thumbnail->texture, aspect, 2);
+    image_box(area, thumbnail->texture, aspect, 2);
 }
 
 std::string note_of(const FileRow& row) {
@@ -190,7 +190,7 @@ std::string note_of(const FileRow& row) {
 
 FileClick file_row(const char* id, const FileRow& row) {
     const ImVec2 corner = ImGui::GetCursorScreenPos();
-    const float height = px(row.high ? picture_row_height : file_row_height);
+    const float height = px(row.high ? thumbnail_row_height : file_row_height);
     const float room = ImGui::GetContentRegionAvail().x;
     FileClick click;
     click.once = ImGui::InvisibleButton(id, {room, height});
@@ -200,11 +200,11 @@ FileClick file_row(const char* id, const FileRow& row) {
     fill_rect(corner, {corner.x + room, corner.y + height}, back, px(3));
     const float middle = corner.y + height * 0.5f;
     if (row.picture)
-        draw_picture({corner.x + px(6), middle - px(0.5f * row_picture_height)}, row.thumbnail);
+        draw_thumbnail({corner.x + px(6), middle - px(0.5f * row_thumbnail_height)}, row.thumbnail);
     else
-        draw_icon(list, row.icon, {corner.x + px(row.high ? 6 + 0.5f * row_picture_width : 14), middle},
+        draw_icon(list, row.icon, {corner.x + px(row.high ? 6 + 0.5f * row_thumbnail_width : 14), middle},
                   px(13), color::dim);
-    const float text_x = corner.x + px(row.high ? row_picture_width + 16 : 28);
+    const float text_x = corner.x + px(row.high ? row_thumbnail_width + 16 : 28);
     const float beside = row.time.empty() ? 0.0f : px(time_width + size_width);
     const float text_room = corner.x + room - px(8) - beside - text_x;
     const float line = std::floor(ImGui::GetFontSize()), y = std::floor(middle - line * 0.5f);

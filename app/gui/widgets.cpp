@@ -255,7 +255,7 @@ void progress_bar(ImVec2 corner, float width, float share) {
     list->AddRectFilled(corner, {done, bottom}, color::accent, px(2));
 }
 
-void picture_box(const Rect& area, ImTextureID texture, float aspect, float radius) {
+void image_box(const Rect& area, ImTextureID texture, float aspect, float radius) {
     ImDrawList* const list = ImGui::GetWindowDrawList();
     list->AddRectFilled(area.corner(), area.end(), IM_COL32_BLACK, px(radius));
     if (!texture || aspect <= 0) return;

@@ -83,7 +83,7 @@ Layout make_layout(const ViewState& view, float width_px, float height_px, float
 /// middle; 1:1: zoomed and moved as `view` says. It may reach beyond the viewport.
 Rect place_frame(const ViewState& view, const Rect& viewport, int width_px, int height_px);
 
-/// The same for pictures that lie over it.
+/// The same for what lies over it.
 inline FrameOnScreen frame_on_screen(const Rect& frame) {
     return {{frame.x + 0.5 * frame.width, frame.y + 0.5 * frame.height}, std::max(1.0f, frame.height)};
 }
@@ -125,7 +125,7 @@ void progress_bar(ImVec2 corner, float width, float share);
 
 /// A texture of this aspect (width / height) on black, as large as `area` allows; with none of either black
 /// alone. `radius`: of the corners of the black, px at scale 1.
-void picture_box(const Rect& area, ImTextureID texture, float aspect, float radius);
+void image_box(const Rect& area, ImTextureID texture, float aspect, float radius);
 
 /// ImGui's popup as a menu, which Escape closes; end_menu_popup only after true.
 bool begin_menu_popup(const char* id);

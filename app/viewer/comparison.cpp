@@ -154,8 +154,8 @@ AlignmentFound align_reference(const AlignmentRequest& request, const Progress& 
     ReferenceParams placed = request.reference;
     const PicturePlace now = place_of(placed, double(picture.width) / double(picture.height), frame);
     const double px_of_scale = frame.height / static_cast<double>(picture.height);
-    const PictureOnPicture start{now.corner + 0.5 * (now.right + now.down), placed.scale * px_of_scale,
-                                 placed.rotate};
+    const ImageOnImage start{now.corner + 0.5 * (now.right + now.down), placed.scale * px_of_scale,
+                             placed.rotate};
     const std::optional<Registration> found =
         registered(grey_of(request.view, false), grey_of(picture, placed.mirrored), start, progress);
     if (!found) return {};
@@ -235,20 +235,20 @@ void SnapshotList::open(const fs::path& scene_file, std::vector<std::string>& pr
     folder_ = scene_file.empty() ? fs::path() : snapshot_folder(scene_file);
     if (folder_.empty()) return;
     for (const StoredLook& look : read_snapshots(folder_, problems))
-        push(look, read_thumbnail(snapshot_picture(look.file)));
+        push(look, read_thumbnail(snapshot_image(look.file)));
 }
 
-SnapshotList::StoredView& SnapshotList::push(StoredLook look, Image picture) {
-    snapshots_.push_back({std::move(look), std::move(picture)});
+SnapshotList::StoredView& SnapshotList::push(StoredLook look, Image image) {
+    snapshots_.push_back({std::move(look), std::move(image)});
     StoredView& view = snapshots_.back();
-    view.thumbnail.upload(view.picture);
+    view.thumbnail.upload(view.image);
     return view;
 }
 
 void SnapshotList::keep(StoredView& view) const {
     StoredLook& look = view.look;
     if (folder_.empty() || look.file.parent_path() == folder_) return;
-    look.file = write_snapshot(folder_, look, *look.scene, png_of(view.picture));
+    look.file = write_snapshot(folder_, look, *look.scene, png_of(view.image));
 }
 
 void SnapshotList::move_to(const fs::path& scene_file) {
@@ -256,7 +256,7 @@ void SnapshotList::move_to(const fs::path& scene_file) {
     for (StoredView& view : snapshots_) keep(view);
 }
 
-void SnapshotList::add(StoredLook look, Image picture) { keep(push(std::move(look), std::move(picture))); }
+void SnapshotList::add(StoredLook look, Image image) { keep(push(std::move(look), std::move(image))); }
 
 void SnapshotList::rename(std::size_t index, const std::string& name) {
     if (index >= snapshots_.size() || name.empty()) return;
@@ -289,8 +289,8 @@ void SnapshotList::fill(Status& status) const {
     for (const StoredView& view : snapshots_)
         status.snapshots.push_back(
             {view.look.name, to_handle(view.thumbnail.handle()),
-             static_cast<float>(view.picture.width) / static_cast<float>(view.picture.height),
-             view.look.splats, view.look.seconds});
+             static_cast<float>(view.image.width) / static_cast<float>(view.image.height), view.look.splats,
+             view.look.seconds});
     status.b_snapshot = b() ? static_cast<int>(b_) : -1;
     status.b_name = b() ? b()->name : "";
 }

@@ -1,7 +1,7 @@
-// The comparison of the frame, A, with other pictures: the look of a snapshot seen by the same camera, B;
+// The comparison of the frame, A, with other images: the look of a snapshot seen by the same camera, B;
 // the reference picture and its alignment to what the view shows; a layer's own picture, before and after
 // its preparation, and the likeness of the view from the front to it. In: a scene as it stands and its sets;
-// looks to keep; files. Out: pictures for the display, cards and measures for the widgets, a placement.
+// looks to keep; files. Out: images for the display, cards and measures for the widgets, a placement.
 #pragma once
 
 #include <cstdint>
@@ -114,7 +114,7 @@ class ReferencePicture {
 
     Request request_;
     std::string error_;  // one line
-    ShownPicture<Found> shown_;
+    UploadedImage<Found> shown_;
     LatestWork<Request, Found> work_{read};
 };
 
@@ -162,9 +162,9 @@ class SnapshotList {
     /// The scene lies there from now on, and so do its snapshots. Throws OutputError; they stay in the list.
     void move_to(const std::filesystem::path& scene_file);
 
-    /// Adds a look with its picture, RGBA of display values, top row first. Throws OutputError where it
+    /// Adds a look with its image, RGBA of display values, top row first. Throws OutputError where it
     /// cannot be kept; it stays in the list.
-    void add(StoredLook look, Image picture);
+    void add(StoredLook look, Image image);
     /// Throw InputError and OutputError; the list is then as before.
     void rename(std::size_t index, const std::string& name);
     void remove(std::size_t index);
@@ -188,10 +188,10 @@ class SnapshotList {
     static constexpr std::size_t no_b = ~std::size_t{0};
     struct StoredView {
         StoredLook look;
-        Image picture;
+        Image image;
         ImageTexture thumbnail = {};
     };
-    StoredView& push(StoredLook look, Image picture);
+    StoredView& push(StoredLook look, Image image);
     void keep(StoredView& view) const;
 
     std::vector<StoredView> snapshots_;
@@ -199,7 +199,7 @@ class SnapshotList {
     std::filesystem::path folder_;  // empty: the scene has no file yet
 };
 
-/// An 8-bit picture (RGBA, top row first) as a float one of at most `most` px width, by averaging boxes.
+/// An 8-bit image (RGBA, top row first) as a float one of at most `most` px width, by averaging boxes.
 Image thumbnail_of(const std::vector<unsigned char>& rgba, int width, int height, int most);
 
 class Comparison {

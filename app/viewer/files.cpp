@@ -20,8 +20,8 @@ namespace astrosplat {
 
 namespace {
 
-/// A picture made small while it is read, its pixels as they are stored.
-struct SmallPicture {
+/// An image made small while it is read, its pixels as they are stored.
+struct SmallImage {
     Image image;                         // RGBA, opaque; what had no value is black
     bool light = false;                  // linear, with the primaries of Rec. 709; else display values
     std::int64_t width = 0, height = 0;  // px in the file
@@ -78,9 +78,9 @@ void to_rec709(Image& rgba, const fs::path& file) {
 }
 
 /// By rows, so that a large one takes time but no memory. Throws InputError, Cancelled.
-SmallPicture read_small_picture(const fs::path& file, std::int64_t most_px, const Progress& progress = {}) {
+SmallImage read_small_image(const fs::path& file, std::int64_t most_px, const Progress& progress = {}) {
     StoredRows from = open_stored(file, TextureSettings{}, progress, most_values);
-    SmallPicture made{{}, !from.stored.display_values, from.rows.width, from.rows.height};
+    SmallImage made{{}, !from.stored.display_values, from.rows.width, from.rows.height};
     const std::int64_t longer = std::max(made.width, made.height);
     const Image small =
         reduced_by_area(without_gaps(std::move(from.rows)), shrunk(made.width, longer, most_px),
@@ -113,13 +113,13 @@ std::vector<Packed> packed(const Image& rgba, const Pack& pack) {
     return values;
 }
 
-PackedPicture size_of(const SmallPicture& small) {
+PackedImage size_of(const SmallImage& small) {
     return {small.image.width, small.image.height, small.width, small.height, {}, {}, {}};
 }
 
-PackedPicture frame_of_file(const fs::path& file, std::int64_t most_px, const Progress& progress) {
-    const SmallPicture small = read_small_picture(file, most_px, progress);
-    PackedPicture frame = size_of(small);
+PackedImage frame_of_file(const fs::path& file, std::int64_t most_px, const Progress& progress) {
+    const SmallImage small = read_small_image(file, most_px, progress);
+    PackedImage frame = size_of(small);
     if (small.light)
         frame.light = packed<std::uint16_t>(small.image, half_of);
     else
@@ -136,18 +136,18 @@ std::optional<ListedPicture> as_it_lies(const fs::path& file) {
 
 }  // namespace
 
-Image to_image(const PackedPicture& picture) {
-    Image image = make_image(picture.width, picture.height, 4, 1.0f);
-    for (std::size_t i = 0; i < picture.codes.size(); ++i)
-        image.pixels[i / 3 * 4 + i % 3] = static_cast<float>(picture.codes[i]) * (1.0f / 255.0f);
-    for (std::size_t i = 0; i < picture.light.size(); ++i)
-        image.pixels[i / 3 * 4 + i % 3] = glm::unpackHalf1x16(picture.light[i]);
+Image to_image(const PackedImage& packed) {
+    Image image = make_image(packed.width, packed.height, 4, 1.0f);
+    for (std::size_t i = 0; i < packed.codes.size(); ++i)
+        image.pixels[i / 3 * 4 + i % 3] = static_cast<float>(packed.codes[i]) * (1.0f / 255.0f);
+    for (std::size_t i = 0; i < packed.light.size(); ++i)
+        image.pixels[i / 3 * 4 + i % 3] = glm::unpackHalf1x16(packed.light[i]);
     return image;
 }
 
-PackedPicture thumbnail_of_file(const fs::path& file, std::int64_t most_px, const Progress& progress) {
-    const SmallPicture small = read_small_picture(file, most_px, progress);
-    PackedPicture thumbnail = size_of(small);
+PackedImage thumbnail_of_file(const fs::path& file, std::int64_t most_px, const Progress& progress) {
+    const SmallImage small = read_small_image(file, most_px, progress);
+    PackedImage thumbnail = size_of(small);
     thumbnail.codes = packed<std::uint8_t>(
         small.image, [&](float value) { return code_of(small.light ? display_srgb(value) : value); });
     return thumbnail;
@@ -180,13 +180,13 @@ void RenderedFrames::want(const std::vector<fs::path>& files) {
     ReadAhead::want(std::move(there));
 }
 
-std::shared_ptr<const PackedPicture> RenderedFrames::found(const fs::path& file) const {
+std::shared_ptr<const PackedImage> RenderedFrames::found(const fs::path& file) const {
     const auto listed = as_it_lies(file);
     return listed ? ReadAhead::found(*listed) : nullptr;
 }
 
 FinishedView finished_view(const FinishedRequest& request, std::int64_t most_px) {
-    SmallPicture small = read_small_picture(request.file, most_px);
+    SmallImage small = read_small_image(request.file, most_px);
     if (!small.light) {
         for (float& value : small.image.pixels) value = std::clamp(value, 0.0f, 1.0f);
         return {std::move(small.image), {}};
@@ -198,7 +198,7 @@ FinishedView finished_view(const FinishedRequest& request, std::int64_t most_px)
     format.view = request.view;
     format.exposure = request.exposure;
     format.ocio = request.ocio;
-    PackedPicture seen = size_of(small);
+    PackedImage seen = size_of(small);
     seen.codes = encode_8bit(format, small.image, 0, 0);
     return {to_image(seen), {}};
 }

@@ -1,4 +1,4 @@
-// Files beside the sets. Small pictures, read in the background: thumbnails of a folder, frames of the
+// Files beside the sets. Small images, read in the background: thumbnails of a folder, frames of the
 // output while they are played, the finished frame of a job. And those that a scene names: pictures that
 // views share, the configuration of OpenColorIO, and what becomes of files that change.
 #pragma once
@@ -25,28 +25,28 @@
 namespace astrosplat {
 
 /// RGB on black, the first row on top, in one of two ways that take little memory.
-struct PackedPicture {
+struct PackedImage {
     std::int64_t width = 0, height = 0;            // px
-    std::int64_t file_width = 0, file_height = 0;  // px of the picture in the file
+    std::int64_t file_width = 0, file_height = 0;  // px, in the file
     std::vector<std::uint8_t> codes;               // display values, 255 is 1
     std::vector<std::uint16_t> light;              // linear, primaries of Rec. 709, as half floats
     std::string error;                             // one line: it cannot be read
     bool is_light() const { return !light.empty(); }
     std::size_t bytes() const {
-        return sizeof(PackedPicture) + codes.size() + light.size() * sizeof(std::uint16_t);
+        return sizeof(PackedImage) + codes.size() + light.size() * sizeof(std::uint16_t);
     }
 };
 
 /// RGBA, opaque, for a texture.
-Image to_image(const PackedPicture& picture);
+Image to_image(const PackedImage& packed);
 
 /// The longer side is at most `most_px`. FITS is stretched as it is where nothing is set, linear light gets
 /// the screen's curve: codes. Throws InputError, Cancelled.
-PackedPicture thumbnail_of_file(const std::filesystem::path& file, std::int64_t most_px,
-                                const Progress& progress = {});
+PackedImage thumbnail_of_file(const std::filesystem::path& file, std::int64_t most_px,
+                              const Progress& progress = {});
 
-/// Pictures of files as a folder lists them.
-class Thumbnails : public ReadAhead<ListedPicture, PackedPicture> {
+/// Thumbnails of files as a folder lists them.
+class Thumbnails : public ReadAhead<ListedPicture, PackedImage> {
   public:
     explicit Thumbnails(std::int64_t most_px = 144, std::size_t most_bytes = std::size_t{32} << 20);
     /// Small files first.
@@ -55,7 +55,7 @@ class Thumbnails : public ReadAhead<ListedPicture, PackedPicture> {
 
 /// Frames of the output's files, read ahead so that they play. Scene light stays light, to be seen through
 /// the viewport's view.
-class RenderedFrames : public ReadAhead<ListedPicture, PackedPicture> {
+class RenderedFrames : public ReadAhead<ListedPicture, PackedImage> {
   public:
     explicit RenderedFrames(std::int64_t most_px = 1280, std::size_t most_bytes = std::size_t{512} << 20);
 
@@ -63,7 +63,7 @@ class RenderedFrames : public ReadAhead<ListedPicture, PackedPicture> {
     /// at once.
     void want(const std::vector<std::filesystem::path>& files);
     /// Null while it is not read as it now lies there.
-    std::shared_ptr<const PackedPicture> found(const std::filesystem::path& file) const;
+    std::shared_ptr<const PackedImage> found(const std::filesystem::path& file) const;
 };
 
 struct FinishedView {

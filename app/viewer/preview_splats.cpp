@@ -33,10 +33,10 @@ Region around(const PreviewView& view, std::int64_t x, std::int64_t y) {
 }
 
 /// Of r, g and b.
-double light_of(const Image& picture) {
+double light_of(const Image& image) {
     double sum = 0.0;
-    for (std::size_t i = 0; i < picture.pixels.size(); ++i)
-        if (i % 4 != 3) sum += static_cast<double>(picture.pixels[i]);
+    for (std::size_t i = 0; i < image.pixels.size(); ++i)
+        if (i % 4 != 3) sum += static_cast<double>(image.pixels[i]);
     return sum;
 }
 
@@ -207,8 +207,7 @@ FinerPreview::Work finer_preview() {
 
 PreviewSplats::PreviewSplats() : work_(make_sums) {}
 
-/// The state that is kept of the layer with this set: when a layer before it is hidden, the others stay as
-/// they are.
+/// The state that is kept of the layer with this set: when a layer before it is hidden, the others stay.
 PreviewSplats::Layer& PreviewSplats::layer_at(std::size_t index, const LoadedLayer& loaded) {
     const auto first = layers_.begin() + static_cast<std::ptrdiff_t>(std::min(index, layers_.size()));
     const auto found =

@@ -127,8 +127,7 @@ class PreviewSplats {
     /// It was of whole sets: one of more splats would show more.
     bool whole() const;
     /// Goes on making them in the background, once looks have been at rest for a while: sums of a look that
-    /// is dragged come too late, and take the processor from its preview. True: there are more of them now.
-    /// `now` in seconds.
+    /// is dragged come too late, and take the processor from its preview. True: there are more. `now` in s.
     bool refine(double now);
     /// Gives up what is being made, until refine() is called again.
     void rest() { work_.forget(); }

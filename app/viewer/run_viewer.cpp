@@ -179,7 +179,7 @@ int run_viewer(const ViewerOptions& options, const std::atomic<bool>& interrupte
     } catch (const NoContext& error) {
         log_error(
             std::string("no window: ") + error.what() +
-            "; frames render without one: astrosplat --batch SCENE, and so does a picture of the window: "
+            "; frames render without one: astrosplat --batch SCENE, and so does an image of the window: "
             "astrosplat --screenshot OUT.png SCENE");
         return exit_not_started;
     }
@@ -283,7 +283,7 @@ void take(const ScreenshotOptions& options, const GlInfo& gl) {
     if (!exr && !(format && format->id == "png"))
         bad_input("--screenshot", "", "a .png or .exr file", options.output.string());
     if (exr && options.ui)
-        bad_input("--screenshot", "", "no --ui with an .exr file, which holds the picture's light",
+        bad_input("--screenshot", "", "no --ui with an .exr file, which holds the frame's light",
                   options.output.string());
     Session session(options.scene, gl);
     check_renderable(session.document.scene(), {});

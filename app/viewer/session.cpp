@@ -27,8 +27,7 @@ Document document_for(const fs::path& file, std::span<const Assignment> assignme
     return Document::untitled(scene_text_for(file, place), place, assignments);
 }
 
-/// A picture is first seen from the front, as it was before it had depth: by its own camera, where it has
-/// one.
+/// A picture is first seen from the front, as it was before it had depth: by its own camera, if any.
 void choose_first_view(ViewState& view, const Document& document, const fs::path& file) {
     if (kind_of_file(file) == FileKind::picture && !document.scene().camera.position)
         view.view = ViewKind::top;
@@ -278,9 +277,9 @@ void drop(Session& session, const std::vector<fs::path>& files) {
 }
 
 double next_due(const Session& session, double now) {
-    constexpr double first_picture_s = 0.02, at_work_s = 0.1;
+    constexpr double first_frame_s = 0.02, at_work_s = 0.1;
     const SetLoader& loader = session.sets.loader();
-    if (!loader.sets_there()) return session.view_frame.status().shown == 0 ? first_picture_s : at_work_s;
+    if (!loader.sets_there()) return session.view_frame.status().shown == 0 ? first_frame_s : at_work_s;
     if (session.view.playing) return 0.0;
     const bool at_work = !loader.idle() || session.jobs.running();
     return std::min(at_work ? at_work_s : idle_due_s, due_of_view(session, now));

@@ -62,9 +62,9 @@ struct Session {
     DifferenceMeter difference;
     ReferenceAlignment alignment;
     FrontCheck front;
-    ShownPicture<FrontFound> front_picture;  // the difference
+    UploadedImage<FrontFound> front_difference;
     PreparePreview preparation{prepare_preview()};
-    ShownPicture<PreparedView> preparation_before, preparation_after;
+    UploadedImage<PreparedView> preparation_before, preparation_after;
     Display display;
     ColorManagement color;
     CameraOverlay overlay;
@@ -76,9 +76,9 @@ struct Session {
     std::optional<std::tuple<std::uint64_t, std::filesystem::path, RenderTask>> command_source;
     FinishedFrames finished{finished_frames()};
     std::pair<std::filesystem::path, FrameHeader> finished_header;  // of the file looked at
-    ShownPicture<FinishedView> finished_picture;
+    UploadedImage<FinishedView> finished_image;
     RenderedFrames rendered;
-    ShownPicture<PackedPicture> rendered_picture;
+    UploadedImage<PackedImage> rendered_image;
     Thumbnails thumbnails;
     std::map<ListedPicture, ImageTexture> thumbnail_textures;  // of those that are seen
     std::optional<ChildProcess> file_manager;                  // that a folder was opened with
@@ -104,8 +104,7 @@ struct Session {
 
 /// Loads what the scene needs and takes what jobs have to say. `now` in seconds.
 void advance(Session& session, double now);
-/// Draws the viewport's content at its size in px into Status::viewport_texture. `hurry`: the final frame at
-/// once.
+/// Draws the viewport's content at its size in px into Status::viewport_texture. `hurry`: the final one now.
 void draw_viewport(Session& session, glm::ivec2 viewport_px, double now, bool hurry = false);
 /// Mouse and keyboard over the viewport, after the widgets drew.
 void navigate(Session& session, const ViewportInput& input, double now);
@@ -152,8 +151,7 @@ void offer_picture(Session& session, std::size_t layer);
 void note_recent(Session& session, const std::filesystem::path& file);
 /// Fills Status::recoveries.
 void find_recoveries(Status& status);
-/// Says in the message line why the frame or a layer failed; `said` holds what was said of those that still
-/// do.
+/// Says in the message line why the frame or a layer failed; `said`: what was said of those that still do.
 void say_new_errors(Status& status, std::set<std::string>& said);
 /// Messages that are no errors leave the message line after a while; they stay in the log. `now` in seconds.
 void forget_old_message(Status& status, MessageAge& age, double now);
@@ -182,7 +180,7 @@ std::optional<PixelProbe> probe_of(const Image& pixels, const Image* depth, cons
 /// is seen the box goes.
 void select_layer_at(Session& session, glm::dvec2 mouse_px, bool behind);
 
-// session_pictures.cpp: pictures in place of the frame or beside it. All need OpenGL's context.
+// session_images.cpp: images in place of the frame or beside it. All need OpenGL's context.
 
 /// The frames on disk in place of the preview (ViewState::show_rendered), while scrubbing and playing: reads
 /// the one that is looked at and those after it, and fills Status::rendered_frame and missing_frame. True:
@@ -191,13 +189,11 @@ bool show_rendered_frame(Session& session, const Rect& place, DisplaySettings& s
 /// Compares the front of `now`, the scene as it stands, with its picture while A is at rest, and fills
 /// Status::front; shows the signed difference in place of all else where that is looked at.
 void show_front(Session& session, const Scene& now, DisplaySettings& shown);
-/// The prepared picture of the selected layer, small, while the panel's section of that name is open: fills
-/// Status::preparation.
+/// Fills Status::preparation with the selected layer's picture, small, while the panel's section is open.
 void show_preparation(Session& session);
 /// Fills Status::thumbnails with those of view.listed_pictures that are read; the others' textures go.
 void show_thumbnails(Session& session);
-/// Starts to align the reference with what the view shows now. Throws InputError where there is nothing to
-/// align yet.
+/// Starts to align the reference with what the view shows now. Throws InputError where nothing is shown.
 void begin_alignment(Session& session);
 /// Places the reference where that was found, or says that it was not.
 void take_alignment(Session& session);

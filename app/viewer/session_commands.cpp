@@ -160,7 +160,7 @@ void save_view(State& s, const Command& c) {
     say(s.status, "Saved " + c.path.string());
 }
 
-/// With a thumbnail of A, whatever it is compared with, and the facts of that picture.
+/// With a thumbnail of A, whatever it is compared with, and the facts of that frame.
 void snapshot(State& s, const Command&) {
     constexpr int thumbnail_px = 192;
     SnapshotList& snapshots = s.snapshots;

@@ -40,8 +40,7 @@ bool sees_motion(const Scene& scene, const ViewState& view) {
     return scene.camera.shutter > 0.0 && view.solo.empty() && view.view == ViewKind::camera;
 }
 
-/// The values that a frame does not depend on, at their defaults, so that editing it does not make the frame
-/// again.
+/// Values that a frame does not depend on go back to their defaults: editing them makes no new frame.
 void forget_what_is_not_seen(Scene& scene) {
     const OutputParams standard;
     scene.file.clear();
@@ -285,8 +284,8 @@ void draw_viewport(Session& session, glm::ivec2 viewport_px, double now, bool hu
         rendered.a = shown.a;
         shown = rendered;
     }
-    shown.content = 1 + session.rendered_picture.version() + session.view_frame.version() +
-                    session.comparison.version() + session.front_picture.version();
+    shown.content = 1 + session.rendered_image.version() + session.view_frame.version() +
+                    session.comparison.version() + session.front_difference.version();
     measure_difference(session, shown, now);
     session.displayed = shown;
     session.status.viewport_texture =
@@ -312,7 +311,7 @@ void probe(Session& session, glm::dvec2 mouse_px) {
     const ViewRequest& request = session.request;
     session.status.probe.reset();
     if (request.width <= 0 || session.view_frame.texture() == 0) return;
-    if (!session.status.rendered_frame.empty()) return;  // another picture is seen
+    if (!session.status.rendered_frame.empty()) return;  // another frame is seen
     const glm::i64vec2 at = frame_pixel(session, mouse_px);
     const Image* pixels = session.view_frame.pixels();
     if (!pixels) return;

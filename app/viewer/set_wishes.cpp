@@ -19,8 +19,7 @@ namespace {
 constexpr std::int64_t most_pixels = 200'000;  // of a picture in a preview: splats hardly lie closer
 constexpr std::int64_t live_rows_at_once = 1 << 13;
 
-/// Every n-th pixel of every n-th row: values stay as they are, so that levels do to them what they do to
-/// all.
+/// Every n-th pixel of every n-th row: values stay, so that levels do to them what they do to all.
 template <class Copy>
 void for_each_thinned(std::int64_t width, std::int64_t height, std::int64_t step, const Copy& copy) {
     for (std::int64_t y = 0; y < height; ++y)
@@ -268,8 +267,7 @@ bool SetWishes::loaded(const Document& document) const {
 
 bool SetWishes::wanted(const Scene& scene) const { return wanted_sources_ == sources_of(scene); }
 
-/// Sets of levels that were passed on the way would hold up the preview. False: there is nothing to be
-/// followed.
+/// Sets of levels that were passed on the way would hold up the preview. False: none is followed.
 bool SetWishes::abandon_followed(const Scene& scene) {
     bool any = false;
     for (std::size_t i = 0; i < scene.layers.size(); ++i) {

@@ -240,8 +240,7 @@ void ViewFrame::note_time(double milliseconds, double target_ms, bool whole_sets
     if (slow_frames_ == patience) too_many_ = status_.total;
 }
 
-/// The environment of the frame that is shown has been loaded since, or could not be: then the preview says
-/// why.
+/// The environment of the frame that is shown has been loaded since, or could not be: the preview says why.
 bool ViewFrame::environment_arrived() {
     try {
         if (!request_) return false;

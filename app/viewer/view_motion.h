@@ -16,7 +16,7 @@
 
 namespace astrosplat {
 
-/// The picture on the screen when the hand moves.
+/// The frame on the screen when the hand moves.
 struct ShownView {
     const ViewRequest& request;
     glm::dvec2 viewport_px;

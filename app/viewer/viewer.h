@@ -1,4 +1,4 @@
-// The viewer in a window, or a picture of it without a display. In: what the command line asks for. Out: the
+// The viewer in a window, or an image of it without a display. In: what the command line asks for. Out: the
 // exit code. Where no OpenGL context can be had, one line that names --batch.
 #pragma once
 

@@ -89,7 +89,7 @@ class Window {
     /// Gives the widgets a portion of what the hand did, as if it were now.
     void feed_frame(bool opening);
 
-    /// The picture of a frame.
+    /// The image of a frame.
     struct FrameMark {
         std::uint64_t widgets = 0, frames = 0;
         int width = 0, height = 0;

@@ -22,10 +22,14 @@ constexpr std::int64_t edge_px = rings;      // of a level's picture, without st
 constexpr std::int64_t bright_reach_px = 3;
 constexpr float least_bright = 0.25f;                   // of the displayed white
 constexpr float narrowest_px = 1.7f, widest_px = 3.4f;  // half width at half of the peak, of a level's pixels
-constexpr float widest_share = 14.0f / 1920.0f;         // of the picture's width
+constexpr std::int64_t usual_width = 1920;              // texels: DEPTH's lengths are for it
+constexpr float widest_share = 14.0f / usual_width;     // of the picture's width
 constexpr float at_two = 0.25f, at_three = 0.12f;       // of the excess, at most, at such half widths
-constexpr float most_uneven = 0.25f;  // of the excess, between the quartiles of a ring within 1.5 of them
-constexpr float apart = 2.0f;         // half widths between two stars
+constexpr float most_uneven = 0.25f;                    // of the excess, between the quartiles of a ring
+constexpr float even_within = 1.5f, sky_at = 4.0f;      // half widths, of such rings, and of a star's end
+constexpr float apart = 2.0f;                           // half widths between two stars
+constexpr std::int64_t middle_reach_px = 4;             // about a peak, of light that tells the middle
+constexpr double soft_px = 1.0;                         // blur under which a plateau has one peak
 
 struct Ring {
     float median = 0.0f, quartiles_apart = 0.0f;
@@ -59,7 +63,7 @@ std::optional<Found> bright_star_at(const Image& brightest, std::int64_t column,
     const auto x0 = float(column) + 0.5f, y0 = float(row) + 0.5f;
     const float far = ring_at(brightest, 0, x0, y0, float(rings - 1)).median;
     if (peak - far < least_bright) return {};
-    const PointLight above_half = light_about(brightest, column, row, 4, 0.5f * (far + peak));
+    const PointLight above_half = light_about(brightest, column, row, middle_reach_px, 0.5f * (far + peak));
     Found star{above_half.x, above_half.y};
     std::array<Ring, rings> ring;
     float sky = peak;
@@ -78,13 +82,13 @@ std::optional<Found> bright_star_at(const Image& brightest, std::int64_t column,
         return (ring_at(brightest, 0, star.x, star.y, r).median - sky) / excess;
     };
     if (share_at(2.0f * star.half_width) > at_two || share_at(3.0f * star.half_width) > at_three) return {};
-    for (std::size_t r = 1; float(r) <= 1.5f * star.half_width; ++r)
+    for (std::size_t r = 1; float(r) <= even_within * star.half_width; ++r)
         if (ring[r].quartiles_apart > most_uneven * excess) return {};
     return star;
 }
 
 std::vector<Found> stars_of_level(const Image& brightest) {
-    const Image soft = gaussian_blur(brightest, 1.0);
+    const Image soft = gaussian_blur(brightest, soft_px);
     return found_by_rows(brightest, edge_px, [&](std::int64_t x, std::int64_t y) -> std::optional<Found> {
         if (*soft.at(x, y) < least_bright || !is_peak(soft, x, y, bright_reach_px)) return {};
         return bright_star_at(brightest, x, y, *soft.at(x, y));
@@ -95,9 +99,9 @@ std::vector<Found> stars_of_level(const Image& brightest) {
 bool is_smooth(const Image& brightest, const Found& star) {
     constexpr int samples = 6;
     const float peak = bilinear(brightest, 0, star.x, star.y);
-    const float sky = ring_at(brightest, 0, star.x, star.y, 4.0f * star.half_width).median;
+    const float sky = ring_at(brightest, 0, star.x, star.y, sky_at * star.half_width).median;
     for (int i = 1; i <= samples; ++i)
-        if (ring_at(brightest, 0, star.x, star.y, 1.5f * star.half_width * float(i) / samples)
+        if (ring_at(brightest, 0, star.x, star.y, even_within * star.half_width * float(i) / samples)
                 .quartiles_apart > most_uneven * (peak - sky))
             return false;
     return true;
@@ -105,7 +109,7 @@ bool is_smooth(const Image& brightest, const Found& star) {
 
 // The widest first, of which each keeps narrower ones away.
 std::vector<Found> all_stars(const Image& light) {
-    const float widest = widest_share * float(std::max<std::int64_t>(1920, light.width));
+    const float widest = widest_share * float(std::max(usual_width, light.width));
     std::vector<std::vector<Found>> levels;
     const Image whole = brightest_channel(light);
     Image brightest = copied(whole);
@@ -131,11 +135,13 @@ std::vector<Found> all_stars(const Image& light) {
 // bands, which the front is fitted with.
 constexpr int widths = 3;
 constexpr float sigmas[widths] = {0.5f, 1.0f, 2.0f};
+constexpr float taken_sigmas = 4.0f;    // of the widest: how far a star is taken away
+constexpr double most_exponent = 12.0;  // of each, whose rest is 6e-6 of its peak
 
 // The power of two next to the sigma of a Gaussian of that half width.
 float middle_sigma(float half_width) {
-    constexpr float sigma_share = 0.85f, root_of_two = 1.41421356f;
-    float sigma = 2.0f;
+    constexpr float sigma_share = 0.85f, root_of_two = 1.41421356f;  // the first: 1 / sqrt(2 ln 2)
+    float sigma = 2.0f;                                              // the power next to narrowest_px
     while (sigma * root_of_two < sigma_share * half_width) sigma *= 2.0f;
     return sigma;
 }
@@ -144,7 +150,7 @@ struct Taken {
     Found star;
     std::array<Star, widths> parts;
     glm::vec3 around{0.0f};  // light of its surroundings
-    float reach() const { return 4.0f * parts[widths - 1].sigma; }
+    float reach() const { return taken_sigmas * parts[widths - 1].sigma; }
 };
 
 // Values of a star's Gaussians of peak 1.
@@ -168,8 +174,9 @@ using Profile = std::vector<std::pair<double, double>>;  // px from the middle, 
 // Peaks >= 0 of Gaussians whose sum is nearest to a profile and hardly more anywhere: what is left over finds
 // its place in the picture's bands, but what is too much could only be taken off the whole star.
 void fit_peaks(const Profile& profile, int channel, std::array<Star, widths>& parts) {
-    constexpr int rounds = 12, rounds_within = 20;
-    constexpr double too_much_weighs = 20.0, negligible = 0.02, least_scale = 0.5;
+    constexpr int rounds = 12, rounds_within = 20;               // after which peaks stay
+    constexpr double too_much_weighs = 20.0, least_scale = 0.5;  // times what is left over; of fitted peaks
+    constexpr double negligible = 0.02;  // of the middle's light, where it is too much
     std::array<double, widths> peak{};
     for (int round = 0; round < rounds; ++round) {
         std::array<std::array<double, widths>, widths> both{};
@@ -200,16 +207,15 @@ void fit_peaks(const Profile& profile, int channel, std::array<Star, widths>& pa
 
 Taken taken(const Found& star, const Image& light) {
     constexpr int samples = 32;
-    constexpr float farthest = 4.0f;  // half widths
     Taken out;
     out.star = star;
     const float middle = middle_sigma(star.half_width);
     for (std::size_t k = 0; k < widths; ++k) out.parts[k] = {star.x, star.y, sigmas[k] * middle};
     for (int c = 0; c < 3; ++c) {
-        out.around[c] = ring_at(light, c, star.x, star.y, farthest * star.half_width).median;
+        out.around[c] = ring_at(light, c, star.x, star.y, sky_at * star.half_width).median;
         Profile profile;
         for (int i = 0; i < samples; ++i) {
-            const float r = farthest * star.half_width * (float(i) + 0.5f) / samples;
+            const float r = sky_at * star.half_width * (float(i) + 0.5f) / samples;
             const float value = ring_at(light, c, star.x, star.y, r).median - out.around[c];
             profile.emplace_back(double(r), double(std::max(0.0f, value)));
         }
@@ -223,7 +229,7 @@ glm::vec3 light_of(const Taken& star, float x, float y) {
     glm::vec3 sum(0.0f);
     for (const Star& part : star.parts) {
         const double t = double(dx * dx + dy * dy) / double(2.0f * part.sigma * part.sigma);
-        if (t < 12.0) sum += part.peak * float(real::exp(-t));
+        if (t < most_exponent) sum += part.peak * float(real::exp(-t));
     }
     return sum;
 }

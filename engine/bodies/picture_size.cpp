@@ -25,11 +25,12 @@
 namespace astrosplat {
 namespace {
 
-constexpr std::int64_t bytes_a_texel = 92;  // while bodies are made, measured
-constexpr int most_pictures = 255;          // ids hold 8 bits of their number
-constexpr std::int64_t sample_px = 64, margin_px = 16;
+constexpr std::int64_t bytes_a_texel = 92;                 // while bodies are made, measured
+constexpr int most_pictures = 255;                         // ids hold 8 bits of their number
+constexpr std::int64_t sample_px = 64, margin_px = 16;     // of a sample; around it, for its fine bands
 constexpr std::int64_t apart_px = 240, most_samples = 16;  // along a side
 constexpr std::int64_t whole_px = 1024;                    // up to which a side is looked at as a whole
+constexpr double smallest_px = 64.0;                       // side that no picture is reduced below
 
 // Of a picture that is like `whole`, its part from (x, y) on.
 Texture part_of(const Texture& whole, std::int64_t x, std::int64_t y, std::int64_t width,
@@ -223,13 +224,13 @@ ImageSize size_within(const Texture& texture, std::int64_t most_texels) {
 
 // Reduces one picture until the limit is just kept, as far as this one can do it.
 void reduce(Texture& texture, double first_share, const std::function<double()>& share_now) {
-    constexpr int most_tries = 8;
+    constexpr int most_tries = 8;                     // each of which comes nearer
     constexpr double aimed_at = 0.91, enough = 0.89;  // what is told may be too little by 8 %
     const Image whole = std::move(texture.image);
     double area = double(whole.width * whole.height), share = first_share;
     for (int i = 0; i < most_tries && (share > 1.0 || share < enough); ++i) {
         area = std::min(area * aimed_at / share, double(whole.width * whole.height));
-        texture.image = at_area(whole, area, 64.0);
+        texture.image = at_area(whole, area, smallest_px);
         share = share_now();
     }
 }
@@ -264,6 +265,7 @@ void reduce_pictures(std::vector<TexturedMesh>& meshes, const StructureParams& p
         const auto [width, height] = size_in_file(*largest);
         reduce(*largest, share, share_now);
         reduced.push_back(largest);
+        // With fewer than 4/5 of the splats that may be, memory was what lacked.
         const bool few = limit.splats <= 0 || expected_splats(meshes, params) < limit.splats * 4 / 5;
         const std::string why =
             few ? fmt::format("would not fit into {} of memory", human_bytes(double(limit.room_bytes)))

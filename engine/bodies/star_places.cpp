@@ -24,6 +24,8 @@ namespace {
 constexpr double least_passing = 0.95;
 
 constexpr float nearest_star = 0.95f;  // of the way to the picture's camera, as of other splats
+constexpr double eye_heights = 10.0;   // from the stars to an eye that sees in parallel: before all of them
+constexpr double steepest = 0.9;       // of a view's y axis; of steeper ones, along y, -z is up
 
 std::optional<std::uint32_t> material_of_picture(const TexturedMesh& mesh) {
     for (std::uint32_t i = 0; i < mesh.textures.size(); ++i)
@@ -64,8 +66,8 @@ Camera front_camera(const PlacedStars& stars, const glm::dvec3& toward, double a
     UvCamera params;
     params.target = middle;
     params.height = stars.texel_side * stars.height_texels;
-    params.position = middle + 10.0 * std::max(aspect, 1.0) * params.height * toward;
-    params.up = std::fabs(toward.y) < 0.9 ? glm::dvec3(0.0, 1.0, 0.0) : glm::dvec3(0.0, 0.0, -1.0);
+    params.position = middle + eye_heights * std::max(aspect, 1.0) * params.height * toward;
+    params.up = std::fabs(toward.y) < steepest ? glm::dvec3(0.0, 1.0, 0.0) : glm::dvec3(0.0, 0.0, -1.0);
     return picture_camera(params, aspect);
 }
 
@@ -122,16 +124,19 @@ PlacedStars place_stars(const TexturedMesh& mesh, std::span<const SeenStar> star
 
 namespace {
 
-constexpr double star_cell_px = 8.0;
+constexpr double star_cell_px = 8.0;  // of the grid on which splats look for stars
 constexpr std::int64_t splats_per_task = 65536;
-constexpr double least_depth = 1e-6;  // of a splat, optical
-constexpr float most_hiding = 1.0f - 1e-6f;
+constexpr double least_depth = 1e-6;          // of a splat, optical: less hides nothing
+constexpr double most_hiding = 1.0f - 1e-6f;  // so that depths are finite
+constexpr double gaussian_ends = 4.0;  // sigmas; footprints wider than so many of the filter's keep theirs
+constexpr double outer_place = 1.7320508075688772;  // sigmas: sqrt(3), of Gauss and Hermite's three
 
 struct OnPicture {
     double x, y;      // px
     double distance;  // that splats are sorted by, scene units
     double px_per_unit;
 };
+constexpr OnPicture nowhere{-1e9, -1e9, 0.0, 1.0};  // out of any splat's reach
 
 std::optional<OnPicture> seen_by(const FrontView& view, const glm::dvec3& p) {
     const std::optional<PlaceInPicture> place = place_in_picture(view.camera, p);
@@ -146,13 +151,12 @@ std::optional<OnPicture> seen_by(const FrontView& view, const glm::dvec3& p) {
 class StarGrid {
   public:
     StarGrid(const FrontView& view, const std::vector<glm::vec3>& positions) {
-        width_ =
-            std::max<std::int64_t>(1, std::int64_t(view.camera.aspect * view.height_px / star_cell_px) + 1);
-        height_ = std::max<std::int64_t>(1, std::int64_t(view.height_px / star_cell_px) + 1);
+        width_ = std::int64_t(view.camera.aspect * view.height_px / star_cell_px) + 1;
+        height_ = std::int64_t(view.height_px / star_cell_px) + 1;
         cells_.resize(std::size_t(width_ * height_));
         for (std::size_t i = 0; i < positions.size(); ++i) {
             const auto seen = seen_by(view, glm::dvec3(positions[i]));
-            seen_.push_back(seen.value_or(OnPicture{-1e9, -1e9, 0.0, 1.0}));
+            seen_.push_back(seen.value_or(nowhere));
             if (!seen) continue;
             cells_[std::size_t(row(seen->y) * width_ + column(seen->x))].push_back(std::uint32_t(i));
         }
@@ -197,9 +201,9 @@ class Footprint {
         const double sigma = radius_px / double(radius_sigmas);
         variance_ = footprint_variance * sigma * sigma + filter_px * filter_px;
         share_ = double(footprint_share) * sigma * sigma / variance_;
-        if (sigma > 4.0 * filter_px) own_radius_ = radius_px;
+        if (sigma > gaussian_ends * filter_px) own_radius_ = radius_px;
     }
-    double reach_px() const { return own_radius_ > 0.0 ? own_radius_ : 4.0 * std::sqrt(variance_); }
+    double reach_px() const { return own_radius_ > 0.0 ? own_radius_ : gaussian_ends * std::sqrt(variance_); }
     double at(double square) const {
         if (!(own_radius_ > 0.0)) return share_ * real::exp(-0.5 * square / variance_);
         constexpr double sharpness = 4.5;  // of the default falloff
@@ -212,17 +216,17 @@ class Footprint {
     double variance_ = 1.0, share_ = 1.0, own_radius_ = 0.0;
 };
 
-// Mean over the star's image, whose Gaussian three places a side stand for (Gauss and Hermite).
+// Mean over the star's image, whose Gaussian three places a side stand for.
 double mean_hiding(const Footprint& footprint, double alpha, double dx, double dy, double star_px) {
     constexpr double weights[] = {1.0 / 6.0, 2.0 / 3.0, 1.0 / 6.0};
-    const double step = std::sqrt(3.0) * star_px;
+    const double step = outer_place * star_px;
     double sum = 0.0;
     for (int j = -1; j <= 1; ++j)
         for (int i = -1; i <= 1; ++i) {
             const double x = dx + i * step, y = dy + j * step;
             sum += weights[i + 1] * weights[j + 1] * footprint.at(x * x + y * y);
         }
-    return std::min(alpha * sum, double(most_hiding));
+    return std::min(alpha * sum, most_hiding);
 }
 
 void find_hits(const FrontView& view, const SplatSet& splats, std::size_t index, const StarGrid& grid,
@@ -233,7 +237,7 @@ void find_hits(const FrontView& view, const SplatSet& splats, std::size_t index,
     const glm::vec3& color = splats.color[index];
     const bool absorbs = splats.absorbs && color.x < 0.0f;
     const glm::vec3 exponent = absorbs ? -color : glm::vec3(1.0f);
-    grid.near(*seen, footprint.reach_px() + std::sqrt(3.0) * view.star_px,
+    grid.near(*seen, footprint.reach_px() + outer_place * view.star_px,
               [&](std::uint32_t star, double dx, double dy) {
                   const double s = mean_hiding(footprint, double(splats.alpha[index]), dx, dy, view.star_px);
                   const double depth = -real::log(1.0 - s);
@@ -277,7 +281,7 @@ glm::vec3 moved_to(const FrontView& view, const glm::vec3& position, double from
 std::vector<glm::dvec3> passing_light(const FrontView& view, const SplatSet& splats,
                                       std::vector<glm::vec3>& position, const Progress& progress) {
     assert(splats.radius.size() == splats.position.size());
-    constexpr double just_before = 1.0 - 1e-5;
+    constexpr double just_before = 1.0 - 1e-5;  // of a splat's distance, in single precision, too
     const double most_depth = -real::log(least_passing);
     const StarGrid grid(view, position);
     const std::vector<Hit> hits = all_hits(view, splats, grid, progress);

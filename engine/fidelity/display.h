@@ -1,7 +1,7 @@
-// Pictures as they are seen, for measures that judge what is seen: sRGB values, CIE L*a*b* and the difference
+// Images as they are seen, for measures that judge what is seen: sRGB values, CIE L*a*b* and the difference
 // of colours as an eye judges it (CIEDE2000, of which 1 is about the least that is seen side by side). In:
-// linear light of at least three channels, Rec. 709, on black (premultiplied). Out: pictures of sRGB values
-// in [0, 1], one of them for eyes: where a picture is brighter or darker than another; differences.
+// linear light of at least three channels, Rec. 709, on black (premultiplied). Out: images of sRGB values
+// in [0, 1], one of them for eyes: where an image is brighter or darker than another; differences.
 #pragma once
 
 #include "core/image.h"
@@ -55,7 +55,7 @@ struct ColorDifferences {
     double median = 0.0, percentile_95 = 0.0;
 };
 
-/// Over all pixels of two pictures of one size, or an even lattice of up to half a million of them.
+/// Over all pixels of two images of one size, or an even lattice of up to half a million of them.
 ColorDifferences color_differences(const Image& a, const Image& b);
 
 }  // namespace astrosplat

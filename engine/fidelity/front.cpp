@@ -60,7 +60,7 @@ double ratio(double light, double of) {
 
 double total(const ChannelSums& sums) { return sums[0] + sums[1] + sums[2]; }
 
-constexpr double least_power = 1e-14;  // what rounding leaves of a picture without detail
+constexpr double least_power = 1e-14;  // what rounding leaves of an image without detail
 
 double mean_square_difference(const Image& a, const Image& b) {
     const double sum = sum_over_rows(a.height, [&](std::int64_t y) {
@@ -75,8 +75,8 @@ double mean_square_difference(const Image& a, const Image& b) {
 }
 
 // The mean square of each band: those between the blurs by 0, 1, 2, 4 ... `widest` px.
-std::vector<double> band_powers(const Image& picture, double widest) {
-    const Image whole = display_mean(picture);
+std::vector<double> band_powers(const Image& image, double widest) {
+    const Image whole = display_mean(image);
     Image finer = whole;
     std::vector<double> powers;
     for (double sigma = 1.0; sigma <= widest; sigma *= 2.0) {
@@ -115,10 +115,10 @@ double ssim(const Image& a, const Image& b) {
     return sum / double(blurred.width * blurred.height);
 }
 
-FluxRatios flux_ratios(const Image& picture, const Image& reference) {
-    assert(picture.width == reference.width && picture.height == reference.height);
-    const std::vector<ChannelSums> ours = light_of_cells(picture), theirs = light_of_cells(reference);
-    const double cell_samples = 3.0 * double(picture.width * picture.height) / double(ours.size());
+FluxRatios flux_ratios(const Image& view, const Image& reference) {
+    assert(view.width == reference.width && view.height == reference.height);
+    const std::vector<ChannelSums> ours = light_of_cells(view), theirs = light_of_cells(reference);
+    const double cell_samples = 3.0 * double(view.width * view.height) / double(ours.size());
     FluxRatios result;
     ChannelSums our_sum{}, their_sum{};
     std::vector<double> lit;
@@ -140,10 +140,10 @@ FluxRatios flux_ratios(const Image& picture, const Image& reference) {
     return result;
 }
 
-std::vector<ScalePower> power_by_scale(const Image& picture, const Image& reference) {
-    assert(picture.width == reference.width && picture.height == reference.height);
-    const double widest = double(std::min(picture.width, picture.height)) / 8.0;
-    const std::vector<double> ours = band_powers(picture, widest), theirs = band_powers(reference, widest);
+std::vector<ScalePower> power_by_scale(const Image& view, const Image& reference) {
+    assert(view.width == reference.width && view.height == reference.height);
+    const double widest = double(std::min(view.width, view.height)) / 8.0;
+    const std::vector<double> ours = band_powers(view, widest), theirs = band_powers(reference, widest);
     std::vector<ScalePower> bands;
     double finer = 0.0, coarser = 1.0;
     for (std::size_t i = 0; i < ours.size(); ++i) {
@@ -171,7 +171,7 @@ FrontFidelity front_fidelity(const Image& rendered, const Image& reference, doub
     return result;
 }
 
-// The cropped pictures, and the five channels of ssim with two copies on their way through a blur.
+// The cropped images, and the five channels of ssim with two copies on their way through a blur.
 std::int64_t front_fidelity_bytes(std::int64_t width_px, std::int64_t height_px) {
     constexpr std::int64_t floats_per_pixel = 2 * 3 + 3 * 5;
     return width_px * height_px * floats_per_pixel * std::int64_t(sizeof(float));

@@ -12,17 +12,17 @@ namespace astrosplat {
 double psnr_db(const Image& a, const Image& b);
 
 /// Structural similarity (Wang, Bovik, Sheikh, Simoncelli 2004) of the displayed channels' mean: Gaussian
-/// window of 1.5 px, constants .01^2 and .03^2, mean over all pixels; 1 for equal pictures.
+/// window of 1.5 px, constants .01^2 and .03^2, mean over all pixels; 1 for equal images.
 double ssim(const Image& a, const Image& b);
 
-/// Cells along either side of the grid that a picture is divided into.
+/// Cells along either side of the grid that an image is divided into.
 inline constexpr std::int64_t flux_cells = 32;
 /// A cell of the reference darker than this, as the mean of its channels (1: white), holds no light to
 /// compare with.
 inline constexpr double darkest_cell = 0.002;
 
 struct FluxRatios {
-    std::array<double, 3> channels{};  // light of the picture over light of the reference: red, green, blue
+    std::array<double, 3> channels{};  // light of the view over light of the reference: red, green, blue
     double frame = 0.0;                // of all three
     std::vector<double> cells;         // flux_cells^2 from the top left; NaN where the reference is dark
     double cells_5 = 0.0, cells_50 = 0.0,
@@ -30,18 +30,18 @@ struct FluxRatios {
 };
 
 /// NaN where the reference has no light.
-FluxRatios flux_ratios(const Image& picture, const Image& reference);
+FluxRatios flux_ratios(const Image& view, const Image& reference);
 
-/// Detail between two sizes: the difference of the picture's Gaussian blurs of standard deviations finer
+/// Detail between two sizes: the difference of an image's Gaussian blurs of standard deviations finer
 /// and coarser.
 struct ScalePower {
-    double finer_px = 0.0, coarser_px = 0.0;  // 0: the picture itself
-    double ratio = 0.0;  // mean square of the picture's band over that of the reference's
+    double finer_px = 0.0, coarser_px = 0.0;  // 0: the image itself
+    double ratio = 0.0;                       // mean square of the view's band over that of the reference's
 };
 
 /// Bands 0 to 1, 1 to 2, 2 to 4 ... px up to an eighth of the shorter side, of the displayed channels'
 /// mean. NaN where the reference has no detail of a size.
-std::vector<ScalePower> power_by_scale(const Image& picture, const Image& reference);
+std::vector<ScalePower> power_by_scale(const Image& view, const Image& reference);
 
 struct FrontFidelity {
     std::int64_t width_px = 0, height_px = 0;  // of the whole view
@@ -54,7 +54,7 @@ struct FrontFidelity {
 /// `border`: share of the width that is left out along every edge, 0 to below 1/2.
 FrontFidelity front_fidelity(const Image& rendered, const Image& reference, double border = 0.0);
 
-/// Bytes that it takes at its peak, about, beside the two pictures.
+/// Bytes that it takes at its peak, about, beside the two images.
 std::int64_t front_fidelity_bytes(std::int64_t width_px, std::int64_t height_px);
 
 }  // namespace astrosplat

@@ -79,29 +79,29 @@ void change_pixels(Image& image, const Change& change) {
     for_each_pixel(image, [&](std::int64_t x, std::int64_t y) { change(image.at(x, y)); });
 }
 
-/// Calls visit(x, y) for the pixels of the rectangle from one corner to the other, both included, that a
-/// picture (of any type with width and height) has: row by row, on this thread.
-template <class Picture, class Visit>
-void for_each_between(const Picture& picture, std::int64_t left, std::int64_t top, std::int64_t right,
+/// Calls visit(x, y) for the pixels of the rectangle from one corner to the other, both included, that an
+/// image (of any type with width and height) has: row by row, on this thread.
+template <class Pixels, class Visit>
+void for_each_between(const Pixels& pixels, std::int64_t left, std::int64_t top, std::int64_t right,
                       std::int64_t bottom, const Visit& visit) {
-    for (std::int64_t y = std::max<std::int64_t>(0, top); y <= std::min(picture.height - 1, bottom); ++y)
-        for (std::int64_t x = std::max<std::int64_t>(0, left); x <= std::min(picture.width - 1, right); ++x)
+    for (std::int64_t y = std::max<std::int64_t>(0, top); y <= std::min(pixels.height - 1, bottom); ++y)
+        for (std::int64_t x = std::max<std::int64_t>(0, left); x <= std::min(pixels.width - 1, right); ++x)
             visit(x, y);
 }
 
 /// Those of the square of `reach_px` about a pixel.
-template <class Picture, class Visit>
-void for_each_about(const Picture& picture, std::int64_t x, std::int64_t y, std::int64_t reach_px,
+template <class Pixels, class Visit>
+void for_each_about(const Pixels& pixels, std::int64_t x, std::int64_t y, std::int64_t reach_px,
                     const Visit& visit) {
-    for_each_between(picture, x - reach_px, y - reach_px, x + reach_px, y + reach_px, visit);
+    for_each_between(pixels, x - reach_px, y - reach_px, x + reach_px, y + reach_px, visit);
 }
 
 /// visit(x, y, dx, dy) of those whose middles lie within `radius_px` of a place, px from the top left corner;
 /// dx and dy lead from there to the pixel's middle.
-template <class Picture, class Visit>
-void for_each_within(const Picture& picture, double at_x, double at_y, double radius_px, const Visit& visit) {
+template <class Pixels, class Visit>
+void for_each_within(const Pixels& pixels, double at_x, double at_y, double radius_px, const Visit& visit) {
     const auto whole = [](double v) { return std::int64_t(v); };
-    for_each_between(picture, whole(at_x - radius_px), whole(at_y - radius_px), whole(at_x + radius_px),
+    for_each_between(pixels, whole(at_x - radius_px), whole(at_y - radius_px), whole(at_x + radius_px),
                      whole(at_y + radius_px), [&](std::int64_t x, std::int64_t y) {
                          const double dx = double(x) + 0.5 - at_x, dy = double(y) + 0.5 - at_y;
                          if (dx * dx + dy * dy <= radius_px * radius_px) visit(x, y, dx, dy);

@@ -75,7 +75,7 @@ png_text text_of(const std::string& name, const std::string& value) {
     return text;
 }
 
-struct PngPicture {
+struct PngFrame {
     std::int64_t width, height;
     int channels, bits;
     const unsigned char* rows;
@@ -84,21 +84,21 @@ struct PngPicture {
 };
 
 // libpng jumps over the frames of this function: nothing in it has a destructor.
-bool write_all(png_structp png, png_infop info, const PngPicture& picture) {
+bool write_all(png_structp png, png_infop info, const PngFrame& frame) {
     if (setjmp(png_jmpbuf(png))) return false;
-    png_set_IHDR(png, info, static_cast<png_uint_32>(picture.width), static_cast<png_uint_32>(picture.height),
-                 picture.bits, picture.channels == 4 ? PNG_COLOR_TYPE_RGBA : PNG_COLOR_TYPE_RGB,
+    png_set_IHDR(png, info, static_cast<png_uint_32>(frame.width), static_cast<png_uint_32>(frame.height),
+                 frame.bits, frame.channels == 4 ? PNG_COLOR_TYPE_RGBA : PNG_COLOR_TYPE_RGB,
                  PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
     // Nothing here knows the display of a configuration.
-    if (!picture.format->ocio && picture.format->view == OutputParams::View::linear)
+    if (!frame.format->ocio && frame.format->view == OutputParams::View::linear)
         png_set_gAMA(png, info, 1.0);
-    else if (!picture.format->ocio)
+    else if (!frame.format->ocio)
         png_set_sRGB_gAMA_and_cHRM(png, info, PNG_sRGB_INTENT_PERCEPTUAL);
-    png_set_text(png, info, picture.texts->data(), int(picture.texts->size()));
+    png_set_text(png, info, frame.texts->data(), int(frame.texts->size()));
     png_write_info(png, info);
-    if (picture.bits == 16 && std::endian::native == std::endian::little) png_set_swap(png);
-    const std::int64_t row_bytes = picture.width * picture.channels * picture.bits / 8;
-    for (std::int64_t y = 0; y < picture.height; ++y) png_write_row(png, picture.rows + y * row_bytes);
+    if (frame.bits == 16 && std::endian::native == std::endian::little) png_set_swap(png);
+    const std::int64_t row_bytes = frame.width * frame.channels * frame.bits / 8;
+    for (std::int64_t y = 0; y < frame.height; ++y) png_write_row(png, frame.rows + y * row_bytes);
     png_write_end(png, nullptr);
     return true;
 }
@@ -141,23 +141,23 @@ void write_png(const FrameFile& target, const FrameFormat& format, const Rendere
     if (!metadata.provenance.credit.empty()) entries.emplace_back("Copyright", metadata.provenance.credit);
     std::vector<png_text> texts;
     for (const auto& [name, value] : entries) texts.push_back(text_of(name, value));
-    PngPicture picture{
+    PngFrame png{
         frame.beauty.width, frame.beauty.height, stored_channels(format), 8, nullptr, &format, &texts};
     std::vector<std::uint8_t> bytes;
     std::vector<std::uint16_t> words;
     if (format.depth == OutputParams::Depth::uint8) {
         bytes = encode_8bit(format, frame.beauty, target.region.x, target.region.y);
-        picture.rows = bytes.data();
+        png.rows = bytes.data();
     } else {
         words = encode_16bit(format, frame.beauty);
-        picture.bits = 16;
-        picture.rows = reinterpret_cast<const unsigned char*>(words.data());
+        png.bits = 16;
+        png.rows = reinterpret_cast<const unsigned char*>(words.data());
     }
     AtomicFile file(target.file, target.existing);
     Appended appended{GuardedFile(file)};
     const PngWriter writer;
     png_set_write_fn(writer.png(), &appended, Appended::write, Appended::flush);
-    const bool written = write_all(writer.png(), writer.info(), picture);
+    const bool written = write_all(writer.png(), writer.info(), png);
     appended.file.rethrow_failure();
     if (!written)
         throw OutputError(fmt::format("{}: cannot be written: {}", target.file.string(), writer.error()));

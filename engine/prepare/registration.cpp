@@ -1,4 +1,4 @@
-// Two steps. The search correlates the pictures at about 32 px, for every turn and scale with all shifts at
+// Two steps. The search correlates the images at about 32 px, for every turn and scale with all shifts at
 // once by Fourier transforms, each shift normalised over what overlaps there (Padfield, IEEE CVPR 2010). The
 // best places are then refined from level to level of a pyramid by Gauss-Newton steps on shift, turn, scale,
 // gain and offset.
@@ -90,10 +90,10 @@ void transform_back(ComplexGrid& grid) {
 }
 
 constexpr std::int64_t searched_px = 32, refined_px = 512;  // longest sides of the levels that are compared
-constexpr std::int64_t smallest_px = 8;                     // of the moving picture's pyramid
+constexpr std::int64_t smallest_px = 8;                     // of the moving image's pyramid
 constexpr double noticeable = 0.002;  // likeness by which another place must be better than the first
 constexpr double least_likeness = 0.5, least_overlap = 1.0 / 3.0;
-constexpr float least_spread = 2e-3f;  // standard deviation of display values; below, a picture is flat
+constexpr float least_spread = 2e-3f;  // standard deviation of display values; below, an image is flat
 
 using Pyramid = std::vector<Image>;  // from large to small
 
@@ -108,7 +108,7 @@ Pyramid pyramid_of(const Image& image, std::int64_t least_px) {
 glm::dvec2 size_of(const Image& image) { return {double(image.width), double(image.height)}; }
 
 /// The same place where `fixed` is `factor` times as large.
-PictureOnPicture zoomed(PictureOnPicture place, double factor) {
+ImageOnImage zoomed(ImageOnImage place, double factor) {
     place.middle *= factor;
     place.scale *= factor;
     return place;
@@ -120,7 +120,7 @@ struct Laid {
 };
 
 /// Of the pyramid the level is read whose pixels are about as large as the grid's.
-Laid laid(const Pyramid& moving, const PictureOnPicture& place, std::int64_t width, std::int64_t height) {
+Laid laid(const Pyramid& moving, const ImageOnImage& place, std::int64_t width, std::int64_t height) {
     const double reduction = std::max(0.0, real::log(1.0 / place.scale) / real::log(2.0));
     const auto level = std::min(std::size_t(std::lround(reduction)), moving.size() - 1);
     const Image& image = moving[level];
@@ -141,7 +141,7 @@ Laid laid(const Pyramid& moving, const PictureOnPicture& place, std::int64_t wid
     return result;
 }
 
-/// Sums over the pixels that two pictures share.
+/// Sums over the pixels that two images share.
 struct Sums {
     double count = 0.0, f = 0.0, t = 0.0, ff = 0.0, tt = 0.0, ft = 0.0;
     void add(double here, double there) {
@@ -172,11 +172,11 @@ double likeness_of(const Image& fixed, const Laid& moving) {
 // ---- The search.
 
 struct Found {
-    PictureOnPicture place;
+    ImageOnImage place;
     double score = -std::numeric_limits<double>::infinity();
 };
 
-/// The spectra of what is correlated with every template: the picture, its square, and where it is.
+/// The spectra of what is correlated with every template: the image, its square, and where it is.
 class FixedSpectra {
   public:
     explicit FixedSpectra(const Image& fixed) : width(fixed.width), height(fixed.height) {
@@ -189,7 +189,7 @@ class FixedSpectra {
             }
         for (ComplexGrid* grid : {&value, &square, &place}) transform(*grid);
     }
-    static constexpr int side = 128;  // of pictures of at most 32 px and templates of at most 96 px
+    static constexpr int side = 128;  // of images of at most 32 px and templates of at most 96 px
     std::int64_t width, height;
     ComplexGrid value{side}, square{side}, place{side};
 };
@@ -208,8 +208,8 @@ ComplexGrid correlated(const ComplexGrid& a, const ComplexGrid& b, const Complex
     return sum;
 }
 
-/// The best shift of the moving picture with this turn and scale; `place.middle` is not looked at.
-Found best_shift(const FixedSpectra& fixed, const Pyramid& moving, PictureOnPicture place) {
+/// The best shift of the moving image with this turn and scale; `place.middle` is not looked at.
+Found best_shift(const FixedSpectra& fixed, const Pyramid& moving, ImageOnImage place) {
     constexpr int side = FixedSpectra::side, most = 96;
     place.middle = {0.5 * most, 0.5 * most};
     const Laid laid_out = laid(moving, place, most, most);
@@ -237,7 +237,7 @@ Found best_shift(const FixedSpectra& fixed, const Pyramid& moving, PictureOnPict
             if (sums.count < least_overlap * smaller) continue;
             const double score = sums.correlation() * std::sqrt(sums.count / smaller);
             if (score <= best.score) continue;
-            // The template's corner lies at (x, y); beyond the picture it is left of it or above.
+            // The template's corner lies at (x, y); beyond the image it is left of it or above.
             const double left = x < fixed.width ? x : x - side, top = y < fixed.height ? y : y - side;
             best = {place, score};
             best.place.middle = {left + 0.5 * most, top + 0.5 * most};
@@ -245,7 +245,7 @@ Found best_shift(const FixedSpectra& fixed, const Pyramid& moving, PictureOnPict
     return best;
 }
 
-std::vector<Found> searched(const Image& fixed, const Pyramid& moving, const PictureOnPicture& start,
+std::vector<Found> searched(const Image& fixed, const Pyramid& moving, const ImageOnImage& start,
                             const Progress& progress) {
     constexpr int turns = 36, scales = 13;
     constexpr double scale_step = 1.14;
@@ -253,7 +253,7 @@ std::vector<Found> searched(const Image& fixed, const Pyramid& moving, const Pic
     std::vector<Found> found(turns * scales);
     parallel_for(turns * scales, [&](std::int64_t i, int) {
         progress.check();
-        PictureOnPicture place = start;
+        ImageOnImage place = start;
         place.turn_deg += double(i % turns) * (360.0 / turns);
         place.scale *= real::pow(scale_step, double(i / turns - scales / 2));
         found[i] = best_shift(spectra, moving, place);
@@ -268,8 +268,8 @@ std::vector<Found> searched(const Image& fixed, const Pyramid& moving, const Pic
 constexpr std::size_t unknowns = 6;
 
 /// The normal equations of `fixed` = gain * moving, moved + offset. Every pixel says how the values there
-/// change as the picture moves under it.
-LeastSquares<unknowns> equations_of(const Image& fixed, const Laid& moving, const PictureOnPicture& place) {
+/// change as the image moves under it.
+LeastSquares<unknowns> equations_of(const Image& fixed, const Laid& moving, const ImageOnImage& place) {
     LeastSquares<unknowns> system;
     const Image &t = moving.values, &m = moving.mask;
     for (std::int64_t y = 1; y + 1 < fixed.height; ++y)
@@ -287,8 +287,8 @@ LeastSquares<unknowns> equations_of(const Image& fixed, const Laid& moving, cons
     return system;
 }
 
-/// The place after one step; empty where the pictures say nothing.
-std::optional<PictureOnPicture> stepped(const Image& fixed, const Laid& moving, PictureOnPicture place) {
+/// The place after one step; empty where the images say nothing.
+std::optional<ImageOnImage> stepped(const Image& fixed, const Laid& moving, ImageOnImage place) {
     LeastSquares<unknowns> system = equations_of(fixed, moving, place);
     // A turn of something round, or a shift along an edge, stays: each costs a little.
     constexpr double damping = 1e-3;
@@ -308,14 +308,14 @@ std::optional<PictureOnPicture> stepped(const Image& fixed, const Laid& moving, 
 }
 
 /// From `place`, in px of `fixed`; the score is the likeness.
-Found refined(const Image& fixed, const Pyramid& moving, PictureOnPicture place) {
+Found refined(const Image& fixed, const Pyramid& moving, ImageOnImage place) {
     constexpr int steps = 15;
     constexpr double still = 1e-4;  // px
     Found best;
     for (int step = 0; step < steps; ++step) {
         const Laid now = laid(moving, place, fixed.width, fixed.height);
         if (const double likeness = likeness_of(fixed, now); likeness > best.score) best = {place, likeness};
-        const std::optional<PictureOnPicture> next = stepped(fixed, now, place);
+        const std::optional<ImageOnImage> next = stepped(fixed, now, place);
         if (!next) break;
         const double moved =
             std::fabs(next->middle.x - place.middle.x) + std::fabs(next->middle.y - place.middle.y);
@@ -325,7 +325,7 @@ Found refined(const Image& fixed, const Pyramid& moving, PictureOnPicture place)
     return best;
 }
 
-double overlap_of(const Image& fixed, const Pyramid& moving, const PictureOnPicture& place) {
+double overlap_of(const Image& fixed, const Pyramid& moving, const ImageOnImage& place) {
     const Laid now = laid(moving, place, fixed.width, fixed.height);
     double shared = 0.0;
     for (const float inside : now.mask.pixels) shared += inside;
@@ -344,19 +344,19 @@ double turn_within_half(double degrees) { return degrees - 360.0 * std::floor((d
 
 }  // namespace
 
-std::optional<Registration> registered(const Image& fixed, const Image& moving, const PictureOnPicture& start,
+std::optional<Registration> registered(const Image& fixed, const Image& moving, const ImageOnImage& start,
                                        const Progress& progress) {
     if (is_flat(fixed) || is_flat(moving)) return std::nullopt;
-    const Pyramid views = pyramid_of(fixed, searched_px), pictures = pyramid_of(moving, smallest_px);
+    const Pyramid views = pyramid_of(fixed, searched_px), images = pyramid_of(moving, smallest_px);
     std::size_t level = views.size() - 1, kept = 12;  // places; of them a third goes on at each level
-    const PictureOnPicture small_start = zoomed(start, std::ldexp(1.0, -int(level)));
-    std::vector<Found> found = searched(views[level], pictures, small_start, progress);
+    const ImageOnImage small_start = zoomed(start, std::ldexp(1.0, -int(level)));
+    std::vector<Found> found = searched(views[level], images, small_start, progress);
     found.resize(std::min(found.size(), kept));
     found.insert(found.begin(), {small_start});
     for (;; --level) {
         for (Found& each : found) {
             progress.check();
-            each = refined(views[level], pictures, each.place);
+            each = refined(views[level], images, each.place);
         }
         std::ranges::stable_sort(found.begin() + 1, found.end(), std::greater(), &Found::score);
         kept = std::max<std::size_t>(1, kept / 3);
@@ -365,7 +365,7 @@ std::optional<Registration> registered(const Image& fixed, const Image& moving, 
         for (Found& each : found) each.place = zoomed(each.place, 2.0);
     }
     const Found& best = found[1].score > found[0].score + noticeable ? found[1] : found[0];
-    if (best.score < least_likeness || overlap_of(views[level], pictures, best.place) < least_overlap)
+    if (best.score < least_likeness || overlap_of(views[level], images, best.place) < least_overlap)
         return std::nullopt;
     Registration result{zoomed(best.place, std::ldexp(1.0, int(level))), best.score};
     result.place.turn_deg = turn_within_half(result.place.turn_deg);

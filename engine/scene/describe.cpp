@@ -29,12 +29,12 @@ using Type = ParameterType;
 using namespace traits;
 
 void describe_output(const Describer& d, OutputParams& o) {
-    const Describer picture = d.shown_in("Output", "Frame"), frames = d.shown_in("Output", "Frames"),
+    const Describer frame = d.shown_in("Output", "Frame"), frames = d.shown_in("Output", "Frames"),
                     format = d.shown_in("Output", "File format");
-    picture(o.preset, "preset", "Preset", "",
-            "A file with [output] and [camera] for a kind of screen, by name: dome. Keys of the scene win "
-            "over it, but not where --set names it.");
-    picture.custom(
+    frame(o.preset, "preset", "Preset", "",
+          "A file with [output] and [camera] for a kind of screen, by name: dome. Keys of the scene win "
+          "over it, but not where --set names it.");
+    frame.custom(
         spec("resolution", "Resolution", "px", "Width and height of the frames.", as(Type::vector),
              components(2), range(1, 65536), slider(16, 8192)),
         [&o](const ParameterSpec& own) {
@@ -59,16 +59,16 @@ void describe_output(const Describer& d, OutputParams& o) {
     format(o.aovs, "aovs", "Extra channels", "", "Of depth, coverage, count and layers; exr only.",
            one_of({OutputParams::known_aovs.begin(), OutputParams::known_aovs.end()}));
     const Describer built_in =
-        picture.only_with("ocio.config", {""}).only_with("ocio.display", {""}).only_with("ocio.view", {""});
+        frame.only_with("ocio.config", {""}).only_with("ocio.display", {""}).only_with("ocio.view", {""});
     built_in(o.view, "view", "View", "", "auto: linear in exr and float tif, srgb in 8 and 16 bit.");
-    picture.animated()(o.exposure, "exposure", "Exposure", "stops",
-                       "Acts where a view is written; exr and float tif hold scene light.", range(-100, 100),
-                       slider(-8, 8));
-    picture(o.pixel_filter, "pixel_filter", "Pixel filter", "px", "Standard deviation of the pixel filter.",
-            range(0.3, 2));
-    picture(o.samples, "samples", "Samples", "",
-            "Renderings whose mean a frame with motion blur or depth of field is.", range(1, 4096),
-            slider(1, 256));
+    frame.animated()(o.exposure, "exposure", "Exposure", "stops",
+                     "Acts where a view is written; exr and float tif hold scene light.", range(-100, 100),
+                     slider(-8, 8));
+    frame(o.pixel_filter, "pixel_filter", "Pixel filter", "px", "Standard deviation of the pixel filter.",
+          range(0.3, 2));
+    frame(o.samples, "samples", "Samples", "",
+          "Renderings whose mean a frame with motion blur or depth of field is.", range(1, 4096),
+          slider(1, 256));
 }
 
 /// Colour management by OpenColorIO.
@@ -85,12 +85,12 @@ void describe_ocio(const Describer& d, OcioParams& o) {
 
 void describe_camera(const Describer& d, CameraParams& c) {
     const Describer place = d.shown_in("Camera", "Place"), lens = d.shown_in("Camera", "Lens");
-    lens(c.projection, "projection", "Projection", "", "How space becomes a picture.");
+    lens(c.projection, "projection", "Projection", "", "How space becomes a frame.");
     place(c.position, "position", "Position", "scene units",
           "Where the camera stands; [] frames all visible layers.", as(Type::position), slider(-100, 100));
-    place(c.target, "target", "Target", "scene units", "The point in the middle of the picture.",
+    place(c.target, "target", "Target", "scene units", "The point in the middle of the frame.",
           as(Type::position), slider(-100, 100), only_with("rotation", {Value()}));
-    place(c.up, "up", "Up", "", "The direction that is up in the picture.", slider(-1, 1),
+    place(c.up, "up", "Up", "", "The direction that is up in the frame.", slider(-1, 1),
           only_with("rotation", {Value()}));
     place(c.rotation, "rotation", "Rotation", "",
           "Quaternion x y z w, world from camera; replaces target, up and roll; [] is none.",
@@ -115,7 +115,7 @@ void describe_camera(const Describer& d, CameraParams& c) {
          "How far a fisheye's axis points above the target; 90: the target is on a level dome's lower rim.",
          range(-180, 180), slider(0, 90), only_with("projection", {"fisheye"}));
     lens(c.panorama_fov, "panorama_fov", "Panorama width", "degrees",
-         "From the left to the right of an equirectangular or cylindrical picture.", within(0.001, 360),
+         "From the left to the right of an equirectangular or cylindrical frame.", within(0.001, 360),
          slider(60, 360), only_with("projection", {"equirectangular", "cylindrical"}));
     lens(c.height, "height", "Height", "scene units", "Scene units from bottom to top, orthographic.",
          at_least(1e-6), slider(0.1, 1000), logarithmic(), only_with("projection", {"orthographic"}));

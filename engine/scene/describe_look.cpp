@@ -171,7 +171,7 @@ void describe_render(const Describer& d, LayerRender& r) {
     mixing(r.isolate, "isolate", "Isolate", "", "Rendered alone, then composited as a whole.");
     mixing(r.space, "space", "Mixed in", "",
            "display: splats are mixed as a display shows them (sRGB), as captures are trained, and the "
-           "picture is made linear again; of isolated layers that mix by over.",
+           "image is made linear again; of isolated layers that mix by over.",
            only_with("isolate", {true}), only_with("blend", {"over"}));
 }
 

@@ -251,7 +251,7 @@ void draw_merge_bracket(const Context& context, const std::vector<Rect>& rows) {
         ImGui::SetTooltip("Merged by depth: the order of these does not matter");
 }
 
-// A layer that was selected in the picture comes into sight.
+// A layer that was selected in the view comes into sight.
 void scroll_to_selected(Context& context, const std::vector<Rect>& rows) {
     Memory& memory = context.memory;
     if (memory.layer_in_sight == context.view.layer || context.view.layer >= rows.size()) return;

@@ -86,7 +86,7 @@ bool suits_layer(const Context& context, const ParameterSpec& spec);
 
 // At the end of sections (section_ends.cpp).
 
-/// The two pictures with a line between them to drag, what was done, a button.
+/// The two images with a line between them to drag, what was done, a button.
 void draw_preparation(Context& context);
 void placement_buttons(Context& context);
 void crop_buttons(Context& context);

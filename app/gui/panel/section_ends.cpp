@@ -1,4 +1,4 @@
-// What single sections have besides the rows of parameters: the names of colour management, the two pictures
+// What single sections have besides the rows of parameters: the names of colour management, the two images
 // of a preparation, handles in the view, references, a look as a whole.
 #include <algorithm>
 #include <cmath>
@@ -35,7 +35,7 @@ std::string in_use(const std::string& name, const char* how) {
 constexpr float tallest = 320.0f;  // px at scale 1
 
 // As wide as the panel, or as tall as there is room for.
-Rect picture_area(float aspect) {
+Rect image_area(float aspect) {
     const float room = ImGui::GetContentRegionAvail().x;
     const float height = std::floor(std::min(room / std::max(aspect, 0.01f), px(tallest)));
     const float width = std::floor(std::min(room, height * aspect));
@@ -52,7 +52,7 @@ void drag_line(Context& context, const Rect& area) {
 }
 
 void draw_both(Context& context, const PrepareStatus& status) {
-    const Rect area = picture_area(status.aspect);
+    const Rect area = image_area(status.aspect);
     context.memory.plots[context.layer_key() / "source.prepare"] = area;
     drag_line(context, area);
     const float share = context.memory.preparation_line;

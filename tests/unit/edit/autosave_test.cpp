@@ -358,7 +358,7 @@ TEST_F(SnapshotFiles, WhatIsWrittenIsReadAgain) {
     EXPECT_EQ(kept[0].file, file);
     EXPECT_EQ(static_cast<const SnapshotFacts&>(kept[0]), facts);
     EXPECT_EQ(with_look_of(load_scene(f.file), *kept[0].scene), document.scene());
-    EXPECT_EQ(test::text_of(snapshot_picture(file)), "png");
+    EXPECT_EQ(test::text_of(snapshot_image(file)), "png");
 }
 
 TEST_F(SnapshotFiles, ASnapshotIsASceneThatNamesTheSameFiles) {
@@ -373,7 +373,7 @@ TEST_F(SnapshotFiles, ANewOneComesAfterTheLastAndOverwritesNone) {
     const fs::path second = write({"zwei"});
     write({"drei"});
     remove_snapshot(second);
-    EXPECT_FALSE(fs::exists(snapshot_picture(second)));
+    EXPECT_FALSE(fs::exists(snapshot_image(second)));
     EXPECT_EQ(write({"vier"}), folder / "0004.toml");
     std::vector<std::string> names;
     for (const StoredLook& kept : read_snapshots(folder, problems)) names.push_back(kept.name);

@@ -284,7 +284,7 @@ double clouds(double x, double y) {
 }
 
 /// The clouds on width x height px: `place` says where a picture of 2 x 2 units, 200 px a side, lies.
-Image clouds_on(std::int64_t width, std::int64_t height, const PictureOnPicture& place) {
+Image clouds_on(std::int64_t width, std::int64_t height, const ImageOnImage& place) {
     Image image = make_image(width, height, 1);
     const double angle = real::radians(place.turn_deg), c = real::cos(angle), s = real::sin(angle);
     for (std::int64_t y = 0; y < height; ++y)
@@ -298,8 +298,8 @@ Image clouds_on(std::int64_t width, std::int64_t height, const PictureOnPicture&
 
 const Image cloud_picture = clouds_on(200, 200, {{100.0, 100.0}, 1.0, 0.0});
 
-void expect_found(const Image& fixed, const Image& moving, const PictureOnPicture& place,
-                  const PictureOnPicture& start) {
+void expect_found(const Image& fixed, const Image& moving, const ImageOnImage& place,
+                  const ImageOnImage& start) {
     const std::optional<Registration> found = registered(fixed, moving, start);
     ASSERT_TRUE(found);
     EXPECT_LT(glm::distance(found->place.middle, place.middle), 1.0);
@@ -309,31 +309,31 @@ void expect_found(const Image& fixed, const Image& moving, const PictureOnPictur
 }
 
 TEST(Registration, FindsAKnownShiftTurnAndScale) {
-    for (const PictureOnPicture& place :
-         {PictureOnPicture{{160.0, 120.0}, 1.2, 0.0}, PictureOnPicture{{200.0, 90.0}, 1.0, 35.0},
-          PictureOnPicture{{140.0, 150.0}, 0.7, -110.0}, PictureOnPicture{{170.0, 110.0}, 1.7, 178.0}})
+    for (const ImageOnImage& place :
+         {ImageOnImage{{160.0, 120.0}, 1.2, 0.0}, ImageOnImage{{200.0, 90.0}, 1.0, 35.0},
+          ImageOnImage{{140.0, 150.0}, 0.7, -110.0}, ImageOnImage{{170.0, 110.0}, 1.7, 178.0}})
         expect_found(clouds_on(320, 240, place), cloud_picture, place, {{160.0, 120.0}, 1.2, 0.0});
 }
 
 TEST(Registration, AnotherContrastAndOffsetDoNotMatter) {
-    const PictureOnPicture place{{150.0, 110.0}, 1.1, -20.0};
+    const ImageOnImage place{{150.0, 110.0}, 1.1, -20.0};
     Image fixed = clouds_on(320, 240, place);
     for (float& value : fixed.pixels) value = 0.2f + 0.4f * value;
     expect_found(fixed, cloud_picture, place, {{160.0, 120.0}, 1.0, 0.0});
 }
 
 TEST(Registration, PartOfThePictureIsEnough) {
-    const PictureOnPicture place{{60.0, 190.0}, 1.4, 15.0};
+    const ImageOnImage place{{60.0, 190.0}, 1.4, 15.0};
     expect_found(clouds_on(320, 240, place), cloud_picture, place, {{160.0, 120.0}, 1.2, 0.0});
 }
 
 TEST(Registration, LargerPicturesAreFoundAsWell) {
-    const PictureOnPicture place{{800.0, 500.0}, 4.0, 50.0};
+    const ImageOnImage place{{800.0, 500.0}, 4.0, 50.0};
     expect_found(clouds_on(1600, 1000, place), cloud_picture, place, {{800.0, 500.0}, 5.0, 0.0});
 }
 
 TEST(Registration, WhatLiesRightStays) {
-    const PictureOnPicture place{{123.25, 130.5}, 1.0, 12.0};
+    const ImageOnImage place{{123.25, 130.5}, 1.0, 12.0};
     expect_found(clouds_on(320, 240, place), cloud_picture, place, place);
 }
 
@@ -364,7 +364,7 @@ Image noise(std::int64_t width, std::int64_t height, std::uint32_t seed) {
 }
 
 TEST(Registration, WhereNothingMatchesThereIsNone) {
-    const PictureOnPicture start{{160.0, 120.0}, 1.0, 0.0};
+    const ImageOnImage start{{160.0, 120.0}, 1.0, 0.0};
     EXPECT_FALSE(registered(make_image(320, 240, 1), cloud_picture, start)) << "flat";
     EXPECT_FALSE(registered(clouds_on(320, 240, start), make_image(200, 200, 1, 0.5f), start)) << "flat";
     EXPECT_FALSE(registered(noise(320, 240, 1), noise(200, 200, 2), start));

@@ -29,7 +29,7 @@ struct RenderedFramesTest : testing::Test {
         write_image(file, side, side, rgba);
         return file;
     }
-    static std::shared_ptr<const PackedPicture> read(RenderedFrames& frames, const fs::path& file) {
+    static std::shared_ptr<const PackedImage> read(RenderedFrames& frames, const fs::path& file) {
         while (frames.working()) std::this_thread::yield();
         return frames.found(file);
     }
@@ -154,19 +154,19 @@ struct ThumbnailsTest : testing::Test {
         write_image(folder / name, width, height, rgba);
         return listed(name);
     }
-    static std::shared_ptr<const PackedPicture> read(Thumbnails& thumbnails, const ListedPicture& picture) {
+    static std::shared_ptr<const PackedImage> read(Thumbnails& thumbnails, const ListedPicture& picture) {
         thumbnails.want({picture});
         while (thumbnails.working()) std::this_thread::yield();
         return thumbnails.found(picture);
     }
-    static int grey(const PackedPicture& t, std::int64_t x, std::int64_t y) {
+    static int grey(const PackedImage& t, std::int64_t x, std::int64_t y) {
         return t.codes[static_cast<std::size_t>(3 * (y * t.width + x))];
     }
 };
 
 TEST_F(ThumbnailsTest, LookAsTheirFilesDoWhateverTheKind) {
     for (const char* name : {"a.png", "a.jpg", "a.tif"}) {
-        const PackedPicture t = thumbnail_of_file(write(name, 40, 200).file, 60);
+        const PackedImage t = thumbnail_of_file(write(name, 40, 200).file, 60);
         EXPECT_EQ(t.file_width, 300) << name;
         EXPECT_EQ(t.file_height, 200) << name;
         EXPECT_EQ(t.width, 60) << name;
@@ -174,9 +174,9 @@ TEST_F(ThumbnailsTest, LookAsTheirFilesDoWhateverTheKind) {
         EXPECT_NEAR(grey(t, 10, 20), 40, 2) << name;
         EXPECT_NEAR(grey(t, 50, 20), 200, 2) << name;
     }
-    const PackedPicture small = thumbnail_of_file(write("b.png", 1, 2, 8, 4).file, 60);
+    const PackedImage small = thumbnail_of_file(write("b.png", 1, 2, 8, 4).file, 60);
     EXPECT_EQ(small.width, 8) << "none is enlarged";
-    const PackedPicture thin = thumbnail_of_file(write("c.png", 9, 9, 300, 1).file, 60);
+    const PackedImage thin = thumbnail_of_file(write("c.png", 9, 9, 300, 1).file, 60);
     EXPECT_EQ(thin.height, 1);
 }
 
@@ -184,7 +184,7 @@ TEST_F(ThumbnailsTest, LightGetsTheScreensCurve) {
     Image light = make_image(4, 4, 4, 1.0f);
     for (std::size_t i = 0; i < 16; ++i) light.pixels[4 * i] = 0.25f;
     write_linear_image(folder / "a.exr", light, "", Existing::replace);
-    const PackedPicture t = thumbnail_of_file(folder / "a.exr", 60);
+    const PackedImage t = thumbnail_of_file(folder / "a.exr", 60);
     EXPECT_EQ(t.codes[0], 137) << "255 * (1.055 * 0.25^(1 / 2.4) - 0.055)";
     EXPECT_EQ(t.codes[1], 255);
 }
@@ -194,7 +194,7 @@ TEST_F(ThumbnailsTest, FitsIsStretchedAndItsGapsAreBlack) {
         return x < 32 || y % 4 == 0 ? std::nan("") : x < 64 ? 100.0 : 900.0;
     };
     folder.file("a.fits", fits_file(128, 64, "", value));
-    const PackedPicture t = thumbnail_of_file(folder / "a.fits", 32);
+    const PackedImage t = thumbnail_of_file(folder / "a.fits", 32);
     EXPECT_EQ(t.file_width, 128);
     EXPECT_EQ(grey(t, 2, 15), 0) << "no value there";
     EXPECT_EQ(grey(t, 12, 4), 0) << "black";

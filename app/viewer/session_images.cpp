@@ -1,5 +1,5 @@
 // What a session shows besides its frame: rendered frames, the front check, the preparation, thumbnails, the
-// reference's alignment, and the jobs that render to files, with a finished frame. Each picture is made in a
+// reference's alignment, and the jobs that render to files, with a finished frame. Each image is made in a
 // background thread and uploaded once.
 #include <fmt/format.h>
 
@@ -156,22 +156,22 @@ void show_finished_frame(Session& session) {
     if (!found) return;  // while it is read, the last one stays
     shown.error = found->error;
     if (!found->error.empty()) return;
-    ShownPicture<FinishedView>& picture = session.finished_picture;
-    picture.show(found, &FinishedView::image);
-    shown.texture = to_handle(picture.texture());
-    shown.aspect = picture.aspect();
+    UploadedImage<FinishedView>& image = session.finished_image;
+    image.show(found, &FinishedView::image);
+    shown.texture = to_handle(image.texture());
+    shown.aspect = image.aspect();
 }
 
 }  // namespace
 
 bool show_rendered_frame(Session& session, const Rect& place, DisplaySettings& shown) {
     Status& status = session.status;
-    ShownPicture<PackedPicture>& picture = session.rendered_picture;
+    UploadedImage<PackedImage>& image = session.rendered_image;
     status.rendered_frame.clear();
     status.missing_frame.clear();
     if (!wants_rendered(session)) {
         session.rendered.want({});
-        picture.clear();
+        image.clear();
         return false;
     }
     const std::optional<FrameFiles> files = frame_files(session.document.scene());
@@ -180,28 +180,28 @@ bool show_rendered_frame(Session& session, const Rect& place, DisplaySettings& s
     std::error_code ignored;
     if (!files || !fs::exists(file, ignored)) {
         status.missing_frame = file.filename().string();
-        picture.clear();
+        image.clear();
         return false;
     }
-    const std::shared_ptr<const PackedPicture> found = session.rendered.found(file);
+    const std::shared_ptr<const PackedImage> found = session.rendered.found(file);
     if (found && !found->error.empty()) {
         status.missing_frame = file.filename().string();
         return false;
     }
-    if (found) picture.show(found, to_image);
-    if (!picture.found()) return false;  // the first one is being read
+    if (found) image.show(found, to_image);
+    if (!image.found()) return false;  // the first one is being read
     status.rendered_frame = file.filename().string();
-    show_alone(picture.texture(), !picture.found()->is_light(), picture.size_px(), place, shown);
+    show_alone(image.texture(), !image.found()->is_light(), image.size_px(), place, shown);
     return true;
 }
 
 void show_front(Session& session, const Scene& now, DisplaySettings& shown) {
     const std::shared_ptr<const FrontFound> found = check_front(session, now);
     if (!found || session.view.compare != CompareMode::front) return;
-    ShownPicture<FrontFound>& picture = session.front_picture;
-    picture.show(found, &FrontFound::difference);
+    UploadedImage<FrontFound>& image = session.front_difference;
+    image.show(found, &FrontFound::difference);
     const glm::vec2 port(session.viewport_px);
-    show_alone(picture.texture(), true, picture.size_px(), {0, 0, port.x, port.y}, shown);
+    show_alone(image.texture(), true, image.size_px(), {0, 0, port.x, port.y}, shown);
     shown.width = std::round(shown.width);
     shown.height = std::round(shown.height);
     shown.x = std::round(0.5f * (port.x - shown.width));
@@ -219,7 +219,7 @@ void show_preparation(Session& session) {
     session.preparation.want(*request);
     status.emplace();
     status->working = session.preparation.working();
-    ShownPicture<PreparedView>&before = session.preparation_before, &after = session.preparation_after;
+    UploadedImage<PreparedView>&before = session.preparation_before, &after = session.preparation_after;
     const auto found = session.preparation.found(*request);
     if (found) status->error = found->error;
     if (found && found->error.empty()) {
@@ -246,7 +246,7 @@ void show_thumbnails(Session& session) {
     std::erase_if(session.thumbnail_textures, is_gone);
     for (const ListedPicture& picture : seen) {
         if (shown.count(picture)) continue;
-        const std::shared_ptr<const PackedPicture> found = session.thumbnails.found(picture);
+        const std::shared_ptr<const PackedImage> found = session.thumbnails.found(picture);
         if (!found) continue;
         ListedThumbnail& thumbnail = shown[picture];
         if (!found->error.empty()) continue;
