@@ -24,7 +24,7 @@ class CameraFileTest : public testing::Test {
     template <class Read>
     std::string refusal(const std::string& name, const std::string& text, const Read& read) {
         const std::filesystem::path file = put(name, text);
-        std::string message = message_of<InputError>([&] { read(file, FrameRate{}); });
+        std::string message = ERROR_OF(read(file, FrameRate{}));
         const std::string inside = folder.path().string() + "/";
         for (std::size_t at; (at = message.find(inside)) != message.npos;) message.erase(at, inside.size());
         return message;

@@ -3,6 +3,8 @@
 
 #include <string>
 
+#include "core/error.h"
+
 namespace astrosplat {
 
 /// what() of the Error thrown by call(), or "no error".
@@ -21,6 +23,9 @@ inline bool has_part(const std::string& text, const std::string& part) {
 }
 
 }  // namespace astrosplat
+
+/// What the InputError says that the statement throws, or "no error".
+#define ERROR_OF(...) ::astrosplat::message_of<::astrosplat::InputError>([&] { __VA_ARGS__; })
 
 /// Shows both where the text has no such part.
 #define EXPECT_HAS(text, part) EXPECT_PRED2(::astrosplat::has_part, text, part)

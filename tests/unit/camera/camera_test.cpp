@@ -11,6 +11,7 @@
 #include "core/error.h"
 #include "core/real.h"
 #include "core/rotation.h"
+#include "support/errors.h"
 
 namespace astrosplat {
 namespace {
@@ -38,14 +39,7 @@ glm::dvec3 project(const Camera& camera, const glm::dvec3& point) {
     return {camera.center_x_px + c.x * scale, camera.center_y_px - c.y * scale, -c.z};
 }
 
-std::string error_of(const CameraParams& params) {
-    try {
-        made(params);
-    } catch (const InputError& error) {
-        return error.what();
-    }
-    return "no error";
-}
+std::string error_of(const CameraParams& params) { return ERROR_OF(made(params)); }
 
 TEST(Camera, LooksAlongMinusZByDefault) {
     Camera camera = made(at({0, 0, 10}));

@@ -36,10 +36,9 @@ namespace {
 namespace fs = std::filesystem;
 
 TEST(Error, LineNamesFilePlaceExpectationAndFinding) {
-    EXPECT_EQ(message_of<InputError>([] { bad_input("a.obj", "12", "three numbers", "two"); }),
+    EXPECT_EQ(ERROR_OF(bad_input("a.obj", "12", "three numbers", "two")),
               "a.obj:12: expected three numbers, found two");
-    EXPECT_EQ(message_of<InputError>([] { bad_input("a.obj", "", "faces", "none"); }),
-              "a.obj: expected faces, found none");
+    EXPECT_EQ(ERROR_OF(bad_input("a.obj", "", "faces", "none")), "a.obj: expected faces, found none");
 }
 
 TEST(Progress, ThrowsOnlyWhenAskedToStop) {
@@ -151,7 +150,7 @@ TEST(Memory, ClaimOfTooMuchNamesBothFigures) {
     EXPECT_GT(available_memory_bytes(), 0);
     EXPECT_GT(peak_memory_bytes(), 0);
     EXPECT_NO_THROW(claim_memory(1024, "a test"));
-    const std::string message = message_of<InputError>([] { claim_memory(std::int64_t{1} << 60, "a test"); });
+    const std::string message = ERROR_OF(claim_memory(std::int64_t{1} << 60, "a test"));
     EXPECT_EQ(message.find("a test needs 1048576 TiB of memory, but only "), 0u) << message;
 }
 
@@ -160,17 +159,11 @@ TEST(Memory, ALimitLeavesLess) {
     limit_memory(limit);
     EXPECT_LE(available_memory_bytes(), std::int64_t{64} << 20);
     EXPECT_NO_THROW(claim_memory(1024, "a test"));
-    const std::string message =
-        message_of<InputError>([] { claim_memory(std::int64_t{65} << 20, "a test"); });
-    EXPECT_NE(message.find(" are available of the " + human_bytes(double(limit)) +
-                           " that --memory allows; this takes "),
-              std::string::npos)
-        << message;
+    const std::string message = ERROR_OF(claim_memory(std::int64_t{65} << 20, "a test"));
+    EXPECT_HAS(message,
+               " are available of the " + human_bytes(double(limit)) + " that --memory allows; this takes ");
     limit_memory(limit, "a dial");
-    EXPECT_NE(message_of<InputError>([] {
-                  claim_memory(std::int64_t{65} << 20, "a test");
-              }).find(" that a dial allows"),
-              std::string::npos);
+    EXPECT_HAS(ERROR_OF(claim_memory(std::int64_t{65} << 20, "a test")), " that a dial allows");
     limit_memory(1);  // less than is taken already
     EXPECT_EQ(available_memory_bytes(), 0);
     limit_memory(0);
@@ -274,9 +267,8 @@ TEST(Sha256, OfFiles) {
     EXPECT_EQ(sha256_of_file(folder.file("a b", "abc")),
               "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
     const std::string missing = (folder / "missing").string();
-    EXPECT_EQ(message_of<InputError>([&] { sha256_of_file(missing); }),
-              missing + ": cannot be read: No such file or directory");
-    EXPECT_NE(message_of<InputError>([&] { sha256_of_file(folder.path()); }), "no error");
+    EXPECT_EQ(ERROR_OF(sha256_of_file(missing)), missing + ": cannot be read: No such file or directory");
+    EXPECT_NE(ERROR_OF(sha256_of_file(folder.path())), "no error");
     const std::atomic<bool> cancelled{true};
     EXPECT_THROW(sha256_of_file(folder.file("a b", "abc"), Progress{{}, &cancelled}), Cancelled);
 }
@@ -284,9 +276,9 @@ TEST(Sha256, OfFiles) {
 TEST(File, ReadsAllBytesOrSaysWhyNot) {
     const TempFolder folder;
     EXPECT_EQ(read_file(folder.file("x", std::string("a\0b", 3))), std::string("a\0b", 3));
-    EXPECT_EQ(message_of<InputError>([&] { read_file(folder.path()); }),
+    EXPECT_EQ(ERROR_OF(read_file(folder.path())),
               folder.path().string() + ": cannot be read: it is a folder");
-    EXPECT_EQ(message_of<InputError>([&] { read_file(folder / "no"); }),
+    EXPECT_EQ(ERROR_OF(read_file(folder / "no")),
               (folder / "no").string() + ": cannot be read: No such file or directory");
     EXPECT_EQ(read_beginning(folder.file("y", "abc"), 2), "ab");
     EXPECT_EQ(read_beginning(folder / "y", 5), "abc");
@@ -306,8 +298,8 @@ TEST(File, PipesDevicesAndSocketsAreRefusedAtOnce) {
     fs::current_path(before);
     for (const fs::path& file : {pipe, socket_file, fs::path("/dev/zero")}) {
         const std::string expected = file.string() + ": cannot be read: it is not a regular file";
-        EXPECT_EQ(message_of<InputError>([&] { read_file(file); }), expected);
-        EXPECT_EQ(message_of<InputError>([&] { sha256_of_file(file); }), expected);
+        EXPECT_EQ(ERROR_OF(read_file(file)), expected);
+        EXPECT_EQ(ERROR_OF(sha256_of_file(file)), expected);
         EXPECT_EQ(read_beginning(file, 1), "");
     }
     close(descriptor);
@@ -328,7 +320,7 @@ TEST(VectorTarget, EachOfferedOneCanBeChosen) {
     }
     set_vector_target("best");
     EXPECT_EQ(vector_target(), targets.front());
-    const std::string message = message_of<InputError>([] { set_vector_target("mmx"); });
+    const std::string message = ERROR_OF(set_vector_target("mmx"));
     EXPECT_EQ(message.find("vector target: expected one that this processor has (best, " + targets.front()),
               0u);
     EXPECT_HAS(message, "found 'mmx'");

@@ -9,6 +9,7 @@
 #include "edit/kept_files.h"
 #include "edit/layers.h"
 #include "scenes.h"
+#include "support/errors.h"
 #include "support/quiet.h"
 #include "support/run_program.h"
 
@@ -241,7 +242,7 @@ TEST_F(AutosaveTest, APresetThatIsGoneLosesNothing) {
     document.save();
     fs::remove(preset);
     document.set(opacity, 0.25, 1.0);
-    EXPECT_EQ(message_of<InputError>([&] { document.save(); }),
+    EXPECT_EQ(ERROR_OF(document.save()),
               preset.string() +
                   ": cannot be read: No such file or directory; the looks that come with astrosplat are "
                   "in " ASTROSPLAT_SOURCE_DIR "/assets/looks, by name: m51, s106");
@@ -258,7 +259,7 @@ TEST_F(AutosaveTest, OtherFilesAreNoAutosaves) {
     std::ofstream(folder / "b-1-0.toml") << "# astrosplat autosave {\"file\": 3}\n";
     std::ofstream(folder / "c-1-0.toml") << "# astrosplat autosave nonsense\n";
     EXPECT_TRUE(recoveries(folder).empty());
-    EXPECT_EQ(message_of<InputError>([&] { recover(folder / "a-1-0.toml"); }),
+    EXPECT_EQ(ERROR_OF(recover(folder / "a-1-0.toml")),
               (folder / "a-1-0.toml").string() + ": expected an autosave, found another file");
 }
 

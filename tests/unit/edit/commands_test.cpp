@@ -76,7 +76,7 @@ TEST_F(BatchCommandTest, OfASavedScene) {
 TEST_F(BatchCommandTest, EditsAreAssignments) {
     document.set(opacity, 0.25, 1.0);
     const BatchCommand command = batch_command(document, options);
-    EXPECT_NE(command.text.find(" --set layer.stars.render.opacity=0.25"), std::string::npos);
+    EXPECT_HAS(command.text, " --set layer.stars.render.opacity=0.25");
     document.set("provenance.title", "It's \"M 51\" $HOME `x` \\ ü", 1.0);
     document.set("layer.dust.look.thickness.map", "neue karte's ä.png", 1.0);
     document.set("layer.dust.source.unpremultiply", true, 1.0);
@@ -208,7 +208,7 @@ TEST(PrepareCommandLine, NamesThreeFilters) {
 }
 
 TEST(PrepareCommandLine, NeedsAPicture) {
-    EXPECT_EQ(message_of<InputError>([] { prepare_command(source_of({}), "out"); }),
+    EXPECT_EQ(ERROR_OF(prepare_command(source_of({}), "out")),
               "source.meshes: expected a picture to prepare, found none");
 }
 

@@ -5,6 +5,7 @@
 
 #include "edit/edits.h"
 #include "scenes.h"
+#include "support/errors.h"
 
 namespace astrosplat {
 namespace {
@@ -283,10 +284,8 @@ TEST(UntitledDocument, UntitledAsksForAFile) {
     EXPECT_TRUE(document.file().empty());
     EXPECT_FALSE(document.edited());
     EXPECT_FALSE(document.changed_on_disk());
-    EXPECT_EQ(message_of<InputError>([&] { document.save(); }),
-              "Untitled: expected a file to save to, found none");
-    EXPECT_EQ(message_of<InputError>([&] { document.reload(); }),
-              "Untitled: expected a file to read again, found none");
+    EXPECT_EQ(ERROR_OF(document.save()), "Untitled: expected a file to save to, found none");
+    EXPECT_EQ(ERROR_OF(document.reload()), "Untitled: expected a file to read again, found none");
     document.set(opacity, 0.25, 1.0);
     EXPECT_TRUE(document.edited());
     document.save_as(folder / "szene.toml");
@@ -378,7 +377,7 @@ TEST_F(DocumentTest, ReloadIsOneStep) {
 TEST_F(DocumentTest, AReloadThatFailsChangesNothing) {
     const Scene before = document.scene();
     f.folder.file("szene ä.toml", "astrosplat = 1\n[camera]\nfov = \"wide\"\n");
-    EXPECT_EQ(message_of<InputError>([&] { document.reload(); }),
+    EXPECT_EQ(ERROR_OF(document.reload()),
               f.file.string() + ":3: camera.fov: expected a number, found a string");
     EXPECT_EQ(document.scene(), before);
     EXPECT_FALSE(document.can_undo());

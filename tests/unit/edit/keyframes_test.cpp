@@ -5,6 +5,7 @@
 #include "edit/edits.h"
 #include "scene/animate.h"
 #include "scenes.h"
+#include "support/errors.h"
 
 namespace astrosplat {
 namespace {
@@ -69,7 +70,7 @@ TEST_F(Keyframes, TheFirstMakesATrack) {
 TEST_F(Keyframes, ValuesThatDoNotFitAreRefused) {
     const Scene before = scene;
     const auto message = [&](const std::string& key, const Value& value, double frame) {
-        return message_of<InputError>([&] { set_keyframe(scene, key, frame, value); });
+        return ERROR_OF(set_keyframe(scene, key, frame, value));
     };
     EXPECT_EQ(message(core, 2.0, 1.0), core + ": expected a number from 0 to 1, found 2");
     EXPECT_EQ(message(core, 0.5, std::numeric_limits<double>::infinity()),

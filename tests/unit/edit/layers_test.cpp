@@ -7,6 +7,7 @@
 #include "edit/edits.h"
 #include "edit/layers.h"
 #include "scenes.h"
+#include "support/errors.h"
 #include "support/random_values.h"
 
 namespace astrosplat {
@@ -69,9 +70,9 @@ TEST_F(Layers, Rename) {
     EXPECT_TRUE(is_animated(scene, "layer.suns.render.core"));
     EXPECT_FALSE(is_animated(scene, "layer.stars.render.core"));
     const Scene before = scene;
-    EXPECT_EQ(message_of<InputError>([&] { rename_layer(scene, 1, "dust"); }),
+    EXPECT_EQ(ERROR_OF(rename_layer(scene, 1, "dust")),
               "suns: layer.name: expected each name once, found 'dust' twice");
-    EXPECT_EQ(message_of<InputError>([&] { rename_layer(scene, 1, "2"); }),
+    EXPECT_EQ(ERROR_OF(rename_layer(scene, 1, "2")),
               "suns: layer.name: expected letters, digits and _ beginning with a letter, found '2'");
     rename_layer(scene, 1, "suns");
     EXPECT_EQ(scene, before);
@@ -123,7 +124,7 @@ TEST(Presets, GiveLookAndRender) {
     EXPECT_TRUE(layer.preset.empty());
     const LayerParams before = layer;
     folder.file("schlecht.toml", "[look]\ndensty = 1\n");
-    EXPECT_EQ(message_of<InputError>([&] { apply_preset(layer, folder / "schlecht.toml"); }),
+    EXPECT_EQ(ERROR_OF(apply_preset(layer, folder / "schlecht.toml")),
               (folder / "schlecht.toml").string() + ":2: unknown key 'densty'; did you mean 'look.density'?");
     EXPECT_EQ(layer, before);
 }

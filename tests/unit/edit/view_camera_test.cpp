@@ -10,6 +10,7 @@
 #include "edit/edits.h"
 #include "scene/animate.h"
 #include "scenes.h"
+#include "support/errors.h"
 
 namespace astrosplat {
 namespace {
@@ -390,7 +391,7 @@ TEST_F(SeenCamera, HasAPlaceWhereTheSceneCameraFramesItsLayers) {
         expect_near(project(seen, {1, 2, -3}), project(scene.camera, {1, 2, -3}, box), 1e-9);
     }
     status.box = {};
-    EXPECT_EQ(message_of<InputError>([&] { seen_camera(scene, view, status); }),
+    EXPECT_EQ(ERROR_OF(seen_camera(scene, view, status)),
               "camera.position: expected layers to frame, found none loaded yet");
 }
 

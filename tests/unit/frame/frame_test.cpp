@@ -110,8 +110,8 @@ TEST(OutputPattern, TwoPlacesAreAnError) {
     const std::string expected =
         "output.path: expected one place for the frame number (####, %04d or {frame:04}), found more in "
         "'#/shot.%04d.exr'";
-    EXPECT_EQ(message_of<InputError>([] { output_pattern("/a", "#/shot.%04d.exr"); }), expected);
-    EXPECT_EQ(message_of<InputError>([] { frame_file("#/shot.%04d.exr", 1); }), expected);
+    EXPECT_EQ(ERROR_OF(output_pattern("/a", "#/shot.%04d.exr")), expected);
+    EXPECT_EQ(ERROR_OF(frame_file("#/shot.%04d.exr", 1)), expected);
 }
 
 TEST(OutputPattern, TheFolderIsTakenAsItIs) {

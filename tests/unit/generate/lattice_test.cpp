@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "generate/lattice.h"
+#include "support/errors.h"
 #include "unit/generate/generate_support.h"
 
 namespace astrosplat {
@@ -32,12 +33,7 @@ std::vector<TexturedMesh> one_plane() {
 }
 
 std::string message(const SourceParams& source, double max_distance = 0.1) {
-    try {
-        make_lattice(source, one_plane(), max_distance);
-    } catch (const InputError& error) {
-        return error.what();
-    }
-    return "no error";
+    return ERROR_OF(make_lattice(source, one_plane(), max_distance));
 }
 
 TEST(Lattice, PositionsById) {

@@ -5,6 +5,7 @@
 #include "core/text.h"
 #include "output/format.h"
 #include "output/metadata.h"
+#include "support/errors.h"
 
 namespace astrosplat {
 namespace {
@@ -22,14 +23,7 @@ OutputParams to(const char* path) {
     return output;
 }
 
-std::string error_of(const OutputParams& output) {
-    try {
-        check_output(output);
-    } catch (const InputError& error) {
-        return error.what();
-    }
-    return "no error";
-}
+std::string error_of(const OutputParams& output) { return ERROR_OF(check_output(output)); }
 
 TEST(Format, AutoFollowsTheEnding) {
     OutputParams output;

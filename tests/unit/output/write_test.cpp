@@ -187,7 +187,7 @@ TEST_F(WriteTest, DwaaIsWrittenToo) {
     const fs::path file = write("a.exr", output, frame);
     RawFile raw = read_raw(file);
     EXPECT_EQ(raw.spec.get_string_attribute("compression"), "dwaa");
-    EXPECT_NE(bytes_of(file).find("dwaCompressionLevel"), std::string::npos);
+    EXPECT_HAS(bytes_of(file), "dwaCompressionLevel");
     EXPECT_NEAR(raw.at(40, 10, "R"), frame.beauty.at(40, 10)[0], 0.02f);
 }
 
@@ -352,7 +352,7 @@ TEST_F(WriteTest, ExrHeaderHoldsProvenanceAndGeometryButNoClock) {
     // The attribute's name as OpenEXR spells it, not OpenImageIO's.
     const std::string bytes = bytes_of(file);
     for (const char* name : {"framesPerSecond", "worldToCamera", "worldToNDC", "chromaticities"})
-        EXPECT_NE(bytes.find(std::string(name) + '\0'), std::string::npos) << name;
+        EXPECT_HAS(bytes, std::string(name) + '\0');
 }
 
 TEST_F(WriteTest, FfmpegReadsExrWithLongTexts) {
@@ -393,7 +393,7 @@ TEST_F(WriteTest, TextsBeyondAsciiAreKept) {
     }
     const std::string png = bytes_of(folder_ / "a.png");
     EXPECT_NE(png.find("iTXtCopyright"), std::string::npos) << "tEXt would be Latin 1";
-    EXPECT_NE(png.find("tEXtastrosplat/frame"), std::string::npos);
+    EXPECT_HAS(png, "tEXtastrosplat/frame");
 }
 
 TEST_F(WriteTest, TruncatedFilesAreNotWhole) {
@@ -425,7 +425,7 @@ TEST_F(WriteTest, UnwritablePlacesAreOneLine) {
         FAIL();
     } catch (const OutputError& error) {
         const std::string line = error.what();
-        EXPECT_NE(line.find("plain/a.exr: its folder cannot be made: "), std::string::npos) << line;
+        EXPECT_HAS(line, "plain/a.exr: its folder cannot be made: ");
         EXPECT_EQ(line.find('\n'), std::string::npos);
     }
     fs::create_directories(folder_ / "folder.exr");

@@ -13,6 +13,7 @@
 #include "camera/camera.h"
 #include "core/error.h"
 #include "core/real.h"
+#include "support/errors.h"
 
 namespace astrosplat {
 namespace {
@@ -284,14 +285,7 @@ TEST_F(EnvironmentTest, NoPictureIsBlack) {
     EXPECT_EQ(environment.largest, 0.0f);
 }
 
-std::string error_of(const EnvironmentParams& params) {
-    try {
-        load_environment(params);
-    } catch (const InputError& error) {
-        return error.what();
-    }
-    return "no error";
-}
+std::string error_of(const EnvironmentParams& params) { return ERROR_OF(load_environment(params)); }
 
 TEST_F(EnvironmentTest, ErrorsNameWhatIsWrong) {
     EnvironmentParams params;

@@ -27,7 +27,7 @@ class CameraFile : public test::CameraFileTest {
         return parse_scene(test::small_scene() + "[camera]\n" + camera + rest, folder / "scene.toml");
     }
     std::string refused(const std::string& camera) {
-        std::string text = message_of<InputError>([&] { scene(camera); });
+        std::string text = ERROR_OF(scene(camera));
         const std::string inside = folder.path().string() + "/";
         for (std::size_t at; (at = text.find(inside)) != text.npos;) text.erase(at, inside.size());
         return text;
@@ -125,7 +125,7 @@ TEST_F(CameraFile, TheSceneSavesTheKeyAndNotTheFrames) {
     put("cam.chan", two_frames);
     const Scene s = scene("file = \"cam.chan\"\n");
     const std::string text = save_text(s, "", folder / "scene.toml");
-    EXPECT_NE(text.find("file = \"cam.chan\""), text.npos) << text;
+    EXPECT_HAS(text, "file = \"cam.chan\"");
     EXPECT_EQ(text.find("[animation]"), text.npos) << text;
     EXPECT_EQ(parse_scene(text, folder / "scene.toml"), s);
 }
@@ -297,17 +297,11 @@ TEST_F(ExportCamera, UsdHasRowsAndAVerticalAperture) {
 TEST_F(ExportCamera, RefusesWhatItCannotSay) {
     const std::vector<std::int64_t> frames{1};
     const Scene framing = scene("fov = 40.0\n", "");
-    EXPECT_NE(message_of<InputError>([&] {
-                  camera_track(framing, frames);
-              }).find("camera.position: expected a position"),
-              std::string::npos);
+    EXPECT_HAS(ERROR_OF(camera_track(framing, frames)), "camera.position: expected a position");
     const Scene flat = scene("projection = \"orthographic\"\nposition = [0, 0, 5]\n", "");
     const CameraTrack track = camera_track(flat, frames);
-    EXPECT_NE(message_of<InputError>([&] { camera_text(track, flat, "a.chan"); }).find("found orthographic"),
-              std::string::npos);
-    EXPECT_NE(message_of<InputError>([&] {
-                  camera_text(track, flat, "a.abc");
-              }).find(".chan, .csv, .gltf or .usda"),
+    EXPECT_HAS(ERROR_OF(camera_text(track, flat, "a.chan")), "found orthographic");
+    EXPECT_NE(ERROR_OF(camera_text(track, flat, "a.abc")).find(".chan, .csv, .gltf or .usda"),
               std::string::npos);
 }
 

@@ -366,9 +366,8 @@ TEST(Messages, WholeFiles) {
               "scene.toml:2: astrosplat: expected the format version 1, found 2");
     EXPECT_EQ(message("astrosplat = \"1\"\n"),
               "scene.toml:1: astrosplat: expected the format version 1, found a string");
-    EXPECT_EQ(
-        message_of<InputError>([] { check_renderable(parse_scene("astrosplat = 1\n", "scene.toml"), {}); }),
-        "scene.toml: expected at least one [[layer]], found none");
+    EXPECT_EQ(ERROR_OF(check_renderable(parse_scene("astrosplat = 1\n", "scene.toml"), {})),
+              "scene.toml: expected at least one [[layer]], found none");
     EXPECT_EQ(message("astrosplat = 1\n[layer]\nname = \"a\"\n"),
               "scene.toml:2: layer: expected [[layer]], found a table");
     EXPECT_EQ(message("astrosplat = 1\nanimation = 2\n"),

@@ -18,14 +18,7 @@ namespace {
 
 class LoadSourceTest : public SplatFileTest {
   protected:
-    static std::string error_of(const SourceParams& source) {
-        try {
-            load_source(source, "dust");
-        } catch (const InputError& error) {
-            return error.what();
-        }
-        return "no error";
-    }
+    static std::string error_of(const SourceParams& source) { return ERROR_OF(load_source(source, "dust")); }
     static SourceParams mesh_source(const std::filesystem::path& mesh,
                                     std::vector<std::filesystem::path> texture = {}) {
         SourceParams source;

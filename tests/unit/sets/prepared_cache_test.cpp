@@ -201,18 +201,17 @@ TEST_F(PreparedSource, BodiesLookForStarsUnlessThoseWereRemovedOrTheyAreTold) {
 TEST_F(PreparedSource, RefusesMasksOfAnotherSize) {
     const fs::path small = folder_.file("small.ppm", "P6\n16 16\n255\n" + std::string(16 * 16 * 3, 'x'));
     source_.texture.prepare.mask = small;
-    EXPECT_EQ(message_of<InputError>([&] { load_source(source_, "dust"); }),
+    EXPECT_EQ(ERROR_OF(load_source(source_, "dust")),
               "layer 'dust': prepare.mask:" + small.string() +
                   ": expected 128x96 px like the picture, found 16x16 px");
     source_.texture.prepare.mask.clear();
     source_.texture.prepare.fill = small;
-    EXPECT_NE(message_of<InputError>([&] { load_source(source_, "dust"); }).find("prepare.fill:"),
-              std::string::npos);
+    EXPECT_HAS(ERROR_OF(load_source(source_, "dust")), "prepare.fill:");
 }
 
 TEST_F(PreparedSource, RefusesToAlignWhatHasNoSky) {
     source_.texture.prepare.align = folder_ / "p.ppm";
-    EXPECT_EQ(message_of<InputError>([&] { load_source(source_, "dust"); }),
+    EXPECT_EQ(ERROR_OF(load_source(source_, "dust")),
               "layer 'dust': " + (folder_ / "p.ppm").string() +
                   ": expected a FITS picture whose header tells the sky (RA---TAN), found none");
 }

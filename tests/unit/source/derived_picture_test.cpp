@@ -328,8 +328,7 @@ TEST(Mask, AnImageCoversTheTextureWhateverItsSize) {
     EXPECT_EQ(*weights.at(79, 10), 0.0f);
     EXPECT_NEAR(sum(weights), 0.5 * 80 * 30, 1e-3);
     mask.image = folder / "none.pgm";
-    EXPECT_NE(message_of<InputError>([&] { mask_weights(grey(2, 2), std::vector{mask}); }).find("none.pgm"),
-              std::string::npos);
+    EXPECT_HAS(ERROR_OF(mask_weights(grey(2, 2), std::vector{mask})), "none.pgm");
 }
 
 TEST(Mask, AMapWeighsByItsValueOrByTheRangeOfLuminance) {

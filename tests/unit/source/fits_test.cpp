@@ -84,7 +84,7 @@ TEST(FitsCompressed, CardsThatCannotBeAreOneLine) {
                                                          {"PCOUNT", "4x"}};
     for (const auto& [keyword, value] : wrong) {
         const fs::path file = folder.file("bad.fits", with_value(whole, keyword, value));
-        const std::string message = message_of<InputError>([&] { read_fits(file, "auto", 0); });
+        const std::string message = ERROR_OF(read_fits(file, "auto", 0));
         EXPECT_EQ(message.rfind(fmt::format("{}:HDU 1: expected {} to be ", file.string(), keyword), 0), 0u)
             << message;
         EXPECT_EQ(message.find('\n'), std::string::npos);
@@ -93,11 +93,11 @@ TEST(FitsCompressed, CardsThatCannotBeAreOneLine) {
     }
     std::string flat = whole;
     flat.replace(flat.find("ZNAXIS2 ="), 1, "X");
-    EXPECT_EQ(message_of<InputError>([&] { read_fits(folder.file("bad.fits", flat), "auto", 0); }),
+    EXPECT_EQ(ERROR_OF(read_fits(folder.file("bad.fits", flat), "auto", 0)),
               (folder / "bad.fits").string() + ":HDU 1: expected ZNAXIS2 to be there, found none");
     std::string nameless = whole;
     nameless.replace(whole.find("ZVAL2   ="), 5, "XVAL2");
-    EXPECT_EQ(message_of<InputError>([&] { read_fits(folder.file("bad.fits", nameless), "auto", 0); }),
+    EXPECT_EQ(ERROR_OF(read_fits(folder.file("bad.fits", nameless), "auto", 0)),
               (folder / "bad.fits").string() + ":HDU 1: expected ZVAL2 to be there with ZNAME2, found none");
 }
 
@@ -188,7 +188,7 @@ TEST(Fits, AFileOfTablesIsNoPicture) {
     fits_create_tbl(out, BINARY_TBL, 3, 1, names, forms, nullptr, "EVENTS", &status);
     fits_close_file(out, &status);
     ASSERT_EQ(status, 0);
-    EXPECT_EQ(message_of<InputError>([&] { require_picture(file); }),
+    EXPECT_EQ(ERROR_OF(require_picture(file)),
               file.string() + ": expected an HDU with a picture, found none in 2 HDUs");
     EXPECT_EQ(describe_fits(file).size(), 2u);
 }
@@ -197,8 +197,7 @@ TEST(Fits, PipesAreRefusedAndReadingStopsWhenAsked) {
     const TempFolder folder;
     const fs::path pipe = folder / "pipe.fits";
     ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
-    EXPECT_EQ(message_of<InputError>([&] { describe_fits(pipe); }),
-              pipe.string() + ": cannot be read: it is not a regular file");
+    EXPECT_EQ(ERROR_OF(describe_fits(pipe)), pipe.string() + ": cannot be read: it is not a regular file");
     const fs::path file = write_compressed(folder / "a.fits", RICE_1);
     const std::atomic<bool> stop{true};
     EXPECT_THROW(read_fits(file, "auto", 0, Progress{{}, &stop}), Cancelled);

@@ -125,8 +125,8 @@ TEST(PictureRows, OfAWindowThatHoldsNextToNothingAreRefused) {
     const std::string message =
         file.string() +
         ":display window: expected at most 268435456 px for the 1x1 px that it has, found 60000x60000 px";
-    EXPECT_EQ(message_of<InputError>([&] { open_picture_rows(file); }), message);
-    EXPECT_EQ(message_of<InputError>([&] { require_picture(file); }), message);
+    EXPECT_EQ(ERROR_OF(open_picture_rows(file)), message);
+    EXPECT_EQ(ERROR_OF(require_picture(file)), message);
     EXPECT_EQ(open_picture_rows(one_pixel_of(folder / "b.exr", 16384, 16384)).rows.height, 16384)
         << "as a crop of a large frame";
 }

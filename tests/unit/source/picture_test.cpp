@@ -58,7 +58,7 @@ class PictureFileTest : public testing::Test {
 
 TEST_F(PictureFileTest, OnlyFormatsOfTheListAreOpened) {
     const auto error = [](const fs::path& file) {
-        const std::string message = message_of<InputError>([&] { read_picture(file); });
+        const std::string message = ERROR_OF(read_picture(file));
         return message.substr(std::min(message.size(), file.string().size()));
     };
     const std::string other = ": cannot be read as a picture: it is not OpenEXR, TIFF, PNG, JPEG, FITS, ";
@@ -101,12 +101,12 @@ TEST_F(PictureFileTest, LibrariesPrintNothingOfTheirOwn) {
         for (const fs::path& bad :
              {folder.file("bad." + std::string(ending), bytes),
               folder.file("cut." + std::string(ending), bytes.substr(0, size * 3 / 4))}) {
-            const std::string message = message_of<InputError>([&] { read_picture(bad); });
+            const std::string message = ERROR_OF(read_picture(bad));
             EXPECT_EQ(message.find('\n'), std::string::npos) << message;
         }
         EXPECT_EQ(testing::internal::GetCapturedStderr(), "") << ending;
     }
-    EXPECT_NE(message_of<InputError>([&] { read_picture(folder / "cut.png"); }), "no error");
+    EXPECT_NE(ERROR_OF(read_picture(folder / "cut.png")), "no error");
     testing::internal::CaptureStderr();
     std::fputs("others still print\n", stderr);
     EXPECT_EQ(testing::internal::GetCapturedStderr(), "others still print\n");
@@ -114,7 +114,7 @@ TEST_F(PictureFileTest, LibrariesPrintNothingOfTheirOwn) {
 
 TEST_F(PictureFileTest, ADamagedHeaderIsNotBlamedOnTheColours) {
     const fs::path file = folder.file("a.exr", "\x76\x2f\x31\x01 and then nothing of the kind");
-    const std::string message = message_of<InputError>([&] { read_picture(file); });
+    const std::string message = ERROR_OF(read_picture(file));
     EXPECT_EQ(message.rfind(file.string() + ": ", 0), 0u) << message;
     EXPECT_EQ(message.find("resolution"), message.npos) << message;
 }

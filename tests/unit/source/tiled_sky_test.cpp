@@ -91,7 +91,7 @@ TEST(TiledSky, APlainPictureMakesAPlainSky) {
     for (std::size_t i = 0; i < plain.pixels.size(); ++i) plain.pixels[i] = 0.25f;
     for (const Image& face : tiled_sky(plain, {30.0, 1, 64}))
         for (const float value : face.pixels) ASSERT_NEAR(value, 0.25f, 1e-5f);
-    EXPECT_EQ(message_of<InputError>([] { tiled_sky(make_image(64, 31, 3), {}); }),
+    EXPECT_EQ(ERROR_OF(tiled_sky(make_image(64, 31, 3), {})),
               "environment.tile: expected a picture of at least 32 px a side, found 31");
 }
 

@@ -26,9 +26,7 @@ using testing::HasSubstr;
 
 StarCatalogue parse(const std::string& text) { return parse_catalogue(text, "stars"); }
 
-std::string error_of(const std::string& text) {
-    return message_of<InputError>([&] { parse(text); });
-}
+std::string error_of(const std::string& text) { return ERROR_OF(parse(text)); }
 
 void expect_star(const CatalogueStar& star, double ra_deg, double dec_deg, double distance_pc,
                  double magnitude) {
@@ -188,10 +186,9 @@ TEST(Catalogue, GzipIsReadWhateverTheName) {
     EXPECT_EQ(read_catalogue(folder.file("packed.dat", packed)).stars.size(), 1u);
     EXPECT_EQ(read_catalogue(folder.file("two.dat", packed + packed)).stars.size(), 2u);
     const std::filesystem::path cut = folder.file("cut.dat.gz", packed.substr(0, packed.size() / 2));
-    EXPECT_EQ(message_of<InputError>([&] { read_catalogue(cut); }),
+    EXPECT_EQ(ERROR_OF(read_catalogue(cut)),
               cut.string() + ": expected a whole gzip file, found damaged data");
-    EXPECT_THAT(message_of<InputError>([&] { read_catalogue(folder / "absent.dat"); }),
-                HasSubstr("cannot be read"));
+    EXPECT_THAT(ERROR_OF(read_catalogue(folder / "absent.dat")), HasSubstr("cannot be read"));
 }
 
 TEST(Catalogue, NumbersDoNotHangOnTheLocale) {
@@ -259,12 +256,11 @@ TEST(PictureTable, BadRowsAreCountedAndNamed) {
 }
 
 TEST(PictureTable, OddFilesEndInOneLine) {
-    EXPECT_EQ(message_of<InputError>([] { parse_picture_table("ra,dec,mag\n1,2,3\n", "a.csv"); }),
+    EXPECT_EQ(ERROR_OF(parse_picture_table("ra,dec,mag\n1,2,3\n", "a.csv")),
               "a.csv:line 1: expected the stars of a picture: names of columns with u, v, flux_r, flux_g and "
               "flux_b among them, found 'ra,dec,mag'");
-    EXPECT_NE(message_of<InputError>([] {
-                  parse_picture_table("u,v,flux_r,flux_g,flux_b\n1,2,3,4,inf\n", "a.csv");
-              }).find("a.csv: expected stars, found 1 of 1 row"),
+    EXPECT_NE(ERROR_OF(parse_picture_table("u,v,flux_r,flux_g,flux_b\n1,2,3,4,inf\n", "a.csv"))
+                  .find("a.csv: expected stars, found 1 of 1 row"),
               std::string::npos);
 }
 
