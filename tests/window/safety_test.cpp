@@ -3,6 +3,7 @@
 
 #include "edit/kept_files.h"
 #include "gui/widgets.h"
+#include "edit/snapshots.h"
 #include "window/window_test.h"
 
 namespace astrosplat::test {

@@ -8,7 +8,6 @@
 #include <glm/matrix.hpp>
 #include <string>
 
-#include "core/error.h"
 #include "core/real.h"
 #include "core/rotation.h"
 #include "support/errors.h"

@@ -5,7 +5,6 @@
 #include <array>
 #include <cstdio>
 
-#include "core/error.h"
 #include "edit/command_lines.h"
 #include "edit/edits.h"
 #include "edit/layers.h"

@@ -3,6 +3,7 @@
 
 #include "edit/document.h"
 #include "edit/edits.h"
+#include "edit/keyframes.h"
 #include "scene/animate.h"
 #include "scenes.h"
 #include "support/errors.h"

@@ -7,7 +7,6 @@
 #include "edit/document.h"
 #include "scene/describe.h"
 #include "support/bits.h"
-#include "support/errors.h"
 #include "support/temp_folder.h"
 
 namespace astrosplat::test {

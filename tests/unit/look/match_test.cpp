@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "core/error.h"
 #include "core/real.h"
 #include "support/bits.h"
 #include "unit/look/sets.h"

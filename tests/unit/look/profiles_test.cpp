@@ -5,7 +5,6 @@
 #include <cstring>
 #include <vector>
 
-#include "core/error.h"
 #include "core/real.h"
 #include "look/prepare.h"
 #include "support/errors.h"

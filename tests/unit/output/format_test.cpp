@@ -1,7 +1,6 @@
 // Settings of a format that go together, and the text that a frame carries.
 #include <gtest/gtest.h>
 
-#include "core/error.h"
 #include "core/text.h"
 #include "output/format.h"
 #include "output/metadata.h"

@@ -1,5 +1,4 @@
 // Environments as pictures: the backdrop, and cube maps in one file.
-#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <atomic>

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 
-#include "core/error.h"
 #include "core/real.h"
 #include "render/shared_render.h"
 #include "unit/render/scenes.h"

@@ -8,7 +8,6 @@
 #include <glm/geometric.hpp>
 
 #include "core/real.h"
-#include "core/rotation.h"
 #include "core/shared_maths.h"
 #include "support/printing.h"
 #include "unit/render/sphere_scenes.h"

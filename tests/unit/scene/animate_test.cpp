@@ -1,7 +1,6 @@
 // The scene at one frame, and what the renderer takes of it.
 #include <gtest/gtest.h>
 
-#include "core/error.h"
 #include "scene/animate.h"
 #include "scene/check.h"
 #include "scene/layer_setup.h"

@@ -7,6 +7,7 @@
 #include "scene/parameter_key.h"
 #include "scene/toml_text.h"
 #include "scene_texts.h"
+#include "support/errors.h"
 
 namespace astrosplat::test {
 namespace {
@@ -77,14 +78,7 @@ TEST(Suggest, NearestName) {
 
 using Frames = std::vector<std::int64_t>;
 
-std::string refusal(const std::string& text) {
-    try {
-        parse_frames(text, "--frames");
-    } catch (const InputError& error) {
-        return error.what();
-    }
-    return "";
-}
+std::string refusal(const std::string& text) { return ERROR_OF(parse_frames(text, "--frames")); }
 
 TEST(Frames, ListsRangesAndSteps) {
     EXPECT_EQ(parse_frames("5", ""), (Frames{5}));

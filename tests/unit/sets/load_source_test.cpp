@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include "bodies/bodies.h"
-#include "core/log.h"
 #include "sets/load_source.h"
 #include "source/textured_mesh.h"
 #include "splat_files/splat_file.h"

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <functional>
 
-#include "core/error.h"
 #include "core/file.h"
 #include "core/log.h"
 #include "sets/kept.h"

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "core/color.h"
-#include "core/error.h"
 #include "core/real.h"
 #include "source/texture.h"
 #include "source/textured_mesh.h"

@@ -11,7 +11,6 @@
 #include <sstream>
 
 #include "core/error.h"
-#include "core/log.h"
 #include "core/real.h"
 #include "support/errors.h"
 #include "support/quiet.h"

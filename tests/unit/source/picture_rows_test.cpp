@@ -10,7 +10,6 @@
 #include <limits>
 #include <vector>
 
-#include "core/error.h"
 #include "image/resample.h"
 #include "source/picture.h"
 #include "source/stored_picture.h"

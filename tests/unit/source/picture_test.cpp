@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "core/error.h"
-#include "core/log.h"
 #include "source/picture.h"
 #include "source/texture.h"
 #include "source/textured_mesh.h"

@@ -6,7 +6,6 @@
 #include <glm/geometric.hpp>
 #include <map>
 
-#include "core/error.h"
 #include "core/real.h"
 #include "source/textured_mesh.h"
 #include "support/errors.h"

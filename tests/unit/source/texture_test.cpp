@@ -10,7 +10,6 @@
 #include <limits>
 
 #include "core/color.h"
-#include "core/error.h"
 #include "core/real.h"
 #include "source/fits.h"
 #include "source/picture.h"

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
-#include "core/error.h"
 #include "core/real.h"
 #include "detect/parts.h"
 #include "support/errors.h"

@@ -10,7 +10,6 @@
 #include "core/color.h"
 #include "core/log.h"
 #include "core/rotation.h"
-#include "splat_files/formats.h"
 #include "splat_files/gaussian_rows.h"
 #include "splat_files/native.h"
 #include "splat_files/splat_file.h"

@@ -6,7 +6,6 @@
 #include <csignal>
 #include <string>
 
-#include "core/log.h"
 #include "support/process_state.h"
 #include "support/quiet.h"
 #include "support/test_data.h"

@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/log.h"
 #include "splat_files/ply_bytes.h"
 #include "support/quiet.h"
 #include "unit/splat_files/file_support.h"

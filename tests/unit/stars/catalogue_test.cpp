@@ -6,7 +6,6 @@
 #include <iterator>
 
 #include "catalogues.h"
-#include "core/error.h"
 #include "core/text.h"
 #include "stars/catalogue.h"
 #include "support/bits.h"
