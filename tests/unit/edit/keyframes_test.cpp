@@ -21,12 +21,7 @@ const std::string core = "layer.stars.render.core";  // keys at 1 and 24, smooth
 struct Keyframes : testing::Test {
     Scene scene = parse_scene(test::edit_scene, "/scene.toml");
 
-    Frames frames_of(const std::string& key) const {
-        Frames frames;
-        if (const Track* track = find_track(scene, key))
-            for (const auto& k : track->keyframes) frames.push_back(k.frame);
-        return frames;
-    }
+    Frames frames_of(const std::string& key) const { return test::frames_of(scene, key); }
 };
 
 TEST_F(Keyframes, AreFound) {

@@ -147,13 +147,9 @@ std::vector<ParameterSpec> specs_of(const Document& document) {
 /// False where a rule between parameters refused the value; the scene is then as before.
 bool try_set(Document& document, const std::string& key, const Value& value, double frame) {
     const Scene before = document.scene();
-    try {
-        document.set(key, value, frame);
-        return true;
-    } catch (const InputError&) {
-        EXPECT_EQ(document.scene(), before) << key;
-        return false;
-    }
+    if (ERROR_OF(document.set(key, value, frame)) == "no error") return true;
+    EXPECT_EQ(document.scene(), before) << key;
+    return false;
 }
 
 /// Rules between parameters may refuse these: curves without points, half of a pair such as radius.min above

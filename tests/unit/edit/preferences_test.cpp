@@ -37,7 +37,7 @@ class PreferencesTest : public testing::Test {
 };
 
 TEST_F(PreferencesTest, RoundTrip) {
-    const test::CommaLocale comma;
+    const CommaLocale comma;
     Preferences p;
     p.window_width = 1234;
     p.window_height = 777;

@@ -14,6 +14,7 @@
 #include "scene/load.h"
 #include "support/color_config.h"
 #include "support/errors.h"
+#include "support/temp_folder.h"
 
 namespace astrosplat {
 namespace {
@@ -22,11 +23,7 @@ namespace fs = std::filesystem;
 
 class FrameHashTest : public testing::Test {
   protected:
-    void SetUp() override {
-        folder_ = fs::temp_directory_path() /
-                  fmt::format("astrosplat hash {} {}",
-                              testing::UnitTest::GetInstance()->current_test_info()->name(), getpid());
-        fs::create_directories(folder_);
+    FrameHashTest() {
         put("stars.png", "one");
         put("dust.pda", "two");
         put("sky.exr", "three");
@@ -35,9 +32,8 @@ class FrameHashTest : public testing::Test {
         put("disk.mtl", "newmtl m\nmap_Kd own.png\n");
         put("own.png", "four");
     }
-    void TearDown() override { fs::remove_all(folder_); }
 
-    void put(const std::string& name, const std::string& text) { std::ofstream(folder_ / name) << text; }
+    void put(const std::string& name, const std::string& text) { folder_.file(name, text); }
 
     Scene scene() {
         return parse_scene(R"(astrosplat = 1
@@ -69,7 +65,7 @@ file = "dust.pda"
         return hash(other, frame);
     }
 
-    fs::path folder_;
+    TempFolder folder_;
 };
 
 TEST_F(FrameHashTest, FilesThatChangedSinceAreRefused) {
@@ -143,6 +139,19 @@ TEST_F(FrameHashTest, TheScaleCountsAsTheUnitOfStars) {
 
 TEST_F(FrameHashTest, EveryOtherParameterCounts) {
     // Every numeric or boolean parameter of the scene, changed through its description.
+    const std::set<std::string> of_others = {"output.fps",
+                                             "camera.position",  // keyed, or not seen
+                                             "layer.source.like",
+                                             "layer.source.depth",
+                                             "layer.source.slab",           // of stars of a picture
+                                             "scene.light_years_per_unit",  // of stars of a catalogue
+                                             "camera.fisheye_tilt",
+                                             "camera.panorama_fov",
+                                             "camera.eye_separation",
+                                             "camera.convergence",  // of lenses
+                                             "camera.focus_distance",
+                                             "camera.unit_mm",
+                                             "output.samples"};  // of blurs
     Scene original = scene();
     const std::string before = hash(original, 5);
     int tried = 0;
@@ -151,19 +160,9 @@ TEST_F(FrameHashTest, EveryOtherParameterCounts) {
         Description description = describe(other);
         const Parameter& parameter = description.parameters[i];
         const std::string& key = parameter.spec.generic_key;
-        if (key == "output.fps" || parameter.spec.key == "layer.dust.visible" || key == "camera.position" ||
-            key == "scene.light_years_per_unit")
-            continue;
-        if (key.starts_with("camera.file_")) continue;         // of no camera file
+        if (of_others.contains(key) || parameter.spec.key == "layer.dust.visible") continue;
+        if (key.starts_with("camera.file_") || key.starts_with("environment.tile_")) continue;  // of no file
         if (parameter.spec.section == "Star image") continue;  // of layers that are stars
-        const std::string& generic = parameter.spec.generic_key.text();
-        if (generic == "layer.source.like" || generic == "layer.source.depth" ||
-            generic == "layer.source.slab" || generic.starts_with("environment.tile_"))
-            continue;  // of stars of a picture, and of a tiled sky
-        if (key == "camera.fisheye_tilt" || key == "camera.panorama_fov" || key == "camera.focus_distance" ||
-            key == "camera.eye_separation" || key == "camera.convergence" || key == "camera.unit_mm" ||
-            key == "output.samples")
-            continue;  // of other lenses and no blur
         const Value value = parameter.get();
         if (parameter.spec.type != ParameterType::number && parameter.spec.type != ParameterType::boolean)
             continue;
@@ -247,7 +246,7 @@ TEST_F(FrameHashTest, EyesCountWhereThereAreTwo) {
 }
 
 TEST_F(FrameHashTest, AConfigurationCountsWhereAViewIsWritten) {
-    const fs::path config = test::write_color_config(folder_);
+    const fs::path config = test::write_color_config(folder_.path());
     const auto managed = [&](const std::string& file, const OcioParams& ocio) {
         return changed([&](Scene& s) {
             s.output.path = file;
@@ -427,7 +426,7 @@ TEST_F(FrameHashTest, CanonicalTextShowsWhatIsHashed) {
     EXPECT_EQ(text.rfind("pixels = 4\n", 0), 0u);
     EXPECT_NE(text.find("\ncamera.position = [0.0, 0.0, 30.0]\n"), std::string::npos) << text;
     EXPECT_HAS(text, "\nlayer.stars.source.meshes.0.mesh = \"plane\"\n");
-    EXPECT_EQ(text.find(folder_.string()), std::string::npos) << text;
+    EXPECT_EQ(text.find(folder_.path().string()), std::string::npos) << text;
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include "core/parallel.h"
 #include "look/prepare.h"
 #include "support/bits.h"
+#include "support/errors.h"
 #include "support/quiet.h"
 #include "unit/look/sets.h"
 
@@ -214,14 +215,7 @@ TEST(SameBits, AsLookSplatOneByOne) {
 
 // Every message a person can meet in the look, word for word.
 
-std::string message(const SplatSet& set, const Look& look) {
-    try {
-        apply_look(set, look, {});
-    } catch (const InputError& error) {
-        return error.what();
-    }
-    return "no error";
-}
+std::string message(const SplatSet& set, const Look& look) { return ERROR_OF(apply_look(set, look, {})); }
 
 TEST(LookErrors, CurveWithTooManyPoints) {
     Look look;

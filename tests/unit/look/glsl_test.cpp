@@ -4,35 +4,26 @@
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
-#include <sstream>
 #include <string>
+
+#include "support/bits.h"
+#include "support/temp_folder.h"
 
 namespace astrosplat {
 namespace {
-
-std::string shared_file(const std::string& name) {
-    std::ifstream file(std::filesystem::path(ASTROSPLAT_SOURCE_DIR) / "shaders" / "shared" / name);
-    std::ostringstream text;
-    text << file.rdbuf();
-    return text.str();
-}
 
 bool runs(const std::string& command) { return std::system((command + " > /dev/null 2>&1").c_str()) == 0; }
 
 std::string shader(const std::string& body) {
     std::string text = "#version 410 core\n";
     for (const char* name : {"maths.glsl", "noise.glsl", "look_uniforms.glsl", "look.glsl"})
-        text += shared_file(name);
+        text += test::bytes_of(std::filesystem::path(ASTROSPLAT_SOURCE_DIR) / "shaders/shared" / name);
     return text + body;
 }
 
 bool compiles(const std::string& text) {
-    const auto file = std::filesystem::temp_directory_path() / "astrosplat_look_test.vert";
-    std::ofstream(file) << text;
-    const bool taken = runs("glslangValidator '" + file.string() + "'");
-    std::filesystem::remove(file);
-    return taken;
+    const TempFolder folder;
+    return runs("glslangValidator '" + folder.file("look.vert", text).string() + "'");
 }
 
 TEST(Glsl, TheLookCompilesAsAShader) {

@@ -22,6 +22,7 @@
 #include "support/bits.h"
 #include "support/errors.h"
 #include "support/process_state.h"
+#include "support/temp_folder.h"
 
 namespace astrosplat {
 namespace {
@@ -94,10 +95,7 @@ RenderedFrame noisy_frame(std::int64_t size) {
 
 class WriteTest : public testing::Test {
   protected:
-    void SetUp() override {
-        const char* name = testing::UnitTest::GetInstance()->current_test_info()->name();
-        folder_ = fs::temp_directory_path() / fmt::format("astrosplat größe {} {}", name, getpid());
-        fs::create_directories(folder_);
+    WriteTest() {
         metadata_.frame = 12;
         metadata_.fps = 23.976;
         metadata_.frame_hash = std::string(64, 'a');
@@ -105,10 +103,7 @@ class WriteTest : public testing::Test {
         metadata_.seed = 4000000000u;
         metadata_.provenance = {"Orion\nfrom the side", "NASA/ESA", "Artwork"};
     }
-    void TearDown() override {
-        fs::permissions(folder_, fs::perms::owner_all);
-        fs::remove_all(folder_);
-    }
+    ~WriteTest() override { fs::permissions(folder_.path(), fs::perms::owner_all); }
 
     fs::path write(const std::string& name, const OutputParams& output, const RenderedFrame& frame) {
         fs::path file = folder_ / name;
@@ -117,7 +112,7 @@ class WriteTest : public testing::Test {
         return file;
     }
 
-    fs::path folder_;
+    TempFolder folder_;
     FrameMetadata metadata_;
 };
 
@@ -419,15 +414,10 @@ TEST_F(WriteTest, FoldersAreMadeAndNothingElseIsLeft) {
 }
 
 TEST_F(WriteTest, UnwritablePlacesAreOneLine) {
-    std::ofstream(folder_ / "plain") << "a file, not a folder";
-    try {
-        write("plain/a.exr", {}, soft_frame(2, 2));
-        FAIL();
-    } catch (const OutputError& error) {
-        const std::string line = error.what();
-        EXPECT_HAS(line, "plain/a.exr: its folder cannot be made: ");
-        EXPECT_EQ(line.find('\n'), std::string::npos);
-    }
+    folder_.file("plain", "a file, not a folder");
+    const std::string line = message_of<OutputError>([&] { write("plain/a.exr", {}, soft_frame(2, 2)); });
+    EXPECT_HAS(line, "plain/a.exr: its folder cannot be made: ");
+    EXPECT_EQ(line.find('\n'), std::string::npos);
     fs::create_directories(folder_ / "folder.exr");
     EXPECT_THROW(write("folder.exr", {}, soft_frame(2, 2)), OutputError);
 }
@@ -448,7 +438,7 @@ TEST_F(WriteTest, AFullDiskIsAnErrorInEveryFormatAndKeepsTheOldFrame) {
         }
         EXPECT_TRUE(bytes_of(file) == before) << name;
     }
-    EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), 3) << "temporary files stayed";
+    EXPECT_EQ(std::distance(fs::directory_iterator(folder_.path()), {}), 3) << "temporary files stayed";
 }
 
 TEST_F(WriteTest, AFullDiskIsAnErrorForScreenshotsToo) {
@@ -477,7 +467,7 @@ TEST_F(WriteTest, FramesThatAppearedMeanwhileAreKept) {
 
 TEST_F(WriteTest, ReadOnlyFoldersAreOneLine) {
     if (geteuid() == 0) GTEST_SKIP() << "root may write everywhere: a read-only folder cannot be tested";
-    fs::permissions(folder_, fs::perms::owner_read | fs::perms::owner_exec);
+    fs::permissions(folder_.path(), fs::perms::owner_read | fs::perms::owner_exec);
     EXPECT_THROW(write("a.exr", {}, soft_frame(2, 2)), OutputError);
 }
 

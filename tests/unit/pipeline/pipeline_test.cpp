@@ -179,8 +179,6 @@ TEST_F(SetScene, TilesCoverThePictureOnce) {
 class Streamed : public testing::Test {
   protected:
     Streamed() {
-        folder = std::filesystem::temp_directory_path() / ("astrosplat-streamed-" + std::to_string(getpid()));
-        std::filesystem::create_directories(folder);
         Scene& scene = small.scene;
         scene.output.width = 96;
         scene.output.height = 60;
@@ -202,11 +200,10 @@ class Streamed : public testing::Test {
             names.push_back(layer.name);
         }
     }
-    ~Streamed() override { std::filesystem::remove_all(folder); }
 
     Quiet quiet;
     SmallScene small;
-    std::filesystem::path folder;
+    TempFolder folder;
     std::vector<std::string> names;
 };
 

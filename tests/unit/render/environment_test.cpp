@@ -14,6 +14,7 @@
 #include "core/error.h"
 #include "core/real.h"
 #include "support/errors.h"
+#include "support/temp_folder.h"
 
 namespace astrosplat {
 namespace {
@@ -23,20 +24,11 @@ namespace fs = std::filesystem;
 /// A folder for this test's pictures, removed afterwards.
 class EnvironmentTest : public testing::Test {
   protected:
-    void SetUp() override {
-        folder_ =
-            fs::temp_directory_path() /
-            fmt::format("astrosplat env {}", testing::UnitTest::GetInstance()->current_test_info()->name());
-        fs::remove_all(folder_);
-        fs::create_directories(folder_);
-    }
-    void TearDown() override { fs::remove_all(folder_); }
-
     // A picture of 32-bit floats as a minimal TIFF: little-endian, one uncompressed strip.
     fs::path write(const std::string& name, int width, int height,
                    const std::function<glm::vec3(int, int)>& color);
 
-    fs::path folder_;
+    TempFolder folder_;
 };
 
 void append(std::string& bytes, std::uint32_t value, int size) {

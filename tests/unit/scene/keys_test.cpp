@@ -6,7 +6,6 @@
 #include "scene/frames.h"
 #include "scene/parameter_key.h"
 #include "scene/toml_text.h"
-#include "scene_texts.h"
 #include "support/errors.h"
 
 namespace astrosplat::test {

@@ -318,16 +318,11 @@ TEST(Load, TracksKeepTheFilesOrderAndTheirSettings) {
 }
 
 TEST(Load, ACommaLocaleChangesNothing) {
-    // No locale with a decimal comma need be installed here: then this still runs under the environment's
-    // own.
-    const char* found = nullptr;
-    for (const char* name : {"de_DE.UTF-8", "de_DE.utf8", "fr_FR.UTF-8", ""})
-        if (!found) found = std::setlocale(LC_ALL, name);
+    const CommaLocale comma;
     EXPECT_EQ(parse(small_scene(), {"camera.fov=30.5"}).camera.fov, 30.5);
     EXPECT_EQ(to_toml(Value(0.5)), "0.5");
     EXPECT_EQ(to_toml(Value(1e20)), "1e+20");
     EXPECT_EQ(to_toml(Value(3.0)), "3.0");
-    std::setlocale(LC_ALL, "C");
 }
 
 TEST(Load, FilesWithUmlautsAndBlanks) {
