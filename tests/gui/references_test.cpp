@@ -225,16 +225,9 @@ grade = { gain = 2.0, tint = [1.0, 0.8, 0.6] }
 }
 
 TEST(PanelReferences, AnglesOfAHybridLayer) {
-    PanelDriver driver(R"(astrosplat = 1
-[[layer]]
-name = "dust"
-[layer.source]
-meshes = [ { mesh = "plane", texture = "dust.png" } ]
-[layer.render]
-blend = "hybrid"
-hybrid = { from_deg = 20.0, to_deg = 65.0 }
-)",
-                       360.0f, 900.0f);
+    const std::string hybrid =
+        "[layer.render]\nblend = \"hybrid\"\nhybrid = { from_deg = 20.0, to_deg = 65.0 }\n";
+    PanelDriver driver(dust_scene(hybrid), 360.0f, 900.0f);
     driver.status = example_status();
     expect_panel_reference("panel_hybrid", driver, PanelTab::mixing, 900);
 }

@@ -34,10 +34,10 @@ std::size_t files_in(const fs::path& folder) {
 struct AutosaveTest : testing::Test {
     SceneFolder f;
     fs::path folder = f.folder / "zustand ä" / "autosave";
+    Document document = Document::open(f.file);
 };
 
 TEST_F(AutosaveTest, WritesAMinuteAfterTheFirstEdit) {
-    Document document = Document::open(f.file);
     Autosave autosave(folder);
     autosave.update(document, start);
     EXPECT_FALSE(fs::exists(folder));
@@ -64,7 +64,6 @@ TEST_F(AutosaveTest, WritesAMinuteAfterTheFirstEdit) {
 }
 
 TEST_F(AutosaveTest, GoesWhenNothingIsLeftToSave) {
-    Document document = Document::open(f.file);
     Autosave autosave(folder);
     document.set(opacity, 0.25, 1.0);
     ASSERT_TRUE(autosave.write(document));
@@ -80,7 +79,6 @@ TEST_F(AutosaveTest, GoesWhenNothingIsLeftToSave) {
 }
 
 TEST_F(AutosaveTest, GoesWhenTheWindowCloses) {
-    Document document = Document::open(f.file);
     document.set(opacity, 0.25, 1.0);
     {
         Autosave autosave(folder);
@@ -90,7 +88,6 @@ TEST_F(AutosaveTest, GoesWhenTheWindowCloses) {
 }
 
 TEST_F(AutosaveTest, StaysWhenAnExceptionEndsTheProgram) {
-    Document document = Document::open(f.file);
     document.set(opacity, 0.25, 1.0);
     try {
         Autosave autosave(folder);
@@ -102,7 +99,6 @@ TEST_F(AutosaveTest, StaysWhenAnExceptionEndsTheProgram) {
 }
 
 TEST_F(AutosaveTest, ALivingProcessIsNotRecovered) {
-    Document document = Document::open(f.file);
     document.set(opacity, 0.25, 1.0);
     Autosave autosave(folder);
     ASSERT_TRUE(autosave.write(document));
@@ -127,7 +123,6 @@ TEST_F(AutosaveTest, TheNewestRecoveryComesFirst) {
 }
 
 TEST_F(AutosaveTest, AFolderThatCannotBeWrittenCostsOneWarning) {
-    Document document = Document::open(f.file);
     document.set(opacity, 0.25, 1.0);
     const Said said;
     Autosave autosave(f.file / "inside a file");
@@ -237,7 +232,6 @@ TEST_F(AutosaveTest, TheOriginalMayBeGone) {
 
 TEST_F(AutosaveTest, APresetThatIsGoneLosesNothing) {
     const fs::path preset = f.folder.file("vorlage.toml", "[look]\ndensity = 0.5\n");
-    Document document = Document::open(f.file);
     document.set("layer.stars.preset", preset.string(), 1.0);
     document.save();
     fs::remove(preset);

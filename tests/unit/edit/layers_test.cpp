@@ -18,11 +18,7 @@ namespace {
 struct Layers : testing::Test {
     Scene scene = parse_scene(test::edit_scene, "/scene.toml");
 
-    std::vector<std::string> names() const {
-        std::vector<std::string> result;
-        for (const LayerParams& layer : scene.layers) result.push_back(layer.name);
-        return result;
-    }
+    std::vector<std::string> names() const { return layer_names(scene); }
     using Names = std::vector<std::string>;
 };
 
