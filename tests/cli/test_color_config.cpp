@@ -11,25 +11,21 @@ class ColorConfigBatch : public SceneTest {
   protected:
     ColorConfigBatch() { write_color_config(folder); }
 
-    RunResult one(const std::string& file, std::vector<std::string> more,
-                  const std::string& ocio = "") const {
-        more.insert(more.end(), {"-q", "--frames", "1", "-o", file});
-        RunOptions options;
-        options.environment = {"OCIO=" + ocio};
-        return batch(more, options);
+    RunResult one(const std::string& file, Words more, const std::string& ocio = "") const {
+        return batch(joined(more, {"-q", "--frames", "1", "-o", file}), {.environment = {"OCIO=" + ocio}});
     }
-    static std::vector<std::string> film() {
+    static Words film() {
         return {"--set", "output.ocio.config=\"colors.ocio\"", "--set", "output.exposure=1"};
     }
 };
 
 TEST_F(ColorConfigBatch, PicturesHoldTheViewAndLightStaysLight) {
     for (const char* file : {"light.exr", "film.png"}) {
-        std::vector<std::string> more = film();
+        Words more = film();
         if (std::string(file) == "film.png") more.insert(more.end(), {"--set", "output.depth=\"16\""});
         ASSERT_EQ(one(file, more).code, 0) << file;
     }
-    ASSERT_EQ(one("plain.exr", {"--set", "output.exposure=1"}).code, 0);
+    expect_success(one("plain.exr", {"--set", "output.exposure=1"}));
     EXPECT_TRUE(text_of(folder / "light.exr") == text_of(folder / "plain.exr"))
         << "scene light knows no view, nor does its hash";
     const Image light = load_raw_image(folder / "light.exr"), shown = load_raw_image(folder / "film.png");
@@ -47,33 +43,32 @@ TEST_F(ColorConfigBatch, PicturesHoldTheViewAndLightStaysLight) {
 
 TEST_F(ColorConfigBatch, TheSceneNamesItOrTheEnvironment) {
     write_scene("[output.ocio]\nconfig = \"colors.ocio\"\nview = \"Negative\"\n");
-    ASSERT_EQ(one("scene.png", {}).code, 0);
+    expect_success(one("scene.png", {}));
     write_scene();
-    ASSERT_EQ(
-        one("named.png", {"--set", "output.ocio.view=\"Negative\""}, (folder / "colors.ocio").string()).code,
-        0);
+    expect_success(
+        one("named.png", {"--set", "output.ocio.view=\"Negative\""}, (folder / "colors.ocio").string()));
     EXPECT_TRUE(text_of(folder / "scene.png") == text_of(folder / "named.png"));
-    ASSERT_EQ(one("own.png", {}).code, 0);
-    ASSERT_EQ(one("unasked.png", {}, (folder / "colors.ocio").string()).code, 0);
+    expect_success(one("own.png", {}));
+    expect_success(one("unasked.png", {}, (folder / "colors.ocio").string()));
     EXPECT_TRUE(text_of(folder / "own.png") == text_of(folder / "unasked.png"))
         << "a scene that names nothing is the same everywhere";
     EXPECT_FALSE(text_of(folder / "own.png") == text_of(folder / "named.png"));
 }
 
 TEST_F(ColorConfigBatch, OtherBytesOfTheConfigurationOrItsTablesAreAnotherFrame) {
-    const std::vector<std::string> words{"--set", "output.ocio.config=\"colors.ocio\"", "--set",
-                                         "output.ocio.view=\"Negative\"", "--resume"};
-    ASSERT_EQ(one("a.png", words).code, 0);
-    EXPECT_EQ(one("a.png", words).code, 0);
+    const Words words{"--set", "output.ocio.config=\"colors.ocio\"", "--set", "output.ocio.view=\"Negative\"",
+                      "--resume"};
+    expect_success(one("a.png", words));
+    expect_success(one("a.png", words));
     for (const char* name : {"negative.cube", "colors.ocio"}) {
         const std::string before = text_of(folder / name);
         write_text(folder / name, before + "# another byte\n");
         const RunResult other = one("a.png", words);
         EXPECT_EQ(other.code, 2) << name;
-        EXPECT_NE(other.err.find("holds a frame of other settings"), std::string::npos) << other.err;
+        EXPECT_HAS(other.err, "holds a frame of other settings");
         write_text(folder / name, before);
     }
-    EXPECT_EQ(one("a.png", words).code, 0);
+    expect_success(one("a.png", words));
 }
 
 TEST_F(ColorConfigBatch, OneLineAndNothingIsStarted) {
@@ -82,16 +77,15 @@ TEST_F(ColorConfigBatch, OneLineAndNothingIsStarted) {
     EXPECT_EQ(display.code, 2);
     const std::string line =
         "scene.toml:24: output.ocio.display: expected Screen or Projector of colors.ocio, found 'Screan'\n";
-    EXPECT_NE(display.err.find(line), std::string::npos) << display.err;
+    EXPECT_HAS(display.err, line);
     EXPECT_EQ(one("a.exr", {}).code, 0) << "no view is written";
     write_scene();
     const RunResult missing = one("a.png", {"--set", "output.ocio.config=\"missing.ocio\""});
     EXPECT_EQ(missing.code, 2);
-    EXPECT_NE(missing.err.find("missing.ocio: cannot be read: No such file"), std::string::npos)
-        << missing.err;
+    EXPECT_HAS(missing.err, "missing.ocio: cannot be read: No such file");
     const RunResult none = one("a.png", {"--set", "output.ocio.view=\"Film\""});
     EXPECT_EQ(none.code, 2);
-    EXPECT_NE(none.err.find("output.ocio.config: expected a file"), std::string::npos) << none.err;
+    EXPECT_HAS(none.err, "output.ocio.config: expected a file");
     EXPECT_FALSE(fs::exists(folder / "a.png"));
 }
 

@@ -23,23 +23,29 @@ std::vector<fs::path> documents() {
     return files;
 }
 
-std::vector<std::string> matches(const std::string& text, const char* pattern) {
+Words matches(const std::string& text, const char* pattern) {
     const std::regex regex(pattern);
-    std::vector<std::string> found;
+    Words found;
     for (std::sregex_iterator it(text.begin(), text.end(), regex), none; it != none; ++it)
         found.push_back((*it)[1]);
     return found;
 }
 
-std::vector<std::string> words_of(const std::string& line) {
+Words words_of(const std::string& line) {
     std::istringstream words(line);
     return {std::istream_iterator<std::string>(words), {}};
 }
 
 /// What is typed in indented blocks of code, from "astrosplat" on; without comments, continued lines joined.
-std::vector<std::string> commands_in(const std::string& text) {
+Words commands_in(const std::string& text) {
     const std::string joined = std::regex_replace(text, std::regex(R"(\\\n)"), " ");
     return matches(joined, R"(\n    (?:\$ )?(?:build/release/)?(astrosplat [^#\n]*))");
+}
+
+/// Names such as "--frames" at the beginning of a help's lines.
+std::set<std::string> options_in(const std::string& help) {
+    const Words names = matches(help, R"(\n +(?:-[a-z], ?)?(--[a-z-]+))");
+    return {names.begin(), names.end()};
 }
 
 class Documents : public SceneTest {
@@ -48,8 +54,7 @@ class Documents : public SceneTest {
     const std::set<std::string>& options_of(const std::string& command) {
         if (const auto known = options_.find(command); known != options_.end()) return known->second;
         const RunResult help = command.empty() ? run({"--help"}) : run({command, "--help"});
-        const auto names = matches(help.out, R"(\n +(?:-[a-z], ?)?(--[a-z-]+))");
-        return options_[command] = {names.begin(), names.end()};
+        return options_[command] = options_in(help.out);
     }
 
   private:
@@ -63,7 +68,7 @@ TEST_F(Documents, CommandsTakeTheOptionsShown) {
     std::size_t checked = 0;
     for (const fs::path& file : documents())
         for (const std::string& line : commands_in(text_of(file))) {
-            const std::vector<std::string> words = words_of(line);
+            const Words words = words_of(line);
             const std::string command = words.size() > 1 && known.contains(words[1]) ? words[1] : "";
             for (const std::string& word : words) {
                 if (!word.starts_with("--")) continue;
@@ -118,7 +123,7 @@ TEST_F(Documents, LinksLeadSomewhere) {
             EXPECT_TRUE(fs::exists(target)) << file << ": " << link;
             ++checked;
             if (sharp == std::string::npos) continue;
-            std::vector<std::string> headings = matches(text_of(target), "\n## ([^\n]+)");
+            Words headings = matches(text_of(target), "\n## ([^\n]+)");
             std::ranges::transform(headings, headings.begin(), anchor_of);
             EXPECT_NE(std::ranges::find(headings, link.substr(sharp + 1)), headings.end())
                 << file << ": " << link;
@@ -162,28 +167,24 @@ class FirstPicture : public Documents {
                         "\n    (build/release/astrosplat [^\n]*)");
     }
     RunResult run_line(const std::string& line) const {
-        RunOptions options;
-        options.folder = folder;
-        return run_program({"/usr/bin/env", "sh", "-c", line}, options);
+        return run_program({"/usr/bin/env", "sh", "-c", line}, {.folder = folder});
     }
-    std::vector<std::string> lines;
+    Words lines;
 };
 
 TEST_F(FirstPicture, GetsAScene) {
     ASSERT_EQ(lines.size(), 3u);
-    const RunResult result = run_line(lines[0]);
-    EXPECT_EQ(result.code, 0) << result.err;
+    expect_success(run_line(lines[0]));
     const std::string scene = words_of(lines[0]).back();
     EXPECT_TRUE(fs::exists(folder / scene));
     EXPECT_EQ(words_of(lines[1]).back(), scene);
-    EXPECT_NE(lines[2].find(" " + scene + " "), std::string::npos);
+    EXPECT_HAS(lines[2], " " + scene + " ");
 }
 
 TEST_F(FirstPicture, IsRenderedNightly) {
     ASSERT_EQ(lines.size(), 3u);
-    ASSERT_EQ(run_line(lines[0]).code, 0);
-    const RunResult result = run_line(lines[2]);
-    EXPECT_EQ(result.code, 0) << result.err;
+    expect_success(run_line(lines[0]));
+    expect_success(run_line(lines[2]));
     for (const char* frame : {"0001", "0041", "0081", "0121", "0161", "0201"})
         EXPECT_TRUE(fs::exists(folder / fmt::format("renders/first.{}.png", frame))) << frame;
 }
@@ -193,32 +194,20 @@ TEST_F(FirstPicture, IsRenderedNightly) {
 
 class Manual : public SceneTest {
   protected:
-    std::string printed(const std::vector<std::string>& words) const {
-        const RunResult result = run(words);
-        EXPECT_EQ(result.code, 0) << result.err;
+    std::string printed(const Words& words) const {
+        const RunResult result = expect_success(run(words));
         EXPECT_EQ(result.err, "");
         return result.out;
     }
     static bool has(const std::string& program) {
         return std::system(("command -v " + program + " >/dev/null 2>&1").c_str()) == 0;
     }
-    /// Names such as "--frames" at the beginning of the help's lines.
-    static std::set<std::string> options_of(const std::string& help) {
-        std::set<std::string> names;
-        std::istringstream lines(help);
-        const std::regex begins("^ +(-[a-z], ?)?(--[a-z-]+)");
-        for (std::string line; std::getline(lines, line);) {
-            std::smatch found;
-            if (std::regex_search(line, found, begins)) names.insert(found[2]);
-        }
-        return names;
-    }
     static std::string without_escapes(std::string text) {
         for (std::size_t at; (at = text.find("\\-")) != std::string::npos;) text.erase(at, 1);
         return text;
     }
     /// The words that bash offers after these.
-    std::vector<std::string> completed(const std::vector<std::string>& words) const {
+    Words completed(const Words& words) const {
         write_text(folder / "completion.bash", printed({"completion", "bash"}));
         std::string script = fmt::format("source completion.bash; COMP_WORDS=('{}'", ASTROSPLAT_PROGRAM);
         for (const std::string& word : words) script += " '" + word + "'";
@@ -226,11 +215,7 @@ class Manual : public SceneTest {
             fmt::format("); COMP_CWORD={}; _astrosplat; printf '%s\\n' \"${{COMPREPLY[@]}}\"", words.size());
         const RunResult result = run_program({"/usr/bin/env", "bash", "-c", script}, in_folder());
         EXPECT_EQ(result.err, "");
-        std::vector<std::string> offers;
-        std::istringstream lines(result.out);
-        for (std::string line; std::getline(lines, line);)
-            if (!line.empty()) offers.push_back(line);
-        return offers;
+        return matches(result.out, "([^\n]+)");
     }
     RunOptions in_folder() const {
         RunOptions options;
@@ -242,14 +227,12 @@ class Manual : public SceneTest {
 TEST_F(Manual, HasEveryOptionAndCommand) {
     const std::string page = without_escapes(printed({"manual", "1"}));
     const std::string help = printed({"--help"});
-    const std::set<std::string> options = options_of(help);
+    const std::set<std::string> options = options_in(help);
     EXPECT_GT(options.size(), 25u);
-    for (const std::string& option : options)
-        EXPECT_NE(page.find("\\fB" + option + "\\fR"), std::string::npos) << option;
+    for (const std::string& option : options) EXPECT_HAS(page, "\\fB" + option + "\\fR");
     for (const char* command : {"new", "prepare", "status", "verify", "camera", "export", "completion"}) {
-        EXPECT_NE(page.find(fmt::format(".SS \\fBastrosplat\\fR \\fB{}\\fR", command)), std::string::npos)
-            << command;
-        for (const std::string& option : options_of(printed({command, "--help"})))
+        EXPECT_HAS(page, fmt::format(".SS \\fBastrosplat\\fR \\fB{}\\fR", command));
+        for (const std::string& option : options_in(printed({command, "--help"})))
             EXPECT_NE(page.find("\\fB" + option + "\\fR"), std::string::npos) << command << " " << option;
     }
 }
@@ -258,17 +241,15 @@ TEST_F(Manual, HasEveryKey) {
     const std::string page = without_escapes(printed({"manual", "5"}));
     const auto keys = nlohmann::json::parse(printed({"parameters", "--json"}));
     EXPECT_GT(keys.size(), 150u);
-    for (const auto& key : keys)
-        EXPECT_NE(page.find("\\fB" + key.at("key").get<std::string>() + "\\fR"), std::string::npos) << key;
+    for (const auto& key : keys) EXPECT_HAS(page, "\\fB" + key.at("key").get<std::string>() + "\\fR");
 }
 
 TEST_F(Manual, GroffFindsNoFault) {
     if (!has("groff")) GTEST_SKIP() << "groff is not installed";
     for (const char* section : {"1", "5"}) {
         write_text(folder / "page", printed({"manual", section}));
-        const RunResult result =
-            run_program({"/usr/bin/env", "groff", "-ww", "-man", "-Tutf8", "-z", "page"}, in_folder());
-        EXPECT_EQ(result.code, 0);
+        const RunResult result = expect_success(
+            run_program({"/usr/bin/env", "groff", "-ww", "-man", "-Tutf8", "-z", "page"}, in_folder()));
         EXPECT_EQ(result.err, "") << section;
     }
 }
@@ -280,28 +261,26 @@ TEST_F(Manual, OtherSectionsAndShellsAreRefused) {
 
 TEST_F(Manual, BashCompletes) {
     if (!has("bash")) GTEST_SKIP() << "bash is not installed";
-    using Offers = std::vector<std::string>;
     write_text(folder / "zwei worte.toml", "");
-    EXPECT_EQ(completed({"ver"}), Offers{"verify"});
-    EXPECT_EQ(completed({"new", "--as", ""}), (Offers{"galaxy", "elliptical", "nebula", "planetary",
-                                                      "remnant", "field", "cluster", "thin", "plane"}));
-    EXPECT_EQ(completed({"--progress", "p"}), Offers{"plain"});
-    EXPECT_EQ(completed({"--batch", "zwei"}), Offers{"zwei worte.toml"});
-    EXPECT_EQ(completed({"--set", "output.fp"}), Offers{"output.fps="});
-    EXPECT_EQ(completed({"--threads", ""}), Offers{});
-    EXPECT_EQ(completed({"export", "x.toml", "--sp"}), Offers{"--space"});
-    EXPECT_EQ(completed({"completion", "f"}), Offers{"fish"});
+    EXPECT_EQ(completed({"ver"}), Words{"verify"});
+    EXPECT_EQ(completed({"new", "--as", ""}), (Words{"galaxy", "elliptical", "nebula", "planetary", "remnant",
+                                                     "field", "cluster", "thin", "plane"}));
+    EXPECT_EQ(completed({"--progress", "p"}), Words{"plain"});
+    EXPECT_EQ(completed({"--batch", "zwei"}), Words{"zwei worte.toml"});
+    EXPECT_EQ(completed({"--set", "output.fp"}), Words{"output.fps="});
+    EXPECT_EQ(completed({"--threads", ""}), Words{});
+    EXPECT_EQ(completed({"export", "x.toml", "--sp"}), Words{"--space"});
+    EXPECT_EQ(completed({"completion", "f"}), Words{"fish"});
 }
 
 /// A scene that is named anywhere on the line tells how its layers are called.
 TEST_F(Manual, BashCompletesKeysOfLayers) {
     if (!has("bash")) GTEST_SKIP() << "bash is not installed";
-    using Offers = std::vector<std::string>;
     write_text(folder / "zwei worte.toml", "astrosplat = 1\n[[layer]]\nname = \"gas\"\n");
     EXPECT_EQ(completed({"--batch", "zwei worte.toml", "--set", "layer.gas.look.alpha.po"}),
-              Offers{"layer.gas.look.alpha.power="});
-    EXPECT_EQ(completed({"--batch", "zwei worte.toml", "--set", "output.fp"}), Offers{"output.fps="});
-    EXPECT_EQ(completed({"--batch", "missing.toml", "--set", "layer."}), Offers{});
+              Words{"layer.gas.look.alpha.power="});
+    EXPECT_EQ(completed({"--batch", "zwei worte.toml", "--set", "output.fp"}), Words{"output.fps="});
+    EXPECT_EQ(completed({"--batch", "missing.toml", "--set", "layer."}), Words{});
 }
 
 TEST_F(Manual, FishCompletesBehindAScene) {
@@ -323,7 +302,7 @@ TEST_F(Manual, ParametersOfASceneAreThoseThatSetTakes) {
                "astrosplat = 1\n[[layer]]\nname = \"gas\"\n"
                "look = { alpha = { power = 3 } }\n");
     const std::string scene = (folder / "a.toml").string();
-    EXPECT_NE(printed({"parameters", scene}).find("layer.gas.look.alpha.power"), std::string::npos);
+    EXPECT_HAS(printed({"parameters", scene}), "layer.gas.look.alpha.power");
     const auto keys = nlohmann::json::parse(printed({"parameters", scene, "--json"}));
     const auto power = std::ranges::find(keys, "layer.gas.look.alpha.power", [](const auto& row) {
         return row.at("key").template get<std::string>();
@@ -342,8 +321,8 @@ TEST_F(Manual, OtherShellsReadTheirScripts) {
     for (const char* shell : {"zsh", "fish", "bash"}) {
         if (!has(shell)) continue;
         write_text(folder / "script", printed({"completion", shell}));
-        const RunResult result = run_program({"/usr/bin/env", shell, "-n", "script"}, in_folder());
-        EXPECT_EQ(result.code, 0) << shell;
+        const RunResult result =
+            expect_success(run_program({"/usr/bin/env", shell, "-n", "script"}, in_folder()));
         EXPECT_EQ(result.err, "") << shell;
         ++read;
     }

@@ -41,7 +41,7 @@ class Export : public SceneTest {
             rows.push_back(r);
         return rows;
     }
-    std::vector<std::string> arguments(const std::string& output) const {
+    Words arguments(const std::string& output) const {
         return {"export", "scene.toml", "--layer", "stars", "-o", output, "--progress", "none"};
     }
 };
@@ -50,8 +50,7 @@ class Export : public SceneTest {
 constexpr double peak = 1.009324, sigma = 0.323295;
 
 TEST_F(Export, PlyIsWhatReadersOfGaussiansExpect) {
-    const RunResult result = run(arguments("out model.ply"));
-    ASSERT_EQ(result.code, 0) << result.err;
+    const RunResult result = expect_success(run(arguments("out model.ply")));
     EXPECT_EQ(result.out.find("out model.ply: 300 splats; 0.00 % of the light lost, 0 above 1"), 0u)
         << result.out;
     const std::string bytes = text_of(folder / "out model.ply");
@@ -62,7 +61,7 @@ TEST_F(Export, PlyIsWhatReadersOfGaussiansExpect) {
         if (line.rfind("property float ", 0) == 0) names += line.substr(15) + " ";
     EXPECT_EQ(names,
               "x y z nx ny nz f_dc_0 f_dc_1 f_dc_2 opacity scale_0 scale_1 scale_2 rot_0 rot_1 rot_2 rot_3 ");
-    EXPECT_NE(bytes.find("format binary_little_endian 1.0\nelement vertex 300\n"), std::string::npos);
+    EXPECT_HAS(bytes, "format binary_little_endian 1.0\nelement vertex 300\n");
     ASSERT_EQ(bytes.size() - begin, 300u * 17 * 4);
     const std::vector<Row> rows = rows_of_pda("stars.pda");
     ASSERT_EQ(rows.size(), 300u);
@@ -88,7 +87,7 @@ TEST_F(Export, PlyIsWhatReadersOfGaussiansExpect) {
 }
 
 TEST_F(Export, GlbHoldsTheSplatsInLinearLight) {
-    ASSERT_EQ(run(arguments("model.glb")).code, 0);
+    expect_success(run(arguments("model.glb")));
     const std::string bytes = text_of(folder / "model.glb");
     ASSERT_EQ(bytes.substr(0, 4), "glTF");
     EXPECT_EQ(word_at(bytes, 4), 2u);
@@ -129,10 +128,9 @@ TEST_F(Export, GlbHoldsTheSplatsInLinearLight) {
     }
     const int position = primitive.at("attributes").at("POSITION");
     EXPECT_NEAR(gltf.at("accessors").at(position).at("min").at(0), lowest, 1e-6);
-    ASSERT_EQ(
-        run({"export", "scene.toml", "-o", "display.glb", "--space", "display", "--progress", "none"}).code,
-        0);
-    EXPECT_NE(text_of(folder / "display.glb").find("\"srgb_rec709_display\""), std::string::npos);
+    expect_success(
+        run({"export", "scene.toml", "-o", "display.glb", "--space", "display", "--progress", "none"}));
+    EXPECT_HAS(text_of(folder / "display.glb"), "\"srgb_rec709_display\"");
 }
 
 TEST_F(Export, CapturesKeepTheirHarmonicsUntilTheyAreMerged) {
@@ -143,15 +141,13 @@ TEST_F(Export, CapturesKeepTheirHarmonicsUntilTheyAreMerged) {
                "source = { kind = \"splats\", file = \"capture.ply\" }\n"
                "render = { isolate = true, space = \"display\" }\n");
     const auto exported = [&](const std::string& count) {
-        EXPECT_EQ(run({"export", "capture.toml", "-o", "out.ply", "--count", count, "--overwrite",
-                       "--progress", "none"})
-                      .code,
-                  0);
+        expect_success(run({"export", "capture.toml", "-o", "out.ply", "--count", count, "--overwrite",
+                            "--progress", "none"}));
         return text_of(folder / "out.ply");
     };
     const std::string whole = exported("40"), merged = exported("10");
     EXPECT_EQ(merged.find("f_rest_0"), std::string::npos);
-    EXPECT_NE(whole.find("property float f_rest_23\nproperty float opacity\n"), std::string::npos);
+    EXPECT_HAS(whole, "property float f_rest_23\nproperty float opacity\n");
     const auto begin = [](const std::string& file) { return file.find("end_header\n") + 11; };
     constexpr std::size_t columns = 17 + 24;
     ASSERT_EQ(whole.size() - begin(whole), 40 * columns * 4);
@@ -164,8 +160,7 @@ TEST_F(Export, CapturesKeepTheirHarmonicsUntilTheyAreMerged) {
 
 TEST_F(Export, CountIsABudgetOfAllLayers) {
     const RunResult result =
-        run({"export", "scene.toml", "-o", "few.glb", "--count", "50", "--progress", "none"});
-    ASSERT_EQ(result.code, 0) << result.err;
+        expect_success(run({"export", "scene.toml", "-o", "few.glb", "--count", "50", "--progress", "none"}));
     const int splats = std::stoi(result.out.substr(std::string("few.glb: ").size()));
     EXPECT_LE(splats, 50);
     EXPECT_GE(splats, 25);
@@ -174,9 +169,8 @@ TEST_F(Export, CountIsABudgetOfAllLayers) {
 TEST_F(Export, RefusesWhatItCannotDo) {
     expect_one_line(run(arguments("model.obj")), 2, ".ply, .glb, .usda or .vdb");
     const auto with = [&](const std::string& option, const std::string& value) {
-        std::vector<std::string> words = arguments("model.ply");
-        words.insert(words.end(), {option, value});
-        return run(words);
+        Words words = arguments("model.ply");
+        return run(joined(words, {option, value}));
     };
     expect_one_line(with("--count", "0"), 2, "--count");
     expect_one_line(with("--frame", "x"), 2, "--frame");
@@ -194,14 +188,12 @@ TEST_F(Export, RefusesWhatItCannotDo) {
 
 class ExportVolume : public SceneTest {
   protected:
-    RunResult export_to(const std::string& output, std::vector<std::string> more = {}) const {
-        more.insert(more.begin(), {"export", "scene.toml", "-o", output, "--progress", "none"});
-        return run(more);
+    RunResult export_to(const std::string& output, Words more = {}) const {
+        return run(joined({"export", "scene.toml", "-o", output, "--progress", "none"}, more));
     }
-    VdbFile exported(std::vector<std::string> more = {}) const {
+    VdbFile exported(Words more = {}) const {
         more.push_back("--overwrite");
-        const RunResult result = export_to("a model.vdb", more);
-        EXPECT_EQ(result.code, 0) << result.err;
+        expect_success(export_to("a model.vdb", more));
         return read_vdb((folder / "a model.vdb").string());
     }
 };
@@ -250,13 +242,13 @@ TEST_F(ExportVolume, IsWhatVolumeRenderersExpect) {
 
 TEST_F(ExportVolume, HoldsTheLayersLightAtTheFramesExposure) {
     // Faint, so that a splat hides its alpha times its area within a thousandth.
-    const std::vector<std::string> faint = {"--layer", "stars", "--voxel-size",
-                                            "0.08",    "--set", "layer.stars.render.opacity=0.01"};
+    const Words faint = {"--layer", "stars", "--voxel-size",
+                         "0.08",    "--set", "layer.stars.render.opacity=0.01"};
     const auto [depth, red] = depth_and_red(text_of(folder / "stars.pda"));
     const VdbFile file = exported(faint);
     EXPECT_NEAR(sum_of(file.grids.at("density"))[0] / (0.01 * depth), 1.0, 3e-3);
     EXPECT_NEAR(sum_of(file.grids.at("emission"))[0] / (0.01 * red), 1.0, 3e-3);
-    std::vector<std::string> exposed = faint;
+    Words exposed = faint;
     exposed.insert(exposed.end(), {"--set", "output.exposure=2"});
     const VdbFile brighter = exported(exposed);
     EXPECT_NEAR(sum_of(brighter.grids.at("emission"))[0] / (0.04 * red), 1.0, 3e-3);
@@ -290,8 +282,8 @@ TEST_F(ExportVolume, OfOneSplatStandsWhereTheLayerPutsIt) {
 
 TEST_F(ExportVolume, OfWhatAddsHasNoDensity) {
     const RunResult result = export_to("add.vdb", {"--layer", "dust", "--voxel-size", "0.2"});
-    EXPECT_NE(result.out.find("density is empty"), std::string::npos) << result.out;
-    EXPECT_NE(result.out.find("0.00 % of the light lost"), std::string::npos) << result.out;
+    EXPECT_HAS(result.out, "density is empty");
+    EXPECT_HAS(result.out, "0.00 % of the light lost");
     const VdbFile file = read_vdb((folder / "add.vdb").string());
     EXPECT_TRUE(file.grids.at("density").voxels.empty());
     const double red = depth_and_red(text_of(folder / "dust.pda")).second;

@@ -43,7 +43,7 @@ class ReadersNightly : public SceneTest {
     bool is_absent(const std::string& package) const {
         return node.empty() || !fs::exists(modules / package);
     }
-    RunResult run_node(std::vector<std::string> arguments) const {
+    RunResult run_node(Words arguments) const {
         arguments.insert(arguments.begin(), node);
         return run_program(arguments, {folder, {"NODE_PATH=" + modules.string()}, {}});
     }
@@ -51,8 +51,7 @@ class ReadersNightly : public SceneTest {
         return run_node(
             {(modules / "@playcanvas/splat-transform/bin/cli.mjs").string(), "-w", "-g", "cpu", from, to});
     }
-    std::vector<std::vector<double>> rows_of_csv(const std::string& file,
-                                                 std::vector<std::string>& names) const {
+    std::vector<std::vector<double>> rows_of_csv(const std::string& file, Words& names) const {
         std::istringstream text(text_of(folder / file));
         std::vector<std::vector<double>> rows;
         for (std::string line; std::getline(text, line);) {
@@ -75,13 +74,13 @@ constexpr const char* skipped = "node with packages of npm is not there (ASTROSP
 
 TEST_F(ReadersNightly, GlbIsValid) {
     if (is_absent("gltf-validator")) GTEST_SKIP() << skipped;
-    ASSERT_EQ(run({"export", "scene.toml", "-o", "model.glb", "--progress", "none"}).code, 0);
+    expect_success(run({"export", "scene.toml", "-o", "model.glb", "--progress", "none"}));
     write_text(folder / "validate.cjs", validate);
     const RunResult result = run_node({"validate.cjs", "model.glb"});
     EXPECT_EQ(result.out, "primitives 400 vertices\n") << result.err;
     write_text(folder / "capture.ply", ply_of(capture(50, 3), 3));
     write_text(folder / "capture.toml", scene_of("capture.ply", ""));
-    ASSERT_EQ(run({"export", "capture.toml", "-o", "capture.glb", "--progress", "none"}).code, 0);
+    expect_success(run({"export", "capture.toml", "-o", "capture.glb", "--progress", "none"}));
     EXPECT_EQ(run_node({"validate.cjs", "capture.glb"}).out, "primitives 50 vertices\n");
     write_text(folder / "broken.glb", text_of(folder / "model.glb").replace(12, 1, "\x01"));
     EXPECT_NE(run_node({"validate.cjs", "broken.glb"}).out, result.out);
@@ -89,18 +88,17 @@ TEST_F(ReadersNightly, GlbIsValid) {
 
 TEST_F(ReadersNightly, PlyIsRead) {
     if (is_absent("@playcanvas/splat-transform")) GTEST_SKIP() << skipped;
-    ASSERT_EQ(run({"export", "scene.toml", "--layer", "stars", "-o", "model.ply", "--progress", "none"}).code,
-              0);
-    const RunResult read = transform("model.ply", "read.csv");
-    ASSERT_EQ(read.code, 0) << read.err << read.out;
-    std::vector<std::string> names;
+    expect_success(
+        run({"export", "scene.toml", "--layer", "stars", "-o", "model.ply", "--progress", "none"}));
+    const RunResult read = expect_success(transform("model.ply", "read.csv"));
+    Words names;
     const auto rows = rows_of_csv("read.csv", names);
     ASSERT_EQ(rows.size(), 300u);
     const std::string bytes = text_of(folder / "model.ply");
     const std::size_t begin = bytes.find("end_header\n") + 11;
-    const std::vector<std::string> own = {"x",       "y",      "z",      "nx",      "ny",      "nz",
-                                          "f_dc_0",  "f_dc_1", "f_dc_2", "opacity", "scale_0", "scale_1",
-                                          "scale_2", "rot_0",  "rot_1",  "rot_2",   "rot_3"};
+    const Words own = {"x",       "y",      "z",      "nx",      "ny",      "nz",
+                       "f_dc_0",  "f_dc_1", "f_dc_2", "opacity", "scale_0", "scale_1",
+                       "scale_2", "rot_0",  "rot_1",  "rot_2",   "rot_3"};
     int compared = 0;
     for (std::size_t column = 0; column < names.size(); ++column) {
         const auto found = std::find(own.begin(), own.end(), names[column]);
@@ -119,8 +117,7 @@ TEST_F(ReadersNightly, PlyIsRead) {
 TEST_F(ReadersNightly, GlbOfOthersIsReadAsTheirPly) {
     if (is_absent("@playcanvas/splat-transform")) GTEST_SKIP() << skipped;
     write_text(folder / "capture.ply", ply_of(capture(500, 3), 3));
-    const RunResult written = transform("capture.ply", "capture.glb");
-    ASSERT_EQ(written.code, 0) << written.err << written.out;
+    expect_success(transform("capture.ply", "capture.glb"));
     for (const std::string ending : {"ply", "glb"}) {
         write_text(folder / (ending + ".toml"), R"(astrosplat = 1
 [output]
@@ -141,10 +138,9 @@ rotate = [0.0, 0.0, )" + (ending == "ply" ? "180.0" : "0.0") +
 isolate = true
 space = "display"
 )");
-        ASSERT_EQ(run({"--batch", ending + ".toml", "--progress", "none"}).code, 0);
+        expect_success(run({"--batch", ending + ".toml", "--progress", "none"}));
     }
-    const RunResult compared = run({"compare", "ply.exr", "glb.exr", "--max-difference", "0.001"});
-    EXPECT_EQ(compared.code, 0) << compared.out << compared.err;
+    expect_success(run({"compare", "ply.exr", "glb.exr", "--max-difference", "0.001"}));
 }
 
 /// The same view for a page.
@@ -165,13 +161,11 @@ TEST_F(ReadersNightly, GlbLooksTheSameInAPageOfPlayCanvas) {
     for (const auto& [scene, least_db] :
          std::initializer_list<std::pair<std::string, double>>{{"capture", 40.0}, {"splats", 28.0}}) {
         const std::string model = scene + ".glb", picture = scene + ".png";
-        ASSERT_EQ(
-            run({"export", scene + ".toml", "-o", model, "--space", "display", "--progress", "none"}).code,
-            0);
-        ASSERT_EQ(run({"--batch", scene + ".toml", "--overwrite", "--progress", "none"}).code, 0);
+        expect_success(
+            run({"export", scene + ".toml", "-o", model, "--space", "display", "--progress", "none"}));
+        expect_success(run({"--batch", scene + ".toml", "--overwrite", "--progress", "none"}));
         const std::string program = ASTROSPLAT_SOURCE_DIR "/tests/cli/playcanvas_page.cjs";
-        const RunResult shown = run_node({program, chromium, modules.string(), model, picture, page_view});
-        ASSERT_EQ(shown.code, 0) << shown.out << shown.err;
+        expect_success(run_node({program, chromium, modules.string(), model, picture, page_view}));
         const RunResult compared = run({"compare", "own.png", picture});
         const std::size_t at = compared.out.find("psnr_db: ");
         ASSERT_NE(at, std::string::npos) << compared.out << compared.err;

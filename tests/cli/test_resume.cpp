@@ -27,11 +27,10 @@ class Resume : public SceneTest {
 };
 
 TEST_F(Resume, KeepsWhatIsThereAndRendersWhatIsMissing) {
-    ASSERT_EQ(batch({"-f", "1,3"}).code, 0);
+    expect_success(batch({"-f", "1,3"}));
     keep_old_files();
     const ino_t one = identity(1), three = identity(3);
-    const RunResult result = batch({"--resume"});
-    EXPECT_EQ(result.code, 0) << result.err;
+    expect_success(batch({"--resume"}));
     EXPECT_EQ(identity(1), one);
     EXPECT_EQ(identity(3), three);
     EXPECT_TRUE(fs::exists(frame_path(2)));
@@ -39,19 +38,18 @@ TEST_F(Resume, KeepsWhatIsThereAndRendersWhatIsMissing) {
 }
 
 TEST_F(Resume, RendersDamagedFramesAgain) {
-    ASSERT_EQ(batch({"--set", "output.compression=none"}).code, 0);
+    expect_success(batch({"--set", "output.compression=none"}));
     const std::string whole = text_of(frame_path(2));
     write_text(frame_path(2), whole.substr(0, whole.size() / 2));
     write_text(frame_path(3), "");
-    const RunResult result = batch({"--resume", "--set", "output.compression=none"});
-    EXPECT_EQ(result.code, 0) << result.err;
-    EXPECT_NE(result.err.find("shot.0002.exr: damaged"), std::string::npos) << result.err;
+    const RunResult result = expect_success(batch({"--resume", "--set", "output.compression=none"}));
+    EXPECT_HAS(result.err, "shot.0002.exr: damaged");
     EXPECT_EQ(text_of(frame_path(2)), whole);
     EXPECT_GT(text_of(frame_path(3)).size(), 100u);
 }
 
 TEST_F(Resume, StopsBeforeTheFirstFrameAtFramesOfOtherSettings) {
-    ASSERT_EQ(batch({"-f", "2"}).code, 0);
+    expect_success(batch({"-f", "2"}));
     const std::string before = text_of(frame_path(2));
     expect_one_line(batch({"--resume", "--set", "layer.stars.render.opacity=0.5"}), 2, "shot.0002.exr");
     EXPECT_EQ(names_in("frames").size(), 1u);
@@ -61,39 +59,37 @@ TEST_F(Resume, StopsBeforeTheFirstFrameAtFramesOfOtherSettings) {
 TEST_F(Resume, WithOverwriteReplacesExactlyTheOthers) {
     write_scene(
         "\"layer.stars.render.opacity\" = { keys = [[1, 1.0], [3, 1.0]], interpolation = \"step\" }\n");
-    ASSERT_EQ(batch().code, 0);
+    expect_success(batch());
     keep_old_files();
     const ino_t one = identity(1), two = identity(2), three = identity(3);
     write_scene(
         "\"layer.stars.render.opacity\" = { keys = [[1, 1.0], [3, 0.25]], interpolation = \"step\" }\n");
     EXPECT_EQ(batch({"--resume"}).code, 2);
-    EXPECT_EQ(batch({"--resume", "--overwrite"}).code, 0);
+    expect_success(batch({"--resume", "--overwrite"}));
     EXPECT_EQ(identity(1), one) << "a key at frame 3 does not redo frame 1";
     EXPECT_EQ(identity(2), two);
     EXPECT_NE(identity(3), three);
 }
 
 TEST_F(Resume, WhatDoesNotReachThePixelsDoesNotCount) {
-    ASSERT_EQ(batch().code, 0);
+    expect_success(batch());
     keep_old_files();
     const ino_t one = identity(1);
-    const RunResult result =
-        batch({"--resume", "--set", "output.fps=30", "--set", "provenance.title=Whirlpool", "-t", "1",
-               "--set", "output.compression=piz", "-f", "1-4"});
-    EXPECT_EQ(result.code, 0) << result.err;
+    expect_success(batch({"--resume", "--set", "output.fps=30", "--set", "provenance.title=Whirlpool", "-t",
+                          "1", "--set", "output.compression=piz", "-f", "1-4"}));
     EXPECT_EQ(identity(1), one);
 }
 
 TEST_F(Resume, NoticesChangedInputs) {
-    ASSERT_EQ(batch({"-f", "1"}).code, 0);
+    expect_success(batch({"-f", "1"}));
     write_text(folder / "stars.pda", cube_of_splats(299));
     EXPECT_EQ(batch({"-f", "1", "--resume"}).code, 2);
     write_text(folder / "stars.pda", cube_of_splats(300));
-    EXPECT_EQ(batch({"-f", "1", "--resume"}).code, 0);
+    expect_success(batch({"-f", "1", "--resume"}));
 }
 
 TEST_F(Resume, ForeignPicturesAreNeverReplacedUnasked) {
-    ASSERT_EQ(batch({"-f", "1", "-o", "f.####.png", "--region", "0,0,32,24"}).code, 0);
+    expect_success(batch({"-f", "1", "-o", "f.####.png", "--region", "0,0,32,24"}));
     EXPECT_EQ(batch({"-f", "1", "-o", "f.####.png", "--resume"}).code, 2)
         << "another region is another frame";
 }
@@ -102,11 +98,8 @@ TEST_F(Resume, ForeignPicturesAreNeverReplacedUnasked) {
 
 class Status : public SceneTest {
   protected:
-    RunResult status(std::vector<std::string> more = {}) const {
-        more.insert(more.begin(), {"status", "scene.toml"});
-        return run(more);
-    }
-    nlohmann::json eyes(std::vector<std::string> more = {}) const {
+    RunResult status(Words more = {}) const { return run(joined({"status", "scene.toml"}, more)); }
+    nlohmann::json eyes(Words more = {}) const {
         more.push_back("--json");
         return nlohmann::json::parse(status(more).out).at("eyes");
     }
@@ -131,11 +124,11 @@ class Status : public SceneTest {
 };
 
 TEST_F(Status, NamesFramesDoneMissingDamagedAndForeign) {
-    ASSERT_EQ(batch({"-q", "-f", "1-12"}).code, 0);
+    expect_success(batch({"-q", "-f", "1-12"}));
     for (const int missing : {2, 3, 4, 7, 9, 11}) fs::remove(folder / frame(missing));
     const std::string whole = text_of(folder / frame(6));
     write_text(folder / frame(6), whole.substr(0, whole.size() / 2));
-    ASSERT_EQ(batch({"-q", "-f", "12", "--overwrite", "--set", "layer.dust.render.opacity=0.5"}).code, 0);
+    expect_success(batch({"-q", "-f", "12", "--overwrite", "--set", "layer.dust.render.opacity=0.5"}));
     const std::string before = everything();
     const RunResult result = status({"-f", "1-12"});
     EXPECT_EQ(result.code, 3);
@@ -146,9 +139,8 @@ TEST_F(Status, NamesFramesDoneMissingDamagedAndForeign) {
                           folder.string()));
     EXPECT_EQ(everything(), before);
     // --resume does with the others as it says.
-    ASSERT_EQ(batch({"-q", "-f", "1-12", "--resume", "--overwrite"}).code, 0);
-    const RunResult all = status({"-f", "1-12"});
-    EXPECT_EQ(all.code, 0);
+    expect_success(batch({"-q", "-f", "1-12", "--resume", "--overwrite"}));
+    const RunResult all = expect_success(status({"-f", "1-12"}));
     EXPECT_EQ(lines(all), "done 12 of 12: 1-12\n");
 }
 
@@ -161,12 +153,12 @@ TEST_F(Status, CreatesNoFolder) {
 }
 
 TEST_F(Status, TellsEyesApart) {
-    const std::vector<std::string> pair = {"-o", "%V/shot.##.exr", "--set", "camera.eye_separation=0.5"};
-    const auto with = [&](std::vector<std::string> more) {
+    const Words pair = {"-o", "%V/shot.##.exr", "--set", "camera.eye_separation=0.5"};
+    const auto with = [&](Words more) {
         more.insert(more.end(), pair.begin(), pair.end());
         return more;
     };
-    ASSERT_EQ(batch(with({"-q", "-f", "1-4"})).code, 0);
+    expect_success(batch(with({"-q", "-f", "1-4"})));
     fs::remove(folder / "right/shot.02.exr");
     fs::remove(folder / "right/shot.03.exr");
     write_text(folder / "left/shot.04.exr", "");
@@ -181,19 +173,18 @@ TEST_F(Status, TellsEyesApart) {
 }
 
 TEST_F(Status, TakesWhatBatchWasGiven) {
-    const std::vector<std::string> smaller = {"--resolution", "50%",      "--layers",
-                                              "dust",         "--region", "4,4,16,12"};
-    std::vector<std::string> quiet = smaller;
+    const Words smaller = {"--resolution", "50%", "--layers", "dust", "--region", "4,4,16,12"};
+    Words quiet = smaller;
     quiet.push_back("-q");
-    ASSERT_EQ(batch(quiet).code, 0);
-    EXPECT_EQ(status(smaller).code, 0);
+    expect_success(batch(quiet));
+    expect_success(status(smaller));
     const RunResult other = status();
     EXPECT_EQ(other.code, 3);
     EXPECT_EQ(lines(other), "done 0 of 3\nforeign 3: 1-3\n");
     const nlohmann::json report = nlohmann::json::parse(status({"--json"}).out);
     EXPECT_EQ(report.at("complete"), false);
     EXPECT_EQ(report.at("output"), (folder / "frames/shot.####.exr").string());
-    std::vector<std::string> as_json = smaller;
+    Words as_json = smaller;
     as_json.push_back("--json");
     EXPECT_EQ(nlohmann::json::parse(status(as_json).out).at("complete"), true);
 }

@@ -14,16 +14,15 @@ class Usage : public SceneTest {};
 
 TEST_F(Usage, HelpAndVersionAreEverywhere) {
     for (const char* command : {"", "new", "generate", "convert", "info", "compare", "parameters"}) {
-        std::vector<std::string> start;
+        Words start;
         if (*command) start.push_back(command);
         for (const char* option : {"-h", "--help", "--version"}) {
-            std::vector<std::string> arguments = start;
+            Words arguments = start;
             arguments.push_back(option);
             const RunResult result = run(arguments);
             EXPECT_EQ(result.code, 0) << command << " " << option << result.err;
             EXPECT_EQ(result.err, "");
-            EXPECT_NE(result.out.find(option[2] == 'v' ? "astrosplat 0." : "--help"), std::string::npos)
-                << result.out;
+            EXPECT_HAS(result.out, option[2] == 'v' ? "astrosplat 0." : "--help");
         }
     }
 }
@@ -52,16 +51,15 @@ TEST_F(Usage, HelpNamesEveryOptionOfTheDesign) {
           "-t,--threads", "--memory",    "--region",    "--resume",     "--overwrite", "--dry-run",
           "--stats",      "--cache",     "--no-cache",  "--progress",   "-v,",         "-q,",
           "new",          "generate",    "convert",     "info",         "compare",     "parameters"}) {
-        EXPECT_NE(help.find(option), std::string::npos) << option;
+        EXPECT_HAS(help, option);
     }
 }
 
 TEST_F(Usage, WithoutADisplayTheWaysOutAreNamed) {
-    for (const std::vector<std::string>& words : {std::vector<std::string>{}, {"scene.toml"}}) {
+    for (const Words& words : {Words{}, {"scene.toml"}}) {
         const RunResult result = run(words);
         expect_one_line(result, 2, "no window: ");
-        for (const char* way : {"--batch", "--screenshot"})
-            EXPECT_NE(result.err.find(way), std::string::npos) << result.err;
+        for (const char* way : {"--batch", "--screenshot"}) EXPECT_HAS(result.err, way);
     }
 }
 
@@ -97,7 +95,7 @@ TEST_F(Usage, BadOptionValuesNameTheOptionAndTheValue) {
     for (const auto& [option, value] : cases) {
         const RunResult result = batch({option + "=" + value});
         expect_one_line(result, 2, value);
-        EXPECT_NE(result.err.find(option), std::string::npos) << result.err;
+        EXPECT_HAS(result.err, option);
     }
     EXPECT_FALSE(fs::exists(folder / "frames"));
 }
@@ -105,7 +103,7 @@ TEST_F(Usage, BadOptionValuesNameTheOptionAndTheValue) {
 TEST_F(Usage, DraftsOfDomesAreSmallerButSquare) {
     expect_one_line(batch({"--set", "output.preset=dome", "--resolution", "64x48"}), 2,
                     "--resolution: expected a square for the preset dome, found '64x48'");
-    EXPECT_EQ(batch({"--set", "output.preset=dome", "--resolution", "64x64", "-f", "1"}).code, 0);
+    expect_success(batch({"--set", "output.preset=dome", "--resolution", "64x64", "-f", "1"}));
 }
 
 TEST_F(Usage, BadScenesNameFileAndLine) {
@@ -127,7 +125,7 @@ TEST_F(Usage, MissingInputsAreNamed) {
 
 TEST_F(Usage, SeveralFramesNeedAFrameToken) {
     expect_one_line(batch({"-o", "one.exr"}), 2, "one.exr");
-    EXPECT_EQ(batch({"-o", "one.exr", "-f", "2"}).code, 0);
+    expect_success(batch({"-o", "one.exr", "-f", "2"}));
     EXPECT_TRUE(fs::exists(folder / "one.exr"));
 }
 
@@ -155,9 +153,7 @@ class Names : public SceneTest {
     }
     /// Hash of the frame's pixels.
     std::string pixels() const {
-        const RunResult result =
-            run({"--batch", "named.toml", "--overwrite", "-q", "--stats", "s.json"}, own_data());
-        EXPECT_EQ(result.code, 0) << result.err;
+        expect_success(run({"--batch", "named.toml", "--overwrite", "-q", "--stats", "s.json"}, own_data()));
         return json("s.json").at("frames").at(0).at("sha256");
     }
 };
@@ -181,15 +177,15 @@ TEST_F(Names, ThatAreNotKnownNameThoseThatAre) {
     write_text(folder / "data ö/astrosplat/looks/mine.toml", look("0.5"));
     const RunResult result = run({"--batch", "named.toml"}, own_data());
     EXPECT_EQ(result.code, 2);
-    EXPECT_NE(result.err.find("by name: m51, mine, s106"), std::string::npos) << result.err;
+    EXPECT_HAS(result.err, "by name: m51, mine, s106");
     write_scene_with("s106.tom");
     EXPECT_EQ(run({"--batch", "named.toml"}, own_data()).code, 2) << "an ending makes it a file";
 }
 
 TEST_F(Names, OfScenes) {
-    const RunResult known = run({"--batch", "spiral", "--dry-run", "-f", "1", "-o", "a.exr"}, own_data());
-    EXPECT_EQ(known.code, 0) << known.err;
-    EXPECT_NE(known.out.find("scenes/spiral.toml"), std::string::npos) << known.out;
+    const RunResult known =
+        expect_success(run({"--batch", "spiral", "--dry-run", "-f", "1", "-o", "a.exr"}, own_data()));
+    EXPECT_HAS(known.out, "scenes/spiral.toml");
     EXPECT_EQ(run({"--batch", "scene", "--dry-run"}, own_data()).code, 0) << "beside";
     const RunResult unknown = run({"--batch", "spirale", "--dry-run"}, own_data());
     EXPECT_EQ(unknown.code, 2);
@@ -207,14 +203,12 @@ class Start : public SceneTest {
     }
 
     /// The libraries that the dynamic linker loaded during a run, by its own account.
-    std::string libraries_of(const std::vector<std::string>& arguments) const {
+    std::string libraries_of(const Words& arguments) const {
         const fs::path report = folder / ("libraries of " + arguments[0]);
         fs::remove_all(report);
         fs::create_directories(report);
         const std::string output = "LD_DEBUG_OUTPUT=" + (report / "report").string();
-        RunOptions options;
-        options.environment = {"LD_DEBUG=files", output};
-        EXPECT_EQ(run(arguments, options).code, 0);
+        expect_success(run(arguments, {.environment = {"LD_DEBUG=files", output}}));
         std::string text;
         for (const auto& entry : fs::directory_iterator(report)) text += text_of(entry.path());
         return text;
@@ -225,9 +219,9 @@ class Start : public SceneTest {
 TEST_F(Start, ThePictureLibraryWaitsForTheFirstPicture) {
     write_text(folder / "picture.ppm", small_picture());
     const std::string library = "libOpenImageIO.so", colors = "libOpenColorIO.so";
-    EXPECT_NE(libraries_of({"info", "picture.ppm"}).find(library), std::string::npos);
+    EXPECT_HAS(libraries_of({"info", "picture.ppm"}), library);
     const std::string without = libraries_of({"parameters"});
-    EXPECT_NE(without.find("libc.so"), std::string::npos);
+    EXPECT_HAS(without, "libc.so");
     EXPECT_EQ(without.find(library), std::string::npos);
     EXPECT_EQ(without.find(colors), std::string::npos);
     EXPECT_EQ(libraries_of({"info", "stars.pda"}).find(library), std::string::npos);
@@ -238,7 +232,7 @@ TEST_F(Start, FramesAreWrittenAndResumedWithoutIt) {
         for (const char* how : {"--overwrite", "--resume"}) {
             const std::string loaded =
                 libraries_of({"--batch", "scene.toml", "--frames", "1", "--output", file, how});
-            EXPECT_NE(loaded.find("libc.so"), std::string::npos);
+            EXPECT_HAS(loaded, "libc.so");
             EXPECT_EQ(loaded.find("libOpenImageIO.so"), std::string::npos) << file << " " << how;
         }
     }

@@ -9,27 +9,23 @@ namespace {
 
 class Verify : public SceneTest {
   protected:
-    void render(std::vector<std::string> more) const {
+    void render(Words more) const {
         more.emplace_back("-q");
-        const RunResult result = batch(more);
-        ASSERT_EQ(result.code, 0) << result.err;
+        expect_success(batch(more));
     }
-    RunResult verify(const std::vector<std::string>& files, std::vector<std::string> more = {}) const {
+    RunResult verify(const Words& files, Words more = {}) const {
         more.insert(more.begin(), {"verify", "scene.toml"});
         more.insert(more.end(), files.begin(), files.end());
-        more.insert(more.end(), {"-q"});
-        return run(more);
+        return run(joined(more, {"-q"}));
     }
-    void expect_equal(const std::vector<std::string>& files,
-                      const std::vector<std::string>& more = {}) const {
-        const RunResult result = verify(files, more);
-        EXPECT_EQ(result.code, 0) << result.err;
+    void expect_equal(const Words& files, const Words& more = {}) const {
+        const RunResult result = expect_success(verify(files, more));
         std::string expected;
         for (const std::string& file : files) expected += file + ": equal\n";
         EXPECT_EQ(result.out, expected);
         EXPECT_EQ(result.err, "");
     }
-    nlohmann::json only_verdict(const std::string& file, std::vector<std::string> more = {}) const {
+    nlohmann::json only_verdict(const std::string& file, Words more = {}) const {
         more.emplace_back("--json");
         const RunResult result = verify({file}, more);
         EXPECT_EQ(result.code, 3) << result.err;
@@ -79,8 +75,7 @@ std::string without_keys(const std::string& png) {
     return older;
 }
 
-const std::vector<std::string> all_aovs = {"--set",
-                                           "output.aovs=[\"depth\",\"coverage\",\"count\",\"layers\"]"};
+const Words all_aovs = {"--set", "output.aovs=[\"depth\",\"coverage\",\"count\",\"layers\"]"};
 
 TEST_F(Verify, FramesOfEveryFormatAreEqual) {
     render({});
@@ -94,7 +89,7 @@ TEST_F(Verify, FramesOfEveryFormatAreEqual) {
         render({"-f", "2", "-o", name, "--set", "output.depth=16"});
         expect_equal({name}, {"--set", "output.depth=16"});
     }
-    std::vector<std::string> more = {"-f", "1", "-o", "all.exr"};
+    Words more = {"-f", "1", "-o", "all.exr"};
     more.insert(more.end(), all_aovs.begin(), all_aovs.end());
     render(more);
     expect_equal({"all.exr"}, all_aovs);
@@ -102,7 +97,7 @@ TEST_F(Verify, FramesOfEveryFormatAreEqual) {
 }
 
 TEST_F(Verify, OfItsOwnSizeRegionEyeAndLayers) {
-    const std::vector<std::string> pair = {"--set", "camera.eye_separation=0.5"};
+    const Words pair = {"--set", "camera.eye_separation=0.5"};
     render({"-f", "1", "-o", "%V.exr", "--set", "camera.eye_separation=0.5"});
     render({"-f", "1", "-o", "%V.png", "--set", "camera.eye_separation=0.5"});
     expect_equal({"left.exr", "right.exr", "left.png", "right.png"}, pair);
@@ -127,8 +122,8 @@ TEST_F(Verify, CompressionDoesNotCount) {
 }
 
 TEST_F(Verify, OneValueThatIsOtherIsFoundAndMeasured) {
-    const std::vector<std::string> raw = {"--set", "output.depth=float", "--set", "output.compression=none"};
-    std::vector<std::string> more = {"-f", "1", "-o", "raw.exr"};
+    const Words raw = {"--set", "output.depth=float", "--set", "output.compression=none"};
+    Words more = {"-f", "1", "-o", "raw.exr"};
     more.insert(more.end(), raw.begin(), raw.end());
     render(more);
     expect_equal({"raw.exr"}, raw);
@@ -149,10 +144,7 @@ TEST_F(Verify, OneValueThatIsOtherIsFoundAndMeasured) {
     EXPECT_NEAR(verdict.at("psnr_db").get<double>(), 10.0 * std::log10(64 * 48 * 4 / 6.25), 1e-3);
     const RunResult line = verify({"raw.exr"}, raw);
     EXPECT_EQ(line.code, 3);
-    EXPECT_NE(
-        line.out.find("raw.exr: different: 1 of 3072 pixels, by at most 2.5 in R at 63,47, PSNR 32.9 dB"),
-        line.out.npos)
-        << line.out;
+    EXPECT_HAS(line.out, "raw.exr: different: 1 of 3072 pixels, by at most 2.5 in R at 63,47, PSNR 32.9 dB");
 }
 
 TEST_F(Verify, PixelsOfAnotherFrameInAPngAreFound) {
@@ -177,7 +169,7 @@ TEST_F(Verify, AFrameOfAnotherPixelHashIsDifferentThoughItsFileRoundsToTheSame) 
     const nlohmann::json verdict = only_verdict("a.tif");
     EXPECT_EQ(verdict.at("verdict"), "different");
     EXPECT_EQ(verdict.at("differing_pixels"), 0);
-    EXPECT_NE(verdict.at("why").get<std::string>().find("pixel hash"), std::string::npos);
+    EXPECT_HAS(verdict.at("why").get<std::string>(), "pixel hash");
 }
 
 TEST_F(Verify, AFrameOfAnotherSceneTellsWhichKeysDiffer) {
@@ -199,7 +191,7 @@ TEST_F(Verify, AFrameOfAnotherSceneTellsWhichKeysDiffer) {
     const nlohmann::json keys = only_verdict("a.png").at("keys");
     ASSERT_EQ(keys.size(), 1u);
     EXPECT_EQ(keys.at(0).at("key"), "layer.stars.source.file");
-    EXPECT_NE(verify({"a.png"}).out.find("layer.stars.source.file is a file "), std::string::npos);
+    EXPECT_HAS(verify({"a.png"}).out, "layer.stars.source.file is a file ");
 }
 
 TEST_F(Verify, FramesThatDoNotTellTheirKeysAreVerifiedToo) {
@@ -234,9 +226,8 @@ TEST_F(Verify, NothingIsStartedWithoutFramesOrAScene) {
     render({"-f", "1"});
     expect_one_line(run({"verify", "other.toml", "frames/shot.0001.exr"}), 2, "other.toml");
     const std::string before = text_of(folder / "frames/shot.0001.exr");
-    RunOptions options;
-    options.environment = {"TMPDIR=" + (folder / "scene.toml").string()};
-    const RunResult result = run({"verify", "scene.toml", "frames/shot.0001.exr"}, options);
+    const RunResult result = run({"verify", "scene.toml", "frames/shot.0001.exr"},
+                                 {.environment = {"TMPDIR=" + (folder / "scene.toml").string()}});
     expect_one_line(result, 4, "temporary");
     EXPECT_EQ(text_of(folder / "frames/shot.0001.exr"), before);
     EXPECT_EQ(names_in("frames").size(), 1u);
@@ -245,9 +236,8 @@ TEST_F(Verify, NothingIsStartedWithoutFramesOrAScene) {
 TEST_F(Verify, LeavesNoFileBehind) {
     render({"-f", "1"});
     fs::create_directories(folder / "temporary");
-    RunOptions options;
-    options.environment = {"TMPDIR=" + (folder / "temporary").string()};
-    EXPECT_EQ(run({"verify", "scene.toml", "frames/shot.0001.exr"}, options).code, 0);
+    expect_success(run({"verify", "scene.toml", "frames/shot.0001.exr"},
+                       {.environment = {"TMPDIR=" + (folder / "temporary").string()}}));
     EXPECT_TRUE(names_in("temporary").empty());
     EXPECT_EQ(names_in("frames").size(), 1u);
 }

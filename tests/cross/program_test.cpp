@@ -71,8 +71,7 @@ std::vector<std::string> texts_of(const std::vector<std::string>& files) {
 }
 
 TEST_P(ProgramCrossings, BatchVerifyAndTheWindowMakeTheSameFiles) {
-    const RunResult batch = run({"--batch", "scene.toml"}, folder);
-    ASSERT_EQ(batch.code, 0) << batch.err;
+    const RunResult batch = expect_success(run({"--batch", "scene.toml"}, folder));
     expect_only_frames();
     const FrameHeader header = read_frame_header(folder / file_of_frame(crossing, crossing_frame, eye()));
     EXPECT_EQ(header.pixel_hash, pixel_hash(shot_of(scene, frame(), eye()).frame.beauty));
@@ -81,8 +80,7 @@ TEST_P(ProgramCrossings, BatchVerifyAndTheWindowMakeTheSameFiles) {
     std::vector<std::string> words = {"verify", (folder / "scene.toml").string()};
     const std::vector<std::string> files = frame_files(), made = texts_of(files);
     words.insert(words.end(), files.begin(), files.end());
-    const RunResult verified = run(words, "/");
-    EXPECT_EQ(verified.code, 0) << verified.out << verified.err;
+    expect_success(run(words, "/"));
 
     // A job of the window has a copy of the scene in a folder of its own.
     const TempFolder job;
@@ -94,12 +92,10 @@ TEST_P(ProgramCrossings, BatchVerifyAndTheWindowMakeTheSameFiles) {
     words = {"--batch", copy.string()};
     for (const std::string& word : batch_arguments(task)) words.push_back(word);
     const auto written = fs::last_write_time(files.front());
-    const RunResult resumed = run(words, "/");
-    EXPECT_EQ(resumed.code, 0) << resumed.err;
+    expect_success(run(words, "/"));
     EXPECT_EQ(fs::last_write_time(files.front()), written) << "the frames are there already";
     for (const std::string& file : files) fs::remove(file);
-    const RunResult rendered = run(words, "/");
-    EXPECT_EQ(rendered.code, 0) << rendered.err;
+    expect_success(run(words, "/"));
     expect_only_frames();
     EXPECT_EQ(texts_of(files) == made, true) << "byte for byte";
 }
@@ -107,11 +103,9 @@ TEST_P(ProgramCrossings, BatchVerifyAndTheWindowMakeTheSameFiles) {
 TEST_P(ProgramCrossings, OutputOfTheCommandLineLiesInTheWorkingDirectory) {
     const fs::path elsewhere = outside / ("b " + folder_name(crossing));
     fs::create_directories(elsewhere);
-    const RunResult result =
-        run({"--batch", (folder / "scene.toml").string(), "-f", std::to_string(crossing_frame), "-o",
-             "out.exr", "--set", "output.depth=half"},
-            elsewhere);
-    ASSERT_EQ(result.code, 0) << result.err;
+    expect_success(run({"--batch", (folder / "scene.toml").string(), "-f", std::to_string(crossing_frame),
+                        "-o", "out.exr", "--set", "output.depth=half"},
+                       elsewhere));
     EXPECT_EQ(files_below(elsewhere), std::set<std::string>{"out.exr"});
     EXPECT_EQ(read_frame_header(elsewhere / "out.exr").pixel_hash,
               pixel_hash(shot_of(scene, frame(), scene.camera.eye).frame.beauty));
@@ -126,8 +120,7 @@ TEST_P(ProgramCrossings, AMovieIsMadeOfTheFramesThatBatchMakes) {
     ASSERT_EQ(render_problem(task, scene.camera), "");
     std::vector<std::string> words = {"--batch", (folder / "scene.toml").string()};
     for (const std::string& word : batch_arguments(task)) words.push_back(word);
-    const RunResult batch = run(words, "/");
-    ASSERT_EQ(batch.code, 0) << batch.err;
+    expect_success(run(words, "/"));
     const fs::path movie = render_target(task);
     const std::set<std::string> frames = files_below(movie_folder(movie));
     ASSERT_EQ(frames.size(), frames_of(crossing).size());
@@ -136,8 +129,7 @@ TEST_P(ProgramCrossings, AMovieIsMadeOfTheFramesThatBatchMakes) {
 
     std::vector<std::string> writing = movie_command(movie, 24.0);
     writing.insert(writing.begin(), "/usr/bin/env");
-    const RunResult written = run_program(writing);
-    ASSERT_EQ(written.code, 0) << written.err;
+    expect_success(run_program(writing));
     const RunResult probed = run_program(
         {"/usr/bin/env", "ffprobe", "-v", "error", "-count_frames", "-select_streams", "v:0", "-show_entries",
          "stream=width,height,nb_read_frames", "-of", "csv=p=0", movie.string()});

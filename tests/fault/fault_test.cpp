@@ -60,8 +60,7 @@ class FaultTest : public FolderTest {
 #endif
         for (const FaultScene& scene : scenes) {
             FaultRun run(folder / "whole", scene);
-            const RunResult result = run.batch({}, Fault{"write", 0, EIO, false});
-            ASSERT_EQ(result.code, 0) << result.err;
+            const RunResult result = expect_success(run.batch({}, Fault{"write", 0, EIO, false}));
             ASSERT_EQ(result.err, "");
             whole_[scene.output] = run.tree();
             counts_[scene.output] = run.counts();
@@ -165,8 +164,7 @@ class Disaster : public FolderTest {
 
     Tree undisturbed() const {
         const FaultRun run(folder / "whole", scene);
-        const RunResult result = run.batch(frames);
-        EXPECT_EQ(result.code, 0) << result.err;
+        expect_success(run.batch(frames));
         return run.tree();
     }
     /// Starts a run and returns once its first frame is there.
@@ -185,8 +183,7 @@ class Disaster : public FolderTest {
     static void expect_resumed(FaultRun& run, const Tree& whole) {
         std::vector<std::string> more = frames;
         more.emplace_back("--resume");
-        const RunResult result = run.batch(more);
-        EXPECT_EQ(result.code, 0) << result.err;
+        expect_success(run.batch(more));
         run.check_files(whole, false);
         EXPECT_EQ(frame_count(run.tree()), frame_count(whole));
         EXPECT_EQ(run.complaints(), "");
@@ -264,9 +261,7 @@ TEST_F(Disaster, TwoProgramsRenderOneSequence) {
     std::vector<std::string> more = frames;
     more.emplace_back("--resume");
     const RunningProgram first(run.words(more), run.options()), second(run.words(more), run.options());
-    const RunResult a = first.wait(), b = second.wait();
-    EXPECT_EQ(a.code, 0) << a.err;
-    EXPECT_EQ(b.code, 0) << b.err;
+    for (const RunningProgram* program : {&first, &second}) expect_success(program->wait());
     run.check_files(whole, false);
     EXPECT_EQ(frame_count(run.tree()), frame_count(whole));
     expect_resumed(run, whole);

@@ -99,8 +99,7 @@ TEST_F(Slurm, TasksKilledHalfWayAndSubmittedAgainGiveTheSameFrames) {
     move_to("a  'b' \"c\" $(touch d) `e`\nü");
     ASSERT_EQ(here({"--batch", "scene.toml", "-q", "-o", "local/shot.####.exr", "--no-cache"}).code, 0);
 
-    const RunResult first = submit();
-    ASSERT_EQ(first.code, 0) << first.err;
+    const RunResult first = expect_success(submit());
     EXPECT_NE(first.out.find("40 frames in 4 tasks submitted as job 2, "), std::string::npos) << first.out;
     // Each when it has written a frame: not before it began, nor after its end.
     while (!fs::exists(frame(11)) || !kill_program_with("--frames=11-20")) wait_a_little();
@@ -120,11 +119,9 @@ TEST_F(Slurm, TasksKilledHalfWayAndSubmittedAgainGiveTheSameFrames) {
     EXPECT_NE(status.out.find("\nqueue job 2, 4 tasks: "), std::string::npos) << status.out;
     EXPECT_NE(log("0001/1.log").find("layer gas: "), std::string::npos) << "the sets' job";
 
-    const RunResult second = submit();
-    ASSERT_EQ(second.code, 0) << second.err;
+    const RunResult second = expect_success(submit());
     EXPECT_EQ(second.out.find(fmt::format("{} frames in ", 40 - done)), 0u) << second.out;
-    const RunResult third = submit();
-    EXPECT_EQ(third.code, 0);
+    const RunResult third = expect_success(submit());
     EXPECT_NE(third.out.find("in the queue already"), std::string::npos) << third.out;
     ASSERT_TRUE(cluster->wait_until_idle());
     EXPECT_EQ(here({"status", "scene.toml"}).code, 0) << here({"status", "scene.toml"}).out;
@@ -141,8 +138,7 @@ TEST_F(Slurm, TasksKilledHalfWayAndSubmittedAgainGiveTheSameFrames) {
 TEST_F(Slurm, TasksDoNotRunWithoutTheirSets) {
     move_to("100% a\\b %j");
     write_text(place / "file", "");
-    const RunResult result = submit({"--cache", "file"});
-    ASSERT_EQ(result.code, 0) << result.err;
+    expect_success(submit({"--cache", "file"}));
     ASSERT_TRUE(cluster->wait_until_idle());
     EXPECT_EQ(frames_there(), 0u);
     const RunResult status = here({"status", "scene.toml"});

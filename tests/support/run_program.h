@@ -10,12 +10,14 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <stdexcept>
 #include <string>
+#include <thread>
 #include <vector>
 
 namespace astrosplat::test {
@@ -26,9 +28,9 @@ struct RunResult {
 };
 
 struct RunOptions {
-    std::filesystem::path folder = ".";    // working directory
-    std::vector<std::string> environment;  // NAME=VALUE, over those of the test; DISPLAY only from here
-    std::vector<std::string> without;      // names taken out of the environment
+    std::filesystem::path folder = ".";      // working directory
+    std::vector<std::string> environment{};  // NAME=VALUE, over those of the test; DISPLAY only from here
+    std::vector<std::string> without{};      // names taken out of the environment
 };
 
 inline std::string text_of(const std::filesystem::path& file) {
@@ -71,6 +73,11 @@ class RunningProgram {
 
     void signal(int number) const { kill(process_, number); }
     std::string err_so_far() const { return text_of(logs_ / "err"); }
+    /// Until stderr has this text, or the program has ended.
+    void wait_until_said(const std::string& text) const {
+        while (running() && err_so_far().find(text) == std::string::npos)
+            std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    }
     pid_t id() const { return process_; }
     /// It has not ended; wait() can still tell how it did.
     bool running() const {
@@ -124,6 +131,12 @@ class RunningProgram {
 
 inline RunResult run_program(const std::vector<std::string>& arguments, const RunOptions& options = {}) {
     return RunningProgram(arguments, options).wait();
+}
+
+/// Of a run that must succeed.
+inline RunResult expect_success(const RunResult& result) {
+    EXPECT_EQ(result.code, 0) << result.out << result.err;
+    return result;
 }
 
 /// A test with an empty folder of its own, kept for a look when the test has failed.

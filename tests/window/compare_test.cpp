@@ -48,7 +48,7 @@ TEST_F(WindowCompare, OutputPixelsAreThoseOfTheFrame) {
     const Pixels fitted = settled_frame();
     person->press("z");
     const Pixels shown = settled_frame(fitted);
-    ASSERT_EQ(run({"--batch", scene_file.string(), "-f", "1", "-o", "frame.png", "--no-cache"}).code, 0);
+    expect_success(run({"--batch", scene_file.string(), "-f", "1", "-o", "frame.png", "--no-cache"}));
     const Image frame = load_raw_image(folder / "frame.png");
     ViewState view;
     view.size = SizeMode::one_to_one;
@@ -172,7 +172,7 @@ TEST_F(WindowReference, OneThatCannotBeReadIsSaid) {
 
 /// The frame itself, as a picture that lies elsewhere.
 TEST_F(WindowReference, IsAlignedToTheView) {
-    ASSERT_EQ(run({"--batch", scene_file.string(), "-f", "1", "-o", "frame.png", "--no-cache"}).code, 0);
+    expect_success(run({"--batch", scene_file.string(), "-f", "1", "-o", "frame.png", "--no-cache"}));
     std::string text = text_of(scene_file);
     text.replace(text.find("ferner Nebel"), text.size(),
                  "frame.png\"\nposition = [0.1, -0.05]\nscale = 0.8\n");

@@ -47,15 +47,13 @@ opacity = 0.5
     }
     std::string shot(const std::string& frame) const {
         const std::string file = "shot" + frame + ".exr";
-        const RunResult result = run({"--screenshot", file, "--settled", "--size", "200x120", "--frame",
-                                      frame, scene_file.string(), "--no-cache"});
-        EXPECT_EQ(result.code, 0) << result.err;
+        expect_success(run({"--screenshot", file, "--settled", "--size", "200x120", "--frame", frame,
+                            scene_file.string(), "--no-cache"}));
         return file;
     }
     void expect_batch() const {
-        const RunResult result = run({"--batch", scene_file.string(), "-f", "1,13", "--resolution", "200x120",
-                                      "-o", "batch##.exr", "--stats", "stats.json", "--no-cache"});
-        ASSERT_EQ(result.code, 0) << result.err;
+        expect_success(run({"--batch", scene_file.string(), "-f", "1,13", "--resolution", "200x120", "-o",
+                            "batch##.exr", "--stats", "stats.json", "--no-cache"}));
         const nlohmann::json stats = nlohmann::json::parse(text_of(folder / "stats.json"));
         const std::vector<std::string> frames = {"1", "13"};
         std::vector<std::string> hashes;
@@ -82,14 +80,10 @@ TEST_F(Settled, EqualsBatchBitForBit) { expect_batch(); }
 TEST_F(Settled, LooksAsTheFileThroughAConfiguration) {
     write_color_config(folder);
     replace_in_scene("depth = \"float\"", "ocio = { config = \"colors.ocio\" }\nexposure = 1");
-    ASSERT_EQ(
-        run({"--screenshot", "shot.png", "--settled", "--size", "200x120", scene_file.string(), "--no-cache"})
-            .code,
-        0);
-    ASSERT_EQ(run({"--batch", scene_file.string(), "-f", "1", "--resolution", "200x120", "-o", "batch.png",
-                   "--no-cache"})
-                  .code,
-              0);
+    expect_success(run(
+        {"--screenshot", "shot.png", "--settled", "--size", "200x120", scene_file.string(), "--no-cache"}));
+    expect_success(run({"--batch", scene_file.string(), "-f", "1", "--resolution", "200x120", "-o",
+                        "batch.png", "--no-cache"}));
     const Image shot = load_raw_image(folder / "shot.png"), batch = load_raw_image(folder / "batch.png");
     ASSERT_EQ(shot.width, batch.width);
     int bright = 0;
@@ -110,9 +104,8 @@ TEST_F(Settled, EqualsBatchWithTheCameraOfAFile) {
 }
 
 TEST_F(Settled, TheWidgetsAreInAScreenshotThatAsksForThem) {
-    const RunResult result = run({"--screenshot", "window.png", "--ui", "--settled", "--size", "900x600",
-                                  scene_file.string(), "--no-cache"});
-    ASSERT_EQ(result.code, 0) << result.err;
+    expect_success(run({"--screenshot", "window.png", "--ui", "--settled", "--size", "900x600",
+                        scene_file.string(), "--no-cache"}));
     const Image window = load_raw_image(folder / "window.png");
     ASSERT_EQ(window.width, 900);
     ASSERT_EQ(window.height, 600);
@@ -128,9 +121,8 @@ TEST_F(Settled, TheWidgetsAreInAScreenshotThatAsksForThem) {
 }
 
 TEST_F(Settled, APreviewsLightCanBeSavedToo) {
-    const RunResult result = run({"--batch", scene_file.string(), "-f", "1", "--resolution", "200x120", "-o",
-                                  "batch.exr", "--no-cache", "--set", "output.depth=float"});
-    ASSERT_EQ(result.code, 0) << result.err;
+    expect_success(run({"--batch", scene_file.string(), "-f", "1", "--resolution", "200x120", "-o",
+                        "batch.exr", "--no-cache", "--set", "output.depth=float"}));
     const Image batch = load_linear_image(folder / "batch.exr");
     double largest = 0.0, sum = 0.0;
     for (const float value : batch.pixels) largest = std::max(largest, double(value)), sum += value;
@@ -139,8 +131,7 @@ TEST_F(Settled, APreviewsLightCanBeSavedToo) {
                                           "200x120",           "--frame",     "1",
                                           scene_file.string(), "--no-cache"};
         if (!engine.empty()) words.push_back(engine);
-        const RunResult shot = run(words);
-        ASSERT_EQ(shot.code, 0) << shot.err;
+        expect_success(run(words));
         const Image preview = load_linear_image(folder / "preview.exr");
         ASSERT_EQ(preview.width, 200);
         ASSERT_EQ(preview.height, 120);

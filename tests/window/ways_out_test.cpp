@@ -97,8 +97,8 @@ TEST_F(WindowWaysOut, AFrameIsRendered) {
     const ImageInfo info = read_image_info(folder / "frames/frame.png");
     EXPECT_EQ(info.width, 320);
     EXPECT_EQ(info.height, 180);
-    const RunResult batch = run({"--batch", scene_file.string(), "-f", "1", "-o", "batch.png", "--no-cache"});
-    ASSERT_EQ(batch.code, 0) << batch.err;
+    const RunResult batch =
+        expect_success(run({"--batch", scene_file.string(), "-f", "1", "-o", "batch.png", "--no-cache"}));
     EXPECT_EQ(text_of(folder / "frames/frame.png"), text_of(folder / "batch.png"));
     expect_settled(before);
 }
@@ -128,14 +128,12 @@ TEST_F(WindowWaysOut, ACancelledRangeLeavesWholeFilesOnly) {
 /// Frames that are finished and still the scene's are kept, others are rendered again.
 TEST_F(WindowWaysOut, ARangeGoesOnWhereItEnded) {
     replace_in_scene("1-24", "1-3");
-    ASSERT_EQ(run({"--batch", scene_file.string(), "--no-cache"}).code, 0);
+    expect_success(run({"--batch", scene_file.string(), "--no-cache"}));
     const fs::path frames = folder / "frames", kept = frames / "shot.0002.png";
     const std::string whole = text_of(kept);
     fs::remove(frames / "shot.0001.png");
-    ASSERT_EQ(run({"--batch", scene_file.string(), "-f", "3", "--set", "output.exposure=2", "--overwrite",
-                   "--no-cache"})
-                  .code,
-              0);
+    expect_success(run({"--batch", scene_file.string(), "-f", "3", "--set", "output.exposure=2",
+                        "--overwrite", "--no-cache"}));
     const std::string other = text_of(frames / "shot.0003.png");
     const fs::file_time_type long_ago = fs::last_write_time(kept) - std::chrono::hours(1);
     fs::last_write_time(kept, long_ago);
@@ -274,10 +272,8 @@ echo "$n $task PENDING $name" >> "$here/queue"; echo $n
     void work() {
         const fs::path script = folder / "frames/slurm/0001/frames.sh";
         ASSERT_TRUE(comes_true([&] { return fs::exists(script.parent_path() / "submission.json"); }));
-        RunOptions node;
-        node.environment = {"SLURM_ARRAY_TASK_ID=0"};
-        const RunResult result = run_program({"/bin/bash", script.string()}, node);
-        ASSERT_EQ(result.code, 0) << result.err;
+        expect_success(
+            run_program({"/bin/bash", script.string()}, {.environment = {"SLURM_ARRAY_TASK_ID=0"}}));
         write_text(folder / "no programs/queue", "");
     }
     /// The queue's dialog with the job in this state.
@@ -300,7 +296,7 @@ TEST_F(WindowFarm, FramesAreSubmittedAndComeBack) {
     for (const auto& entry : fs::directory_iterator(folder / "frames"))
         names.insert(entry.path().filename().string());
     EXPECT_EQ(names, (std::set<std::string>{"shot.0001.png", "shot.0002.png", "shot.0003.png", "slurm"}));
-    ASSERT_EQ(run({"--batch", scene_file.string(), "-q", "-f", "2", "-o", "here.png", "--no-cache"}).code, 0);
+    expect_success(run({"--batch", scene_file.string(), "-q", "-f", "2", "-o", "here.png", "--no-cache"}));
     EXPECT_EQ(text_of(folder / "frames/shot.0002.png"), text_of(folder / "here.png"));
     open_queue(QueuedJob::State::done, {"a", "b", "c"});
     click_when_shown("queue/play");  // there is none before frames are
