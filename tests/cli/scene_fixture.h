@@ -111,13 +111,6 @@ blend = "add"
         EXPECT_FALSE(list.empty());
         return list;
     }
-    std::set<std::string> names_in(const std::string& relative) const {
-        std::set<std::string> names;
-        if (!fs::exists(folder / relative)) return names;
-        for (const auto& entry : fs::directory_iterator(folder / relative))
-            names.insert(entry.path().filename().string());
-        return names;
-    }
 };
 
 inline std::int64_t line_count(const std::string& text) { return std::count(text.begin(), text.end(), '\n'); }

@@ -154,13 +154,13 @@ TEST_F(FaultTest, KilledWithinAWriteNightly) { expect_no_complaints(kills(50)); 
 // A bad weekend on a farm: a full disk, a folder and a picture that go away, two programs on one
 // sequence, Ctrl-C. Afterwards every frame that exists is right, and --resume finishes.
 
-namespace fs = std::filesystem;
-
 class Disaster : public FolderTest {
   protected:
     static inline const FaultScene scene{"frames/shot.###.exr", 2};
     static inline const std::vector<std::string> frames = {"-f",      "1-12",       "--resolution",
                                                            "320x240", "--progress", "plain"};
+    static inline const std::vector<std::string> missing = {"-f",         "1-12",  "--resolution", "320x240",
+                                                            "--progress", "plain", "--resume"};
 
     Tree undisturbed() const {
         const FaultRun run(folder / "whole", scene);
@@ -171,8 +171,7 @@ class Disaster : public FolderTest {
     static std::unique_ptr<RunningProgram> started(const FaultRun& run,
                                                    const std::vector<std::string>& more = frames) {
         auto program = std::make_unique<RunningProgram>(run.words(more), run.options());
-        while (program->running() && program->err_so_far().find("saved ") == std::string::npos)
-            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        program->wait_until_said("saved ");
         return program;
     }
     static std::size_t frame_count(const Tree& tree) {
@@ -181,9 +180,7 @@ class Disaster : public FolderTest {
     }
     /// --resume gives all frames of the undisturbed run.
     static void expect_resumed(FaultRun& run, const Tree& whole) {
-        std::vector<std::string> more = frames;
-        more.emplace_back("--resume");
-        expect_success(run.batch(more));
+        expect_success(run.batch(missing));
         run.check_files(whole, false);
         EXPECT_EQ(frame_count(run.tree()), frame_count(whole));
         EXPECT_EQ(run.complaints(), "");
@@ -245,9 +242,7 @@ TEST_F(Disaster, ThePictureGoesAway) {
     const RunResult result = program->wait();
     EXPECT_EQ(result.code, 0) << "it was read before the first frame: " << result.err;
     EXPECT_EQ(frame_count(run.tree()), frame_count(whole));
-    std::vector<std::string> more = frames;
-    more.emplace_back("--resume");
-    const RunResult without = run.batch(more);
+    const RunResult without = run.batch(missing);
     EXPECT_EQ(without.code, 2);
     EXPECT_NE(without.err.find("picture.ppm"), std::string::npos) << without.err;
     fs::rename(folder / "picture.ppm", picture);
@@ -258,9 +253,7 @@ TEST_F(Disaster, ThePictureGoesAway) {
 TEST_F(Disaster, TwoProgramsRenderOneSequence) {
     const Tree whole = undisturbed();
     FaultRun run(folder / "two", scene);
-    std::vector<std::string> more = frames;
-    more.emplace_back("--resume");
-    const RunningProgram first(run.words(more), run.options()), second(run.words(more), run.options());
+    const RunningProgram first(run.words(missing), run.options()), second(run.words(missing), run.options());
     for (const RunningProgram* program : {&first, &second}) expect_success(program->wait());
     run.check_files(whole, false);
     EXPECT_EQ(frame_count(run.tree()), frame_count(whole));

@@ -15,6 +15,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <set>
 #include <stdexcept>
 #include <string>
 #include <thread>
@@ -152,6 +153,15 @@ class FolderTest : public testing::Test {
     ~FolderTest() override {
         std::error_code ignored;
         if (!HasFailure()) std::filesystem::remove_all(folder, ignored);
+    }
+
+    /// Of what lies in a folder below that one; empty where there is none.
+    std::set<std::string> names_in(const std::filesystem::path& place) const {
+        std::set<std::string> names;
+        std::error_code ignored;
+        for (const auto& entry : std::filesystem::directory_iterator(folder / place, ignored))
+            names.insert(entry.path().filename().string());
+        return names;
     }
 
     std::filesystem::path folder;

@@ -44,8 +44,7 @@ TEST_F(WindowScale, IsNoReasonToBeLargerThanTheScreen) {
 class WindowSlow : public WindowTest {};
 
 TEST_F(WindowSlow, AValueIsKeyedAtTwoFramesBlindly) {
-    start();
-    const Pixels first = settled_frame();
+    const Pixels first = start_settled();
     TestWindow& widgets = same_widgets();
     const float y = widgets.at("ruler").y, from = widgets.at("keyframe camera.position 1").x,
                 to = widgets.at("keyframe camera.position 24").x;

@@ -17,16 +17,8 @@ namespace {
 
 class WindowWaysOut : public WindowTest {
   protected:
-    std::set<std::string> names_in(const fs::path& place) const {
-        std::set<std::string> names;
-        std::error_code ignored;
-        for (const auto& entry : fs::directory_iterator(place, ignored))
-            names.insert(entry.path().filename().string());
-        return names;
-    }
     /// In the open dialog, and begins.
     void name_files(const std::string& name) {
-        same_widgets().frame(2);
         person->double_click(same_widgets().at("render/name"));
         person->press("ctrl+a");
         person->type(name);
@@ -36,7 +28,6 @@ class WindowWaysOut : public WindowTest {
     }
     /// As the open dialog has it.
     void render() {
-        same_widgets().frame(2);
         person->press("Return");
         same_widgets().tap(key_code::enter);
         same_widgets().take_commands();
@@ -70,43 +61,39 @@ Pixels load_pixels(const fs::path& file) {
 }
 
 TEST_F(WindowWaysOut, AScreenshotIsTheWindow) {
-    start();
-    settled_frame();
+    start_settled();
     person->move({width - 2.0f, height - 2.0f});
     Pixels shown = screen->pixels({0, 0, width, height});
     person->press("F12");
     person->press("ctrl+a");
     person->type("window.png");
     person->press("Return");
-    ASSERT_TRUE(comes_true([&] { return fs::exists(folder / "window.png"); }));
+    ASSERT_TRUE(comes("window.png"));
     Pixels saved = load_pixels(folder / "window.png");
     ASSERT_EQ(saved.width, width);
     ASSERT_EQ(saved.height, height);
-    const Rect status = make_layout(ViewState(), width, height, 1.0f).status;  // memory, messages
+    const Rect status = layout().status;  // memory, messages
     for (Pixels* pixels : {&shown, &saved})
         pixels->rgb.resize(static_cast<std::size_t>(status.y) * static_cast<std::size_t>(width));
     EXPECT_EQ(saved, shown);
 }
 
 TEST_F(WindowWaysOut, AFrameIsRendered) {
-    start();
-    const Pixels before = settled_frame();
+    const Pixels before = start_settled();
     choose("Render/Frame...");
     name_files("frame.png");
-    ASSERT_TRUE(comes_true([&] { return fs::exists(folder / "frames/frame.png"); }));
+    ASSERT_TRUE(comes("frames/frame.png"));
     const ImageInfo info = read_image_info(folder / "frames/frame.png");
     EXPECT_EQ(info.width, 320);
     EXPECT_EQ(info.height, 180);
-    const RunResult batch =
-        expect_success(run({"--batch", scene_file.string(), "-f", "1", "-o", "batch.png", "--no-cache"}));
+    expect_success(run({"--batch", scene_file.string(), "-f", "1", "-o", "batch.png", "--no-cache"}));
     EXPECT_EQ(text_of(folder / "frames/frame.png"), text_of(folder / "batch.png"));
     expect_settled(before);
 }
 
 TEST_F(WindowWaysOut, ACancelledRangeLeavesWholeFilesOnly) {
     replace_in_scene("1-24", "1-9000");
-    start();
-    settled_frame();
+    start_settled();
     choose("Render/Frames...");
     render();
     ASSERT_TRUE(comes_true([&] { return names_in(folder / "frames").size() > 2; }));
@@ -137,8 +124,7 @@ TEST_F(WindowWaysOut, ARangeGoesOnWhereItEnded) {
     const std::string other = text_of(frames / "shot.0003.png");
     const fs::file_time_type long_ago = fs::last_write_time(kept) - std::chrono::hours(1);
     fs::last_write_time(kept, long_ago);
-    start();
-    settled_frame();
+    start_settled();
     choose("Render/Frames...");
     render();
     EXPECT_TRUE(comes_true([&] {
@@ -161,8 +147,7 @@ TEST_F(WindowWaysOut, AMovieHasTheScenesFramesAndSpeed) {
          {std::pair{"[320, 180]", "320,180,24/1,24\n"}, {"[161, 91]", "162,92,24/1,24\n"}}) {
         write_text(scene_file, untouched);
         replace_in_scene("[320, 180]", size);
-        start();
-        settled_frame();
+        start_settled();
         same_widgets().status.has_ffmpeg = true;
         same_widgets().frame();
         choose("Render/Movie...");
@@ -177,8 +162,7 @@ TEST_F(WindowWaysOut, AMovieHasTheScenesFramesAndSpeed) {
 }
 
 TEST_F(WindowWaysOut, JobsWaitForEachOther) {
-    start();
-    settled_frame();
+    start_settled();
     choose("Render/Frames...");
     name_files("one.####.png");
     ASSERT_TRUE(comes("frames/one.0001.png"));
@@ -190,8 +174,7 @@ TEST_F(WindowWaysOut, JobsWaitForEachOther) {
 }
 
 TEST_F(WindowWaysOut, TheFrameAsSeenIsSaved) {
-    start();
-    const Pixels seen = settled_frame();
+    const Pixels seen = start_settled();
     choose("File/Save the frame as seen...");
     same_widgets().frame(2);
     person->press("ctrl+a");
@@ -199,7 +182,7 @@ TEST_F(WindowWaysOut, TheFrameAsSeenIsSaved) {
     person->press("Return");
     ASSERT_TRUE(comes("seen.png"));
     const Pixels saved = load_pixels(folder / "seen.png");
-    const Rect port = make_layout(ViewState(), width, height, 1.0f).viewport;
+    const Rect port = layout().viewport;
     EXPECT_NEAR(static_cast<float>(saved.width) / static_cast<float>(saved.height), 320.0f / 180.0f, 0.01f);
     EXPECT_LE(saved.width, static_cast<int>(port.width) + 1);
     std::set<std::uint32_t> colors(saved.rgb.begin(), saved.rgb.end()),
@@ -258,11 +241,9 @@ echo "$n $task PENDING $name" >> "$here/queue"; echo $n
         same_widgets().status.has_slurm = true;
         same_widgets().frame();
         choose("Render/Frames...");
-        same_widgets().frame(2);
         for (const char* button : {"render/Slurm", "render/Submit"}) {
             const glm::vec2 at = same_widgets().at(button);
             same_widgets().click(at);
-            same_widgets().frame(2);
             person->click(at);
         }
         same_widgets().take_commands();
@@ -284,7 +265,6 @@ echo "$n $task PENDING $name" >> "$here/queue"; echo $n
         same_widgets().status.jobs = {job};
         same_widgets().frame();
         choose("Render/Queue...");
-        same_widgets().frame(2);
     }
 };
 
@@ -292,10 +272,8 @@ TEST_F(WindowFarm, FramesAreSubmittedAndComeBack) {
     submit();
     EXPECT_NE(told("submitted").find("--dependency=afterok:1 frames.sh\n"), std::string::npos);
     work();
-    std::set<std::string> names;
-    for (const auto& entry : fs::directory_iterator(folder / "frames"))
-        names.insert(entry.path().filename().string());
-    EXPECT_EQ(names, (std::set<std::string>{"shot.0001.png", "shot.0002.png", "shot.0003.png", "slurm"}));
+    EXPECT_EQ(names_in("frames"),
+              (std::set<std::string>{"shot.0001.png", "shot.0002.png", "shot.0003.png", "slurm"}));
     expect_success(run({"--batch", scene_file.string(), "-q", "-f", "2", "-o", "here.png", "--no-cache"}));
     EXPECT_EQ(text_of(folder / "frames/shot.0002.png"), text_of(folder / "here.png"));
     open_queue(QueuedJob::State::done, {"a", "b", "c"});

@@ -57,6 +57,12 @@ void write_rings(const fs::path& file) {
     write_image(file, size, size, rgba);
 }
 
+void write_plain(const fs::path& file, int width, int height, const std::array<unsigned char, 3>& rgb) {
+    std::vector<unsigned char> rgba;
+    for (int i = 0; i < width * height; ++i) rgba.insert(rgba.end(), {rgb[0], rgb[1], rgb[2], 255});
+    write_image(file, width, height, rgba);
+}
+
 ViewerTest::ViewerTest() : scene_file(folder / "scene.toml") {
     write_text(scene_file, scene_text);
     write_rings(folder / "rings.png");
@@ -129,12 +135,10 @@ void WindowTest::expect_title(const std::string& begin) {
     EXPECT_TRUE(comes_true([&] { return title() == begin + " - astrosplat"; })) << title();
 }
 
-Pixels WindowTest::pixels_of(Rect Layout::*part) const {
-    return screen->pixels(area_of(make_layout(ViewState(), width, height, 1.0f).*part));
-}
+Pixels WindowTest::pixels_of(Rect Layout::*part) const { return screen->pixels(area_of(layout().*part)); }
 
 Pixels WindowTest::frame_pixels() const {
-    Area area = area_of(make_layout(ViewState(), width, height, 1.0f).viewport);
+    Area area = area_of(layout().viewport);
     area.height -= badge_height;
     return screen->pixels(area);
 }
@@ -212,7 +216,6 @@ void WindowTest::choose(const std::string& path) {
     for (std::size_t slash = path.find('/'); slash != std::string::npos; slash = path.find('/', slash + 1)) {
         const glm::vec2 menu = widgets.at(path.substr(0, slash));
         widgets.click(menu);
-        widgets.frame(2);
         person->click(menu);
     }
     const glm::vec2 item = widgets.at(path);
