@@ -55,6 +55,13 @@ class FinalFrameTest : public testing::Test {
             std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
 
+    /// Starts it, and waits until it is done.
+    static void finish(FinalFrame& picture, const FinalRequest& wanted) {
+        picture.start(wanted);
+        wait(picture);
+        ASSERT_EQ(picture.outcome().state, State::done) << picture.outcome().error;
+    }
+
     SmallScene small;
     std::vector<std::shared_ptr<const SplatSet>> sets;
 };
@@ -62,9 +69,7 @@ class FinalFrameTest : public testing::Test {
 TEST_F(FinalFrameTest, SettlesToThePipelinesPixels) {
     FinalFrame picture;
     EXPECT_EQ(picture.outcome().state, State::idle);
-    picture.start(request(0));
-    wait(picture);
-    ASSERT_EQ(picture.outcome().state, State::done) << picture.outcome().error;
+    finish(picture, request(0));
     const std::string wanted = hash_of(request(0));
     EXPECT_EQ(pixel_hash(picture.outcome().frame->beauty), wanted);
     EXPECT_TRUE(picture.outcome().frame->depth.pixels.empty());
@@ -79,9 +84,7 @@ TEST_F(FinalFrameTest, DepthComesWithTheSamePixels) {
     FinalRequest wanted = request(0);
     wanted.depth = true;
     FinalFrame picture;
-    picture.start(wanted);
-    wait(picture);
-    ASSERT_EQ(picture.outcome().state, State::done) << picture.outcome().error;
+    finish(picture, wanted);
     EXPECT_EQ(pixel_hash(picture.outcome().frame->beauty), hash_of(request(0)));
     EXPECT_EQ(picture.outcome().frame->depth.width, wanted.width);
 }
@@ -90,9 +93,7 @@ TEST_F(FinalFrameTest, ARegionIsThatPartOfThePicture) {
     FinalRequest wanted = request(1);
     wanted.region = {37, 20, 90, 51};
     FinalFrame picture;
-    picture.start(wanted);
-    wait(picture);
-    ASSERT_EQ(picture.outcome().state, State::done) << picture.outcome().error;
+    finish(picture, wanted);
     Image tiles;
     picture.take_tiles(tiles);
     EXPECT_EQ(tiles.width, 90);
@@ -157,9 +158,7 @@ TEST_F(FinalFrameTest, ACancelledPictureStaysUnfinished) {
     const auto begin = std::chrono::steady_clock::now();
     FinalRequest next = request(1);
     next.region = {0, 0, 1, 1};
-    picture.start(next);
-    wait(picture);
-    EXPECT_EQ(picture.outcome().state, State::done);
+    finish(picture, next);
     const std::chrono::duration<double, std::milli> taken = std::chrono::steady_clock::now() - begin;
     std::printf("from cancel to the next picture's pixel: %.1f ms\n", taken.count());
 }
@@ -177,8 +176,7 @@ TEST_F(FinalFrameTest, ALimitOfMemoryMakesBandsAndNotAnError) {
     FinalFrame picture;
     FinalRequest pixel = wanted;  // so that the splats are shaded
     pixel.region = {0, 0, 1, 1};
-    picture.start(pixel);
-    wait(picture);
+    finish(picture, pixel);
     const std::int64_t before = resident_memory_bytes(), left = 72'000'000;
     limit_memory(before + left, "a dial");
     picture.start(wanted);
@@ -208,9 +206,7 @@ TEST_F(FinalFrameTest, AFailureIsOneLineAndTheNextPictureWorks) {
     EXPECT_NE(picture.outcome().error.find("missing.png"), std::string::npos);
     EXPECT_EQ(picture.outcome().error.find('\n'), std::string::npos);
     EXPECT_FALSE(picture.outcome().frame);
-    picture.start(request(0));
-    wait(picture);
-    EXPECT_EQ(picture.outcome().state, State::done);
+    finish(picture, request(0));
     EXPECT_EQ(picture.outcome().error, "");
     EXPECT_EQ(pixel_hash(picture.outcome().frame->beauty), hash_of(request(0)));
 }
@@ -219,9 +215,7 @@ TEST_F(FinalFrameTest, LayersStillLoadingAreLeftOut) {
     FinalRequest wanted = request(0);
     wanted.sets[0] = nullptr;
     FinalFrame picture;
-    picture.start(wanted);
-    wait(picture);
-    ASSERT_EQ(picture.outcome().state, State::done) << picture.outcome().error;
+    finish(picture, wanted);
     EXPECT_EQ(pixel_hash(picture.outcome().frame->beauty), hash_of(wanted));
     EXPECT_NE(pixel_hash(picture.outcome().frame->beauty), hash_of(request(0)));
 }
