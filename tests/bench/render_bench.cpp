@@ -1,5 +1,5 @@
-// Whole frames, look already applied: project to finished float image in memory; and what memory a frame takes
-// beyond the splats.
+// Whole frames, look already applied: project to finished float image in memory; and what memory a frame
+// takes beyond the splats.
 #include <benchmark/benchmark.h>
 
 #include <cstring>

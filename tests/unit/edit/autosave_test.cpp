@@ -128,8 +128,7 @@ TEST_F(AutosaveTest, AFolderThatCannotBeWrittenCostsOneWarning) {
     Autosave autosave(f.file / "inside a file");
     EXPECT_FALSE(autosave.write(document));
     EXPECT_FALSE(autosave.write(document));
-    ASSERT_EQ(said.warnings.size(), 1u);
-    EXPECT_NE(said.warnings[0].find("no autosave of szene ä.toml: "), std::string::npos);
+    EXPECT_HAS(said.one_warning(), "no autosave of szene ä.toml: ");
     EXPECT_TRUE(recoveries(f.file / "inside a file").empty());
     EXPECT_TRUE(recoveries(f.folder / "missing").empty());
 }

@@ -19,6 +19,7 @@ namespace {
 using glm::dvec3;
 using glm::i64vec3;
 using test::flat_texture;
+using test::lattice_of;
 using test::textured;
 
 /// Everything DESIGN 4 says, one position after the other.
@@ -53,14 +54,6 @@ SplatSet plain_generate(const TexturedMesh& m, const Lattice& lattice, double ma
     return set;
 }
 
-Texture half_transparent() {
-    Texture texture = flat_texture({0.25f, 0.5f, 1.0f, 0.75f}, 64);
-    for (std::int64_t y = 0; y < 64; ++y) {
-        for (std::int64_t x = 0; x < 32; ++x) std::fill_n(texture.image.at(x, y), 4, 0.0f);
-    }
-    return texture;
-}
-
 class GenerateTest : public testing::Test {
   protected:
     ~GenerateTest() override { set_thread_count(0); }
@@ -68,11 +61,8 @@ class GenerateTest : public testing::Test {
 
 TEST_F(GenerateTest, EqualsThePlainLoopForAnyThreadCount) {
     for (const char* name : {"plane", "disk", "sphere"}) {
-        std::vector<TexturedMesh> meshes;
-        meshes.push_back(textured(builtin_mesh(name, 1.5), half_transparent()));
-        SourceParams source;
-        source.voxels = i64vec3(19, 16, 21);  // whole and broken blocks
-        const Lattice lattice = make_lattice(source, meshes, 0.6);
+        std::vector<TexturedMesh> meshes = {textured(builtin_mesh(name, 1.5), test::half_lit())};
+        const Lattice lattice = lattice_of({19, 16, 21}, meshes, 0.6);  // whole and broken blocks
         const SplatSet plain = plain_generate(meshes[0], lattice, 0.6, 1.0, 5);
         EXPECT_GT(plain.size(), 100) << name;
         EXPECT_GT(plain.zero_alpha, 100) << name;
@@ -85,12 +75,9 @@ TEST_F(GenerateTest, EqualsThePlainLoopForAnyThreadCount) {
 }
 
 TEST_F(GenerateTest, LongAndThinLatticesToo) {
-    std::vector<TexturedMesh> meshes;
-    meshes.push_back(textured(builtin_mesh("sphere", 1.0), flat_texture({1, 1, 1, 1})));
+    std::vector<TexturedMesh> meshes = {textured(builtin_mesh("sphere", 1.0))};
     for (const i64vec3 n : {i64vec3(1, 1, 1), i64vec3(600, 2, 3), i64vec3(3, 400, 4), i64vec3(4, 1, 333)}) {
-        SourceParams source;
-        source.voxels = n;
-        const Lattice lattice = make_lattice(source, meshes, 1.0);
+        const Lattice lattice = lattice_of(n, meshes, 1.0);
         test::expect_same_bits(generate(meshes, lattice, 1.0, 0.5, 9),
                                plain_generate(meshes[0], lattice, 1.0, 0.5, 9));
     }
@@ -103,23 +90,18 @@ TEST_F(GenerateTest, DenseMeshes) {
     while (mesh.triangles.size() < 6000)
         mesh.triangles.push_back(mesh.triangles[mesh.triangles.size() - once]);
     for (glm::vec3& p : mesh.positions) p *= 0.02f;
-    std::vector<TexturedMesh> meshes;
-    meshes.push_back(textured(std::move(mesh), flat_texture({1, 1, 1, 1})));
-    SourceParams source;
-    source.voxels = i64vec3(6, 5, 7);
-    const Lattice lattice = make_lattice(source, meshes, 0.3);
+    std::vector<TexturedMesh> meshes = {textured(std::move(mesh))};
+    const Lattice lattice = lattice_of({6, 5, 7}, meshes, 0.3);
     const SplatSet plain = plain_generate(meshes[0], lattice, 0.3, 1.0, 2);
     EXPECT_GT(plain.size(), 200);
     test::expect_same_bits(generate(meshes, lattice, 0.3, 1.0, 2), plain);
 }
 
 TEST_F(GenerateTest, PlaneWithoutJitterIsKnownByHand) {
-    std::vector<TexturedMesh> meshes;
-    meshes.push_back(textured(builtin_mesh("plane", 1.0), flat_texture({0.25f, 0.5f, 1.0f, 0.5f})));
-    SourceParams source;
-    source.voxels = i64vec3(2, 4, 2);
-    source.buffer = dvec3(0, 2, 0);  // corners at y = -2 -1 0 1 2, centres at -1.5 -0.5 0.5 1.5
-    const SplatSet set = generate(meshes, make_lattice(source, meshes, 1.0), 1.0, 0.0, 1);
+    std::vector<TexturedMesh> meshes = {
+        textured(builtin_mesh("plane", 1.0), flat_texture({0.25f, 0.5f, 1.0f, 0.5f}))};
+    // Corners at y = -2 -1 0 1 2, centres at -1.5 -0.5 0.5 1.5.
+    const SplatSet set = generate(meshes, lattice_of({2, 4, 2}, meshes, 1.0, dvec3(0, 2, 0)), 1.0, 0.0, 1);
     ASSERT_EQ(set.size(), 3 * 9 + 2 * 4);  // both sides of the plane, the distance included
     EXPECT_EQ(set.position[0], glm::vec3(-5, -1, -5));
     EXPECT_EQ(set.distance[0], 1.0f);
@@ -141,8 +123,7 @@ TEST_F(GenerateTest, PlaneWithoutJitterIsKnownByHand) {
 }
 
 TEST_F(GenerateTest, IdsAscendAndDistancesStayBelowTheLimit) {
-    std::vector<TexturedMesh> meshes;
-    meshes.push_back(textured(builtin_mesh("sphere", 1.0), flat_texture({1, 1, 1, 1})));
+    std::vector<TexturedMesh> meshes = {textured(builtin_mesh("sphere", 1.0))};
     SourceParams source;
     source.count = 20000;
     const Lattice lattice = make_lattice(source, meshes, 0.4);
@@ -158,12 +139,9 @@ TEST_F(GenerateTest, IdsAscendAndDistancesStayBelowTheLimit) {
 
 // The centres of all batches come after the corners of all batches.
 TEST_F(GenerateTest, SeveralBatchesKeepTheOrderOfIds) {
-    std::vector<TexturedMesh> meshes;
-    meshes.push_back(textured(builtin_mesh("plane", 1.0), flat_texture({1, 1, 1, 1})));
-    SourceParams source;
-    source.voxels = i64vec3(2, 370, 370);  // 1 x 93 x 93 blocks, all of them near enough
-    source.buffer = dvec3(0, 0.1, 0);
-    const Lattice lattice = make_lattice(source, meshes, 20.0);
+    std::vector<TexturedMesh> meshes = {textured(builtin_mesh("plane", 1.0))};
+    // 1 x 93 x 93 blocks, all of them near enough.
+    const Lattice lattice = lattice_of({2, 370, 370}, meshes, 20.0, dvec3(0, 0.1, 0));
     set_thread_count(3);
     const SplatSet set = generate(meshes, lattice, 20.0, 1.0, 3);
     ASSERT_EQ(set.size(), lattice.positions());
@@ -175,8 +153,7 @@ TEST_F(GenerateTest, SeveralBatchesKeepTheOrderOfIds) {
 
 TEST_F(GenerateTest, AutomaticVoxelsKeepAboutCount) {
     for (const char* name : {"plane", "sphere"}) {
-        std::vector<TexturedMesh> meshes;
-        meshes.push_back(textured(builtin_mesh(name, 1.0), flat_texture({1, 1, 1, 1})));
+        std::vector<TexturedMesh> meshes = {textured(builtin_mesh(name, 1.0))};
         SourceParams source;
         source.count = 50000;
         const double distance = resolved_max_distance(source, bounds(meshes));
@@ -188,16 +165,13 @@ TEST_F(GenerateTest, AutomaticVoxelsKeepAboutCount) {
 TEST_F(GenerateTest, SeveralMeshesWithTheirPictures) {
     Mesh low = builtin_mesh("plane", 1.0), high = low;
     for (glm::vec3& p : high.positions) p.y = 1.0f;
-    std::vector<TexturedMesh> meshes;
-    meshes.push_back(textured(low, flat_texture({1, 0, 0, 1})));
-    meshes.push_back(textured(high, flat_texture({0, 1, 0, 1})));
+    std::vector<TexturedMesh> meshes = {textured(low, flat_texture({1, 0, 0, 1})),
+                                        textured(high, flat_texture({0, 1, 0, 1}))};
     meshes[0].textures[0].credit = "NASA";
     meshes[1].textures[0].credit = "ESA";
     meshes[1].textures[0].divided = true;
     meshes.push_back(meshes[0]);  // ties with the first, which wins
-    SourceParams source;
-    source.voxels = i64vec3(4, 12, 4);
-    const SplatSet set = generate(meshes, make_lattice(source, meshes, 0.3), 0.3, 1.0, 1);
+    const SplatSet set = generate(meshes, lattice_of({4, 12, 4}, meshes, 0.3), 0.3, 1.0, 1);
     int found[3] = {0, 0, 0};
     for (std::size_t i = 0; i < set.id.size(); ++i) {
         ++found[set.mesh[i]];
@@ -216,17 +190,13 @@ TEST_F(GenerateTest, SeveralMeshesWithTheirPictures) {
 // stripes.
 TEST_F(GenerateTest, AreaFilterAveragesOverTheVoxel) {
     Texture stripes = flat_texture({1, 1, 1, 1}, 200);
-    for (std::int64_t y = 0; y < 200; ++y) {
+    for (std::int64_t y = 0; y < 200; ++y)
         for (std::int64_t x = 0; x < 200; x += 2) std::fill_n(stripes.image.at(x, y), 3, 0.0f);
-    }
     const auto spread = [&](TextureSettings::Filter filter) {
         stripes.filter = filter;
-        std::vector<TexturedMesh> meshes;
-        meshes.push_back(textured(builtin_mesh("plane", 1.0), stripes));
-        SourceParams source;
-        source.voxels = i64vec3(20, 4, 20);
-        source.buffer = dvec3(0, 1, 0);
-        const SplatSet set = generate(meshes, make_lattice(source, meshes, 1.0), 1.0, 1.0, 1);
+        std::vector<TexturedMesh> meshes = {textured(builtin_mesh("plane", 1.0), stripes)};
+        const SplatSet set =
+            generate(meshes, lattice_of({20, 4, 20}, meshes, 1.0, dvec3(0, 1, 0)), 1.0, 1.0, 1);
         float lo = 1.0f, hi = 0.0f;
         for (std::size_t i = 0; i < set.id.size(); ++i) {
             if (std::fabs(set.uv[i].x - 0.5f) > 0.4f) continue;  // the border halves the box
@@ -241,39 +211,35 @@ TEST_F(GenerateTest, AreaFilterAveragesOverTheVoxel) {
 }
 
 TEST_F(GenerateTest, CancelStops) {
-    std::vector<TexturedMesh> meshes;
-    meshes.push_back(textured(builtin_mesh("sphere", 1.0), flat_texture({1, 1, 1, 1})));
+    std::vector<TexturedMesh> meshes = {textured(builtin_mesh("sphere", 1.0))};
     const std::atomic<bool> cancelled{true};
-    Progress progress;
-    progress.cancelled = &cancelled;
     const Lattice lattice = make_lattice(SourceParams(), meshes, 0.2);
-    EXPECT_THROW(generate(meshes, lattice, 0.2, 1.0, 1, progress), Cancelled);
+    EXPECT_THROW(generate(meshes, lattice, 0.2, 1.0, 1, {{}, &cancelled}), Cancelled);
 }
 
 TEST_F(GenerateTest, MoreThanTheMemoryIsRefusedBeforeItIsTaken) {
-    std::vector<TexturedMesh> meshes;
-    meshes.push_back(textured(builtin_mesh("sphere", 1.0), flat_texture({1, 1, 1, 1})));
+    std::vector<TexturedMesh> meshes = {textured(builtin_mesh("sphere", 1.0))};
     SourceParams source;
     source.count = std::int64_t{1} << 50;
     EXPECT_THROW(generate(meshes, make_lattice(source, meshes, 0.2), 0.2, 1.0, 1), InputError);
 }
 
 TEST_F(GenerateTest, EmptySpaceCostsNothing) {
-    std::vector<TexturedMesh> meshes;
     Mesh mesh = builtin_mesh("plane", 1.0);
     for (glm::vec3& p : mesh.positions) p *= 1e-4f;
-    meshes.push_back(textured(std::move(mesh), flat_texture({1, 1, 1, 1})));
-    SourceParams source;
-    source.voxels = i64vec3(1'000'001);  // 2e18 positions: only a search from the top can end
-    source.buffer = dvec3(500.0);
-    const SplatSet set = generate(meshes, make_lattice(source, meshes, 0.002), 0.002, 0.0, 1);
+    const std::vector<TexturedMesh> meshes = {textured(std::move(mesh))};
+    // 2e18 positions: only a search from the top can end.
+    const Lattice lattice = lattice_of(i64vec3(1'000'001), meshes, 0.002, dvec3(500.0));
+    const SplatSet set = generate(meshes, lattice, 0.002, 0.0, 1);
     EXPECT_GT(set.size(), 30);
     EXPECT_LT(set.size(), 200);
 }
 
 // With a camera's picture a position shows what the camera sees there, not what its closest point shows.
 TEST_F(GenerateTest, ACamerasPictureIsSeenAtThePositionsThemselves) {
-    TexturedMesh mesh = textured(builtin_mesh("plane", 1.0), flat_texture({0.25f, 0.5f, 1.0f, 1.0f}));
+    std::vector<TexturedMesh> meshes = {
+        textured(builtin_mesh("plane", 1.0), flat_texture({0.25f, 0.5f, 1.0f, 1.0f}))};
+    TexturedMesh& mesh = meshes[0];
     UvCamera params;
     params.position = dvec3(0.0, 0.5, 0.0);  // amid the positions: some are behind it
     params.up = dvec3(0.0, 0.0, -1.0);
@@ -281,10 +247,7 @@ TEST_F(GenerateTest, ACamerasPictureIsSeenAtThePositionsThemselves) {
     mesh.camera = picture_camera(params, 1.0);
     apply_camera_uv(mesh.mesh, *mesh.camera);
     mesh.textures[0].wrap = TextureSettings::Wrap::black;
-    SourceParams source;
-    source.voxels = i64vec3(40, 10, 40);
-    const Lattice lattice = make_lattice(source, {&mesh, 1}, 1.0);
-    const SplatSet set = generate({&mesh, 1}, lattice, 1.0, 1.0, 9u);
+    const SplatSet set = generate(meshes, lattice_of({40, 10, 40}, meshes, 1.0), 1.0, 1.0, 9u);
     ASSERT_GT(set.size(), 1000);
     EXPECT_GT(set.zero_alpha, 1000);
     for (std::size_t i = 0; i < set.id.size(); ++i) {

@@ -5,7 +5,6 @@
 #include <limits>
 #include <set>
 
-#include "core/error.h"
 #include "generate/lattice.h"
 #include "support/errors.h"
 #include "unit/generate/generate_support.h"
@@ -26,11 +25,7 @@ Lattice small_lattice() {
     return lattice;
 }
 
-std::vector<TexturedMesh> one_plane() {
-    std::vector<TexturedMesh> meshes;
-    meshes.push_back(test::textured(builtin_mesh("plane", 2.0), test::flat_texture({1, 1, 1, 1})));
-    return meshes;
-}
+std::vector<TexturedMesh> one_plane() { return {test::textured(builtin_mesh("plane", 2.0))}; }
 
 std::string message(const SourceParams& source, double max_distance = 0.1) {
     return ERROR_OF(make_lattice(source, one_plane(), max_distance));
@@ -142,18 +137,17 @@ TEST(LatticeErrors, OneLineEach) {
         message(source),
         "source.voxels: expected a lattice of fewer than 2^62 positions, found 1e+12 x 1e+12 x 1 voxels");
     source.voxels = i64vec3(std::numeric_limits<std::int64_t>::max());
-    EXPECT_NE(message(source).find("fewer than 2^62"), std::string::npos);
+    EXPECT_HAS(message(source), "fewer than 2^62");
     source.voxels.reset();
     source.voxel_size = -0.5;
     EXPECT_EQ(message(source), "source.voxel_size: expected a number above 0, found -0.5");
     source.voxel_size = 1e-200;
-    EXPECT_NE(message(source).find("source.voxel_size: expected a lattice of fewer than 2^62"),
-              std::string::npos);
+    EXPECT_HAS(message(source), "source.voxel_size: expected a lattice of fewer than 2^62");
     source.voxel_size = 0.0;
     source.count = 0;
     EXPECT_EQ(message(source), "source.count: expected at least 1, found 0");
     source.count = std::numeric_limits<std::int64_t>::max();
-    EXPECT_NE(message(source).find("source.count: expected a lattice of fewer than 2^62"), std::string::npos);
+    EXPECT_HAS(message(source), "source.count: expected a lattice of fewer than 2^62");
     source.count = 1000;
     source.buffer = dvec3(1, -1, 1);
     EXPECT_EQ(message(source), "source.buffer: expected numbers of at least 0, found -1");
@@ -162,14 +156,9 @@ TEST(LatticeErrors, OneLineEach) {
 TEST(LatticeErrors, AutomaticVoxelsNeedAnArea) {
     std::vector<TexturedMesh> meshes = one_plane();
     meshes[0].mesh.triangles = {{{0, 0, 0}, {0, 0, 0}, 0}};
-    try {
-        make_lattice(SourceParams(), meshes, 0.1);
-        FAIL();
-    } catch (const InputError& error) {
-        EXPECT_STREQ(error.what(),
-                     "source.voxels: expected numbers, because the meshes have no area to choose them by, "
-                     "found \"auto\"");
-    }
+    EXPECT_EQ(ERROR_OF(make_lattice(SourceParams(), meshes, 0.1)),
+              "source.voxels: expected numbers, because the meshes have no area to choose them by, "
+              "found \"auto\"");
 }
 
 // The volume near meshes, by Steiner's formula: flat convex meshes of area A and perimeter P have
@@ -183,18 +172,12 @@ double steiner(double width, double depth, double d) {
     return 2.0 * width * depth * d + pi / 2.0 * 2.0 * (width + depth) * d * d + 4.0 / 3.0 * pi * d * d * d;
 }
 
-Texture half_texture() {
-    Texture texture = flat_texture({1, 1, 1, 1}, 64);
-    for (std::int64_t y = 0; y < 64; ++y) std::fill_n(texture.image.at(0, y), 4 * 32, 0.0f);
-    return texture;
-}
+Texture half_texture() { return test::half_lit(glm::vec4(1.0f)); }
 
 std::vector<TexturedMesh> rectangle(double width, double depth, Texture texture) {
     Mesh mesh = builtin_mesh("plane", 1.0);
     for (glm::vec3& p : mesh.positions) p = glm::vec3(dvec3(p) * dvec3(width / 10.0, 1.0, depth / 10.0));
-    std::vector<TexturedMesh> meshes;
-    meshes.push_back(textured(std::move(mesh), std::move(texture)));
-    return meshes;
+    return {textured(std::move(mesh), std::move(texture))};
 }
 
 Neighbourhood measured(const std::vector<TexturedMesh>& meshes, double d) {
@@ -277,14 +260,9 @@ TEST(AutomaticVoxels, WhatIsExpectedFollowsTheRoomAndTheTransparency) {
 TEST(AutomaticVoxels, SplatsOfAnEmptyPictureAreRefused) {
     SourceParams source;
     source.splats = 1000;
-    try {
-        make_lattice(source, rectangle(10, 10, flat_texture({1, 1, 1, 0})), 0.2);
-        FAIL();
-    } catch (const InputError& error) {
-        EXPECT_STREQ(error.what(),
-                     "source.splats: expected a picture and masks that leave something, found nothing that "
-                     "is not transparent");
-    }
+    EXPECT_EQ(ERROR_OF(make_lattice(source, rectangle(10, 10, flat_texture({1, 1, 1, 0})), 0.2)),
+              "source.splats: expected a picture and masks that leave something, found nothing that "
+              "is not transparent");
 }
 
 }  // namespace

@@ -346,8 +346,7 @@ class RealMeshes : public testing::TestWithParam<const char*> {};
 
 TEST_P(RealMeshes, EqualBruteForceBitForBit) {
     ASTROSPLAT_TEST_DATA_OR_SKIP(file, std::string("meshes/") + GetParam());
-    std::vector<TexturedMesh> meshes;
-    meshes.push_back(test::textured(load_obj(file), test::flat_texture({1, 1, 1, 1})));
+    std::vector<TexturedMesh> meshes = {test::textured(load_obj(file))};
     apply_uv(meshes[0].mesh, UvMode::planar_xz, bounds(meshes));
     const Bounds box = bounds(meshes);
     const double side = std::max({box.extent().x, box.extent().y, box.extent().z});
@@ -399,8 +398,7 @@ INSTANTIATE_TEST_SUITE_P(Meshes, RealMeshes,
 
 TEST(RealMesh, AutomaticVoxelsKeepAboutCount) {
     ASTROSPLAT_TEST_DATA_OR_SKIP(file, "meshes/spot/spot_triangulated.obj");
-    std::vector<TexturedMesh> meshes;
-    meshes.push_back(test::textured(load_obj(file), test::flat_texture({1, 1, 1, 1})));
+    std::vector<TexturedMesh> meshes = {test::textured(load_obj(file))};
     SourceParams source;
     source.count = 200000;
     const double distance = resolved_max_distance(source, bounds(meshes));
