@@ -1,9 +1,11 @@
 // Pictures keep their light, their colours and their side.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+
 #include <algorithm>
 #include <cmath>
 #include <optional>
+
 #include "analytic/support.h"
 #include "core/color.h"
 #include "core/real.h"

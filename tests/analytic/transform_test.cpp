@@ -1,8 +1,10 @@
 // Finished splats moved by their layer, and what layers and frames add up to.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+
 #include <algorithm>
 #include <cmath>
+
 #include "analytic/support.h"
 #include "core/real.h"
 #include "output/compare.h"

@@ -3,19 +3,18 @@
 #include <sys/ioctl.h>
 #include <sys/stat.h>
 #include <unistd.h>
+
 #include <chrono>
 #include <regex>
 #include <thread>
+
 #include "cli/scene_fixture.h"
-#include "scene_fixture.h"
 #include "source/texture.h"
 #include "support/color_config.h"
 #include "support/process_state.h"
 
 namespace astrosplat::test {
 namespace {
-
-// --batch: which files appear, what is said where, and what the figures hold.
 
 class Batch : public SceneTest {
   protected:

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <regex>
 #include <sstream>
+
 #include "cli/scene_fixture.h"
 #include "scene_fixture.h"
 

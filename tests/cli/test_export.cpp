@@ -6,6 +6,7 @@
 #include <numbers>
 #include <sstream>
 #include <utility>
+
 #include "scene_fixture.h"
 #include "support/capture.h"
 #include "support/read_vdb.h"

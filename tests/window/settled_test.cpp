@@ -3,6 +3,7 @@
 #include <cstring>
 #include <nlohmann/json.hpp>
 #include <set>
+
 #include "edit/keyframes.h"
 #include "edit/preferences.h"
 #include "output/write.h"

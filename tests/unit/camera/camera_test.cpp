@@ -1,10 +1,13 @@
 // The camera and the table of projections.
 #include "camera/camera.h"
+
 #include <gtest/gtest.h>
+
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 #include <string>
+
 #include "camera/projection.h"
 #include "core/error.h"
 #include "core/real.h"

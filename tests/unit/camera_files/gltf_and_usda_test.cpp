@@ -1,8 +1,10 @@
 // Cameras of glTF and USD.
 #include <gtest/gtest.h>
+
 #include <cmath>
 #include <cstring>
 #include <glm/geometric.hpp>
+
 #include "camera/camera.h"
 #include "camera_files/formats.h"
 #include "core/text.h"

@@ -5,6 +5,7 @@
 #include <sys/stat.h>
 #include <sys/un.h>
 #include <unistd.h>
+
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -22,6 +23,7 @@
 #include <thread>
 #include <utility>
 #include <vector>
+
 #include "core/bounds.h"
 #include "core/buffer.h"
 #include "core/color.h"

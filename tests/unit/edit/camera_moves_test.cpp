@@ -1,8 +1,11 @@
 // Keyframes as they are edited, of cameras and of any track, and camera moves.
 #include "edit/camera_moves.h"
+
 #include <gtest/gtest.h>
+
 #include <cmath>
 #include <glm/geometric.hpp>
+
 #include "camera/camera.h"
 #include "core/real.h"
 #include "edit/edits.h"

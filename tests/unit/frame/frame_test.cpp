@@ -2,10 +2,12 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
+
 #include <array>
 #include <atomic>
 #include <fstream>
 #include <functional>
+
 #include "core/error.h"
 #include "core/file.h"
 #include "frame/frame_hash.h"

@@ -1,10 +1,13 @@
 // Splats as Gaussians, and captures with colours by direction.
 #include "gaussians/gaussians.h"
+
 #include <gtest/gtest.h>
+
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <iterator>
 #include <numbers>
+
 #include "core/color.h"
 #include "core/real.h"
 #include "core/rotation.h"

@@ -1,11 +1,14 @@
 // Generation against a plain loop over the lattice, and the lattice itself.
 #include "generate/generate.h"
+
 #include <gtest/gtest.h>
+
 #include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <limits>
 #include <set>
+
 #include "core/error.h"
 #include "core/parallel.h"
 #include "generate/lattice.h"

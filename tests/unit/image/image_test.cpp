@@ -1,12 +1,14 @@
 // Pictures enlarged, reduced, blurred and opened, against plain sums.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numeric>
 #include <utility>
 #include <vector>
+
 #include "image/blur.h"
 #include "image/channels.h"
 #include "image/resample.h"

@@ -1,11 +1,13 @@
 // Merged splats: trees, and clouds for a preview.
 #include <gtest/gtest.h>
+
 #include <algorithm>
 #include <array>
 #include <atomic>
 #include <cmath>
 #include <utility>
 #include <vector>
+
 #include "core/error.h"
 #include "core/real.h"
 #include "core/shared_maths.h"

@@ -1,7 +1,10 @@
 
 #include "objects/identify.h"
+
 #include <gtest/gtest.h>
+
 #include <string>
+
 #include "bodies/picture_light.h"
 #include "core/error.h"
 #include "objects/catalogue.h"

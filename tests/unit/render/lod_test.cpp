@@ -1,8 +1,11 @@
 // Level of detail, and the structure of children.
 #include "render/lod.h"
+
 #include <gtest/gtest.h>
+
 #include <algorithm>
 #include <cmath>
+
 #include "camera/camera.h"
 #include "core/real.h"
 #include "core/shared_maths.h"
@@ -343,7 +346,7 @@ TEST(ChildNoise, PlacesFarOutOfAnyCellsRangeHaveSomeLight) {
     EXPECT_LE(light, largest_child_light(1.0f));
 }
 
-constexpr int parents_wide = 70, cell_px = 14, side_px = parents_wide * cell_px;
+constexpr int parents_wide = 70, cell_px = 14, grid_px = parents_wide * cell_px;
 constexpr float limit_px = 4.0f;  // at the picture's height
 
 /// A grid of splats that do not touch each other, of `diameter_px`.
@@ -351,8 +354,8 @@ ShadedSplats grid_of_parents(float diameter_px, float alpha) {
     std::vector<OneSplat> specs;
     for (int y = 0; y < parents_wide; ++y)
         for (int x = 0; x < parents_wide; ++x)
-            specs.push_back({{cell_px * (float(x) + 0.5f) - 0.5f * side_px,
-                              cell_px * (float(y) + 0.5f) - 0.5f * side_px, 0.0f},
+            specs.push_back({{cell_px * (float(x) + 0.5f) - 0.5f * grid_px,
+                              cell_px * (float(y) + 0.5f) - 0.5f * grid_px, 0.0f},
                              0.5f * diameter_px,
                              alpha,
                              {0.9f, 0.5f, 0.2f}});
@@ -362,10 +365,10 @@ ShadedSplats grid_of_parents(float diameter_px, float alpha) {
 glm::dvec3 light_of(const ShadedSplats& splats, Blend blend, float noise) {
     RenderLayer layer = layer_of("parents", splats, blend, Falloff::Shape::gaussian);
     layer.axis = {0.0, 0.6, 0.8};
-    layer.render.lod.max_px = limit_px * 1080.0f / side_px;
+    layer.render.lod.max_px = limit_px * 1080.0f / grid_px;
     layer.render.lod.noise = noise;
     const Image image =
-        render({&layer, 1}, pixel_camera(side_px, side_px), nullptr, settings_of(side_px, side_px)).beauty;
+        render({&layer, 1}, pixel_camera(grid_px, grid_px), nullptr, settings_of(grid_px, grid_px)).beauty;
     return {total(image, 0), total(image, 1), total(image, 2)};
 }
 
@@ -391,20 +394,20 @@ TEST(ChildNoise, DustGetsHalfOfItAndTakesAwayAsMuch) {
     RenderLayer layers[] = {layer_of("sheet", sheet),
                             layer_of("dust", dust, Blend::over, Falloff::Shape::gaussian)};
     layers[1].absorbs = true;
-    layers[1].render.lod.max_px = limit_px * 1080.0f / side_px;
+    layers[1].render.lod.max_px = limit_px * 1080.0f / grid_px;
     const auto picture = [&](float noise) {
         layers[1].render.lod.noise = noise;
-        return render(layers, pixel_camera(side_px, side_px), nullptr, settings_of(side_px, side_px)).beauty;
+        return render(layers, pixel_camera(grid_px, grid_px), nullptr, settings_of(grid_px, grid_px)).beauty;
     };
     const Image plain = picture(0.0f), found = picture(0.75f);
     for (int k = 0; k < 3; ++k) {
-        const double white = double(side_px) * side_px;
+        const double white = double(grid_px) * grid_px;
         EXPECT_NEAR((white - total(found, k)) / (white - total(plain, k)), 1.0, 0.01) << k;
     }
     double change = 0.0;
     for (std::size_t i = 0; i < plain.pixels.size(); ++i)
         change += std::fabs(double(found.pixels[i]) - double(plain.pixels[i]));
-    const double taken = 3.0 * side_px * side_px - total(plain, 0) - total(plain, 1) - total(plain, 2);
+    const double taken = 3.0 * grid_px * grid_px - total(plain, 0) - total(plain, 1) - total(plain, 2);
     EXPECT_GT(change / taken, 0.05);
     EXPECT_LT(change / taken, 0.25);
 }

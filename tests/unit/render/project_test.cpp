@@ -1,6 +1,8 @@
 // Projection of splats, their bins and memory; tiles, the order of their work, and who watches them.
 #include "render/project.h"
+
 #include <gtest/gtest.h>
+
 #include <algorithm>
 #include <atomic>
 #include <bit>
@@ -10,6 +12,7 @@
 #include <span>
 #include <string>
 #include <vector>
+
 #include "core/error.h"
 #include "core/parallel.h"
 #include "render/bin_rects.h"

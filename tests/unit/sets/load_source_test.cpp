@@ -1,9 +1,12 @@
 // Sets of sources: whole, and what is seen before that.
 #include "sets/load_source.h"
+
 #include <gtest/gtest.h>
+
 #include <cmath>
 #include <fstream>
 #include <vector>
+
 #include "bodies/bodies.h"
 #include "sets/kept.h"
 #include "sets/set_sample.h"

@@ -1,7 +1,9 @@
 // Pictures made of pictures: maps, reworked ones, masks, and a sky of cut-outs.
 #include <gtest/gtest.h>
+
 #include <cmath>
 #include <glm/geometric.hpp>
+
 #include "core/color.h"
 #include "core/real.h"
 #include "detect/parts.h"

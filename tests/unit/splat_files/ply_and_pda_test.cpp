@@ -1,9 +1,11 @@
 // PLY and PDA.
 #include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <csignal>
 #include <string>
+
 #include "splat_files/formats.h"
 #include "splat_files/ply_bytes.h"
 #include "support/process_state.h"

@@ -1,13 +1,16 @@
 // Sets of stars, and the catalogues that they are made of.
 #include "stars/star_set.h"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <zlib.h>
+
 #include <algorithm>
 #include <cmath>
 #include <functional>
 #include <glm/geometric.hpp>
 #include <iterator>
+
 #include "catalogues.h"
 #include "core/text.h"
 #include "stars/catalogue.h"

@@ -1,11 +1,14 @@
 // The settled picture, other views, and frames that are played.
 #include "viewer/final_frame.h"
+
 #include <gtest/gtest.h>
+
 #include <algorithm>
 #include <array>
 #include <chrono>
 #include <cstdio>
 #include <thread>
+
 #include "core/memory.h"
 #include "core/shared_maths.h"
 #include "edit/view_camera.h"
