@@ -167,9 +167,9 @@ TEST(SoftEdge, StraightPngKeepsTheStoredColour) {
             const float alpha = file.at("A", x, y);
             if (alpha < 0.02f) continue;
             soft += alpha < 0.9f;
-            EXPECT_NEAR(file.at("R", x, y), stored.r, 1.01f / 255.0f) << x << " " << y;
-            EXPECT_NEAR(file.at("G", x, y), stored.g, 1.01f / 255.0f) << x << " " << y;
-            EXPECT_NEAR(file.at("B", x, y), stored.b, 1.01f / 255.0f) << x << " " << y;
+            for (int k = 0; k < 3; ++k)
+                EXPECT_NEAR(file.at(std::string(1, "RGB"[k]), x, y), stored[k], 1.01f / 255.0f)
+                    << x << " " << y;
         }
     }
     EXPECT_GT(soft, 500);
@@ -266,6 +266,7 @@ struct View {
     const char *name, *mesh, *uv;
     const char* direction;  // from the target to the camera, 20 scene units
     Mapping mapping;
+    bool in_perspective = true;  // whether that is judged, too
     friend void PrintTo(const View& given, std::ostream* out) { *out << given.name; }
 };
 
@@ -306,10 +307,15 @@ void write_letter(const TempFolder& folder) {
 
 class Orientation : public ::testing::TestWithParam<View> {};
 
-TEST_P(Orientation, OrthographicViewReadsRight) {
+TEST_P(Orientation, ReadsRight) {
     const TempFolder folder;
     write_letter(folder);
-    expect_reads_right(render_text(folder, view_scene(GetParam(), false)).beauty, GetParam().mapping);
+    for (const bool perspective : {false, true}) {
+        if (perspective && !GetParam().in_perspective) continue;
+        SCOPED_TRACE(perspective ? "perspective" : "orthographic");
+        expect_reads_right(render_text(folder, view_scene(GetParam(), perspective)).beauty,
+                           GetParam().mapping);
+    }
 }
 
 INSTANTIATE_TEST_SUITE_P(Views, Orientation,
@@ -319,23 +325,7 @@ INSTANTIATE_TEST_SUITE_P(Views, Orientation,
                                            View{"Plane", "plane", "mesh", "[0, 20, 0]", whole},
                                            View{"Relief", "relief", "mesh", "[0, 20, 0]", whole},
                                            View{"Disk", "disk", "mesh", "[0, 20, 0]", inside_disc},
-                                           View{"Sphere", "sphere", "mesh", "[0, 0, 20]", sphere}),
-                         [](const ::testing::TestParamInfo<View>& view) { return view.param.name; });
-
-class OrientationInPerspective : public ::testing::TestWithParam<View> {};
-
-TEST_P(OrientationInPerspective, ReadsRight) {
-    const TempFolder folder;
-    write_letter(folder);
-    expect_reads_right(render_text(folder, view_scene(GetParam(), true)).beauty, GetParam().mapping);
-}
-
-INSTANTIATE_TEST_SUITE_P(Views, OrientationInPerspective,
-                         ::testing::Values(View{"PlanarXz", "xz.obj", "planar-xz", "[0, 20, 0]", whole},
-                                           View{"PlanarXy", "xy.obj", "planar-xy", "[0, 0, 20]", whole},
-                                           View{"PlanarYz", "yz.obj", "planar-yz", "[20, 0, 0]", whole},
-                                           View{"Relief", "relief", "mesh", "[0, 20, 0]", whole},
-                                           View{"Disk", "disk", "mesh", "[0, 20, 0]", inside_disc}),
+                                           View{"Sphere", "sphere", "mesh", "[0, 0, 20]", sphere, false}),
                          [](const ::testing::TestParamInfo<View>& view) { return view.param.name; });
 
 TEST(OrientationOfFiles, PngTiffAndExrReadRight) {
@@ -349,11 +339,8 @@ TEST(OrientationOfFiles, PngTiffAndExrReadRight) {
         const StoredFile stored = read_stored_file(write_text(folder, view_scene(plane, true, output)));
         Image rgb = make_image(view_px, view_px, 3);
         for (std::int64_t y = 0; y < view_px; ++y)
-            for (std::int64_t x = 0; x < view_px; ++x) {
-                rgb.at(x, y)[0] = stored.at("R", x, y);
-                rgb.at(x, y)[1] = stored.at("G", x, y);
-                rgb.at(x, y)[2] = stored.at("B", x, y);
-            }
+            for (std::int64_t x = 0; x < view_px; ++x)
+                for (int k = 0; k < 3; ++k) rgb.at(x, y)[k] = stored.at(std::string(1, "RGB"[k]), x, y);
         expect_reads_right(rgb, whole, encoded);
     }
 }

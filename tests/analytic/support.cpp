@@ -65,6 +65,13 @@ StoredFile read_stored_file(const std::filesystem::path& file) {
     return stored;
 }
 
+std::string pda(const std::string& rows) {
+    return fmt::format(
+        "ATTRIBUTES\nposition rgbPP opacityPP radiusPP\nTYPES\nV V R R\nNUMBER_OF_PARTICLES: {}\nBEGIN "
+        "DATA\n{}",
+        std::ranges::count(rows, '\n'), rows);
+}
+
 Scene scene_of(const TempFolder& folder, const std::string& toml) {
     return parse_scene(toml, folder / "scene.toml");
 }

@@ -35,6 +35,9 @@ struct StoredFile {
 };
 StoredFile read_stored_file(const std::filesystem::path& file);
 
+/// A PDA file of these rows, "x y z red green blue opacity radius" each.
+std::string pda(const std::string& rows);
+
 /// The scene this text describes, its paths relative to the folder.
 Scene scene_of(const TempFolder& folder, const std::string& toml);
 

@@ -68,10 +68,7 @@ struct Expected {
 // The splat lies at (1, 0.5, 2); (x, y) is where it is seen afterwards.
 TEST(Transform, ScalesTurnsAboutXThenYThenZAndMoves) {
     const TempFolder folder;
-    folder.file(
-        "one.pda",
-        "ATTRIBUTES\nposition rgbPP opacityPP radiusPP\nTYPES\nV V R R\nNUMBER_OF_PARTICLES: 1\nBEGIN "
-        "DATA\n1 0.5 2 1 1 1 0.5 0.6\n");
+    folder.file("one.pda", pda("1 0.5 2 1 1 1 0.5 0.6\n"));
     const Expected cases[] = {
         {"", 1.0, 1.0, 0.5},
         {"translate = [-2, 1, 5]", 1.0, -1.0, 1.5},
@@ -156,13 +153,7 @@ TEST(Transform, NeverRegeneratesNorAppliesTheLookAgain) {
 // Perspective, 64 x 64 px, focal length 64 px (fov 2 atan(1/2)), eye at z = 10. In px: an opaque disc of
 // radius 12.8 at (16, 16), a half transparent one of radius 12.8 at (42, 40) before an opaque one of
 // radius 12.8 at the same place, twice as far and twice as large.
-constexpr const char* three_splats = R"(ATTRIBUTES
-position rgbPP opacityPP radiusPP
-TYPES
-V V R R
-NUMBER_OF_PARTICLES: 3
-BEGIN DATA
--2.5 2.5 0 0.5 0.25 1 1 2
+constexpr const char* three_splats = R"(-2.5 2.5 0 0.5 0.25 1 1 2
 1.5625 -1.25 0 0.25 0.5 0.75 0.5 2
 3.125 -2.5 -10 1 0.5 0 1 4
 )";
@@ -194,7 +185,7 @@ double distance_px(int x, int y, double cx, double cy) {
 
 TEST(SplatFile, PassesThroughUnchanged) {
     const TempFolder folder;
-    folder.file("three.pda", three_splats);
+    folder.file("three.pda", pda(three_splats));
     const StoredFile file =
         read_stored_file(write_text(folder, splat_scene("path = \"out.exr\"\ndepth = \"float\"")));
     const auto pixel = [&](int x, int y) {
@@ -224,7 +215,7 @@ TEST(SplatFile, PassesThroughUnchanged) {
 
 TEST(SplatFile, OneOpaqueSplatWritesItsColourIntoHalfExrToo) {
     const TempFolder folder;
-    folder.file("three.pda", three_splats);
+    folder.file("three.pda", pda(three_splats));
     const StoredFile file = read_stored_file(write_text(folder, splat_scene("path = \"out.exr\"")));
     EXPECT_EQ(file.types[0], "half");
     EXPECT_EQ(file.at("R", 16, 16), 0.5f);
@@ -237,14 +228,7 @@ TEST(SplatFile, OneOpaqueSplatWritesItsColourIntoHalfExrToo) {
 // half.
 TEST(SplatFile, PremultipliedPixelSurvivesPng) {
     const TempFolder folder;
-    folder.file("three.pda", R"(ATTRIBUTES
-position rgbPP opacityPP radiusPP
-TYPES
-V V R R
-NUMBER_OF_PARTICLES: 1
-BEGIN DATA
-0 0 0 0.25 0.5 0.75 0.5 3
-)");
+    folder.file("three.pda", pda("0 0 0 0.25 0.5 0.75 0.5 3\n"));
     const StoredFile file = read_stored_file(write_text(
         folder, splat_scene("path = \"out.png\"\ndepth = \"16\"\nalpha = \"straight\"\nview = \"linear\"")));
     ASSERT_EQ(file.image.channels, 4);
@@ -361,10 +345,7 @@ TEST(Layers, ChannelsHaveTheirNamesAndTypes) {
 
 TEST(Layers, DepthCoverageAndCountOfOneSplat) {
     const TempFolder folder;
-    folder.file(
-        "one.pda",
-        "ATTRIBUTES\nposition rgbPP opacityPP radiusPP\nTYPES\nV V R R\nNUMBER_OF_PARTICLES: 1\nBEGIN "
-        "DATA\n0 0 -2.5 1 1 1 0.25 3\n");
+    folder.file("one.pda", pda("0 0 -2.5 1 1 1 0.25 3\n"));
     const StoredFile file = read_stored_file(write_text(folder, R"(astrosplat = 1
 [output]
 resolution = [48, 48]

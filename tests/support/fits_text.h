@@ -23,7 +23,7 @@ inline std::string fits_sky(double px, double py, double ra, double dec, double 
     const std::vector<std::pair<const char*, double>> values = {
         {"CRPIX1", px}, {"CRPIX2", py}, {"CRVAL1", ra}, {"CRVAL2", dec},
         {"CD1_1", -c},  {"CD1_2", s},   {"CD2_1", s},   {"CD2_2", c}};
-    for (const auto& [key, value] : values) cards += fits_card(fmt::format("{:8}= {:20.12f}", key, value));
+    for (const auto& [key, value] : values) cards += fits_card(fmt::format("{:8}= {:20.12E}", key, value));
     return cards;
 }
 

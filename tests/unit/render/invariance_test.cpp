@@ -358,12 +358,12 @@ TEST(SphereEllipses, HasNoSeam) {
 // and the threads are, for every blend that has an order and those that have none, with level of detail,
 // through every lens.
 
-
 /// A cloud around the origin, with planes of equal depths, and some splats all at one place.
 ShadedSplats cloud_around_origin(std::uint32_t count, std::uint32_t seed) {
     ShadedSplats splats = cloud(count, seed, 1.2f);
     for (std::size_t i = 0; i < splats.position.size(); ++i)
-        splats.position[i] = i % 16 == 0 ? glm::vec3(0.1f, -0.2f, 0.3f) : splats.position[i] - glm::vec3(0, 0, 3);
+        splats.position[i] =
+            i % 16 == 0 ? glm::vec3(0.1f, -0.2f, 0.3f) : splats.position[i] - glm::vec3(0, 0, 3);
     return splats;
 }
 

@@ -16,6 +16,7 @@
 #include "source/picture.h"
 #include "support/bits.h"
 #include "support/errors.h"
+#include "support/fits_text.h"
 #include "support/temp_folder.h"
 
 namespace astrosplat {
@@ -154,18 +155,9 @@ TEST(FitsCompressed, DamagedGzipTilesAreRefused) {
 TEST(Fits, CreditIsTheAuthorElseTheOrigin) {
     const TempFolder folder;
     const auto write = [&](const char* name, const std::vector<std::pair<const char*, const char*>>& keys) {
-        fitsfile* out = nullptr;
-        int status = 0;
-        long axes[] = {2, 1};
-        float values[] = {1.0f, 2.0f};
-        fits_create_diskfile(&out, (folder / name).c_str(), &status);
-        fits_create_img(out, FLOAT_IMG, 2, axes, &status);
-        for (const auto& [key, value] : keys)
-            fits_update_key(out, TSTRING, key, const_cast<char*>(value), nullptr, &status);
-        fits_write_img(out, TFLOAT, 1, 2, values, &status);
-        fits_close_file(out, &status);
-        EXPECT_EQ(status, 0);
-        return folder / name;
+        std::string cards;
+        for (const auto& [key, value] : keys) cards += fits_card(fmt::format("{:8}= '{:8}'", key, value));
+        return folder.file(name, fits_file(2, 1, cards, [](int x, int) { return 1 + x; }));
     };
     EXPECT_EQ(read_fits(write("a.fits", {{"ORIGIN", "KPNO-IRAF"}}), "auto", 0).credit, "KPNO-IRAF");
     EXPECT_EQ(read_fits(write("b.fits", {{"ORIGIN", "KPNO"}, {"AUTHOR", "A. Nobody"}}), "auto", 0).credit,
@@ -208,19 +200,10 @@ TEST(Fits, PipesAreRefusedAndReadingStopsWhenAsked) {
 std::optional<FitsSky> sky_with(const std::vector<std::pair<const char*, double>>& keys,
                                 const char* type = "RA---TAN") {
     const TempFolder folder;
-    fitsfile* out = nullptr;
-    int status = 0;
-    long axes[] = {4, 4};
-    std::vector<float> values(16, 1.0f);
-    fits_create_diskfile(&out, (folder / "sky.fits").c_str(), &status);
-    fits_create_img(out, FLOAT_IMG, 2, axes, &status);
-    fits_write_key_str(out, "CTYPE1", type, nullptr, &status);
-    fits_write_key_str(out, "CTYPE2", "DEC--TAN", nullptr, &status);
-    for (auto [key, value] : keys) fits_write_key(out, TDOUBLE, key, &value, nullptr, &status);
-    fits_write_img(out, TFLOAT, 1, 16, values.data(), &status);
-    fits_close_file(out, &status);
-    EXPECT_EQ(status, 0);
-    return read_fits(folder / "sky.fits", "auto", 0).sky;
+    std::string cards = fits_card(fmt::format("CTYPE1  = '{}'", type)) + fits_card("CTYPE2  = 'DEC--TAN'");
+    for (const auto& [key, value] : keys) cards += fits_card(fmt::format("{:8}= {:20.12f}", key, value));
+    return read_fits(folder.file("sky.fits", fits_file(4, 4, cards, [](int, int) { return 1; })), "auto", 0)
+        .sky;
 }
 
 TEST(FitsSky, IsReadFromAllThreeKindsOfKeywords) {
