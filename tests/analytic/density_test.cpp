@@ -271,7 +271,7 @@ TEST(Distance, LevelOfDetailKeepsTheLightInPerspective) {
         splats += fmt::format("{} {} {} 0.9 0.5 0.2 {} 3.5\n", 8.5 * (i % 15 - 7), 8.5 * (i / 15 - 3),
                               i * 37 % 5 - 2, i % 2 ? 0.3 : 0.48);
     folder.file("splats.pda", pda(splats));
-    for (const Shape& shape : shapes) {
+    for (const Shape& shape : shapes)
         for (const char* blend : {"over", "add"}) {
             const auto render = [&](int max_px) {
                 const std::string keys = fmt::format(
@@ -285,7 +285,6 @@ TEST(Distance, LevelOfDetailKeepsTheLightInPerspective) {
                 EXPECT_NEAR(light(split.beauty, k) / light(whole.beauty, k), 1.0, 0.01)
                     << shape.name << " " << blend << " channel " << k;
         }
-    }
 }
 
 // From a mean overlap of 4 on, a sheet sends the same light from near and far (DESIGN 7, known limit).

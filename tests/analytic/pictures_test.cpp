@@ -145,14 +145,13 @@ TEST(SoftEdge, RenderedPictureKeepsTheHue) {
     write_png(folder / "disc.png", disc_px, disc_px, soft_disc);
     const Image over = render_text(folder, disc_scene("bilinear", "over")).beauty;
     int soft = 0;
-    for (std::int64_t y = 0; y < 64; ++y) {
+    for (std::int64_t y = 0; y < 64; ++y)
         for (std::int64_t x = 0; x < 64; ++x) {
             const float* p = over.at(x, y);
             if (!(p[3] > 1e-4f)) continue;
             soft += p[3] < 0.9f;
             for (int k = 0; k < 3; ++k) EXPECT_NEAR(p[k] / p[3], linear_color()[k], 1e-4f) << x << " " << y;
         }
-    }
     EXPECT_GT(soft, 500);
 }
 
@@ -162,7 +161,7 @@ TEST(SoftEdge, StraightPngKeepsTheStoredColour) {
     const StoredFile file = read_stored_file(
         write_text(folder, disc_scene("bilinear", "over", "path = \"out.png\"\nalpha = \"straight\"")));
     int soft = 0;
-    for (std::int64_t y = 0; y < 64; ++y) {
+    for (std::int64_t y = 0; y < 64; ++y)
         for (std::int64_t x = 0; x < 64; ++x) {
             const float alpha = file.at("A", x, y);
             if (alpha < 0.02f) continue;
@@ -171,7 +170,6 @@ TEST(SoftEdge, StraightPngKeepsTheStoredColour) {
                 EXPECT_NEAR(file.at(std::string(1, "RGB"[k]), x, y), stored[k], 1.01f / 255.0f)
                     << x << " " << y;
         }
-    }
     EXPECT_GT(soft, 500);
 }
 
@@ -236,7 +234,7 @@ Uv turned(Uv p, int way) {
 /// Mean absolute difference of a picture (RGB first) to the texture, turned.
 double difference(const Image& image, Mapping mapping, int way, bool encoded) {
     double sum = 0.0, count = 0.0;
-    for (std::int64_t y = 0; y < image.height; ++y) {
+    for (std::int64_t y = 0; y < image.height; ++y)
         for (std::int64_t x = 0; x < image.width; ++x) {
             const double right =
                 2.0 * (static_cast<double>(x) + 0.5) / static_cast<double>(image.width) - 1.0;
@@ -251,7 +249,6 @@ double difference(const Image& image, Mapping mapping, int way, bool encoded) {
                 count += 1.0;
             }
         }
-    }
     return sum / count;
 }
 

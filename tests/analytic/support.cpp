@@ -18,12 +18,11 @@ namespace {
 void write_image(const std::filesystem::path& file, const char* plugin, OIIO::TypeDesc type, int width,
                  int height, const Texels& texels) {
     std::vector<float> values;
-    for (int y = 0; y < height; ++y) {
+    for (int y = 0; y < height; ++y)
         for (int x = 0; x < width; ++x) {
             const glm::vec4 texel = texels(x, y);
             values.insert(values.end(), {texel.r, texel.g, texel.b, texel.a});
         }
-    }
     OIIO::ImageSpec spec(width, height, 4, type);
     spec.attribute("oiio:UnassociatedAlpha", 1);
     auto out = OIIO::ImageOutput::create(plugin);

@@ -47,14 +47,13 @@ struct Blob {
 };
 Blob blob_of(const Image& image) {
     Blob blob{0.0, 0.0, 0.0};
-    for (std::int64_t y = 0; y < image.height; ++y) {
+    for (std::int64_t y = 0; y < image.height; ++y)
         for (std::int64_t x = 0; x < image.width; ++x) {
             const double light = image.at(x, y)[0];
             blob.light += light;
             blob.x += light * (static_cast<double>(x) + 0.5 - 40.0) / 10.0;
             blob.y += light * (40.0 - static_cast<double>(y) - 0.5) / 10.0;
         }
-    }
     blob.x /= blob.light;
     blob.y /= blob.light;
     return blob;
@@ -193,7 +192,7 @@ TEST(SplatFile, PassesThroughUnchanged) {
     };
     const float margin = 2.0f;  // 4 * pixel_filter
     int inside = 0, overlap = 0, outside = 0;
-    for (int y = 0; y < 64; ++y) {
+    for (int y = 0; y < 64; ++y)
         for (int x = 0; x < 64; ++x) {
             const double first = distance_px(x, y, 16.0, 16.0), pair = distance_px(x, y, 42.0, 40.0);
             if (first < 12.8 - margin) {
@@ -207,7 +206,6 @@ TEST(SplatFile, PassesThroughUnchanged) {
                 EXPECT_EQ(pixel(x, y), glm::vec4(0.0f)) << x << " " << y;
             }
         }
-    }
     EXPECT_GT(inside, 300);
     EXPECT_GT(overlap, 300);
     EXPECT_GT(outside, 1000);
@@ -301,7 +299,7 @@ TEST(Layers, AndEnvironmentSumToTheBeauty) {
     const StoredFile once = read_stored_file(write_text(folder, layered_scene(1.0, "float")));
     const StoredFile twice = read_stored_file(write_text(folder, layered_scene(2.0, "float")));
     double most_environment = 0.0;
-    for (int y = 0; y < size_px; ++y) {
+    for (int y = 0; y < size_px; ++y)
         for (int x = 0; x < size_px; ++x) {
             EXPECT_EQ(once.at("A", x, y), 1.0f);
             for (const char* channel : {"R", "G", "B"}) {
@@ -313,7 +311,6 @@ TEST(Layers, AndEnvironmentSumToTheBeauty) {
                 most_environment = std::max(most_environment, double(environment));
             }
         }
-    }
     EXPECT_GT(most_environment, 0.2);
     for (const char* name : names) {  // every layer gives some light
         double light = 0.0;

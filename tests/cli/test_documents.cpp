@@ -549,14 +549,13 @@ TEST_F(Start, ThePictureLibraryWaitsForTheFirstPicture) {
 }
 
 TEST_F(Start, FramesAreWrittenAndResumedWithoutIt) {
-    for (const char* file : {"frame.exr", "frame.png", "frame.tif"}) {
+    for (const char* file : {"frame.exr", "frame.png", "frame.tif"})
         for (const char* how : {"--overwrite", "--resume"}) {
             const std::string loaded =
                 libraries_of({"--batch", "scene.toml", "--frames", "1", "--output", file, how});
             EXPECT_HAS(loaded, "libc.so");
             EXPECT_EQ(loaded.find("libOpenImageIO.so"), std::string::npos) << file << " " << how;
         }
-    }
 }
 
 }  // namespace

@@ -158,12 +158,11 @@ TEST_F(Memory, LibrariesThatReadPicturesAreCounted) {
 
 TEST_F(Memory, EveryFormatOfFramesIsCounted) {
     make_ball(1000, "[640, 360]");
-    for (const char* ending : {"exr", "png", "tif"}) {
+    for (const char* ending : {"exr", "png", "tif"})
         for (const char* size : {"640x360", "1920x1080"}) {
             expect_enough(rendered(
                 {"--set", fmt::format("output.path=frames/shot.####.{}", ending), "--resolution", size}));
         }
-    }
 }
 
 // Linux hands the size of a process on to the program that it starts.

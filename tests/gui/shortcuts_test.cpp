@@ -263,14 +263,13 @@ TEST_F(ShortcutsTest, EscapeCancelsTheJob) {
 // Two actions with one shortcut would make one of them unreachable.
 TEST_F(ShortcutsTest, NoneMeansTwoThings) {
     std::map<std::string, std::string> seen;
-    for (const Action& action : actions()) {
+    for (const Action& action : actions())
         for (const Shortcut& shortcut : {action.shortcut, action.also}) {
             const std::string text = shortcut_text(shortcut);
             if (text.empty()) continue;
             EXPECT_TRUE(seen.emplace(text, action.label).second)
                 << text << ": " << seen[text] << ", " << action.label;
         }
-    }
 }
 
 }  // namespace

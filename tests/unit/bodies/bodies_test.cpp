@@ -388,12 +388,11 @@ TEST(FrontFit, KeepsThePicturesFlux) {
     fit_front(set, light);
     const Image seen = view_along_z(set, light, 1000.0);
     double here = 0.0, there = 0.0;
-    for (std::int64_t y = 32; y < light.height - 32; ++y) {
+    for (std::int64_t y = 32; y < light.height - 32; ++y)
         for (std::int64_t x = 32; x < light.width - 32; ++x) {
             here += static_cast<double>(seen.at(x, y)[1]);
             there += static_cast<double>(light.at(x, y)[1]);
         }
-    }
     EXPECT_NEAR(here / there, 1.0, 0.0005);
 }
 
@@ -406,7 +405,7 @@ TEST(FrontFit, OfALargePictureIsAsClose) {
     fit_front(set, light);
     const Image seen = view_along_z(set, light, 3000.0), wanted = gaussian_blur(light, 0.5);
     double here = 0.0, there = 0.0, squares = 0.0;
-    for (std::int64_t y = 0; y < light.height; ++y) {
+    for (std::int64_t y = 0; y < light.height; ++y)
         for (std::int64_t x = 0; x < light.width; ++x) {
             const float a = seen.at(x, y)[1], b = wanted.at(x, y)[1];
             here += static_cast<double>(a);
@@ -415,7 +414,6 @@ TEST(FrontFit, OfALargePictureIsAsClose) {
                 static_cast<double>(display_srgb(a)) - static_cast<double>(display_srgb(b));
             squares += difference * difference;
         }
-    }
     EXPECT_NEAR(here / there, 1.0, 0.001);
     EXPECT_GT(-10.0 * std::log10(squares / static_cast<double>(light.width * light.height)), 44.0);
 }
@@ -453,13 +451,12 @@ TEST(FrontFit, WallsHaveTheSameLightFromBehind) {
     fit_front(set, light);
     const Image front = view_along_z(set, light, 1000.0), back = view_along_z(set, light, -1000.0);
     double squares = 0.0;
-    for (std::int64_t y = 0; y < light.height; ++y) {
+    for (std::int64_t y = 0; y < light.height; ++y)
         for (std::int64_t x = 0; x < light.width; ++x) {
             const double difference = static_cast<double>(display_srgb(front.at(x, y)[0])) -
                                       static_cast<double>(display_srgb(back.at(light.width - 1 - x, y)[0]));
             squares += difference * difference;
         }
-    }
     EXPECT_LT(std::sqrt(squares / static_cast<double>(light.width * light.height)), 0.014);
 }
 

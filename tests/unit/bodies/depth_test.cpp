@@ -217,12 +217,11 @@ TEST(Fields, ReliefIsNowhereTooSteepAndNothingOnEmptySky) {
     for (const double steepest : {0.7, 0.1}) {
         const Image field = relief_field(brightest, 60.0, steepest);
         float highest = 0.0f, slope = 0.0f;
-        for (std::int64_t y = 0; y + 1 < field.height; ++y) {
+        for (std::int64_t y = 0; y + 1 < field.height; ++y)
             for (std::int64_t x = 0; x + 1 < field.width; ++x) {
                 highest = std::max(highest, *field.at(x, y));
                 slope = std::max(slope, std::fabs(*field.at(x + 1, y) - *field.at(x, y)));
             }
-        }
         EXPECT_LE(slope, 1.03 * steepest);
         EXPECT_GT(slope, 0.5 * steepest);
         EXPECT_LE(highest, 60.0f);

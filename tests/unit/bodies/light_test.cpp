@@ -30,7 +30,7 @@ double from_shell(double x, double y) { return std::hypot(x - shell_x, y - shell
 // A round shell on a dark sky with a core in its middle and a filament across.
 Image shell_with(float core, float filament) {
     Image light = make_image(shell_width, shell_height, 1, 0.001f);
-    for (std::int64_t y = 0; y < shell_height; ++y) {
+    for (std::int64_t y = 0; y < shell_height; ++y)
         for (std::int64_t x = 0; x < shell_width; ++x) {
             const double r = from_shell(static_cast<double>(x), static_cast<double>(y));
             float& value = *light.at(x, y);
@@ -38,7 +38,6 @@ Image shell_with(float core, float filament) {
             if (r < 28.0) value += core;
             if (r < 150.0 && std::fabs(static_cast<double>(y) - 250.0) < 8.0) value += filament;
         }
-    }
     return light;
 }
 
@@ -125,7 +124,7 @@ TEST(FilledLight, ACoreIsABallInsideOfItsShell) {
 // Four fifths of a wall's greatest distance, to both sides, and thinner towards the picture's edges, which
 // would be those of a slab: the root of 1 - u^4 - v^4.
 TEST(FilledLight, TheSkyIsACushionAndNoSheet) {
-    for (const bool fine : {true, false}) {
+    for (const bool fine : {true, false})
         for (const double y : {200.0, 100.0, 60.0}) {
             const Depths sky = depths_about(560.0, y, fine);
             const double u = 0.75, v = y / 200.0 - 1.0;
@@ -135,7 +134,6 @@ TEST(FilledLight, TheSkyIsACushionAndNoSheet) {
             EXPECT_GT(sky.farthest, 0.92 * reach) << fine << ' ' << y;
             EXPECT_LT(std::fabs(sky.mean), 0.25 * reach) << fine << ' ' << y;
         }
-    }
 }
 
 // On the walls they would be seen again, before and behind, in the core's own colours.
@@ -200,7 +198,7 @@ TEST(FlatLight, OneSplatIsItsFootprint) {
         PictureSplats set = one_splat(3.3f, -5.6f, static_cast<float>(sigma));
         const Image light = FlatLight(set, width, height, filter_px).sum();
         double sum = 0.0, x_sum = 0.0, y_sum = 0.0, squares = 0.0;
-        for (std::int64_t y = 0; y < height; ++y) {
+        for (std::int64_t y = 0; y < height; ++y)
             for (std::int64_t x = 0; x < width; ++x) {
                 const auto value = static_cast<double>(light.at(x, y)[1]);
                 const double dx = static_cast<double>(x) + 0.5 - (48.0 + 3.3),
@@ -210,7 +208,6 @@ TEST(FlatLight, OneSplatIsItsFootprint) {
                 y_sum += value * dy;
                 squares += value * (dx * dx + dy * dy);
             }
-        }
         const double flux = 0.5 * 0.9494 * 2.0 * real::pi * sigma * sigma;
         const double variance = footprint_variance * sigma * sigma + filter_px * filter_px;
         EXPECT_NEAR(sum, flux, 0.002 * flux) << sigma;
@@ -333,13 +330,12 @@ TEST(Margin, ThePictureStaysAsItIs) {
     ASSERT_EQ(texture.image.width, 240);
     ASSERT_EQ(texture.image.height, 160);
     EXPECT_FALSE(texture.alpha_from_light);
-    for (std::int64_t y = 0; y < picture_height; ++y) {
+    for (std::int64_t y = 0; y < picture_height; ++y)
         for (std::int64_t x = 0; x < picture_width; ++x) {
             const float* const p = texture.image.at(x + margin_px, y + margin_px);
             ASSERT_TRUE(std::equal(p, p + 3, galaxy.at(x, y))) << x << ' ' << y;
             ASSERT_EQ(p[3], 1.0f);
         }
-    }
 }
 
 TEST(Margin, FadesToNothingFromTheEdgeOutward) {

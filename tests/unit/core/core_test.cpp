@@ -531,14 +531,13 @@ std::vector<Pair> sorted_by_bits(std::vector<Pair> all, unsigned begin, unsigned
 }
 
 TEST(RadixSort, IsAStableSortByTheBitsAskedFor) {
-    for (const std::size_t count : {0u, 1u, 2u, 1000u, 70000u}) {
+    for (const std::size_t count : {0u, 1u, 2u, 1000u, 70000u})
         for (const std::uint64_t mask : {~std::uint64_t{0}, std::uint64_t{0xffff00ff00}, std::uint64_t{0}}) {
             std::vector<Pair> expected = values(count, mask);
             std::stable_sort(expected.begin(), expected.end(),
                              [](const Pair& a, const Pair& b) { return a.first < b.first; });
             EXPECT_EQ(sorted_by_bits(values(count, mask), 0, 64), expected) << count << " " << mask;
         }
-    }
     std::vector<Pair> expected = values(5000, ~std::uint64_t{0});
     std::stable_sort(expected.begin(), expected.end(), [](const Pair& a, const Pair& b) {
         return (a.first >> 20 & 0xffffu) < (b.first >> 20 & 0xffffu);

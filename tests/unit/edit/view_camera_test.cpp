@@ -146,7 +146,7 @@ TEST(Navigation, PanMovesThePivotsPlaneByThePixels) {
 }
 
 TEST(Navigation, ZoomKeepsThePointUnderTheCursor) {
-    for (const FreeCamera& camera : cameras()) {
+    for (const FreeCamera& camera : cameras())
         for (const double steps : {1.0, -3.0, 10.0}) {
             const glm::dvec2 px(1300.0, 200.0);
             const glm::dvec3 point = point_under(camera, px, viewport);
@@ -156,7 +156,6 @@ TEST(Navigation, ZoomKeepsThePointUnderTheCursor) {
                         scene_units_per_px(camera, 900.0) * std::pow(1.15, -steps), 1e-12);
             expect_near(view_axes(zoomed).forward, view_axes(camera).forward, 1e-9);
         }
-    }
 }
 
 TEST(Navigation, ZoomInAndOutIsNoMove) {

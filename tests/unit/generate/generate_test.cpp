@@ -300,7 +300,7 @@ TEST(Lattice, JitterFillsHalfAVoxelAndNoMore) {
     const Lattice lattice = small_lattice();
     for (const double jitter : {0.0, 0.25, 1.0}) {
         double largest = 0.0, sum = 0.0;
-        for (std::uint32_t seed = 1; seed <= 100; ++seed) {
+        for (std::uint32_t seed = 1; seed <= 100; ++seed)
             for (std::uint64_t id = 0; id < 84; ++id) {
                 const dvec3 moved =
                     jittered_position(lattice, id, jitter, seed) - lattice_position(lattice, id);
@@ -310,7 +310,6 @@ TEST(Lattice, JitterFillsHalfAVoxelAndNoMore) {
                     sum += share;
                 }
             }
-        }
         EXPECT_LE(largest, jitter * (1.0 + 1e-12));
         EXPECT_GE(largest, jitter * 0.999);
         EXPECT_NEAR(sum / 25200.0, 0.0,

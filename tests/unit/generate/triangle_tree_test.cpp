@@ -218,7 +218,7 @@ std::int64_t expect_brute_force(const Mesh& mesh, const Lattice& lattice, double
     const CullSettings settings{max_distance, jitter, 3};
     std::vector<std::uint32_t> scratch;
     std::int64_t kept = 0, wrong = 0;
-    for (const LatticeBlock& block : blocks_near(tree, lattice, settings, {})) {
+    for (const LatticeBlock& block : blocks_near(tree, lattice, settings, {}))
         for (const Positions kind : {Positions::corners, Positions::centres}) {
             BlockAnswers answers;
             query_block(tree, lattice, settings, block, kind, scratch, answers);
@@ -232,7 +232,6 @@ std::int64_t expect_brute_force(const Mesh& mesh, const Lattice& lattice, double
                          c.barycentric != glm::dvec2(answers.v[s], answers.w[s]);
             }
         }
-    }
     std::int64_t near_enough = 0;
     for (std::uint64_t id = 0; id < static_cast<std::uint64_t>(lattice.positions()); ++id) {
         const glm::dvec3 p = jittered_position(lattice, id, jitter, 3);

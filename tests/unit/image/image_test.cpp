@@ -218,7 +218,7 @@ TEST(Blur, OfAStripIsAsWideAsItsKernel) {
 }
 
 TEST(Blur, KeepsConstantsAndTheSum) {
-    for (const double sigma : {0.0, 0.7, 2.0, 4.0, 11.0}) {
+    for (const double sigma : {0.0, 0.7, 2.0, 4.0, 11.0})
         for (const auto& [width, height] : {std::pair{64, 48}, {31, 45}, {5, 3}, {1, 1}}) {
             const Image flat = gaussian_blur(make_image(width, height, 2, 0.25f), sigma);
             for (const float value : flat.pixels) ASSERT_NEAR(value, 0.25f, 1e-6f) << sigma;
@@ -230,7 +230,6 @@ TEST(Blur, KeepsConstantsAndTheSum) {
             EXPECT_NEAR(sum(convolved_with_gaussian(image, sigma)) / before, 1.0, 1e-5)
                 << sigma << " " << width;
         }
-    }
 }
 
 TEST(Blur, HalvingAndDoublingKeepARampAwayFromTheEdges) {

@@ -138,7 +138,7 @@ TEST(SameBits, IntoArraysOfAnEarlierCall) {
 }
 
 TEST(SameBits, InTheMemoryOfTheSet) {
-    for (const Case& c : cases()) {
+    for (const Case& c : cases())
         for (const bool own_radius : {true, false}) {
             Case given = c;
             if (!own_radius) given.set.radius.clear();
@@ -154,7 +154,6 @@ TEST(SameBits, InTheMemoryOfTheSet) {
             EXPECT_TRUE(set.distance.empty() && set.uv.empty() && set.radius.empty());
             EXPECT_EQ(set.max_distance, given.set.max_distance);
         }
-    }
 }
 
 TEST(SameBits, WhatCannotBeShadedInPlaceIsLeftAsItWas) {

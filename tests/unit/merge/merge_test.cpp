@@ -250,7 +250,7 @@ TEST(Merge, AColumnLetsThroughWhatItDidUnderEveryBlend) {
 }
 
 TEST(Merge, OneSplatIsItselfUnderEveryBlend) {
-    for (const Blend blend : {Blend::over, Blend::add, Blend::screen, Blend::lighten, Blend::hybrid}) {
+    for (const Blend blend : {Blend::over, Blend::add, Blend::screen, Blend::lighten, Blend::hybrid})
         for (const float alpha : {0.01f, 0.5f, 0.97f}) {
             Cloud cloud;
             cloud.add({0.2f, 0.1f, 0.0f}, {0.9f, 0.4f, 0.1f}, alpha, 0.25f);
@@ -261,7 +261,6 @@ TEST(Merge, OneSplatIsItselfUnderEveryBlend) {
             EXPECT_NEAR(splat.color.x * splat.alpha, 0.9f * alpha, 3e-4);
             EXPECT_NEAR(splat.color.z * splat.alpha, 0.1f * alpha, 3e-4);
         }
-    }
 }
 
 TEST(Merge, StarsCloseByAreThePointsOfTheFinalFrame) {

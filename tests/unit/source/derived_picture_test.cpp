@@ -68,13 +68,12 @@ TEST(DerivedPicture, EvenLightHasNoDustAndADarkLaneIsAbsorbed) {
     // The deviation is the root of a difference of squares, which are blurred in 32 bits.
     for (const float v : even.pixels) ASSERT_NEAR(v, 0.0f, 1e-3f);
     // A lane that takes 60 % in its middle, 3 px wide: narrow against the coarse bands, which fill it.
-    for (std::int64_t y = 0; y < height; ++y) {
+    for (std::int64_t y = 0; y < height; ++y)
         for (std::int64_t x = 0; x < width; ++x) {
             const double t = static_cast<double>(x - width / 2) / 3.0;
             for (int c = 0; c < 3; ++c)
                 light.at(x, y)[c] *= static_cast<float>(1.0 - 0.6 * real::exp(-0.5 * t * t));
         }
-    }
     const Image lane = derived_picture(light, Derived::dust);
     EXPECT_NEAR(*lane.at(width / 2, 30), 0.6f, 0.1f);
     EXPECT_LT(*lane.at(30, 30), 0.02f);

@@ -109,7 +109,7 @@ TEST(FitsCompressed, AnyWrongByteOfTheDescriptionIsReadOrRefused) {
     int refused = 0;
     for (std::size_t card = header; card < end; card += 80) {
         if (whole[card] != 'Z') continue;
-        for (std::size_t byte = 0; byte < 32; byte += byte < 8 ? 3 : 1) {
+        for (std::size_t byte = 0; byte < 32; byte += byte < 8 ? 3 : 1)
             for (const char value : {'(', '0', '9', ' ', '.'}) {
                 std::string bytes = whole;
                 bytes[card + byte] = value;
@@ -119,7 +119,6 @@ TEST(FitsCompressed, AnyWrongByteOfTheDescriptionIsReadOrRefused) {
                     ++refused;
                 }
             }
-        }
     }
     EXPECT_GT(refused, 100);
 }

@@ -143,14 +143,13 @@ TEST(Orientation, EachOfTheEightIsTurnedUpright) {
     for (const Sides& s : sides) {
         const int rows = s.rows_are_columns ? width : height, columns = s.rows_are_columns ? height : width;
         Bytes stored;
-        for (int row = 0; row < rows; ++row) {
+        for (int row = 0; row < rows; ++row)
             for (int column = 0; column < columns; ++column) {
                 const int r = s.first_row_last ? rows - 1 - row : row;
                 const int c = s.first_column_last ? columns - 1 - column : column;
                 const unsigned char value = s.rows_are_columns ? seen(r, c) : seen(c, r);
                 stored.insert(stored.end(), 3, value);
             }
-        }
         OIIO::ImageSpec spec(columns, rows, 3, OIIO::TypeUInt8);
         spec.attribute("Orientation", s.tag);
         const fs::path file = write_bytes(folder / fmt::format("{}.tif", s.tag), spec, stored);
