@@ -12,10 +12,9 @@
 #include "bodies/margin.h"
 #include "bodies/placement.h"
 #include "core/real.h"
-#include "core/shared_maths.h"
 #include "image/channels.h"
-#include "source/textured_mesh.h"
 #include "support/painted_picture.h"
+#include "unit/bodies/bodies_support.h"
 
 namespace astrosplat {
 namespace {
@@ -75,8 +74,7 @@ struct Depths {
     std::array<double, 8> eighths{};  // of -103 to 103 texels
 };
 Depths depths_about(double x, double y, bool fine, double clumps = 0.0, float around = 30.0f) {
-    StructureParams params;
-    params.kind = StructureKind::walls;
+    StructureParams params = of_kind(StructureKind::walls);
     params.depth = 0.4;
     params.clumps = clumps;
     Placement placement = make_placement(shell_with(0.3f, 0.0f), params, 64.0, true, 5u);
@@ -86,15 +84,7 @@ Depths depths_about(double x, double y, bool fine, double clumps = 0.0, float ar
     double sum = 0.0, squares = 0.0, count = 0.0;
     Depths depths;
     for (std::uint32_t number = 0; number < 40; ++number) {
-        PlacedBlock block;
-        block.count = DepthBlock::size;
-        for (int i = 0; i < block.count; ++i) {
-            const auto id = number * DepthBlock::size + static_cast<std::uint32_t>(i);
-            const auto random = [&](std::uint32_t purpose) { return shared::as_hash(3u, id, 0u, purpose); };
-            block.x[i] = static_cast<float>(x) + around * (shared::as_uniform(random(1u)) - 0.5f);
-            block.y[i] = static_cast<float>(y) + around * (shared::as_uniform(random(2u)) - 0.5f);
-            block.random[i] = random(3u);
-        }
+        PlacedBlock block = splats_about(glm::vec2(x, y), glm::vec2(around), number);
         place(placement, splats, block);
         for (int i = 0; i < block.count; ++i) {
             const auto z = static_cast<double>(block.z[i]);
@@ -296,13 +286,8 @@ TEST(FlatLight, MultipliesByAGridsValues) {
 constexpr std::int64_t picture_width = 200, picture_height = 120, margin_px = 20;
 
 TexturedMesh lit_plane(const Image& rgb) {
-    TexturedMesh result;
-    result.mesh = builtin_mesh("plane", static_cast<double>(rgb.width) / static_cast<double>(rgb.height));
-    Texture& texture = result.textures.emplace_back();
-    texture.alpha_from_light = true;
-    texture.image = make_image(rgb.width, rgb.height, 4, 0.2f);
-    for (std::int64_t i = 0; i < rgb.width * rgb.height; ++i)
-        std::copy_n(rgb.pixels.data() + 3 * i, 3, texture.image.pixels.data() + 4 * i);
+    TexturedMesh result = on_plane(rgb, 0.2f);
+    result.textures[0].alpha_from_light = true;
     return result;
 }
 
@@ -338,14 +323,17 @@ TEST(Margin, ThePictureStaysAsItIs) {
         }
 }
 
+/// Of green, so far above the picture.
+double mean_above(const Texture& texture, std::int64_t px_away) {
+    double sum = 0.0;
+    for (std::int64_t x = 0; x < picture_width; ++x)
+        sum += static_cast<double>(texture.image.at(x + margin_px, margin_px - px_away)[1]);
+    return sum / static_cast<double>(picture_width);
+}
+
 TEST(Margin, FadesToNothingFromTheEdgeOutward) {
     const Texture texture = continued(even_light())[0].textures[0];
-    const auto mean_at = [&](std::int64_t px_away) {  // above the picture
-        double sum = 0.0;
-        for (std::int64_t x = 0; x < picture_width; ++x)
-            sum += texture.image.at(x + margin_px, margin_px - px_away)[1];
-        return sum / picture_width;
-    };
+    const auto mean_at = [&](std::int64_t px_away) { return mean_above(texture, px_away); };
     EXPECT_NEAR(mean_at(1), 0.2, 0.02);  // no step at the edge
     for (std::int64_t px = 1; px < margin_px; ++px) EXPECT_LE(mean_at(px + 1), mean_at(px)) << px;
     EXPECT_LT(mean_at(margin_px / 2), 0.12);
@@ -419,13 +407,8 @@ TEST(Margin, DoesNotGrowBrighterBeyondADimEdge) {
                 light.at(x, y)[c] = 0.02f + 0.02f * static_cast<float>(std::min({x, y, picture_width - 1 - x,
                                                                                  picture_height - 1 - y}));
     const Texture texture = continued(light)[0].textures[0];
-    const auto mean_at = [&](std::int64_t px_away) {  // above the picture
-        double sum = 0.0;
-        for (std::int64_t x = 0; x < picture_width; ++x)
-            sum += static_cast<double>(texture.image.at(x + margin_px, margin_px - px_away)[1]);
-        return sum / static_cast<double>(picture_width);
-    };
-    EXPECT_LT(mean_at(8), 2.0 * mean_at(1)) << "what is mirrored there has eight times the light of the rim";
+    EXPECT_LT(mean_above(texture, 8), 2.0 * mean_above(texture, 1))
+        << "what is mirrored there has eight times the light of the rim";
 }
 
 TEST(Margin, AStarByTheEdgeIsNotSeenTwice) {
