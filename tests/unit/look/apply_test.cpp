@@ -292,8 +292,7 @@ TEST(LookErrors, WarnsWhereColoursAreDividedTwice) {
 
 TEST(LookErrors, StopsWhenAsked) {
     const std::atomic<bool> stop{true};
-    Progress progress;
-    progress.cancelled = &stop;
+    const Progress progress{{}, &stop};
     EXPECT_THROW(apply_look(test::file_set(10), {}, {}, progress), Cancelled);
 }
 

@@ -265,9 +265,12 @@ TEST(Compare, FilesOfDifferentSizesAreAnError) {
 
 using Compression = OutputParams::Compression;
 
-OutputParams to(const char* path) {
+OutputParams to(const char* path, Depth depth = Depth::automatic,
+                Compression compression = Compression::automatic) {
     OutputParams output;
     output.path = path;
+    output.depth = depth;
+    output.compression = compression;
     return output;
 }
 
@@ -313,8 +316,7 @@ TEST(Format, OnlyExrHoldsOtherPrimaries) {
     EXPECT_EQ(resolve_format(output, "a.exr").primaries, OutputParams::Primaries::acescg);
     EXPECT_EQ(resolve_format(output, "a.png").primaries, OutputParams::Primaries::rec709);
     EXPECT_EQ(resolve_format(output, "a.tif").primaries, OutputParams::Primaries::rec709);
-    output = to("a.tif");
-    output.depth = Depth::float32;
+    output = to("a.tif", Depth::float32);
     EXPECT_EQ(error_of(output), "no error");
     output.primaries = OutputParams::Primaries::acescg;
     EXPECT_EQ(error_of(output), "output.primaries: expected rec709 in float tif files, found acescg");
@@ -323,17 +325,12 @@ TEST(Format, OnlyExrHoldsOtherPrimaries) {
 TEST(Format, EveryGoodCombinationPasses) {
     for (Compression c :
          {Compression::zip, Compression::zips, Compression::piz, Compression::dwaa, Compression::none}) {
-        OutputParams output = to("a.####.exr");
-        output.compression = c;
-        output.depth = Depth::float32;
+        OutputParams output = to("a.####.exr", Depth::float32, c);
         output.aovs = {"depth", "coverage", "count", "layers"};
         EXPECT_EQ(error_of(output), "no error");
     }
-    for (Compression c : {Compression::deflate, Compression::lzw, Compression::none}) {
-        OutputParams output = to("a.####.tif");
-        output.compression = c;
-        EXPECT_EQ(error_of(output), "no error");
-    }
+    for (Compression c : {Compression::deflate, Compression::lzw, Compression::none})
+        EXPECT_EQ(error_of(to("a.####.tif", Depth::automatic, c)), "no error");
 }
 
 TEST(Format, EachMisfitHasItsMessage) {
@@ -341,26 +338,19 @@ TEST(Format, EachMisfitHasItsMessage) {
               "output.path: expected a file ending in .exr, .tif, .tiff or .png, found 'a.####.jpg'");
     EXPECT_EQ(error_of(to("frames")),
               "output.path: expected a file ending in .exr, .tif, .tiff or .png, found 'frames'");
-    OutputParams png = to("a.png");
-    png.depth = Depth::float32;
-    EXPECT_EQ(error_of(png), "output.depth: expected 8 or 16 in png files, found float");
-    OutputParams tif = to("a.tif");
-    tif.depth = Depth::half_float;
-    EXPECT_EQ(error_of(tif), "output.depth: expected 8, 16 or float in tif files, found half");
-    OutputParams exr = to("a.exr");
-    exr.depth = Depth::uint8;
-    EXPECT_EQ(error_of(exr), "output.depth: expected half or float in exr files, found 8");
-    exr.depth = Depth::automatic;
-    exr.compression = Compression::lzw;
-    EXPECT_EQ(error_of(exr),
+    EXPECT_EQ(error_of(to("a.png", Depth::float32)),
+              "output.depth: expected 8 or 16 in png files, found float");
+    EXPECT_EQ(error_of(to("a.tif", Depth::half_float)),
+              "output.depth: expected 8, 16 or float in tif files, found half");
+    EXPECT_EQ(error_of(to("a.exr", Depth::uint8)),
+              "output.depth: expected half or float in exr files, found 8");
+    EXPECT_EQ(error_of(to("a.exr", Depth::automatic, Compression::lzw)),
               "output.compression: expected zip, zips, piz, dwaa or none in exr files, found lzw");
-    tif.depth = Depth::automatic;
-    tif.compression = Compression::piz;
-    EXPECT_EQ(error_of(tif), "output.compression: expected deflate, lzw or none in tif files, found piz");
-    png.depth = Depth::automatic;
-    png.compression = Compression::zip;
-    EXPECT_EQ(error_of(png), "output.compression: expected auto in png files, found zip");
-    png.compression = Compression::automatic;
+    EXPECT_EQ(error_of(to("a.tif", Depth::automatic, Compression::piz)),
+              "output.compression: expected deflate, lzw or none in tif files, found piz");
+    EXPECT_EQ(error_of(to("a.png", Depth::automatic, Compression::zip)),
+              "output.compression: expected auto in png files, found zip");
+    OutputParams png = to("a.png");
     png.aovs = {"depth"};
     EXPECT_EQ(error_of(png),
               "output.aovs: expected none in png files (extra channels need exr), found 'depth'");

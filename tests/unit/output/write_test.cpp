@@ -93,6 +93,12 @@ RenderedFrame noisy_frame(std::int64_t size) {
     return frame;
 }
 
+OutputParams of_depth(Depth depth) {
+    OutputParams output;
+    output.depth = depth;
+    return output;
+}
+
 class WriteTest : public testing::Test {
   protected:
     WriteTest() {
@@ -117,8 +123,7 @@ class WriteTest : public testing::Test {
 };
 
 TEST_F(WriteTest, FloatExrHoldsTheExactLight) {
-    OutputParams output;
-    output.depth = Depth::float32;
+    OutputParams output = of_depth(Depth::float32);
     RenderedFrame frame = soft_frame(9, 6);
     for (Compression c : {Compression::zip, Compression::zips, Compression::piz, Compression::none}) {
         output.compression = c;
@@ -136,8 +141,7 @@ TEST_F(WriteTest, ExrSaysItsPrimariesAndHoldsLightInThem) {
     const float acescg[3][3] = {{0.613097f, 0.339523f, 0.047379f},
                                 {0.070194f, 0.916354f, 0.013452f},
                                 {0.020616f, 0.109570f, 0.869815f}};
-    OutputParams output;
-    output.depth = Depth::float32;
+    OutputParams output = of_depth(Depth::float32);
     output.aovs = {"depth", "coverage", "count", "layers"};
     const RenderedFrame frame = soft_frame(9, 6);
     const RawFile plain = read_raw(write("a.exr", output, frame));
@@ -207,8 +211,7 @@ TEST_F(WriteTest, ExtraChannelsHaveTheirNamesAndPrecision) {
 }
 
 TEST_F(WriteTest, TallFramesAreWrittenInBands) {
-    OutputParams output;
-    output.depth = Depth::float32;
+    OutputParams output = of_depth(Depth::float32);
     constexpr std::int64_t height = 2100;  // more than an EXR's band, and than a TIFF's group of strips
     RenderedFrame frame = soft_frame(3, height);
     for (std::int64_t y = 0; y < height; ++y) frame.beauty.at(1, y)[0] = static_cast<float>(y);
@@ -247,8 +250,7 @@ TEST_F(WriteTest, RegionOfADitheredFileEqualsTheCropOfTheWhole) {
 
 TEST_F(WriteTest, PngWithoutAlphaIsOpaqueOverBlack) {
     RenderedFrame frame = soft_frame(5, 2);
-    OutputParams output;
-    output.depth = Depth::uint16;
+    OutputParams output = of_depth(Depth::uint16);
     RawFile raw = read_raw(write("a.png", output, frame));
     EXPECT_EQ(raw.spec.nchannels, 3);
     EXPECT_EQ(raw.code(2, 0, "R", 65535), std::lround(65535 * real::linear_to_srgb(0.4)));
@@ -257,9 +259,8 @@ TEST_F(WriteTest, PngWithoutAlphaIsOpaqueOverBlack) {
 
 TEST_F(WriteTest, StraightPngKeepsTheColourOfSoftEdges) {
     RenderedFrame frame = soft_frame(101, 2);
-    OutputParams output;
+    OutputParams output = of_depth(Depth::uint16);
     output.alpha = Alpha::straight;
-    output.depth = Depth::uint16;
     RawFile raw = read_raw(write("a.png", output, frame));
     for (int x = 1; x < 101; ++x) {
         EXPECT_NEAR(raw.code(x, 0, "R", 65535), 65535 * real::linear_to_srgb(0.8), 1.0) << x;
@@ -271,9 +272,8 @@ TEST_F(WriteTest, StraightPngKeepsTheColourOfSoftEdges) {
 
 TEST_F(WriteTest, PremultipliedPixelsSurviveEveryIntegerFormat) {
     RenderedFrame frame = soft_frame(51, 2);
-    OutputParams output;
+    OutputParams output = of_depth(Depth::uint16);
     output.alpha = Alpha::premultiplied;
-    output.depth = Depth::uint16;
     for (const char* name : {"a.png", "a.tif"}) {
         RawFile raw = read_raw(write(name, output, frame));
         for (int x = 0; x < 51; ++x)
@@ -283,8 +283,7 @@ TEST_F(WriteTest, PremultipliedPixelsSurviveEveryIntegerFormat) {
 }
 
 TEST_F(WriteTest, TiffSaysWhatItsAlphaIs) {
-    OutputParams output;
-    output.depth = Depth::uint8;
+    OutputParams output = of_depth(Depth::uint8);
     RenderedFrame frame = soft_frame(5, 2);
     EXPECT_EQ(read_raw(write("p.tif", output, frame)).spec.get_int_attribute("tiff:UnassociatedAlpha", 0), 0);
     output.alpha = Alpha::straight;
@@ -297,8 +296,7 @@ TEST_F(WriteTest, TiffHoldsItsCodesInEveryCompression) {
     RenderedFrame frame = soft_frame(33, 8);
     for (Depth depth : {Depth::uint8, Depth::uint16, Depth::float32})
         for (Compression c : {Compression::deflate, Compression::lzw, Compression::none}) {
-            OutputParams output;
-            output.depth = depth;
+            OutputParams output = of_depth(depth);
             output.compression = c;
             RawFile raw = read_raw(write("a.tiff", output, frame));
             const char* name = c == Compression::deflate ? "zip" : (c == Compression::lzw ? "lzw" : "none");

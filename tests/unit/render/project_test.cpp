@@ -335,8 +335,7 @@ TEST(Cancelling, StopsTheSortAndTheFold) {
     TilePlanes planes;
     planes.reset({0, 0, 32, 32}, settings, 1);
     const std::atomic<bool> cancelled = true;
-    Progress progress;
-    progress.cancelled = &cancelled;
+    const Progress progress{{}, &cancelled};
     EXPECT_THROW(fold({order, {&layer, 1}, settings, progress}, planes), Cancelled);
     SplatSorter stopped;
     EXPECT_THROW(stopped.sort(runs, progress), Cancelled);
@@ -472,8 +471,7 @@ TEST_P(TileDoneTest, ReportsEachPixelOnceAndFinal) {
 TEST_P(TileDoneTest, StopsWhenCancelledFromATile) {
     std::atomic<bool> cancelled = false;
     std::atomic<int> tiles = 0;
-    Progress progress;
-    progress.cancelled = &cancelled;
+    const Progress progress{{}, &cancelled};
     EXPECT_THROW(watch(
                      settings(),
                      [&](const Region&, const RenderedFrame&) {

@@ -8,6 +8,7 @@
 
 #include "splat_files/formats.h"
 #include "splat_files/ply_bytes.h"
+#include "support/errors.h"
 #include "support/process_state.h"
 #include "support/quiet.h"
 #include "support/test_data.h"
@@ -276,9 +277,7 @@ TEST_F(Ply, OpacitiesOutsideAreClampedAndCountedOnce) {
         EXPECT_EQ(set.alpha[2], 0.25f);
         EXPECT_EQ(set.alpha[3], 0.0f);
         EXPECT_EQ(set.alpha.back(), 1.0f);
-        EXPECT_NE(said.text().find(fmt::format("3 of {} opacities lie outside 0..1", rows)),
-                  std::string::npos)
-            << said.text();
+        EXPECT_HAS(said.text(), fmt::format("3 of {} opacities lie outside 0..1", rows));
     }
 }
 
@@ -407,7 +406,7 @@ TEST_F(Pda, OpacityIsClampedWithAWarning) {
     EXPECT_EQ(set.alpha[0], 1.0f);
     EXPECT_EQ(set.alpha[1], 0.0f);
     EXPECT_EQ(set.alpha[2], 0.5f);
-    EXPECT_NE(said.text().find("2 of 3 opacities lie outside 0..1"), std::string::npos) << said.text();
+    EXPECT_HAS(said.text(), "2 of 3 opacities lie outside 0..1");
 }
 
 TEST_F(Pda, RealFiles) {
@@ -461,16 +460,9 @@ TEST_F(Pda, WrongCounts) {
 TEST_F(Pda, WrongRows) {
     EXPECT_EQ(error(positions("2", "1 2 3\n1 2")), "a.pda:8: expected 3 numbers (position), found 2");
     EXPECT_EQ(error(positions("2", "\n1 2 3 4\n1 2\n")), "a.pda:8: expected 3 numbers (position), found 4");
-    EXPECT_EQ(error(positions("1", "1 two 3\n")),
-              "a.pda:7: expected a finite number for position, found 'two'");
-    EXPECT_EQ(error(positions("1", "1 2,5 3\n")),
-              "a.pda:7: expected a finite number for position, found '2,5'");
-    EXPECT_EQ(error(positions("1", "1 nan 3\n")),
-              "a.pda:7: expected a finite number for position, found 'nan'");
-    EXPECT_EQ(error(positions("1", "1 -inf 3\n")),
-              "a.pda:7: expected a finite number for position, found '-inf'");
-    EXPECT_EQ(error(positions("1", "1 1e39 3\n")),
-              "a.pda:7: expected a finite number for position, found '1e39'");
+    for (const std::string word : {"two", "2,5", "nan", "-inf", "1e39"})
+        EXPECT_EQ(error(positions("1", "1 " + word + " 3\n")),
+                  "a.pda:7: expected a finite number for position, found '" + word + "'");
     EXPECT_EQ(error(one("opacityPP", "R", "nan")),
               "a.pda:7: expected a finite number for opacityPP, found 'nan'");
     EXPECT_EQ(error(one("radiusPP", "R", "-1")),
@@ -511,10 +503,8 @@ TEST_F(Pda, MissingFileFolderAndReadOnlyTarget) {
 }
 
 TEST_F(Pda, CancelLeavesNothing) {
-    std::atomic<bool> stop{true};
-    Progress progress;
-    progress.cancelled = &stop;
-    EXPECT_THROW(write_pda(path("a.pda"), awkward_set(10), progress), Cancelled);
+    const std::atomic<bool> stop{true};
+    EXPECT_THROW(write_pda(path("a.pda"), awkward_set(10), {{}, &stop}), Cancelled);
     EXPECT_TRUE(std::filesystem::is_empty(path("a.pda").parent_path()));
 }
 
@@ -523,9 +513,7 @@ TEST_F(Pda, CancelInTheMiddleLeavesNothing) {
     for (const int threads : {1, 2, 5}) {
         set_thread_count(threads);
         std::atomic<bool> stop{false};
-        Progress progress;
-        progress.cancelled = &stop;
-        progress.report = [&](double fraction) { stop = fraction > 0.3; };
+        const Progress progress{[&](double fraction) { stop = fraction > 0.3; }, &stop};
         EXPECT_THROW(write_pda(path("a.pda"), set, progress), Cancelled);
         EXPECT_TRUE(std::filesystem::is_empty(path("a.pda").parent_path()));
     }

@@ -197,9 +197,7 @@ TEST(MortonOrder, StopsWhenAskedAndBetweenItsSteps) {
     EXPECT_THROW(morton_order(cloud(1000), Progress{{}, &stop}), Cancelled);
     for (const double when : {0.4, 0.8}) {
         std::atomic<bool> later{false};
-        Progress progress;
-        progress.cancelled = &later;
-        progress.report = [&](double fraction) { later = fraction >= when; };
+        const Progress progress{[&](double fraction) { later = fraction >= when; }, &later};
         if (when < 0.8)
             EXPECT_THROW(morton_order(cloud(1000), progress), Cancelled);
         else
