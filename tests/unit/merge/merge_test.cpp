@@ -5,6 +5,8 @@
 #include <array>
 #include <atomic>
 #include <cmath>
+#include <memory>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -12,20 +14,49 @@
 #include "core/real.h"
 #include "core/shared_maths.h"
 #include "merge/cut.h"
+#include "merge/tree.h"
 #include "render/footprint.h"
 #include "render/lod.h"
 #include "render/render.h"
 #include "splats/splat_set.h"
 #include "support/bits.h"
 #include "support/splats.h"
-#include "unit/merge/cloud.h"
 
 namespace astrosplat {
 namespace {
 
-// Trees, sums and cuts in closed form: light, second moments and transmittance stay, whatever is merged.
+// Sets with the splats of a look that changes nothing, and cuts of them.
 
-using test::Cloud;
+struct Cloud {
+    std::shared_ptr<SplatSet> set = std::make_shared<SplatSet>();
+    ShadedSplats splats;
+
+    void add(const glm::vec3& position, const glm::vec3& color, float alpha, float radius, std::uint64_t id) {
+        add_splat(*set, position, color, alpha);
+        set->id.back() = id;
+        splats.position.push_back(position);
+        splats.color.push_back(color);
+        splats.alpha.push_back(alpha);
+        splats.radius.push_back(radius);
+        splats.id.push_back(id);
+    }
+    void add(const glm::vec3& position, const glm::vec3& color, float alpha, float radius) {
+        add(position, color, alpha, radius, static_cast<std::uint64_t>(set->size()));
+    }
+    MergedSplats merged(float weight = 1.0f) const {
+        const auto tree = std::make_shared<const MergeTree>(build_merge_tree(*set));
+        return merge_splats({set, tree, weight}, splats);
+    }
+};
+
+/// Of one layer alone.
+ShadedSplats cut_of(const MergedSplats& merged, const MergeSettings& merging,
+                    const LayerProjection& projection, const CutSettings& settings) {
+    const CutLayer cut{&merged, &merging, projection};
+    return std::move(cut_splats(std::span(&cut, 1), settings)[0]);
+}
+
+// Trees, sums and cuts in closed form: light, second moments and transmittance stay, whatever is merged.
 
 constexpr int width = 256, height = 256;
 
@@ -65,8 +96,8 @@ ShadedSplats cut_of(const MergedSplats& merged, std::int64_t budget, const Layer
     RenderSettings frame;
     frame.width = width;
     frame.height = height;
-    return test::cut_of(merged, MergeSettings(render), make_projection(layer, 0, seen_by, frame),
-                        {budget, least_px, width, height});
+    return cut_of(merged, MergeSettings(render), make_projection(layer, 0, seen_by, frame),
+                  {budget, least_px, width, height});
 }
 
 Image picture_of(const ShadedSplats& splats, const LayerRender& as, const Camera& seen_by = camera()) {
@@ -401,7 +432,7 @@ struct CloseBy {
     static constexpr int side = 256;  // px of the frame
 
     RenderLayer layer;
-    test::Cloud cloud;
+    Cloud cloud;
     Camera camera;
     RenderSettings frame;
 
@@ -430,8 +461,8 @@ struct CloseBy {
         }
     }
     ShadedSplats cut(std::int64_t budget) const {
-        return test::cut_of(cloud.merged(), MergeSettings(layer.render),
-                            make_projection(layer, 0, camera, frame), {budget, 0.0f, side, side});
+        return cut_of(cloud.merged(), MergeSettings(layer.render), make_projection(layer, 0, camera, frame),
+                      {budget, 0.0f, side, side});
     }
     /// Light of blocks of 32 px.
     std::vector<double> blocks(const ShadedSplats& shown, bool children) const {
@@ -522,7 +553,7 @@ struct Seen {
 /// front.
 Seen seen_through_splats(bool lattice, int deep = 48, double degrees = 0.0) {
     constexpr int splats_a_side = 48, side = 256, first = 96, end = 160;  // px
-    test::Cloud cloud;
+    Cloud cloud;
     const auto at = [](int i) { return (static_cast<float>(i) + 0.5f) / splats_a_side * 2.0f - 1.0f; };
     const int count = splats_a_side * splats_a_side * deep;
     for (int i = 0; i < count; ++i) {
@@ -540,9 +571,8 @@ Seen seen_through_splats(bool lattice, int deep = 48, double degrees = 0.0) {
     const Camera camera = make_camera(params, side, side, {});
     RenderSettings frame;
     frame.width = frame.height = side;
-    const ShadedSplats cut =
-        test::cut_of(cloud.merged(), MergeSettings(layer.render, lattice),
-                     make_projection(layer, 0, camera, frame), {count / 64, 0.0f, side, side});
+    const ShadedSplats cut = cut_of(cloud.merged(), MergeSettings(layer.render, lattice),
+                                    make_projection(layer, 0, camera, frame), {count / 64, 0.0f, side, side});
     layer.splats = &cut;
     const Image image = render(std::span(&layer, 1), camera, nullptr, frame).beauty;
     double sum = 0.0, squares = 0.0, cover = 0.0;
