@@ -52,7 +52,7 @@ class PreviewPicture : public GlTest {
     /// By the perspective camera.
     void expect_like_offline(const std::vector<PreviewLayer>& layers,
                              const Environment* environment = nullptr) {
-        expect_like_offline(layers, environment);
+        expect_like_offline(layers, test::perspective_camera(width, height), environment);
     }
 };
 
