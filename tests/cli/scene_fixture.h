@@ -15,7 +15,6 @@
 
 namespace astrosplat::test {
 
-namespace fs = std::filesystem;
 using Words = std::vector<std::string>;
 
 inline Words joined(Words words, const Words& more) {

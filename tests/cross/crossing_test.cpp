@@ -36,8 +36,6 @@
 namespace astrosplat::test {
 namespace {
 
-namespace fs = std::filesystem;
-
 constexpr std::uint32_t pool = 1500;  // seeds that those of the lane ci are chosen from
 
 /// A scene file in a folder that is named as the crossing has it; its text is told where a case fails.

@@ -25,8 +25,6 @@
 namespace astrosplat::test {
 namespace {
 
-namespace fs = std::filesystem;
-
 // One run of --batch in which a call fails, and what is to be true afterwards: a code and a line that say so,
 // only whole and right frames, nothing else touched, and a --resume that finishes the sequence. In: which
 // call, counted by fault_shim/shim.cpp. Out: complaints, empty where all is well.

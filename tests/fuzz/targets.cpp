@@ -21,8 +21,6 @@ namespace astrosplat::fuzz {
 
 namespace {
 
-namespace fs = std::filesystem;
-
 bool finite(float v) { return std::isfinite(v); }
 bool finite(const glm::vec2& v) { return finite(v.x) && finite(v.y); }
 bool finite(const glm::vec3& v) { return finite(v.x) && finite(v.y) && finite(v.z); }

@@ -15,8 +15,6 @@
 namespace astrosplat {
 namespace {
 
-namespace fs = std::filesystem;
-
 std::vector<std::string> names(const std::vector<FileEntry>& entries) {
     std::vector<std::string> list;
     for (const FileEntry& entry : entries) list.push_back(entry.name);

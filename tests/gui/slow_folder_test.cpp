@@ -39,8 +39,6 @@ extern "C" int stat(const char* file, struct stat* status) noexcept {
 namespace astrosplat {
 namespace {
 
-namespace fs = std::filesystem;
-
 class SlowFolder : public testing::Test {
   protected:
     SlowFolder() {

@@ -18,8 +18,6 @@
 namespace astrosplat {
 namespace {
 
-namespace fs = std::filesystem;
-
 // Relative to the reference where that is above 1. Half-float files are exact to 5e-4; the frames themselves
 // are the same bits everywhere, so more than that is a change of the picture.
 constexpr double bad_pixel = 1e-3, bad_share = 0.001, never = 1e-2;

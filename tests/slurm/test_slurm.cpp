@@ -20,8 +20,6 @@
 namespace astrosplat::test {
 namespace {
 
-namespace fs = std::filesystem;
-
 // A cluster of the test's own: munge, Slurm's controller and one node on loopback, in a temporary folder,
 // which end with the test.
 

@@ -2,9 +2,10 @@
 #pragma once
 
 #include <cstdlib>
-#include <filesystem>
 #include <fstream>
 #include <string>
+
+#include "core/path.h"
 
 namespace astrosplat {
 

@@ -16,8 +16,6 @@
 
 namespace astrosplat::test {
 
-namespace fs = std::filesystem;
-
 /// Asks again and again, for as long as the slowest machine may need. False: it never came.
 template <class Condition>
 bool comes_true(const Condition& condition) {

@@ -46,8 +46,6 @@ namespace {
 
 // Errors, log, text, memory, buffers, hashes, vector targets.
 
-namespace fs = std::filesystem;
-
 TEST(Error, LineNamesFilePlaceExpectationAndFinding) {
     EXPECT_EQ(ERROR_OF(bad_input("a.obj", "12", "three numbers", "two")),
               "a.obj:12: expected three numbers, found two");

@@ -17,8 +17,6 @@ namespace {
 
 // A file is there whole, or not at all.
 
-namespace fs = std::filesystem;
-
 std::ptrdiff_t entries(const fs::path& folder) {
     return std::distance(fs::directory_iterator(folder), fs::directory_iterator());
 }

@@ -18,7 +18,6 @@ namespace {
 
 // Autosave and recovery, with a process that is really killed.
 
-namespace fs = std::filesystem;
 using std::chrono::seconds;
 using test::opacity;
 using test::SceneFolder;
@@ -327,8 +326,6 @@ TEST_F(Snapshots, LayersAreMatchedByName) {
 
 // Snapshots in the folder beside their scene: what is written is read again, and nothing is lost where one of
 // them is broken.
-
-namespace fs = std::filesystem;
 
 struct SnapshotFiles : testing::Test {
     test::SceneFolder f;

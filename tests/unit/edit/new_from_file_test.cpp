@@ -16,8 +16,6 @@
 namespace astrosplat {
 namespace {
 
-namespace fs = std::filesystem;
-
 const char* const tiny_picture = "P2\n1 1\n255\n9\n";  // a PNM, whatever its name
 const char* const square = "v 0 0 0\nv 4 0 0\nv 4 0 2\nv 0 0 2\n";
 

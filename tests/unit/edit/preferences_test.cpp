@@ -21,8 +21,6 @@ namespace {
 
 // The window's settings on disk: round trip, damage, folders that cannot be written.
 
-namespace fs = std::filesystem;
-
 /// Warnings while `work` runs.
 template <class Work>
 std::vector<std::string> warnings_of(const Work& work) {
@@ -181,7 +179,6 @@ TEST(UserFolders, FollowTheBaseDirectorySpecification) {
 
 // Changes of files in use, and which files a scene uses.
 
-namespace fs = std::filesystem;
 using Paths = std::vector<fs::path>;
 
 class WatchedFilesTest : public testing::Test {

@@ -72,8 +72,6 @@ TEST(MeanFrame, ALayerThatOneRenderingShowsHasItsShareInItsPlace) {
 
 // Frame numbers and eyes in file names, and folders whose names look like them.
 
-namespace fs = std::filesystem;
-
 std::string frame_file(const std::string& name, std::int64_t frame, Eye eye = Eye::centre) {
     return OutputPattern{"", name}.resolve(frame, eye).string();
 }

@@ -15,8 +15,6 @@
 namespace astrosplat {
 namespace {
 
-namespace fs = std::filesystem;
-
 class DisplayTransformTest : public testing::Test {
   protected:
     TempFolder folder_;

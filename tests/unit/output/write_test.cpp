@@ -27,7 +27,6 @@
 namespace astrosplat {
 namespace {
 
-namespace fs = std::filesystem;
 using Alpha = OutputParams::Alpha;
 using Compression = OutputParams::Compression;
 using Depth = OutputParams::Depth;

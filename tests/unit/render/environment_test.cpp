@@ -25,8 +25,6 @@ namespace {
 
 // Environment lookup with colour-coded pictures: every direction has one right answer.
 
-namespace fs = std::filesystem;
-
 /// A folder for this test's pictures, removed afterwards.
 class EnvironmentTest : public testing::Test {
   protected:

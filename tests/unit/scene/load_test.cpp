@@ -11,7 +11,6 @@
 #include "support/temp_folder.h"
 
 namespace astrosplat::test {
-namespace fs = std::filesystem;
 namespace {
 
 Scene defaults() {

@@ -7,7 +7,6 @@
 #include "support/errors.h"
 
 namespace astrosplat::test {
-namespace fs = std::filesystem;
 namespace {
 
 const std::string head =

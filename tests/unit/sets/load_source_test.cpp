@@ -264,8 +264,6 @@ TEST_F(LoadSourceTest, MeshesWithoutUvNeedAProjection) {
 
 // Samples of sets: rows of what is kept, and of what is not, splats as wide as those of the whole set.
 
-namespace fs = std::filesystem;
-
 class SetSampleTest : public testing::Test {
   protected:
     SetSampleTest() {

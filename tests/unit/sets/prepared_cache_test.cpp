@@ -21,8 +21,6 @@ namespace {
 // source.prepare: a source that prepares its picture is one of the prepared picture, to the bit; the picture
 // is kept beside the sets, and everything that reaches it reaches both names.
 
-namespace fs = std::filesystem;
-
 // Twelve stars on a slope.
 std::string stars_on_a_slope() { return test::starry_pixmap({128, 96, 32, 32, 120.0, 3.0, 0.3, 2.0}); }
 

@@ -31,8 +31,6 @@
 namespace astrosplat {
 namespace {
 
-namespace fs = std::filesystem;
-
 std::string picture(int size, int blue = 128) {
     return test::pixmap(size, size,
                         [&](int x, int y, int k) { return k == 2 ? blue : 8 * (k == 0 ? x : y); });

@@ -22,8 +22,6 @@
 namespace astrosplat {
 namespace {
 
-namespace fs = std::filesystem;
-
 constexpr long width = 48, height = 20;
 
 /// A tile-compressed picture of 16-bit numbers.

@@ -19,8 +19,6 @@
 namespace astrosplat {
 namespace {
 
-namespace fs = std::filesystem;
-
 Mesh from_text(const std::string& text) {
     const TempFolder folder;
     return load_obj(folder.file("a mesh.obj", text));

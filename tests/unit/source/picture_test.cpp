@@ -32,7 +32,6 @@ namespace {
 
 // Picture files as files: which are opened at all, damage, orientation, cube maps, and stopping half way.
 
-namespace fs = std::filesystem;
 using Bytes = std::vector<unsigned char>;
 
 fs::path write_bytes(const fs::path& file, OIIO::ImageSpec spec, const Bytes& pixels) {

@@ -20,7 +20,6 @@
 namespace astrosplat {
 namespace {
 
-namespace fs = std::filesystem;
 using Alpha = TextureSettings::Alpha;
 using Colorspace = TextureSettings::Colorspace;
 using Stretch = TextureSettings::Stretch;

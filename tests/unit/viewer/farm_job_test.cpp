@@ -15,8 +15,6 @@
 namespace astrosplat {
 namespace {
 
-namespace fs = std::filesystem;
-
 using test::text_of;
 std::string status_of(int done, const std::string& frames, bool complete, const std::string& queue,
                       const std::string& problem = "") {

@@ -17,8 +17,6 @@
 namespace astrosplat {
 namespace {
 
-namespace fs = std::filesystem;
-
 struct RenderedFramesTest : testing::Test {
     TempFolder folder;
     /// One colour all over.

@@ -32,8 +32,6 @@ namespace {
 // Trees in the cache: the same bits as built, for every set with the same positions; what is damaged is built
 // again; how much they may take.
 
-namespace fs = std::filesystem;
-
 SplatSet cloud(std::uint32_t count, std::uint32_t seed = 1) {
     SplatSet set;
     for (std::uint32_t i = 0; i < count; ++i) {

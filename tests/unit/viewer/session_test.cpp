@@ -409,8 +409,6 @@ TEST(InputQueue, AKeyBeforeAClickIsHeldInIt) {
 // Jobs of the window: how far one is by the lines that it says, and what one that is refused or waits leaves
 // on the disk.
 
-namespace fs = std::filesystem;
-
 TEST(RenderingLine, SaysTheShareOfAllFrames) {
     EXPECT_EQ(share_of_line("astrosplat: preparing 50% eta 00:00:02"), 0.5f);
     EXPECT_EQ(share_of_line("astrosplat: frame 12 (3/10) 50% eta 00:04:10"), 0.25f);
