@@ -8,7 +8,6 @@
 #include "gl/gl_fixture.h"
 #include "gl/objects.h"
 #include "gl/passes.h"
-#include "gl/program.h"
 #include "support/errors.h"
 #include "support/temp_folder.h"
 

@@ -9,11 +9,8 @@
 #include "core/real.h"
 #include "edit/view_camera.h"
 #include "gui/parts.h"
-#include "gui/actions.h"
-#include "gui/key_codes.h"
 #include "gui/test_window.h"
 #include "gui/widgets.h"
-#include "gui/theme.h"
 #include "scene/describe.h"
 
 namespace astrosplat {

@@ -5,7 +5,6 @@
 #include "edit/preferences.h"
 #include "gui/widgets.h"
 #include "source/write_image.h"
-#include "gui/theme.h"
 #include "window/window_test.h"
 
 namespace astrosplat::test {

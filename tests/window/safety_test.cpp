@@ -3,8 +3,6 @@
 
 #include "edit/kept_files.h"
 #include "gui/widgets.h"
-#include "edit/snapshots.h"
-#include "gui/theme.h"
 #include "window/window_test.h"
 
 namespace astrosplat::test {

@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "edit/keyframes.h"
+#include "edit/edits.h"
 #include "edit/preferences.h"
 #include "output/write.h"
 #include "source/texture.h"

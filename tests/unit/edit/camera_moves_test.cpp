@@ -1,5 +1,5 @@
 // Keyframes as they are edited, of cameras and of any track, and camera moves.
-#include "edit/camera_moves.h"
+#include "edit/view_camera.h"
 
 #include <gtest/gtest.h>
 
@@ -8,10 +8,8 @@
 
 #include "camera/camera.h"
 #include "core/real.h"
-#include "edit/edits.h"
 #include "edit/document.h"
-#include "edit/edit_rules.h"
-#include "edit/keyframes.h"
+#include "edit/edits.h"
 #include "scene/animate.h"
 #include "scenes.h"
 #include "support/errors.h"

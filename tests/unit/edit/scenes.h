@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "edit/document.h"
-#include "edit/keyframes.h"
+#include "edit/edits.h"
 #include "scene/describe.h"
 #include "support/bits.h"
 #include "support/temp_folder.h"

@@ -1,5 +1,5 @@
 // The settled picture, other views, and frames that are played.
-#include "viewer/final_frame.h"
+#include "viewer/view_frame.h"
 
 #include <gtest/gtest.h>
 
@@ -460,7 +460,7 @@ TEST_F(PlaybackTest, EveryFrameIsShownAndTheRateToldAsItIs) {
 TEST(FirstFrame, IsTheEarliest) {
     Scene scene;
     scene.output.frames = "7-9,3";
-    EXPECT_EQ(first_frame(scene), 3.0);
+    EXPECT_EQ(frame_range(scene.output).first, 3.0);
 }
 
 }  // namespace
