@@ -20,7 +20,7 @@
 #include <thread>
 #include <vector>
 
-#include "core/path.h"
+#include "core/standard.h"
 
 namespace astrosplat::test {
 

@@ -5,7 +5,7 @@
 #include <fstream>
 #include <string>
 
-#include "core/path.h"
+#include "core/standard.h"
 
 namespace astrosplat {
 
