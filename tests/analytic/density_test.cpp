@@ -2,10 +2,6 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-#include <functional>
-
 #include "analytic/support.h"
 #include "core/real.h"
 #include "render/footprint.h"

@@ -2,10 +2,6 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-#include <optional>
-
 #include "analytic/support.h"
 #include "core/color.h"
 #include "core/real.h"

@@ -4,7 +4,6 @@
 // fmt first: OpenImageIO brings a copy of it with other settings.
 #include <OpenImageIO/imageio.h>
 
-#include <algorithm>
 #include <stdexcept>
 
 #include "frame/output_pattern.h"

@@ -2,12 +2,8 @@
 // frames, and frame files read back channel by channel.
 #pragma once
 
-#include <filesystem>
-#include <functional>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
-#include <string>
-#include <vector>
 
 #include "core/image.h"
 #include "pipeline.h"

@@ -2,9 +2,6 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-
 #include "analytic/support.h"
 #include "core/real.h"
 #include "output/compare.h"

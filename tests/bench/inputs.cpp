@@ -1,8 +1,6 @@
 // Inputs from hashes and the engine's own sine, so that every machine measures the same work.
 #include "inputs.h"
 
-#include <cmath>
-
 #include "core/parallel.h"
 #include "core/real.h"
 #include "core/shared_maths.h"

@@ -7,16 +7,12 @@
 #include <sys/resource.h>
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
-#include <functional>
 #include <numbers>
 #include <thread>
-#include <vector>
 
 #include "core/color.h"
 #include "core/memory.h"

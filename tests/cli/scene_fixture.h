@@ -3,11 +3,8 @@
 
 #include <fmt/format.h>
 
-#include <cstdint>
 #include <nlohmann/json.hpp>
 #include <set>
-#include <string>
-#include <vector>
 
 #include "support/errors.h"
 #include "support/pixmap.h"

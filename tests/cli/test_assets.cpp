@@ -1,9 +1,6 @@
 // Scenes that come with the program, and those that `new` makes of pictures.
 
-#include <algorithm>
-#include <cmath>
 #include <nlohmann/json.hpp>
-#include <utility>
 
 #include "scene_fixture.h"
 #include "support/painted_picture.h"

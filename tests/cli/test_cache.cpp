@@ -1,7 +1,6 @@
 // The cache of generated sets as users meet it: the second run starts from it with the same pixels, a look
 // never touches it, processes share it, and it never fails a run.
 #include <chrono>
-#include <memory>
 #include <thread>
 
 #include "core/memory.h"

@@ -1,5 +1,4 @@
 // How the program is called, and what its documents promise.
-#include <algorithm>
 #include <cctype>
 #include <map>
 #include <nlohmann/json.hpp>

@@ -1,11 +1,9 @@
 // export: files of splats and volumes as other readers find them.
-#include <cmath>
 #include <cstdlib>
 #include <cstring>
 #include <initializer_list>
 #include <numbers>
 #include <sstream>
-#include <utility>
 
 #include "scene_fixture.h"
 #include "support/capture.h"

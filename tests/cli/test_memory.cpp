@@ -1,7 +1,6 @@
 // --memory bounds a run, and estimates say beforehand what it takes.
 #include <fmt/format.h>
 
-#include <cmath>
 #include <map>
 #include <sstream>
 

@@ -1,7 +1,5 @@
 // prepare: what it writes, aligns and refuses.
 
-#include <algorithm>
-#include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 

@@ -1,7 +1,6 @@
 // Frames that are there: verify, --resume and status.
 #include <sys/stat.h>
 
-#include <cmath>
 #include <cstring>
 
 #include "scene_fixture.h"

@@ -4,16 +4,10 @@
 //   ASTROSPLAT_CROSSING=SEED test_cross --gtest_filter='Seeds/*'  (or 'Runs/*')
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <array>
-#include <cmath>
 #include <cstdlib>
-#include <filesystem>
 #include <fstream>
 #include <map>
 #include <set>
-#include <string>
-#include <vector>
 
 #include "core/error.h"
 #include "cross/crossing.h"

@@ -1,23 +1,16 @@
 // The program whose calls fail, and whose folders, pictures and disk go away.
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <atomic>
 #include <cerrno>
 #include <chrono>
 #include <csignal>
-#include <cstdint>
 #include <cstring>
-#include <filesystem>
 #include <map>
-#include <memory>
 #include <mutex>
-#include <optional>
 #include <set>
 #include <sstream>
-#include <string>
 #include <thread>
-#include <vector>
 
 #include "cli/scene_fixture.h"
 #include "support/run_program.h"

@@ -2,11 +2,7 @@
 // else. Runs in normal builds and, where it bites hardest, under the sanitizers.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cctype>
-#include <cstdint>
-#include <string>
-#include <string_view>
 
 #include "core/error.h"
 #include "fuzz/targets.h"

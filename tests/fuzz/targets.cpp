@@ -3,11 +3,7 @@
 
 #include <fitsio.h>
 
-#include <algorithm>
-#include <cmath>
-#include <cstdint>
 #include <cstring>
-#include <filesystem>
 
 #include "core/hash.h"
 #include "fuzz/seeds.h"

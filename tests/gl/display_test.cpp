@@ -3,9 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <array>
-#include <cmath>
-
 #include "gl/gl_fixture.h"
 #include "gl/objects.h"
 #include "output/format.h"

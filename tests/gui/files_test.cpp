@@ -1,7 +1,6 @@
 // The file dialog: what it lists and completes, and its questions.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <set>
 #include <sstream>
 

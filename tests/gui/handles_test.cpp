@@ -1,8 +1,6 @@
 // Handles and the camera's path over the viewport.
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "edit/edits.h"
 #include "edit/placement.h"
 #include "gui/test_window.h"

@@ -1,9 +1,7 @@
 // Where things lie, menus and settings.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <tuple>
-#include <utility>
 
 #include "core/color.h"
 #include "core/real.h"

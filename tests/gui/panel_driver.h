@@ -4,9 +4,6 @@
 
 #include <imgui.h>
 
-#include <string>
-#include <vector>
-
 #include "gui/panel/context.h"
 
 namespace astrosplat {

@@ -1,8 +1,6 @@
 // Sections of the panel: colours, prepare, edits that need others, folded heads.
 #include <gtest/gtest.h>
 
-#include <algorithm>
-
 #include "gui/panel/context.h"
 #include "gui/panel/parts.h"
 #include "gui/panel_driver.h"

@@ -6,9 +6,6 @@
 
 #include <imgui.h>
 
-#include <string>
-#include <vector>
-
 #include "gui/gui.h"
 #include "gui/software_draw.h"
 

@@ -1,8 +1,6 @@
 // The viewport: drags, flying, wipe, 1:1, and the badge.
 #include <gtest/gtest.h>
 
-#include <limits>
-
 #include "gui/gui_frame.h"
 #include "gui/test_window.h"
 #include "gui/viewport.h"

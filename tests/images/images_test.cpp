@@ -4,11 +4,7 @@
 //   A scene without a reference fails, and leaves its picture to be looked at and copied to references/.
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-#include <filesystem>
 #include <iostream>
-#include <limits>
 
 #include "analytic/support.h"
 #include "output/write.h"

@@ -8,11 +8,7 @@
 #include <sys/socket.h>
 
 #include <chrono>
-#include <filesystem>
-#include <memory>
-#include <string>
 #include <thread>
-#include <vector>
 
 #include "cli/scene_fixture.h"
 #include "support/run_program.h"

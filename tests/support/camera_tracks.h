@@ -3,10 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <filesystem>
 #include <glm/geometric.hpp>
-#include <string>
 
 #include "camera_files/camera_track.h"
 #include "support/errors.h"

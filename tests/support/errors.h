@@ -1,8 +1,6 @@
 // Error messages as values, and texts that have a part, for tests that compare them.
 #pragma once
 
-#include <string>
-
 #include "core/error.h"
 
 namespace astrosplat {

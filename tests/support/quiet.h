@@ -1,9 +1,6 @@
 // The log in tests: silenced where sets are loaded on the way to something else, or caught to be compared.
 #pragma once
 
-#include <string>
-#include <vector>
-
 #include "core/log.h"
 
 namespace astrosplat {

@@ -3,7 +3,6 @@
 
 #include <cstdlib>
 #include <fstream>
-#include <string>
 
 #include "core/standard.h"
 

@@ -1,8 +1,6 @@
 // Pictures to compare with: two looks, the output's own pixels, a reference.
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "gui/widgets.h"
 #include "output/metadata.h"
 #include "source/texture.h"

@@ -1,5 +1,4 @@
 // From the start of the window to its settled picture.
-#include <algorithm>
 #include <cstring>
 #include <nlohmann/json.hpp>
 #include <set>

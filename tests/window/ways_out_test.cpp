@@ -1,8 +1,6 @@
 // Ways out of the window: files, movies, jobs, a farm.
 
-#include <cmath>
 #include <set>
-#include <utility>
 
 #include "edit/command_lines.h"
 #include "gui/widgets.h"

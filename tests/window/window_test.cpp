@@ -1,7 +1,5 @@
 #include "window/window_test.h"
 
-#include <cmath>
-
 #include "edit/preferences.h"
 #include "gui/widgets.h"
 #include "source/write_image.h"

@@ -4,7 +4,6 @@
 
 #include <chrono>
 #include <csignal>
-#include <optional>
 
 #include "gui/panel/context.h"
 #include "gui/test_window.h"

@@ -1,10 +1,6 @@
 // Bands of a picture, and the dust that takes their light away.
 #include <gtest/gtest.h>
 
-#include <array>
-#include <cmath>
-#include <vector>
-
 #include "bodies/dust.h"
 #include "bodies/picture_light.h"
 #include "image/channels.h"

@@ -1,8 +1,6 @@
 // Pictures on planes, and splats at random places, as tests of bodies want them.
 #pragma once
 
-#include <algorithm>
-#include <cstdint>
 #include <glm/vec2.hpp>
 
 #include "bodies/placement.h"

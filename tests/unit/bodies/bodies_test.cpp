@@ -3,11 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
 #include <glm/geometric.hpp>
-#include <string>
-#include <vector>
 
 #include "bodies/front_fit.h"
 #include "bodies/picture_splats.h"

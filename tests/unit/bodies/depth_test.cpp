@@ -1,11 +1,6 @@
 // Depths: the envelope, the noise that all bands share, and the same bits everywhere.
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-#include <memory>
-#include <vector>
-
 #include "bodies/depth_kernel.h"
 #include "bodies/fields.h"
 #include "bodies/picture_light.h"

@@ -1,12 +1,6 @@
 // The light of a picture's splats, and pictures continued beyond their edges.
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <utility>
-#include <vector>
-
 #include "bodies/fields.h"
 #include "bodies/front_fit.h"
 #include "bodies/margin.h"

@@ -1,12 +1,6 @@
 // Shells: their walls, what lies on them and fills them, and flights near them.
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <utility>
-#include <vector>
-
 #include "bodies/bodies.h"
 #include "bodies/fields.h"
 #include "bodies/placement.h"

@@ -1,12 +1,6 @@
 // Stars of a picture: those that are found, those too wide for one splat, and their places in depth.
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstdint>
-#include <vector>
-
 #include "bodies/bodies.h"
 #include "bodies/picture_light.h"
 #include "bodies/picture_splats.h"

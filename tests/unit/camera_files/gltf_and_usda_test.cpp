@@ -1,7 +1,6 @@
 // Cameras of glTF and USD.
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <cstring>
 #include <glm/geometric.hpp>
 

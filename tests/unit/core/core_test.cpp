@@ -6,23 +6,12 @@
 #include <sys/un.h>
 #include <unistd.h>
 
-#include <algorithm>
-#include <array>
 #include <atomic>
-#include <cmath>
-#include <cstdint>
 #include <cstring>
-#include <filesystem>
 #include <fstream>
-#include <functional>
 #include <glm/vec3.hpp>
-#include <limits>
-#include <span>
 #include <stdexcept>
-#include <string>
 #include <thread>
-#include <utility>
-#include <vector>
 
 #include "core/bounds.h"
 #include "core/buffer.h"

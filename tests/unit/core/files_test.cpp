@@ -3,7 +3,6 @@
 #include <sys/stat.h>
 
 #include <set>
-#include <vector>
 
 #include "core/atomic_file.h"
 #include "core/error.h"

@@ -1,8 +1,6 @@
 // What the window asks of the command line: --batch, prepare, movies.
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <array>
 #include <cstdio>
 
 #include "edit/command_lines.h"

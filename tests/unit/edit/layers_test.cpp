@@ -1,8 +1,6 @@
 // The list of layers, and every parameter of the description, as they are edited.
 #include <gtest/gtest.h>
 
-#include <algorithm>
-
 #include "edit/document.h"
 #include "edit/edits.h"
 #include "edit/layers.h"

@@ -1,9 +1,7 @@
 // The window's settings on disk, and the files in use that change there.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <chrono>
-#include <cstddef>
 
 #include "core/file.h"
 #include "core/log.h"

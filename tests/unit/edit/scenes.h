@@ -1,9 +1,6 @@
 // Scenes for the tests of editing.
 #pragma once
 
-#include <string>
-#include <vector>
-
 #include "edit/document.h"
 #include "edit/edits.h"
 #include "scene/describe.h"

@@ -3,10 +3,8 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include <array>
 #include <atomic>
 #include <fstream>
-#include <functional>
 
 #include "core/error.h"
 #include "core/file.h"

@@ -3,12 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/vec4.hpp>
-#include <optional>
-#include <vector>
 
 #include "core/real.h"
 #include "core/shared_maths.h"

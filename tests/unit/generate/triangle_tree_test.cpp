@@ -1,11 +1,8 @@
 // The closest triangle: of one, of blocks of positions, and of real meshes.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <atomic>
-#include <cmath>
 #include <glm/geometric.hpp>
-#include <vector>
 
 #include "core/parallel.h"
 #include "core/shared_maths.h"

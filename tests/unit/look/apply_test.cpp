@@ -1,10 +1,7 @@
 // The look as a whole: the same bits, messages, progress.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <atomic>
-#include <string>
-#include <vector>
 
 #include "core/error.h"
 #include "core/log.h"

@@ -1,9 +1,7 @@
 // Shapes over x against published numbers and closed forms, and crops.
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <cstring>
-#include <vector>
 
 #include "core/real.h"
 #include "look/prepare.h"

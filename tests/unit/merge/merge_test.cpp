@@ -1,14 +1,7 @@
 // Merged splats: trees, and clouds for a preview.
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <array>
 #include <atomic>
-#include <cmath>
-#include <memory>
-#include <span>
-#include <utility>
-#include <vector>
 
 #include "core/error.h"
 #include "core/real.h"

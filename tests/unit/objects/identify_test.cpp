@@ -3,8 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <string>
-
 #include "bodies/picture_light.h"
 #include "core/error.h"
 #include "objects/catalogue.h"

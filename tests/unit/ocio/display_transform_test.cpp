@@ -4,9 +4,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <limits>
-
 #include "support/color_config.h"
 #include "support/errors.h"
 #include "support/process_state.h"

@@ -3,10 +3,6 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include <array>
-#include <cmath>
-#include <limits>
-
 #include "core/color.h"
 #include "core/text.h"
 #include "output/compare.h"

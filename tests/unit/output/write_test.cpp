@@ -8,10 +8,8 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include <cmath>
 #include <fstream>
 #include <iterator>
-#include <limits>
 #include <map>
 #include <stdexcept>
 

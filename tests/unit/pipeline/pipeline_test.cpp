@@ -2,11 +2,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <atomic>
-#include <cmath>
-#include <memory>
-#include <vector>
 
 #include "output/write.h"
 #include "pipeline.h"

@@ -1,12 +1,9 @@
 // Splats that are not round, through the whole renderer: on the plane and onto the sphere.
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 #include <ostream>
-#include <string>
 
 #include "core/real.h"
 #include "core/rotation.h"

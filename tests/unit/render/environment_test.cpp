@@ -4,11 +4,8 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <array>
 #include <atomic>
-#include <cmath>
 #include <fstream>
-#include <functional>
 #include <glm/geometric.hpp>
 
 #include "camera/camera.h"

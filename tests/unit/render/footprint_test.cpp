@@ -3,11 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
 #include <cstring>
-#include <utility>
-#include <vector>
 
 #include "core/real.h"
 #include "support/printing.h"

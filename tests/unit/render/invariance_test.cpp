@@ -1,16 +1,11 @@
 // The same bits whatever shares the work or holds the splats, and the reference renderer's picture.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <atomic>
-#include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
-#include <memory>
 #include <numeric>
 #include <random>
-#include <string>
-#include <vector>
 
 #include "camera/camera.h"
 #include "core/parallel.h"

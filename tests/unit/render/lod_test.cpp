@@ -3,9 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-
 #include "camera/camera.h"
 #include "core/real.h"
 #include "core/shared_maths.h"

@@ -3,15 +3,9 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <atomic>
-#include <bit>
-#include <cmath>
 #include <cstring>
 #include <mutex>
-#include <span>
-#include <string>
-#include <vector>
 
 #include "core/error.h"
 #include "core/parallel.h"

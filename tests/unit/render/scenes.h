@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <glm/vec3.hpp>
-#include <vector>
 
 #include "core/shared_maths.h"
 #include "render/footprint.h"

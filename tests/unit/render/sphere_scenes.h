@@ -1,10 +1,7 @@
 // Cameras that show the sphere, directions, and light by solid angle.
 #pragma once
 
-#include <algorithm>
-#include <cmath>
 #include <ostream>
-#include <vector>
 
 #include "core/real.h"
 #include "unit/render/scenes.h"

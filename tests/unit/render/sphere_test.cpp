@@ -3,8 +3,6 @@
 // threads, region and instruction set.
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
 #include <glm/geometric.hpp>
 
 #include "core/real.h"

@@ -1,7 +1,6 @@
 // Cameras of other programs: read by camera.file, and written for them.
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <glm/geometric.hpp>
 #include <numeric>
 #include <sstream>

@@ -1,7 +1,6 @@
 // Where a picture lies in the world, and a reference over the frame.
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <glm/geometric.hpp>
 
 #include "core/rotation.h"

@@ -1,7 +1,6 @@
 // Loading: every key, precedence, paths, --set, tracks.
 
 #include <clocale>
-#include <filesystem>
 #include <set>
 
 #include "scene/layer_setup.h"

@@ -1,5 +1,4 @@
 // One test for each message that a scene, a preset or --set can cause.
-#include <filesystem>
 
 #include "core/atomic_file.h"
 #include "scene/check.h"

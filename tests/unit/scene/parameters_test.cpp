@@ -1,11 +1,8 @@
 // Parameters and words of a scene.
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
 #include <map>
 #include <set>
-#include <vector>
 
 #include "look/picture_fit.h"
 #include "look/prepare.h"

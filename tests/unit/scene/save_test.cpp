@@ -1,9 +1,8 @@
 // Saving: what is loaded again is what was saved, and the text keeps everything that did not change.
-#include <filesystem>
 
+#include "scene/save.h"
 #include "scene/check.h"
 #include "scene/new_scene.h"
-#include "scene/save.h"
 #include "scene_texts.h"
 #include "support/bits.h"
 #include "support/errors.h"

@@ -3,9 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <fstream>
-#include <vector>
 
 #include "bodies/bodies.h"
 #include "sets/kept.h"

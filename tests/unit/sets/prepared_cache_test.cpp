@@ -1,9 +1,6 @@
 // Prepared pictures and skies kept beside the sets.
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <functional>
-
 #include "core/file.h"
 #include "core/log.h"
 #include "sets/kept.h"

@@ -8,12 +8,9 @@
 #include <sys/stat.h>
 #include <sys/wait.h>
 
-#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <csignal>
-#include <functional>
-#include <optional>
 #include <thread>
 
 #include "core/log.h"

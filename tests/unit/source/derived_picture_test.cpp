@@ -1,7 +1,6 @@
 // Pictures made of pictures: maps, reworked ones, masks, and a sky of cut-outs.
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <glm/geometric.hpp>
 
 #include "core/color.h"

@@ -6,11 +6,7 @@
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
-#include <array>
 #include <atomic>
-#include <cmath>
-#include <optional>
-#include <vector>
 
 #include "core/error.h"
 #include "source/picture.h"

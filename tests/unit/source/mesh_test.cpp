@@ -6,7 +6,6 @@
 
 #include <atomic>
 #include <clocale>
-#include <cmath>
 #include <glm/geometric.hpp>
 #include <sstream>
 

@@ -2,11 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <string>
-#include <utility>
-#include <vector>
-
 #include "source/picture.h"
 #include "support/fits_text.h"
 #include "support/temp_folder.h"

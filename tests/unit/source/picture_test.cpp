@@ -7,13 +7,9 @@
 #include <OpenImageIO/imageio.h>
 #include <fitsio.h>
 
-#include <algorithm>
 #include <atomic>
-#include <cmath>
 #include <fstream>
 #include <glm/geometric.hpp>
-#include <limits>
-#include <vector>
 
 #include "core/error.h"
 #include "image/resample.h"

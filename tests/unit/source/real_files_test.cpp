@@ -1,8 +1,6 @@
 // Published meshes, pictures and FITS files: what their makers say is in them.
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "core/error.h"
 #include "core/log.h"
 #include "source/fits.h"

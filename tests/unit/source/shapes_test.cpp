@@ -1,8 +1,6 @@
 // Built-in shapes, and how pictures lie on them.
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
 #include <glm/geometric.hpp>
 #include <map>
 

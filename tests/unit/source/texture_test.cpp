@@ -6,9 +6,6 @@
 #include <OpenImageIO/imageio.h>
 #include <fitsio.h>
 
-#include <cmath>
-#include <limits>
-
 #include "core/color.h"
 #include "core/real.h"
 #include "source/fits.h"

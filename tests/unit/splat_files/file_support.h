@@ -5,12 +5,8 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <bit>
 #include <cfloat>
-#include <cstdint>
-#include <filesystem>
 #include <iterator>
-#include <string>
 
 #include "core/error.h"
 #include "core/file_format.h"

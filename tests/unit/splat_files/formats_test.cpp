@@ -2,15 +2,9 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <bit>
 #include <cfloat>
 #include <charconv>
 #include <csignal>
-#include <cstdint>
-#include <limits>
-#include <string>
-#include <vector>
 
 #include "core/file.h"
 #include "core/file_format.h"

@@ -1,11 +1,7 @@
 // Gaussians of captures in PLY, glTF and USD text.
 #include <fmt/format.h>
 
-#include <cmath>
 #include <glm/geometric.hpp>
-#include <limits>
-#include <string>
-#include <vector>
 
 #include "core/color.h"
 #include "core/log.h"

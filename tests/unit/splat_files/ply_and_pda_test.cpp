@@ -1,10 +1,7 @@
 // PLY and PDA.
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
 #include <csignal>
-#include <string>
 
 #include "splat_files/formats.h"
 #include "splat_files/ply_bytes.h"

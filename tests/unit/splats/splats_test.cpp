@@ -1,14 +1,10 @@
 // Sets: bounds, orders and rows; spherical harmonics.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <atomic>
-#include <cmath>
 #include <glm/geometric.hpp>
-#include <limits>
 #include <numbers>
 #include <numeric>
-#include <vector>
 
 #include "core/error.h"
 #include "core/parallel.h"

@@ -5,9 +5,6 @@
 #include <gtest/gtest.h>
 #include <zlib.h>
 
-#include <algorithm>
-#include <cmath>
-#include <functional>
 #include <glm/geometric.hpp>
 #include <iterator>
 

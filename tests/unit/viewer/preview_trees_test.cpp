@@ -2,12 +2,8 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <fstream>
-#include <optional>
-#include <string>
 #include <tuple>
 
 #include "core/file.h"

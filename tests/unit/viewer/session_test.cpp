@@ -5,14 +5,8 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
-#include <cmath>
-#include <cstdint>
-#include <filesystem>
 #include <glm/vec2.hpp>
-#include <memory>
-#include <string>
 #include <thread>
-#include <vector>
 
 #include "core/error.h"
 #include "gl/gl_fixture.h"

@@ -1,8 +1,6 @@
 // The next task for each layer, and the sample of a set while it grows.
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
 #include <set>
 
 #include "sets/load_source.h"
