@@ -19,7 +19,7 @@ bool is_panorama(Lens lens) {
 }
 
 // The table: what is different from projection to projection. A projection without lines here is drawn as perspective,
-// and projection_test.cpp says so.
+// and camera_test.cpp says so.
 
 // Where a splat at p appears.
 Instance instance_of(Lens lens, Vec3 p) {

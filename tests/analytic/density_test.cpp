@@ -2,10 +2,6 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-#include <functional>
-
 #include "analytic/support.h"
 #include "core/real.h"
 #include "render/footprint.h"
@@ -173,40 +169,37 @@ blend = "{}"
 
 const glm::dvec3 color(0.9, 0.4, 0.15);
 
-class VerticalMatching : public ::testing::TestWithParam<double> {};
+class VerticalMatching : public ::testing::TestWithParam<double> {
+  protected:
+    /// check(mean of the picture, name) of a sheet of the alpha, for every setting.
+    void with_each(const char* blend,
+                   const std::function<void(const glm::dvec4&, const std::string&)>& check) {
+        const TempFolder folder;
+        write_float_tiff(folder / "sheet.tif", 2, 2, [&](int, int) { return glm::vec4(color, GetParam()); });
+        const std::vector<Setting> settings = all_settings();
+        Pipeline pipeline(scene_of(folder, sheet_scene(blend, settings)));
+        for (std::size_t i = 0; i < settings.size(); ++i)
+            check(mean(render_frame(pipeline, static_cast<double>(i)).beauty), settings[i].name());
+    }
+};
 
 TEST_P(VerticalMatching, FrontViewUnderOverShowsTheAlpha) {
-    const double alpha = GetParam();
-    const TempFolder folder;
-    write_float_tiff(folder / "sheet.tif", 2, 2, [&](int, int) { return glm::vec4(color, alpha); });
-    const std::vector<Setting> settings = all_settings();
-    Pipeline pipeline(scene_of(folder, sheet_scene("over", settings)));
-    for (std::size_t i = 0; i < settings.size(); ++i) {
-        const glm::dvec4 seen = mean(render_frame(pipeline, static_cast<double>(i)).beauty);
-        EXPECT_NEAR(seen.a, alpha, 0.02) << settings[i].name();
-        for (int k = 0; k < 3; ++k) EXPECT_NEAR(seen[k], seen.a * color[k], 1e-4) << settings[i].name();
-    }
+    with_each("over", [](const glm::dvec4& seen, const std::string& name) {
+        EXPECT_NEAR(seen.a, GetParam(), 0.02) << name;
+        for (int k = 0; k < 3; ++k) EXPECT_NEAR(seen[k], seen.a * color[k], 1e-4) << name;
+    });
 }
 
 TEST_P(VerticalMatching, FrontViewUnderAddShowsAlphaTimesColour) {
-    const double alpha = GetParam();
-    const TempFolder folder;
-    write_float_tiff(folder / "sheet.tif", 2, 2, [&](int, int) { return glm::vec4(color, alpha); });
-    const std::vector<Setting> settings = all_settings();
-    Pipeline pipeline(scene_of(folder, sheet_scene("add", settings)));
-    for (std::size_t i = 0; i < settings.size(); ++i) {
-        const glm::dvec4 seen = mean(render_frame(pipeline, static_cast<double>(i)).beauty);
-        for (int k = 0; k < 3; ++k) EXPECT_NEAR(seen[k], alpha * color[k], 0.02) << settings[i].name();
-    }
+    with_each("add", [](const glm::dvec4& seen, const std::string& name) {
+        for (int k = 0; k < 3; ++k) EXPECT_NEAR(seen[k], GetParam() * color[k], 0.02) << name;
+    });
 }
 
 INSTANTIATE_TEST_SUITE_P(Alphas, VerticalMatching, ::testing::Values(0.1, 0.3, 0.5, 0.7, 0.9));
 
 // Near and far: splats keep their light at every distance, with and without level of detail, and nothing pops
 // when the camera flies through them.
-
-constexpr const char* header =
-    "ATTRIBUTES\nposition rgbPP opacityPP radiusPP\nTYPES\nV V R R\nNUMBER_OF_PARTICLES: {}\nBEGIN DATA\n";
 
 struct Shape {
     const char* name;
@@ -247,7 +240,7 @@ file = "splats.pda"
 // From 2000 to 4 scene units away: radii of 0.024 to 12 px, at places that fall anywhere on the pixel grid.
 TEST(Distance, EveryFalloffKeepsItsLight) {
     const TempFolder folder;
-    folder.file("splats.pda", fmt::format(header, 1) + "0.013 0.021 0 0.5 0.25 1 0.5 0.75\n");
+    folder.file("splats.pda", pda("0.013 0.021 0 0.5 0.25 1 0.5 0.75\n"));
     for (const Shape& shape : shapes) {
         Pipeline pipeline(scene_of(
             folder,
@@ -269,12 +262,12 @@ TEST(Distance, EveryFalloffKeepsItsLight) {
 // off the axis a ball of children is seen stretched, where a splat stays round, and shows slightly more.
 TEST(Distance, LevelOfDetailKeepsTheLightInPerspective) {
     const TempFolder folder;
-    std::string splats = fmt::format(header, 105);
+    std::string splats;
     for (int i = 0; i < 105; ++i)
         splats += fmt::format("{} {} {} 0.9 0.5 0.2 {} 3.5\n", 8.5 * (i % 15 - 7), 8.5 * (i / 15 - 3),
                               i * 37 % 5 - 2, i % 2 ? 0.3 : 0.48);
-    folder.file("splats.pda", splats);
-    for (const Shape& shape : shapes) {
+    folder.file("splats.pda", pda(splats));
+    for (const Shape& shape : shapes)
         for (const char* blend : {"over", "add"}) {
             const auto render = [&](int max_px) {
                 const std::string keys = fmt::format(
@@ -288,7 +281,6 @@ TEST(Distance, LevelOfDetailKeepsTheLightInPerspective) {
                 EXPECT_NEAR(light(split.beauty, k) / light(whole.beauty, k), 1.0, 0.01)
                     << shape.name << " " << blend << " channel " << k;
         }
-    }
 }
 
 // From a mean overlap of 4 on, a sheet sends the same light from near and far (DESIGN 7, known limit).
@@ -348,30 +340,28 @@ double largest_jump(const TempFolder& folder, const std::string& camera, const s
     return jump / most;
 }
 
-// Half the step, half the largest change: the light is a continuous function of the camera's place. A splat
-// that popped would change it by the same amount however small the steps.
+/// Half the step, half the largest change: the light is a continuous function of the camera's place. A splat
+/// that popped would change it by the same amount however small the steps.
+void expect_continuous(const TempFolder& folder, const std::string& camera, const std::string& render,
+                       double from, double to, int steps) {
+    const double coarse = largest_jump(folder, camera, render, from, to, steps);
+    EXPECT_LT(coarse, 0.1) << camera;
+    EXPECT_LT(largest_jump(folder, camera, render, from, to, 2 * steps), 0.65 * coarse) << camera;
+}
+
 TEST(NearFade, NothingPopsAsTheCameraPassesThrough) {
     const TempFolder folder;
-    folder.file("splats.pda",
-                fmt::format(header, 3) +
-                    "0 0 0 1 0.5 0.2 0.8 0.5\n0.4 0.1 -0.6 1 1 0.5 0.3 0.4\n-0.1 0.2 0.9 1 1 1 0.5 0.3\n");
-    for (const char* camera : {"", "near_fade = 0.8", "near = 0.2"}) {
-        const double coarse = largest_jump(folder, camera, "", 2.5, -1.5, 200);
-        const double fine = largest_jump(folder, camera, "", 2.5, -1.5, 400);
-        EXPECT_LT(coarse, 0.1) << camera;
-        EXPECT_LT(fine, 0.65 * coarse) << camera;
-    }
+    folder.file("splats.pda", pda("0 0 0 1 0.5 0.2 0.8 0.5\n0.4 0.1 -0.6 1 1 0.5 0.3 0.4\n"
+                                  "-0.1 0.2 0.9 1 1 1 0.5 0.3\n"));
+    for (const char* camera : {"", "near_fade = 0.8", "near = 0.2"})
+        expect_continuous(folder, camera, "", 2.5, -1.5, 200);
 }
 
 // Children fade over their own, small radius: smaller steps show it.
 TEST(NearFade, NothingPopsInACloudOfChildren) {
     const TempFolder folder;
-    folder.file("splats.pda", fmt::format(header, 1) + "0 0 0 1 0.5 0.2 0.8 0.5\n");
-    const std::string keys = "lod = { max_px = 200.0 }";
-    const double coarse = largest_jump(folder, "", keys, 0.1, 0.0, 100);
-    const double fine = largest_jump(folder, "", keys, 0.1, 0.0, 200);
-    EXPECT_LT(coarse, 0.1);
-    EXPECT_LT(fine, 0.65 * coarse);
+    folder.file("splats.pda", pda("0 0 0 1 0.5 0.2 0.8 0.5\n"));
+    expect_continuous(folder, "", "lod = { max_px = 200.0 }", 0.1, 0.0, 100);
 }
 
 }  // namespace

@@ -4,7 +4,6 @@
 // fmt first: OpenImageIO brings a copy of it with other settings.
 #include <OpenImageIO/imageio.h>
 
-#include <algorithm>
 #include <stdexcept>
 
 #include "frame/output_pattern.h"
@@ -18,12 +17,11 @@ namespace {
 void write_image(const std::filesystem::path& file, const char* plugin, OIIO::TypeDesc type, int width,
                  int height, const Texels& texels) {
     std::vector<float> values;
-    for (int y = 0; y < height; ++y) {
+    for (int y = 0; y < height; ++y)
         for (int x = 0; x < width; ++x) {
             const glm::vec4 texel = texels(x, y);
             values.insert(values.end(), {texel.r, texel.g, texel.b, texel.a});
         }
-    }
     OIIO::ImageSpec spec(width, height, 4, type);
     spec.attribute("oiio:UnassociatedAlpha", 1);
     auto out = OIIO::ImageOutput::create(plugin);
@@ -63,6 +61,13 @@ StoredFile read_stored_file(const std::filesystem::path& file) {
         stored.types.emplace_back(spec.channelformat(c).c_str());
     }
     return stored;
+}
+
+std::string pda(const std::string& rows) {
+    return fmt::format(
+        "ATTRIBUTES\nposition rgbPP opacityPP radiusPP\nTYPES\nV V R R\nNUMBER_OF_PARTICLES: {}\nBEGIN "
+        "DATA\n{}",
+        std::ranges::count(rows, '\n'), rows);
 }
 
 Scene scene_of(const TempFolder& folder, const std::string& toml) {

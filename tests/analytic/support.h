@@ -2,12 +2,8 @@
 // frames, and frame files read back channel by channel.
 #pragma once
 
-#include <filesystem>
-#include <functional>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
-#include <string>
-#include <vector>
 
 #include "core/image.h"
 #include "pipeline.h"
@@ -34,6 +30,9 @@ struct StoredFile {
     float at(const std::string& name, std::int64_t x, std::int64_t y) const;
 };
 StoredFile read_stored_file(const std::filesystem::path& file);
+
+/// A PDA file of these rows, "x y z red green blue opacity radius" each.
+std::string pda(const std::string& rows);
 
 /// The scene this text describes, its paths relative to the folder.
 Scene scene_of(const TempFolder& folder, const std::string& toml);

@@ -2,8 +2,6 @@
 // apart.
 #include <benchmark/benchmark.h>
 
-#include <algorithm>
-
 #include "bodies/bodies.h"
 #include "core/buffer.h"
 #include "measure.h"

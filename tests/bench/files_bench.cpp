@@ -3,8 +3,6 @@
 // free it.)
 #include <benchmark/benchmark.h>
 
-#include <filesystem>
-
 #include "inputs.h"
 #include "measure.h"
 #include "splat_files/formats.h"

@@ -1,8 +1,6 @@
 // Inputs from hashes and the engine's own sine, so that every machine measures the same work.
 #include "inputs.h"
 
-#include <cmath>
-
 #include "core/parallel.h"
 #include "core/real.h"
 #include "core/shared_maths.h"
@@ -91,27 +89,25 @@ Image picture(std::int64_t size) {
 
 TexturedMesh dented_ball(int rings, int segments) {
     Mesh mesh;
-    for (int ring = 0; ring <= rings; ++ring) {
+    for (int ring = 0; ring <= rings; ++ring)
         for (int segment = 0; segment <= segments; ++segment) {
             const double u = static_cast<double>(segment) / segments, v = static_cast<double>(ring) / rings;
             mesh.positions.push_back(ball_point(segment == segments ? 0.0 : u, v));
             mesh.uvs.emplace_back(static_cast<float>(u), static_cast<float>(v));
         }
-    }
     const auto corner = [&](int ring, int segment) {
         return static_cast<std::uint32_t>(ring * (segments + 1) + segment);
     };
     const auto add = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
         mesh.triangles.push_back({{a, b, c}, {a, b, c}});
     };
-    for (int ring = 0; ring < rings; ++ring) {
+    for (int ring = 0; ring < rings; ++ring)
         for (int segment = 0; segment < segments; ++segment) {  // one triangle of each quad ends at a pole
             const std::uint32_t a = corner(ring, segment), b = corner(ring, segment + 1),
                                 c = corner(ring + 1, segment + 1), d = corner(ring + 1, segment);
             if (ring > 0) add(a, b, c);
             if (ring + 1 < rings) add(a, c, d);
         }
-    }
     return textured(std::move(mesh), picture(2048));
 }
 

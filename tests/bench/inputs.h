@@ -2,9 +2,6 @@
 // number of triangles, a picture, lattices.
 #pragma once
 
-#include <cstdint>
-#include <vector>
-
 #include "core/image.h"
 #include "generate/lattice.h"
 #include "source/textured_mesh.h"

@@ -2,7 +2,6 @@
 #include <benchmark/benchmark.h>
 
 #include <cstring>
-#include <filesystem>
 
 #include "core/atomic_file.h"
 #include "core/buffer.h"

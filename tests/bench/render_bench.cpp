@@ -1,5 +1,5 @@
-// Whole frames, look already applied: project to finished float image in memory. Prints memory bandwidth
-// beside them, and what memory a frame takes beyond the splats.
+// Whole frames, look already applied: project to finished float image in memory; and what memory a frame
+// takes beyond the splats.
 #include <benchmark/benchmark.h>
 
 #include <cstring>
@@ -7,15 +7,14 @@
 #include "core/buffer.h"
 #include "core/parallel.h"
 #include "core/shared_maths.h"
+#include "inputs.h"
 #include "measure.h"
 #include "render/render.h"
 
 namespace astrosplat {
 namespace {
 
-float random(std::uint32_t n, std::uint32_t purpose) {
-    return shared::as_uniform(shared::as_hash(1u, n, 0u, purpose));
-}
+using bench::random;
 
 /// Splats spread evenly over a 1080p picture at depths 10..20, `diameter_px` across.
 ShadedSplats spread(std::int64_t count, float diameter_px, float alpha) {
@@ -62,8 +61,7 @@ void frame(benchmark::State& state, std::int64_t count, float diameter_px, float
     }
     state.counters["extra_B"] =
         static_cast<double>(bench::peak_bytes() - before) / static_cast<double>(count);
-    state.counters["Msplats/s"] =
-        benchmark::Counter(static_cast<double>(count) * 1e-6, benchmark::Counter::kIsIterationInvariantRate);
+    bench::report_rate(state, count);
 }
 
 BENCHMARK_CAPTURE(frame, 10M_5px_over, 10000000, 5.0f, 0.3f, Blend::over)
@@ -82,18 +80,6 @@ BENCHMARK_CAPTURE(frame, 44M_3px_screen, 44000000, 3.0f, 0.05f, Blend::screen)
     ->Unit(benchmark::kMillisecond)
     ->UseRealTime()
     ->Iterations(4);
-
-void copy(benchmark::State& state) {
-    const std::int64_t bytes = std::int64_t{1} << 30;
-    Buffer<char> from(static_cast<std::size_t>(bytes)), to(static_cast<std::size_t>(bytes));
-    std::memset(from.data(), 1, from.size());
-    for (auto _ : state)
-        parallel_chunks(bytes, 1 << 20, [&](std::int64_t begin, std::int64_t end, int) {
-            std::memcpy(to.data() + begin, from.data() + begin, static_cast<std::size_t>(end - begin));
-        });
-    state.SetBytesProcessed(2 * bytes * state.iterations());
-}
-BENCHMARK(copy)->Unit(benchmark::kMillisecond)->UseRealTime()->Iterations(4);
 
 }  // namespace
 }  // namespace astrosplat

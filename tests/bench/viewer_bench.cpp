@@ -7,16 +7,12 @@
 #include <sys/resource.h>
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
-#include <functional>
 #include <numbers>
 #include <thread>
-#include <vector>
 
 #include "core/color.h"
 #include "core/memory.h"
@@ -33,11 +29,6 @@
 
 namespace astrosplat::bench {
 namespace {
-
-double seconds_now() {
-    using namespace std::chrono;
-    return duration<double>(steady_clock::now().time_since_epoch()).count();
-}
 
 /// User and system time of all threads.
 double processor_seconds() {
@@ -133,6 +124,10 @@ class Viewer {
         session_.view.settle = true;
         run_until([&] { return settled(session_); });
     }
+    /// Until all sets and what comes later are there.
+    void load() {
+        run_until([&] { return session_.sets.loaded(session_.document) && preview_exact(session_); });
+    }
     void orbit_a_little() {
         ViewportInput input;
         input.hovered = true;
@@ -180,7 +175,7 @@ void measure_start(Viewer& viewer, double started, double processor_started) {
     print_since_start("start to the final frame's beginning", "");
     viewer.settle();
     print_since_start("start to final picture", "<= 3 s");
-    viewer.run_until([&] { return session.sets.loaded(session.document) && preview_exact(session); });
+    viewer.load();
     print_since_start("start to all that comes later: trees, histograms", "");
 }
 
@@ -335,9 +330,7 @@ void measure_viewport(Viewer& viewer, const Parts& wanted) {
 
 void measure_window(Viewer& viewer, const Parts& wanted) {
     viewer.session().view.settle = false;
-    viewer.run_until([&] {
-        return viewer.session().sets.loaded(viewer.session().document) && preview_exact(viewer.session());
-    });
+    viewer.load();
     viewer.orbit(warm_frames);
     if (wanted("window"))
         print_rate("orbit, window of 1600x900 with panels", "", viewer.orbit(orbit_frames),
@@ -367,9 +360,7 @@ void measure_session(const ViewerOptions& options, const GlInfo& gl, const Parts
 std::int64_t fluid_splats(const ViewerOptions& options, const GlInfo& gl) {
     Viewer viewer(options, gl, 960, 540, false);
     viewer.session().view.settle = false;
-    viewer.run_until([&] {
-        return viewer.session().sets.loaded(viewer.session().document) && preview_exact(viewer.session());
-    });
+    viewer.load();
     viewer.orbit(2 * orbit_frames);
     return viewer.session().status.view_frame.shown;
 }

@@ -3,18 +3,21 @@
 
 #include <fmt/format.h>
 
-#include <cstdint>
 #include <nlohmann/json.hpp>
 #include <set>
-#include <string>
-#include <vector>
 
+#include "support/errors.h"
 #include "support/pixmap.h"
 #include "support/run_program.h"
 
 namespace astrosplat::test {
 
-namespace fs = std::filesystem;
+using Words = std::vector<std::string>;
+
+inline Words joined(Words words, const Words& more) {
+    words.insert(words.end(), more.begin(), more.end());
+    return words;
+}
 
 /// `count` soft splats in a cube of side 4, the same on every run.
 inline std::string cube_of_splats(int count) {
@@ -84,31 +87,25 @@ blend = "add"
     }
     std::string own_cache() const { return (folder / "sets").string(); }
     /// --batch scene.toml and more.
-    RunResult batch(std::vector<std::string> more = {}, RunOptions options = {}) const {
-        more.insert(more.begin(), {"--batch", "scene.toml"});
-        return run(more, options);
+    RunResult batch(const Words& more = {}, const RunOptions& options = {}) const {
+        return run(joined({"--batch", "scene.toml"}, more), options);
+    }
+    /// A run in the folder that goes on beside the test.
+    RunningProgram started(const Words& arguments) const {
+        return RunningProgram(joined({ASTROSPLAT_PROGRAM}, arguments), {.folder = folder});
     }
     nlohmann::json json(const std::string& file) const {
         return nlohmann::json::parse(text_of(folder / file));
     }
     /// sha256 of the float pixels of every frame of a run that must succeed.
-    std::vector<std::string> hashes(std::vector<std::string> more, const RunOptions& options = {}) const {
-        more.insert(more.end(), {"--overwrite", "--stats", "stats.json"});
-        const RunResult result = batch(more, options);
-        EXPECT_EQ(result.code, 0) << result.err;
+    std::vector<std::string> hashes(const Words& more, const RunOptions& options = {}) const {
+        const Words words = joined(more, {"--overwrite", "--stats", "stats.json"});
         std::vector<std::string> list;
-        if (result.code != 0) return list;
+        if (expect_success(batch(words, options)).code != 0) return list;
         const nlohmann::json stats = json("stats.json");
         for (const auto& frame : stats.at("frames")) list.push_back(frame.at("sha256"));
         EXPECT_FALSE(list.empty());
         return list;
-    }
-    std::set<std::string> names_in(const std::string& relative) const {
-        std::set<std::string> names;
-        if (!fs::exists(folder / relative)) return names;
-        for (const auto& entry : fs::directory_iterator(folder / relative))
-            names.insert(entry.path().filename().string());
-        return names;
     }
 };
 
@@ -123,7 +120,7 @@ inline std::string last_line(std::string text) {
 inline void expect_one_line(const RunResult& result, int code, const std::string& part) {
     EXPECT_EQ(result.code, code) << result.err;
     EXPECT_EQ(line_count(result.err), 1) << result.err;
-    EXPECT_NE(result.err.find(part), std::string::npos) << result.err;
+    EXPECT_HAS(result.err, part);
     EXPECT_EQ(result.out, "");
 }
 

@@ -1,4 +1,4 @@
-// --batch: which files appear, what is said where, and what the figures hold.
+// --batch: which files appear, what is said where, and what they hold.
 #include <fcntl.h>
 #include <sys/ioctl.h>
 #include <sys/stat.h>
@@ -8,7 +8,9 @@
 #include <regex>
 #include <thread>
 
-#include "scene_fixture.h"
+#include "cli/scene_fixture.h"
+#include "source/texture.h"
+#include "support/color_config.h"
 #include "support/process_state.h"
 
 namespace astrosplat::test {
@@ -16,29 +18,9 @@ namespace {
 
 class Batch : public SceneTest {
   protected:
-    /// A run that goes on beside the test.
-    class Job {
-      public:
-        Job(const Batch& test, std::vector<std::string> more) : program_(words(std::move(more)), in(test)) {}
-        void wait_for(const std::string& text) const {
-            while (program_.running() && program_.err_so_far().find(text) == std::string::npos)
-                std::this_thread::sleep_for(std::chrono::milliseconds(2));
-        }
-        void signal(int number) const { program_.signal(number); }
-        RunResult wait() const { return program_.wait(); }
-
-      private:
-        static std::vector<std::string> words(std::vector<std::string> more) {
-            more.insert(more.begin(), {ASTROSPLAT_PROGRAM, "--batch", "scene.toml", "--no-cache"});
-            return more;
-        }
-        static RunOptions in(const Batch& test) {
-            RunOptions options;
-            options.folder = test.folder;
-            return options;
-        }
-        RunningProgram program_;
-    };
+    RunningProgram job(const Words& more) const {
+        return started(joined({"--batch", "scene.toml", "--no-cache"}, more));
+    }
 };
 
 int count_of(const std::string& text, const std::string& part) {
@@ -50,8 +32,7 @@ int count_of(const std::string& text, const std::string& part) {
 const std::set<std::string> three_frames = {"shot.0001.exr", "shot.0002.exr", "shot.0003.exr"};
 
 TEST_F(Batch, RendersEveryFrameAndSaysSo) {
-    const RunResult result = batch();
-    EXPECT_EQ(result.code, 0) << result.err;
+    const RunResult result = expect_success(batch());
     EXPECT_EQ(result.out, "");
     EXPECT_EQ(names_in("frames"), three_frames);
     EXPECT_TRUE(std::regex_search(
@@ -65,12 +46,8 @@ TEST_F(Batch, RendersEveryFrameAndSaysSo) {
 }
 
 TEST_F(Batch, PairsAreWrittenWhereTheNameHasAPlaceForTheEye) {
-    const std::vector<std::string> one = {"-q", "--frames", "1", "--set", "camera.eye_separation=0.5"};
-    const auto run = [&](std::vector<std::string> more) {
-        more.insert(more.begin(), one.begin(), one.end());
-        const RunResult result = batch(more);
-        EXPECT_EQ(result.code, 0) << result.err;
-    };
+    const Words one = {"-q", "--frames", "1", "--set", "camera.eye_separation=0.5"};
+    const auto run = [&](const Words& more) { expect_success(batch(joined(one, more))); };
     run({"-o", "frames/%V.###.exr"});
     EXPECT_EQ(names_in("frames"), (std::set<std::string>{"left.001.exr", "right.001.exr"}));
     run({"-o", "frames/middle.exr"});
@@ -90,42 +67,38 @@ TEST_F(Batch, PairsAreWrittenWhereTheNameHasAPlaceForTheEye) {
               1);
     const RunResult round = batch({"-o", "%V.exr", "--frames", "1", "--set", "camera.projection=fisheye"});
     EXPECT_EQ(round.code, 2);
-    EXPECT_NE(round.err.find("found fisheye"), std::string::npos) << round.err;
+    EXPECT_HAS(round.err, "found fisheye");
 }
 
 TEST_F(Batch, QuietSaysNothing) {
     EXPECT_EQ(batch({"-q"}).err, "");
     const RunResult plain = batch({"-q", "--progress", "plain", "--overwrite"});
-    EXPECT_NE(plain.err.find("saved "), std::string::npos);
+    EXPECT_HAS(plain.err, "saved ");
 }
 
 TEST_F(Batch, OptionsComeInAnyOrder) {
-    EXPECT_EQ(run({"-f", "2", "scene.toml", "-t", "1", "--batch", "-q"}).code, 0);
+    expect_success(run({"-f", "2", "scene.toml", "-t", "1", "--batch", "-q"}));
     EXPECT_EQ(names_in("frames"), std::set<std::string>{"shot.0002.exr"});
-    const RunResult result =
-        run({"--batch", "--set", "output.fps=30", "--set", "output.frames=3", "scene.toml"});
-    EXPECT_EQ(result.code, 0) << result.err;
+    expect_success(run({"--batch", "--set", "output.fps=30", "--set", "output.frames=3", "scene.toml"}));
     EXPECT_EQ(names_in("frames"), (std::set<std::string>{"shot.0002.exr", "shot.0003.exr"}));
 }
 
 TEST_F(Batch, FramesAreThoseAskedFor) {
-    EXPECT_EQ(batch({"--frames", "-2-0,5-9x2", "-o", "a/f%02d.png"}).code, 0);
+    expect_success(batch({"--frames", "-2-0,5-9x2", "-o", "a/f%02d.png"}));
     EXPECT_EQ(names_in("a"),
               (std::set<std::string>{"f-02.png", "f-01.png", "f00.png", "f05.png", "f07.png", "f09.png"}));
-    EXPECT_EQ(batch({"-f", "12", "-o", "b/{frame:03}.tif"}).code, 0);
+    expect_success(batch({"-f", "12", "-o", "b/{frame:03}.tif"}));
     EXPECT_EQ(names_in("b"), std::set<std::string>{"012.tif"});
 }
 
 TEST_F(Batch, PathsOfTheSceneStartAtItsFolderThoseOfTheCommandLineHere) {
     fs::create_directories(folder / "elsewhere");
-    RunOptions elsewhere;
-    elsewhere.folder = folder / "elsewhere";
-    EXPECT_EQ(run({"--batch", "../scene.toml", "-f", "1"}, elsewhere).code, 0);
+    const RunOptions elsewhere{.folder = folder / "elsewhere"};
+    expect_success(run({"--batch", "../scene.toml", "-f", "1"}, elsewhere));
     EXPECT_TRUE(fs::exists(folder / "frames/shot.0001.exr"));
-    EXPECT_EQ(run({"--batch", "../scene.toml", "-f", "1", "-o", "here.exr"}, elsewhere).code, 0);
+    expect_success(run({"--batch", "../scene.toml", "-f", "1", "-o", "here.exr"}, elsewhere));
     EXPECT_TRUE(fs::exists(folder / "elsewhere/here.exr"));
-    EXPECT_EQ(run({"--batch", "../scene.toml", "-f", "1", "--set", "output.path=set.exr"}, elsewhere).code,
-              0);
+    expect_success(run({"--batch", "../scene.toml", "-f", "1", "--set", "output.path=set.exr"}, elsewhere));
     EXPECT_TRUE(fs::exists(folder / "elsewhere/set.exr"));
 }
 
@@ -133,11 +106,8 @@ TEST_F(Batch, PathsMayHoldSpacesAndUmlauts) {
     const fs::path odd = folder / "Große Nebel ☆";
     fs::create_directories(odd);
     for (const char* name : {"scene.toml", "stars.pda", "dust.pda"}) fs::copy(folder / name, odd / name);
-    RunOptions here;
-    here.folder = odd;
-    EXPECT_EQ(
-        run({"--batch", (odd / "scene.toml").string(), "-f", "1", "-o", "Bilder/ä ö.####.exr"}, here).code,
-        0);
+    expect_success(run({"--batch", (odd / "scene.toml").string(), "-f", "1", "-o", "Bilder/ä ö.####.exr"},
+                       {.folder = odd}));
     EXPECT_TRUE(fs::exists(odd / "Bilder/ä ö.0001.exr"));
 }
 
@@ -146,12 +116,9 @@ TEST_F(Batch, FoldersMayBeNamedLikePatterns) {
     const fs::path odd = folder / "C#1 100%v {frame}";
     fs::create_directories(odd);
     for (const char* name : {"scene.toml", "stars.pda", "dust.pda"}) fs::copy(folder / name, odd / name);
-    RunOptions here;
-    here.folder = odd;
-    const auto expect_file = [&](std::vector<std::string> words, const fs::path& file) {
+    const auto expect_file = [&](Words words, const fs::path& file) {
         words.insert(words.begin(), {"--batch", (odd / "scene.toml").string(), "-q", "-f", "5"});
-        const RunResult result = run(words, here);
-        EXPECT_EQ(result.code, 0) << result.err;
+        expect_success(run(words, {.folder = odd}));
         EXPECT_TRUE(fs::exists(file)) << file;
     };
     expect_file({}, odd / "frames/shot.0005.exr");
@@ -164,29 +131,25 @@ TEST_F(Batch, FoldersMayBeNamedLikePatterns) {
 }
 
 TEST_F(Batch, NeedsNoDisplay) {
-    RunOptions bare;
-    bare.without = {"DISPLAY", "WAYLAND_DISPLAY", "XDG_RUNTIME_DIR", "HOME", "LANG"};
-    EXPECT_EQ(batch({"-f", "1"}, bare).code, 0);
+    expect_success(
+        batch({"-f", "1"}, {.without = {"DISPLAY", "WAYLAND_DISPLAY", "XDG_RUNTIME_DIR", "HOME", "LANG"}}));
 }
 
 TEST_F(Batch, DryRunTellsAndWritesNothing) {
-    const RunResult result = batch({"--dry-run", "--stats", "stats.json"});
-    EXPECT_EQ(result.code, 0) << result.err;
-    EXPECT_NE(result.out.find("3 to render"), std::string::npos) << result.out;
-    EXPECT_NE(result.out.find("shot.0003.exr"), std::string::npos) << result.out;
-    EXPECT_NE(result.out.find("memory about"), std::string::npos) << result.out;
+    const RunResult result = expect_success(batch({"--dry-run", "--stats", "stats.json"}));
+    EXPECT_HAS(result.out, "3 to render");
+    EXPECT_HAS(result.out, "shot.0003.exr");
+    EXPECT_HAS(result.out, "memory about");
     EXPECT_EQ(names_in("."), (std::set<std::string>{"scene.toml", "stars.pda", "dust.pda"}));
 }
 
 /// Four floats a pixel, and four more as it is written, with 256 rows as they are stored, in half; extra
 /// outputs theirs. A tenth more is told than that.
 TEST_F(Batch, DryRunEstimatesThePicturesThatAreKept) {
-    const auto mib = [&](const std::vector<std::string>& more) {
-        std::vector<std::string> arguments = {"--dry-run", "-f", "1"};
-        arguments.insert(arguments.end(), more.begin(), more.end());
-        const RunResult result = batch(arguments);
+    const auto mib = [&](const Words& more) {
+        const RunResult result = batch(joined({"--dry-run", "-f", "1"}, more));
         const std::string before = "memory about ";
-        EXPECT_NE(result.out.find(" MiB, threads"), std::string::npos) << result.out;
+        EXPECT_HAS(result.out, " MiB, threads");
         return std::stod(result.out.substr(result.out.find(before) + before.size()));
     };
     const auto told = [](double rows, double bytes, double stored_bytes) {
@@ -201,18 +164,16 @@ TEST_F(Batch, DryRunEstimatesThePicturesThatAreKept) {
 }
 
 TEST_F(Batch, StatsHoldTheKeysOfTheContract) {
-    ASSERT_EQ(batch({"--stats", "figures/stats.json", "-t", "2"}).code, 0);
+    expect_success(batch({"--stats", "figures/stats.json", "-t", "2"}));
     const nlohmann::json stats = json("figures/stats.json");
     ASSERT_EQ(stats.at("frames").size(), 3u);
     for (const char* key :
-         {"frame", "file", "seconds", "render_seconds", "splats_in", "splats_drawn", "sha256"}) {
+         {"frame", "file", "seconds", "render_seconds", "splats_in", "splats_drawn", "sha256"})
         EXPECT_TRUE(stats.at("frames")[0].contains(key)) << key;
-    }
     ASSERT_EQ(stats.at("layers").size(), 2u);
     for (const char* key : {"name", "test_positions", "kept", "zero_alpha", "drawn", "generate_seconds",
-                            "look_seconds", "cached", "geometry_cached"}) {
+                            "look_seconds", "cached", "geometry_cached"})
         EXPECT_TRUE(stats.at("layers")[0].contains(key)) << key;
-    }
     EXPECT_EQ(stats.at("layers")[1].at("name"), "dust");
     EXPECT_EQ(stats.at("layers")[1].at("kept"), 100);
     EXPECT_EQ(stats.at("frames")[2].at("frame"), 3);
@@ -224,36 +185,36 @@ TEST_F(Batch, StatsHoldTheKeysOfTheContract) {
 }
 
 TEST_F(Batch, LayersChooseWhatIsDrawn) {
-    ASSERT_EQ(batch({"-f", "1", "--layers", "dust", "--stats", "stats.json"}).code, 0);
+    expect_success(batch({"-f", "1", "--layers", "dust", "--stats", "stats.json"}));
     EXPECT_EQ(json("stats.json").at("frames")[0].at("splats_in"), 100);
     EXPECT_EQ(json("stats.json").at("layers")[0].at("kept"), 0) << "a layer that is not drawn is not loaded";
 }
 
 TEST_F(Batch, LayersHideWhatATrackShows) {
     write_scene("\"layer.stars.visible\" = { keys = [[1, true], [2, false]] }\n");
-    ASSERT_EQ(batch({"-f", "1", "--layers", "dust", "--stats", "stats.json"}).code, 0);
+    expect_success(batch({"-f", "1", "--layers", "dust", "--stats", "stats.json"}));
     EXPECT_EQ(json("stats.json").at("frames")[0].at("splats_in"), 100);
-    ASSERT_EQ(batch({"-f", "1-2", "--layers", "dust,stars", "--overwrite", "--stats", "stats.json"}).code, 0);
+    expect_success(batch({"-f", "1-2", "--layers", "dust,stars", "--overwrite", "--stats", "stats.json"}));
     EXPECT_EQ(json("stats.json").at("frames")[0].at("splats_in"), 400);
     EXPECT_EQ(json("stats.json").at("frames")[1].at("splats_in"), 100) << "what is asked for keeps its track";
 }
 
 TEST_F(Batch, ResolutionIsASizeOrAShare) {
     for (const auto& [text, size] : {std::pair{"50%", "32"}, std::pair{"40x30", "40"}}) {
-        ASSERT_EQ(batch({"-f", "1", "--resolution", text, "-o", "p.png", "--overwrite"}).code, 0);
+        expect_success(batch({"-f", "1", "--resolution", text, "-o", "p.png", "--overwrite"}));
         const nlohmann::json info = nlohmann::json::parse(run({"info", "p.png", "--json"}).out);
         EXPECT_EQ(info.at("width").dump(), size);
     }
 }
 
 TEST_F(Batch, RefusesToOverwrite) {
-    ASSERT_EQ(batch({"-f", "2"}).code, 0);
+    expect_success(batch({"-f", "2"}));
     const std::string before = text_of(folder / "frames/shot.0002.exr");
     const RunResult result = batch({"--set", "output.exposure=1"});
     expect_one_line(result, 2, "shot.0002.exr");
     EXPECT_EQ(names_in("frames").size(), 1u);
     EXPECT_EQ(text_of(folder / "frames/shot.0002.exr"), before);
-    EXPECT_EQ(batch({"--overwrite"}).code, 0);
+    expect_success(batch({"--overwrite"}));
     EXPECT_EQ(names_in("frames"), three_frames);
 }
 
@@ -267,16 +228,16 @@ TEST_F(Batch, AFrameThatFailsSparesTheOthers) {
         return batch();
     }();
     EXPECT_EQ(result.code, 3) << result.err;
-    EXPECT_NE(result.err.find("shot.0002.exr: cannot be written: File too large"), std::string::npos);
+    EXPECT_HAS(result.err, "shot.0002.exr: cannot be written: File too large");
     EXPECT_TRUE(std::regex_search(last_line(result.err), std::regex("1 frame failed: 2$"))) << result.err;
     EXPECT_EQ(names_in("frames"), (std::set<std::string>{"shot.0001.exr", "shot.0003.exr"}));
-    EXPECT_EQ(batch({"--resume", "--stats", "stats.json"}).code, 0);
+    expect_success(batch({"--resume", "--stats", "stats.json"}));
     EXPECT_EQ(json("stats.json").at("frames").size(), 1u) << "the others are whole";
 }
 
 TEST_F(Batch, AFullDiskKeepsTheOldFrames) {
     for (const char* output : {"f.####.png", "f.####.tif", "f.####.exr"}) {
-        ASSERT_EQ(batch({"-f", "1", "-o", output}).code, 0);
+        expect_success(batch({"-f", "1", "-o", output}));
         const std::string name = std::string("f.0001") + fs::path(output).extension().string();
         const std::string before = text_of(folder / name);
         const RunResult result = [&] {
@@ -303,7 +264,7 @@ TEST_F(Batch, BadInputThatShowsInTheFirstFrameEndsTheRun) {
     // At frame 1 the camera looks at where it is.
     const RunResult first = batch({"--set", "camera.target=[0, 0, 9]"});
     EXPECT_EQ(first.code, 2) << first.err;
-    EXPECT_NE(last_line(first.err).find("camera.target: expected"), std::string::npos) << first.err;
+    EXPECT_HAS(last_line(first.err), "camera.target: expected");
     EXPECT_EQ(names_in("frames").size(), 0u);
     const RunResult last = batch({"--set", "camera.target=[2, 1, 8]"});
     EXPECT_EQ(last.code, 3) << last.err;
@@ -321,18 +282,18 @@ TEST_F(Batch, MapsAreReadBeforeTheFirstFrame) {
         "1.0 }] }\n");
     const RunResult result = batch();
     EXPECT_EQ(result.code, 2) << result.err;
-    EXPECT_NE(last_line(result.err).find("map.png"), std::string::npos) << result.err;
+    EXPECT_HAS(last_line(result.err), "map.png");
     EXPECT_EQ(result.err.find("frame 1 (1/3)"), std::string::npos) << result.err;
 }
 
 TEST_F(Batch, WhatCannotBeRenderedIsSaidWithItsLine) {
     const auto expect_refused = [&](const std::string& place, const std::string& part) {
-        for (const std::vector<std::string>& words : {std::vector<std::string>{"--batch", "scene.toml"},
-                                                      {"--batch", "scene.toml", "--dry-run"},
-                                                      {"info", "scene.toml"}}) {
+        for (const Words& words : {Words{"--batch", "scene.toml"},
+                                   {"--batch", "scene.toml", "--dry-run"},
+                                   {"info", "scene.toml"}}) {
             const RunResult result = run(words);
             expect_one_line(result, 2, place);
-            EXPECT_NE(result.err.find(part), std::string::npos) << result.err;
+            EXPECT_HAS(result.err, part);
         }
         EXPECT_FALSE(fs::exists(folder / "frames"));
     };
@@ -365,11 +326,9 @@ TEST_F(Batch, InputsThatChangeBeforeTheyAreLoadedAreRefused) {
         "astrosplat: " + (folder / "frames/shot.0001.exr").string() + ": damaged, is rendered again\n";
     const std::string filling(4096 - planned.size() - 20, '.');
     ASSERT_EQ(write(pipe, filling.data(), filling.size()), static_cast<ssize_t>(filling.size()));
-    RunOptions options;
-    options.folder = folder;
     const RunningProgram program({"/bin/sh", "-c", "exec \"$0\" \"$@\" 2>err", ASTROSPLAT_PROGRAM, "--batch",
                                   "scene.toml", "-f", "1", "--resume", "--no-cache"},
-                                 options);
+                                 {.folder = folder});
     const auto waiting = [&] {
         int bytes = 0;
         return ioctl(pipe, FIONREAD, &bytes) == 0 &&
@@ -387,39 +346,35 @@ TEST_F(Batch, InputsThatChangeBeforeTheyAreLoadedAreRefused) {
     }
     close(pipe);
     EXPECT_EQ(program.wait().code, 2) << said;
-    EXPECT_NE(last_line(said).find("stars.pda: expected the file that the frames were planned with"),
-              std::string::npos)
-        << said;
+    EXPECT_HAS(last_line(said), "stars.pda: expected the file that the frames were planned with");
     EXPECT_EQ(text_of(folder / "frames/shot.0001.exr"), "damaged");
 }
 
 TEST_F(Batch, FoldersAndDevicesInAFramesPlaceAreSeenBeforeAnyWork) {
     fs::create_directories(folder / "frames/shot.0003.exr");
     ASSERT_EQ(mkfifo((folder / "pipe.exr").c_str(), 0600), 0);
-    for (const std::vector<std::string>& options :
-         {std::vector<std::string>{}, {"--overwrite"}, {"--resume"}, {"--dry-run", "--overwrite"}}) {
+    for (const Words& options : {Words{}, {"--overwrite"}, {"--resume"}, {"--dry-run", "--overwrite"}}) {
         expect_one_line(batch(options), 4, "shot.0003.exr: cannot be written: it is a folder");
-        std::vector<std::string> pipe = options;
-        pipe.insert(pipe.end(), {"-f", "1", "-o", "pipe.exr"});
+        const Words pipe = joined(options, {"-f", "1", "-o", "pipe.exr"});
         expect_one_line(batch(pipe), 4, "pipe.exr: cannot be written: it is no regular file");
     }
     EXPECT_EQ(names_in("frames"), std::set<std::string>{"shot.0003.exr"});
 }
 
 TEST_F(Batch, FramesRemovedDuringTheRunAreMissed) {
-    const Job job(*this, {"-f", "1-40", "--resolution", "400x300"});
-    job.wait_for("saved ");
+    const RunningProgram job = this->job({"-f", "1-40", "--resolution", "400x300"});
+    job.wait_until_said("saved ");
     std::error_code busy;
     do fs::remove_all(folder / "frames", busy);
     while (busy);  // the next frame came into the folder as it was emptied
     const RunResult result = job.wait();
     EXPECT_EQ(result.code, 3) << result.err;
-    EXPECT_NE(result.err.find("shot.0001.exr: removed during the run"), std::string::npos) << result.err;
+    EXPECT_HAS(result.err, "shot.0001.exr: removed during the run");
     EXPECT_TRUE(std::regex_search(last_line(result.err), std::regex("failed: 1[,\n]?"))) << result.err;
 }
 
 TEST_F(Batch, OfTwoRunsOnOnePatternTheSecondLoses) {
-    const Job first(*this, {"-f", "1-3"}), second(*this, {"-f", "1-3"});
+    const RunningProgram first = job({"-f", "1-3"}), second = job({"-f", "1-3"});
     const RunResult a = first.wait(), b = second.wait();
     EXPECT_EQ(names_in("frames"), three_frames);
     const auto saved = [](const RunResult& run) { return count_of(run.err, "saved "); };
@@ -428,15 +383,13 @@ TEST_F(Batch, OfTwoRunsOnOnePatternTheSecondLoses) {
 }
 
 TEST_F(Batch, FramesThatAppearDuringTheRunAreKept) {
-    const auto run_into = [&](const std::vector<std::string>& options) {
-        std::vector<std::string> all = {"-f", "1-12", "--resolution", "400x300"};
-        all.insert(all.end(), options.begin(), options.end());
-        const Job job(*this, all);
-        job.wait_for("saved ");
+    const auto run_into = [&](const Words& options) {
+        const RunningProgram job = this->job(joined({"-f", "1-12", "--resolution", "400x300"}, options));
+        job.wait_until_said("saved ");
         fs::copy(folder / "other.exr", folder / "frames/shot.0012.exr", fs::copy_options::skip_existing);
         return job.wait();
     };
-    ASSERT_EQ(batch({"-f", "12", "--resolution", "400x300", "-o", "other.exr"}).code, 0);
+    expect_success(batch({"-f", "12", "--resolution", "400x300", "-o", "other.exr"}));
     const std::string other = text_of(folder / "other.exr");
     const RunResult result = run_into({});
     EXPECT_EQ(result.code, 3) << result.err;
@@ -447,35 +400,34 @@ TEST_F(Batch, FramesThatAppearDuringTheRunAreKept) {
 }
 
 TEST_F(Batch, LeftoversOfKilledRunsAreRemoved) {
-    const Job job(*this, {"-f", "1-2000", "--resolution", "640x480"});
-    job.wait_for("saved ");
+    const RunningProgram job = this->job({"-f", "1-2000", "--resolution", "640x480"});
+    job.wait_until_said("saved ");
     write_text(folder / "frames/.shot.0001.1-2-3.part.exr", "half");
     job.signal(SIGKILL);
     EXPECT_EQ(job.wait().code, -SIGKILL);
-    EXPECT_EQ(batch({"-f", "1", "--overwrite"}).code, 0);
+    expect_success(batch({"-f", "1", "--overwrite"}));
     for (const std::string& name : names_in("frames")) EXPECT_EQ(name.substr(0, 5), "shot.") << name;
 }
 
 TEST_F(Batch, NamesAreShownWithoutControlCharacters) {
     const std::string odd = "f\n\x1b[31m.####.png";
-    const RunResult run = batch({"-f", "1", "-o", odd});
-    EXPECT_EQ(run.code, 0) << run.err;
+    const RunResult run = expect_success(batch({"-f", "1", "-o", odd}));
     EXPECT_TRUE(fs::exists(folder / "f\n\x1b[31m.0001.png"));
-    EXPECT_NE(run.err.find("f\\n\\x1b[31m.0001.png"), std::string::npos) << run.err;
+    EXPECT_HAS(run.err, "f\\n\\x1b[31m.0001.png");
     const RunResult again = batch({"-f", "1", "-o", odd}),
                     dry = batch({"--dry-run", "--overwrite", "-f", "1", "-o", odd});
     expect_one_line(again, 2, "f\\n\\x1b[31m.0001.png");
     for (const std::string& text : {run.err, again.err, dry.out})
         EXPECT_EQ(text.find('\x1b'), std::string::npos) << text;
-    EXPECT_NE(dry.out.find("f\\n\\x1b[31m.0001.png\n"), std::string::npos) << dry.out;
+    EXPECT_HAS(dry.out, "f\\n\\x1b[31m.0001.png\n");
 }
 
 TEST_F(Batch, OneIsSingular) {
     write_text(folder / "stars.pda", cube_of_splats(1));
     const RunResult run =
         batch({"-f", "1", "--layers", "stars", "-v", "--set", "layer.stars.source.kind=splats"});
-    EXPECT_NE(run.err.find(" 1 frame of 64x48 px, about "), std::string::npos) << run.err;
-    EXPECT_NE(run.err.find("frame 1: 1 splat drawn"), std::string::npos) << run.err;
+    EXPECT_HAS(run.err, " 1 frame of 64x48 px, about ");
+    EXPECT_HAS(run.err, "frame 1: 1 splat drawn");
 }
 
 TEST_F(Batch, OutputThatCannotBeWrittenIsCode4BeforeAnyWork) {
@@ -487,6 +439,91 @@ TEST_F(Batch, OutputThatCannotBeWrittenIsCode4BeforeAnyWork) {
     }
     EXPECT_EQ(batch({"--stats", "file/stats.json"}).code, 4);
     EXPECT_FALSE(fs::exists(folder / "frames/shot.0001.exr"));
+}
+
+// Frames that are written through a configuration of OpenColorIO: whose numbers, what their hash knows, and
+// what is said where a name is wrong.
+
+class ColorConfigBatch : public SceneTest {
+  protected:
+    ColorConfigBatch() { write_color_config(folder); }
+
+    RunResult one(const std::string& file, Words more, const std::string& ocio = "") const {
+        return batch(joined(more, {"-q", "--frames", "1", "-o", file}), {.environment = {"OCIO=" + ocio}});
+    }
+    static Words film() {
+        return {"--set", "output.ocio.config=\"colors.ocio\"", "--set", "output.exposure=1"};
+    }
+};
+
+TEST_F(ColorConfigBatch, PicturesHoldTheViewAndLightStaysLight) {
+    for (const char* file : {"light.exr", "film.png"}) {
+        Words more = film();
+        if (std::string(file) == "film.png") more.insert(more.end(), {"--set", "output.depth=\"16\""});
+        ASSERT_EQ(one(file, more).code, 0) << file;
+    }
+    expect_success(one("plain.exr", {"--set", "output.exposure=1"}));
+    EXPECT_TRUE(text_of(folder / "light.exr") == text_of(folder / "plain.exr"))
+        << "scene light knows no view, nor does its hash";
+    const Image light = load_raw_image(folder / "light.exr"), shown = load_raw_image(folder / "film.png");
+    int bright = 0;
+    for (std::int64_t y = 0; y < light.height; ++y)
+        for (std::int64_t x = 0; x < light.width; ++x) {
+            const float* p = light.at(x, y);
+            const auto expected = test::film(2.0 * p[0], 2.0 * p[1], 2.0 * p[2]);
+            bright += p[0] > 0.05f;
+            for (int c = 0; c < 3; ++c)  // light is stored in half floats
+                ASSERT_NEAR(shown.at(x, y)[c], expected[static_cast<std::size_t>(c)], 2e-3) << x << " " << y;
+        }
+    EXPECT_GT(bright, 100);
+}
+
+TEST_F(ColorConfigBatch, TheSceneNamesItOrTheEnvironment) {
+    write_scene("[output.ocio]\nconfig = \"colors.ocio\"\nview = \"Negative\"\n");
+    expect_success(one("scene.png", {}));
+    write_scene();
+    expect_success(
+        one("named.png", {"--set", "output.ocio.view=\"Negative\""}, (folder / "colors.ocio").string()));
+    EXPECT_TRUE(text_of(folder / "scene.png") == text_of(folder / "named.png"));
+    expect_success(one("own.png", {}));
+    expect_success(one("unasked.png", {}, (folder / "colors.ocio").string()));
+    EXPECT_TRUE(text_of(folder / "own.png") == text_of(folder / "unasked.png"))
+        << "a scene that names nothing is the same everywhere";
+    EXPECT_FALSE(text_of(folder / "own.png") == text_of(folder / "named.png"));
+}
+
+TEST_F(ColorConfigBatch, OtherBytesOfTheConfigurationOrItsTablesAreAnotherFrame) {
+    const Words words{"--set", "output.ocio.config=\"colors.ocio\"", "--set", "output.ocio.view=\"Negative\"",
+                      "--resume"};
+    expect_success(one("a.png", words));
+    expect_success(one("a.png", words));
+    for (const char* name : {"negative.cube", "colors.ocio"}) {
+        const std::string before = text_of(folder / name);
+        write_text(folder / name, before + "# another byte\n");
+        const RunResult other = one("a.png", words);
+        EXPECT_EQ(other.code, 2) << name;
+        EXPECT_HAS(other.err, "holds a frame of other settings");
+        write_text(folder / name, before);
+    }
+    expect_success(one("a.png", words));
+}
+
+TEST_F(ColorConfigBatch, OneLineAndNothingIsStarted) {
+    write_scene("[output.ocio]\nconfig = \"colors.ocio\"\ndisplay = \"Screan\"\n");
+    const RunResult display = one("a.png", {});
+    EXPECT_EQ(display.code, 2);
+    const std::string line =
+        "scene.toml:24: output.ocio.display: expected Screen or Projector of colors.ocio, found 'Screan'\n";
+    EXPECT_HAS(display.err, line);
+    EXPECT_EQ(one("a.exr", {}).code, 0) << "no view is written";
+    write_scene();
+    const RunResult missing = one("a.png", {"--set", "output.ocio.config=\"missing.ocio\""});
+    EXPECT_EQ(missing.code, 2);
+    EXPECT_HAS(missing.err, "missing.ocio: cannot be read: No such file");
+    const RunResult none = one("a.png", {"--set", "output.ocio.view=\"Film\""});
+    EXPECT_EQ(none.code, 2);
+    EXPECT_HAS(none.err, "output.ocio.config: expected a file");
+    EXPECT_FALSE(fs::exists(folder / "a.png"));
 }
 
 }  // namespace

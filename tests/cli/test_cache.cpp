@@ -1,7 +1,6 @@
 // The cache of generated sets as users meet it: the second run starts from it with the same pixels, a look
 // never touches it, processes share it, and it never fails a run.
 #include <chrono>
-#include <memory>
 #include <thread>
 
 #include "core/memory.h"
@@ -32,34 +31,27 @@ voxel_size = 0.2
         std::int64_t kept, test_positions;
         std::string sha256;
     };
-    Figures figures(std::vector<std::string> more, const RunOptions& options = {}) const {
-        const std::vector<std::string> sha256 = hashes(more, options);
+    Figures figures(Words more, const RunOptions& options = {}) const {
+        const Words sha256 = hashes(more, options);
         const nlohmann::json layer = json("stats.json").at("layers").at(0);
         return {layer.at("cached"), layer.at("geometry_cached"), layer.at("kept"), layer.at("test_positions"),
                 sha256.at(0)};
     }
-    std::vector<std::string> names_in(const std::string& relative, const std::string& ending) const {
-        std::vector<std::string> names;
+    Words names_in(const std::string& relative, const std::string& ending) const {
+        Words names;
         for (const std::string& name : SceneTest::names_in(relative))
             if (fs::path(name).extension() == ending) names.push_back(name);
         return names;
     }
     using SceneTest::names_in;
-    std::vector<std::string> sets_in(const std::string& relative) const {
-        return names_in(relative, ".splats");
-    }
-    std::vector<std::string> texels_in(const std::string& relative) const {
-        return names_in(relative, ".texels");
-    }
+    Words sets_in(const std::string& relative) const { return names_in(relative, ".splats"); }
+    Words texels_in(const std::string& relative) const { return names_in(relative, ".texels"); }
     /// Starts a run that generates for a while, and returns once it does.
     std::unique_ptr<RunningProgram> generating_run() const {
-        RunOptions options;
-        options.folder = folder;
-        auto program = std::make_unique<RunningProgram>(
-            std::vector<std::string>{ASTROSPLAT_PROGRAM, "--batch", "scene.toml", "--cache", "sets", "--set",
-                                     "layer.gas.source.voxel_size=0.02"},
-            options);
-        while (names_in("sets").empty()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        std::unique_ptr<RunningProgram> program(new RunningProgram(started(
+            {"--batch", "scene.toml", "--cache", "sets", "--set", "layer.gas.source.voxel_size=0.02"})));
+        while (program->running() && names_in("sets").empty())
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
         return program;
     }
 };
@@ -79,7 +71,7 @@ TEST_F(Cache, TheSecondRunTakesTheSetAndGivesTheSamePixels) {
 }
 
 TEST_F(Cache, CellsOfThePictureAreMatchedInCachedSetsToo) {
-    const auto matched = [&](const char* match, std::vector<std::string> more = {}) {
+    const auto matched = [&](const char* match, Words more = {}) {
         more.insert(more.end(),
                     {"--set", fmt::format("layer.gas.look.vertical.match=\"{}\"", match), "--set",
                      "layer.gas.look.density=0.3", "--set",
@@ -98,15 +90,14 @@ TEST_F(Cache, ScenesThatDifferInTheirLevelsShareTheirGeometry) {
     std::string picture = small_picture();
     picture.back() ^= 1;
     write_text(folder / "other.ppm", picture);
-    const std::vector<std::string> changes = {"colorspace=\"linear\"", "alpha=\"luminance\"",
-                                              "unpremultiply=false", "filter=\"area\"",
-                                              "meshes=[ { mesh = \"plane\", texture = \"other.ppm\" } ]"};
+    const Words changes = {"colorspace=\"linear\"", "alpha=\"luminance\"", "unpremultiply=false",
+                           "filter=\"area\"", "meshes=[ { mesh = \"plane\", texture = \"other.ppm\" } ]"};
     for (const std::string& change : changes) {
-        const std::vector<std::string> set = {"--set", "layer.gas.source." + change};
+        const Words set = {"--set", "layer.gas.source." + change};
         const Figures shared = figures(set);
         EXPECT_FALSE(shared.cached) << change;
         EXPECT_TRUE(shared.geometry_cached) << change;
-        std::vector<std::string> without = set;
+        Words without = set;
         without.emplace_back("--no-cache");
         const Figures alone = figures(without);
         EXPECT_EQ(shared.sha256, alone.sha256) << change;
@@ -142,7 +133,7 @@ TEST_F(Cache, NoCacheNeitherReadsNorWrites) {
 }
 
 TEST_F(Cache, ADryRunMakesNoFolderButKnowsTheSet) {
-    ASSERT_EQ(batch({"--dry-run"}).code, 0);
+    expect_success(batch({"--dry-run"}));
     EXPECT_FALSE(fs::exists(folder / "sets"));
     const Figures first = figures({});
     const std::string plan = batch({"--dry-run", "--overwrite"}).out;
@@ -169,17 +160,16 @@ TEST_F(Cache, OptionThenVariableThenHome) {
 }
 
 TEST_F(Cache, GenerateUsesItToo) {
-    ASSERT_EQ(run({"generate", "scene.toml", "--layer", "gas", "-o", "a.splats"}).code, 0);
+    expect_success(run({"generate", "scene.toml", "--layer", "gas", "-o", "a.splats"}));
     EXPECT_TRUE(figures({}).cached);
-    ASSERT_EQ(run({"generate", "scene.toml", "--layer", "gas", "-o", "b.splats"}).code, 0);
+    expect_success(run({"generate", "scene.toml", "--layer", "gas", "-o", "b.splats"}));
     EXPECT_EQ(text_of(folder / "a.splats"), text_of(folder / "b.splats"));
 }
 
 TEST_F(Cache, AFolderThatCannotBeWrittenIsAWarning) {
     write_text(folder / "file", "");
-    const RunResult result = batch({"--cache", "file/sets", "-q"});
-    EXPECT_EQ(result.code, 0);
-    EXPECT_NE(result.err.find("file/sets"), std::string::npos) << result.err;
+    const RunResult result = expect_success(batch({"--cache", "file/sets", "-q"}));
+    EXPECT_HAS(result.err, "file/sets");
     EXPECT_TRUE(fs::exists(folder / "frames/shot.0001.exr"));
 }
 
@@ -198,22 +188,17 @@ TEST_F(Cache, DamagedSetsAreGeneratedAgain) {
 }
 
 TEST_F(Cache, OfManyProcessesOneGenerates) {
-    RunOptions options;
-    options.folder = folder;
     std::vector<std::unique_ptr<RunningProgram>> programs;
     for (int i = 0; i < 4; ++i) {
         const std::string name = fmt::format("s{}", i);
-        programs.push_back(std::make_unique<RunningProgram>(
-            std::vector<std::string>{ASTROSPLAT_PROGRAM, "--batch", "scene.toml", "--cache", "sets", "-o",
-                                     name + ".exr", "--stats", name + ".json", "--set",
-                                     "layer.gas.source.voxel_size=0.05"},
-            options));
+        programs.emplace_back(new RunningProgram(
+            started({"--batch", "scene.toml", "--cache", "sets", "-o", name + ".exr", "--stats",
+                     name + ".json", "--set", "layer.gas.source.voxel_size=0.05"})));
     }
     int generated = 0;
     std::set<std::string> sha256;
     for (std::size_t i = 0; i < programs.size(); ++i) {
-        const RunResult result = programs[i]->wait();
-        ASSERT_EQ(result.code, 0) << result.err;
+        expect_success(programs[i]->wait());
         const nlohmann::json stats = json(fmt::format("s{}.json", i));
         generated += !stats.at("layers").at(0).at("cached").get<bool>();
         sha256.insert(stats.at("frames").at(0).at("sha256").get<std::string>());

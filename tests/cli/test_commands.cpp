@@ -10,17 +10,16 @@ namespace {
 class Commands : public SceneTest {
   protected:
     nlohmann::json info(const std::string& file) const {
-        const RunResult result = run({"info", file, "--json"});
-        EXPECT_EQ(result.code, 0) << result.err;
+        const RunResult result = expect_success(run({"info", file, "--json"}));
         return nlohmann::json::parse(result.out);
     }
 };
 
 TEST_F(Commands, ConvertKeepsEverySplat) {
-    ASSERT_EQ(run({"convert", "stars.pda", "stars.splats"}).code, 0);
-    ASSERT_EQ(run({"convert", "stars.splats", "again.pda"}).code, 0);
-    ASSERT_EQ(run({"convert", "again.pda", "stars.ply"}).code, 0);
-    ASSERT_EQ(run({"convert", "stars.ply", "last.splats"}).code, 0);
+    expect_success(run({"convert", "stars.pda", "stars.splats"}));
+    expect_success(run({"convert", "stars.splats", "again.pda"}));
+    expect_success(run({"convert", "again.pda", "stars.ply"}));
+    expect_success(run({"convert", "stars.ply", "last.splats"}));
     EXPECT_EQ(text_of(folder / "last.splats"), text_of(folder / "stars.splats"));
     const nlohmann::json described = info("stars.ply");
     EXPECT_EQ(described.at("splats"), 300);
@@ -28,8 +27,7 @@ TEST_F(Commands, ConvertKeepsEverySplat) {
 
 TEST_F(Commands, QuietMeansNoProgressEither) {
     EXPECT_NE(run({"convert", "stars.pda", "a.splats"}).err, "");
-    const RunResult quiet = run({"-q", "convert", "stars.pda", "b.splats"});
-    EXPECT_EQ(quiet.code, 0);
+    const RunResult quiet = expect_success(run({"-q", "convert", "stars.pda", "b.splats"}));
     EXPECT_EQ(quiet.err, "");
 }
 
@@ -51,9 +49,9 @@ TEST_F(Commands, OneSplatIsSingular) {
 
 TEST_F(Commands, NamesAreShownWithoutControlCharacters) {
     fs::rename(folder / "stars.pda", folder / "st\x1b[2Jars.pda");
-    for (const std::vector<std::string>& words : {std::vector<std::string>{"info", "st\x1b[2Jars.pda"},
-                                                  {"convert", "st\x1b[2Jars.pda", "o\x1b[2J.ply"},
-                                                  {"info", "no\x1b[2J.pda"}}) {
+    for (const Words& words : {Words{"info", "st\x1b[2Jars.pda"},
+                               {"convert", "st\x1b[2Jars.pda", "o\x1b[2J.ply"},
+                               {"info", "no\x1b[2J.pda"}}) {
         const RunResult result = run(words);
         EXPECT_EQ((result.out + result.err).find('\x1b'), std::string::npos) << result.out << result.err;
         EXPECT_NE((result.out + result.err).find("\\x1b[2J"), std::string::npos) << result.out << result.err;
@@ -63,7 +61,7 @@ TEST_F(Commands, NamesAreShownWithoutControlCharacters) {
 TEST_F(Commands, ConvertRefusesWhatItShould) {
     expect_one_line(run({"convert", "stars.pda", "stars.xyz"}), 2, ".splats");
     expect_one_line(run({"convert", "stars.pda", "dust.pda"}), 2, "--overwrite");
-    EXPECT_EQ(run({"convert", "stars.pda", "dust.pda", "--overwrite"}).code, 0);
+    expect_success(run({"convert", "stars.pda", "dust.pda", "--overwrite"}));
     write_text(folder / "broken.pda",
                "ATTRIBUTES\n position\nTYPES\n V\nNUMBER_OF_PARTICLES: 2\nBEGIN DATA\n1 2 3\n");
     const RunResult broken = run({"convert", "broken.pda", "out.ply", "--progress", "none"});
@@ -77,12 +75,11 @@ TEST_F(Commands, NewMakesASceneThatRenders) {
     for (const char* shape : {"plane", "relief", "disk", "sphere"}) {
         const std::string scene = std::string(shape) + ".toml";
         ASSERT_EQ(run({"new", "picture.ppm", "-o", scene, "--shape", shape}).code, 0) << shape;
-        const std::vector<std::string> arguments = {"--batch", scene, "-f", "1", "-o",
-                                                    std::string(shape) + ".png", "--resolution", "48x32",
-                                                    // Millions of splats show nothing that some do not.
-                                                    "--set", "layer.picture.source.count=20000"};
-        const RunResult result = run(arguments);
-        EXPECT_EQ(result.code, 0) << result.err;
+        const Words arguments = {"--batch", scene, "-f", "1", "-o", std::string(shape) + ".png",
+                                 "--resolution", "48x32",
+                                 // Millions of splats show nothing that some do not.
+                                 "--set", "layer.picture.source.count=20000"};
+        expect_success(run(arguments));
     }
     expect_one_line(run({"new", "picture.ppm", "-o", "plane.toml", "--as", "galaxy"}), 2, "--overwrite");
     expect_one_line(run({"new", "picture.ppm", "-o", "cube.toml", "--shape", "cube"}), 2, "cube");
@@ -90,7 +87,7 @@ TEST_F(Commands, NewMakesASceneThatRenders) {
     fs::create_directories(folder / "pictures");
     fs::copy_file(folder / "picture.ppm", folder / "pictures/m 51.ppm");
     ASSERT_EQ(run({"new", "pictures/m 51.ppm", "--as", "plane"}).out, "m 51.toml\n");
-    EXPECT_NE(text_of(folder / "m 51.toml").find("pictures/m 51.ppm"), std::string::npos);
+    EXPECT_HAS(text_of(folder / "m 51.toml"), "pictures/m 51.ppm");
     expect_one_line(run({"new", "pictures/m 51.ppm", "--as", "plane"}), 2, "m 51.toml");
     expect_one_line(run({"new", ".", "-o", "x.toml"}), 2, "it is a folder");
     expect_one_line(run({"new", "plane.toml", "-o", "x.toml"}), 2, "cannot be read as a picture");
@@ -100,30 +97,26 @@ TEST_F(Commands, NewMakesASceneThatRenders) {
 // Without a shape the picture becomes bodies; what kind is said with its reason, or asked for.
 TEST_F(Commands, NewMakesBodiesOfAPicture) {
     write_text(folder / "picture.ppm", small_picture());
-    const RunResult chosen = run({"new", "picture.ppm", "-o", "chosen.toml"});
-    ASSERT_EQ(chosen.code, 0) << chosen.err;
-    EXPECT_NE(chosen.err.find("--as chooses another"), std::string::npos) << chosen.err;
+    const RunResult chosen = expect_success(run({"new", "picture.ppm", "-o", "chosen.toml"}));
+    EXPECT_HAS(chosen.err, "--as chooses another");
     for (const auto& [as, kind] :
          {std::pair("galaxy", "disk"), std::pair("nebula", "sheet"), std::pair("remnant", "walls"),
           std::pair("field", "sheet"), std::pair("elliptical", "disk"), std::pair("planetary", "walls"),
           std::pair("cluster", "disk"), std::pair("thin", "sheet")}) {
         const std::string scene = std::string(as) + ".toml";
-        const RunResult made = run({"new", "picture.ppm", "-o", scene, "--as", as, "--film"});
-        ASSERT_EQ(made.code, 0) << made.err;
+        const RunResult made = expect_success(run({"new", "picture.ppm", "-o", scene, "--as", as, "--film"}));
         EXPECT_EQ(made.err, "");
         const std::string text = text_of(folder / scene);
-        EXPECT_NE(text.find("kind = \"" + std::string(kind) + "\""), std::string::npos) << text;
-        EXPECT_NE(text.find("frames     = \"1-240\""), std::string::npos) << text;
-        const RunResult rendered = run(
-            {"--batch", scene, "-f", "1,160", "-o", std::string(as) + ".####.png", "--resolution", "48x32"});
-        EXPECT_EQ(rendered.code, 0) << rendered.err;
+        EXPECT_HAS(text, "kind = \"" + std::string(kind) + "\"");
+        EXPECT_HAS(text, "frames     = \"1-240\"");
+        expect_success(run(
+            {"--batch", scene, "-f", "1,160", "-o", std::string(as) + ".####.png", "--resolution", "48x32"}));
     }
-    EXPECT_NE(text_of(folder / "field.toml").find("height = 0.05, depth = 0.01"), std::string::npos);
-    EXPECT_NE(text_of(folder / "thin.toml").find("clumps = 0.0, height = 0.02, depth = 0.0"),
-              std::string::npos);
+    EXPECT_HAS(text_of(folder / "field.toml"), "height = 0.05, depth = 0.01");
+    EXPECT_HAS(text_of(folder / "thin.toml"), "clumps = 0.0, height = 0.02, depth = 0.0");
     EXPECT_EQ(text_of(folder / "nebula.toml").find("height"), std::string::npos);
     EXPECT_EQ(text_of(folder / "chosen.toml").find("[animation]"), std::string::npos);
-    ASSERT_EQ(run({"new", "picture.ppm", "-o", "columns.toml", "--as", "plane"}).code, 0);
+    expect_success(run({"new", "picture.ppm", "-o", "columns.toml", "--as", "plane"}));
     EXPECT_EQ(text_of(folder / "columns.toml").find("structure"), std::string::npos);
     expect_one_line(run({"new", "picture.ppm", "-o", "x.toml", "--as", "galxy"}), 2,
                     "did you mean 'galaxy'?");
@@ -136,10 +129,8 @@ TEST_F(Commands, NewMakesBodiesOfAPicture) {
 // What a picture shows is told by a person, by its file's metadata and name, and by its light.
 TEST_F(Commands, NewSaysWhatAPictureShowsAndBecauseOfWhat) {
     write_text(folder / "ngc 4594.ppm", small_picture());
-    const RunResult named = run({"new", "ngc 4594.ppm", "--json"});
-    ASSERT_EQ(named.code, 0) << named.err;
-    EXPECT_NE(named.err.find("M 104 in the table of objects is spiral; --as"), std::string::npos)
-        << named.err;
+    const RunResult named = expect_success(run({"new", "ngc 4594.ppm", "--json"}));
+    EXPECT_HAS(named.err, "M 104 in the table of objects is spiral; --as");
     const nlohmann::json report = nlohmann::json::parse(named.out);
     EXPECT_EQ(report["scene"], "ngc 4594.toml");
     EXPECT_EQ(report["object"], "galaxy");
@@ -158,8 +149,8 @@ TEST_F(Commands, NewSaysWhatAPictureShowsAndBecauseOfWhat) {
         "avm:Subject.Category=\"C.5.1.4\" avm:Distance=\"1000\" avm:Spatial.Scale=\"-0.01\"/></rdf:RDF>";
     write_text(folder / "art.ppm", small_picture() + avm);
     const RunResult art = run({"new", "art.ppm", "--json"});
-    EXPECT_NE(art.err.find("AVM says C.5.1.4: elliptical galaxy; --as"), std::string::npos) << art.err;
-    EXPECT_NE(art.err.find("is no observation: its metadata says 'Artwork'"), std::string::npos) << art.err;
+    EXPECT_HAS(art.err, "AVM says C.5.1.4: elliptical galaxy; --as");
+    EXPECT_HAS(art.err, "is no observation: its metadata says 'Artwork'");
     const nlohmann::json measured = nlohmann::json::parse(art.out);
     EXPECT_NEAR(measured["width_ly"].get<double>(),
                 1000.0 * measured["width_degrees"].get<double>() * 0.0174532925, 1e-4);
@@ -186,13 +177,12 @@ TEST_F(Commands, NewSaysHowLargeTheSkyIsAndWritesTheScale) {
 
 TEST_F(Commands, GenerateWritesALayer) {
     write_text(folder / "picture.ppm", small_picture());
-    ASSERT_EQ(run({"new", "picture.ppm", "-o", "new.toml", "--shape", "plane"}).code, 0);
+    expect_success(run({"new", "picture.ppm", "-o", "new.toml", "--shape", "plane"}));
     const std::string layer = info("new.toml").at("layers")[0].at("name");
     const std::string count = "layer." + layer + ".source.count=5000";
-    const RunResult result =
-        run({"generate", "new.toml", "--layer", layer, "--output", "set.splats", "--set", count});
-    ASSERT_EQ(result.code, 0) << result.err;
-    EXPECT_NE(result.out.find("set.splats"), std::string::npos) << result.out;
+    const RunResult result = expect_success(
+        run({"generate", "new.toml", "--layer", layer, "--output", "set.splats", "--set", count}));
+    EXPECT_HAS(result.out, "set.splats");
     const std::int64_t splats = info("set.splats").at("splats");
     EXPECT_GT(splats, 3000);
     EXPECT_LT(splats, 7000);
@@ -210,7 +200,7 @@ TEST_F(Commands, InfoDescribesEveryKind) {
     EXPECT_EQ(scene.at("kind"), "scene");
     EXPECT_EQ(scene.at("resolution"), (std::vector<int>{64, 48}));
     EXPECT_EQ(scene.at("layers").size(), 2u);
-    ASSERT_EQ(batch({"-f", "1"}).code, 0);
+    expect_success(batch({"-f", "1"}));
     const nlohmann::json frame = info("frames/shot.0001.exr");
     EXPECT_EQ(frame.at("kind"), "image");
     EXPECT_EQ(frame.at("width"), 64);
@@ -222,16 +212,15 @@ TEST_F(Commands, InfoDescribesEveryKind) {
     EXPECT_EQ(mesh.at("triangles"), 2);
     EXPECT_EQ(mesh.at("vertices"), 4);
     EXPECT_DOUBLE_EQ(mesh.at("area").get<double>(), 2.0);
-    EXPECT_NE(run({"info", "square.obj"}).out.find("triangles: 2"), std::string::npos);
+    EXPECT_HAS(run({"info", "square.obj"}).out, "triangles: 2");
     write_text(folder / "noise.bin", "nothing known");
     EXPECT_EQ(run({"info", "noise.bin"}).code, 2);
 }
 
 TEST_F(Commands, CompareFindsTheDifference) {
-    ASSERT_EQ(batch({"-f", "1,3"}).code, 0);
+    expect_success(batch({"-f", "1,3"}));
     const std::string a = "frames/shot.0001.exr", b = "frames/shot.0003.exr";
-    const RunResult same = run({"compare", a, a, "--json", "--max-difference", "0"});
-    EXPECT_EQ(same.code, 0) << same.err;
+    const RunResult same = expect_success(run({"compare", a, a, "--json", "--max-difference", "0"}));
     EXPECT_EQ(nlohmann::json::parse(same.out).at("max_difference"), 0.0);
     EXPECT_EQ(nlohmann::json::parse(same.out).at("identical"), true);
     const RunResult other = run({"compare", a, b, "--json"});
@@ -239,15 +228,14 @@ TEST_F(Commands, CompareFindsTheDifference) {
     const double difference = nlohmann::json::parse(other.out).at("max_difference");
     EXPECT_GT(difference, 0.01);
     EXPECT_EQ(run({"compare", a, b, "--max-difference", "0.001"}).code, 3);
-    EXPECT_EQ(run({"compare", a, b, "--max-difference", "1000"}).code, 0);
-    ASSERT_EQ(batch({"-f", "1", "--resolution", "50%", "-o", "small.exr"}).code, 0);
+    expect_success(run({"compare", a, b, "--max-difference", "1000"}));
+    expect_success(batch({"-f", "1", "--resolution", "50%", "-o", "small.exr"}));
     expect_one_line(run({"compare", a, "small.exr"}), 2, "small.exr");
 }
 
 TEST_F(Commands, ParametersListEveryKey) {
-    const RunResult text = run({"parameters"});
-    EXPECT_EQ(text.code, 0) << text.err;
-    EXPECT_NE(text.out.find("layer.look.alpha.power"), std::string::npos);
+    const RunResult text = expect_success(run({"parameters"}));
+    EXPECT_HAS(text.out, "layer.look.alpha.power");
     const nlohmann::json rows = nlohmann::json::parse(run({"parameters", "--json"}).out);
     ASSERT_GT(rows.size(), 100u);
     const auto density = std::find_if(rows.begin(), rows.end(),
@@ -259,14 +247,7 @@ TEST_F(Commands, ParametersListEveryKey) {
 
 // Input files of every kind at the command line: capitals, pipes, files without a picture, truth in `info`.
 
-class Inputs : public SceneTest {
-  protected:
-    nlohmann::json info(const std::string& file) const {
-        const RunResult result = run({"info", file, "--json"});
-        EXPECT_EQ(result.code, 0) << result.err;
-        return result.code == 0 ? nlohmann::json::parse(result.out) : nlohmann::json{};
-    }
-};
+using Inputs = Commands;
 
 TEST_F(Inputs, CapitalsInEndings) {
     write_text(folder / "x.OBJ", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");

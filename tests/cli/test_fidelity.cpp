@@ -28,15 +28,13 @@ class FidelityCommand : public SceneTest {
         write_text(folder / "picture.ppm", small_picture());
         run({"new", "picture.ppm", "-o", "picture.toml"});
     }
-    RunResult fidelity(std::vector<std::string> more) const {
-        more.insert(more.begin(), {"fidelity", "picture.toml", "--set", "layer.picture.source.count=20000"});
-        return run(more);
+    RunResult fidelity(Words more) const {
+        return run(joined({"fidelity", "picture.toml", "--set", "layer.picture.source.count=20000"}, more));
     }
 };
 
 TEST_F(FidelityCommand, WritesNumbersThatReadBack) {
-    const RunResult result = fidelity({"-o", "report.json"});
-    ASSERT_EQ(result.code, 0) << result.err;
+    const RunResult result = expect_success(fidelity({"-o", "report.json"}));
     const nlohmann::json report = json("report.json");
     EXPECT_EQ(report.at("scene"), "picture.toml");
     EXPECT_EQ(report.at("layer"), "picture");
@@ -52,12 +50,10 @@ TEST_F(FidelityCommand, WritesNumbersThatReadBack) {
     EXPECT_TRUE(report.at("side").contains("flat_picture_needles_share"));
     EXPECT_TRUE(report.at("edge").contains("fwhm_over_length"));
     // The terminal shows the same numbers, a line each.
-    EXPECT_NE(result.out.find(fmt::format("{:.4f}", report.at("front").at("ssim").get<double>())),
-              std::string::npos)
-        << result.out;
-    EXPECT_NE(result.out.find("from 60 degrees\n  needles"), std::string::npos) << result.out;
+    EXPECT_HAS(result.out, fmt::format("{:.4f}", report.at("front").at("ssim").get<double>()));
+    EXPECT_HAS(result.out, "from 60 degrees\n  needles");
     EXPECT_EQ(last_line(result.out), "report.json");
-    EXPECT_NE(result.err.find("of memory"), std::string::npos) << result.err;
+    EXPECT_HAS(result.err, "of memory");
 }
 
 TEST_F(FidelityCommand, JudgesDisksAloneAsDisks) {
@@ -67,15 +63,15 @@ TEST_F(FidelityCommand, JudgesDisksAloneAsDisks) {
             .out;
     };
     const std::string disk = told("disk"), sheet = told("sheet");
-    EXPECT_NE(disk.find("0.06 to 0.10"), std::string::npos) << disk;
-    EXPECT_NE(disk.find("at least 2.5"), std::string::npos) << disk;
+    EXPECT_HAS(disk, "0.06 to 0.10");
+    EXPECT_HAS(disk, "at least 2.5");
     EXPECT_EQ(sheet.find("0.06 to 0.10"), std::string::npos) << sheet;
     EXPECT_EQ(sheet.find("at least 2.5"), std::string::npos) << sheet;
-    EXPECT_NE(sheet.find("centre over half radius"), std::string::npos) << sheet;
+    EXPECT_HAS(sheet, "centre over half radius");
 }
 
 TEST_F(FidelityCommand, ThePageHoldsAllThatItShows) {
-    ASSERT_EQ(fidelity({"-o", "report.HTML", "-q"}).code, 0);
+    expect_success(fidelity({"-o", "report.HTML", "-q"}));
     const std::string page = text_of(folder / "report.HTML");
     EXPECT_EQ(page.rfind("<!doctype html>", 0), 0u);
     std::size_t pictures = 0;
@@ -84,11 +80,10 @@ TEST_F(FidelityCommand, ThePageHoldsAllThatItShows) {
         ++pictures;
     EXPECT_EQ(pictures, 5u) << "rendered, picture, difference, two from the side";
     write_text(folder / "first.png", first_picture(page));
-    const RunResult described = run({"info", "first.png"});
-    EXPECT_EQ(described.code, 0) << described.err;
-    EXPECT_NE(described.out.find("1280"), std::string::npos) << described.out;
+    const RunResult described = expect_success(run({"info", "first.png"}));
+    EXPECT_HAS(described.out, "1280");
     for (const char* part : {"PSNR", "CIEDE2000", "<svg class='cells'", "<svg class='power'", "</html>"})
-        EXPECT_NE(page.find(part), std::string::npos) << part;
+        EXPECT_HAS(page, part);
     for (const char* elsewhere : {"http:", "https:", "src='/", "url(", "@import"})
         EXPECT_EQ(page.find(elsewhere), std::string::npos) << elsewhere;
 }
@@ -104,7 +99,7 @@ kind = "splats"
 file = "stars.pda"
 )");
     const RunResult two = fidelity({"-o", "two.json"});
-    EXPECT_NE(two.err.find(part), std::string::npos) << two.err;
+    EXPECT_HAS(two.err, part);
     EXPECT_NE(json("one.json").at("full_size"), json("two.json").at("full_size"));
     const RunResult named = fidelity({"-o", "named.json", "--reference", "picture.ppm"});
     EXPECT_EQ(named.err.find(part), std::string::npos) << named.err;
@@ -116,8 +111,8 @@ TEST_F(FidelityCommand, RefusesWhatItShould) {
     expect_one_line(run({"fidelity", "missing.toml", "-o", "a.json"}), 2, "missing.toml");
     expect_one_line(run({"fidelity", "scene.toml", "-o", "a.json", "--progress", "none"}), 2,
                     "a layer of kind \"mesh\"");
-    const std::vector<std::string> quiet = {"--progress", "none", "-o", "a.json"};
-    const auto with = [&](std::vector<std::string> more) {
+    const Words quiet = {"--progress", "none", "-o", "a.json"};
+    const auto with = [&](Words more) {
         more.insert(more.end(), quiet.begin(), quiet.end());
         return fidelity(more);
     };
@@ -130,21 +125,19 @@ TEST_F(FidelityCommand, RefusesWhatItShould) {
     write_text(folder / "a.json", "mine");
     expect_one_line(with({}), 2, "--overwrite");
     EXPECT_EQ(text_of(folder / "a.json"), "mine");
-    EXPECT_EQ(with({"--overwrite"}).code, 0);
+    expect_success(with({"--overwrite"}));
     EXPECT_EQ(json("a.json").at("layer"), "picture");
     EXPECT_EQ(fidelity({"-o", "/proc/astrosplat/a.json"}).code, 4);
 }
 
 TEST_F(FidelityCommand, IsStoppedWithoutLeavingAnything) {
     const std::set<std::string> before = names_in(".");
-    RunOptions options;
-    options.folder = folder;
     const RunningProgram program(
         {ASTROSPLAT_PROGRAM, "fidelity", "picture.toml", "-o", "report.html", "--no-cache", "--progress",
          "plain", "--set", "layer.picture.source.structure.kind=columns", "--set",
          "layer.picture.source.count=30000000"},
-        options);
-    while (program.running() && program.err_so_far().find("positions") == std::string::npos) usleep(1000);
+        {.folder = folder});
+    program.wait_until_said("positions");
     program.signal(SIGINT);
     const RunResult result = program.wait();
     EXPECT_EQ(result.code, 130) << result.err;

@@ -1,7 +1,6 @@
 // --memory bounds a run, and estimates say beforehand what it takes.
 #include <fmt/format.h>
 
-#include <cmath>
 #include <map>
 #include <sstream>
 
@@ -47,9 +46,8 @@ meshes = [ {{ mesh = "sphere", texture = "ball.ppm" }} ]
 splats = {}
 )",
                                                      splats));
-        ASSERT_EQ(
-            run({"generate", "mesh.toml", "--layer", "ball", "-o", "ball.splats", "-q", "--no-cache"}).code,
-            0);
+        expect_success(
+            run({"generate", "mesh.toml", "--layer", "ball", "-o", "ball.splats", "-q", "--no-cache"}));
         make_scene_of("ball.splats", resolution, "[3.0, 6.0, 13.0]", more);
     }
 
@@ -73,11 +71,10 @@ position = {}
         std::string hash, err;
         double told_mib = 0.0, taken_mib = 0.0;
     };
-    Run rendered(std::vector<std::string> more, bool cached = false) const {
+    Run rendered(Words more, bool cached = false) const {
         more.insert(more.end(), {"--overwrite", "--stats", "stats.json"});
         if (!cached) more.push_back("--no-cache");
-        const RunResult result = batch(more);
-        EXPECT_EQ(result.code, 0) << result.err;
+        const RunResult result = expect_success(batch(more));
         if (result.code != 0) return {};
         const nlohmann::json stats = json("stats.json");
         Run run{stats.at("frames")[0].at("sha256"), result.err, 0.0,
@@ -105,9 +102,7 @@ TEST_F(Memory, AFileLargerThanTheMemoryGivesTheSamePixels) {
     EXPECT_EQ(whole.err.find("block by block"), std::string::npos) << whole.err;
     for (const auto& [threads, gib] : {std::pair("1", "0.1"), std::pair("2", "0.106")}) {
         const Run streamed = rendered({"--memory", gib, "-t", threads});
-        EXPECT_NE(streamed.err.find("block by block, as there is not memory for all: ball"),
-                  std::string::npos)
-            << streamed.err;
+        EXPECT_HAS(streamed.err, "block by block, as there is not memory for all: ball");
         EXPECT_EQ(streamed.hash, whole.hash);
         EXPECT_LE(streamed.taken_mib, std::stod(gib) * 1024.0);
     }
@@ -127,8 +122,7 @@ TEST_F(Memory, ARunTakesWhatItAnnounces) {
     expect_enough(large);
     EXPECT_GT(large.taken_mib, whole.taken_mib + 100.0);
     // Away from the ball; then reading its file takes the most.
-    const Run nothing = rendered({"--set", "camera.target=[6.0, 12.0, 26.0]"});
-    expect_enough(nothing);
+    expect_enough(rendered({"--set", "camera.target=[6.0, 12.0, 26.0]"}));
 }
 
 // Planes of every layer, two renderings of a blurred frame, a projection onto the sphere, and splats split in
@@ -137,19 +131,19 @@ TEST_F(Memory, EveryKindOfFrameIsCounted) {
     make_ball(1000000, "[1280, 720]",
               "[[layer]]\nname = \"second\"\n[layer.source]\nkind = \"splats\"\nfile = \"ball.splats\"\n");
     const std::string aovs = "output.aovs=[\"depth\", \"coverage\", \"count\", \"layers\"]";
-    const std::vector<std::vector<std::string>> kinds = {
+    const std::vector<Words> kinds = {
         {aovs},
         {"camera.shutter=180", aovs},
         {"camera.projection=equirectangular", "camera.position=[0.2, 0.1, 0.3]"},
         {"camera.position=[0.6, 0.4, 1.3]", "layer.ball.render.lod.max_px=8"},
         {"layer.ball.render.isolate=true", "layer.ball.render.blend=screen"}};
-    for (const std::vector<std::string>& kind : kinds) {
-        std::vector<std::string> words;
+    for (const Words& kind : kinds) {
+        Words words;
         for (const std::string& assignment : kind) words.insert(words.end(), {"--set", assignment});
         expect_enough(rendered(words));
     }
     const Run streamed = rendered({"--memory", "0.23", "--set", aovs});
-    EXPECT_NE(streamed.err.find("block by block"), std::string::npos) << streamed.err;
+    EXPECT_HAS(streamed.err, "block by block");
     expect_enough(streamed);
 }
 
@@ -163,13 +157,11 @@ TEST_F(Memory, LibrariesThatReadPicturesAreCounted) {
 
 TEST_F(Memory, EveryFormatOfFramesIsCounted) {
     make_ball(1000, "[640, 360]");
-    for (const char* ending : {"exr", "png", "tif"}) {
+    for (const char* ending : {"exr", "png", "tif"})
         for (const char* size : {"640x360", "1920x1080"}) {
-            const Run run = rendered(
-                {"--set", fmt::format("output.path=frames/shot.####.{}", ending), "--resolution", size});
-            expect_enough(run);
+            expect_enough(rendered(
+                {"--set", fmt::format("output.path=frames/shot.####.{}", ending), "--resolution", size}));
         }
-    }
 }
 
 // Linux hands the size of a process on to the program that it starts.
@@ -182,14 +174,12 @@ TEST_F(Memory, TheProgramThatStartsThisOneIsNotCounted) {
 // Where its splats lie, and that none is split, only a small set made before tells.
 TEST_F(Memory, ASetThatIsNotThereIsMadeSmallToBeSure) {
     make_ball_to_generate(2500000, "[3.0, 6.0, 13.0]", "[layer.render.lod]\nmax_px = 200.0\n");
-    const Run run = rendered({});
-    expect_enough(run);
+    expect_enough(rendered({}));
 }
 
 TEST_F(Memory, GeneratingTakesWhatIsAnnounced) {
     make_ball_to_generate(2500000, "[3.0, 6.0, 13.0]");
-    const Run run = rendered({});
-    expect_enough(run);
+    expect_enough(rendered({}));
 }
 
 // Splats close by, which are split, wide and out of the frame; their set is in the cache.
@@ -197,7 +187,7 @@ TEST_F(Memory, WhatAPassCloseByTakesIsToldFromASample) {
     make_ball_to_generate(
         300000, "[0.6, 0.4, 1.3]",
         "[layer.render]\nlod = { max_px = 8 }\n[layer.look]\nradius = { min = 0.05, max = 0.05 }\n");
-    ASSERT_EQ(batch({"--sets-only", "-q"}).code, 0);
+    expect_success(batch({"--sets-only", "-q"}));
     expect_enough(rendered({}, true));
 }
 
@@ -214,17 +204,15 @@ TEST_F(Memory, CapturesAreCountedWithTheirShapesAndHarmonics) {
     make_scene_of("capture.ply", "[640, 360]", "[0.0, 0.0, 14.0]");
     for (const int degree : {0, 3}) {
         write_text(folder / "capture.ply", ply_of(capture(300000, degree, 0.05), degree));
-        const Run run = rendered({});
-        expect_enough(run);
+        expect_enough(rendered({}));
     }
 }
 
 TEST_F(Memory, ColumnsThatMemoryDoesNotHoldAreWrittenInParts) {
     make_ball(1'500'000, "[64, 36]");
-    const RunResult parts = run({"generate", "mesh.toml", "--layer", "ball", "-o", "parts.splats", "--memory",
-                                 "0.2", "--no-cache", "-t", "1"});
-    ASSERT_EQ(parts.code, 0) << parts.err;
-    EXPECT_NE(parts.err.find("it is written in parts"), std::string::npos) << parts.err;
+    const RunResult parts = expect_success(run({"generate", "mesh.toml", "--layer", "ball", "-o",
+                                                "parts.splats", "--memory", "0.2", "--no-cache", "-t", "1"}));
+    EXPECT_HAS(parts.err, "it is written in parts");
     EXPECT_TRUE(text_of(folder / "parts.splats") == text_of(folder / "ball.splats"));
     // Other formats have no parts.
     expect_one_line(run({"generate", "mesh.toml", "--layer", "ball", "-o", "x.ply", "--memory", "0.2",
@@ -239,8 +227,7 @@ TEST_F(Memory, TheSkyIsCounted) {
     write_text(folder / "sky.ppm", sky);
     make_ball(1000, "[64, 36]", "[environment]\nimage = \"sky.ppm\"\n");
     for (const char* visible : {"true", "false"}) {
-        const Run run = rendered({"--set", fmt::format("environment.visible={}", visible)});
-        expect_enough(run);
+        expect_enough(rendered({"--set", fmt::format("environment.visible={}", visible)}));
     }
 }
 
@@ -280,10 +267,9 @@ meshes = [ { mesh = "plane", texture = "cloud.ppm" } ]
     struct Told {
         double splats, mib;
     };
-    Told told(std::vector<std::string> more = {}) const {
+    Told told(Words more = {}) const {
         more.insert(more.begin(), {"--dry-run", "-q"});
-        const RunResult result = batch(more);
-        EXPECT_EQ(result.code, 0) << result.err;
+        const RunResult result = expect_success(batch(more));
         return {number_after(result.out, "about ", {{'k', 1e3}, {'M', 1e6}}),
                 number_after(result.out, "memory about ", {{'M', 1.0}, {'G', 1024.0}})};
     }
@@ -298,10 +284,10 @@ meshes = [ { mesh = "plane", texture = "cloud.ppm" } ]
         return units.contains(unit) ? units.at(unit) * number : number;
     }
 
-    std::int64_t made(std::vector<std::string> more = {}) const {
+    std::int64_t made(Words more = {}) const {
         more.insert(more.begin(),
                     {"generate", "scene.toml", "--layer", "cloud", "-o", "set.splats", "--overwrite", "-q"});
-        EXPECT_EQ(run(more).code, 0);
+        expect_success(run(more));
         return nlohmann::json::parse(run({"info", "set.splats", "--json"}).out).at("splats");
     }
 };
@@ -310,7 +296,7 @@ const std::string bodies = "structure = { kind = \"sheet\" }\n";
 
 TEST_F(Estimate, BodiesOfAReducedPictureAreThoseThatWillBeMade) {
     write_source(bodies);
-    const std::vector<std::string> little = {"--memory", "0.19"};
+    const Words little = {"--memory", "0.19"};
     const double whole = told().splats, reduced = told(little).splats;
     EXPECT_LT(reduced, 0.6 * whole);
     EXPECT_NEAR(reduced, static_cast<double>(made(little)), 0.1 * reduced);
@@ -348,15 +334,15 @@ TEST_F(Estimate, ARunWithLittleMemoryReducesThePictureOfBodiesAndSaysSoOnce) {
 // Of so few splats the sample is all: its frames are those that will be written.
 TEST_F(Estimate, ADryRunTellsTimeAndTheSizeOfFiles) {
     write_scene();
-    const RunResult result = batch({"--dry-run", "-q", "-f", "1-3", "--resolution", "320x240"});
-    EXPECT_EQ(result.code, 0) << result.err;
+    const RunResult result =
+        expect_success(batch({"--dry-run", "-q", "-f", "1-3", "--resolution", "320x240"}));
     EXPECT_EQ(result.out.find("sets are made"), std::string::npos) << result.out;
-    EXPECT_NE(result.out.find("\ntime about "), std::string::npos) << result.out;
-    EXPECT_NE(result.out.find(" s a frame, "), std::string::npos) << result.out;
+    EXPECT_HAS(result.out, "\ntime about ");
+    EXPECT_HAS(result.out, " s a frame, ");
     EXPECT_EQ(names_in("frames"), std::set<std::string>{});
     const double told =
         number_after(result.out, "files about ", {{'K', 1024.0}, {'k', 1024.0}, {'M', 1048576.0}});
-    ASSERT_EQ(batch({"-q", "-f", "1-3", "--resolution", "320x240"}).code, 0);
+    expect_success(batch({"-q", "-f", "1-3", "--resolution", "320x240"}));
     double taken = 0.0;
     for (const std::string& name : names_in("frames"))
         taken += static_cast<double>(fs::file_size(folder / "frames" / name)) / 3.0;
@@ -366,19 +352,19 @@ TEST_F(Estimate, ADryRunTellsTimeAndTheSizeOfFiles) {
 TEST_F(Estimate, SetsThatAreMissingAreMadeSmall) {
     write_source(bodies);
     const RunResult before = batch({"--dry-run", "-q"});
-    EXPECT_NE(before.out.find("sets are made in about "), std::string::npos) << before.out;
+    EXPECT_HAS(before.out, "sets are made in about ");
     EXPECT_EQ(names_in("sets"), std::set<std::string>{});
-    EXPECT_EQ(batch({"--sets-only", "-q"}).code, 0);
+    expect_success(batch({"--sets-only", "-q"}));
     const RunResult after = batch({"--dry-run", "-q"});
     EXPECT_EQ(after.out.find("sets are made"), std::string::npos) << after.out;
-    EXPECT_NE(after.out.find("time about "), std::string::npos) << after.out;
+    EXPECT_HAS(after.out, "time about ");
 }
 
 TEST_F(Estimate, WithNothingToRenderThereIsNothingToTell) {
     write_scene();
-    ASSERT_EQ(batch({"-q", "-f", "1"}).code, 0);
+    expect_success(batch({"-q", "-f", "1"}));
     const RunResult result = batch({"--dry-run", "-q", "-f", "1", "--resume"});
-    EXPECT_NE(result.out.find("0 to render"), std::string::npos) << result.out;
+    EXPECT_HAS(result.out, "0 to render");
     EXPECT_EQ(result.out.find("time about"), std::string::npos) << result.out;
 }
 

@@ -5,7 +5,6 @@
 
 #include <chrono>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <sstream>
 #include <thread>
 
@@ -38,8 +37,7 @@ class LogJson : public SceneTest {
 };
 
 TEST_F(LogJson, ARunIsToldEventByEvent) {
-    const RunResult result = batch({"--log-json", "-o", "a \"b\"/é.##.exr"});
-    EXPECT_EQ(result.code, 0) << result.err;
+    const RunResult result = expect_success(batch({"--log-json", "-o", "a \"b\"/é.##.exr"}));
     const std::vector<Event> all = events(result.err);
     for (const Event& event : all) EXPECT_EQ(event.at("time").get<std::string>().size(), 24u) << event;
     EXPECT_FALSE(of_kind(all, "message").empty());
@@ -60,10 +58,9 @@ TEST_F(LogJson, ARunIsToldEventByEvent) {
 }
 
 TEST_F(LogJson, MistakesAreEvents) {
-    for (const std::vector<std::string>& wrong : {std::vector<std::string>{"--batch", "no such.toml"},
-                                                  {"--no-such-option"},
-                                                  {"info", "no such.toml"}}) {
-        std::vector<std::string> words{"--log-json"};
+    for (const Words& wrong :
+         {Words{"--batch", "no such.toml"}, {"--no-such-option"}, {"info", "no such.toml"}}) {
+        Words words{"--log-json"};
         words.insert(words.end(), wrong.begin(), wrong.end());
         if (wrong[0] == "info") std::swap(words[0], words[1]);
         const RunResult result = run(words);
@@ -72,7 +69,7 @@ TEST_F(LogJson, MistakesAreEvents) {
         ASSERT_EQ(all.size(), 1u) << result.err;
         EXPECT_EQ(all[0].at("event"), "message");
         EXPECT_EQ(all[0].at("level"), "error");
-        EXPECT_NE(all[0].at("text").get<std::string>().find("no"), std::string::npos);
+        EXPECT_HAS(all[0].at("text").get<std::string>(), "no");
     }
 }
 
@@ -89,14 +86,9 @@ class Interrupt : public SceneTest {
   protected:
     /// Starts a long job, sends the signal once the first frame is saved, and waits for the end.
     RunResult interrupted_run(int signal) {
-        RunOptions options;
-        options.folder = folder;
-        const RunningProgram program({ASTROSPLAT_PROGRAM, "--batch", "scene.toml", "-f", "1-2000",
-                                      "--resolution", "640x480", "--stats", "stats.json"},
-                                     options);
-        while (program.err_so_far().find("saved ") == std::string::npos) {
-            std::this_thread::sleep_for(std::chrono::milliseconds(5));
-        }
+        const RunningProgram program = started(
+            {"--batch", "scene.toml", "-f", "1-2000", "--resolution", "640x480", "--stats", "stats.json"});
+        program.wait_until_said("saved ");
         program.signal(signal);
         return program.wait();
     }
@@ -111,16 +103,13 @@ class Interrupt : public SceneTest {
     }
 };
 
-TEST_F(Interrupt, SigintIsCode130) {
-    const RunResult result = interrupted_run(SIGINT);
-    EXPECT_EQ(result.code, 130) << result.err;
-    expect_whole_frames_only();
-}
-
-TEST_F(Interrupt, SigtermIsCode143) {
-    const RunResult result = interrupted_run(SIGTERM);
-    EXPECT_EQ(result.code, 143) << result.err;
-    expect_whole_frames_only();
+TEST_F(Interrupt, TheCodeSaysTheSignal) {
+    for (const int signal : {SIGINT, SIGTERM}) {
+        fs::remove_all(folder / "frames");
+        const RunResult result = interrupted_run(signal);
+        EXPECT_EQ(result.code, 128 + signal) << result.err;
+        expect_whole_frames_only();
+    }
 }
 
 // A file that holds nothing but takes long to read.
@@ -132,7 +121,7 @@ void make_hollow(const fs::path& file, off_t bytes) {
 
 /// Runs the program, and sends the signal while it reads the file of this name. Without an answer where the
 /// program was too fast to be caught.
-std::optional<RunResult> signalled_while_reading(const std::string& name, std::vector<std::string> words,
+std::optional<RunResult> signalled_while_reading(const std::string& name, Words words,
                                                  const RunOptions& options, int signal) {
     words.insert(words.begin(), ASTROSPLAT_PROGRAM);
     const RunningProgram program(words, options);
@@ -153,18 +142,16 @@ TEST_F(Interrupt, HeardWhileFilesAreRead) {
     make_hollow(folder / "map.exr", large);
     make_hollow(folder / "big.obj", large);
     write_scene("[environment]\nimage = \"map.exr\"\n");
-    RunOptions options;
-    options.folder = folder;
     struct Case {
         std::string file;
-        std::vector<std::string> words;
+        Words words;
         int signal;
     };
     for (const Case& c : {Case{"map.exr", {"--batch", "scene.toml"}, SIGINT},  // which hashes it
                           Case{"map.exr", {"--batch", "scene.toml", "--dry-run"}, SIGTERM},
                           Case{"big.obj", {"info", "big.obj"}, SIGINT}}) {
         std::optional<RunResult> result;
-        while (!result) result = signalled_while_reading(c.file, c.words, options, c.signal);
+        while (!result) result = signalled_while_reading(c.file, c.words, {.folder = folder}, c.signal);
         expect_one_line(*result, 128 + c.signal, "stopped");
         EXPECT_FALSE(fs::exists(folder / "frames"));
     }
@@ -174,9 +161,7 @@ TEST_F(Interrupt, ResumeCompletesAnInterruptedRun) {
     interrupted_run(SIGINT);
     const std::set<std::string> names = names_in("frames");
     const std::string frames = fmt::format("1-{}", names.size() + 2);
-    const RunResult result =
-        batch({"-f", frames, "--resolution", "640x480", "--resume", "--stats", "stats.json"});
-    EXPECT_EQ(result.code, 0) << result.err;
+    expect_success(batch({"-f", frames, "--resolution", "640x480", "--resume", "--stats", "stats.json"}));
     EXPECT_EQ(names_in("frames").size(), names.size() + 2);
     EXPECT_EQ(json("stats.json").at("frames").size(), 2u);
 }

@@ -1,7 +1,5 @@
 // prepare: what it writes, aligns and refuses.
 
-#include <algorithm>
-#include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
@@ -36,10 +34,7 @@ class PrepareCommand : public SceneTest {
         write_text(folder / "stars.ppm", starry_picture());
         write_text(folder / "stars.fits", starry_fits());
     }
-    RunResult prepare(std::vector<std::string> more) const {
-        more.insert(more.begin(), {"prepare", "stars.ppm"});
-        return run(more);
-    }
+    RunResult prepare(Words more) const { return run(joined({"prepare", "stars.ppm"}, more)); }
     // Lines of a table, its names among them.
     std::size_t lines(const std::string& file) const {
         const std::string text = text_of(folder / file);
@@ -48,46 +43,44 @@ class PrepareCommand : public SceneTest {
 };
 
 TEST_F(PrepareCommand, WritesAPictureAndATableOfItsStars) {
-    const RunResult result = prepare({"-o", "ready"});
-    ASSERT_EQ(result.code, 0) << result.err;
+    const RunResult result = expect_success(prepare({"-o", "ready"}));
     EXPECT_EQ(std::count(result.out.begin(), result.out.end(), '\n'), 5) << result.out;
-    EXPECT_NE(result.out.find("96x64 px"), std::string::npos) << result.out;
-    EXPECT_NE(result.out.find("9 taken away, 0 of them saturated"), std::string::npos) << result.out;
+    EXPECT_HAS(result.out, "96x64 px");
+    EXPECT_HAS(result.out, "9 taken away, 0 of them saturated");
     EXPECT_TRUE(text_of(folder / "ready/stars.csv")
                     .starts_with("# stars that astrosplat prepare took out of a picture\n"
                                  "x,y,u,v,flux_r,flux_g,flux_b,sigma_px,saturated\n"));
     EXPECT_EQ(lines("ready/stars.csv"), 11u);
-    EXPECT_EQ(run({"prepare", "ready/picture.exr", "-o", "again"}).code, 0);
+    expect_success(run({"prepare", "ready/picture.exr", "-o", "again"}));
     EXPECT_EQ(lines("again/stars.csv"), 2u) << "no star is left";
-    EXPECT_EQ(run({"new", "ready/picture.exr", "-o", "ready.toml"}).code, 0);
+    expect_success(run({"new", "ready/picture.exr", "-o", "ready.toml"}));
 }
 
 TEST_F(PrepareCommand, KeepsWhatIsNotAsked) {
-    ASSERT_EQ(prepare({"-o", "kept", "--stars", "keep"}).code, 0);
+    expect_success(prepare({"-o", "kept", "--stars", "keep"}));
     EXPECT_FALSE(fs::exists(folder / "kept/stars.csv"));
-    EXPECT_EQ(run({"compare", "stars.ppm", "kept/picture.exr", "--max-difference", "0"}).code, 0);
+    expect_success(run({"compare", "stars.ppm", "kept/picture.exr", "--max-difference", "0"}));
 }
 
 TEST_F(PrepareCommand, TakesStarsFromFitsBeforeItIsStretched) {
-    const RunResult result = run({"prepare", "stars.fits", "-o", "ready"});
-    ASSERT_EQ(result.code, 0) << result.err;
-    EXPECT_NE(result.out.find("9 taken away"), std::string::npos) << result.out;
+    const RunResult result = expect_success(run({"prepare", "stars.fits", "-o", "ready"}));
+    EXPECT_HAS(result.out, "9 taken away");
     EXPECT_NE(result.out.find("linear light, alpha"), std::string::npos)
         << "a pixel has no value: " << result.out;
-    ASSERT_EQ(run({"prepare", "stars.fits", "-o", "kept", "--stars", "keep", "--stretch", "linear"}).code, 0);
-    ASSERT_EQ(run({"prepare", "stars.fits", "-o", "log", "--stars", "keep", "--stretch", "log"}).code, 0);
+    expect_success(run({"prepare", "stars.fits", "-o", "kept", "--stars", "keep", "--stretch", "linear"}));
+    expect_success(run({"prepare", "stars.fits", "-o", "log", "--stars", "keep", "--stretch", "log"}));
     EXPECT_EQ(run({"compare", "kept/picture.exr", "log/picture.exr", "--max-difference", "0.01"}).code, 3);
 }
 
 TEST_F(PrepareCommand, SaturationAndThresholdAct) {
-    ASSERT_EQ(prepare({"-o", "saturated", "--saturation", "0.2"}).code, 0);
-    EXPECT_NE(text_of(folder / "saturated/stars.csv").find(",1\n"), std::string::npos);
-    ASSERT_EQ(prepare({"-o", "none", "--threshold", "1e6"}).code, 0);
+    expect_success(prepare({"-o", "saturated", "--saturation", "0.2"}));
+    EXPECT_HAS(text_of(folder / "saturated/stars.csv"), ",1\n");
+    expect_success(prepare({"-o", "none", "--threshold", "1e6"}));
     EXPECT_EQ(lines("none/stars.csv"), 2u);
 }
 
 TEST_F(PrepareCommand, TakesTheSkyOffAndSaysSo) {
-    ASSERT_EQ(prepare({"-o", "plane", "--background", "plane", "--stars", "keep"}).code, 0);
+    expect_success(prepare({"-o", "plane", "--background", "plane", "--stars", "keep"}));
     const nlohmann::json sky = json("plane/background.json");
     EXPECT_GT(sky.at("red").at(0).get<double>(), 0.04);
     EXPECT_GT(sky.at("red").at(1).get<double>(), 0.005) << "it is brighter at the right";
@@ -100,35 +93,30 @@ TEST_F(PrepareCommand, CutsAndSplits) {
     for (int y = 20; y < 40; ++y)
         for (int x = 6; x < 26; ++x) mask[mask.size() - 96 * 64 + y * 96 + x] = '\xff';
     write_text(folder / "mask.pgm", mask);
-    const RunResult cut = prepare({"-o", "cut", "--ellipse", "48,32,20,20", "--turn", "30", "--feather",
-                                   "0.5", "--alpha", "0,0.05", "--stars", "keep"});
-    ASSERT_EQ(cut.code, 0) << cut.err;
-    EXPECT_NE(cut.out.find("linear light, alpha"), std::string::npos) << cut.out;
-    ASSERT_EQ(prepare({"-o", "masked", "--mask", "mask.pgm", "--stars", "keep"}).code, 0);
-    ASSERT_EQ(prepare({"-o", "split", "--split", "mask.pgm", "--stars", "keep"}).code, 0);
-    EXPECT_EQ(run({"compare", "masked/picture.exr", "split/front.exr", "--max-difference", "0"}).code, 0);
+    const RunResult cut =
+        expect_success(prepare({"-o", "cut", "--ellipse", "48,32,20,20", "--turn", "30", "--feather", "0.5",
+                                "--alpha", "0,0.05", "--stars", "keep"}));
+    EXPECT_HAS(cut.out, "linear light, alpha");
+    expect_success(prepare({"-o", "masked", "--mask", "mask.pgm", "--stars", "keep"}));
+    expect_success(prepare({"-o", "split", "--split", "mask.pgm", "--stars", "keep"}));
+    expect_success(run({"compare", "masked/picture.exr", "split/front.exr", "--max-difference", "0"}));
     EXPECT_EQ(run({"compare", "split/picture.exr", "split/back.exr", "--max-difference", "0.05"}).code, 3);
-    ASSERT_EQ(prepare({"-o", "filled", "--fill", "mask.pgm", "--stars", "keep"}).code, 0);
-    const RunResult same =
-        run({"compare", "filled/picture.exr", "split/back.exr", "--max-difference", "1e-6"});
-    EXPECT_EQ(same.code, 0) << same.out;
+    expect_success(prepare({"-o", "filled", "--fill", "mask.pgm", "--stars", "keep"}));
+    expect_success(run({"compare", "filled/picture.exr", "split/back.exr", "--max-difference", "1e-6"}));
 }
 
 TEST_F(PrepareCommand, BringsThreeFiltersTogether) {
     write_text(folder / "r.fits", starry_fits(0.001));
     write_text(folder / "g.fits", starry_fits(0.003));
     write_text(folder / "small.ppm", "P6\n16 16\n255\n" + std::string(16 * 16 * 3, 'x'));
-    const auto three = [&](const std::string& g, const std::string& b, std::vector<std::string> more) {
-        more.insert(more.begin(), {"prepare", "--r", "r.fits", "--g", g, "--b", b, "--progress", "none"});
-        return run(more);
+    const auto three = [&](const std::string& g, const std::string& b, Words more) {
+        return run(joined({"prepare", "--r", "r.fits", "--g", g, "--b", b, "--progress", "none"}, more));
     };
-    ASSERT_EQ(three("r.fits", "r.fits", {"-o", "gray", "--stars", "keep"}).code, 0);
-    ASSERT_EQ(three("g.fits", "r.fits", {"-o", "scaled", "--stars", "keep"}).code, 0);
+    expect_success(three("r.fits", "r.fits", {"-o", "gray", "--stars", "keep"}));
+    expect_success(three("g.fits", "r.fits", {"-o", "scaled", "--stars", "keep"}));
     EXPECT_EQ(run({"compare", "gray/picture.exr", "scaled/picture.exr", "--max-difference", "0.05"}).code, 3);
-    ASSERT_EQ(three("r.fits", "r.fits",
-                    {"-o", "bent", "--stars", "keep", "--lupton-q", "20", "--lupton-stretch", "0.5"})
-                  .code,
-              0);
+    expect_success(three("r.fits", "r.fits",
+                         {"-o", "bent", "--stars", "keep", "--lupton-q", "20", "--lupton-stretch", "0.5"}));
     EXPECT_EQ(run({"compare", "gray/picture.exr", "bent/picture.exr", "--max-difference", "0.01"}).code, 3);
     expect_one_line(three("small.ppm", "r.fits", {"-o", "out"}), 2, "expected 96x64 px like r.fits");
     expect_one_line(three("r.fits", "r.fits", {"r.fits", "-o", "out"}), 2, "all three and no other picture");
@@ -138,7 +126,7 @@ TEST_F(PrepareCommand, BringsThreeFiltersTogether) {
 }
 
 TEST_F(PrepareCommand, RefusesWhatItShould) {
-    const auto refused = [&](std::vector<std::string> more, const std::string& message) {
+    const auto refused = [&](Words more, const std::string& message) {
         more.insert(more.end(), {"-o", "out", "--progress", "none"});
         expect_one_line(prepare(more), 2, message);
     };
@@ -167,7 +155,7 @@ TEST_F(PrepareCommand, RefusesWhatItShould) {
     write_text(folder / "mine/stars.csv", "mine");
     expect_one_line(prepare({"-o", "mine"}), 2, "--overwrite");
     EXPECT_EQ(text_of(folder / "mine/stars.csv"), "mine");
-    EXPECT_EQ(prepare({"-o", "mine", "--overwrite"}).code, 0);
+    expect_success(prepare({"-o", "mine", "--overwrite"}));
     EXPECT_EQ(lines("mine/stars.csv"), 11u);
     EXPECT_EQ(prepare({"-o", "/proc/astrosplat"}).code, 4);
 }
@@ -241,12 +229,11 @@ class PrepareAlign : public SceneTest {
     void expect_aligned(const Telescope& own, const Telescope& reference) const {
         write_text(folder / "own.fits", picture_by(own));
         write_text(folder / "reference.fits", picture_by(reference));
-        const RunResult result =
+        const RunResult result = expect_success(
             run({"prepare", "own.fits", "--align", "reference.fits", "-o", "out", "--overwrite", "--stars",
-                 "keep", "--stretch", "linear", "--white", "1000", "--black", "100"});
-        ASSERT_EQ(result.code, 0) << result.err;
+                 "keep", "--stretch", "linear", "--white", "1000", "--black", "100"}));
         const std::string size = fmt::format("{}x{} px", reference.width, reference.height);
-        EXPECT_NE(result.out.find(size), std::string::npos) << result.out;
+        EXPECT_HAS(result.out, size);
         const Image picture = load_linear_image(folder / "out/picture.exr");
         const double reach = 3.0 * star_sigma / reference.scale;
         int seen = 0;
@@ -280,10 +267,9 @@ TEST_F(PrepareAlign, WhatTheOtherDoesNotShowIsEmpty) {
     const Telescope small{100, 100, 0.00015, 10.0}, large{300, 300, 0.00015, 0.0};
     write_text(folder / "own.fits", picture_by(small));
     write_text(folder / "reference.fits", picture_by(large));
-    const RunResult result =
-        run({"prepare", "own.fits", "--align", "reference.fits", "-o", "out", "--stars", "keep"});
-    ASSERT_EQ(result.code, 0) << result.err;
-    EXPECT_NE(result.out.find("300x300 px, linear light, alpha"), std::string::npos) << result.out;
+    const RunResult result = expect_success(
+        run({"prepare", "own.fits", "--align", "reference.fits", "-o", "out", "--stars", "keep"}));
+    EXPECT_HAS(result.out, "300x300 px, linear light, alpha");
 }
 
 TEST_F(PrepareAlign, NeedsTheSkyOnBoth) {

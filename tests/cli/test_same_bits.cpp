@@ -53,25 +53,22 @@ rotate = [10.0, 20.0, 30.0]
 };
 
 TEST_F(SameBits, AnyNumberOfThreads) {
-    const std::vector<std::string> expected = hashes({"-t", "1"});
+    const Words expected = hashes({"-t", "1"});
     ASSERT_EQ(expected.size(), 3u);
     EXPECT_NE(expected[0], expected[1]) << "the frames must differ for this test to say anything";
     for (const char* threads : {"2", "3", "7"}) EXPECT_EQ(hashes({"-t", threads}), expected) << threads;
 }
 
 TEST_F(SameBits, WhateverVariantsTheCLibraryPicks) {
-    RunOptions plain;
-    plain.environment = {"GLIBC_TUNABLES=glibc.cpu.hwcaps=-AVX2,-FMA"};
-    EXPECT_EQ(hashes({}, plain), hashes({}));
+    EXPECT_EQ(hashes({}, {.environment = {"GLIBC_TUNABLES=glibc.cpu.hwcaps=-AVX2,-FMA"}}), hashes({}));
 }
 
 TEST_F(SameBits, AnyInstructionSet) {
-    const std::vector<std::string> expected = hashes({});
+    const Words expected = hashes({});
     std::set<std::string> tried = {json("stats.json").at("vector_target")};
     for (const std::string& target : vector_targets()) {
-        RunOptions options;
-        options.environment = {"ASTROSPLAT_VECTOR_TARGET=" + target};
-        EXPECT_EQ(hashes({"-v"}, options), expected) << target;
+        EXPECT_EQ(hashes({"-v"}, {.environment = {"ASTROSPLAT_VECTOR_TARGET=" + target}}), expected)
+            << target;
         EXPECT_EQ(json("stats.json").at("vector_target"), target) << "the target must really change";
         tried.insert(target);
     }
@@ -80,44 +77,37 @@ TEST_F(SameBits, AnyInstructionSet) {
 }
 
 TEST_F(SameBits, TheInstructionSetInUseIsNamed) {
-    RunOptions options;
-    options.environment = {"ASTROSPLAT_VECTOR_TARGET=sse2"};
-    const std::string said = batch({"-f", "1", "-v"}, options).err;
-    EXPECT_NE(said.find("vector target sse2\n"), std::string::npos) << said;
+    const std::string said = batch({"-f", "1", "-v"}, {.environment = {"ASTROSPLAT_VECTOR_TARGET=sse2"}}).err;
+    EXPECT_HAS(said, "vector target sse2\n");
 }
 
 TEST_F(SameBits, UnknownInstructionSetsAreRefusedWithTheChoices) {
-    RunOptions options;
-    options.environment = {"ASTROSPLAT_VECTOR_TARGET=mmx"};
-    const RunResult result = batch({}, options);
+    const RunResult result = batch({}, {.environment = {"ASTROSPLAT_VECTOR_TARGET=mmx"}});
     expect_one_line(result, 2, "ASTROSPLAT_VECTOR_TARGET: ");
-    EXPECT_NE(result.err.find("'mmx'"), std::string::npos) << result.err;
-    for (const std::string& target : vector_targets())
-        EXPECT_NE(result.err.find(target), std::string::npos) << result.err;
+    EXPECT_HAS(result.err, "'mmx'");
+    for (const std::string& target : vector_targets()) EXPECT_HAS(result.err, target);
     EXPECT_FALSE(fs::exists(folder / "frames"));
 }
 
 TEST_F(SameBits, AFrameAloneIsTheFrameInASequence) {
-    const std::vector<std::string> expected = hashes({});
+    const Words expected = hashes({});
     ASSERT_EQ(expected.size(), 3u);
-    EXPECT_EQ(hashes({"-f", "3"}), std::vector<std::string>{expected[2]});
-    EXPECT_EQ(hashes({"-f", "1-3x2"}), (std::vector<std::string>{expected[0], expected[2]}));
+    EXPECT_EQ(hashes({"-f", "3"}), Words{expected[2]});
+    EXPECT_EQ(hashes({"-f", "1-3x2"}), (Words{expected[0], expected[2]}));
 }
 
 TEST_F(SameBits, LittleMemory) { EXPECT_EQ(hashes({"--memory", "0.18"}), hashes({})); }
 
 TEST_F(SameBits, AnyLocale) {
-    RunOptions german;
-    german.environment = {"LC_ALL=de_DE.UTF-8"};
     if (run_program({"/bin/sh", "-c", "locale -a | grep -qi '^de_DE.utf'"}).code != 0) {
         GTEST_SKIP() << "the locale de_DE.UTF-8 is not installed";
     }
-    EXPECT_EQ(hashes({}, german), hashes({}));
+    EXPECT_EQ(hashes({}, {.environment = {"LC_ALL=de_DE.UTF-8"}}), hashes({}));
 }
 
 TEST_F(SameBits, ARegionIsACrop) {
-    ASSERT_EQ(batch({"-f", "1", "-o", "whole.tif"}).code, 0);
-    ASSERT_EQ(batch({"-f", "1", "-o", "part.tif", "--region", "13,7,41,29"}).code, 0);
+    expect_success(batch({"-f", "1", "-o", "whole.tif"}));
+    expect_success(batch({"-f", "1", "-o", "part.tif", "--region", "13,7,41,29"}));
     const Image whole = load_linear_image(folder / "whole.tif"),
                 part = load_linear_image(folder / "part.tif");
     ASSERT_EQ(part.width, 41);
@@ -151,11 +141,9 @@ const char* const three_lines =
 TEST_F(CameraFileBatch, GivesTheBitsOfItsKeyframes) {
     write_text(folder / "cam.chan", three_lines);
     write_still("file = \"cam.chan\"\n");
-    const std::vector<std::string> imported = hashes({});
-    RunOptions german;
-    german.environment = {"LC_ALL=de_DE.UTF-8"};
-    EXPECT_EQ(hashes({}, german), imported);
-    EXPECT_EQ(hashes({"-f", "3,2"}), (std::vector<std::string>{imported[1], imported[2]}));
+    const Words imported = hashes({});
+    EXPECT_EQ(hashes({}, {.environment = {"LC_ALL=de_DE.UTF-8"}}), imported);
+    EXPECT_EQ(hashes({"-f", "3,2"}), (Words{imported[1], imported[2]}));
     write_text(folder / "cam.csv",
                "frame,camera.position.x,camera.position.y,camera.position.z,camera.fov\n"
                "1,0,0,9,40\n2,0.5,-0.25,8,42.5\n3,1.5,0.25,7.5,50\n");
@@ -173,7 +161,7 @@ TEST_F(CameraFileBatch, GivesTheBitsOfItsKeyframes) {
 TEST_F(CameraFileBatch, AskingForNFramesGivesNFrames) {
     write_text(folder / "cam.chan", three_lines);
     write_still("file = \"cam.chan\"\n");
-    const std::vector<std::string> all = hashes({"-f", "-1-7"});
+    const Words all = hashes({"-f", "-1-7"});
     ASSERT_EQ(all.size(), 9u);
     EXPECT_EQ(all[0], all[2]) << "holds before the first";
     EXPECT_EQ(all[8], all[4]) << "and after the last";
@@ -183,27 +171,24 @@ TEST_F(CameraFileBatch, AskingForNFramesGivesNFrames) {
 TEST_F(CameraFileBatch, ResumeRendersOnlyWhatTheFileMoved) {
     write_text(folder / "cam.chan", three_lines);
     write_still("file = \"cam.chan\"\n");
-    ASSERT_EQ(batch().code, 0);
+    expect_success(batch());
     std::string moved = three_lines;
     moved.replace(moved.find("1.5"), 3, "2.5");
     write_text(folder / "cam.chan", moved);
-    const RunResult again = batch({"--resume", "--overwrite", "--progress", "plain"});
-    ASSERT_EQ(again.code, 0) << again.err;
+    const RunResult again = expect_success(batch({"--resume", "--overwrite", "--progress", "plain"}));
     EXPECT_EQ(again.err.find("saved frames/shot.0002.exr"), std::string::npos) << again.err;
-    EXPECT_NE(again.err.find("shot.0003.exr"), std::string::npos) << again.err;
+    EXPECT_HAS(again.err, "shot.0003.exr");
 }
 
 TEST_F(CameraFileBatch, TheSceneGivesItsCameraAway) {
-    const RunResult written = run({"camera", "scene.toml", "-o", "out ö.csv", "-f", "1-5"});
-    EXPECT_EQ(written.code, 0) << written.err;
+    const RunResult written = expect_success(run({"camera", "scene.toml", "-o", "out ö.csv", "-f", "1-5"}));
     EXPECT_EQ(written.out, "out ö.csv: 5 frames\n");
     EXPECT_EQ(line_count(text_of(folder / "out ö.csv")), 6);
     expect_one_line(run({"camera", "scene.toml", "-o", "out ö.csv"}), 2, "exists already");
     expect_one_line(run({"camera", "scene.toml", "-o", "out.abc"}), 2, ".chan, .csv, .gltf or .usda");
-    RunOptions german;
-    german.environment = {"LC_ALL=de_DE.UTF-8"};
     const std::string before = text_of(folder / "out ö.csv");
-    EXPECT_EQ(run({"camera", "scene.toml", "-o", "out ö.csv", "-f", "1-5", "--overwrite"}, german).code, 0);
+    expect_success(run({"camera", "scene.toml", "-o", "out ö.csv", "-f", "1-5", "--overwrite"},
+                       {.environment = {"LC_ALL=de_DE.UTF-8"}}));
     EXPECT_EQ(text_of(folder / "out ö.csv"), before);
 }
 

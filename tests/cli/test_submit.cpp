@@ -6,8 +6,6 @@
 namespace astrosplat::test {
 namespace {
 
-using Words = std::vector<std::string>;
-
 Words split_at_nul(const std::string& text) {
     Words words;
     for (std::size_t begin = 0, end; (end = text.find('\0', begin)) != std::string::npos; begin = end + 1)
@@ -41,8 +39,7 @@ echo "$n;cluster"
         return options;
     }
     RunResult submit(Words more = {}) const {
-        more.insert(more.begin(), {"--submit", "slurm", "scene.toml", "-t", "1"});
-        return run(more, with_tools());
+        return run(joined({"--submit", "slurm", "scene.toml", "-t", "1"}, more), with_tools());
     }
     /// Words of the n-th call of sbatch, behind the folder it was called in.
     Words sbatch_call(int n) const { return split_at_nul(text_of(folder / fmt::format("bin/sbatch-{}", n))); }
@@ -61,8 +58,8 @@ echo "$n;cluster"
 };
 
 TEST_F(Submit, ADryRunPrintsBothScriptsAndDoesNothing) {
-    const RunResult result = submit({"--dry-run", "-f", "1-5", "--chunk", "2", "--partition", "long,short"});
-    EXPECT_EQ(result.code, 0) << result.err;
+    const RunResult result =
+        expect_success(submit({"--dry-run", "-f", "1-5", "--chunk", "2", "--partition", "long,short"}));
     EXPECT_EQ(chunks(result.out), "1-2\n3-4\n5");
     EXPECT_EQ(names_in("frames"), std::set<std::string>{});
     EXPECT_FALSE(fs::exists(folder / "bin/jobs"));
@@ -80,8 +77,7 @@ TEST_F(Submit, ADryRunPrintsBothScriptsAndDoesNothing) {
 }
 
 TEST_F(Submit, TheArrayWaitsForTheSets) {
-    const RunResult result = submit({"-q"});
-    ASSERT_EQ(result.code, 0) << result.err;
+    const RunResult result = expect_success(submit({"-q"}));
     EXPECT_HAS(result.out, "3 frames in 1 task submitted as job 2, which waits for the sets of job 1\n");
     const std::string place = (folder / "frames/slurm/0001").string();
     EXPECT_EQ(sbatch_call(1), (Words{place, "--parsable", "sets.sh"}));
@@ -92,23 +88,19 @@ TEST_F(Submit, TheArrayWaitsForTheSets) {
 }
 
 TEST_F(Submit, CoversWhatIsMissingAndNoMore) {
-    ASSERT_EQ(batch({"-q", "-f", "1-12"}).code, 0);
+    expect_success(batch({"-q", "-f", "1-12"}));
     for (const int missing : {2, 3, 4, 7, 9, 11})
         fs::remove(folder / fmt::format("frames/shot.{:04}.exr", missing));
     write_text(folder / "frames/shot.0012.exr", "");
-    ASSERT_EQ(submit({"-f", "1-12", "--chunk", "4"}).code, 0);
+    expect_success(submit({"-f", "1-12", "--chunk", "4"}));
     EXPECT_EQ(chunks(script("frames.sh")), "2-4,7\n9,11-12");
     // Both scripts are plain runs of the program.
     for (const char* task : {"0", "1"}) {
-        RunOptions options;
-        options.environment = {std::string("SLURM_ARRAY_TASK_ID=") + task};
-        const RunResult result =
-            run_program({"/bin/bash", (folder / "frames/slurm/0001/frames.sh").string()}, options);
-        EXPECT_EQ(result.code, 0) << result.err;
+        expect_success(run_program({"/bin/bash", (folder / "frames/slurm/0001/frames.sh").string()},
+                                   {.environment = {std::string("SLURM_ARRAY_TASK_ID=") + task}}));
     }
-    EXPECT_EQ(run({"status", "scene.toml", "-f", "1-12"}).code, 0);
-    const RunResult again = submit({"-f", "1-12"});
-    EXPECT_EQ(again.code, 0) << again.err;
+    expect_success(run({"status", "scene.toml", "-f", "1-12"}));
+    const RunResult again = expect_success(submit({"-f", "1-12"}));
     EXPECT_EQ(again.out, "no frame is missing: nothing to submit\n");
     EXPECT_EQ(names_in("frames/slurm"), std::set<std::string>{"0001"});
 }
@@ -119,19 +111,19 @@ TEST_F(Submit, FramesMissingForOneEyeComeOnce) {
         more.insert(more.end(), pair.begin(), pair.end());
         return more;
     };
-    ASSERT_EQ(batch(with({"-q"})).code, 0);
+    expect_success(batch(with({"-q"})));
     for (const char* missing : {"left/shot.02.exr", "right/shot.02.exr", "right/shot.04.exr"})
         fs::remove(folder / missing);
-    ASSERT_EQ(submit(with({})).code, 0);
+    expect_success(submit(with({})));
     EXPECT_EQ(chunks(text_of(folder / "slurm/0001/frames.sh")), "2,4")
         << "in the folder that both eyes share";
 }
 
 TEST_F(Submit, FramesOfOtherSettingsAreReplacedOnlyWhenAsked) {
-    ASSERT_EQ(batch({"-q", "-f", "2"}).code, 0);
+    expect_success(batch({"-q", "-f", "2"}));
     const Words other = {"--set", "layer.stars.render.opacity=0.5"};
     expect_nothing_submitted(submit(other), "shot.0002.exr: holds a frame of other settings");
-    ASSERT_EQ(submit({other[0], other[1], "--overwrite"}).code, 0);
+    expect_success(submit({other[0], other[1], "--overwrite"}));
     EXPECT_EQ(chunks(script("frames.sh")), "1-3");
     EXPECT_HAS(script("frames.sh"), " --overwrite ");
     EXPECT_EQ(script("sets.sh").find("--overwrite"), std::string::npos);
@@ -155,12 +147,11 @@ TEST_P(SubmitNames, ArriveAsTheyAre) {
         "--set=provenance.title=\"" + std::string("$(touch x) `x` 'a' # %d \\\\ ü") + "\"";
     RunOptions options = with_tools();
     options.folder = place;
-    const RunResult result = run_program(
+    expect_success(run_program(
         {(place / "astrosplat").string(), "--submit", "slurm", "./" + GetParam() + ".toml", "--frames=-2-1",
          "--chunk=3", "-o", GetParam() + "/s.####.exr", "--resolution=50%", "--layers=dust,stars",
          "--memory=2", "--region=1,2,10,11", title, "--threads=1", "--cache", GetParam() + ".cache", "-q"},
-        options);
-    ASSERT_EQ(result.code, 0) << result.err;
+        options));
     const fs::path frames = place / GetParam(), scripts = frames / "slurm/0001";
     EXPECT_EQ(sbatch_call(1).front(), scripts.string());
     write_program(place / "astrosplat", "printf '%s\\0' \"$PWD\" \"$@\"; echo said >&2\n");
@@ -179,8 +170,7 @@ TEST_P(SubmitNames, ArriveAsTheyAre) {
         RunOptions task;
         task.folder = scripts;
         task.environment = {"SLURM_JOB_ID=1", "SLURM_ARRAY_JOB_ID=2", "SLURM_ARRAY_TASK_ID=1", "LC_ALL=C"};
-        const RunResult run = run_program({"/bin/bash", script}, task);
-        EXPECT_EQ(run.code, 0) << run.err;
+        const RunResult run = expect_success(run_program({"/bin/bash", script}, task));
         // In names of logs Slurm replaces what follows a %: there the script writes its log.
         const bool own_log = GetParam().find_first_of("%\\") != std::string::npos;
         EXPECT_EQ(fs::exists(scripts / log), own_log);
@@ -200,17 +190,15 @@ INSTANTIATE_TEST_SUITE_P(Odd, SubmitNames, testing::Values("plain", odd, "100% a
                          [](const auto& one) { return std::to_string(one.index); });
 
 TEST_F(Submit, WhatIsInTheQueueIsNotSubmittedAgain) {
-    ASSERT_EQ(submit({"-f", "1-8", "--chunk", "2"}).code, 0);  // jobs 1 and 2
+    expect_success(submit({"-f", "1-8", "--chunk", "2"}));  // jobs 1 and 2
     write_text(folder / "bin/queue",
                "1 N/A COMPLETED astrosplat-scene-sets\n2 0 COMPLETED astrosplat-scene\n2 1 FAILED "
                "astrosplat-scene\n2 2 RUNNING astrosplat-scene\n2 3 PENDING astrosplat-scene\n"
                "2 1 RUNNING somebody-else\n");
-    const RunResult second = submit({"-f", "1-9"});
-    EXPECT_EQ(second.code, 0) << second.err;
+    const RunResult second = expect_success(submit({"-f", "1-9"}));
     EXPECT_HAS(second.out, "4 frames in the queue already, as job 2\n");
     EXPECT_EQ(chunks(script("frames.sh", 2)), "1-4,9");
-    const RunResult third = submit({"-f", "5-8"});
-    EXPECT_EQ(third.code, 0) << third.err;
+    const RunResult third = expect_success(submit({"-f", "5-8"}));
     EXPECT_HAS(third.out, "no frame is missing that is not in the queue: nothing to submit\n");
     const RunResult other = submit({"-f", "9", "--set", "layer.stars.render.opacity=0.5"});
     expect_one_line(other, 2, "job 2 still makes these frames with other options");
@@ -220,12 +208,9 @@ TEST_F(Submit, WhatIsInTheQueueIsNotSubmittedAgain) {
 }
 
 TEST_F(Submit, StatusTellsTheQueue) {
-    const auto status = [&](Words more) {
-        more.insert(more.begin(), {"status", "scene.toml"});
-        return run(more, with_tools());
-    };
+    const auto status = [&](Words more) { return run(joined({"status", "scene.toml"}, more), with_tools()); };
     EXPECT_EQ(status({}).out.find("queue"), std::string::npos);
-    ASSERT_EQ(submit({"--chunk", "1"}).code, 0);
+    expect_success(submit({"--chunk", "1"}));
     EXPECT_HAS(status({}).out, "\nqueue job 2, 3 tasks: over\n");
     write_text(
         folder / "bin/queue",
@@ -282,12 +267,11 @@ TEST_F(Submit, SetsOnlyFillsTheCacheAndRendersNothing) {
     write_text(folder / "scene.toml",
                "astrosplat = 1\n[output]\nresolution = [32, 24]\npath = \"f.##.exr\"\n" +
                    layer("columns", "voxel_size = 0.2\n") + layer("bodies", "structure.kind = \"disk\"\n"));
-    const RunResult result = batch({"--sets-only"});
-    EXPECT_EQ(result.code, 0) << result.err;
+    const RunResult result = expect_success(batch({"--sets-only"}));
     EXPECT_EQ(result.out, "");
     EXPECT_FALSE(fs::exists(folder / "f.01.exr"));
     EXPECT_HAS(result.err, "layer columns: ");
-    ASSERT_EQ(batch({"-q", "-f", "1", "--stats", "stats.json"}).code, 0);
+    expect_success(batch({"-q", "-f", "1", "--stats", "stats.json"}));
     const nlohmann::json stats = json("stats.json");
     EXPECT_EQ(stats.at("layers").size(), 2u);
     for (const auto& one : stats.at("layers")) EXPECT_TRUE(one.at("cached")) << one;

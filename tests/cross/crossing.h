@@ -3,12 +3,6 @@
 // pairs of features meet in it, so that a test can prove that all of them do.
 #pragma once
 
-#include <cstdint>
-#include <filesystem>
-#include <string>
-#include <utility>
-#include <vector>
-
 #include "camera/camera.h"
 #include "core/text.h"
 #include "render/frame.h"

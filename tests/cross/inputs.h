@@ -2,9 +2,6 @@
 // catalogues, a camera's path and pictures of the sky. And a folder of sets that all of them share.
 #pragma once
 
-#include <filesystem>
-#include <string>
-
 #include "sets/kept.h"
 
 namespace astrosplat::test {

@@ -2,11 +2,6 @@
 // by the window, and what a blurred frame is the mean of.
 #pragma once
 
-#include <filesystem>
-#include <memory>
-#include <string>
-#include <vector>
-
 #include "cross/crossing.h"
 #include "render/frame.h"
 #include "scene/load.h"

@@ -1,8 +1,5 @@
 // libFuzzer's entry for the reader that ASTROSPLAT_READER names: InputError is the answer to bad input,
 // everything else reaches the fuzzer.
-#include <cstddef>
-#include <cstdint>
-#include <string_view>
 
 #include "core/error.h"
 #include "core/log.h"

@@ -2,11 +2,7 @@
 // else. Runs in normal builds and, where it bites hardest, under the sanitizers.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cctype>
-#include <cstdint>
-#include <string>
-#include <string_view>
 
 #include "core/error.h"
 #include "fuzz/targets.h"
@@ -120,7 +116,7 @@ TEST_P(Replay, SeedsAreRead) {
 TEST_P(Replay, DamageIsAnsweredWithOneLine) {
     constexpr std::uint32_t mutations = 600;
     int refused = 0;
-    for (const std::string& seed : GetParam().seeds()) {
+    for (const std::string& seed : GetParam().seeds())
         for (std::uint32_t number = 0; number < mutations; ++number) {
             SCOPED_TRACE("mutation " + std::to_string(number));
             try {
@@ -134,7 +130,6 @@ TEST_P(Replay, DamageIsAnsweredWithOneLine) {
                 ADD_FAILURE() << "not an InputError: " << error.what();
             }
         }
-    }
     EXPECT_EQ(refused > 0, GetParam().refuses);
 }
 

@@ -1,5 +1,4 @@
 // Seeds and checks of the fuzzed readers of a scene's texts: the scene itself, and tables of its keyframes.
-#include <cmath>
 
 #include "fuzz/targets.h"
 #include "scene/camera_file.h"

@@ -2,9 +2,6 @@
 
 #include <zlib.h>
 
-#include <algorithm>
-#include <cmath>
-#include <filesystem>
 #include <glm/geometric.hpp>
 
 #include "camera_files/camera_track.h"

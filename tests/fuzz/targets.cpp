@@ -3,11 +3,7 @@
 
 #include <fitsio.h>
 
-#include <algorithm>
-#include <cmath>
-#include <cstdint>
 #include <cstring>
-#include <filesystem>
 
 #include "core/hash.h"
 #include "fuzz/seeds.h"
@@ -20,8 +16,6 @@
 namespace astrosplat::fuzz {
 
 namespace {
-
-namespace fs = std::filesystem;
 
 bool finite(float v) { return std::isfinite(v); }
 bool finite(const glm::vec2& v) { return finite(v.x) && finite(v.y); }

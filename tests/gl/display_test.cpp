@@ -3,9 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <array>
-#include <cmath>
-
 #include "gl/gl_fixture.h"
 #include "gl/objects.h"
 #include "output/format.h"
@@ -47,22 +44,31 @@ class DisplayPicture : public GlTest {
         display.draw(settings, columns, rows);
         return {display.read(), columns};
     }
-    static DisplaySettings whole(const ImageTexture& a) {
+    /// All of the picture, and of another that it may be compared with.
+    DisplaySettings whole(const Image& image) {
+        a.emplace().upload(image);
         DisplaySettings settings;
-        settings.a = a.handle();
+        settings.a = a->handle();
         settings.width = width;
         settings.height = height;
         return settings;
     }
+    DisplaySettings compared(const Image& image, const Image& other) {
+        DisplaySettings settings = whole(image);
+        b.emplace().upload(other);
+        settings.b = b->handle();
+        return settings;
+    }
+    static Image grey(float level) { return make_image(width, height, 4, level); }
+
+    std::optional<ImageTexture> a, b;
 };
 
 TEST_F(DisplayPicture, EveryViewAsTheWriter) {
     const Image image = ramp(width, height);
-    ImageTexture texture;
-    texture.upload(image);
     for (const View view : {View::linear, View::srgb, View::soft})
         for (const float stops : {0.0f, 1.5f, -2.0f}) {
-            DisplaySettings settings = whole(texture);
+            DisplaySettings settings = whole(image);
             settings.view = view;
             settings.exposure = stops;
             const Shown shown = show(settings);
@@ -83,12 +89,10 @@ TEST_F(DisplayPicture, ViewsOfAConfigurationAsTheWriter) {
     Image image = ramp(width, height);
     for (float& value : image.pixels)
         if (std::isnan(value)) value = 0.0f;  // a matrix spreads it to all three
-    ImageTexture texture;
-    texture.upload(image);
     Display display;
     for (const char* view : {"Film", "Negative", "Plain"})
         for (const float stops : {0.0f, 1.5f}) {
-            DisplaySettings settings = whole(texture);
+            DisplaySettings settings = whole(image);
             settings.ocio = display_transform({config, "Screen", view, ""});
             settings.exposure = stops;
             display.draw(settings, width, height);
@@ -112,11 +116,8 @@ TEST_F(DisplayPicture, ViewsOfAConfigurationAsTheWriter) {
 TEST_F(DisplayPicture, AConfigurationsViewIsNotThatOfAReference) {
     const TempFolder folder;
     const std::filesystem::path config = test::write_color_config(folder.path());
-    ImageTexture texture;
-    texture.upload(make_image(width, height, 4, 0.25f));
-    DisplaySettings settings = whole(texture);
+    DisplaySettings settings = compared(grey(0.25f), grey(0.25f));
     settings.ocio = display_transform({config, "Screen", "Film", ""});
-    settings.b = texture.handle();
     settings.b_is_display = true;
     settings.mode = Mode::wipe;
     const Shown shown = show(settings);
@@ -128,9 +129,7 @@ TEST_F(DisplayPicture, AConfigurationsViewIsNotThatOfAReference) {
 
 TEST_F(DisplayPicture, DithersAsTheWriter) {
     const Image image = ramp(width, height);
-    ImageTexture texture;
-    texture.upload(image);
-    DisplaySettings settings = whole(texture);
+    DisplaySettings settings = whole(image);
     settings.dither = true;
     const Shown shown = show(settings);
     FrameFormat format;
@@ -151,10 +150,7 @@ TEST_F(DisplayPicture, DithersAsTheWriter) {
 TEST_F(DisplayPicture, LiesWhereItIsPutWithBackgroundAround) {
     Image image = make_image(4, 2, 4, 1.0f);
     image.at(0, 0)[1] = 0.0f;  // upper left: magenta
-    ImageTexture texture;
-    texture.upload(image);
-    DisplaySettings settings;
-    settings.a = texture.handle();
+    DisplaySettings settings = whole(image);
     settings.view = View::linear;
     settings.x = 10, settings.y = 20;
     settings.width = 40, settings.height = 20;
@@ -178,10 +174,7 @@ TEST_F(DisplayPicture, LiesWhereItIsPutWithBackgroundAround) {
 
 TEST_F(DisplayPicture, LargerThanTheTargetItIsCut) {
     const Image image = ramp(2 * width, 2 * height);
-    ImageTexture texture;
-    texture.upload(image);
-    DisplaySettings settings;
-    settings.a = texture.handle();
+    DisplaySettings settings = whole(image);
     settings.x = -30, settings.y = -17;
     settings.width = 2 * width, settings.height = 2 * height;
     const Shown shown = show(settings);
@@ -194,20 +187,14 @@ TEST_F(DisplayPicture, ShrunkItIsTheMean) {
     Image image = make_image(8 * width, 8 * height, 4, 0.0f);
     for (std::int64_t y = 0; y < image.height; ++y)
         for (std::int64_t x = 0; x < image.width; ++x) image.at(x, y)[0] = (x + y) % 2 == 0 ? 1.0f : 0.0f;
-    ImageTexture texture;
-    texture.upload(image);
-    DisplaySettings settings = whole(texture);
+    DisplaySettings settings = whole(image);
     settings.view = View::linear;
     const Shown shown = show(settings);
     for (int x = 0; x < width; ++x) EXPECT_NEAR(int(shown.at(x, 11)[0]), 128, 1);
 }
 
 TEST_F(DisplayPicture, WipeShowsAToTheLeftAndBToTheRightOfALine) {
-    ImageTexture a, b;
-    a.upload(make_image(width, height, 4, 0.25f));
-    b.upload(make_image(width, height, 4, 0.75f));
-    DisplaySettings settings = whole(a);
-    settings.b = b.handle();
+    DisplaySettings settings = compared(grey(0.25f), grey(0.75f));
     settings.view = View::linear;
     settings.mode = Mode::wipe;
     settings.wipe = 0.25f;
@@ -225,11 +212,7 @@ TEST_F(DisplayPicture, WipeShowsAToTheLeftAndBToTheRightOfALine) {
 }
 
 TEST_F(DisplayPicture, DifferenceIsOfDisplayValuesTimesGainAboutGrey) {
-    ImageTexture a, b;
-    a.upload(make_image(width, height, 4, 0.5f));
-    b.upload(make_image(width, height, 4, 0.7f));
-    DisplaySettings settings = whole(a);
-    settings.b = b.handle();
+    DisplaySettings settings = compared(grey(0.5f), grey(0.7f));
     settings.mode = Mode::difference;
     settings.difference_gain = 2.0f;
     const float srgb_half = apply_view(OutputParams::View::srgb, 0.5f);
@@ -238,7 +221,7 @@ TEST_F(DisplayPicture, DifferenceIsOfDisplayValuesTimesGainAboutGrey) {
     settings.b_is_display = true;
     settings.difference_gain = 10.0f;
     EXPECT_NEAR(float(show(settings).at(7, 7)[1]), 127.5f + 1275.0f * (srgb_half - 0.7f), 0.6f);
-    settings.b = a.handle();
+    settings.b = a->handle();
     settings.b_is_display = false;
     EXPECT_EQ(int(show(settings).at(7, 7)[1]), 128) << "equal pictures are grey, not black";
 }
@@ -248,12 +231,8 @@ TEST_F(DisplayPicture, APlacedPictureLiesOverAWhereItIsPut) {
     Image picture = make_image(2, 2, 4, 0.0f);
     picture.at(0, 0)[0] = 1.0f;  // upper left: red
     picture.at(1, 0)[1] = 1.0f;  // upper right: green
-    ImageTexture a, b;
-    a.upload(make_image(width, height, 4, 0.25f));
-    b.upload(picture);
-    DisplaySettings settings = whole(a);
+    DisplaySettings settings = compared(grey(0.25f), picture);
     settings.view = View::linear;
-    settings.b = b.handle();
     settings.b_is_display = true;
     settings.mode = Mode::b;
     settings.b_place = PicturePlace{{20.0, 50.0}, {0.0, -40.0}, {40.0, 0.0}};
@@ -274,13 +253,9 @@ TEST_F(DisplayPicture, APlacedPictureLiesOverAWhereItIsPut) {
 }
 
 TEST_F(DisplayPicture, WhatIsComparedCanBeReadWithTheMaskOfB) {
-    ImageTexture a, b;
-    a.upload(make_image(width, height, 4, 0.5f));
-    b.upload(make_image(8, 8, 4, 0.75f));
-    DisplaySettings settings = whole(a);
+    DisplaySettings settings = compared(grey(0.5f), make_image(8, 8, 4, 0.75f));
     settings.view = View::linear;
     settings.x = 10.0f;
-    settings.b = b.handle();
     settings.b_is_display = true;
     settings.b_opacity = 0.1f;
     settings.b_place = PicturePlace{{20.0, 0.0}, {16.0, 0.0}, {0.0, 16.0}};
@@ -301,12 +276,9 @@ TEST_F(DisplayPicture, WhatIsComparedCanBeReadWithTheMaskOfB) {
 }
 
 TEST_F(DisplayPicture, ATileAloneIsReplaced) {
-    Image image = make_image(width, height, 4, 0.0f);
-    ImageTexture texture;
-    texture.upload(image);
-    image = make_image(width, height, 4, 1.0f);
-    texture.upload(image, {16, 8, 32, 24});
-    const Shown shown = show(whole(texture));
+    const DisplaySettings settings = whole(grey(0.0f));
+    a->upload(grey(1.0f), {16, 8, 32, 24});
+    const Shown shown = show(settings);
     EXPECT_EQ(int(shown.at(15, 8)[0]), 0);
     EXPECT_EQ(int(shown.at(16, 8)[0]), 255);
     EXPECT_EQ(int(shown.at(47, 31)[0]), 255);

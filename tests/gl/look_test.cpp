@@ -2,9 +2,7 @@
 // reads.
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <cstring>
-#include <functional>
 #include <map>
 #include <unordered_map>
 

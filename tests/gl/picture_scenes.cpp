@@ -1,8 +1,5 @@
 #include "gl/picture_scenes.h"
 
-#include <algorithm>
-#include <cmath>
-
 #include "core/real.h"
 #include "core/shared_maths.h"
 #include "output/format.h"

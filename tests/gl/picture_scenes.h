@@ -1,10 +1,6 @@
 // Small sets of splats and cameras that preview and offline renderer both draw.
 #pragma once
 
-#include <cstdint>
-#include <memory>
-#include <vector>
-
 #include "camera/camera.h"
 #include "gl/preview.h"
 

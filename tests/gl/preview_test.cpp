@@ -49,6 +49,11 @@ class PreviewPicture : public GlTest {
         EXPECT_LE(likeness.difference_999, 1.0 / 255.0);
         EXPECT_NEAR(likeness.brightness, 1.0, 2e-3);
     }
+    /// By the perspective camera.
+    void expect_like_offline(const std::vector<PreviewLayer>& layers,
+                             const Environment* environment = nullptr) {
+        expect_like_offline(layers, test::perspective_camera(width, height), environment);
+    }
 };
 
 LayerRender render_with(Falloff::Shape shape, Blend blend = Blend::over) {
@@ -62,8 +67,7 @@ TEST_F(PreviewPicture, EveryFalloff) {
     for (const auto shape : test::all_shapes) {
         SCOPED_TRACE(static_cast<int>(shape));
         for (float radius : {0.002f, 0.03f, 0.15f})
-            expect_like_offline({test::cloud_layer(3000, 5, radius, render_with(shape))},
-                                test::perspective_camera(width, height));
+            expect_like_offline({test::cloud_layer(3000, 5, radius, render_with(shape))});
     }
 }
 
@@ -75,8 +79,7 @@ TEST_F(PreviewPicture, SharpFalloffsAndCores) {
     LayerRender core = render_with(Falloff::Shape::trapezoid);
     core.falloff.core = 0.9f;
     expect_like_offline({test::cloud_layer(1500, 9, 0.1f, sharp), test::cloud_layer(1500, 5, 0.1f, spike),
-                         test::cloud_layer(1500, 4, 0.1f, core)},
-                        test::perspective_camera(width, height));
+                         test::cloud_layer(1500, 4, 0.1f, core)});
 }
 
 TEST_F(PreviewPicture, EveryBlendMergedAndIsolated) {
@@ -91,7 +94,7 @@ TEST_F(PreviewPicture, EveryBlendMergedAndIsolated) {
                 test::cloud_layer(1500, 9, 0.06f, render_with(Falloff::Shape::linear)),
                 test::cloud_layer(1500, 5, 0.06f, render),
                 test::cloud_layer(500, 7, 0.1f, render_with(Falloff::Shape::constant))};
-            expect_like_offline(layers, test::perspective_camera(width, height));
+            expect_like_offline(layers);
         }
     }
 }
@@ -104,7 +107,7 @@ TEST_F(PreviewPicture, DustAmongLight) {
         set->absorbs = true;
         dusty.set = set;
         dusty.layer.absorbs = true;
-        expect_like_offline({dusty}, test::perspective_camera(width, height));
+        expect_like_offline({dusty});
     }
 }
 
@@ -112,11 +115,9 @@ TEST_F(PreviewPicture, LightAboveOneUnderScreen) {
     PreviewLayer bright =
         test::cloud_layer(1500, 5, 0.06f, render_with(Falloff::Shape::gaussian, Blend::screen));
     bright.look.grade.gain = 5.0f;
-    expect_like_offline({test::cloud_layer(1500, 9, 0.06f, render_with(Falloff::Shape::linear)), bright},
-                        test::perspective_camera(width, height));
+    expect_like_offline({test::cloud_layer(1500, 9, 0.06f, render_with(Falloff::Shape::linear)), bright});
     bright.layer.render.isolate = true;
-    expect_like_offline({test::cloud_layer(1500, 9, 0.06f, render_with(Falloff::Shape::linear)), bright},
-                        test::perspective_camera(width, height));
+    expect_like_offline({test::cloud_layer(1500, 9, 0.06f, render_with(Falloff::Shape::linear)), bright});
 }
 
 TEST_F(PreviewPicture, HoldoutsMergedAndIsolatedWithAndWithoutEnvironment) {
@@ -128,20 +129,19 @@ TEST_F(PreviewPicture, HoldoutsMergedAndIsolatedWithAndWithoutEnvironment) {
         const std::vector<PreviewLayer> layers = {
             test::cloud_layer(1500, 9, 0.06f, render_with(Falloff::Shape::linear)),
             test::cloud_layer(1500, 5, 0.08f, holds)};
-        expect_like_offline(layers, test::perspective_camera(width, height));
-        expect_like_offline(layers, test::perspective_camera(width, height), &sky);
+        expect_like_offline(layers);
+        expect_like_offline(layers, &sky);
     }
 }
 
 TEST_F(PreviewPicture, EnvironmentsOfOneAndOfSixFaces) {
     for (int faces : {1, 6}) {
         const Environment sky = test::small_sky(faces);
-        expect_like_offline({}, test::perspective_camera(width, height), &sky);
+        expect_like_offline({}, &sky);
         expect_like_offline({test::cloud_layer(800, 5, 0.08f, render_with(Falloff::Shape::gaussian))},
                             test::orthographic_camera(width, height), &sky);
         expect_like_offline(
-            {test::cloud_layer(800, 5, 0.08f, render_with(Falloff::Shape::gaussian, Blend::add))},
-            test::perspective_camera(width, height), &sky);
+            {test::cloud_layer(800, 5, 0.08f, render_with(Falloff::Shape::gaussian, Blend::add))}, &sky);
     }
 }
 
@@ -273,9 +273,9 @@ TEST_F(PreviewPicture, SplatsOfACutAreTooWideForPoints) {
 }
 
 TEST_F(PreviewPicture, NothingAndEmptyLayers) {
-    expect_like_offline({}, test::perspective_camera(width, height));
+    expect_like_offline({});
     PreviewLayer empty = test::cloud_layer(0, 9, 0.1f, render_with(Falloff::Shape::gaussian));
-    expect_like_offline({empty}, test::perspective_camera(width, height));
+    expect_like_offline({empty});
 }
 
 TEST_F(PreviewPicture, ChangesOfLookLayersAndCameraAllArrive) {

@@ -2,12 +2,11 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
-#include <string>
-#include <vector>
 
 #include "gl/gl_fixture.h"
 #include "gl/objects.h"
 #include "gl/passes.h"
+#include "support/errors.h"
 #include "support/temp_folder.h"
 
 namespace astrosplat {
@@ -28,15 +27,11 @@ TEST_F(Programs, AContextSaysWhatDraws) {
 }
 
 TEST_F(Programs, AnErrorNamesOurFileAndLine) {
-    try {
-        const GlProgram program(
-            {{"VIEW no_such_view"}, {"screen_vertex.glsl"}, {"display_fragment.glsl"}, {}});
-        FAIL() << "compiled";
-    } catch (const std::runtime_error& error) {
-        EXPECT_NE(std::string(error.what()).find("display_fragment.glsl:"), std::string::npos)
-            << error.what();
-        EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos) << error.what();
-    }
+    const std::string error = message_of<std::runtime_error>([] {
+        GlProgram({{"VIEW no_such_view"}, {"screen_vertex.glsl"}, {"display_fragment.glsl"}, {}});
+    });
+    EXPECT_HAS(error, "display_fragment.glsl:");
+    EXPECT_EQ(error.find('\n'), std::string::npos) << error;
 }
 
 TEST(ReadableLog, DriversCountStringsInTheirOwnWays) {
@@ -55,12 +50,8 @@ TEST(ShaderText, UnknownNamesAreOurMistake) {
 void* no_function(const char*) { return nullptr; }
 
 TEST(Context, ADriverWithoutFunctionsIsOneLine) {
-    try {
-        load_gl(reinterpret_cast<GlLoader>(&no_function));
-        FAIL() << "loaded";
-    } catch (const std::runtime_error& error) {
-        EXPECT_STREQ(error.what(), "no OpenGL 4.1 context can be had: the driver's functions do not load");
-    }
+    EXPECT_EQ(message_of<std::runtime_error>([] { load_gl(reinterpret_cast<GlLoader>(&no_function)); }),
+              "no OpenGL 4.1 context can be had: the driver's functions do not load");
 }
 
 // The shaders are GLSL 4.10 for the reference compiler too, which takes less than Mesa does.

@@ -1,7 +1,6 @@
 // The file dialog: what it lists and completes, and its questions.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <set>
 #include <sstream>
 
@@ -14,8 +13,6 @@
 
 namespace astrosplat {
 namespace {
-
-namespace fs = std::filesystem;
 
 std::vector<std::string> names(const std::vector<FileEntry>& entries) {
     std::vector<std::string> list;
@@ -169,22 +166,12 @@ class FileDialogTest : public testing::Test {
         window.tap('A', true);
         window.type(path);
     }
-    void begin(const std::string& command) {
-        window.choose(command);
-        window.frame(2);
-    }
+    void begin(const std::string& command) { window.choose(command); }
     /// The dialog of a command, led to a file or folder by its path.
     void begin_at(const std::string& command, const std::filesystem::path& place) {
         begin(command);
         type_path(place.string());
         window.tap(key_code::enter);
-        window.frame(2);
-    }
-    /// Where the one command that came leads.
-    fs::path taken() {
-        const Commands commands = window.take_commands();
-        EXPECT_EQ(commands.size(), 1U);
-        return commands.empty() ? fs::path() : commands[0].path;
     }
     TempFolder folder;
     TestWindow window;
@@ -195,14 +182,10 @@ TEST_F(FileDialogTest, TabCompletesAndEnterGoesIntoAFolder) {
     type_path(folder.path().string() + "/sc");
     window.tap(key_code::tab);
     window.tap(key_code::enter);
-    window.frame(2);
     EXPECT_TRUE(window.has("file/old.toml"));
     window.click("file/old.toml");
     window.click("file/Open");
-    const Commands commands = window.take_commands();
-    ASSERT_EQ(commands.size(), 1U);
-    EXPECT_EQ(commands[0].kind, Command::Kind::open);
-    EXPECT_EQ(commands[0].path, folder / "scenes/old.toml");
+    EXPECT_EQ(window.take_only(Command::Kind::open).path, folder / "scenes/old.toml");
 }
 
 TEST_F(FileDialogTest, OtherFilesAreListedWhereAllAreAskedFor) {
@@ -246,11 +229,9 @@ TEST_F(FileDialogTest, FoldersThatFilesWereChosenInArePlaces) {
     EXPECT_FALSE(window.has(place));
     type_path((folder / "scenes/old.toml").string());
     window.tap(key_code::enter);
-    window.frame(2);
     window.take_commands();
     begin("File/Open...");
     window.click(place);
-    window.frame(2);
     EXPECT_TRUE(window.has("file/old.toml"));
 }
 
@@ -276,7 +257,6 @@ TEST_F(FileDialogTest, PicturesAreListedAsTheyLook) {
                                                 static_cast<int>(first.x) - 300, top, 380, bottom - top));
     window.tap(key_code::escape);
     window.tap(key_code::escape);
-    window.frame(2);
     EXPECT_TRUE(window.view.listed_pictures.empty()) << "nothing is read behind a closed dialog";
 }
 
@@ -286,8 +266,7 @@ TEST_F(FileDialogTest, OfAFolderOfThousandsOnlyRowsThatAreSeenAreDrawn) {
     EXPECT_TRUE(window.has("file/frame10000.png"));
     EXPECT_FALSE(window.has("file/frame10100.png"));
     EXPECT_LT(window.view.listed_pictures.size(), 12U);
-    window.move(window.at("file/frame10000.png"));
-    window.frame(2);
+    window.hover(window.at("file/frame10000.png"));
     for (int i = 0; i < 200 && !window.has("file/frame10100.png"); ++i) window.wheel(-1.0f);
     for (int i = 0; i < 3; ++i) window.wheel(-1.0f);  // to where the whole row is seen
     EXPECT_TRUE(window.has("file/frame10100.png"));
@@ -309,17 +288,14 @@ TEST_F(FileDialogTest, ADoubleClickOnAFolderOnlyEntersIt) {
     };
     begin_at("File/Open...", folder / "scenes");
     double_click(window.at("file/deep"));
-    window.frame(2);
     EXPECT_TRUE(window.has("file/deeper"));
     EXPECT_FALSE(window.has("file/x.toml"));
     window.frame(30);
     double_click(window.at("file/deeper"));
-    window.frame(2);
     EXPECT_TRUE(window.has("file/x.toml")) << "nor does it open a file";
     EXPECT_TRUE(window.take_commands().empty());
     window.frame(30);
     double_click(window.at("file/x.toml"));
-    window.frame(2);
     EXPECT_EQ(window.take_commands().at(0).path, folder / "scenes/deep/deeper/x.toml");
 }
 
@@ -337,7 +313,6 @@ TEST_F(FileDialogTest, UpAndDownChooseAndTheListFollows) {
     for (int i = 0; i < 20; ++i) window.tap(key_code::down);
     EXPECT_TRUE(window.has("file/shot271.png"));
     window.tap(key_code::enter);
-    window.frame(2);
     EXPECT_EQ(window.take_commands().at(0).path, folder / "scenes/shot271.png");
 }
 
@@ -356,12 +331,12 @@ TEST_F(FileDialogTest, ReplacingIsAsked) {
     EXPECT_TRUE(window.take_commands().empty());
     window.keep_screen("replace");
     window.click("file/Replace");
-    EXPECT_EQ(taken(), folder / "scenes/old.toml");
+    EXPECT_EQ(window.take_only(Command::Kind::save_as).path, folder / "scenes/old.toml");
 }
 
 TEST_F(FileDialogTest, TheExtensionIsAdded) {
     begin_at("File/Save as...", folder / "new");
-    EXPECT_EQ(taken(), folder / "new.toml");
+    EXPECT_EQ(window.take_only(Command::Kind::save_as).path, folder / "new.toml");
 }
 
 }  // namespace

@@ -1,8 +1,6 @@
 // Handles and the camera's path over the viewport.
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "edit/edits.h"
 #include "edit/placement.h"
 #include "gui/test_window.h"
@@ -31,8 +29,7 @@ class ViewHandles : public testing::Test {
     }
     const LayerParams& layer() const { return window.document.scene().layers[0]; }
     int count(ImU32 wanted) {
-        window.move({5.0f, 5.0f});
-        window.frame(2);
+        window.hover({5.0f, 5.0f});
         const Picture8 picture = window.picture();
         int found = 0;
         for (int y = int(area.y); y < int(area.y + area.height); ++y)
@@ -78,13 +75,11 @@ TEST_F(ViewHandles, ADragIsOneUndoStepAndTheFieldsFollow) {
 
 TEST_F(ViewHandles, BesideAHandleADragOrbits) {
     window.tap('W');
-    window.move(at({0.0, 0.0, 0.0}) + glm::vec2(200.0f, 200.0f));
-    window.frame(2);
+    window.hover(at({0.0, 0.0, 0.0}) + glm::vec2(200.0f, 200.0f));
     window.press(0);
     EXPECT_EQ(window.gui.viewport_input().drag, ViewportInput::Drag::orbit);
     window.release(0);
-    window.move(at({0.0, 0.0, 0.0}));
-    window.frame(2);
+    window.hover(at({0.0, 0.0, 0.0}));
     window.press(0);
     EXPECT_EQ(window.gui.viewport_input().drag, ViewportInput::Drag::handle);
     window.release(0);
@@ -94,8 +89,7 @@ TEST_F(ViewHandles, EscapeTakesTheDragBack) {
     window.tap('W');
     const std::size_t before = window.document.history_place();
     const glm::vec2 grip = at({0.0, 0.0, 0.0});
-    window.move(grip);
-    window.frame(2);
+    window.hover(grip);
     window.press(0);
     window.move(grip + glm::vec2(50.0f, 20.0f));
     window.frame();
@@ -150,8 +144,7 @@ TEST_F(ViewHandles, BoxesGridAndAxesAreSwitched) {
 }
 
 TEST_F(ViewHandles, MarksAreDrawnOnceTheyAreAskedFor) {
-    window.move({5.0f, 5.0f});
-    window.frame(2);
+    window.hover({5.0f, 5.0f});
     const auto drawn = [&](bool ViewState::*flag) {
         const Picture8 before = window.picture();
         window.view.*flag = true;
@@ -271,16 +264,13 @@ TEST_F(PathPointsTest, AreDraggedAlongTheViewWithShift) {
 
 TEST_F(PathPointsTest, EscapeTakesADragBack) {
     const glm::vec2 from = window.at("path point 90");
-    window.move(from);
-    window.frame(2);
+    window.hover(from);
     window.press();
     window.frame(2);
-    window.move(from + glm::vec2(40, 0));
-    window.frame(2);
+    window.hover(from + glm::vec2(40, 0));
     EXPECT_FALSE(position(1) == glm::dvec3(8.0, 3.0, 8.0));
     window.tap(key_code::escape);
-    window.move(from + glm::vec2(80, 0));
-    window.frame(2);
+    window.hover(from + glm::vec2(80, 0));
     window.release();
     window.frame(2);
     EXPECT_EQ(position(1), glm::dvec3(8.0, 3.0, 8.0));

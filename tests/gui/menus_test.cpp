@@ -1,9 +1,7 @@
 // Where things lie, menus and settings.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <tuple>
-#include <utility>
 
 #include "core/color.h"
 #include "core/real.h"
@@ -11,6 +9,7 @@
 #include "gui/parts.h"
 #include "gui/test_window.h"
 #include "gui/widgets.h"
+#include "scene/describe.h"
 
 namespace astrosplat {
 namespace {
@@ -34,7 +33,6 @@ TEST_F(MenusTest, EveryItemCanBeReached) {
         EXPECT_TRUE(window.has(path)) << path;
         window.tap(key_code::escape);
         window.tap(key_code::escape);
-        window.frame(2);
     }
 }
 
@@ -50,7 +48,6 @@ TEST(MenusOfAnother, ItemsBecomeCommands) {
     TestWindow window(example_document());
     for (const auto& [path, kind] : expected) {
         window.choose(path);
-        window.frame();
         EXPECT_EQ(kinds(window.take_commands()), std::vector<Kind>{kind}) << path;
     }
 }
@@ -63,7 +60,6 @@ TEST(MenusOfAnother, ItemsWithoutAFileAskForIt) {
           "File/Save the frame as seen...", "View/Load reference..."}) {
         TestWindow window(example_document());
         window.choose(path);
-        window.frame(2);
         EXPECT_TRUE(window.has("file/path")) << path;
         window.click("file/Cancel");
         EXPECT_TRUE(window.take_commands().empty()) << path;
@@ -73,19 +69,11 @@ TEST(MenusOfAnother, ItemsWithoutAFileAskForIt) {
 
 TEST_F(MenusTest, NewScenesBeginEmptyOrWithAShape) {
     for (const auto& [path, text] : {std::pair{"File/New/Empty scene", ""}, {"File/New/Ring", "ring"}}) {
-        window.click("File");
-        window.move(window.at("File/New"));
-        window.frame(30);
-        window.click(path);
-        const Commands commands = window.take_commands();
-        ASSERT_EQ(kinds(commands), std::vector<Kind>{Kind::new_scene}) << path;
-        EXPECT_EQ(commands[0].text, text);
+        window.choose(path);
+        EXPECT_EQ(window.take_only(Kind::new_scene).text, text) << path;
     }
     make_edited(window);
-    window.click("File");
-    window.move(window.at("File/New"));
-    window.frame(30);
-    window.click("File/New/Ring");
+    window.choose("File/New/Ring");
     EXPECT_TRUE(window.take_commands().empty()) << "what is not saved is asked about";
 }
 
@@ -93,7 +81,6 @@ TEST_F(MenusTest, AMeshWithoutAPictureOffersToChooseOne) {
     window.view.grey_layer = "stars";
     window.frame(2);
     window.click("notice/Choose a picture...");
-    window.frame(2);
     EXPECT_TRUE(window.has("file/path"));
     window.click("file/Cancel");
     window.click("notice/Keep grey");
@@ -103,21 +90,12 @@ TEST_F(MenusTest, AMeshWithoutAPictureOffersToChooseOne) {
 }
 
 TEST_F(MenusTest, RecentFilesOpen) {
-    window.click("File");
-    window.move(window.at("File/Open recent"));
-    window.frame(30);
-    window.click("File/Open recent/nebula.toml");
-    const Commands commands = window.take_commands();
-    ASSERT_EQ(kinds(commands), std::vector<Kind>{Kind::open});
-    EXPECT_EQ(commands[0].path, "/scenes/nebula.toml");
+    window.choose("File/Open recent/nebula.toml");
+    EXPECT_EQ(window.take_only(Kind::open).path, "/scenes/nebula.toml");
 }
 
 TEST_F(MenusTest, LayersMoveAsFarAsTheListGoes) {
-    const auto names = [&] {
-        std::vector<std::string> list;
-        for (const LayerParams& layer : window.document.scene().layers) list.push_back(layer.name);
-        return list;
-    };
+    const auto names = [&] { return layer_names(window.document.scene()); };
     const std::vector<std::string> before = names();
     ASSERT_EQ(before.size(), 3U);
     for (const auto& [item, layer, after, order] :
@@ -127,26 +105,13 @@ TEST_F(MenusTest, LayersMoveAsFarAsTheListGoes) {
         window.view.layer = layer;
         window.choose(item);
         window.tap(key_code::escape);
-        window.frame(2);
         EXPECT_EQ(names(), order) << item << " of " << layer;
         EXPECT_EQ(window.view.layer, after);
     }
 }
 
-void choose_move(TestWindow& window, const std::string& name) {
-    window.click("Camera");
-    window.move(window.at("Camera/Add move"));
-    window.frame(30);
-    window.click("Camera/Add move/" + name);
-    window.frame(3);
-}
-
 TEST_F(MenusTest, ADomeMasterIsASquareFisheye) {
-    window.click("Camera");
-    window.move(window.at("Camera/Dome master"));
-    window.frame(30);
-    window.click("Camera/Dome master/4096 px");
-    window.frame(3);
+    window.choose("Camera/Dome master/4096 px");
     const Scene& scene = window.document.scene();
     EXPECT_EQ(scene.output.width, 4096);
     EXPECT_EQ(scene.output.height, 4096);
@@ -158,10 +123,8 @@ TEST_F(MenusTest, ADomeMasterIsASquareFisheye) {
 
 TEST_F(MenusTest, CameraMoves) {
     window.view.frame = 240;  // no keyframe of the camera comes later
-    choose_move(window, "Fly in");
-    const Commands commands = window.take_commands();
-    ASSERT_EQ(kinds(commands), std::vector<Kind>{Kind::add_move});
-    EXPECT_EQ(commands[0].index, static_cast<std::size_t>(CameraMove::fly_in));
+    window.choose("Camera/Add move/Fly in");
+    EXPECT_EQ(window.take_only(Kind::add_move).index, static_cast<std::size_t>(CameraMove::fly_in));
 }
 
 TEST_F(MenusTest, ThePanelsMovesAskTheSame) {
@@ -169,30 +132,24 @@ TEST_F(MenusTest, ThePanelsMovesAskTheSame) {
     window.view.tab = PanelTab::camera;
     window.frame(2);
     window.click("panel/Add move");
-    window.frame(2);
     window.click("panel/Orbit");
-    window.frame(2);
     EXPECT_TRUE(window.take_commands().empty());
     EXPECT_EQ(window.view.asked_move, CameraMove::orbit);
 }
 
 TEST_F(MenusTest, AMoveAsksAboutLaterKeyframes) {
     window.view.frame = 24;
-    choose_move(window, "Orbit");
+    window.choose("Camera/Add move/Orbit");
     EXPECT_TRUE(window.take_commands().empty());
     window.keep_screen("move");
     window.click("move/shift");
     window.click("move/Add");
-    window.frame(2);
-    const Commands commands = window.take_commands();
-    ASSERT_EQ(kinds(commands), std::vector<Kind>{Kind::add_move});
-    EXPECT_EQ(commands[0].index, static_cast<std::size_t>(CameraMove::orbit));
+    EXPECT_EQ(window.take_only(Kind::add_move).index, static_cast<std::size_t>(CameraMove::orbit));
     EXPECT_EQ(window.view.later_keys, LaterKeys::shift);
     EXPECT_FALSE(window.view.asked_move);
 
-    choose_move(window, "Orbit");
+    window.choose("Camera/Add move/Orbit");
     window.tap(key_code::escape);
-    window.frame(2);
     EXPECT_TRUE(window.take_commands().empty());
     EXPECT_FALSE(window.view.asked_move);
 }
@@ -202,7 +159,6 @@ class SettingsDialogTest : public ExampleWindow {};
 // Edit > Settings: every choice of every row is taken, and kept when the dialog closes.
 TEST_F(SettingsDialogTest, EveryChoiceCanBeClicked) {
     window.choose("Edit/Settings...");
-    window.frame(2);
     for (const SettingRow& row : setting_rows())
         for (std::size_t i = row.choices.size(); i-- > 0;) {
             window.click(std::string("settings/") + row.name + "/" + row.choices[i].label);
@@ -218,7 +174,6 @@ TEST_F(SettingsDialogTest, EveryChoiceCanBeClicked) {
 
 TEST_F(SettingsDialogTest, TheCacheFolderIsTyped) {
     window.choose("Edit/Settings...");
-    window.frame(2);
     window.click("settings/cache_folder");
     window.type("/a/folder");
     EXPECT_EQ(window.view.settings.cache_folder, "/a/folder");
@@ -260,9 +215,7 @@ TEST(Contrast, IsAsHighAsSaid) {
 
 TEST_F(SettingsDialogTest, EscapeClosesAndKeeps) {
     window.choose("Edit/Settings...");
-    window.frame(2);
     window.tap(key_code::escape);
-    window.frame(2);
     EXPECT_FALSE(window.view.settings_open);
     EXPECT_EQ(kinds(window.take_commands()), std::vector<Kind>{Kind::keep_settings});
 }
@@ -330,7 +283,6 @@ TEST(Tools, DoNotLieOverEachOther) {
     window.frame(2);
     EXPECT_LT(window.at("compare/Diff").x + 30.0f, window.at("more tools").x);
     window.click("more tools");
-    window.frame(2);
     EXPECT_TRUE(window.has("compare with"));
     EXPECT_TRUE(window.has("place/Place"));
 }

@@ -37,10 +37,10 @@ glm::vec2 on_plot(const PanelDriver& d, float x, float y) {
 class PanelCurvesTest : public testing::Test {
   protected:
     PanelDriver d{curves_scene};
+    PanelCurvesTest() { d.show(PanelTab::look); }
 };
 
 TEST_F(PanelCurvesTest, AClickAddsAPointOneUndoStep) {
-    d.show(PanelTab::look);
     d.click(on_plot(d, 0.5f, 0.25f));
     ASSERT_EQ(curve(d).size(), 3u);
     EXPECT_NEAR(curve(d)[1].x, 0.5f, 0.01f);
@@ -51,7 +51,6 @@ TEST_F(PanelCurvesTest, AClickAddsAPointOneUndoStep) {
 }
 
 TEST_F(PanelCurvesTest, ADragMovesAPointButNotPastItsNeighbours) {
-    d.show(PanelTab::look);
     d.click(on_plot(d, 0.5f, 0.25f));
     const glm::vec2 from = on_plot(d, 0.5f, 0.25f);
     d.drag(from, on_plot(d, 0.75f, 0.5f) - from);
@@ -66,7 +65,6 @@ TEST_F(PanelCurvesTest, ADragMovesAPointButNotPastItsNeighbours) {
 }
 
 TEST_F(PanelCurvesTest, ARightClickDeletesDownToTwoPoints) {
-    d.show(PanelTab::look);
     d.click(on_plot(d, 0.5f, 0.25f));
     d.click(on_plot(d, 0.5f, 0.25f), 1);
     EXPECT_EQ(curve(d).size(), 2u);
@@ -75,7 +73,6 @@ TEST_F(PanelCurvesTest, ARightClickDeletesDownToTwoPoints) {
 }
 
 TEST_F(PanelCurvesTest, ArrowsNudgeTheSelectedPoint) {
-    d.show(PanelTab::look);
     d.click(on_plot(d, 0.5f, 0.25f));
     const glm::vec2 before = curve(d)[1];
     d.tap(ImGuiKey_RightArrow);
@@ -85,7 +82,6 @@ TEST_F(PanelCurvesTest, ArrowsNudgeTheSelectedPoint) {
 }
 
 TEST_F(PanelCurvesTest, AtMostSixteenPoints) {
-    d.show(PanelTab::look);
     for (int i = 0; i < 20; ++i)
         d.click(on_plot(d, 0.04f + 0.045f * static_cast<float>(i), i % 2 ? 0.3f : 0.7f));
     EXPECT_EQ(curve(d).size(), 16u);

@@ -108,7 +108,14 @@ void PanelDriver::tap(ImGuiKey_ key) {
     frames(2);
 }
 
+void PanelDriver::enter(const std::string& key, const std::string& text) {
+    double_click(row(key).value);
+    type(text);
+    tap(ImGuiKey_Enter);
+}
+
 void PanelDriver::choose(const std::string& item) {
+    frames(2);
     const ImGuiContext& g = *context_;
     if (g.OpenPopupStack.empty()) {
         ADD_FAILURE() << "no popup with " << item;

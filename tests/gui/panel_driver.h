@@ -4,12 +4,16 @@
 
 #include <imgui.h>
 
-#include <string>
-#include <vector>
-
 #include "gui/panel/context.h"
 
 namespace astrosplat {
+
+/// A plane with a picture as the layer "dust"; `more` follows in its source.
+inline std::string dust_scene(const std::string& more = "") {
+    return "astrosplat = 1\n[[layer]]\nname = \"dust\"\n[layer.source]\n"
+           "meshes = [ { mesh = \"plane\", texture = \"dust.png\" } ]\n" +
+           more;
+}
 
 class PanelDriver {
   public:
@@ -29,6 +33,8 @@ class PanelDriver {
     void drag(glm::vec2 from, glm::vec2 by, int steps = 8);
     void type(const std::string& text);
     void tap(ImGuiKey_ key);
+    /// Types the value of a key, and Enter.
+    void enter(const std::string& key, const std::string& text);
     /// Clicks an item of the popup that is open. Fails the test when there is no such item.
     void choose(const std::string& item);
 

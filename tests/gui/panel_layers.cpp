@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "gui/panel_driver.h"
+#include "scene/describe.h"
 
 namespace astrosplat {
 namespace {
@@ -29,11 +30,7 @@ glm::vec2 at(int row, float x) { return {x, 32.0f + 28.0f * (static_cast<float>(
 constexpr float eye = 24.0f, name = 90.0f, solo = 360.0f - 66.0f, holdout = 360.0f - 46.0f,
                 isolate = 360.0f - 16.0f;
 
-std::vector<std::string> names(const PanelDriver& d) {
-    std::vector<std::string> result;
-    for (const LayerParams& layer : d.document.scene().layers) result.push_back(layer.name);
-    return result;
-}
+std::vector<std::string> names(const PanelDriver& d) { return layer_names(d.document.scene()); }
 using Names = std::vector<std::string>;
 
 class PanelLayersTest : public testing::Test {
@@ -99,7 +96,6 @@ TEST_F(PanelLayersTest, DraggingChangesTheOrder) {
 
 void choose(PanelDriver& d, int row, const std::string& item) {
     d.click(at(row, name), 1);
-    d.frames(2);
     d.choose(item);
 }
 

@@ -11,19 +11,12 @@ namespace {
 // Rows of the side panel, driven by mouse and keyboard: what is dragged, typed, animated and reset arrives in
 // the document, as one undo step each.
 
-const char* const rows_scene = R"(astrosplat = 1
-[[layer]]
-name = "dust"
-[layer.source]
-meshes = [ { mesh = "plane", texture = "dust.png" } ]
-)";
-
 const std::string power = "layer.dust.look.alpha.power", opacity = "layer.dust.render.opacity",
                   gain = "layer.dust.look.grade.gain", density = "layer.dust.look.density";
 
 class PanelRowsTest : public testing::Test {
   protected:
-    PanelDriver d{rows_scene};
+    PanelDriver d{dust_scene()};
 };
 
 TEST_F(PanelRowsTest, DraggingAValueIsOneUndoStep) {
@@ -38,11 +31,11 @@ TEST_F(PanelRowsTest, DraggingAValueIsOneUndoStep) {
 }
 
 TEST_F(PanelRowsTest, AFocalLengthTakesThePlaceOfTheAngle) {
-    PanelDriver angle(rows_scene);
+    PanelDriver angle(dust_scene());
     angle.show(PanelTab::camera);
     EXPECT_TRUE(angle.has_row("camera.fov"));
     EXPECT_FALSE(angle.has_row("camera.film_width"));
-    PanelDriver length(std::string(rows_scene) + "[camera]\nfocal_length = 50.0\n");
+    PanelDriver length(dust_scene("[camera]\nfocal_length = 50.0\n"));
     length.show(PanelTab::camera);
     EXPECT_FALSE(length.has_row("camera.fov"));
     EXPECT_TRUE(length.has_row("camera.film_width"));
@@ -52,7 +45,7 @@ TEST_F(PanelRowsTest, EverySourceHasItsOwnFiles) {
     const std::string splats =
         "astrosplat = 1\n[[layer]]\nname = \"dust\"\n[layer.source]\nkind = \"splats\"\n"
         "file = \"a.pda\"\n";
-    PanelDriver mesh(rows_scene), file(splats);
+    PanelDriver mesh(dust_scene()), file(splats);
     mesh.show(PanelTab::source);
     file.show(PanelTab::source);
     EXPECT_TRUE(mesh.has_row("layer.dust.source.uv"));
@@ -62,7 +55,7 @@ TEST_F(PanelRowsTest, EverySourceHasItsOwnFiles) {
 }
 
 TEST(PanelRowsOfAnother, TheFirstThicknessStopChangesNothing) {
-    PanelDriver d(std::string(rows_scene) + "[layer.look]\npdf = { shape = \"gaussian\" }\n");
+    PanelDriver d(dust_scene("[layer.look]\npdf = { shape = \"gaussian\" }\n"));
     d.show(PanelTab::look);
     const auto stops = [&] { return d.document.scene().layers[0].look.thickness.stops; };
     d.click(d.row("layer.dust.look.thickness.map").label + glm::vec2(-20.0f, 26.0f));  // the line below
@@ -90,10 +83,7 @@ TEST_F(PanelRowsTest, ANewCropIsABoxAroundTheLayerWithHandles) {
 TEST_F(PanelRowsTest, AMeshIsAShapeOrAFile) {
     d.show(PanelTab::source);
     const std::string mesh = "layer.dust.source.meshes.0.mesh";
-    const auto browse = [&] {
-        d.click({310.0f, d.row(mesh).value.y});  // the folder at the end of the row
-        d.frames(2);
-    };
+    const auto browse = [&] { d.click({310.0f, d.row(mesh).value.y}); };  // the folder at the row's end
     browse();
     d.choose("Sphere");
     EXPECT_EQ(d.value(mesh), Value("sphere"));
@@ -180,9 +170,7 @@ TEST_F(PanelRowsTest, TabTypesTheNextValue) {
 
 TEST_F(PanelRowsTest, ARefusedValueIsSaidAndChangesNothing) {
     d.show(PanelTab::mixing);
-    d.double_click(d.row(opacity).value);
-    d.type("2");
-    d.tap(ImGuiKey_Enter);
+    d.enter(opacity, "2");
     EXPECT_DOUBLE_EQ(d.value(opacity).number(), 1.0);
     EXPECT_FALSE(d.document.can_undo());
     EXPECT_NE(d.panel.message().find("from 0 to 1"), std::string::npos) << d.panel.message();
@@ -206,8 +194,8 @@ TEST_F(PanelRowsTest, TheDiamondSetsAndRemovesAKeyframe) {
 }
 
 TEST(PanelRowsOfAnother, AKeyedValueIsShownAsItIsAtTheFrame) {
-    PanelDriver d(std::string(rows_scene) +
-                  "[animation]\n\"layer.dust.render.opacity\" = { keys = [[1, 0.0], [101, 1.0]] }\n");
+    PanelDriver d(
+        dust_scene("[animation]\n\"layer.dust.render.opacity\" = { keys = [[1, 0.0], [101, 1.0]] }\n"));
     d.show(PanelTab::mixing);
     d.view.frame = 51.0;
     d.frames();
@@ -218,12 +206,11 @@ TEST(PanelRowsOfAnother, AKeyedValueIsShownAsItIsAtTheFrame) {
 
 void choose(PanelDriver& d, const std::string& key, const std::string& item) {
     d.click(d.row(key).label, 1);
-    d.frames(2);
     d.choose(item);
 }
 
 TEST(PanelRowsOfAnother, RightClickResets) {
-    PanelDriver d(std::string(rows_scene) + "[layer.look]\ngrade = { gain = 3.0 }\n");
+    PanelDriver d(dust_scene("[layer.look]\ngrade = { gain = 3.0 }\n"));
     d.show(PanelTab::look);
     ASSERT_DOUBLE_EQ(d.value(gain).number(), 3.0);
     choose(d, gain, "Reset");
@@ -233,7 +220,7 @@ TEST(PanelRowsOfAnother, RightClickResets) {
 }
 
 TEST(PanelRowsOfAnother, TheMenuCopiesKeyAndSetOption) {
-    PanelDriver d(std::string(rows_scene) + "[layer.look]\nalpha = { power = 6.0 }\n");
+    PanelDriver d(dust_scene("[layer.look]\nalpha = { power = 6.0 }\n"));
     d.show(PanelTab::look);
     choose(d, power, "Copy key path");
     EXPECT_EQ(d.clipboard, power);
@@ -277,25 +264,19 @@ TEST_F(PanelRowsTest, ACheckBoxAndAVectorsComponent) {
     EXPECT_EQ(d.value(holdout), Value(true));
     d.show(PanelTab::source);
     const std::string place = "layer.dust.transform.translate";
-    d.double_click(d.row(place).value);  // the middle one of three
-    d.type("-4");
-    d.tap(ImGuiKey_Enter);
+    d.enter(place, "-4");  // the middle one of three
     EXPECT_EQ(d.value(place), Value(Value::List{0.0, -4.0, 0.0}));
 }
 
 TEST_F(PanelRowsTest, AutoIsTypedOverAndTypedBack) {
     d.show(PanelTab::source);
     const std::string voxels = "layer.dust.source.voxels";
-    d.click(d.row(voxels).value);
-    d.type("10, 20, 30");
-    d.tap(ImGuiKey_Enter);
+    d.enter(voxels, "10, 20, 30");
     const Value typed = Value::List{std::int64_t{10}, std::int64_t{20}, std::int64_t{30}};
     EXPECT_EQ(d.value(voxels), typed);
     d.document.undo();
     d.frames();
-    d.click(d.row(voxels).value);
-    d.type("10 20 30");
-    d.tap(ImGuiKey_Enter);
+    d.enter(voxels, "10 20 30");
     EXPECT_EQ(d.value(voxels), typed);
 }
 

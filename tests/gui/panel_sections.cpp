@@ -1,8 +1,6 @@
 // Sections of the panel: colours, prepare, edits that need others, folded heads.
 #include <gtest/gtest.h>
 
-#include <algorithm>
-
 #include "gui/panel/context.h"
 #include "gui/panel/parts.h"
 #include "gui/panel_driver.h"
@@ -14,19 +12,12 @@ namespace {
 // The rows of colour management: a configuration is named, its displays and views are chosen, names of
 // another one go.
 
-const char* const colors_scene = R"(astrosplat = 1
-[output]
-ocio = { config = "colors.ocio" }
-[[layer]]
-name = "dust"
-[layer.source]
-meshes = [ { mesh = "plane", texture = "dust.png" } ]
-)";
+const std::string colors_scene = dust_scene("[output]\nocio = { config = \"colors.ocio\" }\n");
 const std::string ocio = "output.ocio.";
 
 class PanelColors : public testing::Test {
   protected:
-    explicit PanelColors(const char* scene = colors_scene) : d(scene) {
+    PanelColors() {
         ColorStatus color;
         color.config = {"/nowhere/colors.ocio",
                         {{"Screen", {"Film", "Plain"}, "Film"}, {"Projector", {"Pure"}, "Pure"}},
@@ -38,13 +29,12 @@ class PanelColors : public testing::Test {
     }
     void choose(const std::string& key, const std::string& item) {
         d.click(d.row(ocio + key).value);
-        d.frames(2);
         d.choose(item);
         d.frames(2);
     }
     std::string text(const std::string& key) { return *d.value(ocio + key).text(); }
 
-    PanelDriver d;
+    PanelDriver d{colors_scene};
 };
 
 TEST_F(PanelColors, DisplayAndViewAreChosenUndoneAndSaved) {
@@ -90,14 +80,6 @@ TEST(PanelColorCompanions, NamesOfAnotherConfigurationGo) {
 
 // The section Prepare: its rows, before and after with the line between them, and the command of its button.
 
-constexpr const char* scene = R"(astrosplat = 1
-[[layer]]
-name = "dust"
-[layer.source]
-meshes = [ { mesh = "plane", texture = "dust.png" } ]
-prepare = { stars = "remove" }
-)";
-
 class PanelPreparation : public testing::Test {
   protected:
     PanelPreparation() {
@@ -110,7 +92,7 @@ class PanelPreparation : public testing::Test {
     glm::vec4 area() const { return driver.panel.plot_area("layer.dust.source.prepare"); }
 
     Picture8 texture{30, 20};
-    PanelDriver driver{scene, 360.0f, 2400.0f};
+    PanelDriver driver{dust_scene("prepare = { stars = \"remove\" }\n"), 360.0f, 2400.0f};
 };
 
 TEST_F(PanelPreparation, ShowsItsRowsAndAsksForAPreviewWhileItIsOpen) {
@@ -185,28 +167,15 @@ TEST(PanelPreparationOfSplats, IsNotThere) {
 
 // Edits that need another one to stand: what follows what, as one undo step.
 
-const char* const companions_scene = R"(astrosplat = 1
-[[layer]]
-name = "dust"
-[layer.source]
-meshes = [ { mesh = "plane", texture = "dust.png" } ]
-[layer.look]
-pdf = { shape = "linear" }
-)";
+const std::string companions_scene = dust_scene("[layer.look]\npdf = { shape = \"linear\" }\n");
 const std::string look = "layer.dust.look.";
-
-void type(PanelDriver& d, const std::string& key, const std::string& text) {
-    d.double_click(d.row(key).value);
-    d.type(text);
-    d.tap(ImGuiKey_Enter);
-}
 
 TEST(PanelCompanions, SmallestAndLargestSizePushEachOther) {
     PanelDriver d(companions_scene);
     d.show(PanelTab::look);
-    type(d, look + "radius.min", "0.2");
+    d.enter(look + "radius.min", "0.2");
     EXPECT_DOUBLE_EQ(d.value(look + "radius.max").number(), 0.2);
-    type(d, look + "radius.max", "0.1");
+    d.enter(look + "radius.max", "0.1");
     EXPECT_DOUBLE_EQ(d.value(look + "radius.min").number(), 0.1);
     d.document.undo();
     EXPECT_DOUBLE_EQ(d.value(look + "radius.min").number(), 0.2);
@@ -231,7 +200,6 @@ TEST(PanelCompanions, ChoosingCurveInTheListWorks) {
     PanelDriver d(companions_scene);
     d.show(PanelTab::look);
     d.click(d.row(look + "pdf.shape").value);
-    d.frames(2);
     d.choose("Curve");
     EXPECT_EQ(d.value(look + "pdf.shape"), Value("curve"));
     EXPECT_EQ(d.document.scene().layers[0].look.pdf.points.size(), 5u);
@@ -255,7 +223,6 @@ TEST(PanelCompanions, SplatsAskForTheirFileFirst) {
     PanelDriver d(companions_scene);
     d.show(PanelTab::source);
     d.click(d.row("layer.dust.source.kind").value);
-    d.frames(2);
     d.choose("Splats");
     EXPECT_EQ(d.value("layer.dust.source.kind"), Value("mesh"));
     const std::optional<ParameterKey> request = d.panel.take_request();
@@ -283,23 +250,26 @@ TEST(PanelCompanions, VoxelsReplaceTheVoxelSizeAndPicturesTheCube) {
 
 // The words at the head of folded sections.
 
-/// Of the section of that title, for a scene whose one layer has this look.
-std::string state_of(const std::string& title, const std::string& look) {
-    Document document = Document::untitled(R"(astrosplat = 1
-[[layer]]
-name = "dust"
-[layer.source]
-meshes = [ { mesh = "plane", texture = "dust.png" } ]
-)" + look,
-                                           "/nowhere/scene.toml");
+/// What the panel is told of a layer with this look, of which the window knows this much.
+struct Shown {
+    Document document;
     ViewState view;
-    const Status status;
+    Status status;
     Commands commands;
     Memory memory;
     std::vector<DrawnItem> drawn;
-    describe_current(memory, document, 1.0);
-    const auto section = std::ranges::find(tab_sections(), title, &TabSection::title);
-    return section->state({{document, view, status, commands, drawn}, memory});
+
+    explicit Shown(const std::string& look, const LayerStatus& layer = {})
+        : document(Document::untitled(dust_scene(look), "/nowhere/scene.toml")) {
+        status.layers = {layer};
+        describe_current(memory, document, 1.0);
+    }
+    Context context() { return {{document, view, status, commands, drawn}, memory}; }
+};
+
+/// Of the section of that title.
+std::string state_of(const std::string& title, const std::string& look) {
+    return std::ranges::find(tab_sections(), title, &TabSection::title)->state(Shown(look).context());
 }
 
 TEST(PanelStates, SayWhatALookDoes) {
@@ -312,23 +282,10 @@ TEST(PanelStates, SayWhatALookDoes) {
     EXPECT_EQ(state_of("Opacity at soft edges", "[layer.look.alpha]\npower = 2.0\n"), "power 2");
 }
 
-/// The word in place of this key's 0, for a layer of which the window knows this much.
+/// The word in place of this key's 0.
 std::string zero_of(const std::string& key, const LayerStatus& layer) {
-    Document document = Document::untitled(R"(astrosplat = 1
-[[layer]]
-name = "dust"
-[layer.source]
-meshes = [ { mesh = "plane", texture = "dust.png" } ]
-)",
-                                           "/nowhere/scene.toml");
-    ViewState view;
-    Status status;
-    status.layers = {layer};
-    Commands commands;
-    Memory memory;
-    std::vector<DrawnItem> drawn;
-    describe_current(memory, document, 1.0);
-    Context context{{document, view, status, commands, drawn}, memory};
+    Shown shown("", layer);
+    Context context = shown.context();
     return zero_in_words(context, find(context, key)->spec);
 }
 

@@ -23,7 +23,6 @@ TEST_F(QuitTest, AsksOnlyAboutUnsavedChanges) {
     EXPECT_TRUE(window.take_commands().empty());
     EXPECT_FALSE(window.has("unsaved/Cancel"));
     window.tap('Q', true);
-    window.frame();
     window.click("unsaved/Don't save");
     EXPECT_EQ(kinds(window.take_commands()), std::vector<Kind>{Kind::quit});
 }
@@ -34,15 +33,12 @@ TEST(QuitOfAnother, SavesFirstAndLeavesOnlyWhenThatWorked) {
     TestWindow window(Document::open(file));
     window.document.edit("Fps", [](Scene& scene) { scene.output.fps = 30; });
     window.tap('Q', true);
-    window.frame();
     window.click("unsaved/Save");
     EXPECT_EQ(kinds(window.take_commands()), std::vector<Kind>{Kind::save}) << "the save failed: it stays";
     window.frame(5);
     EXPECT_TRUE(window.take_commands().empty());
     window.tap('Q', true);
-    window.frame();
-    window.move(window.at("unsaved/Save"));
-    window.frame(2);
+    window.hover(window.at("unsaved/Save"));
     window.press();
     window.release();
     EXPECT_EQ(kinds(window.take_commands()), std::vector<Kind>{Kind::save});
@@ -55,16 +51,12 @@ TEST_F(QuitTest, AnUntitledSceneIsAskedForItsFile) {
     const TempFolder folder;
     make_edited(window);
     window.tap('Q', true);
-    window.frame();
     window.tap(key_code::enter);  // Save
-    window.frame(2);
     ASSERT_TRUE(window.has("file/path"));
     window.tap('A', true);
     window.type((folder.path() / "new.toml").string());
     window.click("file/Save");
-    const Commands commands = window.take_commands();
-    ASSERT_EQ(kinds(commands), std::vector<Kind>{Kind::save_as});
-    EXPECT_EQ(commands[0].path, folder.path() / "new.toml");
+    EXPECT_EQ(window.take_only(Kind::save_as).path, folder.path() / "new.toml");
 }
 
 TEST_F(QuitTest, ADroppedSceneAsksToo) {
@@ -84,9 +76,7 @@ TEST(Recovery, OffersTheAutosaveOnce) {
     window.status.recoveries = {{"/state/whirlpool.toml", "whirlpool.toml", "2026-04-12 18:03:10 UTC"}};
     window.frame(2);
     window.click("recovery/Recover");
-    const Commands commands = window.take_commands();
-    ASSERT_EQ(kinds(commands), std::vector<Kind>{Kind::recover});
-    EXPECT_EQ(commands[0].path, "/state/whirlpool.toml");
+    EXPECT_EQ(window.take_only(Kind::recover).path, "/state/whirlpool.toml");
     window.frame(3);
     EXPECT_FALSE(window.has("recovery/Recover"));
 }
@@ -121,10 +111,7 @@ class SaveConflict : public testing::Test {
         window.frame(2);
         return kinds(window.take_commands());
     }
-    void save() {
-        window.tap('S', true);
-        window.frame(2);
-    }
+    void save() { window.tap('S', true); }
 };
 
 TEST_F(SaveConflict, IsAskedAbout) {
@@ -148,14 +135,11 @@ TEST_F(SaveConflict, IsAskedAbout) {
 TEST_F(SaveConflict, GoesElsewhereByDefault) {
     save();
     window.tap(key_code::enter);
-    window.frame(2);
     ASSERT_TRUE(window.has("file/path"));
     window.tap('A', true);
     window.type((folder / "b.toml").string());
     window.click("file/Save");
-    const Commands commands = window.take_commands();
-    ASSERT_EQ(kinds(commands), std::vector<Kind>{Kind::save_as});
-    EXPECT_EQ(commands[0].path, folder / "b.toml");
+    EXPECT_EQ(window.take_only(Kind::save_as).path, folder / "b.toml");
 }
 
 TEST_F(SaveConflict, IsDecidedByKeepUntilTheNextChange) {
@@ -170,12 +154,10 @@ TEST_F(SaveConflict, IsDecidedByKeepUntilTheNextChange) {
 
 TEST_F(SaveConflict, HoldsUpLeaving) {
     window.tap('Q', true);
-    window.frame();
     window.click("unsaved/Save");
     window.frame(5);
     EXPECT_TRUE(window.take_commands().empty());
-    window.move(window.at("conflict/Overwrite"));
-    window.frame(2);
+    window.hover(window.at("conflict/Overwrite"));
     window.press();
     window.release();
     EXPECT_EQ(kinds(window.take_commands()), std::vector<Kind>{Kind::save});
@@ -185,9 +167,7 @@ TEST_F(SaveConflict, HoldsUpLeaving) {
 
 TEST_F(SaveConflict, CancelledStays) {
     window.tap('Q', true);
-    window.frame();
     window.click("unsaved/Save");
-    window.frame(2);
     window.click("conflict/Cancel");
     EXPECT_TRUE(commands_after_frames().empty());
     window.document.save();
@@ -214,7 +194,6 @@ TEST_F(SnapshotsTest, BecomeBAndAreTaken) {
     ASSERT_EQ(kinds(commands), (std::vector<Kind>{Kind::compare_snapshot, Kind::take_snapshot}));
     EXPECT_EQ(commands[0].index, 1U);
     window.click(window.at("snapshot 0"), 1);
-    window.frame();
     window.click("snapshot/Restore");
     EXPECT_EQ(kinds(window.take_commands()), std::vector<Kind>{Kind::restore_snapshot});
 }
@@ -238,22 +217,18 @@ TEST_F(SnapshotsTest, AreRenamedInTheirCard) {
     window.frame(2);
     const auto begin_renaming = [&] {
         window.click(window.at("snapshot 1"), 1);
-        window.frame(3);
         window.click("snapshot/Rename");
-        window.frame(4);
     };
     begin_renaming();
     window.type("Kälter");
     window.tap(key_code::enter);
-    const Commands commands = window.take_commands();
-    ASSERT_EQ(kinds(commands), std::vector<Kind>{Kind::rename_snapshot});
-    EXPECT_EQ(commands[0].text, "Kälter");
-    EXPECT_EQ(commands[0].index, 1U);
+    const Command renamed = window.take_only(Kind::rename_snapshot);
+    EXPECT_EQ(renamed.text, "Kälter");
+    EXPECT_EQ(renamed.index, 1U);
     EXPECT_FALSE(window.has("snapshot name"));
     begin_renaming();
     window.type("x");
     window.tap(key_code::escape);
-    window.frame();
     EXPECT_FALSE(window.has("snapshot name"));
     EXPECT_TRUE(window.take_commands().empty()) << "Escape drops what was typed";
 }

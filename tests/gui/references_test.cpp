@@ -26,8 +26,9 @@ class References : public testing::TestWithParam<Size> {
   protected:
     References() : window(example_document(), GetParam().width, GetParam().height, GetParam().scale) {}
     /// Every control that was drawn can be reached by the mouse.
-    void expect_inside(const std::string& name) {
-        window.frame(3);
+    /// `frames` later: what lies behind a dialog that opens grows dark from frame to frame.
+    void expect_inside(const std::string& name, int frames = 3) {
+        window.frame(frames);
         window.keep_screen(std::string(GetParam().name) + "_" + name);
         for (const DrawnItem& item : window.gui.drawn_items()) {
             // May be scrolled away: what the timeline lists, and in a low window the end of the longest menu.
@@ -40,8 +41,8 @@ class References : public testing::TestWithParam<Size> {
             EXPECT_LE(item.middle.y, GetParam().height) << name << ": " << item.name;
         }
     }
-    void expect_reference(const std::string& name) {
-        expect_inside(name);
+    void expect_reference(const std::string& name, int frames = 3) {
+        expect_inside(name, frames);
         if (GetParam().name == sizes[0].name) expect_like_reference(name, window.picture(Style::schematic));
     }
     TestWindow window;
@@ -87,14 +88,14 @@ TEST_P(References, Log) {
 }
 TEST_P(References, Shortcuts) {
     window.tap(key_code::f1);
-    expect_reference("shortcuts");
+    expect_reference("shortcuts", 1);
 }
 TEST_P(References, RenderDialog) {
     window.choose("Render/Frames...");
     window.view.render.folder = "/films/one";
     window.view.render.name = "a.doc";
     window.status.render_command = "astrosplat --batch /films/whirlpool.toml --frames=1-240";
-    expect_reference("render");
+    expect_reference("render", 1);
 }
 TEST_P(References, Queue) {
     QueuedJob done = running_job_of("", 1.0f), failed = done,
@@ -114,7 +115,7 @@ TEST_P(References, Queue) {
 TEST_P(References, Question) {
     make_edited(window);
     window.choose("File/Quit");
-    expect_reference("question");
+    expect_reference("question", 1);
 }
 TEST_P(References, Recovery) {
     window.status.recoveries = {
@@ -225,16 +226,9 @@ grade = { gain = 2.0, tint = [1.0, 0.8, 0.6] }
 }
 
 TEST(PanelReferences, AnglesOfAHybridLayer) {
-    PanelDriver driver(R"(astrosplat = 1
-[[layer]]
-name = "dust"
-[layer.source]
-meshes = [ { mesh = "plane", texture = "dust.png" } ]
-[layer.render]
-blend = "hybrid"
-hybrid = { from_deg = 20.0, to_deg = 65.0 }
-)",
-                       360.0f, 900.0f);
+    const std::string hybrid =
+        "[layer.render]\nblend = \"hybrid\"\nhybrid = { from_deg = 20.0, to_deg = 65.0 }\n";
+    PanelDriver driver(dust_scene(hybrid), 360.0f, 900.0f);
     driver.status = example_status();
     expect_panel_reference("panel_hybrid", driver, PanelTab::mixing, 900);
 }

@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <cstdlib>
 
 #include "gui/key_map.h"
@@ -83,22 +82,24 @@ void TestWindow::release(int button) {
     ImGui::GetIO().MouseDown[button] = false;
     frame();
 }
+void TestWindow::hover(glm::vec2 to) {
+    move(to);
+    frame(2);
+}
 void TestWindow::click(glm::vec2 at_px, int button) {
-    move(at_px);
-    frame(2);  // hovered first, as a mouse does
+    hover(at_px);  // first, as a mouse does
     press(button);
     release(button);
-    frame();
+    frame(3);  // what it opens is there
 }
 void TestWindow::double_click(glm::vec2 at_px) {
     click(at_px);
     press();
     release();
-    frame();
+    frame(3);
 }
 void TestWindow::drag(glm::vec2 from, glm::vec2 by, int button) {
-    move(from);
-    frame(2);
+    hover(from);
     press(button);
     for (int step = 1; step <= 4; ++step) {
         move(from + by * (static_cast<float>(step) / 4.0f));
@@ -124,7 +125,7 @@ void TestWindow::tap(int code, bool ctrl, bool shift) {
     frame();
     ImGui::GetIO().KeysDown[code] = false;
     hold(false, false, false);
-    frame();
+    frame(3);
 }
 void TestWindow::type(const std::string& text) {
     ImGui::GetIO().AddInputCharactersUTF8(text.c_str());
@@ -146,10 +147,8 @@ glm::vec2 TestWindow::at(const std::string& name) {
 }
 
 void TestWindow::choose(const std::string& path) {
-    for (std::size_t slash = path.find('/'); slash != std::string::npos; slash = path.find('/', slash + 1)) {
+    for (std::size_t slash = path.find('/'); slash != std::string::npos; slash = path.find('/', slash + 1))
         click(at(path.substr(0, slash)));
-        frame(2);
-    }
     click(at(path));
 }
 
@@ -157,6 +156,12 @@ Commands TestWindow::take_commands() {
     Commands taken;
     taken.swap(commands_);
     return taken;
+}
+
+Command TestWindow::take_only(Command::Kind kind) {
+    const Commands taken = take_commands();
+    EXPECT_EQ(kinds(taken), std::vector{kind});
+    return taken.empty() ? Command() : taken[0];
 }
 
 Picture8 TestWindow::picture(Style style) {

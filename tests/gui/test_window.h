@@ -6,9 +6,6 @@
 
 #include <imgui.h>
 
-#include <string>
-#include <vector>
-
 #include "gui/gui.h"
 #include "gui/software_draw.h"
 
@@ -23,6 +20,8 @@ class TestWindow {
 
     void frame(int count = 1);
     void move(glm::vec2 to);
+    /// Moves there and lets two frames see it.
+    void hover(glm::vec2 to);
     void press(int button = 0);
     void release(int button = 0);
     void click(glm::vec2 at, int button = 0);
@@ -42,6 +41,8 @@ class TestWindow {
 
     /// Commands since the last call.
     Commands take_commands();
+    /// The one command since then; fails the test where it is none or of another kind.
+    Command take_only(Command::Kind kind);
     /// The last frame as it looks.
     Picture8 picture(Style style = Style::as_seen);
     /// Into the folder that $ASTROSPLAT_GUI_PICTURES names, when it names one.

@@ -58,7 +58,6 @@ TEST(TimelineOfAnother, AStillIsAsLongAsTheFilmThatItMayBecome) {
     window.drag(ruler, {2000, 0});
     EXPECT_EQ(window.view.frame, 240.0);
     window.tap('K');
-    window.frame(2);
     EXPECT_EQ(window.document.scene().output.frames, "1-240");
     window.drag(ruler, {-2000, 0});
     EXPECT_EQ(window.view.frame, 1.0);
@@ -70,7 +69,6 @@ TEST_F(TimelineTest, ThePlayheadComesAlongWhereUndoTakesItsFrameAway) {
     window.view.frame = 390.0;
     window.frame(2);
     window.tap('Z', true);
-    window.frame(2);
     EXPECT_EQ(window.view.frame, 240.0);
 }
 
@@ -178,7 +176,6 @@ TEST_F(TimelineTest, ABoxSelectsAndMovesTogether) {
 
 TEST_F(TimelineTest, TheMenuOfAKeyframeChangesItsInterpolation) {
     window.click(window.at("keyframe layer.stars.render.opacity 24"), 1);
-    window.frame();
     window.click("keyframe menu/Step");
     const Track* track = find_track(window.document.scene(), "layer.stars.render.opacity");
     ASSERT_NE(track, nullptr);
@@ -188,10 +185,8 @@ TEST_F(TimelineTest, TheMenuOfAKeyframeChangesItsInterpolation) {
 
 TEST_F(TimelineTest, TheGraphDragsAValue) {
     window.click("graph");
-    window.frame(2);
     const std::string power = "layer.dust.look.alpha.power";
     window.click("track " + power);
-    window.frame(2);
     const glm::vec2 middle = window.at("graph " + power + " 90 0"),
                     low = window.at("graph " + power + " 1 0");
     // Half way down from 2.5 to 1.0.
@@ -213,7 +208,6 @@ struct TimelineHeader : testing::Test {
         window.tap('A', true);
         window.type(text);
         window.tap(key_code::enter);
-        window.frame(2);
     }
 };
 
@@ -253,7 +247,6 @@ TEST_F(TimelineHeader, InAndOutPointsAreSetByKeysAndDragged) {
     window.tap('I');
     window.view.frame = 80;
     window.tap('O');
-    window.frame(2);
     EXPECT_EQ(window.view.play_first, 40.0);
     EXPECT_EQ(window.view.play_last, 80.0);
     const float per_frame =
@@ -268,8 +261,7 @@ TEST_F(TimelineHeader, InAndOutPointsAreSetByKeysAndDragged) {
 }
 
 TEST_F(TimelineHeader, TheRateThatIsReachedIsTold) {
-    window.move({-100, -100});
-    window.frame(2);
+    window.hover({-100, -100});
     const auto still = window.picture(Style::schematic).pixels;
     window.status.played_fps = 11.5;
     window.frame(2);
@@ -286,7 +278,6 @@ struct GraphTest : testing::Test {
         window.frame(2);
         window.click("graph");
         window.click("track " + key);
-        window.frame(2);
     }
     void make_bezier() {
         window.document.edit("Bezier", [&](Scene& scene) {
@@ -294,21 +285,16 @@ struct GraphTest : testing::Test {
                 set_interpolation(scene, key, frame, Interpolation::bezier);
         });
         window.click("graph " + key + " 90 0");
-        window.frame(2);
     }
     const Keyframe<std::vector<double>>& keyframe(std::size_t i) {
         return find_track(window.document.scene(), key)->keyframes[i];
     }
     glm::vec2 point(const std::string& name) { return window.at("graph " + name); }
     glm::vec2 handle(const std::string& side) { return window.at("handle " + key + " 90 0 " + side); }
-    void open_menu() {
-        window.click(point(key + " 90 0"), 1);
-        window.frame(2);
-    }
+    void open_menu() { window.click(point(key + " 90 0"), 1); }
     void choose_in_menu(const std::string& item) {
         open_menu();
         window.click("keyframe menu/" + item);
-        window.frame(3);
     }
 };
 
@@ -329,13 +315,11 @@ TEST_F(GraphTest, TheMenuTicksWhatIsSet) {
     make_bezier();
     const auto tick = [&](const char* item) {
         open_menu();
-        window.move({-100, -100});
-        window.frame(2);
+        window.hover({-100, -100});
         const glm::vec2 at = window.at(std::string("keyframe menu/") + item);
         const Picture8 seen = cropped(window.picture(Style::schematic), static_cast<int>(at.x),
                                       static_cast<int>(at.y) - 8, 170, 16);
         window.tap(key_code::escape);
-        window.frame(2);
         return seen.pixels;
     };
     const auto bezier = tick("Bezier"), step = tick("Step");
@@ -372,16 +356,13 @@ TEST_F(GraphTest, EscapeTakesADragBack) {
     make_bezier();
     const Scene before = window.document.scene();
     for (const glm::vec2 from : {handle("out"), point(key + " 90 0")}) {
-        window.move(from);
-        window.frame(2);
+        window.hover(from);
         window.press();
         window.frame(2);
-        window.move(from + glm::vec2(0, 40));
-        window.frame(2);
+        window.hover(from + glm::vec2(0, 40));
         EXPECT_FALSE(window.document.scene() == before);
         window.tap(key_code::escape);
-        window.move(from + glm::vec2(0, 60));
-        window.frame(2);
+        window.hover(from + glm::vec2(0, 60));
         window.release();
         window.frame(2);
         EXPECT_TRUE(window.document.scene() == before);
@@ -391,8 +372,7 @@ TEST_F(GraphTest, EscapeTakesADragBack) {
 TEST_F(GraphTest, TheWheelZoomsValuesAndTheMiddleButtonMovesThePlot) {
     const auto apart = [&] { return point(key + " 1 0") - point(key + " 90 0"); };
     const glm::vec2 before = apart(), middle = window.at("graph area");
-    window.move(middle);
-    window.frame(2);
+    window.hover(middle);
     window.wheel(1);
     window.frame(2);
     EXPECT_NEAR(apart().y, 1.25f * before.y, 1.0f);
@@ -408,24 +388,20 @@ TEST_F(GraphTest, TheWheelZoomsValuesAndTheMiddleButtonMovesThePlot) {
     EXPECT_NEAR(point(key + " 90 0").x, at.x - 30.0f, 1.0f);
     EXPECT_NEAR(point(key + " 90 0").y, at.y + 20.0f, 1.0f);
     window.double_click(window.at("graph area"));
-    window.frame(3);
     EXPECT_NEAR(apart().y, before.y, 0.5f);
     EXPECT_NEAR(apart().x, before.x, 0.5f);
 }
 
 TEST_F(GraphTest, ChannelsAreHiddenAndShownOneByOne) {
     window.click("track camera.position");
-    window.frame(2);
     const auto seen = [&](int channel) {
         return window.has("graph camera.position 90 " + std::to_string(channel));
     };
     EXPECT_TRUE(seen(0) && seen(1) && seen(2));
     window.click("channel camera.position 1");
-    window.frame(2);
     EXPECT_TRUE(seen(0) && !seen(1) && seen(2));
     window.hold(false, true, false);
     window.click("channel camera.position 2");
-    window.frame(2);
     EXPECT_TRUE(!seen(0) && !seen(1) && seen(2)) << "Shift: it alone";
     window.click("channel camera.position 2");
     window.hold(false, false, false);

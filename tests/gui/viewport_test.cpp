@@ -1,8 +1,6 @@
 // The viewport: drags, flying, wipe, 1:1, and the badge.
 #include <gtest/gtest.h>
 
-#include <limits>
-
 #include "gui/gui_frame.h"
 #include "gui/test_window.h"
 #include "gui/viewport.h"
@@ -37,8 +35,7 @@ TEST_F(ViewportTest, MouseButtonsMeanDrags) {
 
 TEST_F(ViewportTest, ADragBeginsMovesAndEnds) {
     const glm::vec2 middle = window.at("frame in view");
-    window.move(middle);
-    window.frame(2);
+    window.hover(middle);
     EXPECT_TRUE(window.gui.viewport_input().hovered);
     window.press(0);
     EXPECT_TRUE(window.gui.viewport_input().drag_begins);
@@ -57,8 +54,7 @@ TEST_F(ViewportTest, ADragBeginsMovesAndEnds) {
 ViewportInput::Click click_in_view(TestWindow& window, glm::vec2 by, float slip = 0.0f) {
     const glm::vec2 at = window.at("frame in view") + by;
     window.frame(60);  // no double click of the last one
-    window.move(at);
-    window.frame(2);
+    window.hover(at);
     window.press(0);
     EXPECT_EQ(window.gui.viewport_input().click, ViewportInput::Click::none);
     window.move(at + glm::vec2(slip, 0.0f));
@@ -96,8 +92,7 @@ TEST_F(ViewportTest, ADoubleClickIsOneClickOnly) {
 }
 
 TEST_F(ViewportTest, LettersFlyOnlyWhileLookingAround) {
-    window.move(window.at("frame in view"));
-    window.frame(2);
+    window.hover(window.at("frame in view"));
     ImGui::GetIO().KeysDown['W'] = true;
     window.frame();
     EXPECT_EQ(window.gui.viewport_input().fly, glm::dvec3(0));
@@ -149,7 +144,6 @@ class Placing : public testing::Test {
         window.status.reference = ReferenceStatus{0, 1.0, ""};
         window.frame();
         window.tap('P');
-        window.frame();
         const Rect picture = make_layout(window.view, 1600.0f, 900.0f, 1.0f).viewport;
         const ViewFrameStatus& shown = window.status.view_frame;
         frame = frame_on_screen(place_frame(window.view, picture, shown.width, shown.height));
@@ -202,8 +196,7 @@ TEST_F(Placing, ACornerScalesAndTheOutsideOrShiftTurns) {
 }
 
 TEST_F(Placing, TheWheelScalesItAboutTheMouseAndNotTheCamera) {
-    window.move(glm::vec2(frame.middle) + glm::vec2(0.25f * h(), 0.0f));
-    window.frame(2);
+    window.hover(glm::vec2(frame.middle) + glm::vec2(0.25f * h(), 0.0f));
     window.wheel(1.0f);
     EXPECT_NEAR(placed().scale, 1.05, 1e-5);
     EXPECT_NEAR(placed().position.x, 0.25 - 0.25 * 1.05, 0.05 * px());
@@ -222,8 +215,7 @@ TEST_F(ViewportTest, TheDifferenceIsSaidInNumbers) {
 TEST_F(ViewportTest, OneToOneZoomsAboutTheMouseAndMoves) {
     window.view.size = SizeMode::one_to_one;
     const glm::vec2 middle = window.at("frame in view");
-    window.move(middle + glm::vec2(100, 0));
-    window.frame(2);
+    window.hover(middle + glm::vec2(100, 0));
     for (int i = 0; i < 4; ++i) window.wheel(1);
     EXPECT_NEAR(window.view.zoom, 2.0, 1e-9);
     EXPECT_NEAR(window.view.pan_px.x, -100, 1) << "what lies under the mouse stays";
@@ -306,15 +298,11 @@ TEST_F(ViewportTest, TheBadgesButtons) {
     window.status.view_frame.error = "no such picture";
     window.frame(2);
     window.click("badge/Copy");
-    Commands commands = window.take_commands();
-    ASSERT_EQ(kinds(commands), std::vector<Kind>{Kind::copy_text});
-    EXPECT_EQ(commands[0].text, "no such picture");
+    EXPECT_EQ(window.take_only(Kind::copy_text).text, "no such picture");
     window.status.layers[1].loading = true;
     window.frame(2);
     window.click("badge/Cancel");
-    commands = window.take_commands();
-    ASSERT_EQ(kinds(commands), std::vector<Kind>{Kind::cancel_load});
-    EXPECT_EQ(commands[0].index, 1U);
+    EXPECT_EQ(window.take_only(Kind::cancel_load).index, 1U);
 }
 
 TEST_F(ViewportTest, TheBadgeStaysInThePictureHoweverLongANameIs) {
@@ -341,8 +329,7 @@ TEST(MessageBar, AnErrorStaysUntilItIsClicked) {
     TestWindow window(example_document());
     const Rect bar = make_layout(window.view, 1600.0f, 900.0f, 1.0f).status;
     const auto seen = [&] {
-        window.move({-100.0f, -100.0f});
-        window.frame(2);
+        window.hover({-100.0f, -100.0f});
         return cropped(window.picture(Style::schematic), 0, static_cast<int>(bar.y), 800,
                        static_cast<int>(bar.height))
             .pixels;

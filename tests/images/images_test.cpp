@@ -4,11 +4,7 @@
 //   A scene without a reference fails, and leaves its picture to be looked at and copied to references/.
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-#include <filesystem>
 #include <iostream>
-#include <limits>
 
 #include "analytic/support.h"
 #include "output/write.h"
@@ -17,8 +13,6 @@
 
 namespace astrosplat {
 namespace {
-
-namespace fs = std::filesystem;
 
 // Relative to the reference where that is above 1. Half-float files are exact to 5e-4; the frames themselves
 // are the same bits everywhere, so more than that is a change of the picture.

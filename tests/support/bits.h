@@ -4,13 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <cstring>
-#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <ranges>
-#include <string>
 #include <type_traits>
-#include <vector>
 
 #include "core/buffer.h"
 #include "core/image.h"

@@ -3,13 +3,9 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <filesystem>
 #include <glm/geometric.hpp>
-#include <string>
 
 #include "camera_files/camera_track.h"
-#include "core/error.h"
 #include "support/errors.h"
 #include "support/temp_folder.h"
 
@@ -24,7 +20,9 @@ class CameraFileTest : public testing::Test {
     template <class Read>
     std::string refusal(const std::string& name, const std::string& text, const Read& read) {
         const std::filesystem::path file = put(name, text);
-        std::string message = message_of<InputError>([&] { read(file, FrameRate{}); });
+        return without_folder(ERROR_OF(read(file, FrameRate{})));
+    }
+    std::string without_folder(std::string message) {
         const std::string inside = folder.path().string() + "/";
         for (std::size_t at; (at = message.find(inside)) != message.npos;) message.erase(at, inside.size());
         return message;

@@ -1,15 +1,10 @@
 // Small captures made by numbers drawn from hashes, and the files that hold them, built byte by byte.
 #pragma once
 
-#include <array>
-#include <cmath>
-#include <cstdint>
 #include <cstdio>
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
-#include <string>
-#include <vector>
 
 #include "core/shared_maths.h"
 

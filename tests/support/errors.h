@@ -1,7 +1,7 @@
 // Error messages as values, and texts that have a part, for tests that compare them.
 #pragma once
 
-#include <string>
+#include "core/error.h"
 
 namespace astrosplat {
 
@@ -21,6 +21,9 @@ inline bool has_part(const std::string& text, const std::string& part) {
 }
 
 }  // namespace astrosplat
+
+/// What the InputError says that the statement throws, or "no error".
+#define ERROR_OF(...) ::astrosplat::message_of<::astrosplat::InputError>([&] { __VA_ARGS__; })
 
 /// Shows both where the text has no such part.
 #define EXPECT_HAS(text, part) EXPECT_PRED2(::astrosplat::has_part, text, part)

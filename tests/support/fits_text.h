@@ -23,7 +23,7 @@ inline std::string fits_sky(double px, double py, double ra, double dec, double 
     const std::vector<std::pair<const char*, double>> values = {
         {"CRPIX1", px}, {"CRPIX2", py}, {"CRVAL1", ra}, {"CRVAL2", dec},
         {"CD1_1", -c},  {"CD1_2", s},   {"CD2_1", s},   {"CD2_2", c}};
-    for (const auto& [key, value] : values) cards += fits_card(fmt::format("{:8}= {:20.12f}", key, value));
+    for (const auto& [key, value] : values) cards += fits_card(fmt::format("{:8}= {:20.12E}", key, value));
     return cards;
 }
 
@@ -35,14 +35,13 @@ std::string fits_file(int width, int height, const std::string& cards, const Val
         fits_card("NAXIS   =                    2") + fits_card(fmt::format("NAXIS1  = {:20}", width)) +
         fits_card(fmt::format("NAXIS2  = {:20}", height)) + cards + fits_card("END");
     file.resize((file.size() + 2879) / 2880 * 2880, ' ');
-    for (int y = 0; y < height; ++y) {
+    for (int y = 0; y < height; ++y)
         for (int x = 0; x < width; ++x) {
             const auto number = static_cast<float>(value(x, y));
             std::uint32_t bits;
             std::memcpy(&bits, &number, 4);
             for (int shift = 24; shift >= 0; shift -= 8) file += static_cast<char>(bits >> shift & 255u);
         }
-    }
     file.resize((file.size() + 2879) / 2880 * 2880, '\0');
     return file;
 }

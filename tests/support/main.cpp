@@ -7,18 +7,13 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
-#include <algorithm>
-#include <array>
 #include <cerrno>
 #include <clocale>
 #include <cstdlib>
 #include <cstring>
-#include <filesystem>
 #include <iostream>
 #include <locale>
 #include <map>
-#include <string>
-#include <utility>
 
 #include "core/log.h"
 #include "core/parallel.h"

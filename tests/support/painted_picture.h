@@ -2,11 +2,6 @@
 // had. Linear light, RGB, about 0..1 with a few brighter points.
 #pragma once
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstdint>
-
 #include "core/image.h"
 #include "core/parallel.h"
 #include "core/shared_maths.h"

@@ -1,11 +1,7 @@
 #include "support/preview_views.h"
 
-#include <algorithm>
 #include <chrono>
-#include <cmath>
-#include <filesystem>
 #include <thread>
-#include <vector>
 
 #include "core/error.h"
 #include "core/progress.h"

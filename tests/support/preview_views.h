@@ -3,9 +3,6 @@
 // 64 x 64 px and the thickness of a disk seen from its edge.
 #pragma once
 
-#include <cstdint>
-#include <span>
-
 #include "core/image.h"
 #include "edit/view_state.h"
 #include "sets/kept.h"

@@ -1,9 +1,6 @@
 // The log in tests: silenced where sets are loaded on the way to something else, or caught to be compared.
 #pragma once
 
-#include <string>
-#include <vector>
-
 #include "core/log.h"
 
 namespace astrosplat {
@@ -33,6 +30,10 @@ struct Said {
     Said(const Said&) = delete;
     Said& operator=(const Said&) = delete;
 
+    /// The only warning, or how many there are.
+    std::string one_warning() const {
+        return warnings.size() == 1 ? warnings[0] : std::to_string(warnings.size()) + " warnings";
+    }
     std::string text() const {
         std::string all;
         for (const std::string& line : lines) all += line + "\n";

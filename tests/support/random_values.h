@@ -1,10 +1,6 @@
 // Hashed numbers, the same in every run, and values that a described parameter may have.
 #pragma once
 
-#include <cmath>
-#include <cstdint>
-#include <string>
-
 #include "core/shared_maths.h"
 #include "scene/parameter.h"
 

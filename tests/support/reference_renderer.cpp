@@ -4,11 +4,8 @@
 // B what it lets through.
 #include "support/reference_renderer.h"
 
-#include <algorithm>
-#include <cmath>
 #include <numbers>
 #include <tuple>
-#include <vector>
 
 namespace astrosplat::test {
 namespace {

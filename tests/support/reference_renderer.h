@@ -1,8 +1,6 @@
 // The frame by the book: what the tile renderer must show, for scenes small enough to wait for it.
 #pragma once
 
-#include <span>
-
 #include "camera/camera.h"
 #include "render/environment.h"
 #include "render/frame.h"

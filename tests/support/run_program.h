@@ -9,14 +9,15 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <algorithm>
+#include <chrono>
 #include <cstdlib>
-#include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <set>
 #include <stdexcept>
-#include <string>
-#include <vector>
+#include <thread>
+
+#include "core/standard.h"
 
 namespace astrosplat::test {
 
@@ -26,9 +27,9 @@ struct RunResult {
 };
 
 struct RunOptions {
-    std::filesystem::path folder = ".";    // working directory
-    std::vector<std::string> environment;  // NAME=VALUE, over those of the test; DISPLAY only from here
-    std::vector<std::string> without;      // names taken out of the environment
+    std::filesystem::path folder = ".";      // working directory
+    std::vector<std::string> environment{};  // NAME=VALUE, over those of the test; DISPLAY only from here
+    std::vector<std::string> without{};      // names taken out of the environment
 };
 
 inline std::string text_of(const std::filesystem::path& file) {
@@ -71,6 +72,11 @@ class RunningProgram {
 
     void signal(int number) const { kill(process_, number); }
     std::string err_so_far() const { return text_of(logs_ / "err"); }
+    /// Until stderr has this text, or the program has ended.
+    void wait_until_said(const std::string& text) const {
+        while (running() && err_so_far().find(text) == std::string::npos)
+            std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    }
     pid_t id() const { return process_; }
     /// It has not ended; wait() can still tell how it did.
     bool running() const {
@@ -126,6 +132,12 @@ inline RunResult run_program(const std::vector<std::string>& arguments, const Ru
     return RunningProgram(arguments, options).wait();
 }
 
+/// Of a run that must succeed.
+inline RunResult expect_success(const RunResult& result) {
+    EXPECT_EQ(result.code, 0) << result.out << result.err;
+    return result;
+}
+
 /// A test with an empty folder of its own, kept for a look when the test has failed.
 class FolderTest : public testing::Test {
   protected:
@@ -139,6 +151,15 @@ class FolderTest : public testing::Test {
     ~FolderTest() override {
         std::error_code ignored;
         if (!HasFailure()) std::filesystem::remove_all(folder, ignored);
+    }
+
+    /// Of what lies in a folder below that one; empty where there is none.
+    std::set<std::string> names_in(const std::filesystem::path& place) const {
+        std::set<std::string> names;
+        std::error_code ignored;
+        for (const auto& entry : std::filesystem::directory_iterator(folder / place, ignored))
+            names.insert(entry.path().filename().string());
+        return names;
     }
 
     std::filesystem::path folder;

@@ -2,8 +2,6 @@
 // its own.
 #pragma once
 
-#include <string>
-
 #include "scene/scene.h"
 #include "support/pixmap.h"
 #include "support/temp_folder.h"

@@ -2,9 +2,9 @@
 #pragma once
 
 #include <cstdlib>
-#include <filesystem>
 #include <fstream>
-#include <string>
+
+#include "core/standard.h"
 
 namespace astrosplat {
 
@@ -24,8 +24,9 @@ class TempFolder {
     std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
     const std::filesystem::path& path() const { return path_; }
 
-    /// Writes a file and returns its path.
+    /// Writes a file, and the folder it lies in, and returns its path.
     std::filesystem::path file(const std::string& name, const std::string& content) const {
+        std::filesystem::create_directories((path_ / name).parent_path());
         std::ofstream(path_ / name, std::ios::binary) << content;
         return path_ / name;
     }

@@ -1,12 +1,9 @@
 // Pictures to compare with: two looks, the output's own pixels, a reference.
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "gui/widgets.h"
 #include "output/metadata.h"
 #include "source/texture.h"
-#include "source/write_image.h"
 #include "window/window_test.h"
 
 namespace astrosplat::test {
@@ -17,8 +14,7 @@ namespace {
 class WindowCompare : public WindowTest {};
 
 TEST_F(WindowCompare, TabShowsTheStoredLookAndTheOneAtHand) {
-    start();
-    const Pixels stored = settled_frame();
+    const Pixels stored = start_settled();
     person->press("b");
     person->drag(value_box(power), {60.0f, 0.0f});
     const Pixels changed = settled_frame(stored);
@@ -31,8 +27,7 @@ TEST_F(WindowCompare, TabShowsTheStoredLookAndTheOneAtHand) {
 
 /// The ground of a signed difference is what no picture of the scene has.
 TEST_F(WindowCompare, DShowsWhereTheFrontDiffersAndThePictureAgain) {
-    start();
-    const Pixels before = settled_frame();
+    const Pixels before = start_settled();
     constexpr std::uint32_t ground = IM_COL32(18, 18, 22, 255);
     ASSERT_EQ(count_of(before, ground), 0);
     person->press("d");
@@ -44,15 +39,14 @@ TEST_F(WindowCompare, DShowsWhereTheFrontDiffersAndThePictureAgain) {
 /// Of a picture larger than the viewport its middle, pixel by pixel as it will be in the file.
 TEST_F(WindowCompare, OutputPixelsAreThoseOfTheFrame) {
     replace_in_scene("[320, 180]", "[1600, 1200]");
-    start();
-    const Pixels fitted = settled_frame();
+    const Pixels fitted = start_settled();
     person->press("z");
     const Pixels shown = settled_frame(fitted);
-    ASSERT_EQ(run({"--batch", scene_file.string(), "-f", "1", "-o", "frame.png", "--no-cache"}).code, 0);
+    expect_success(run({"--batch", scene_file.string(), "-f", "1", "-o", "frame.png", "--no-cache"}));
     const Image frame = load_raw_image(folder / "frame.png");
     ViewState view;
     view.size = SizeMode::one_to_one;
-    const Rect viewport = make_layout(ViewState(), width, height, 1.0f).viewport;
+    const Rect viewport = layout().viewport;
     const Rect whole = place_frame(view, viewport, 1600, 1200);
     const auto left = static_cast<int>(viewport.x - whole.x), top = static_cast<int>(viewport.y - whole.y);
     ASSERT_GT(left, 0);
@@ -70,9 +64,8 @@ TEST_F(WindowCompare, OutputPixelsAreThoseOfTheFrame) {
 }
 
 TEST_F(WindowCompare, WhatACommandDidIsSaid) {
-    start();
-    settled_frame();
-    const Rect bar = make_layout(ViewState(), width, height, 1.0f).status;
+    start_settled();
+    const Rect bar = layout().status;
     const auto message = [&] {
         return screen->pixels({0, static_cast<int>(bar.y), 400, static_cast<int>(bar.height)});
     };
@@ -90,14 +83,12 @@ constexpr std::uint32_t no_difference = IM_COL32(128, 128, 128, 255);
 class WindowReference : public WindowTest {
   protected:
     WindowReference() {
-        std::vector<unsigned char> rgba;
-        for (int i = 0; i < 32 * 16; ++i) rgba.insert(rgba.end(), {200, 100, 50, 255});
-        write_image(folder / "ferner Nebel ä.png", 32, 16, rgba);
+        write_plain(folder / "ferner Nebel ä.png", 32, 16, {200, 100, 50});
         write_text(scene_file,
                    text_of(scene_file) + "\n[[reference]]\nfile = \"ferner Nebel ä.png\"\nscale = 0.5\n");
     }
     Rect frame() const {
-        const Rect viewport = make_layout(ViewState(), width, height, 1.0f).viewport;
+        const Rect viewport = layout().viewport;
         const OutputParams output = saved().output;
         const double shown =
             std::min(viewport.height / double(output.height), viewport.width / double(output.width));
@@ -109,8 +100,7 @@ class WindowReference : public WindowTest {
 };
 
 TEST_F(WindowReference, IsPlacedByTheMouseSavedAndUndone) {
-    start();
-    const Pixels before = settled_frame();
+    const Pixels before = start_settled();
     EXPECT_EQ(seen(), 0);
     person->press("shift+b");
     person->press("p");
@@ -131,8 +121,7 @@ TEST_F(WindowReference, IsPlacedByTheMouseSavedAndUndone) {
 }
 
 TEST_F(WindowReference, IsNotInThePictureOfASnapshot) {
-    start();
-    settled_frame();
+    start_settled();
     person->press("shift+b");
     person->press("Tab");
     EXPECT_TRUE(comes_true([&] { return seen() > 0; }));
@@ -145,8 +134,7 @@ TEST_F(WindowReference, IsNotInThePictureOfASnapshot) {
 }
 
 TEST_F(WindowReference, BlinksAndStops) {
-    start();
-    const Pixels before = settled_frame();
+    const Pixels before = start_settled();
     person->press("shift+b");
     person->press("x");
     for (int change = 0; change < 2; ++change) {
@@ -159,11 +147,10 @@ TEST_F(WindowReference, BlinksAndStops) {
 
 TEST_F(WindowReference, OneThatCannotBeReadIsSaid) {
     fs::remove(folder / "ferner Nebel ä.png");
-    start();
-    const Pixels before = settled_frame();
+    const Pixels before = start_settled();
     person->press("shift+b");
     person->press("Tab");
-    const Rect bar = make_layout(ViewState(), width, height, 1.0f).status;
+    const Rect bar = layout().status;
     EXPECT_TRUE(comes_true([&] {
         return count_of(screen->pixels({0, int(bar.y), 600, int(bar.height)}), color::error) > 0;
     })) << "the message is red";
@@ -172,13 +159,12 @@ TEST_F(WindowReference, OneThatCannotBeReadIsSaid) {
 
 /// The frame itself, as a picture that lies elsewhere.
 TEST_F(WindowReference, IsAlignedToTheView) {
-    ASSERT_EQ(run({"--batch", scene_file.string(), "-f", "1", "-o", "frame.png", "--no-cache"}).code, 0);
+    expect_success(run({"--batch", scene_file.string(), "-f", "1", "-o", "frame.png", "--no-cache"}));
     std::string text = text_of(scene_file);
     text.replace(text.find("ferner Nebel"), text.size(),
                  "frame.png\"\nposition = [0.1, -0.05]\nscale = 0.8\n");
     write_text(scene_file, text);
-    start();
-    settled_frame();
+    start_settled();
     same_widgets().status.reference = ReferenceStatus{0, 16.0 / 9.0, ""};
     same_widgets().frame(2);
     choose("View/Align reference to this view");
@@ -194,8 +180,7 @@ TEST_F(WindowReference, IsAlignedToTheView) {
 
 /// Pixels equal to B are grey in the difference, whatever is stored as B; changes lie about that grey.
 TEST_F(WindowReference, TheDifferenceFromBIsNeverBlack) {
-    start();
-    settled_frame();
+    start_settled();
     person->press("b");
     choose("View/Difference");
     const double pixels = double(frame().width) * double(frame().height);

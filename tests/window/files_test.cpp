@@ -15,10 +15,7 @@ namespace {
 class WindowFiles : public WindowTest {
   protected:
     void write_plain(const std::string& name, unsigned char red, unsigned char blue) {
-        constexpr int size = 64;
-        std::vector<unsigned char> rgba;
-        for (int i = 0; i < size * size; ++i) rgba.insert(rgba.end(), {red, 90, blue, 255});
-        write_image(folder / name, size, size, rgba);
+        test::write_plain(folder / name, 64, 64, {red, 90, blue});
     }
     /// Something in the window is in the colour of errors.
     bool failed() const { return count_of(screen->pixels({0, 0, width, height}), color::error) > 10; }
@@ -28,8 +25,7 @@ class WindowFiles : public WindowTest {
 };
 
 TEST_F(WindowFiles, ATextureIsReadAgain) {
-    start();
-    const Pixels before = settled_frame();
+    const Pixels before = start_settled();
     write_plain("rings.png", 250, 10);
     const Pixels after = settled_frame(before);
     write_plain("rings.png", 10, 250);
@@ -46,8 +42,7 @@ TEST_F(WindowFiles, SkyAndThicknessMapAreReadAgain) {
     add("[animation]",
         "[layer.look.thickness]\nmap = \"thick.png\"\nkeys = [ { color = [1, 0.35, 1], scale = 1.0 }, "
         "{ color = [0, 0.35, 0], scale = 0.2 } ]\n\n");
-    start();
-    const Pixels before = settled_frame();
+    const Pixels before = start_settled();
     write_plain("thick.png", 0, 0);
     const Pixels thin = settled_frame(before);
     write_plain("sky.png", 10, 60);
@@ -90,8 +85,7 @@ class WindowDrop : public WindowTest {
 };
 
 TEST_F(WindowDrop, APictureBecomesALayerAndASceneIsOpened) {
-    start();
-    const Pixels before = settled_frame();
+    const Pixels before = start_settled();
     write_rings(folder / "übrig 2.png");
     ASSERT_TRUE(screen->drop({folder / "übrig 2.png"}, middle()));
     expect_title("scene.toml - edited");
@@ -110,8 +104,7 @@ TEST_F(WindowDrop, APictureBecomesALayerAndASceneIsOpened) {
 }
 
 TEST_F(WindowDrop, ACameraDrivesTheScenes) {
-    start();
-    const Pixels before = settled_frame();
+    const Pixels before = start_settled();
     write_text(folder / "weg ü.chan", "1 0 3 9 -15 10 0 30\n");
     ASSERT_TRUE(screen->drop({folder / "weg ü.chan"}, middle()));
     expect_title("scene.toml - edited");
@@ -122,8 +115,7 @@ TEST_F(WindowDrop, ACameraDrivesTheScenes) {
 }
 
 TEST_F(WindowDrop, ALookIsGivenToTheLayer) {
-    start();
-    const Pixels before = settled_frame();
+    const Pixels before = start_settled();
     write_text(folder / "look.toml", "[look]\nalpha = { power = 3.0 }\n");
     ASSERT_TRUE(screen->drop({folder / "look.toml"}, middle()));
     expect_title("scene.toml - edited");
@@ -154,9 +146,7 @@ TEST_F(WindowDrop, OnTheDemoAPictureBecomesAGalaxy) {
 class WindowFileDialog : public WindowTest {
   protected:
     void write_plain(const std::string& name, int side, unsigned char red, unsigned char green) const {
-        std::vector<unsigned char> rgba;
-        for (int i = 0; i < side * side; ++i) rgba.insert(rgba.end(), {red, green, 30, 255});
-        write_image(folder / name, side, side, rgba);
+        test::write_plain(folder / name, side, side, {red, green, 30});
     }
     Pixels window() const { return screen->pixels({0, 0, width, height}); }
     /// A thumbnail of 48 px a side, without its rim.
@@ -189,8 +179,7 @@ TEST_F(WindowFileDialog, PicturesAreSeenBeforeTheyAreChosen) {
     for (int i = 0; i < 300; ++i)
         fs::copy_file(folder / "rings.png", folder / ("pictures/d" + std::to_string(100 + i) + ".png"));
     write_plain("pictures/z last.png", 200, 105, 106);
-    start();
-    settled_frame();
+    start_settled();
     choose("File/Import as a layer...");
     person->type("pictures");
     person->press("Return");

@@ -3,8 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "support/run_program.h"
 
 namespace astrosplat::test {
@@ -22,10 +20,7 @@ Words to(glm::vec2 at) {
 
 void Person::act(std::vector<std::string> words) const {
     words.insert(words.begin(), {"/usr/bin/env", "xdotool"});
-    RunOptions options;
-    options.environment = {"DISPLAY=" + display_};
-    const RunResult result = run_program(words, options);
-    ASSERT_EQ(result.code, 0) << result.err;
+    expect_success(run_program(words, {.environment = {"DISPLAY=" + display_}}));
 }
 
 void Person::move(glm::vec2 at) const {

@@ -23,8 +23,7 @@ class WindowSafety : public WindowTest {
         return files;
     }
     void edit() {
-        start();
-        settled_frame();
+        start_settled();
         person->drag(value_box(power), {60.0f, 0.0f});
         expect_title("scene.toml - edited");
     }
@@ -75,8 +74,7 @@ class WindowDisk : public WindowSafety {
     }
     /// In the colour of errors: the badge where it cannot render.
     bool picture_failed() const {
-        const Layout layout = make_layout(ViewState(), width, height, 1.0f);
-        const Rect& port = layout.viewport;
+        const Rect port = layout().viewport;
         return count_of(screen->pixels({0, static_cast<int>(port.y + port.height) - 50, 100, 50}),
                         color::error) > 10;
     }
@@ -84,8 +82,7 @@ class WindowDisk : public WindowSafety {
 };
 
 TEST_F(WindowDisk, ASceneEditedByHandIsReadAgain) {
-    start();
-    const Pixels before = settled_frame();
+    const Pixels before = start_settled();
     replace("count = 60000", "count = 60000\n[layer.look]\nalpha = { power = 2.5 }");
     click_when_shown("notice/Reload");
     settled_frame(before);
@@ -103,8 +100,7 @@ TEST_F(WindowDisk, ASceneEditedByHandIsReadAgain) {
 
 TEST_F(WindowDisk, AnEnvironmentThatCannotBeReadEndsNothing) {
     write_text(folder / "sky.png", "no picture");
-    start();
-    const Pixels before = settled_frame();
+    const Pixels before = start_settled();
     replace("[[layer]]", "[environment]\nimage = \"sky.png\"\n[[layer]]");
     click_when_shown("notice/Reload");
     EXPECT_TRUE(comes_true([&] { return picture_failed() || !running(); }));
@@ -130,15 +126,14 @@ class WindowSnapshots : public WindowTest {
         same_widgets().frame(3);
     }
     bool says_an_error() const {
-        const Rect bar = make_layout(ViewState(), width, height, 1.0f).status;
+        const Rect bar = layout().status;
         return count_of(screen->pixels({0, static_cast<int>(bar.y), 600, static_cast<int>(bar.height)}),
                         color::error) > 0;
     }
 };
 
 TEST_F(WindowSnapshots, SurviveACrashAndAreComparedAfterIt) {
-    start();
-    const Pixels first = settled_frame();
+    const Pixels first = start_settled();
     person->drag(value_box(power), {60.0f, 0.0f});
     const Pixels changed = settled_frame(first);
     person->press("b");
@@ -149,11 +144,10 @@ TEST_F(WindowSnapshots, SurviveACrashAndAreComparedAfterIt) {
     EXPECT_GT(kept()[0].scene->layers[0].look.alpha.power, saved().layers[0].look.alpha.power);
 
     fs::remove_all(folder / "home/state");  // its autosave, which would be offered
-    start();
-    settled_frame();
+    start_settled();
     open_strip();
     person->click(same_widgets().at("snapshot 0"));
-    const Rect viewport = make_layout(ViewState(), width, height, 1.0f).viewport;
+    const Rect viewport = layout().viewport;
     const auto upper_half = [&] {  // without badge and strip
         return screen->pixels({static_cast<int>(viewport.x), static_cast<int>(viewport.y),
                                static_cast<int>(viewport.width), static_cast<int>(viewport.height / 2)});
@@ -173,8 +167,7 @@ TEST_F(WindowSnapshots, AreRestoredAsOneStepAndDeleted) {
     Scene scene = saved();
     scene.layers[0].look.alpha.power = 7.0f;
     write_snapshot(snapshot_folder(scene_file), {"Look 1"}, scene, "");
-    start();
-    settled_frame();
+    start_settled();
     open_strip();
     const auto choose_of_card = [&](const std::string& entry) {
         TestWindow& widgets = same_widgets();
@@ -198,8 +191,7 @@ TEST_F(WindowSnapshots, AreRestoredAsOneStepAndDeleted) {
 
 TEST_F(WindowSnapshots, WhereTheyCannotBeKeptOneLineSaysSo) {
     write_text(snapshot_folder(scene_file), "a file in the folder's place");
-    start();
-    const Pixels first = settled_frame();
+    const Pixels first = start_settled();
     person->press("b");
     EXPECT_TRUE(comes_true([&] { return says_an_error(); }));
     person->drag(value_box(power), {60.0f, 0.0f});

@@ -22,8 +22,7 @@ class WindowNew : public WindowTest {
 };
 
 TEST_F(WindowNew, AnEmptySceneTakesAShape) {
-    start();
-    settled_frame();
+    start_settled();
     choose("File/New/Empty scene");
     expect_title("Untitled");
     EXPECT_TRUE(comes_true([&] { return lit(frame_pixels()) < 8000; })) << "only words and the gate are left";
@@ -52,8 +51,7 @@ TEST_F(WindowNew, AMeshWithoutAPictureIsNeutralGrey) {
 class WindowLook : public WindowTest {};
 
 TEST_F(WindowLook, AValueIsDraggedSavedAndUndone) {
-    start();
-    const Pixels before = settled_frame();
+    const Pixels before = start_settled();
     person->drag(value_box(power), {60.0f, 0.0f});
     expect_title("scene.toml - edited");
     const Pixels after = settled_frame(before);
@@ -72,8 +70,7 @@ TEST_F(WindowLook, AValueIsDraggedSavedAndUndone) {
 }
 
 TEST_F(WindowLook, AValueIsTypedAfterADoubleClick) {
-    start();
-    const Pixels before = settled_frame();
+    const Pixels before = start_settled();
     person->double_click(value_box(power));
     person->type("2.25");
     person->press("Return");
@@ -98,8 +95,7 @@ class WindowTime : public WindowTest {
 };
 
 TEST_F(WindowTime, AValueIsKeyedAtTwoFramesAndPlaysAgain) {
-    start();
-    const Pixels first = settled_frame();
+    const Pixels first = start_settled();
     const Pixels timeline = pixels_of(&Layout::timeline);
     person->click(diamond(power));
     expect_title("scene.toml - edited");

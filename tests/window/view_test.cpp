@@ -19,8 +19,7 @@ namespace {
 class WindowView : public WindowTest {};
 
 TEST_F(WindowView, OrbitGoesToAFreeViewAndZeroReturns) {
-    start();
-    const Pixels before = settled_frame();
+    const Pixels before = start_settled();
     const Pixels tools = pixels_of(&Layout::tools);
     person->drag(same_widgets().at("frame in view"), {120.0f, 40.0f});
     settled_frame(before);
@@ -47,8 +46,7 @@ double processor_seconds(pid_t process) {
 // Time of the processor, not of the clock: what else the machine does counts little. A window that drew
 // frame after frame would need all of it.
 TEST_F(WindowView, AnIdleWindowRests) {
-    start();
-    const Pixels before = settled_frame();
+    const Pixels before = start_settled();
     constexpr double while_s = 3.0, most_s = 0.5;
     const double begin = processor_seconds(program->id());
     usleep(static_cast<useconds_t>(while_s * 1e6));
@@ -64,9 +62,7 @@ TEST_F(WindowView, AnIdleWindowRests) {
 class WindowSelect : public WindowTest {
   protected:
     WindowSelect() {
-        std::vector<unsigned char> rgba;
-        for (int i = 0; i < 16 * 16; ++i) rgba.insert(rgba.end(), {200, 200, 200, 255});
-        write_image(folder / "grey.png", 16, 16, rgba);
+        write_plain(folder / "grey.png", 16, 16, {200, 200, 200});
         write_text(scene_file, R"(astrosplat = 1
 [output]
 resolution = [320, 180]
@@ -83,11 +79,11 @@ position = [0.0, 30.0, 0.0]
                "[layer.look]\ngrade = { gain = " + gain + " }\n[layer.render]\nblend = \"add\"\n";
     }
     glm::vec2 row(int index) const {  // of the list of layers
-        const Rect panel = make_layout(ViewState(), width, height, 1.0f).panel;
+        const Rect panel = layout().panel;
         return {panel.x + 100.0f, panel.y + 32.0f + 28.0f * (static_cast<float>(index) + 0.5f)};
     }
     Area list_area() const {
-        const Rect panel = make_layout(ViewState(), width, height, 1.0f).panel;
+        const Rect panel = layout().panel;
         return {int(panel.x), int(panel.y), int(panel.width), 32 + 3 * 28};
     }
     /// The list, seen with the mouse elsewhere.
@@ -102,14 +98,13 @@ position = [0.0, 30.0, 0.0]
         return list();
     }
     glm::vec2 in_view(float right) const {  // of the middle, shares of the height
-        const Rect area = make_layout(ViewState(), width, height, 1.0f).viewport;
+        const Rect area = layout().viewport;
         return {area.x + 0.5f * area.width + right * area.height, area.y + 0.5f * area.height};
     }
 };
 
 TEST_F(WindowSelect, AClickSelectsAndAnotherTakesTheOneBehind) {
-    start();
-    settled_frame();
+    start_settled();
     const Pixels left = list();
     const Pixels behind = list_after_click_on_row(2), right = list_after_click_on_row(1);
     ASSERT_NE(left, right);
@@ -130,7 +125,7 @@ class WindowHandles : public WindowTest {
   protected:
     /// Where the scene's camera shows a point at frame 1, px of the window.
     glm::vec2 at(const glm::dvec3& point) const {
-        const Rect viewport = make_layout(ViewState(), width, height, 1.0f).viewport;
+        const Rect viewport = layout().viewport;
         const OutputParams output = saved().output;
         const double aspect = double(output.width) / double(output.height);
         const double high = std::min(double(viewport.height), double(viewport.width) / aspect);
@@ -142,8 +137,7 @@ class WindowHandles : public WindowTest {
 };
 
 TEST_F(WindowHandles, ALayerIsDraggedUndoneAndSaved) {
-    start();
-    const Pixels before = settled_frame();
+    const Pixels before = start_settled();
     person->press("w");
     person->drag(at({0.0, 0.0, 0.0}), at({1.0, 0.0, 0.0}) - at({0.0, 0.0, 0.0}));
     expect_title("scene.toml - edited");
@@ -156,8 +150,7 @@ TEST_F(WindowHandles, ALayerIsDraggedUndoneAndSaved) {
 }
 
 TEST_F(WindowHandles, ADragBesideThemOrbits) {
-    start();
-    settled_frame();
+    start_settled();
     person->press("w");
     person->drag(at({0.0, 0.0, 0.0}) + glm::vec2(0.0f, 200.0f), {60.0f, 0.0f});
     const Pixels tools = pixels_of(&Layout::tools);
@@ -177,7 +170,7 @@ class WindowPath : public WindowTest {
     }
     /// The middle of a point of the path at another frame than the one that is seen.
     std::optional<glm::vec2> point_on_path() const {
-        const Rect area = make_layout(ViewState(), width, height, 1.0f).viewport;
+        const Rect area = layout().viewport;
         const Pixels seen = frame_pixels();
         const auto is_key = [&](int x, int y) {
             return seen.rgb[static_cast<std::size_t>(y * seen.width + x)] == 0xD9A441;
@@ -192,10 +185,8 @@ class WindowPath : public WindowTest {
     }
     /// All of a finished frame.
     void write_frame(int frame, unsigned char level) {
-        std::vector<unsigned char> rgba;
-        for (int i = 0; i < 320 * 180; ++i) rgba.insert(rgba.end(), {level, level, level, 255});
         fs::create_directories(folder / "frames");
-        write_image(folder / fmt::format("frames/shot.{:04}.png", frame), 320, 180, rgba);
+        write_plain(folder / fmt::format("frames/shot.{:04}.png", frame), 320, 180, {level, level, level});
     }
     /// Frame 1 lies there as light of 0.2, and one stop of exposure.
     void show_rendered_light(const std::string& view) {
@@ -204,8 +195,7 @@ class WindowPath : public WindowTest {
         fs::create_directories(folder / "frames");
         write_linear_image(folder / "frames/shot.0001.exr", make_image(320, 180, 4, 0.2f), "",
                            Existing::replace);
-        start();
-        settled_frame();
+        start_settled();
         person->click(same_widgets().at("playing/Rendered"));
     }
     bool sees(unsigned char level) const {
@@ -215,8 +205,7 @@ class WindowPath : public WindowTest {
 
 TEST_F(WindowPath, AKeyframeIsDraggedInTheView) {
     write_low_path();
-    start();
-    const Pixels camera = settled_frame();
+    const Pixels camera = start_settled();
     person->press("7");
     settled_frame(camera);
     const std::optional<glm::vec2> point = point_on_path();
@@ -238,8 +227,7 @@ TEST_F(WindowPath, AKeyframeIsDraggedInTheView) {
 TEST_F(WindowPath, RenderedFramesAreShownAndTheOthersAsPreviews) {
     write_frame(1, 100);
     write_frame(24, 200);
-    start();
-    settled_frame();
+    start_settled();
     person->click(same_widgets().at("playing/Rendered"));
     EXPECT_TRUE(comes_true([&] { return sees(100); }));
     person->press("ctrl+Right");

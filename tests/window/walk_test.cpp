@@ -29,8 +29,7 @@ class WindowWalk : public WindowTest {
             return round < 2 || std::chrono::steady_clock::now() < end_of_walk;
         };
         const std::string begun = text_of(scene_file);
-        start();
-        settled_frame();
+        start_settled();
         std::int64_t first = 0, last = 0;
         int round = 0;
         for (; round < rounds && has_time(round) && running(); ++round) {
@@ -73,7 +72,7 @@ class WindowWalk : public WindowTest {
     /// Somewhere below the menus, which lead out of the scene.
     glm::vec2 anywhere() { return {within(10.0f, width - 20.0f), within(70.0f, height - 110.0f)}; }
     glm::vec2 on(Rect Layout::*part) {
-        const Rect area = make_layout(ViewState(), width, height, 1.0f).*part;
+        const Rect area = layout().*part;
         return {within(area.x + 8.0f, area.width - 16.0f), within(area.y + 8.0f, area.height - 16.0f)};
     }
 

@@ -1,8 +1,6 @@
 // Ways out of the window: files, movies, jobs, a farm.
 
-#include <cmath>
 #include <set>
-#include <utility>
 
 #include "edit/command_lines.h"
 #include "gui/widgets.h"
@@ -17,16 +15,8 @@ namespace {
 
 class WindowWaysOut : public WindowTest {
   protected:
-    std::set<std::string> names_in(const fs::path& place) const {
-        std::set<std::string> names;
-        std::error_code ignored;
-        for (const auto& entry : fs::directory_iterator(place, ignored))
-            names.insert(entry.path().filename().string());
-        return names;
-    }
     /// In the open dialog, and begins.
     void name_files(const std::string& name) {
-        same_widgets().frame(2);
         person->double_click(same_widgets().at("render/name"));
         person->press("ctrl+a");
         person->type(name);
@@ -36,7 +26,6 @@ class WindowWaysOut : public WindowTest {
     }
     /// As the open dialog has it.
     void render() {
-        same_widgets().frame(2);
         person->press("Return");
         same_widgets().tap(key_code::enter);
         same_widgets().take_commands();
@@ -70,43 +59,39 @@ Pixels load_pixels(const fs::path& file) {
 }
 
 TEST_F(WindowWaysOut, AScreenshotIsTheWindow) {
-    start();
-    settled_frame();
+    start_settled();
     person->move({width - 2.0f, height - 2.0f});
     Pixels shown = screen->pixels({0, 0, width, height});
     person->press("F12");
     person->press("ctrl+a");
     person->type("window.png");
     person->press("Return");
-    ASSERT_TRUE(comes_true([&] { return fs::exists(folder / "window.png"); }));
+    ASSERT_TRUE(comes("window.png"));
     Pixels saved = load_pixels(folder / "window.png");
     ASSERT_EQ(saved.width, width);
     ASSERT_EQ(saved.height, height);
-    const Rect status = make_layout(ViewState(), width, height, 1.0f).status;  // memory, messages
+    const Rect status = layout().status;  // memory, messages
     for (Pixels* pixels : {&shown, &saved})
         pixels->rgb.resize(static_cast<std::size_t>(status.y) * static_cast<std::size_t>(width));
     EXPECT_EQ(saved, shown);
 }
 
 TEST_F(WindowWaysOut, AFrameIsRendered) {
-    start();
-    const Pixels before = settled_frame();
+    const Pixels before = start_settled();
     choose("Render/Frame...");
     name_files("frame.png");
-    ASSERT_TRUE(comes_true([&] { return fs::exists(folder / "frames/frame.png"); }));
+    ASSERT_TRUE(comes("frames/frame.png"));
     const ImageInfo info = read_image_info(folder / "frames/frame.png");
     EXPECT_EQ(info.width, 320);
     EXPECT_EQ(info.height, 180);
-    const RunResult batch = run({"--batch", scene_file.string(), "-f", "1", "-o", "batch.png", "--no-cache"});
-    ASSERT_EQ(batch.code, 0) << batch.err;
+    expect_success(run({"--batch", scene_file.string(), "-f", "1", "-o", "batch.png", "--no-cache"}));
     EXPECT_EQ(text_of(folder / "frames/frame.png"), text_of(folder / "batch.png"));
     expect_settled(before);
 }
 
 TEST_F(WindowWaysOut, ACancelledRangeLeavesWholeFilesOnly) {
     replace_in_scene("1-24", "1-9000");
-    start();
-    settled_frame();
+    start_settled();
     choose("Render/Frames...");
     render();
     ASSERT_TRUE(comes_true([&] { return names_in(folder / "frames").size() > 2; }));
@@ -128,19 +113,16 @@ TEST_F(WindowWaysOut, ACancelledRangeLeavesWholeFilesOnly) {
 /// Frames that are finished and still the scene's are kept, others are rendered again.
 TEST_F(WindowWaysOut, ARangeGoesOnWhereItEnded) {
     replace_in_scene("1-24", "1-3");
-    ASSERT_EQ(run({"--batch", scene_file.string(), "--no-cache"}).code, 0);
+    expect_success(run({"--batch", scene_file.string(), "--no-cache"}));
     const fs::path frames = folder / "frames", kept = frames / "shot.0002.png";
     const std::string whole = text_of(kept);
     fs::remove(frames / "shot.0001.png");
-    ASSERT_EQ(run({"--batch", scene_file.string(), "-f", "3", "--set", "output.exposure=2", "--overwrite",
-                   "--no-cache"})
-                  .code,
-              0);
+    expect_success(run({"--batch", scene_file.string(), "-f", "3", "--set", "output.exposure=2",
+                        "--overwrite", "--no-cache"}));
     const std::string other = text_of(frames / "shot.0003.png");
     const fs::file_time_type long_ago = fs::last_write_time(kept) - std::chrono::hours(1);
     fs::last_write_time(kept, long_ago);
-    start();
-    settled_frame();
+    start_settled();
     choose("Render/Frames...");
     render();
     EXPECT_TRUE(comes_true([&] {
@@ -163,8 +145,7 @@ TEST_F(WindowWaysOut, AMovieHasTheScenesFramesAndSpeed) {
          {std::pair{"[320, 180]", "320,180,24/1,24\n"}, {"[161, 91]", "162,92,24/1,24\n"}}) {
         write_text(scene_file, untouched);
         replace_in_scene("[320, 180]", size);
-        start();
-        settled_frame();
+        start_settled();
         same_widgets().status.has_ffmpeg = true;
         same_widgets().frame();
         choose("Render/Movie...");
@@ -179,8 +160,7 @@ TEST_F(WindowWaysOut, AMovieHasTheScenesFramesAndSpeed) {
 }
 
 TEST_F(WindowWaysOut, JobsWaitForEachOther) {
-    start();
-    settled_frame();
+    start_settled();
     choose("Render/Frames...");
     name_files("one.####.png");
     ASSERT_TRUE(comes("frames/one.0001.png"));
@@ -192,8 +172,7 @@ TEST_F(WindowWaysOut, JobsWaitForEachOther) {
 }
 
 TEST_F(WindowWaysOut, TheFrameAsSeenIsSaved) {
-    start();
-    const Pixels seen = settled_frame();
+    const Pixels seen = start_settled();
     choose("File/Save the frame as seen...");
     same_widgets().frame(2);
     person->press("ctrl+a");
@@ -201,7 +180,7 @@ TEST_F(WindowWaysOut, TheFrameAsSeenIsSaved) {
     person->press("Return");
     ASSERT_TRUE(comes("seen.png"));
     const Pixels saved = load_pixels(folder / "seen.png");
-    const Rect port = make_layout(ViewState(), width, height, 1.0f).viewport;
+    const Rect port = layout().viewport;
     EXPECT_NEAR(static_cast<float>(saved.width) / static_cast<float>(saved.height), 320.0f / 180.0f, 0.01f);
     EXPECT_LE(saved.width, static_cast<int>(port.width) + 1);
     std::set<std::uint32_t> colors(saved.rgb.begin(), saved.rgb.end()),
@@ -260,11 +239,9 @@ echo "$n $task PENDING $name" >> "$here/queue"; echo $n
         same_widgets().status.has_slurm = true;
         same_widgets().frame();
         choose("Render/Frames...");
-        same_widgets().frame(2);
         for (const char* button : {"render/Slurm", "render/Submit"}) {
             const glm::vec2 at = same_widgets().at(button);
             same_widgets().click(at);
-            same_widgets().frame(2);
             person->click(at);
         }
         same_widgets().take_commands();
@@ -274,10 +251,8 @@ echo "$n $task PENDING $name" >> "$here/queue"; echo $n
     void work() {
         const fs::path script = folder / "frames/slurm/0001/frames.sh";
         ASSERT_TRUE(comes_true([&] { return fs::exists(script.parent_path() / "submission.json"); }));
-        RunOptions node;
-        node.environment = {"SLURM_ARRAY_TASK_ID=0"};
-        const RunResult result = run_program({"/bin/bash", script.string()}, node);
-        ASSERT_EQ(result.code, 0) << result.err;
+        expect_success(
+            run_program({"/bin/bash", script.string()}, {.environment = {"SLURM_ARRAY_TASK_ID=0"}}));
         write_text(folder / "no programs/queue", "");
     }
     /// The queue's dialog with the job in this state.
@@ -288,7 +263,6 @@ echo "$n $task PENDING $name" >> "$here/queue"; echo $n
         same_widgets().status.jobs = {job};
         same_widgets().frame();
         choose("Render/Queue...");
-        same_widgets().frame(2);
     }
 };
 
@@ -296,11 +270,9 @@ TEST_F(WindowFarm, FramesAreSubmittedAndComeBack) {
     submit();
     EXPECT_NE(told("submitted").find("--dependency=afterok:1 frames.sh\n"), std::string::npos);
     work();
-    std::set<std::string> names;
-    for (const auto& entry : fs::directory_iterator(folder / "frames"))
-        names.insert(entry.path().filename().string());
-    EXPECT_EQ(names, (std::set<std::string>{"shot.0001.png", "shot.0002.png", "shot.0003.png", "slurm"}));
-    ASSERT_EQ(run({"--batch", scene_file.string(), "-q", "-f", "2", "-o", "here.png", "--no-cache"}).code, 0);
+    EXPECT_EQ(names_in("frames"),
+              (std::set<std::string>{"shot.0001.png", "shot.0002.png", "shot.0003.png", "slurm"}));
+    expect_success(run({"--batch", scene_file.string(), "-q", "-f", "2", "-o", "here.png", "--no-cache"}));
     EXPECT_EQ(text_of(folder / "frames/shot.0002.png"), text_of(folder / "here.png"));
     open_queue(QueuedJob::State::done, {"a", "b", "c"});
     click_when_shown("queue/play");  // there is none before frames are

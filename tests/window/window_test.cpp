@@ -1,7 +1,5 @@
 #include "window/window_test.h"
 
-#include <cmath>
-
 #include "edit/preferences.h"
 #include "gui/widgets.h"
 #include "source/write_image.h"
@@ -55,6 +53,12 @@ void write_rings(const fs::path& file) {
             rgba.insert(rgba.end(), {byte(1.0), byte(0.7), byte(0.3 + 0.005 * x), 255});
         }
     write_image(file, size, size, rgba);
+}
+
+void write_plain(const fs::path& file, int width, int height, const std::array<unsigned char, 3>& rgb) {
+    std::vector<unsigned char> rgba;
+    for (int i = 0; i < width * height; ++i) rgba.insert(rgba.end(), {rgb[0], rgb[1], rgb[2], 255});
+    write_image(file, width, height, rgba);
 }
 
 ViewerTest::ViewerTest() : scene_file(folder / "scene.toml") {
@@ -129,12 +133,10 @@ void WindowTest::expect_title(const std::string& begin) {
     EXPECT_TRUE(comes_true([&] { return title() == begin + " - astrosplat"; })) << title();
 }
 
-Pixels WindowTest::pixels_of(Rect Layout::*part) const {
-    return screen->pixels(area_of(make_layout(ViewState(), width, height, 1.0f).*part));
-}
+Pixels WindowTest::pixels_of(Rect Layout::*part) const { return screen->pixels(area_of(layout().*part)); }
 
 Pixels WindowTest::frame_pixels() const {
-    Area area = area_of(make_layout(ViewState(), width, height, 1.0f).viewport);
+    Area area = area_of(layout().viewport);
     area.height -= badge_height;
     return screen->pixels(area);
 }
@@ -212,7 +214,6 @@ void WindowTest::choose(const std::string& path) {
     for (std::size_t slash = path.find('/'); slash != std::string::npos; slash = path.find('/', slash + 1)) {
         const glm::vec2 menu = widgets.at(path.substr(0, slash));
         widgets.click(menu);
-        widgets.frame(2);
         person->click(menu);
     }
     const glm::vec2 item = widgets.at(path);

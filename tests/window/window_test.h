@@ -4,7 +4,6 @@
 
 #include <chrono>
 #include <csignal>
-#include <optional>
 
 #include "gui/panel/context.h"
 #include "gui/test_window.h"
@@ -15,8 +14,6 @@
 #include "window/screen.h"
 
 namespace astrosplat::test {
-
-namespace fs = std::filesystem;
 
 /// Asks again and again, for as long as the slowest machine may need. False: it never came.
 template <class Condition>
@@ -36,6 +33,8 @@ class ViewerTest : public FolderTest {
     static constexpr int width = 1280, height = 900;  // px of screen and window
 
     ViewerTest();
+    /// Of an untouched window.
+    static Layout layout() { return make_layout(ViewState(), width, height, 1.0f); }
     /// Environment of the program: no home but the test's, no desktop's file dialog.
     virtual RunOptions options() const;
     RunResult run(std::vector<std::string> arguments) const;
@@ -57,6 +56,11 @@ class WindowTest : public ViewerTest {
     /// Starts the program in the test's folder and waits for its window.
     void start(std::vector<std::string> arguments);
     void start() { start({scene_file.string(), "--no-cache"}); }
+    /// Starts it, and its first final frame.
+    Pixels start_settled() {
+        start();
+        return settled_frame();
+    }
     /// Sends the signal, where given, and waits for the end.
     RunResult end(int signal = 0);
     bool running() const;
@@ -107,6 +111,9 @@ class WindowTest : public ViewerTest {
 };
 
 inline const std::string power = "layer.disc.look.alpha.power";
+
+/// A picture of one colour, opaque.
+void write_plain(const fs::path& file, int width, int height, const std::array<unsigned char, 3>& rgb);
 
 /// A picture of soft rings, 64x64 px, of which no two quarters are alike.
 void write_rings(const fs::path& file);

@@ -1,10 +1,6 @@
 // Bands of a picture, and the dust that takes their light away.
 #include <gtest/gtest.h>
 
-#include <array>
-#include <cmath>
-#include <vector>
-
 #include "bodies/dust.h"
 #include "bodies/picture_light.h"
 #include "image/channels.h"
@@ -22,6 +18,15 @@ std::vector<Image> all_bands(const Image& light) {
     });
     EXPECT_EQ(images.size(), bands.size());
     return images;
+}
+
+/// The sum of all bands.
+Image emission_of(const Image& light, bool fill_holes) {
+    Image sum = make_image(light.width, light.height, 3);
+    split_bands(light, make_bands(light.width), fill_holes, [&](const Band&, const Image& band) {
+        for (std::size_t i = 0; i < sum.pixels.size(); ++i) sum.pixels[i] += band.pixels[i];
+    });
+    return sum;
 }
 
 TEST(Bands, LargerPicturesHaveMoreOfThem) {
@@ -82,10 +87,7 @@ TEST(Bands, AStarMakesNoDustAroundItButALaneIsDust) {
     for (std::int64_t y = 0; y < 200; ++y)
         for (std::int64_t x = 220; x < 226; ++x)
             for (int c = 0; c < 3; ++c) light.at(x, y)[c] = 0.02f;
-    Image sum = make_image(320, 200, 3);
-    split_bands(light, make_bands(320), true, [&](const Band&, const Image& band) {
-        for (std::size_t i = 0; i < sum.pixels.size(); ++i) sum.pixels[i] += band.pixels[i];
-    });
+    const Image sum = emission_of(light, true);
     const auto filled = [&](std::int64_t x, std::int64_t y) { return sum.at(x, y)[1] / light.at(x, y)[1]; };
     for (std::int64_t x = 60; x < 140; ++x) EXPECT_LT(filled(x, 100), 1.3f) << x;
     EXPECT_GT(filled(223, 60), 2.0f);
@@ -105,14 +107,6 @@ Image with_lane() {
                 light.at(x, y)[c] *= static_cast<float>(1.0 - 0.6 * std::exp(-0.5 * d * d));
         }
     return light;
-}
-
-Image emission_of(const Image& light, bool fill_holes) {
-    Image sum = make_image(light.width, light.height, 3);
-    split_bands(light, make_bands(light.width), fill_holes, [&](const Band&, const Image& band) {
-        for (std::size_t i = 0; i < sum.pixels.size(); ++i) sum.pixels[i] += band.pixels[i];
-    });
-    return sum;
 }
 
 TEST(Dust, EmissionTimesTransmittanceIsThePicture) {

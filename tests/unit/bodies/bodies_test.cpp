@@ -3,11 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
 #include <glm/geometric.hpp>
-#include <string>
-#include <vector>
 
 #include "bodies/front_fit.h"
 #include "bodies/picture_splats.h"
@@ -21,38 +17,17 @@
 #include "image/channels.h"
 #include "image/resample.h"
 #include "render/render.h"
-#include "source/textured_mesh.h"
 #include "support/painted_picture.h"
 #include "support/printing.h"
+#include "unit/bodies/bodies_support.h"
 
 namespace astrosplat {
 namespace {
-
-Texture as_texture(const Image& rgb) {
-    Texture texture;
-    texture.image = make_image(rgb.width, rgb.height, 4, 1.0f);
-    for (std::int64_t i = 0; i < rgb.width * rgb.height; ++i)
-        std::copy_n(rgb.pixels.data() + 3 * i, 3, texture.image.pixels.data() + 4 * i);
-    return texture;
-}
-
-TexturedMesh on_plane(const Image& rgb) {
-    TexturedMesh result;
-    result.mesh = builtin_mesh("plane", static_cast<double>(rgb.width) / static_cast<double>(rgb.height));
-    result.textures.push_back(as_texture(rgb));
-    return result;
-}
 
 double sum_of(const Image& image) {
     double sum = 0.0;
     for (const float value : image.pixels) sum += static_cast<double>(value);
     return sum;
-}
-
-StructureParams of_kind(StructureKind kind) {
-    StructureParams params;
-    params.kind = kind;
-    return params;
 }
 
 std::vector<SurfacePlace> places(const UvSurface& surface, glm::vec2 uv) {
@@ -321,33 +296,30 @@ TEST(PictureLight, FadesAtTheBorderAndDropsWhatIsNoLight) {
     EXPECT_NEAR(faded.light.at(4, 30)[1] / 0.5f, *faded.alpha.at(4, 30), 1e-6);
 }
 
-PictureSplats unfitted_splats(const Image& light, const Placement& placement) {
-    const Image brightest = brightest_channel(light);
+struct Fitted {
     PictureSplats set;
+    FrontFit fit;
+};
+Fitted fitted(const Image& light, StructureKind kind, double texels_per_unit, bool enlarged = false) {
+    const Image brightest = brightest_channel(light);
+    const Placement placement = make_placement(brightest, of_kind(kind), texels_per_unit, true, 1u);
+    Fitted result;
     const std::vector<Band> bands = make_bands(light.width);
     split_bands(light, bands, false, [&](const Band& band, const Image& image) {
         const bool coarsest = band.index + 1 == static_cast<int>(bands.size());
         for (const BandSplats& size : band_splats(band, coarsest, placement))
-            add_band(image, size, brightest, {}, placement, {}, set);
+            add_band(image, size, brightest, {}, placement, {}, result.set);
     });
-    return set;
+    result.fit = fit_front(result.set, light, enlarged);
+    return result;
 }
 
 // The fit makes an even picture even and keeps its flux.
 TEST(FrontFit, GivesAnEvenPictureItsColour) {
-    const Image light = [] {
-        Image image = make_image(96, 64, 3);
-        for (std::int64_t i = 0; i < 96 * 64; ++i) {
-            image.pixels[static_cast<std::size_t>(3 * i)] = 0.4f;
-            image.pixels[static_cast<std::size_t>(3 * i + 1)] = 0.2f;
-            image.pixels[static_cast<std::size_t>(3 * i + 2)] = 0.1f;
-        }
-        return image;
-    }();
-    const Placement placement =
-        make_placement(brightest_channel(light), of_kind(StructureKind::disk), 10.0, true, 1u);
-    PictureSplats set = unfitted_splats(light, placement);
-    EXPECT_GT(fit_front(set, light).psnr_db, 30.0);
+    Image light = make_image(96, 64, 3);
+    for (std::size_t i = 0; i < light.pixels.size(); ++i)
+        light.pixels[i] = i % 3 == 0 ? 0.4f : i % 3 == 1 ? 0.2f : 0.1f;
+    EXPECT_GT(fitted(light, StructureKind::disk, 10.0).fit.psnr_db, 30.0);
 }
 
 // Steps that take nothing of the last one along end 1 dB below.
@@ -355,10 +327,7 @@ TEST(FrontFit, IsCloseToItsPictureAfterSevenSteps) {
     Image light = painted::nebula(480, 300);
     for (std::size_t i = 0; i < light.pixels.size(); ++i)
         light.pixels[i] *= static_cast<float>(0.5 + painted::random(static_cast<std::uint32_t>(i), 7));
-    const Placement placement =
-        make_placement(brightest_channel(light), of_kind(StructureKind::sheet), 48.0, true, 1u);
-    PictureSplats set = unfitted_splats(light, placement);
-    const FrontFit fit = fit_front(set, light);
+    const FrontFit fit = fitted(light, StructureKind::sheet, 48.0).fit;
     EXPECT_EQ(fit.steps, 7);
     EXPECT_GT(fit.psnr_db, 44.0);
 }
@@ -379,44 +348,37 @@ Image view_along_z(const PictureSplats& set, const Image& light, double from) {
     return render({&layer, 1}, camera, nullptr, settings).beauty;
 }
 
-// The steps of the fit leave some .1 % too much here, which cells of 32 px take away.
-TEST(FrontFit, KeepsThePicturesFlux) {
-    const Image light = painted::galaxy(320, 192);
-    const Placement placement =
-        make_placement(brightest_channel(light), of_kind(StructureKind::disk), 32.0, true, 1u);
-    PictureSplats set = unfitted_splats(light, placement);
-    fit_front(set, light);
-    const Image seen = view_along_z(set, light, 1000.0);
+/// Share of the green light that is seen, away from the edges.
+double share_seen(const Image& seen, const Image& light, std::int64_t margin = 0) {
     double here = 0.0, there = 0.0;
-    for (std::int64_t y = 32; y < light.height - 32; ++y) {
-        for (std::int64_t x = 32; x < light.width - 32; ++x) {
+    for (std::int64_t y = margin; y < light.height - margin; ++y)
+        for (std::int64_t x = margin; x < light.width - margin; ++x) {
             here += static_cast<double>(seen.at(x, y)[1]);
             there += static_cast<double>(light.at(x, y)[1]);
         }
-    }
-    EXPECT_NEAR(here / there, 1.0, 0.0005);
+    return here / there;
+}
+
+// The steps of the fit leave some .1 % too much here, which cells of 32 px take away.
+TEST(FrontFit, KeepsThePicturesFlux) {
+    const Image light = painted::galaxy(320, 192);
+    const PictureSplats set = fitted(light, StructureKind::disk, 32.0).set;
+    EXPECT_NEAR(share_seen(view_along_z(set, light, 1000.0), light, 32), 1.0, 0.0005);
 }
 
 // It is rendered on pixels of two texels.
 TEST(FrontFit, OfALargePictureIsAsClose) {
     const Image light = painted::galaxy(1301, 811);
-    const Placement placement =
-        make_placement(brightest_channel(light), of_kind(StructureKind::disk), 130.0, true, 1u);
-    PictureSplats set = unfitted_splats(light, placement);
-    fit_front(set, light);
+    const PictureSplats set = fitted(light, StructureKind::disk, 130.0).set;
     const Image seen = view_along_z(set, light, 3000.0), wanted = gaussian_blur(light, 0.5);
-    double here = 0.0, there = 0.0, squares = 0.0;
-    for (std::int64_t y = 0; y < light.height; ++y) {
+    double squares = 0.0;
+    for (std::int64_t y = 0; y < light.height; ++y)
         for (std::int64_t x = 0; x < light.width; ++x) {
-            const float a = seen.at(x, y)[1], b = wanted.at(x, y)[1];
-            here += static_cast<double>(a);
-            there += static_cast<double>(b);
-            const double difference =
-                static_cast<double>(display_srgb(a)) - static_cast<double>(display_srgb(b));
+            const double difference = static_cast<double>(display_srgb(seen.at(x, y)[1])) -
+                                      static_cast<double>(display_srgb(wanted.at(x, y)[1]));
             squares += difference * difference;
         }
-    }
-    EXPECT_NEAR(here / there, 1.0, 0.001);
+    EXPECT_NEAR(share_seen(seen, wanted), 1.0, 0.001);
     EXPECT_GT(-10.0 * std::log10(squares / static_cast<double>(light.width * light.height)), 44.0);
 }
 
@@ -430,36 +392,23 @@ TEST(FrontFit, OfASmallPictureHasTheLightOfItsPoints) {
                            light, light);
     }
     const Image light = enlarged(points, 2);
-    const Placement placement =
-        make_placement(brightest_channel(light), of_kind(StructureKind::sheet), 112.0, true, 1u);
-    PictureSplats set = unfitted_splats(light, placement);
-    fit_front(set, light, true);
-    const Image seen = view_along_z(set, light, 3000.0);
-    double here = 0.0, there = 0.0;
-    for (std::size_t i = 0; i < light.pixels.size() / 3; ++i) {
-        here += static_cast<double>(seen.pixels[static_cast<std::size_t>(seen.channels) * i + 1]);
-        there += static_cast<double>(light.pixels[3 * i + 1]);
-    }
-    EXPECT_NEAR(here / there, 1.0, 0.001);
+    const PictureSplats set = fitted(light, StructureKind::sheet, 112.0, true).set;
+    EXPECT_NEAR(share_seen(view_along_z(set, light, 3000.0), light), 1.0, 0.001);
 }
 
 // Light that the back wall loses in the glow before it is not given back many times over.
 TEST(FrontFit, WallsHaveTheSameLightFromBehind) {
     Image light = painted::remnant(480, 300);
     for (float& value : light.pixels) value *= 4.0f;
-    const Placement placement =
-        make_placement(brightest_channel(light), of_kind(StructureKind::walls), 48.0, true, 1u);
-    PictureSplats set = unfitted_splats(light, placement);
-    fit_front(set, light);
+    const PictureSplats set = fitted(light, StructureKind::walls, 48.0).set;
     const Image front = view_along_z(set, light, 1000.0), back = view_along_z(set, light, -1000.0);
     double squares = 0.0;
-    for (std::int64_t y = 0; y < light.height; ++y) {
+    for (std::int64_t y = 0; y < light.height; ++y)
         for (std::int64_t x = 0; x < light.width; ++x) {
             const double difference = static_cast<double>(display_srgb(front.at(x, y)[0])) -
                                       static_cast<double>(display_srgb(back.at(light.width - 1 - x, y)[0]));
             squares += difference * difference;
         }
-    }
     EXPECT_LT(std::sqrt(squares / static_cast<double>(light.width * light.height)), 0.014);
 }
 
@@ -502,29 +451,19 @@ TEST_P(EveryStructure, MakesAWholeSet) {
 
 TEST(Bodies, EveryKeyCounts) {
     const TexturedMesh mesh = on_plane(painted::nebula(160, 100));
-    const auto positions = [&](const StructureParams& params) {
-        const SplatSet set = make_bodies({mesh}, params, 3u, "gas");
-        return std::vector<glm::vec3>(set.position.begin(), set.position.end());
-    };
-    const auto alphas = [&](const StructureParams& params) {
-        const SplatSet set = make_bodies({mesh}, params, 3u, "gas");
-        return std::vector<float>(set.alpha.begin(), set.alpha.end());
-    };
-    const StructureParams usual = of_kind(StructureKind::sheet);
-    const auto changed = [&](auto change) {
-        StructureParams params = usual;
+    const auto changed = [&](void (*change)(StructureParams&)) {
+        StructureParams params = of_kind(StructureKind::sheet);
         change(params);
-        return params;
+        return make_bodies({mesh}, params, 3u, "gas");
     };
-    const auto as_usual = positions(usual);
-    EXPECT_NE(positions(changed([](StructureParams& p) { p.height = 0.3; })), as_usual);
-    EXPECT_NE(positions(changed([](StructureParams& p) { p.depth = 0.3; })), as_usual);
-    EXPECT_NE(positions(changed([](StructureParams& p) { p.clumps = 0.3; })), as_usual);
-    EXPECT_NE(positions(changed([](StructureParams& p) { p.stars = StructureParams::Stars::no; })), as_usual);
-    EXPECT_NE(positions(changed([](StructureParams& p) { p.border = 0.2; })), as_usual);
-    const auto usual_alphas = alphas(usual);
-    EXPECT_NE(alphas(changed([](StructureParams& p) { p.opacity = 0.9; })), usual_alphas);
-    EXPECT_NE(alphas(changed([](StructureParams& p) { p.density = 0.3; })), usual_alphas);
+    const SplatSet usual = changed([](StructureParams&) {});
+    void (*const of_positions[])(StructureParams&) = {
+        [](StructureParams& p) { p.height = 0.3; }, [](StructureParams& p) { p.depth = 0.3; },
+        [](StructureParams& p) { p.clumps = 0.3; }, [](StructureParams& p) { p.border = 0.2; },
+        [](StructureParams& p) { p.stars = StructureParams::Stars::no; }};
+    for (const auto change : of_positions) EXPECT_FALSE(changed(change).position == usual.position);
+    EXPECT_FALSE(changed([](StructureParams& p) { p.opacity = 0.9; }).alpha == usual.alpha);
+    EXPECT_FALSE(changed([](StructureParams& p) { p.density = 0.3; }).alpha == usual.alpha);
 }
 
 // Light that fades towards the border is darker than what is around it, as dust would be.

@@ -1,11 +1,6 @@
 // Depths: the envelope, the noise that all bands share, and the same bits everywhere.
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-#include <memory>
-#include <vector>
-
 #include "bodies/depth_kernel.h"
 #include "bodies/fields.h"
 #include "bodies/picture_light.h"
@@ -14,6 +9,7 @@
 #include "core/shared_maths.h"
 #include "image/channels.h"
 #include "support/painted_picture.h"
+#include "unit/bodies/bodies_support.h"
 
 namespace astrosplat {
 namespace {
@@ -22,16 +18,10 @@ namespace {
 std::vector<std::unique_ptr<PlacedBlock>> scattered(int blocks, float height) {
     std::vector<std::unique_ptr<PlacedBlock>> result;
     for (int b = 0; b < blocks; ++b) {
-        auto block = std::make_unique<PlacedBlock>();
-        block->count = DepthBlock::size;
-        for (int i = 0; i < block->count; ++i) {
-            const auto id = static_cast<std::uint32_t>(b * DepthBlock::size + i);
-            block->x[i] = 1000.0f * shared::as_uniform(shared::as_hash(1u, id, 0u, 1u));
-            block->y[i] = 1000.0f * shared::as_uniform(shared::as_hash(1u, id, 0u, 2u));
-            block->height[i] = height;
-            block->clumping[i] = 1.0f;
-            block->random[i] = shared::as_hash(1u, id, 0u, 3u);
-        }
+        auto block = std::make_unique<PlacedBlock>(
+            splats_about(glm::vec2(500.0f), glm::vec2(1000.0f), static_cast<std::uint32_t>(b)));
+        std::fill_n(block->height, block->count, height);
+        std::fill_n(block->clumping, block->count, 1.0f);
         result.push_back(std::move(block));
     }
     return result;
@@ -217,12 +207,11 @@ TEST(Fields, ReliefIsNowhereTooSteepAndNothingOnEmptySky) {
     for (const double steepest : {0.7, 0.1}) {
         const Image field = relief_field(brightest, 60.0, steepest);
         float highest = 0.0f, slope = 0.0f;
-        for (std::int64_t y = 0; y + 1 < field.height; ++y) {
+        for (std::int64_t y = 0; y + 1 < field.height; ++y)
             for (std::int64_t x = 0; x + 1 < field.width; ++x) {
                 highest = std::max(highest, *field.at(x, y));
                 slope = std::max(slope, std::fabs(*field.at(x + 1, y) - *field.at(x, y)));
             }
-        }
         EXPECT_LE(slope, 1.03 * steepest);
         EXPECT_GT(slope, 0.5 * steepest);
         EXPECT_LE(highest, 60.0f);
@@ -257,9 +246,7 @@ TEST(Placement, AKnotIsABall) {
     Image light = make_image(320, 200, 3, 0.05f);
     painted::add_point(light, 160.0, 100.0, 3.0, 0.5, 0.5, 0.5);
     for (const StructureKind kind : {StructureKind::disk, StructureKind::sheet}) {
-        StructureParams params;
-        params.kind = kind;
-        const Placement placement = make_placement(brightest_channel(light), params, 32.0, true, 9u);
+        const Placement placement = make_placement(brightest_channel(light), of_kind(kind), 32.0, true, 9u);
         ASSERT_EQ(placement.knots.knots.size(), 1u);
         const bool disk = kind == StructureKind::disk;
         const double sigmas =
@@ -276,9 +263,8 @@ TEST(Placement, AKnotIsABall) {
 TEST(Placement, KnotsOfAFilamentLieOnTheRelief) {
     Image light = make_image(320, 200, 3, 0.05f);
     painted::add_point(light, 160.0, 100.0, 3.0, 0.5, 0.5, 0.5);
-    StructureParams params;
-    params.kind = StructureKind::sheet;
-    Placement placement = make_placement(brightest_channel(light), params, 32.0, true, 9u);
+    Placement placement =
+        make_placement(brightest_channel(light), of_kind(StructureKind::sheet), 32.0, true, 9u);
     ASSERT_EQ(placement.knots.knots.size(), 1u);
     placement.relief = make_image(320, 200, 1);
     for (std::int64_t i = 0; i < 320 * 200; ++i)
@@ -303,21 +289,14 @@ TEST(Placement, KnotsOfAFilamentLieOnTheRelief) {
 TEST(Placement, WallsLieOnBothSidesAndASheetOnOne) {
     const Image brightest = brightest_channel(painted::remnant(320, 200));
     for (const StructureKind kind : {StructureKind::walls, StructureKind::sheet}) {
-        StructureParams params;
-        params.kind = kind;
+        StructureParams params = of_kind(kind);
         params.stars = StructureParams::Stars::no;
         const Placement placement = make_placement(brightest, params, 32.0, true, 9u);
         const BandSplats splats = band_splats(make_bands(320)[1], false, placement)[0];
         int front = 0, back = 0;
         for (int repeat = 0; repeat < 20; ++repeat) {
-            PlacedBlock block;
-            block.count = DepthBlock::size;
-            for (int i = 0; i < block.count; ++i) {
-                const auto id = static_cast<std::uint32_t>(repeat * DepthBlock::size + i);
-                block.x[i] = 130.0f + 60.0f * shared::as_uniform(shared::as_hash(8u, id, 0u, 1u));
-                block.y[i] = 80.0f + 40.0f * shared::as_uniform(shared::as_hash(8u, id, 0u, 2u));
-                block.random[i] = shared::as_hash(8u, id, 0u, 3u);
-            }
+            PlacedBlock block =
+                splats_about({160.0f, 100.0f}, {60.0f, 40.0f}, static_cast<std::uint32_t>(repeat));
             place(placement, splats, block);
             for (int i = 0; i < block.count; ++i) {
                 const float out = *placement.relief.at(static_cast<std::int64_t>(block.x[i]),

@@ -2,10 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-#include <vector>
-
 #include "bodies/galaxies.h"
 #include "bodies/picture_splats.h"
 #include "bodies/placement.h"

@@ -2,9 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <vector>
-
 #include "core/parallel.h"
 #include "support/painted_picture.h"
 

@@ -1,9 +1,7 @@
 // Pictures that no telescope took: every row of their sets is read, of all structures.
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <glm/common.hpp>
-#include <limits>
 
 #include "bodies/bodies.h"
 #include "core/text.h"

@@ -1,22 +1,19 @@
-// The light of a picture's splats: filled holes, and the flat light in closed form.
+// The light of a picture's splats, and pictures continued beyond their edges.
 #include <gtest/gtest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <utility>
-#include <vector>
 
 #include "bodies/fields.h"
 #include "bodies/front_fit.h"
+#include "bodies/margin.h"
 #include "bodies/placement.h"
 #include "core/real.h"
-#include "core/shared_maths.h"
 #include "image/channels.h"
 #include "support/painted_picture.h"
+#include "unit/bodies/bodies_support.h"
 
 namespace astrosplat {
 namespace {
+
+// The light of a picture's splats: filled holes, and the flat light in closed form.
 
 constexpr std::int64_t shell_width = 640, shell_height = 400;
 constexpr double shell_x = 300.0, shell_y = 200.0;
@@ -26,7 +23,7 @@ double from_shell(double x, double y) { return std::hypot(x - shell_x, y - shell
 // A round shell on a dark sky with a core in its middle and a filament across.
 Image shell_with(float core, float filament) {
     Image light = make_image(shell_width, shell_height, 1, 0.001f);
-    for (std::int64_t y = 0; y < shell_height; ++y) {
+    for (std::int64_t y = 0; y < shell_height; ++y)
         for (std::int64_t x = 0; x < shell_width; ++x) {
             const double r = from_shell(static_cast<double>(x), static_cast<double>(y));
             float& value = *light.at(x, y);
@@ -34,7 +31,6 @@ Image shell_with(float core, float filament) {
             if (r < 28.0) value += core;
             if (r < 150.0 && std::fabs(static_cast<double>(y) - 250.0) < 8.0) value += filament;
         }
-    }
     return light;
 }
 
@@ -72,8 +68,7 @@ struct Depths {
     std::array<double, 8> eighths{};  // of -103 to 103 texels
 };
 Depths depths_about(double x, double y, bool fine, double clumps = 0.0, float around = 30.0f) {
-    StructureParams params;
-    params.kind = StructureKind::walls;
+    StructureParams params = of_kind(StructureKind::walls);
     params.depth = 0.4;
     params.clumps = clumps;
     Placement placement = make_placement(shell_with(0.3f, 0.0f), params, 64.0, true, 5u);
@@ -83,15 +78,7 @@ Depths depths_about(double x, double y, bool fine, double clumps = 0.0, float ar
     double sum = 0.0, squares = 0.0, count = 0.0;
     Depths depths;
     for (std::uint32_t number = 0; number < 40; ++number) {
-        PlacedBlock block;
-        block.count = DepthBlock::size;
-        for (int i = 0; i < block.count; ++i) {
-            const auto id = number * DepthBlock::size + static_cast<std::uint32_t>(i);
-            const auto random = [&](std::uint32_t purpose) { return shared::as_hash(3u, id, 0u, purpose); };
-            block.x[i] = static_cast<float>(x) + around * (shared::as_uniform(random(1u)) - 0.5f);
-            block.y[i] = static_cast<float>(y) + around * (shared::as_uniform(random(2u)) - 0.5f);
-            block.random[i] = random(3u);
-        }
+        PlacedBlock block = splats_about(glm::vec2(x, y), glm::vec2(around), number);
         place(placement, splats, block);
         for (int i = 0; i < block.count; ++i) {
             const auto z = static_cast<double>(block.z[i]);
@@ -121,7 +108,7 @@ TEST(FilledLight, ACoreIsABallInsideOfItsShell) {
 // Four fifths of a wall's greatest distance, to both sides, and thinner towards the picture's edges, which
 // would be those of a slab: the root of 1 - u^4 - v^4.
 TEST(FilledLight, TheSkyIsACushionAndNoSheet) {
-    for (const bool fine : {true, false}) {
+    for (const bool fine : {true, false})
         for (const double y : {200.0, 100.0, 60.0}) {
             const Depths sky = depths_about(560.0, y, fine);
             const double u = 0.75, v = y / 200.0 - 1.0;
@@ -131,7 +118,6 @@ TEST(FilledLight, TheSkyIsACushionAndNoSheet) {
             EXPECT_GT(sky.farthest, 0.92 * reach) << fine << ' ' << y;
             EXPECT_LT(std::fabs(sky.mean), 0.25 * reach) << fine << ' ' << y;
         }
-    }
 }
 
 // On the walls they would be seen again, before and behind, in the core's own colours.
@@ -196,7 +182,7 @@ TEST(FlatLight, OneSplatIsItsFootprint) {
         PictureSplats set = one_splat(3.3f, -5.6f, static_cast<float>(sigma));
         const Image light = FlatLight(set, width, height, filter_px).sum();
         double sum = 0.0, x_sum = 0.0, y_sum = 0.0, squares = 0.0;
-        for (std::int64_t y = 0; y < height; ++y) {
+        for (std::int64_t y = 0; y < height; ++y)
             for (std::int64_t x = 0; x < width; ++x) {
                 const auto value = static_cast<double>(light.at(x, y)[1]);
                 const double dx = static_cast<double>(x) + 0.5 - (48.0 + 3.3),
@@ -206,7 +192,6 @@ TEST(FlatLight, OneSplatIsItsFootprint) {
                 y_sum += value * dy;
                 squares += value * (dx * dx + dy * dy);
             }
-        }
         const double flux = 0.5 * 0.9494 * 2.0 * real::pi * sigma * sigma;
         const double variance = footprint_variance * sigma * sigma + filter_px * filter_px;
         EXPECT_NEAR(sum, flux, 0.002 * flux) << sigma;
@@ -288,6 +273,175 @@ TEST(FlatLight, MultipliesByAGridsValues) {
     cells.at(1, 1)[1] = 4.0f;
     FlatLight(set, width, height, filter_px).multiply(cells, 32.0);
     EXPECT_NEAR(set.splats.color[0].y, 6.0f, 1e-5f);
+}
+
+// Pictures continued beyond their edges.
+
+constexpr std::int64_t picture_width = 200, picture_height = 120, margin_px = 20;
+
+TexturedMesh lit_plane(const Image& rgb) {
+    TexturedMesh result = on_plane(rgb, 0.2f);
+    result.textures[0].alpha_from_light = true;
+    return result;
+}
+
+Image even_light() { return make_image(picture_width, picture_height, 3, 0.2f); }
+
+StructureParams with_margin(double margin, StructureKind kind = StructureKind::sheet) {
+    StructureParams params;
+    params.kind = kind;
+    params.margin = margin;
+    return params;
+}
+
+std::vector<TexturedMesh> continued(const Image& rgb, StructureKind kind = StructureKind::sheet) {
+    std::vector<TexturedMesh> meshes{lit_plane(rgb)};
+    const std::vector<glm::dvec2> times = add_margins(meshes, with_margin(0.1, kind), "a");
+    EXPECT_EQ(times.size(), 1u);
+    EXPECT_DOUBLE_EQ(times[0].x, 1.2);
+    EXPECT_DOUBLE_EQ(times[0].y, 160.0 / 120.0);
+    return meshes;
+}
+
+TEST(Margin, ThePictureStaysAsItIs) {
+    const Image galaxy = painted::galaxy(picture_width, picture_height);
+    const Texture texture = continued(galaxy)[0].textures[0];
+    ASSERT_EQ(texture.image.width, 240);
+    ASSERT_EQ(texture.image.height, 160);
+    EXPECT_FALSE(texture.alpha_from_light);
+    for (std::int64_t y = 0; y < picture_height; ++y)
+        for (std::int64_t x = 0; x < picture_width; ++x) {
+            const float* const p = texture.image.at(x + margin_px, y + margin_px);
+            ASSERT_TRUE(std::equal(p, p + 3, galaxy.at(x, y))) << x << ' ' << y;
+            ASSERT_EQ(p[3], 1.0f);
+        }
+}
+
+/// Of green, so far above the picture.
+double mean_above(const Texture& texture, std::int64_t px_away) {
+    double sum = 0.0;
+    for (std::int64_t x = 0; x < picture_width; ++x)
+        sum += static_cast<double>(texture.image.at(x + margin_px, margin_px - px_away)[1]);
+    return sum / static_cast<double>(picture_width);
+}
+
+TEST(Margin, FadesToNothingFromTheEdgeOutward) {
+    const Texture texture = continued(even_light())[0].textures[0];
+    const auto mean_at = [&](std::int64_t px_away) { return mean_above(texture, px_away); };
+    EXPECT_NEAR(mean_at(1), 0.2, 0.02);  // no step at the edge
+    for (std::int64_t px = 1; px < margin_px; ++px) EXPECT_LE(mean_at(px + 1), mean_at(px)) << px;
+    EXPECT_LT(mean_at(margin_px / 2), 0.12);
+    EXPECT_LT(mean_at(margin_px), 1e-3);
+    for (std::int64_t i = 0; i < texture.image.width * texture.image.height; ++i) {
+        const float* const p = texture.image.pixels.data() + 4 * i;
+        ASSERT_NEAR(p[3], p[1] / 0.2f, 1e-5f) << i;  // light and cover fade alike
+    }
+}
+
+// Of a straight outline every place as far away would be as bright.
+TEST(Margin, HasARaggedOutline) {
+    const Texture texture = continued(even_light())[0].textures[0];
+    float least = 1.0f, most = 0.0f;
+    for (std::int64_t x = picture_width / 4; x < 3 * picture_width / 4; ++x) {
+        const float light = texture.image.at(x + margin_px, margin_px / 4)[1];
+        least = std::min(least, light);
+        most = std::max(most, light);
+    }
+    EXPECT_GT(most, 3.0f * least);
+}
+
+// Beyond the frame a galaxy is itself, turned in its disk's plane: as bright there as on the other side.
+TEST(Margin, AGalaxyGoesOnAsItIsOnItsOtherSide) {
+    for (const double inclination : {0.0, 60.0}) {
+        const double ratio = std::cos(inclination * 3.14159265358979 / 180.0);
+        const auto disk = [&](double x, double y) {  // its middle is far to the left
+            const double u = (x - 60.0) / 70.0, v = (y - 60.0) / (70.0 * ratio);
+            return static_cast<float>(std::exp(-std::sqrt(u * u + v * v)));
+        };
+        Image light = make_image(picture_width, picture_height, 3);
+        for (std::int64_t y = 0; y < picture_height; ++y)
+            for (std::int64_t x = 0; x < picture_width; ++x)
+                std::fill_n(light.at(x, y), 3, disk(double(x) + 0.5, double(y) + 0.5));
+        std::vector<TexturedMesh> meshes{lit_plane(light)};
+        StructureParams params = with_margin(0.1, StructureKind::disk);
+        params.galaxy = {inclination, 0.0, glm::dvec2(0.3, 0.5), 90.0, {}};
+        add_margins(meshes, params, "a");
+        const Image& image = meshes[0].textures[0].image;
+        double here = 0.0, wanted = 0.0;
+        for (std::int64_t y = 40; y < 120; ++y) {
+            here += static_cast<double>(image.at(10, y)[1]);
+            wanted += static_cast<double>(disk(10.5 - margin_px, static_cast<double>(y) + 0.5 - margin_px));
+        }
+        EXPECT_NEAR(here / wanted, 1.0, 0.1) << inclination;
+    }
+}
+
+// Of a cloud, which does not grow dim outward, a dim rim would else end straight, and so would corners.
+TEST(Margin, CloudsGoOnAllAroundAndHaveRoundCorners) {
+    Image light = make_image(picture_width, picture_height, 3, 0.01f);
+    for (int c = 0; c < 3; ++c) light.at(100, 0)[c] = light.at(101, 0)[c] = 9.0f;
+    const Texture texture = continued(light)[0].textures[0];
+    const auto lit = [&](std::int64_t x_begin, std::int64_t x_end) {
+        double sum = 0.0;
+        for (std::int64_t x = x_begin; x < x_end; ++x)
+            for (std::int64_t y = 0; y < margin_px; ++y) sum += texture.image.at(x, y)[1] / 0.01;
+        return sum / static_cast<double>((x_end - x_begin) * margin_px);
+    };
+    EXPECT_GT(lit(40, 100), 0.25);
+    EXPECT_GT(lit(0, margin_px), 0.02);
+    EXPECT_LT(lit(0, margin_px), 0.6 * lit(40, 100));
+}
+
+// A mirrored margin is brighter again towards the middle.
+TEST(Margin, DoesNotGrowBrighterBeyondADimEdge) {
+    Image light = make_image(picture_width, picture_height, 3, 0.0f);
+    for (std::int64_t y = 0; y < picture_height; ++y)
+        for (std::int64_t x = 0; x < picture_width; ++x)
+            for (int c = 0; c < 3; ++c)
+                light.at(x, y)[c] = 0.02f + 0.02f * static_cast<float>(std::min({x, y, picture_width - 1 - x,
+                                                                                 picture_height - 1 - y}));
+    const Texture texture = continued(light)[0].textures[0];
+    EXPECT_LT(mean_above(texture, 8), 2.0 * mean_above(texture, 1))
+        << "what is mirrored there has eight times the light of the rim";
+}
+
+TEST(Margin, AStarByTheEdgeIsNotSeenTwice) {
+    Image light = even_light();
+    constexpr std::int64_t star_x = 100, star_y = 3;
+    for (int c = 0; c < 3; ++c) light.at(star_x, star_y)[c] = 50.0f;
+    const Texture texture = continued(light)[0].textures[0];
+    const float there = texture.image.at(star_x + margin_px, margin_px - 1 - star_y)[1];
+    const float beside = texture.image.at(star_x + margin_px + 8, margin_px - 1 - star_y)[1];
+    EXPECT_GT(there, 0.5f * beside);
+    EXPECT_LT(there, 4.0f * beside) << "250 times as bright in the picture";
+}
+
+TEST(Margin, ACameraSeesThePictureWhereItWas) {
+    std::vector<TexturedMesh> meshes{lit_plane(even_light())};
+    UvCamera params;
+    params.position = glm::dvec3(0.0, 8.0, 0.0);
+    params.up = {0.0, 0.0, -1.0};
+    params.fov = 40.0;
+    const Camera before = picture_camera(params, 200.0 / 120.0);
+    meshes[0].camera = before;
+    apply_camera_uv(meshes[0].mesh, before);
+    const glm::dvec2 times = add_margins(meshes, with_margin(0.1), "a")[0];
+    for (const glm::dvec3& point : {glm::dvec3(0, 0, 0), {4.9, 0, -2.9}, {-2, 1, 1}}) {
+        const glm::dvec2 was = place_in_picture(before, point)->uv;
+        const glm::dvec2 is = place_in_picture(*meshes[0].camera, point)->uv;
+        for (int k = 0; k < 2; ++k) EXPECT_NEAR((is[k] - 0.5) * times[k] + 0.5, was[k], 1e-12);
+    }
+    EXPECT_NEAR(picture_height_at(*meshes[0].camera, 8.0), times.y * picture_height_at(before, 8.0), 1e-12);
+}
+
+TEST(Margin, OtherMeshesStay) {
+    std::vector<TexturedMesh> meshes{lit_plane(even_light())};
+    meshes[0].mesh = builtin_mesh("sphere", 1.0);
+    EXPECT_EQ(add_margins(meshes, with_margin(0.1), "a")[0], glm::dvec2(1.0));
+    EXPECT_EQ(meshes[0].textures[0].image.width, picture_width);
+    meshes[0].mesh = builtin_mesh("plane", 1.0);
+    EXPECT_EQ(add_margins(meshes, with_margin(0.0), "a")[0], glm::dvec2(1.0));
+    EXPECT_EQ(meshes[0].textures[0].image.width, picture_width);
 }
 
 }  // namespace

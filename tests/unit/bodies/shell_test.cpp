@@ -1,20 +1,14 @@
 // Shells: their walls, what lies on them and fills them, and flights near them.
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <utility>
-#include <vector>
-
 #include "bodies/bodies.h"
 #include "bodies/fields.h"
 #include "bodies/placement.h"
 #include "camera/camera.h"
-#include "core/shared_maths.h"
 #include "image/channels.h"
 #include "render/render.h"
 #include "support/painted_picture.h"
+#include "unit/bodies/bodies_support.h"
 
 namespace astrosplat {
 namespace {
@@ -68,8 +62,7 @@ struct RemnantPlacement {
     Image brightest = brightest_channel(painted::remnant(640, 400));
     Placement placement;
     explicit RemnantPlacement(double clumps = 1.0) {
-        StructureParams params;
-        params.kind = StructureKind::walls;
+        StructureParams params = of_kind(StructureKind::walls);
         params.depth = 0.26;
         params.clumps = clumps;
         placement = make_placement(brightest, params, 64.0, true, 9u);
@@ -77,29 +70,14 @@ struct RemnantPlacement {
     }
 };
 
-PlacedBlock splats_about(float x, float y, float reach, std::uint32_t number) {
-    PlacedBlock block;
-    block.count = DepthBlock::size;
-    for (int i = 0; i < block.count; ++i) {
-        const auto id = number * DepthBlock::size + static_cast<std::uint32_t>(i);
-        const auto random = [&](std::uint32_t purpose) {
-            return shared::as_uniform(shared::as_hash(8u, id, 0u, purpose)) - 0.5f;
-        };
-        block.x[i] = x + reach * random(1u);
-        block.y[i] = y + reach * random(2u);
-        block.random[i] = shared::as_hash(8u, id, 0u, 3u);
-    }
-    return block;
-}
-
 // One would look through it into a hollow.
 TEST(Shell, NoPartOfAWallIsBare) {
     const RemnantPlacement remnant;
     const BandSplats splats = band_splats(make_bands(640)[1], false, remnant.placement)[0];
     ASSERT_FALSE(splats.glow);
     for (std::uint32_t i = 0; i < 25; ++i) {
-        PlacedBlock block = splats_about(220.0f + 50.0f * static_cast<float>(i % 5),
-                                         120.0f + 40.0f * static_cast<float>(i / 5), 8.0f, i);
+        const glm::vec2 about(220 + 50 * (i % 5), 120 + 40 * (i / 5));
+        PlacedBlock block = splats_about(about, glm::vec2(8.0f), i);
         place(remnant.placement, splats, block);
         int in_front = 0;
         for (int k = 0; k < block.count; ++k) in_front += block.z[k] > 0.0f;
@@ -115,7 +93,7 @@ TEST(Shell, GlowFillsItEvenly) {
     ASSERT_TRUE(splats.glow);
     std::array<int, 8> eighths{};
     for (std::uint32_t i = 0; i < 16; ++i) {
-        PlacedBlock block = splats_about(320.0f, 200.0f, 4.0f, i);
+        PlacedBlock block = splats_about({320.0f, 200.0f}, glm::vec2(4.0f), i);
         place(remnant.placement, splats, block);
         for (int k = 0; k < block.count; ++k) {
             const float out = block.z[k] / remnant.placement.relief_at(block.x[k], block.y[k]);
@@ -141,7 +119,7 @@ TEST(Shell, OnlyBallsAreKnots) {
     const BandSplats splats = band_splats(make_bands(640)[0], false, placement)[0];
     for (const float ballness : {0.0f, 1.0f}) {
         placement.knots.knots[0].ballness = ballness;
-        PlacedBlock block = splats_about(320.0f, 200.0f, 12.0f, 1u);
+        PlacedBlock block = splats_about({320.0f, 200.0f}, glm::vec2(12.0f), 1u);
         place(placement, splats, block);
         const auto [low, high] = std::minmax_element(block.z, block.z + block.count);
         if (ballness > 0.5f) {
@@ -157,18 +135,9 @@ TEST(Shell, OnlyBallsAreKnots) {
 constexpr int frames = 12, flight_width = 96, flight_height = 60;
 
 ShadedSplats remnant_bodies() {
-    const Image light = painted::remnant(320, 200);
-    TexturedMesh mesh;
-    mesh.mesh = builtin_mesh("plane", 1.6);
-    Texture texture;
-    texture.image = make_image(light.width, light.height, 4, 1.0f);
-    for (std::int64_t i = 0; i < light.width * light.height; ++i)
-        std::copy_n(light.pixels.data() + 3 * i, 3, texture.image.pixels.data() + 4 * i);
-    mesh.textures.push_back(std::move(texture));
-    StructureParams params;
-    params.kind = StructureKind::walls;
+    StructureParams params = of_kind(StructureKind::walls);
     params.depth = 0.26;
-    SplatSet set = make_bodies({mesh}, params, 9u, "shell");
+    SplatSet set = make_bodies({on_plane(painted::remnant(320, 200))}, params, 9u, "shell");
     ShadedSplats splats;
     splats.position = std::move(set.position);
     splats.color = std::move(set.color);

@@ -1,12 +1,6 @@
 // Stars of a picture: those that are found, those too wide for one splat, and their places in depth.
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstdint>
-#include <vector>
-
 #include "bodies/bodies.h"
 #include "bodies/picture_light.h"
 #include "bodies/picture_splats.h"
@@ -14,15 +8,15 @@
 #include "bodies/stars.h"
 #include "detect/peaks.h"
 #include "image/channels.h"
-#include "source/mesh.h"
 #include "splats/splat_set.h"
 #include "support/painted_picture.h"
+#include "unit/bodies/bodies_support.h"
 
 namespace astrosplat {
 namespace {
 
 // A sky that is brighter on one side, with a little texture.
-Image sky(std::int64_t width, std::int64_t height) {
+Image sky(std::int64_t width = 256, std::int64_t height = 128) {
     Image image = make_image(width, height, 3);
     for (std::int64_t y = 0; y < height; ++y)
         for (std::int64_t x = 0; x < width; ++x)
@@ -42,11 +36,15 @@ const std::vector<Planted> planted{{40.3, 30.8, 0.9, 0.3},
                                    {200.2, 90.9, 0.8, 0.25},
                                    {60.7, 100.2, 1.0, 0.6}};
 
-TEST(Stars, AreFoundWhereTheyAreAndTakenOut) {
-    const Image before = sky(256, 128);
-    Image light = before;
+Image with_planted(Image light) {
     for (const Planted& p : planted)
         painted::add_point(light, p.x, p.y, p.sigma, p.light, 0.8 * p.light, 0.6 * p.light);
+    return light;
+}
+
+TEST(Stars, AreFoundWhereTheyAreAndTakenOut) {
+    const Image before = sky();
+    Image light = with_planted(before);
     const std::vector<Star> stars = take_stars(light);
     ASSERT_EQ(stars.size(), planted.size());
     for (const Planted& p : planted) {
@@ -66,7 +64,7 @@ TEST(Stars, AreFoundWhereTheyAreAndTakenOut) {
 }
 
 TEST(Stars, KnotsAndEdgesAreNone) {
-    Image light = sky(256, 128);
+    Image light = sky();
     painted::add_point(light, 80.0, 60.0, 4.0, 0.5, 0.5, 0.5);  // wider than a star
     for (int i = 0; i < 40; ++i) painted::add_point(light, 150.0 + i, 50.0, 0.9, 0.2, 0.2, 0.2);  // a thread
     const Image before = light;
@@ -96,12 +94,9 @@ TEST(Stars, FaintOnesInADarkSkyAreTaken) {
 
 // The narrowest Gaussian of a single pixel has most of its light beside it, where the picture has none.
 TEST(Stars, OfEnlargedPicturesAreOnlyWhatHasTheLightOfOne) {
-    Image light = sky(256, 128);
-    for (const Planted& p : planted)
-        painted::add_point(light, p.x, p.y, p.sigma, p.light, 0.8 * p.light, 0.6 * p.light);
+    Image light = with_planted(sky());
     for (int c = 0; c < 3; ++c) light.at(120, 30)[c] += 0.5f;
-    StructureParams params;
-    params.kind = StructureKind::sheet;
+    const StructureParams params = of_kind(StructureKind::sheet);
     Image whole = light, enlarged = light;
     EXPECT_EQ(take_picture_stars(whole, params).all.size(), planted.size() + 1);
     EXPECT_EQ(take_picture_stars(enlarged, params, true).all.size(), planted.size());
@@ -109,7 +104,7 @@ TEST(Stars, OfEnlargedPicturesAreOnlyWhatHasTheLightOfOne) {
 }
 
 TEST(Knots, OwnThePixelsAroundThem) {
-    Image light = sky(256, 128);
+    Image light = sky();
     painted::add_point(light, 80.0, 60.0, 3.0, 0.5, 0.5, 0.5);
     const Image brightest = brightest_channel(light);
     const Knots knots = find_knots(brightest);
@@ -152,9 +147,7 @@ TEST(Stars, LeaveNoHolesInDisksAndNoLightInClouds) {
     for (const StructureKind kind : {StructureKind::disk, StructureKind::sheet, StructureKind::walls}) {
         Image light = make_image(64, 48, 3, 0.05f);
         for (int c = 0; c < 3; ++c) light.at(30, 20)[c] = 0.6f;
-        StructureParams params;
-        params.kind = kind;
-        ASSERT_EQ(take_picture_stars(light, params).count, 1);
+        ASSERT_EQ(take_picture_stars(light, of_kind(kind)).count, 1);
         if (kind == StructureKind::disk)
             EXPECT_NEAR(light.at(31, 20)[0], least_left_in_dust * 0.05f, 1e-6f);
         else
@@ -168,8 +161,7 @@ TEST(Stars, ThoseOfARangeAreAboutOfOneSize) {
     for (int i = 0; i < 28; ++i)
         painted::add_point(image, 40.3 + 32.0 * (i % 14), 60.7 + 100.0 * (i / 14), 0.7 + 0.05 * i, 0.5, 0.5,
                            0.5);
-    StructureParams params;
-    params.kind = StructureKind::sheet;
+    const StructureParams params = of_kind(StructureKind::sheet);
     const PictureStars stars = take_picture_stars(image, params);
     ASSERT_GT(stars.count, 20);
     PictureSplats set;
@@ -182,9 +174,7 @@ TEST(Stars, ThoseOfARangeAreAboutOfOneSize) {
                         0.25f * range.sigma);
 }
 
-TEST(Knots, ThereAreNoneInAnEvenSky) {
-    EXPECT_TRUE(find_knots(brightest_channel(sky(256, 128))).knots.empty());
-}
+TEST(Knots, ThereAreNoneInAnEvenSky) { EXPECT_TRUE(find_knots(brightest_channel(sky())).knots.empty()); }
 
 // Stars that are too wide and too bright for one Gaussian: taken whole, and in one place in depth.
 
@@ -280,16 +270,7 @@ TEST(BrightStars, WhatTheyLeaveIsAtTheirDepth) {
     const double x = 330.5, y = 205.5;  // where the disk is faint
     painted::add_point(image, x, y, 2.5, 4.0, 3.0, 2.5);
     image = saturated(std::move(image));
-    TexturedMesh mesh;
-    mesh.mesh = builtin_mesh("plane", static_cast<double>(width) / static_cast<double>(height));
-    Texture texture;
-    texture.image = make_image(width, height, 4, 1.0f);
-    for (std::int64_t i = 0; i < width * height; ++i)
-        std::copy_n(image.pixels.data() + 3 * i, 3, texture.image.pixels.data() + 4 * i);
-    mesh.textures.push_back(std::move(texture));
-    StructureParams params;
-    params.kind = StructureKind::disk;
-    const SplatSet set = make_bodies({mesh}, params, 5u, "disk");
+    const SplatSet set = make_bodies({on_plane(image)}, of_kind(StructureKind::disk), 5u, "disk");
     const double texel = 10.0 / static_cast<double>(width);
     double depth = 0.0, star = 0.0, near_light = 0.0, far_light = 0.0;
     const auto light_of = [&](std::size_t i) {
@@ -319,13 +300,7 @@ TEST(BrightStars, WhatTheyLeaveIsAtTheirDepth) {
 // Stars of a picture in depth: each on its ray to the picture's camera, and before what would hide it.
 
 // 10 units wide and 5 high, in xz, its front up.
-TexturedMesh plane_with_picture() {
-    TexturedMesh mesh;
-    mesh.mesh = builtin_mesh("plane", 2.0);
-    mesh.textures.emplace_back();
-    mesh.textures[0].image = make_image(200, 100, 4, 1.0f);
-    return mesh;
-}
+TexturedMesh plane_with_picture() { return on_plane(make_image(200, 100, 3, 1.0f)); }
 
 TEST(StarPlaces, ASlabHoldsTheNearestInFrontAndTheFarthestBehind) {
     const TexturedMesh mesh = plane_with_picture();

@@ -1,7 +1,6 @@
 // Interpolation along a camera's path and along Bezier curves, against values worked out by hand.
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <glm/geometric.hpp>
 
 #include "camera/keyframe.h"

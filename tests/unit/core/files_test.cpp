@@ -3,7 +3,6 @@
 #include <sys/stat.h>
 
 #include <set>
-#include <vector>
 
 #include "core/atomic_file.h"
 #include "core/error.h"
@@ -16,8 +15,6 @@ namespace astrosplat {
 namespace {
 
 // A file is there whole, or not at all.
-
-namespace fs = std::filesystem;
 
 std::ptrdiff_t entries(const fs::path& folder) {
     return std::distance(fs::directory_iterator(folder), fs::directory_iterator());

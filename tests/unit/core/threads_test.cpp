@@ -2,17 +2,13 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
-#include <cstdint>
 #include <deque>
 #include <fstream>
-#include <memory>
 #include <mutex>
 #include <numeric>
 #include <set>
 #include <stdexcept>
 #include <thread>
-#include <utility>
-#include <vector>
 
 #include "core/memory.h"
 #include "core/parallel.h"

@@ -1,9 +1,6 @@
 // Peaks, connected parts and backgrounds against what one counts by hand.
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <optional>
-
 #include "detect/background.h"
 #include "detect/parts.h"
 #include "detect/peaks.h"

@@ -9,6 +9,7 @@
 #include "edit/kept_files.h"
 #include "edit/layers.h"
 #include "scenes.h"
+#include "support/errors.h"
 #include "support/quiet.h"
 #include "support/run_program.h"
 
@@ -17,7 +18,6 @@ namespace {
 
 // Autosave and recovery, with a process that is really killed.
 
-namespace fs = std::filesystem;
 using std::chrono::seconds;
 using test::opacity;
 using test::SceneFolder;
@@ -33,10 +33,10 @@ std::size_t files_in(const fs::path& folder) {
 struct AutosaveTest : testing::Test {
     SceneFolder f;
     fs::path folder = f.folder / "zustand ä" / "autosave";
+    Document document = Document::open(f.file);
 };
 
 TEST_F(AutosaveTest, WritesAMinuteAfterTheFirstEdit) {
-    Document document = Document::open(f.file);
     Autosave autosave(folder);
     autosave.update(document, start);
     EXPECT_FALSE(fs::exists(folder));
@@ -63,7 +63,6 @@ TEST_F(AutosaveTest, WritesAMinuteAfterTheFirstEdit) {
 }
 
 TEST_F(AutosaveTest, GoesWhenNothingIsLeftToSave) {
-    Document document = Document::open(f.file);
     Autosave autosave(folder);
     document.set(opacity, 0.25, 1.0);
     ASSERT_TRUE(autosave.write(document));
@@ -79,7 +78,6 @@ TEST_F(AutosaveTest, GoesWhenNothingIsLeftToSave) {
 }
 
 TEST_F(AutosaveTest, GoesWhenTheWindowCloses) {
-    Document document = Document::open(f.file);
     document.set(opacity, 0.25, 1.0);
     {
         Autosave autosave(folder);
@@ -89,7 +87,6 @@ TEST_F(AutosaveTest, GoesWhenTheWindowCloses) {
 }
 
 TEST_F(AutosaveTest, StaysWhenAnExceptionEndsTheProgram) {
-    Document document = Document::open(f.file);
     document.set(opacity, 0.25, 1.0);
     try {
         Autosave autosave(folder);
@@ -101,7 +98,6 @@ TEST_F(AutosaveTest, StaysWhenAnExceptionEndsTheProgram) {
 }
 
 TEST_F(AutosaveTest, ALivingProcessIsNotRecovered) {
-    Document document = Document::open(f.file);
     document.set(opacity, 0.25, 1.0);
     Autosave autosave(folder);
     ASSERT_TRUE(autosave.write(document));
@@ -126,14 +122,12 @@ TEST_F(AutosaveTest, TheNewestRecoveryComesFirst) {
 }
 
 TEST_F(AutosaveTest, AFolderThatCannotBeWrittenCostsOneWarning) {
-    Document document = Document::open(f.file);
     document.set(opacity, 0.25, 1.0);
     const Said said;
     Autosave autosave(f.file / "inside a file");
     EXPECT_FALSE(autosave.write(document));
     EXPECT_FALSE(autosave.write(document));
-    ASSERT_EQ(said.warnings.size(), 1u);
-    EXPECT_NE(said.warnings[0].find("no autosave of szene ä.toml: "), std::string::npos);
+    EXPECT_HAS(said.one_warning(), "no autosave of szene ä.toml: ");
     EXPECT_TRUE(recoveries(f.file / "inside a file").empty());
     EXPECT_TRUE(recoveries(f.folder / "missing").empty());
 }
@@ -236,12 +230,11 @@ TEST_F(AutosaveTest, TheOriginalMayBeGone) {
 
 TEST_F(AutosaveTest, APresetThatIsGoneLosesNothing) {
     const fs::path preset = f.folder.file("vorlage.toml", "[look]\ndensity = 0.5\n");
-    Document document = Document::open(f.file);
     document.set("layer.stars.preset", preset.string(), 1.0);
     document.save();
     fs::remove(preset);
     document.set(opacity, 0.25, 1.0);
-    EXPECT_EQ(message_of<InputError>([&] { document.save(); }),
+    EXPECT_EQ(ERROR_OF(document.save()),
               preset.string() +
                   ": cannot be read: No such file or directory; the looks that come with astrosplat are "
                   "in " ASTROSPLAT_SOURCE_DIR "/assets/looks, by name: m51, s106");
@@ -258,7 +251,7 @@ TEST_F(AutosaveTest, OtherFilesAreNoAutosaves) {
     std::ofstream(folder / "b-1-0.toml") << "# astrosplat autosave {\"file\": 3}\n";
     std::ofstream(folder / "c-1-0.toml") << "# astrosplat autosave nonsense\n";
     EXPECT_TRUE(recoveries(folder).empty());
-    EXPECT_EQ(message_of<InputError>([&] { recover(folder / "a-1-0.toml"); }),
+    EXPECT_EQ(ERROR_OF(recover(folder / "a-1-0.toml")),
               (folder / "a-1-0.toml").string() + ": expected an autosave, found another file");
 }
 
@@ -333,8 +326,6 @@ TEST_F(Snapshots, LayersAreMatchedByName) {
 
 // Snapshots in the folder beside their scene: what is written is read again, and nothing is lost where one of
 // them is broken.
-
-namespace fs = std::filesystem;
 
 struct SnapshotFiles : testing::Test {
     test::SceneFolder f;

@@ -1,11 +1,8 @@
 // What the window asks of the command line: --batch, prepare, movies.
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <array>
 #include <cstdio>
 
-#include "core/error.h"
 #include "edit/command_lines.h"
 #include "edit/edits.h"
 #include "edit/layers.h"
@@ -76,7 +73,7 @@ TEST_F(BatchCommandTest, OfASavedScene) {
 TEST_F(BatchCommandTest, EditsAreAssignments) {
     document.set(opacity, 0.25, 1.0);
     const BatchCommand command = batch_command(document, options);
-    EXPECT_NE(command.text.find(" --set layer.stars.render.opacity=0.25"), std::string::npos);
+    EXPECT_HAS(command.text, " --set layer.stars.render.opacity=0.25");
     document.set("provenance.title", "It's \"M 51\" $HOME `x` \\ ü", 1.0);
     document.set("layer.dust.look.thickness.map", "neue karte's ä.png", 1.0);
     document.set("layer.dust.source.unpremultiply", true, 1.0);
@@ -208,7 +205,7 @@ TEST(PrepareCommandLine, NamesThreeFilters) {
 }
 
 TEST(PrepareCommandLine, NeedsAPicture) {
-    EXPECT_EQ(message_of<InputError>([] { prepare_command(source_of({}), "out"); }),
+    EXPECT_EQ(ERROR_OF(prepare_command(source_of({}), "out")),
               "source.meshes: expected a picture to prepare, found none");
 }
 

@@ -5,6 +5,8 @@
 
 #include "edit/edits.h"
 #include "scenes.h"
+#include "support/errors.h"
+#include "support/process_state.h"
 
 namespace astrosplat {
 namespace {
@@ -118,47 +120,42 @@ TEST_F(DocumentTest, FiveHundredStepsCanBeUndone) {
 TEST_F(DocumentTest, RefusedEditsChangeNothing) {
     const Scene before = document.scene();
     const std::uint64_t revision = document.revision();
-    const auto message = [&](const std::function<void()>& edit) { return message_of<InputError>(edit); };
-    EXPECT_EQ(message([&] { document.set("camera.fov", 180.0, 1.0); }),
+    EXPECT_EQ(ERROR_OF(document.set("camera.fov", 180.0, 1.0)),
               "camera.fov: expected a number of at least 0.001 and below 180, found 180");
-    EXPECT_EQ(message([&] { document.set("camera.fov", "wide", 1.0); }),
+    EXPECT_EQ(ERROR_OF(document.set("camera.fov", "wide", 1.0)),
               "camera.fov: expected a number, found a string");
-    EXPECT_EQ(message([&] { document.set("layer.dust.look.alpha.powr", 1.0, 1.0); }),
+    EXPECT_EQ(ERROR_OF(document.set("layer.dust.look.alpha.powr", 1.0, 1.0)),
               "unknown key 'layer.dust.look.alpha.powr'; did you mean 'layer.dust.look.alpha.power'?");
-    EXPECT_EQ(message([&] { document.set("layer.dust.look.radius.min", 0.5, 1.0); }),
+    EXPECT_EQ(ERROR_OF(document.set("layer.dust.look.radius.min", 0.5, 1.0)),
               "szene ä.toml: layer.dust.look.radius.min: expected min not above max, found 0.5 and 0");
-    EXPECT_EQ(message([&] { document.set("layer.dust.preset", "fehlt.toml", 1.0); }),
+    EXPECT_EQ(ERROR_OF(document.set("layer.dust.preset", "fehlt.toml", 1.0)),
               (f.folder / "fehlt.toml").string() +
                   ": cannot be read: No such file or directory; the looks that come with astrosplat are "
                   "in " ASTROSPLAT_SOURCE_DIR "/assets/looks, by name: m51, s106");
-    EXPECT_EQ(message([&] { document.set("layer.dust.look.thickness.map", "latin-1 \xe4.png", 1.0); }),
+    EXPECT_EQ(ERROR_OF(document.set("layer.dust.look.thickness.map", "latin-1 \xe4.png", 1.0)),
               "layer.dust.look.thickness.map: expected text in UTF-8, found another encoding");
-    EXPECT_EQ(message([&] { document.set("layer.dust.look.noise.3.cull", 0.5, 1.0); }),
+    EXPECT_EQ(ERROR_OF(document.set("layer.dust.look.noise.3.cull", 0.5, 1.0)),
               "layer.dust.look.noise.3.cull: expected an index of at most 2 in layer.look.noise, found 3");
-    EXPECT_EQ(message([&] { document.reset("layer.star.look.density"); }),
+    EXPECT_EQ(ERROR_OF(document.reset("layer.star.look.density")),
               "layer.star.look.density: unknown layer 'star'; did you mean 'stars'?");
-    EXPECT_EQ(message([&] { document.reset("camera.fow"); }),
-              "unknown key 'camera.fow'; did you mean 'camera.fov'?");
-    EXPECT_EQ(message([&] { document.edit("Fov", [](Scene& s) { s.camera.fov = -1.0; }); }),
+    EXPECT_EQ(ERROR_OF(document.reset("camera.fow")), "unknown key 'camera.fow'; did you mean 'camera.fov'?");
+    EXPECT_EQ(ERROR_OF(document.edit("Fov", [](Scene& s) { s.camera.fov = -1.0; })),
               "camera.fov: expected a number of at least 0.001 and below 180, found -1");
-    EXPECT_EQ(message([&] { document.edit("Twin", [](Scene& s) { s.layers[0].name = "stars"; }); }),
+    EXPECT_EQ(ERROR_OF(document.edit("Twin", [](Scene& s) { s.layers[0].name = "stars"; })),
               "szene ä.toml: layer.name: expected each name once, found 'stars' twice");
     EXPECT_EQ(
-        message([&] { document.edit("Name", [](Scene& s) { s.layers[0].name = "a b"; }); }),
+        ERROR_OF(document.edit("Name", [](Scene& s) { s.layers[0].name = "a b"; })),
         "szene ä.toml: layer.name: expected letters, digits and _ beginning with a letter, found 'a b'");
-    EXPECT_EQ(message([&] {
-                  document.edit("Keyframes", [](Scene& s) {
-                      std::swap(s.animation[0].keyframes[0], s.animation[0].keyframes[1]);
-                  });
-              }),
+    const auto swap_keyframes = [](Scene& s) {
+        std::swap(s.animation[0].keyframes[0], s.animation[0].keyframes[1]);
+    };
+    EXPECT_EQ(ERROR_OF(document.edit("Keyframes", swap_keyframes)),
               "layer.stars.render.core: expected ascending frames, each once, found others");
-    EXPECT_EQ(message_of<std::runtime_error>([&] {
-                  document.edit("Own", [](Scene& s) {
-                      s.camera.fov = 10.0;
-                      throw std::runtime_error("own error");
-                  });
-              }),
-              "own error");
+    const auto fails = [](Scene& s) {
+        s.camera.fov = 10.0;
+        throw std::runtime_error("own error");
+    };
+    EXPECT_THROW(document.edit("Own", fails), std::runtime_error);
     EXPECT_EQ(document.scene(), before);
     EXPECT_EQ(document.revision(), revision);
     EXPECT_FALSE(document.can_undo());
@@ -283,10 +280,8 @@ TEST(UntitledDocument, UntitledAsksForAFile) {
     EXPECT_TRUE(document.file().empty());
     EXPECT_FALSE(document.edited());
     EXPECT_FALSE(document.changed_on_disk());
-    EXPECT_EQ(message_of<InputError>([&] { document.save(); }),
-              "Untitled: expected a file to save to, found none");
-    EXPECT_EQ(message_of<InputError>([&] { document.reload(); }),
-              "Untitled: expected a file to read again, found none");
+    EXPECT_EQ(ERROR_OF(document.save()), "Untitled: expected a file to save to, found none");
+    EXPECT_EQ(ERROR_OF(document.reload()), "Untitled: expected a file to read again, found none");
     document.set(opacity, 0.25, 1.0);
     EXPECT_TRUE(document.edited());
     document.save_as(folder / "szene.toml");
@@ -378,7 +373,7 @@ TEST_F(DocumentTest, ReloadIsOneStep) {
 TEST_F(DocumentTest, AReloadThatFailsChangesNothing) {
     const Scene before = document.scene();
     f.folder.file("szene ä.toml", "astrosplat = 1\n[camera]\nfov = \"wide\"\n");
-    EXPECT_EQ(message_of<InputError>([&] { document.reload(); }),
+    EXPECT_EQ(ERROR_OF(document.reload()),
               f.file.string() + ":3: camera.fov: expected a number, found a string");
     EXPECT_EQ(document.scene(), before);
     EXPECT_FALSE(document.can_undo());
@@ -396,7 +391,7 @@ TEST_F(DocumentTest, ReloadKeepsAssignmentsThatWereNotSaved) {
 }
 
 TEST_F(DocumentTest, ACommaLocaleChangesNothing) {
-    const test::CommaLocale comma;
+    const CommaLocale comma;
     document = Document::open(f.file);
     document.set(opacity, 0.125, 1.0);
     document.set("layer.dust.source.count", std::int64_t{1234567}, 1.0);

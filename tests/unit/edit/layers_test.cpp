@@ -1,12 +1,11 @@
 // The list of layers, and every parameter of the description, as they are edited.
 #include <gtest/gtest.h>
 
-#include <algorithm>
-
 #include "edit/document.h"
 #include "edit/edits.h"
 #include "edit/layers.h"
 #include "scenes.h"
+#include "support/errors.h"
 #include "support/random_values.h"
 
 namespace astrosplat {
@@ -17,11 +16,7 @@ namespace {
 struct Layers : testing::Test {
     Scene scene = parse_scene(test::edit_scene, "/scene.toml");
 
-    std::vector<std::string> names() const {
-        std::vector<std::string> result;
-        for (const LayerParams& layer : scene.layers) result.push_back(layer.name);
-        return result;
-    }
+    std::vector<std::string> names() const { return layer_names(scene); }
     using Names = std::vector<std::string>;
 };
 
@@ -69,9 +64,9 @@ TEST_F(Layers, Rename) {
     EXPECT_TRUE(is_animated(scene, "layer.suns.render.core"));
     EXPECT_FALSE(is_animated(scene, "layer.stars.render.core"));
     const Scene before = scene;
-    EXPECT_EQ(message_of<InputError>([&] { rename_layer(scene, 1, "dust"); }),
+    EXPECT_EQ(ERROR_OF(rename_layer(scene, 1, "dust")),
               "suns: layer.name: expected each name once, found 'dust' twice");
-    EXPECT_EQ(message_of<InputError>([&] { rename_layer(scene, 1, "2"); }),
+    EXPECT_EQ(ERROR_OF(rename_layer(scene, 1, "2")),
               "suns: layer.name: expected letters, digits and _ beginning with a letter, found '2'");
     rename_layer(scene, 1, "suns");
     EXPECT_EQ(scene, before);
@@ -123,7 +118,7 @@ TEST(Presets, GiveLookAndRender) {
     EXPECT_TRUE(layer.preset.empty());
     const LayerParams before = layer;
     folder.file("schlecht.toml", "[look]\ndensty = 1\n");
-    EXPECT_EQ(message_of<InputError>([&] { apply_preset(layer, folder / "schlecht.toml"); }),
+    EXPECT_EQ(ERROR_OF(apply_preset(layer, folder / "schlecht.toml")),
               (folder / "schlecht.toml").string() + ":2: unknown key 'densty'; did you mean 'look.density'?");
     EXPECT_EQ(layer, before);
 }
@@ -146,13 +141,9 @@ std::vector<ParameterSpec> specs_of(const Document& document) {
 /// False where a rule between parameters refused the value; the scene is then as before.
 bool try_set(Document& document, const std::string& key, const Value& value, double frame) {
     const Scene before = document.scene();
-    try {
-        document.set(key, value, frame);
-        return true;
-    } catch (const InputError&) {
-        EXPECT_EQ(document.scene(), before) << key;
-        return false;
-    }
+    if (ERROR_OF(document.set(key, value, frame)) == "no error") return true;
+    EXPECT_EQ(document.scene(), before) << key;
+    return false;
 }
 
 /// Rules between parameters may refuse these: curves without points, half of a pair such as radius.min above

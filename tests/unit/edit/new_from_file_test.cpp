@@ -3,19 +3,17 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <glm/geometric.hpp>
 
 #include "scenes.h"
 #include "source/textured_mesh.h"
 #include "splat_files/splat_file.h"
 #include "support/capture.h"
+#include "support/errors.h"
 #include "support/test_data.h"
 
 namespace astrosplat {
 namespace {
-
-namespace fs = std::filesystem;
 
 const char* const tiny_picture = "P2\n1 1\n255\n9\n";  // a PNM, whatever its name
 const char* const square = "v 0 0 0\nv 4 0 0\nv 4 0 2\nv 0 0 2\n";
@@ -176,7 +174,7 @@ TEST_F(NewFromFile, CataloguesOfTheSkyAreSeenFromTheOrigin) {
 
 TEST_F(NewFromFile, StarsOfAPictureNeedItBesideThem) {
     const fs::path table = folder.file("stars.csv", "u,v,flux_r,flux_g,flux_b\n0.5,0.5,1,1,1\n");
-    EXPECT_EQ(message_of<InputError>([&] { scene_text_for(table, place); }),
+    EXPECT_EQ(ERROR_OF(scene_text_for(table, place)),
               table.string() + ": expected picture.exr beside the stars of a picture, found none");
     folder.file("picture.exr", tiny_picture);  // what it is, its first bytes say
     EXPECT_EQ(scene_for(table).layers.at(1).source.stars.catalogue, table) << "the file that was opened";
@@ -184,15 +182,15 @@ TEST_F(NewFromFile, StarsOfAPictureNeedItBesideThem) {
 
 TEST_F(NewFromFile, OtherFilesAreRefused) {
     const fs::path text = folder.file("a.txt", "x");
-    EXPECT_EQ(message_of<InputError>([&] { scene_text_for(text, place); }),
+    EXPECT_EQ(ERROR_OF(scene_text_for(text, place)),
               text.string() +
                   ": expected a picture (OpenEXR, TIFF, PNG, JPEG, FITS, Radiance HDR, DPX, WebP, JPEG 2000, "
                   "Photoshop, BMP, GIF, TGA or PNM), a mesh (OBJ), splats (PDA, PLY, glTF, USD or SPLATS) or "
                   "a star "
                   "catalogue, found another kind of file");
-    EXPECT_EQ(message_of<InputError>([&] { scene_text_for(folder / "gone.png", place); }),
+    EXPECT_EQ(ERROR_OF(scene_text_for(folder / "gone.png", place)),
               (folder / "gone.png").string() + ": cannot be read: No such file or directory");
-    EXPECT_EQ(message_of<InputError>([&] { scene_text_for(folder.path(), place); }),
+    EXPECT_EQ(ERROR_OF(scene_text_for(folder.path(), place)),
               folder.path().string() + ": cannot be read: it is a folder");
 }
 

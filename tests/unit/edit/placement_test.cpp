@@ -1,7 +1,6 @@
 // Where layers are in the world and in a frame, and the handles that move them.
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <glm/geometric.hpp>
 
 #include "core/real.h"

@@ -1,9 +1,7 @@
 // The window's settings on disk, and the files in use that change there.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <chrono>
-#include <cstddef>
 
 #include "core/file.h"
 #include "core/log.h"
@@ -21,8 +19,6 @@ namespace {
 
 // The window's settings on disk: round trip, damage, folders that cannot be written.
 
-namespace fs = std::filesystem;
-
 /// Warnings while `work` runs.
 template <class Work>
 std::vector<std::string> warnings_of(const Work& work) {
@@ -37,7 +33,7 @@ class PreferencesTest : public testing::Test {
 };
 
 TEST_F(PreferencesTest, RoundTrip) {
-    const test::CommaLocale comma;
+    const CommaLocale comma;
     Preferences p;
     p.window_width = 1234;
     p.window_height = 777;
@@ -181,7 +177,6 @@ TEST(UserFolders, FollowTheBaseDirectorySpecification) {
 
 // Changes of files in use, and which files a scene uses.
 
-namespace fs = std::filesystem;
 using Paths = std::vector<fs::path>;
 
 class WatchedFilesTest : public testing::Test {

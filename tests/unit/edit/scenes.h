@@ -1,13 +1,10 @@
-// Scenes for the tests of editing, and the comma locale that must not matter.
+// Scenes for the tests of editing.
 #pragma once
 
-#include <locale>
-#include <string>
-
 #include "edit/document.h"
+#include "edit/edits.h"
 #include "scene/describe.h"
 #include "support/bits.h"
-#include "support/errors.h"
 #include "support/temp_folder.h"
 
 namespace astrosplat::test {
@@ -71,19 +68,12 @@ inline LayerParams& layer(Scene& scene, const std::string& name) {
     throw std::out_of_range(name);
 }
 
-/// Numbers are written with a comma while this lives, by everything that asks the locale.
-class CommaLocale {
-  public:
-    CommaLocale() { std::locale::global(std::locale(std::locale::classic(), new Comma)); }
-    ~CommaLocale() { std::locale::global(before_); }
-
-  private:
-    struct Comma : std::numpunct<char> {
-        char do_decimal_point() const override { return ','; }
-        char do_thousands_sep() const override { return '.'; }
-        std::string do_grouping() const override { return "\3"; }
-    };
-    std::locale before_;
-};
+/// Of the parameter's keyframes, in their order.
+inline std::vector<double> frames_of(const Scene& scene, const std::string& key) {
+    std::vector<double> frames;
+    if (const Track* track = find_track(scene, key))
+        for (const auto& keyframe : track->keyframes) frames.push_back(keyframe.frame);
+    return frames;
+}
 
 }  // namespace astrosplat::test

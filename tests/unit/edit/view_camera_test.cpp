@@ -3,13 +3,13 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <glm/geometric.hpp>
 
 #include "core/real.h"
 #include "edit/edits.h"
 #include "scene/animate.h"
 #include "scenes.h"
+#include "support/errors.h"
 
 namespace astrosplat {
 namespace {
@@ -145,7 +145,7 @@ TEST(Navigation, PanMovesThePivotsPlaneByThePixels) {
 }
 
 TEST(Navigation, ZoomKeepsThePointUnderTheCursor) {
-    for (const FreeCamera& camera : cameras()) {
+    for (const FreeCamera& camera : cameras())
         for (const double steps : {1.0, -3.0, 10.0}) {
             const glm::dvec2 px(1300.0, 200.0);
             const glm::dvec3 point = point_under(camera, px, viewport);
@@ -155,7 +155,6 @@ TEST(Navigation, ZoomKeepsThePointUnderTheCursor) {
                         scene_units_per_px(camera, 900.0) * std::pow(1.15, -steps), 1e-12);
             expect_near(view_axes(zoomed).forward, view_axes(camera).forward, 1e-9);
         }
-    }
 }
 
 TEST(Navigation, ZoomInAndOutIsNoMove) {
@@ -390,7 +389,7 @@ TEST_F(SeenCamera, HasAPlaceWhereTheSceneCameraFramesItsLayers) {
         expect_near(project(seen, {1, 2, -3}), project(scene.camera, {1, 2, -3}, box), 1e-9);
     }
     status.box = {};
-    EXPECT_EQ(message_of<InputError>([&] { seen_camera(scene, view, status); }),
+    EXPECT_EQ(ERROR_OF(seen_camera(scene, view, status)),
               "camera.position: expected layers to frame, found none loaded yet");
 }
 

@@ -1,9 +1,6 @@
 // Measures of pictures: colours, a front view, views from the side.
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-#include <cstdint>
 #include <glm/vec4.hpp>
 
 #include "core/color.h"

@@ -1,10 +1,8 @@
 // Columns of a set, written in parts and read again, and the runs that are kept of it.
 #include <gtest/gtest.h>
 
-#include <fstream>
 #include <map>
 #include <mutex>
-#include <sstream>
 
 #include "core/parallel.h"
 #include "generate/generate.h"
@@ -16,8 +14,6 @@
 
 namespace astrosplat {
 namespace {
-
-// Columns of a set: read again into what is there, and written in parts.
 
 // Pictures read again into columns that are there: the bits of a generation, and nothing lost that was dark.
 
@@ -42,9 +38,8 @@ class ColumnsTest : public testing::Test {
     ~ColumnsTest() override { set_thread_count(0); }
 
     static std::vector<TexturedMesh> meshes(const Texture& texture, bool with_camera) {
-        std::vector<TexturedMesh> made;
-        made.push_back(test::textured(builtin_mesh("sphere", 1.0), texture));
-        made.push_back(test::textured(builtin_mesh("plane", 2.0), texture));
+        std::vector<TexturedMesh> made = {test::textured(builtin_mesh("sphere", 1.0), texture),
+                                          test::textured(builtin_mesh("plane", 2.0), texture)};
         if (!with_camera) return made;
         UvCamera params;
         params.position = glm::dvec3(0.0, 1.0, 2.0);  // much lies behind it
@@ -93,8 +88,7 @@ TEST_F(ColumnsTest, ReadingPicturesCanBeCancelled) {
 TEST_F(ColumnsTest, TheEstimateTellsOfPositionsThatAreDark) {
     Texture dark = stripes(1, TextureSettings::Filter::nearest);
     dark.image.at(3, 3)[3] = 1.0f;
-    std::vector<TexturedMesh> made;
-    made.push_back(test::textured(builtin_mesh("plane", 2.0), dark));
+    std::vector<TexturedMesh> made = {test::textured(builtin_mesh("plane", 2.0), dark)};
     SourceParams source;
     source.count = 40000;
     const Lattice lattice = make_lattice(source, made, 0.3);
@@ -109,22 +103,8 @@ TEST_F(ColumnsTest, TheEstimateTellsOfPositionsThatAreDark) {
 
 using glm::i64vec3;
 using test::flat_texture;
+using test::half_lit;
 using test::textured;
-
-std::string bytes_of(const std::filesystem::path& file) {
-    std::ostringstream bytes;
-    bytes << std::ifstream(file, std::ios::binary).rdbuf();
-    return bytes.str();
-}
-
-/// Its left half is transparent.
-Texture half_lit() {
-    Texture texture = flat_texture({0.25f, 0.5f, 1.0f, 0.75f}, 64);
-    for (std::int64_t y = 0; y < 64; ++y)
-        for (std::int64_t x = 0; x < 32; ++x) std::fill_n(texture.image.at(x, y), 4, 0.0f);
-    texture.credit = "NASA";
-    return texture;
-}
 
 struct Case {
     const char* mesh;
@@ -142,18 +122,16 @@ class WriteColumns : public testing::Test {
         SCOPED_TRACE(testing::Message() << c.mesh << " in " << room_bytes << " bytes, threads " << threads);
         Mesh mesh = builtin_mesh(c.mesh, c.size);
         for (glm::vec3& p : mesh.positions) p += c.place;
-        std::vector<TexturedMesh> meshes;
-        meshes.push_back(textured(std::move(mesh), std::move(texture)));
-        SourceParams source;
-        source.voxels = c.voxels;
-        const Lattice lattice = make_lattice(source, meshes, c.max_distance);
+        std::vector<TexturedMesh> meshes = {textured(std::move(mesh), std::move(texture))};
+        meshes[0].textures[0].credit = "NASA";
+        const Lattice lattice = test::lattice_of(c.voxels, meshes, c.max_distance);
         set_thread_count(threads);
         const SplatSet set = generate(meshes, lattice, c.max_distance, 1.0, 5);
         write_native(folder_ / "whole.splats", set);
         const std::int64_t splats =
             write_columns(folder_ / "parts.splats", meshes, lattice, c.max_distance, 1.0, 5, room_bytes);
         EXPECT_EQ(splats, set.size());
-        EXPECT_TRUE(bytes_of(folder_ / "parts.splats") == bytes_of(folder_ / "whole.splats"));
+        EXPECT_TRUE(test::bytes_of(folder_ / "parts.splats") == test::bytes_of(folder_ / "whole.splats"));
     }
 
     TempFolder folder_;
@@ -179,8 +157,6 @@ TEST_F(WriteColumns, SeveralBlocksOfTheFile) {
 TEST_F(WriteColumns, NothingLitIsAFileOfNothing) {
     expect_same_file({"plane", i64vec3(20, 3, 20), 0.5}, 1 << 20, flat_texture({0, 0, 0, 0}), 2);
 }
-
-// Splats kept by a generation: how runs join, and who watches them.
 
 // Runs of splats from several stores join a set in order of id.
 
@@ -278,9 +254,8 @@ class Collector : public KeptWatcher {
 };
 
 TEST(KeptWatcher, SeesEverySplatOnceAndChangesNothing) {
-    std::vector<TexturedMesh> meshes;
-    meshes.push_back(
-        test::textured(builtin_mesh("sphere", 1.0), test::flat_texture({0.2f, 0.4f, 0.8f, 0.5f})));
+    std::vector<TexturedMesh> meshes = {
+        test::textured(builtin_mesh("sphere", 1.0), test::flat_texture({0.2f, 0.4f, 0.8f, 0.5f}))};
     SourceParams source;
     source.count = 150000;  // more than one block of a store
     const Lattice lattice = make_lattice(source, meshes, 0.5);

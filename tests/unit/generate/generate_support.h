@@ -3,11 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/vec4.hpp>
-#include <vector>
 
 #include "core/real.h"
 #include "core/shared_maths.h"
@@ -68,11 +65,26 @@ inline Texture flat_texture(const glm::vec4& straight, std::int64_t size = 8) {
     return texture;
 }
 
-inline TexturedMesh textured(Mesh mesh, Texture texture) {
+/// Its left half is transparent.
+inline Texture half_lit(const glm::vec4& straight = glm::vec4(0.25f, 0.5f, 1.0f, 0.75f)) {
+    Texture texture = flat_texture(straight, 64);
+    for (std::int64_t y = 0; y < 64; ++y) std::fill_n(texture.image.at(0, y), 4 * 32, 0.0f);
+    return texture;
+}
+
+inline TexturedMesh textured(Mesh mesh, Texture texture = flat_texture(glm::vec4(1.0f))) {
     TexturedMesh m;
     m.mesh = std::move(mesh);
     m.textures.push_back(std::move(texture));
     return m;
+}
+
+inline Lattice lattice_of(const glm::i64vec3& voxels, const std::vector<TexturedMesh>& meshes,
+                          double max_distance, std::optional<glm::dvec3> buffer = {}) {
+    SourceParams source;
+    source.voxels = voxels;
+    source.buffer = buffer;
+    return make_lattice(source, meshes, max_distance);
 }
 
 /// Every position of the lattice against every triangle, one after the other; triangles that a bounding

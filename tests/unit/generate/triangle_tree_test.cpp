@@ -1,11 +1,8 @@
 // The closest triangle: of one, of blocks of positions, and of real meshes.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <atomic>
-#include <cmath>
 #include <glm/geometric.hpp>
-#include <vector>
 
 #include "core/parallel.h"
 #include "core/shared_maths.h"
@@ -218,7 +215,7 @@ std::int64_t expect_brute_force(const Mesh& mesh, const Lattice& lattice, double
     const CullSettings settings{max_distance, jitter, 3};
     std::vector<std::uint32_t> scratch;
     std::int64_t kept = 0, wrong = 0;
-    for (const LatticeBlock& block : blocks_near(tree, lattice, settings, {})) {
+    for (const LatticeBlock& block : blocks_near(tree, lattice, settings, {}))
         for (const Positions kind : {Positions::corners, Positions::centres}) {
             BlockAnswers answers;
             query_block(tree, lattice, settings, block, kind, scratch, answers);
@@ -232,7 +229,6 @@ std::int64_t expect_brute_force(const Mesh& mesh, const Lattice& lattice, double
                          c.barycentric != glm::dvec2(answers.v[s], answers.w[s]);
             }
         }
-    }
     std::int64_t near_enough = 0;
     for (std::uint64_t id = 0; id < static_cast<std::uint64_t>(lattice.positions()); ++id) {
         const glm::dvec3 p = jittered_position(lattice, id, jitter, 3);
@@ -346,8 +342,7 @@ class RealMeshes : public testing::TestWithParam<const char*> {};
 
 TEST_P(RealMeshes, EqualBruteForceBitForBit) {
     ASTROSPLAT_TEST_DATA_OR_SKIP(file, std::string("meshes/") + GetParam());
-    std::vector<TexturedMesh> meshes;
-    meshes.push_back(test::textured(load_obj(file), test::flat_texture({1, 1, 1, 1})));
+    std::vector<TexturedMesh> meshes = {test::textured(load_obj(file))};
     apply_uv(meshes[0].mesh, UvMode::planar_xz, bounds(meshes));
     const Bounds box = bounds(meshes);
     const double side = std::max({box.extent().x, box.extent().y, box.extent().z});
@@ -399,8 +394,7 @@ INSTANTIATE_TEST_SUITE_P(Meshes, RealMeshes,
 
 TEST(RealMesh, AutomaticVoxelsKeepAboutCount) {
     ASTROSPLAT_TEST_DATA_OR_SKIP(file, "meshes/spot/spot_triangulated.obj");
-    std::vector<TexturedMesh> meshes;
-    meshes.push_back(test::textured(load_obj(file), test::flat_texture({1, 1, 1, 1})));
+    std::vector<TexturedMesh> meshes = {test::textured(load_obj(file))};
     SourceParams source;
     source.count = 200000;
     const double distance = resolved_max_distance(source, bounds(meshes));

@@ -1,13 +1,11 @@
 // Pictures enlarged, reduced, blurred and opened, against plain sums.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
 #include <numeric>
-#include <vector>
 
 #include "image/blur.h"
+#include "image/channels.h"
 #include "image/resample.h"
 
 namespace astrosplat {
@@ -215,7 +213,7 @@ TEST(Blur, OfAStripIsAsWideAsItsKernel) {
 }
 
 TEST(Blur, KeepsConstantsAndTheSum) {
-    for (const double sigma : {0.0, 0.7, 2.0, 4.0, 11.0}) {
+    for (const double sigma : {0.0, 0.7, 2.0, 4.0, 11.0})
         for (const auto& [width, height] : {std::pair{64, 48}, {31, 45}, {5, 3}, {1, 1}}) {
             const Image flat = gaussian_blur(make_image(width, height, 2, 0.25f), sigma);
             for (const float value : flat.pixels) ASSERT_NEAR(value, 0.25f, 1e-6f) << sigma;
@@ -227,7 +225,6 @@ TEST(Blur, KeepsConstantsAndTheSum) {
             EXPECT_NEAR(sum(convolved_with_gaussian(image, sigma)) / before, 1.0, 1e-5)
                 << sigma << " " << width;
         }
-    }
 }
 
 TEST(Blur, HalvingAndDoublingKeepARampAwayFromTheEdges) {
@@ -282,6 +279,58 @@ TEST(Opening, CutsPeaksOffAndLeavesSteps) {
         for (std::int64_t x = 20; x < 28; ++x) *image.at(x, y) = 50.0f;
     EXPECT_EQ(opened(image, 4).pixels, step.pixels);
     EXPECT_EQ(opened(image, 3).pixels, image.pixels) << "as wide as the square";
+}
+
+// Which pixels are visited, and in which order.
+
+using testing::ElementsAre;
+using testing::Pair;
+using Places = std::vector<std::pair<std::int64_t, std::int64_t>>;
+
+TEST(Channels, APixelsNeighboursAreThoseThatThePictureHas) {
+    const Image image = make_image(4, 3, 1);
+    Places places;
+    const auto note = [&](std::int64_t x, std::int64_t y) { places.emplace_back(x, y); };
+    for_each_about(image, 3, 0, 1, note);
+    EXPECT_THAT(places, ElementsAre(Pair(2, 0), Pair(3, 0), Pair(2, 1), Pair(3, 1)));
+    places.clear();
+    for_each_between(image, -5, 2, 0, 9, note);
+    EXPECT_THAT(places, ElementsAre(Pair(0, 2)));
+    places.clear();
+    for_each_between(image, 4, 0, 9, 2, note);
+    EXPECT_TRUE(places.empty());
+}
+
+TEST(Channels, WithinARadiusArePixelsWhoseMiddlesAre) {
+    const Image image = make_image(5, 5, 1);
+    Places places;
+    double farthest = 0.0;
+    for_each_within(image, 2.5, 2.5, 1.0, [&](std::int64_t x, std::int64_t y, double dx, double dy) {
+        places.emplace_back(x, y);
+        farthest = std::max(farthest, dx * dx + dy * dy);
+        EXPECT_EQ(dx, double(x) - 2.0);
+        EXPECT_EQ(dy, double(y) - 2.0);
+    });
+    EXPECT_THAT(places, ElementsAre(Pair(2, 1), Pair(1, 2), Pair(2, 2), Pair(3, 2), Pair(2, 3)));
+    EXPECT_EQ(farthest, 1.0);
+}
+
+TEST(Channels, EveryPixelIsChangedOnceOnAnyNumberOfThreads) {
+    for (const int threads : {1, 3}) {
+        set_thread_count(threads);
+        Image image = make_image(7, 50, 2, 1.0f);
+        change_pixels(image, [](float* p) { p[1] += 2.0f; });
+        for_each_pixel(image, [&](std::int64_t x, std::int64_t y) { image.at(x, y)[0] *= 5.0f; });
+        for (std::size_t i = 0; i < image.pixels.size(); ++i)
+            ASSERT_EQ(image.pixels[i], i % 2 == 0 ? 5.0f : 3.0f);
+    }
+    set_thread_count(0);
+}
+
+TEST(Channels, OpaqueLeavesOutWhatIsBehindBlue) {
+    Image image = make_image(2, 1, 4, 0.25f);
+    const Image opaqued = opaque(image);
+    EXPECT_THAT(opaqued.pixels, ElementsAre(0.25f, 0.25f, 0.25f, 1.0f, 0.25f, 0.25f, 0.25f, 1.0f));
 }
 
 }  // namespace

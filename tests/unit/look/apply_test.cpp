@@ -1,16 +1,14 @@
 // The look as a whole: the same bits, messages, progress.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <atomic>
-#include <string>
-#include <vector>
 
 #include "core/error.h"
 #include "core/log.h"
 #include "core/parallel.h"
 #include "look/prepare.h"
 #include "support/bits.h"
+#include "support/errors.h"
 #include "support/quiet.h"
 #include "unit/look/sets.h"
 
@@ -137,7 +135,7 @@ TEST(SameBits, IntoArraysOfAnEarlierCall) {
 }
 
 TEST(SameBits, InTheMemoryOfTheSet) {
-    for (const Case& c : cases()) {
+    for (const Case& c : cases())
         for (const bool own_radius : {true, false}) {
             Case given = c;
             if (!own_radius) given.set.radius.clear();
@@ -153,7 +151,6 @@ TEST(SameBits, InTheMemoryOfTheSet) {
             EXPECT_TRUE(set.distance.empty() && set.uv.empty() && set.radius.empty());
             EXPECT_EQ(set.max_distance, given.set.max_distance);
         }
-    }
 }
 
 TEST(SameBits, WhatCannotBeShadedInPlaceIsLeftAsItWas) {
@@ -214,14 +211,7 @@ TEST(SameBits, AsLookSplatOneByOne) {
 
 // Every message a person can meet in the look, word for word.
 
-std::string message(const SplatSet& set, const Look& look) {
-    try {
-        apply_look(set, look, {});
-    } catch (const InputError& error) {
-        return error.what();
-    }
-    return "no error";
-}
+std::string message(const SplatSet& set, const Look& look) { return ERROR_OF(apply_look(set, look, {})); }
 
 TEST(LookErrors, CurveWithTooManyPoints) {
     Look look;
@@ -294,14 +284,12 @@ TEST(LookErrors, WarnsWhereColoursAreDividedTwice) {
     EXPECT_TRUE(said.warnings.empty());
     look.alpha.unpremultiply = true;
     apply_look(set, look, {});
-    ASSERT_EQ(said.warnings.size(), 1u);
-    EXPECT_NE(said.warnings[0].find("they are divided again"), std::string::npos);
+    EXPECT_HAS(said.one_warning(), "they are divided again");
 }
 
 TEST(LookErrors, StopsWhenAsked) {
     const std::atomic<bool> stop{true};
-    Progress progress;
-    progress.cancelled = &stop;
+    const Progress progress{{}, &stop};
     EXPECT_THROW(apply_look(test::file_set(10), {}, {}, progress), Cancelled);
 }
 

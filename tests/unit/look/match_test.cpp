@@ -1,12 +1,6 @@
 // match = "coverage", "sum" and "picture": what is drawn has the picture's light.
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-#include <string>
-#include <vector>
-
-#include "core/error.h"
 #include "core/real.h"
 #include "support/bits.h"
 #include "unit/look/sets.h"

@@ -1,10 +1,6 @@
 // Mathematics that C++ and GLSL share: functions, hashes, noise.
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <cstdint>
-#include <limits>
-
 #include "core/shared_maths.h"
 #include "look/shared_look.h"
 #include "unit/look/sets.h"

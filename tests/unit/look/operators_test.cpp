@@ -1,8 +1,6 @@
 // Each operator alone, on one or many splats, against its closed form.
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "unit/look/sets.h"
 
 namespace astrosplat {

@@ -1,11 +1,8 @@
 // Shapes over x against published numbers and closed forms, and crops.
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <cstring>
-#include <vector>
 
-#include "core/error.h"
 #include "core/real.h"
 #include "look/prepare.h"
 #include "support/errors.h"
@@ -299,8 +296,7 @@ TEST(Crop, OneThatCutsNothingChangesNoBit) {
 TEST(Crop, MoreThanEightAreRefused) {
     Look look;
     look.crop.resize(9);
-    EXPECT_EQ(message_of<InputError>([&] { test::shade(test::file_set(1), look); }),
-              "look.crop: expected at most 8 crops, found 9");
+    EXPECT_EQ(ERROR_OF(test::shade(test::file_set(1), look)), "look.crop: expected at most 8 crops, found 9");
 }
 
 }  // namespace

@@ -1,8 +1,6 @@
 // Sets made for the tests of the look: splats at known distances, and a slab of lattice around a plane.
 #pragma once
 
-#include <cstdint>
-
 #include "look/apply.h"
 #include "look/shared_look.h"
 #include "support/splats.h"

@@ -4,9 +4,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <limits>
-
 #include "support/color_config.h"
 #include "support/errors.h"
 #include "support/process_state.h"
@@ -14,8 +11,6 @@
 
 namespace astrosplat {
 namespace {
-
-namespace fs = std::filesystem;
 
 class DisplayTransformTest : public testing::Test {
   protected:
@@ -28,7 +23,7 @@ class DisplayTransformTest : public testing::Test {
         return rgb;
     }
     static std::string error_of(const OcioParams& params) {
-        return message_of<InputError>([&] { DisplayTransform transform(params); });
+        return ERROR_OF(DisplayTransform transform(params));
     }
 };
 
@@ -142,16 +137,16 @@ TEST_F(DisplayTransformTest, OneLineForEveryMistake) {
     fs::remove(folder_.path() / "negative.cube");
     const std::string table = error_of({config_, "", "Negative", ""});
     EXPECT_EQ(table.find(file + ": expected a view 'Negative' that can be made, found "), 0u) << table;
-    EXPECT_NE(table.find("negative.cube"), std::string::npos) << table;
+    EXPECT_HAS(table, "negative.cube");
 }
 
 TEST_F(DisplayTransformTest, ShadersGetTheSameTables) {
     const GlslTransform negative = DisplayTransform({config_, "", "Negative", ""}).glsl();
-    EXPECT_NE(negative.text.find("vec4 ocio_display(vec4"), std::string::npos) << negative.text;
+    EXPECT_HAS(negative.text, "vec4 ocio_display(vec4");
     ASSERT_EQ(negative.tables.size(), 1u);
     EXPECT_EQ(negative.tables[0].dimensions, 3);
     EXPECT_EQ(negative.tables[0].values.size(), 24u);
-    EXPECT_NE(negative.text.find(negative.tables[0].sampler), std::string::npos);
+    EXPECT_HAS(negative.text, negative.tables[0].sampler);
     EXPECT_TRUE(DisplayTransform({config_, "", "Film", ""}).glsl().tables.empty());
 }
 

@@ -8,10 +8,8 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include <cmath>
 #include <fstream>
 #include <iterator>
-#include <limits>
 #include <map>
 #include <stdexcept>
 
@@ -22,11 +20,11 @@
 #include "support/bits.h"
 #include "support/errors.h"
 #include "support/process_state.h"
+#include "support/temp_folder.h"
 
 namespace astrosplat {
 namespace {
 
-namespace fs = std::filesystem;
 using Alpha = OutputParams::Alpha;
 using Compression = OutputParams::Compression;
 using Depth = OutputParams::Depth;
@@ -92,12 +90,15 @@ RenderedFrame noisy_frame(std::int64_t size) {
     return frame;
 }
 
+OutputParams of_depth(Depth depth) {
+    OutputParams output;
+    output.depth = depth;
+    return output;
+}
+
 class WriteTest : public testing::Test {
   protected:
-    void SetUp() override {
-        const char* name = testing::UnitTest::GetInstance()->current_test_info()->name();
-        folder_ = fs::temp_directory_path() / fmt::format("astrosplat größe {} {}", name, getpid());
-        fs::create_directories(folder_);
+    WriteTest() {
         metadata_.frame = 12;
         metadata_.fps = 23.976;
         metadata_.frame_hash = std::string(64, 'a');
@@ -105,10 +106,7 @@ class WriteTest : public testing::Test {
         metadata_.seed = 4000000000u;
         metadata_.provenance = {"Orion\nfrom the side", "NASA/ESA", "Artwork"};
     }
-    void TearDown() override {
-        fs::permissions(folder_, fs::perms::owner_all);
-        fs::remove_all(folder_);
-    }
+    ~WriteTest() override { fs::permissions(folder_.path(), fs::perms::owner_all); }
 
     fs::path write(const std::string& name, const OutputParams& output, const RenderedFrame& frame) {
         fs::path file = folder_ / name;
@@ -117,13 +115,12 @@ class WriteTest : public testing::Test {
         return file;
     }
 
-    fs::path folder_;
+    TempFolder folder_;
     FrameMetadata metadata_;
 };
 
 TEST_F(WriteTest, FloatExrHoldsTheExactLight) {
-    OutputParams output;
-    output.depth = Depth::float32;
+    OutputParams output = of_depth(Depth::float32);
     RenderedFrame frame = soft_frame(9, 6);
     for (Compression c : {Compression::zip, Compression::zips, Compression::piz, Compression::none}) {
         output.compression = c;
@@ -141,8 +138,7 @@ TEST_F(WriteTest, ExrSaysItsPrimariesAndHoldsLightInThem) {
     const float acescg[3][3] = {{0.613097f, 0.339523f, 0.047379f},
                                 {0.070194f, 0.916354f, 0.013452f},
                                 {0.020616f, 0.109570f, 0.869815f}};
-    OutputParams output;
-    output.depth = Depth::float32;
+    OutputParams output = of_depth(Depth::float32);
     output.aovs = {"depth", "coverage", "count", "layers"};
     const RenderedFrame frame = soft_frame(9, 6);
     const RawFile plain = read_raw(write("a.exr", output, frame));
@@ -187,7 +183,7 @@ TEST_F(WriteTest, DwaaIsWrittenToo) {
     const fs::path file = write("a.exr", output, frame);
     RawFile raw = read_raw(file);
     EXPECT_EQ(raw.spec.get_string_attribute("compression"), "dwaa");
-    EXPECT_NE(bytes_of(file).find("dwaCompressionLevel"), std::string::npos);
+    EXPECT_HAS(bytes_of(file), "dwaCompressionLevel");
     EXPECT_NEAR(raw.at(40, 10, "R"), frame.beauty.at(40, 10)[0], 0.02f);
 }
 
@@ -212,8 +208,7 @@ TEST_F(WriteTest, ExtraChannelsHaveTheirNamesAndPrecision) {
 }
 
 TEST_F(WriteTest, TallFramesAreWrittenInBands) {
-    OutputParams output;
-    output.depth = Depth::float32;
+    OutputParams output = of_depth(Depth::float32);
     constexpr std::int64_t height = 2100;  // more than an EXR's band, and than a TIFF's group of strips
     RenderedFrame frame = soft_frame(3, height);
     for (std::int64_t y = 0; y < height; ++y) frame.beauty.at(1, y)[0] = static_cast<float>(y);
@@ -252,8 +247,7 @@ TEST_F(WriteTest, RegionOfADitheredFileEqualsTheCropOfTheWhole) {
 
 TEST_F(WriteTest, PngWithoutAlphaIsOpaqueOverBlack) {
     RenderedFrame frame = soft_frame(5, 2);
-    OutputParams output;
-    output.depth = Depth::uint16;
+    OutputParams output = of_depth(Depth::uint16);
     RawFile raw = read_raw(write("a.png", output, frame));
     EXPECT_EQ(raw.spec.nchannels, 3);
     EXPECT_EQ(raw.code(2, 0, "R", 65535), std::lround(65535 * real::linear_to_srgb(0.4)));
@@ -262,9 +256,8 @@ TEST_F(WriteTest, PngWithoutAlphaIsOpaqueOverBlack) {
 
 TEST_F(WriteTest, StraightPngKeepsTheColourOfSoftEdges) {
     RenderedFrame frame = soft_frame(101, 2);
-    OutputParams output;
+    OutputParams output = of_depth(Depth::uint16);
     output.alpha = Alpha::straight;
-    output.depth = Depth::uint16;
     RawFile raw = read_raw(write("a.png", output, frame));
     for (int x = 1; x < 101; ++x) {
         EXPECT_NEAR(raw.code(x, 0, "R", 65535), 65535 * real::linear_to_srgb(0.8), 1.0) << x;
@@ -276,9 +269,8 @@ TEST_F(WriteTest, StraightPngKeepsTheColourOfSoftEdges) {
 
 TEST_F(WriteTest, PremultipliedPixelsSurviveEveryIntegerFormat) {
     RenderedFrame frame = soft_frame(51, 2);
-    OutputParams output;
+    OutputParams output = of_depth(Depth::uint16);
     output.alpha = Alpha::premultiplied;
-    output.depth = Depth::uint16;
     for (const char* name : {"a.png", "a.tif"}) {
         RawFile raw = read_raw(write(name, output, frame));
         for (int x = 0; x < 51; ++x)
@@ -288,8 +280,7 @@ TEST_F(WriteTest, PremultipliedPixelsSurviveEveryIntegerFormat) {
 }
 
 TEST_F(WriteTest, TiffSaysWhatItsAlphaIs) {
-    OutputParams output;
-    output.depth = Depth::uint8;
+    OutputParams output = of_depth(Depth::uint8);
     RenderedFrame frame = soft_frame(5, 2);
     EXPECT_EQ(read_raw(write("p.tif", output, frame)).spec.get_int_attribute("tiff:UnassociatedAlpha", 0), 0);
     output.alpha = Alpha::straight;
@@ -302,8 +293,7 @@ TEST_F(WriteTest, TiffHoldsItsCodesInEveryCompression) {
     RenderedFrame frame = soft_frame(33, 8);
     for (Depth depth : {Depth::uint8, Depth::uint16, Depth::float32})
         for (Compression c : {Compression::deflate, Compression::lzw, Compression::none}) {
-            OutputParams output;
-            output.depth = depth;
+            OutputParams output = of_depth(depth);
             output.compression = c;
             RawFile raw = read_raw(write("a.tiff", output, frame));
             const char* name = c == Compression::deflate ? "zip" : (c == Compression::lzw ? "lzw" : "none");
@@ -352,7 +342,7 @@ TEST_F(WriteTest, ExrHeaderHoldsProvenanceAndGeometryButNoClock) {
     // The attribute's name as OpenEXR spells it, not OpenImageIO's.
     const std::string bytes = bytes_of(file);
     for (const char* name : {"framesPerSecond", "worldToCamera", "worldToNDC", "chromaticities"})
-        EXPECT_NE(bytes.find(std::string(name) + '\0'), std::string::npos) << name;
+        EXPECT_HAS(bytes, std::string(name) + '\0');
 }
 
 TEST_F(WriteTest, FfmpegReadsExrWithLongTexts) {
@@ -393,7 +383,7 @@ TEST_F(WriteTest, TextsBeyondAsciiAreKept) {
     }
     const std::string png = bytes_of(folder_ / "a.png");
     EXPECT_NE(png.find("iTXtCopyright"), std::string::npos) << "tEXt would be Latin 1";
-    EXPECT_NE(png.find("tEXtastrosplat/frame"), std::string::npos);
+    EXPECT_HAS(png, "tEXtastrosplat/frame");
 }
 
 TEST_F(WriteTest, TruncatedFilesAreNotWhole) {
@@ -419,15 +409,10 @@ TEST_F(WriteTest, FoldersAreMadeAndNothingElseIsLeft) {
 }
 
 TEST_F(WriteTest, UnwritablePlacesAreOneLine) {
-    std::ofstream(folder_ / "plain") << "a file, not a folder";
-    try {
-        write("plain/a.exr", {}, soft_frame(2, 2));
-        FAIL();
-    } catch (const OutputError& error) {
-        const std::string line = error.what();
-        EXPECT_NE(line.find("plain/a.exr: its folder cannot be made: "), std::string::npos) << line;
-        EXPECT_EQ(line.find('\n'), std::string::npos);
-    }
+    folder_.file("plain", "a file, not a folder");
+    const std::string line = message_of<OutputError>([&] { write("plain/a.exr", {}, soft_frame(2, 2)); });
+    EXPECT_HAS(line, "plain/a.exr: its folder cannot be made: ");
+    EXPECT_EQ(line.find('\n'), std::string::npos);
     fs::create_directories(folder_ / "folder.exr");
     EXPECT_THROW(write("folder.exr", {}, soft_frame(2, 2)), OutputError);
 }
@@ -448,7 +433,7 @@ TEST_F(WriteTest, AFullDiskIsAnErrorInEveryFormatAndKeepsTheOldFrame) {
         }
         EXPECT_TRUE(bytes_of(file) == before) << name;
     }
-    EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), 3) << "temporary files stayed";
+    EXPECT_EQ(std::distance(fs::directory_iterator(folder_.path()), {}), 3) << "temporary files stayed";
 }
 
 TEST_F(WriteTest, AFullDiskIsAnErrorForScreenshotsToo) {
@@ -477,7 +462,7 @@ TEST_F(WriteTest, FramesThatAppearedMeanwhileAreKept) {
 
 TEST_F(WriteTest, ReadOnlyFoldersAreOneLine) {
     if (geteuid() == 0) GTEST_SKIP() << "root may write everywhere: a read-only folder cannot be tested";
-    fs::permissions(folder_, fs::perms::owner_read | fs::perms::owner_exec);
+    fs::permissions(folder_.path(), fs::perms::owner_read | fs::perms::owner_exec);
     EXPECT_THROW(write("a.exr", {}, soft_frame(2, 2)), OutputError);
 }
 

@@ -2,8 +2,6 @@
 // form, and no trace of either where they are off.
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 #include <set>

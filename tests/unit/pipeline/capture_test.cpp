@@ -1,12 +1,9 @@
 // Captures from their file to the picture: against a second renderer, seen from elsewhere, and bit by bit.
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/mat2x2.hpp>
 #include <glm/matrix.hpp>
-#include <vector>
 
 #include "camera/camera.h"
 #include "core/color.h"

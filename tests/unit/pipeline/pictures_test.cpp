@@ -2,9 +2,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <atomic>
-#include <cmath>
 
 #include "core/error.h"
 #include "core/parallel.h"
@@ -109,7 +107,7 @@ TEST_F(Fidelity, AnotherPictureTakesThePlaceOfTheLayersOwn) {
     EXPECT_EQ(black.reference.filename(), "black.ppm");
     const std::string wide = message_of<InputError>(
         [&] { against("wide.ppm", "P6\n64 32\n255\n" + std::string(64 * 32 * 3, 'x')); });
-    EXPECT_NE(wide.find("wide.ppm: expected the proportions of layer 'dust'"), std::string::npos) << wide;
+    EXPECT_HAS(wide, "wide.ppm: expected the proportions of layer 'dust'");
 }
 
 TEST_F(Fidelity, ALayerThatIsNotVisibleCanNameThePicture) {
@@ -119,8 +117,8 @@ TEST_F(Fidelity, ALayerThatIsNotVisibleCanNameThePicture) {
     scene.layers[1].source.kind = SourceKind::splats;
     EXPECT_EQ(fidelity_reference(scene, std::nullopt).layer, "dust");
     scene.layers.erase(scene.layers.begin());
-    const std::string none = message_of<InputError>([&] { fidelity_reference(scene, std::nullopt); });
-    EXPECT_NE(none.find("a layer of kind \"mesh\""), std::string::npos) << none;
+    const std::string none = ERROR_OF(fidelity_reference(scene, std::nullopt));
+    EXPECT_HAS(none, "a layer of kind \"mesh\"");
 }
 
 TEST_F(Fidelity, AStripIsNotBlownUpToTheWidthOfAPicture) {

@@ -2,14 +2,8 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <atomic>
-#include <cmath>
-#include <filesystem>
-#include <memory>
-#include <vector>
 
-#include "core/error.h"
 #include "output/write.h"
 #include "pipeline.h"
 #include "scene/describe.h"
@@ -17,6 +11,7 @@
 #include "sets/load_source.h"
 #include "splat_files/native.h"
 #include "streamed/streamed_set.h"
+#include "support/errors.h"
 #include "support/frames.h"
 #include "support/quiet.h"
 #include "support/small_scene.h"
@@ -33,6 +28,7 @@ class SetScene : public testing::Test {
     SetScene() {
         for (const LayerParams& layer : small.scene.layers)
             sets.push_back(std::make_shared<const SplatSet>(load_source(layer.source, layer.name)));
+        pipeline.set_scene(small.scene, sets);
     }
 
     static std::string picture(Pipeline& pipeline) { return pixel_hash(frame_of(pipeline, 1.0).beauty); }
@@ -45,6 +41,7 @@ class SetScene : public testing::Test {
     Quiet quiet;
     SmallScene small;
     Sets sets;
+    Pipeline pipeline;  // of the scene
 };
 
 TEST_F(SetScene, IsWhatLoadingGives) {
@@ -53,13 +50,11 @@ TEST_F(SetScene, IsWhatLoadingGives) {
 }
 
 TEST_F(SetScene, AnyChangeGivesWhatANewPipelineGives) {
-    Pipeline kept;
-    kept.set_scene(small.scene, sets);
-    std::vector<std::string> seen = {picture(kept)};
+    std::vector<std::string> seen = {picture(pipeline)};
     const auto changed = [&](const auto& change) {
         change();
-        kept.set_scene(small.scene, sets);
-        seen.push_back(picture(kept));
+        pipeline.set_scene(small.scene, sets);
+        seen.push_back(picture(pipeline));
         EXPECT_EQ(seen.back(), picture_of(small.scene, sets));
     };
     Scene& scene = small.scene;
@@ -96,8 +91,6 @@ TEST_F(SetScene, AnyChangeGivesWhatANewPipelineGives) {
 }
 
 TEST_F(SetScene, ShadesOnlyWhatChanged) {
-    Pipeline pipeline;
-    pipeline.set_scene(small.scene, sets);
     picture(pipeline);
     const std::int64_t drawn = pipeline.statistics()[0].drawn;
     EXPECT_GT(pipeline.statistics()[0].look_seconds, 0.0);
@@ -111,7 +104,6 @@ TEST_F(SetScene, ShadesOnlyWhatChanged) {
 }
 
 TEST_F(SetScene, LayersMayShareASet) {
-    Pipeline pipeline;
     Scene twice = small.scene;
     twice.layers[1].source = twice.layers[0].source;
     pipeline.set_scene(twice, {sets[0], sets[0]});
@@ -122,7 +114,6 @@ TEST_F(SetScene, LayersMayShareASet) {
 }
 
 TEST_F(SetScene, ALayerWithoutASetIsLeftOut) {
-    Pipeline pipeline;
     pipeline.set_scene(small.scene, {sets[0], nullptr});
     EXPECT_EQ(pipeline.layer_names(pipeline.frame_scene(1.0)), std::vector<std::string>{"gas"});
     Scene alone = small.scene;
@@ -131,8 +122,6 @@ TEST_F(SetScene, ALayerWithoutASetIsLeftOut) {
 }
 
 TEST_F(SetScene, ARefusedSceneLeavesTheOldOne) {
-    Pipeline pipeline;
-    pipeline.set_scene(small.scene, sets);
     const std::string before = picture(pipeline);
     Scene bad = small.scene;
     bad.environment.image = small.folder / "missing.png";
@@ -147,8 +136,6 @@ TEST_F(SetScene, ARefusedSceneLeavesTheOldOne) {
 }
 
 TEST_F(SetScene, StopsBeforeThePicturesOfTheEnvironment) {
-    Pipeline pipeline;
-    pipeline.set_scene(small.scene, sets);
     const std::string before = picture(pipeline);
     Scene other = small.scene;
     other.environment.image = small.folder / "picture.ppm";
@@ -158,15 +145,12 @@ TEST_F(SetScene, StopsBeforeThePicturesOfTheEnvironment) {
 }
 
 TEST_F(SetScene, AMissingThicknessMapIsRefusedEveryTime) {
-    Pipeline pipeline;
     small.scene.layers[0].look.thickness.map = small.folder / "missing.png";
     pipeline.set_scene(small.scene, sets);
     for (int i = 0; i < 2; ++i) EXPECT_THROW(picture(pipeline), InputError);
 }
 
 TEST_F(SetScene, TilesCoverThePictureOnce) {
-    Pipeline pipeline;
-    pipeline.set_scene(small.scene, sets);
     std::atomic<std::int64_t> pixels{0};
     pipeline.frame(1.0, settings_of(pipeline, 1.0), {},
                    [&](const Region& tile, const RenderedFrame&) { pixels += tile.width * tile.height; });
@@ -179,8 +163,6 @@ TEST_F(SetScene, TilesCoverThePictureOnce) {
 class Streamed : public testing::Test {
   protected:
     Streamed() {
-        folder = std::filesystem::temp_directory_path() / ("astrosplat-streamed-" + std::to_string(getpid()));
-        std::filesystem::create_directories(folder);
         Scene& scene = small.scene;
         scene.output.width = 96;
         scene.output.height = 60;
@@ -202,11 +184,10 @@ class Streamed : public testing::Test {
             names.push_back(layer.name);
         }
     }
-    ~Streamed() override { std::filesystem::remove_all(folder); }
 
     Quiet quiet;
     SmallScene small;
-    std::filesystem::path folder;
+    TempFolder folder;
     std::vector<std::string> names;
 };
 
@@ -273,13 +254,7 @@ TEST_F(Streamed, WhatIsSaidOfABlockIsTrue) {
 
 TEST_F(Streamed, WhatNeedsAllSplatsAtOnceIsRefused) {
     small.scene.layers[0].look.vertical.match = VerticalAlpha::Match::picture;
-    try {
-        Pipeline pipeline(small.scene, {}, {}, names);
-        FAIL();
-    } catch (const InputError& error) {
-        EXPECT_NE(std::string(error.what()).find("needs all splats at once"), std::string::npos)
-            << error.what();
-    }
+    EXPECT_HAS(ERROR_OF(Pipeline(small.scene, {}, {}, names)), "needs all splats at once");
 }
 
 // Whatever a description allows gives a picture of finite numbers, or one line that says why not.
@@ -318,9 +293,15 @@ class Extremes : public testing::Test {
         }
     }
 
+    void put_one_at(float y) {
+        SplatSet far_out = *sets[1];
+        far_out.position[7].y = y;
+        sets[1] = std::make_shared<const SplatSet>(std::move(far_out));
+    }
+
     Quiet quiet;
     SmallScene small;
-    std::vector<std::shared_ptr<const SplatSet>> sets;
+    Sets sets;
 };
 
 Value all_components(const ParameterSpec& spec, double x) {
@@ -353,36 +334,21 @@ TEST_F(Extremes, BothEndsOfEveryRangeGiveFinitePictures) {
 }
 
 TEST_F(Extremes, SplatsTooFarOutNameTheirLayer) {
-    SplatSet far_out = *sets[1];
-    far_out.position[7].y = 1e20f;
-    sets[1] = std::make_shared<const SplatSet>(std::move(far_out));
+    put_one_at(1e20f);
     Pipeline pipeline;
-    try {
-        pipeline.set_scene(small.scene, sets);
-        FAIL() << "expected an InputError";
-    } catch (const InputError& error) {
-        EXPECT_STREQ(error.what(),
-                     "layer.dust: expected splats within 1e+12 scene units of 0, found one at 1e+20");
-    }
+    EXPECT_EQ(ERROR_OF(pipeline.set_scene(small.scene, sets)),
+              "layer.dust: expected splats within 1e+12 scene units of 0, found one at 1e+20");
 }
 
 TEST_F(Extremes, SplatsThatTheirTransformPutsTooFarOutNameTheirLayer) {
-    SplatSet far_out = *sets[1];
-    far_out.position[7].y = 1e8f;
-    sets[1] = std::make_shared<const SplatSet>(std::move(far_out));
+    put_one_at(1e8f);
     Pipeline pipeline;
     pipeline.set_scene(small.scene, sets);
     EXPECT_NO_THROW(frame_of(pipeline, 1.0));
     small.scene.layers[1].transform.scale = 1e9;
     pipeline.set_scene(small.scene, sets);
-    try {
-        frame_of(pipeline, 1.0);
-        FAIL() << "expected an InputError";
-    } catch (const InputError& error) {
-        EXPECT_EQ(std::string(error.what()).find("layer.dust: expected splats within 1e+15 scene units of 0"),
-                  0u)
-            << error.what();
-    }
+    EXPECT_HAS(ERROR_OF(frame_of(pipeline, 1.0)),
+               "layer.dust: expected splats within 1e+15 scene units of 0");
 }
 
 }  // namespace

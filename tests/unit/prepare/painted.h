@@ -2,11 +2,6 @@
 // a search made of them.
 #pragma once
 
-#include <algorithm>
-#include <cmath>
-#include <cstdint>
-#include <vector>
-
 #include "core/image.h"
 #include "core/sorting.h"
 #include "detect/peaks.h"

@@ -1,7 +1,6 @@
 // Stages of prepare: sky, cuts, colours, holes and registration.
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <glm/geometric.hpp>
 
 #include "core/color.h"

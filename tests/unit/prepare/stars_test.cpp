@@ -249,13 +249,12 @@ TEST(Stars, SaturatedOnesAreFittedFromTheirWings) {
     for (const PictureStar& star : removal.stars)
         EXPECT_TRUE(star.saturated || total_flux(star) < 100.0) << star.x;
     const Image clean = clouds();
-    for (const PictureStar& star : truth) {
+    for (const PictureStar& star : truth)
         for (std::int64_t i = -22; i <= 22; ++i) {
             const auto x = static_cast<std::int64_t>(star.x), y = static_cast<std::int64_t>(star.y);
             EXPECT_NEAR(removal.starless.at(x + i, y)[1], clean.at(x + i, y)[1], 0.12) << star.x << " " << i;
             EXPECT_NEAR(removal.starless.at(x, y + i)[1], clean.at(x, y + i)[1], 0.12) << star.x << " " << i;
         }
-    }
 }
 
 TEST(Stars, OfAPictureWithoutAnyAreNone) {

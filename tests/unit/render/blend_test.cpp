@@ -2,9 +2,6 @@
 // AOVs.
 #include <gtest/gtest.h>
 
-#include <algorithm>
-
-#include "core/error.h"
 #include "core/real.h"
 #include "render/shared_render.h"
 #include "unit/render/scenes.h"

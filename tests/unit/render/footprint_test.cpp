@@ -1,13 +1,9 @@
-// Footprints: light at every size and place, flat cores, and the profile against a convolution done by brute
-// force.
+// Footprints and their falloffs.
 #include "render/footprint.h"
 
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <cstring>
-#include <utility>
-#include <vector>
 
 #include "core/real.h"
 #include "support/printing.h"
@@ -15,6 +11,9 @@
 
 namespace astrosplat {
 namespace {
+
+// Footprints: light at every size and place, flat cores, and the profile against a convolution done by brute
+// force.
 
 using test::all_shapes;
 
@@ -34,15 +33,7 @@ TEST(Falloff, IntegralsAreTheClosedForms) {
     }
 }
 
-TEST(Falloff, StartsAtOneAndEndsAtZero) {
-    for (const Falloff::Shape shape : all_shapes) {
-        const Falloff falloff{shape, 0.5f, 4.5f};
-        EXPECT_EQ(falloff_value(falloff, 0.0), 1.0);
-        EXPECT_EQ(falloff_value(falloff, 1.0), 0.0);
-        EXPECT_EQ(falloff_value(falloff, 2.0), 0.0);
-        for (int i = 1; i <= 100; ++i)
-            EXPECT_LE(falloff_value(falloff, i * 0.01), falloff_value(falloff, (i - 1) * 0.01));
-    }
+TEST(Falloff, OfATrapezoidFallsFromItsCore) {
     EXPECT_EQ(falloff_value({Falloff::Shape::trapezoid, 0.5f, 4.5f}, 0.5), 1.0);
     EXPECT_NEAR(falloff_value({Falloff::Shape::trapezoid, 0.5f, 4.5f}, 0.75), 0.5, 1e-6);
 }
@@ -220,6 +211,80 @@ TEST(Footprint, CubicsHardlyLeaveTheUnitInterval) {
     for (const Falloff::Shape shape : {Falloff::Shape::gaussian, Falloff::Shape::exponential})
         for (const float sharpness : {0.5f, 12.0f, 100.0f})
             expect_cubics_in_unit_interval({shape, 0.5f, sharpness});
+}
+
+// Each falloff's traits against its formula: a shape that says too little of itself is noticed as soon as it
+// has a name.
+
+std::vector<Falloff> all_falloffs() {
+    std::vector<Falloff> all;
+    for (std::size_t shape = 0; shape < names_of(Falloff::Shape{}).size(); ++shape)
+        for (const float core : {0.2f, 0.7f})
+            for (const float sharpness : {0.5f, 4.5f, 30.0f})
+                all.push_back({Falloff::Shape(shape), core, sharpness});
+    return all;
+}
+
+std::string name(const Falloff& falloff) {
+    return std::string(name_of(falloff.shape)) + ", core " + std::to_string(falloff.core) + ", sharpness " +
+           std::to_string(falloff.sharpness);
+}
+
+TEST(Falloffs, BeginAtOneAndNeverRise) {
+    for (const Falloff& falloff : all_falloffs()) {
+        EXPECT_EQ(falloff_value(falloff, 0.0), 1.0) << name(falloff);
+        EXPECT_EQ(falloff_value(falloff, 1.0), 0.0) << name(falloff);
+        EXPECT_EQ(falloff_value(falloff, 2.0), 0.0) << name(falloff);
+        for (int i = 1; i < 1000; ++i)
+            ASSERT_LE(falloff_value(falloff, i / 1000.0), falloff_value(falloff, (i - 1) / 1000.0) + 1e-7)
+                << name(falloff) << " at " << i;
+    }
+}
+
+TEST(Falloffs, AreFlatAsFarAsTheySay) {
+    for (const Falloff& falloff : all_falloffs()) {
+        const FalloffTraits traits = traits_of(falloff);
+        EXPECT_EQ(traits.flat_core, traits.core > 0.0f) << name(falloff);
+        double flat = 0.0;
+        while (flat + 1e-3 < 1.0 && falloff_value(falloff, flat + 1e-3) == 1.0) flat += 1e-3;
+        EXPECT_NEAR(flat, double(traits.core), 2e-3) << name(falloff);
+    }
+}
+
+TEST(Falloffs, CarryNothingBeyondTheirReach) {
+    for (const Falloff& falloff : all_falloffs()) {
+        const double reach = traits_of(falloff).reach;
+        EXPECT_LT(falloff_value(falloff, reach), 1.1e-5) << name(falloff);
+        EXPECT_GT(falloff_value(falloff, 0.95 * reach), 1e-5) << name(falloff);
+    }
+}
+
+/// Where slopes on both sides differ, there is a kink; where w only curves, they differ less on a finer look.
+TEST(Falloffs, HaveTheKinksTheySay) {
+    for (const Falloff& falloff : all_falloffs()) {
+        const auto slope_jump = [&](double t, double h) {
+            const double left = (falloff_value(falloff, t) - falloff_value(falloff, t - h)) / h;
+            const double right = (falloff_value(falloff, t + h) - falloff_value(falloff, t)) / h;
+            return std::fabs(right - left);
+        };
+        const std::vector<double> kinks = traits_of(falloff).kinks;
+        for (double t = 0.01; t < 0.985; t += 0.005) {
+            double jump = 0.0;  // the kink is at none of the places looked at, perhaps
+            for (int k = -2; k <= 2; ++k) jump = std::max(jump, slope_jump(t + 0.00125 * k, 0.002));
+            const bool is_kink = jump > 0.5 * slope_jump(t, 0.008) && jump > 0.05;
+            const bool said =
+                std::ranges::any_of(kinks, [&](double kink) { return std::fabs(kink - t) < 0.006; });
+            EXPECT_TRUE(said || !is_kink) << name(falloff) << " at " << t;
+        }
+    }
+}
+
+/// Tables over the squared distance need a w that is smooth in it: no peak at the centre.
+TEST(Falloffs, AreTabulatedAsTheirCentreIs) {
+    for (const Falloff& falloff : all_falloffs()) {
+        const double slope = (1.0 - falloff_value(falloff, 1e-3)) / 1e-3;
+        EXPECT_TRUE(traits_of(falloff).linear_in_distance || slope <= 0.1) << name(falloff);
+    }
 }
 
 }  // namespace

@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <glm/vec3.hpp>
-#include <vector>
 
+#include "core/shared_maths.h"
 #include "render/footprint.h"
 #include "render/render.h"
 #include "support/bits.h"
@@ -21,6 +21,14 @@ struct OneSplat {
     float radius = 1.0f;
     float alpha = 1.0f;
     glm::vec3 color{1.0f};
+};
+
+/// Of 0..1, for things that are numbered, by purpose.
+struct Random {
+    std::uint32_t seed;
+    float operator()(std::uint32_t n, std::uint32_t purpose) const {
+        return shared::as_uniform(shared::as_hash(seed, n, 0u, purpose));
+    }
 };
 
 inline ShadedSplats make_splats(const std::vector<OneSplat>& splats) {

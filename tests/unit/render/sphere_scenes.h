@@ -1,10 +1,7 @@
 // Cameras that show the sphere, directions, and light by solid angle.
 #pragma once
 
-#include <algorithm>
-#include <cmath>
 #include <ostream>
-#include <vector>
 
 #include "core/real.h"
 #include "unit/render/scenes.h"
@@ -28,6 +25,13 @@ inline CameraParams params_of(Projection projection) {
 
 inline Camera camera_of(Projection projection) {
     return make_camera(params_of(projection), wide_px, high_px, {});
+}
+
+/// A fisheye sees more than a half of all directions, but not all.
+inline Camera wide_camera(Projection projection) {
+    CameraParams params = params_of(projection);
+    params.fisheye_fov = 240.0;
+    return make_camera(params, wide_px, high_px, {});
 }
 
 /// From longitude, to the right of -z, and latitude.
@@ -81,6 +85,29 @@ inline std::vector<SphereCase> sphere_cases() {
     for (const Projection projection : projections)
         for (const Falloff::Shape shape : all_shapes) cases.push_back({projection, shape});
     return cases;
+}
+
+/// Two splats, of this stretch where it is none of 0, through a fisheye that is narrow: the sphere is as good
+/// as flat.
+inline void expect_narrow_fisheye_is_flat(const glm::mat3& stretch, double tolerance) {
+    CameraParams params = params_of(Projection::fisheye);
+    params.fisheye_fov = 1.0;
+    ShadedSplats splats =
+        make_splats({{{0.03f, -0.02f, -10.0f}, 0.02f, 0.7f}, {{-0.05f, 0.01f, -9.0f}, 0.004f}});
+    if (stretch != glm::mat3(0.0f)) splats.stretch = {stretch, stretch};
+    const RenderLayer layer = layer_of("two", splats, Blend::over, Falloff::Shape::gaussian);
+    const auto picture = [&] {
+        return render({&layer, 1}, make_camera(params, high_px, high_px, {}), nullptr,
+                      settings_of(high_px, high_px))
+            .beauty;
+    };
+    const Image fisheye = picture();
+    params.projection = Projection::perspective;
+    params.fov = 1.0;
+    const Image flat = picture();
+    EXPECT_GT(*std::ranges::max_element(flat.pixels), 0.5f);
+    for (std::size_t i = 0; i < flat.pixels.size(); ++i)
+        ASSERT_NEAR(fisheye.pixels[i], flat.pixels[i], tolerance);
 }
 
 /// A cloud all around the eye looks the same where one projection has its middle and the other its seam.

@@ -3,11 +3,6 @@
 // set.
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-#include <string>
-#include <vector>
-
 #include "camera/projection.h"
 #include "core/shared_maths.h"
 #include "unit/render/sphere_scenes.h"

@@ -3,7 +3,6 @@
 // a file of errors to show it does so in its own tests.
 #include <gtest/gtest.h>
 
-#include <functional>
 #include <map>
 
 #include "bodies/bodies.h"

@@ -1,7 +1,6 @@
 // The scene at one frame, and what the renderer takes of it.
 #include <gtest/gtest.h>
 
-#include "core/error.h"
 #include "scene/animate.h"
 #include "scene/check.h"
 #include "scene/layer_setup.h"
@@ -154,15 +153,12 @@ TEST(LayerSource, StarsAlongTheCameraHaveItsPath) {
 TEST(LayerSource, StarsAlongACameraWithoutAPlaceCannotBeRendered) {
     const Scene lost = star_scene("along = \"camera\"");
     EXPECT_EQ(
-        message_of<InputError>([&] {
-            check_renderable(lost, {{"layer.sky.source.along", "a.toml:7"}});
-        }),
+        ERROR_OF(check_renderable(lost, {{"layer.sky.source.along", "a.toml:7"}})),
         "a.toml:7: layer.sky.source.along: expected camera.position, or keyframes of it, for stars along the "
         "camera, found none");
-    EXPECT_EQ(message_of<InputError>([&] {
-                  check_renderable(star_scene("along = \"camera\"", "[camera]\nposition = [1, 2, 3]\n"), {});
-              }),
-              "no error");
+    EXPECT_EQ(
+        ERROR_OF(check_renderable(star_scene("along = \"camera\"", "[camera]\nposition = [1, 2, 3]\n"), {})),
+        "no error");
 }
 
 TEST(LayerSetup, OfALookStarsTakeTheGradeAlone) {

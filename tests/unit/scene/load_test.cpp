@@ -1,41 +1,16 @@
 // Loading: every key, precedence, paths, --set, tracks.
-#include <unistd.h>
 
 #include <clocale>
-#include <filesystem>
 #include <set>
 
-#include "core/atomic_file.h"
 #include "scene/layer_setup.h"
-#include "scene/save.h"
 #include "scene/toml_text.h"
 #include "scene_texts.h"
 #include "support/process_state.h"
+#include "support/temp_folder.h"
 
 namespace astrosplat::test {
-namespace fs = std::filesystem;
 namespace {
-
-/// A folder of its own, with an umlaut and a space in its name.
-class Folder {
-  public:
-    explicit Folder(const std::string& name)
-        : path_(fs::temp_directory_path() /
-                ("astrosplat scene \xC3\xA4 " + name + std::to_string(getpid()))) {
-        fs::remove_all(path_);
-        fs::create_directories(path_);
-    }
-    ~Folder() { fs::remove_all(path_); }
-    fs::path write(const std::string& name, const std::string& text) const {
-        fs::create_directories((path_ / name).parent_path());
-        write_file_atomically(path_ / name, text);
-        return path_ / name;
-    }
-    const fs::path& path() const { return path_; }
-
-  private:
-    fs::path path_;
-};
 
 Scene defaults() {
     Scene scene;
@@ -161,8 +136,8 @@ TEST(Load, StarsTakeTheScenesScaleWhereTheyHaveNone) {
 }
 
 TEST(Load, SetTakesFractionsAsPeopleWriteThem) {
-    const Folder folder("fractions");
-    const fs::path file = folder.write("s.toml", small_scene());
+    const TempFolder folder;
+    const fs::path file = folder.file("s.toml", small_scene());
     const auto power = [&](const char* text) {
         return load_scene(file, std::vector<Assignment>{{"layer.stars.look.alpha.power", text}})
             .layers[0]
@@ -176,11 +151,11 @@ TEST(Load, SetTakesFractionsAsPeopleWriteThem) {
 }
 
 TEST(Load, PrecedenceIsDefaultsPresetSceneSet) {
-    const Folder folder("precedence");
-    folder.write("looks/p.toml",
-                 "[look]\nalpha = { power = 2.0, gain = 2.0, threshold = 0.5 }\nthickness.map = \"m.png\"\n"
-                 "thickness.keys = [{ scale = 2.0 }]\n[render]\nopacity = 0.5\n");
-    const fs::path file = folder.write(
+    const TempFolder folder;
+    folder.file("looks/p.toml",
+                "[look]\nalpha = { power = 2.0, gain = 2.0, threshold = 0.5 }\nthickness.map = \"m.png\"\n"
+                "thickness.keys = [{ scale = 2.0 }]\n[render]\nopacity = 0.5\n");
+    const fs::path file = folder.file(
         "s.toml", small_scene("preset = \"looks/p.toml\"\nlook.alpha = { power = 3.0, gain = 3.0 }"));
     const std::vector<Assignment> assignments{{"layer.stars.look.alpha.power", "4"}};
     const Scene scene = load_scene(file, assignments);
@@ -195,10 +170,10 @@ TEST(Load, PrecedenceIsDefaultsPresetSceneSet) {
 }
 
 TEST(Load, SetChoosesThePresetBeforeTheSceneSpeaks) {
-    const Folder folder("presets");
-    const fs::path a = folder.write("a.toml", "[look]\nreach = 1.0\ndensity = 0.5\n");
-    const fs::path b = folder.write("b.toml", "[look]\nreach = 2.0\ndensity = 0.25\n");
-    const fs::path file = folder.write("s.toml", small_scene("preset = \"a.toml\"\nlook.density = 0.75"));
+    const TempFolder folder;
+    const fs::path a = folder.file("a.toml", "[look]\nreach = 1.0\ndensity = 0.5\n");
+    const fs::path b = folder.file("b.toml", "[look]\nreach = 2.0\ndensity = 0.25\n");
+    const fs::path file = folder.file("s.toml", small_scene("preset = \"a.toml\"\nlook.density = 0.75"));
     const std::vector<Assignment> assignments{{"layer.stars.preset", b.string()}};
     const Scene scene = load_scene(file, assignments);
     EXPECT_EQ(scene.layers[0].look.reach, 2.0f);
@@ -207,9 +182,9 @@ TEST(Load, SetChoosesThePresetBeforeTheSceneSpeaks) {
 }
 
 TEST(Load, DomeIsAPresetThatTheSceneWinsOver) {
-    const Folder folder("domes");
-    folder.write("dome.toml", "astrosplat = 1\n[[layer]]\nname = \"a scene beside this one\"\n");
-    const fs::path file = folder.write(
+    const TempFolder folder;
+    folder.file("dome.toml", "astrosplat = 1\n[[layer]]\nname = \"a scene beside this one\"\n");
+    const fs::path file = folder.file(
         "s.toml", "astrosplat = 1\n[camera]\nfisheye_tilt = 20.0\n[output]\nfps = 60.0\npreset = \"dome\"\n");
     const Scene scene = load_scene(file);
     EXPECT_EQ(scene.output.width, 4096);  // preset
@@ -234,12 +209,12 @@ TEST(Load, SetMakesAnySceneADome) {
 }
 
 TEST(Load, OutputPresetsOfOnesOwnHaveAnEnding) {
-    const Folder folder("screens");
-    folder.write("wall.toml", "[output]\nresolution = [7680, 1080]\n[camera]\nfov = 20.0\n");
-    const fs::path file = folder.write("s.toml", "astrosplat = 1\n[output]\npreset = \"wall.toml\"\n");
+    const TempFolder folder;
+    folder.file("wall.toml", "[output]\nresolution = [7680, 1080]\n[camera]\nfov = 20.0\n");
+    const fs::path file = folder.file("s.toml", "astrosplat = 1\n[output]\npreset = \"wall.toml\"\n");
     EXPECT_EQ(load_scene(file).output.width, 7680);
     EXPECT_EQ(load_scene(file).camera.fov, 20.0);
-    folder.write("wall.toml", "[look]\ndensity = 0.5\n");
+    folder.file("wall.toml", "[look]\ndensity = 0.5\n");
     EXPECT_THROW(load_scene(file), InputError);
 }
 
@@ -341,21 +316,16 @@ TEST(Load, TracksKeepTheFilesOrderAndTheirSettings) {
 }
 
 TEST(Load, ACommaLocaleChangesNothing) {
-    // No locale with a decimal comma need be installed here: then this still runs under the environment's
-    // own.
-    const char* found = nullptr;
-    for (const char* name : {"de_DE.UTF-8", "de_DE.utf8", "fr_FR.UTF-8", ""})
-        if (!found) found = std::setlocale(LC_ALL, name);
+    const CommaLocale comma;
     EXPECT_EQ(parse(small_scene(), {"camera.fov=30.5"}).camera.fov, 30.5);
     EXPECT_EQ(to_toml(Value(0.5)), "0.5");
     EXPECT_EQ(to_toml(Value(1e20)), "1e+20");
     EXPECT_EQ(to_toml(Value(3.0)), "3.0");
-    std::setlocale(LC_ALL, "C");
 }
 
 TEST(Load, FilesWithUmlautsAndBlanks) {
-    const Folder folder("umlaut");
-    const fs::path file = folder.write("M\xC3\xB6we 1.toml", small_scene());
+    const TempFolder folder;
+    const fs::path file = folder.file("M\xC3\xB6we 1.toml", small_scene());
     EXPECT_EQ(load_scene(file).layers[0].source.meshes[0].texture[0], folder.path() / "a.png");
 }
 

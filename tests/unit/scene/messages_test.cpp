@@ -1,14 +1,11 @@
 // One test for each message that a scene, a preset or --set can cause.
-#include <filesystem>
 
 #include "core/atomic_file.h"
 #include "scene/check.h"
-#include "scene/save.h"
 #include "scene_texts.h"
 #include "support/errors.h"
 
 namespace astrosplat::test {
-namespace fs = std::filesystem;
 namespace {
 
 const std::string head =
@@ -23,6 +20,13 @@ struct Case {
 /// One wrong line of a section, and what is said of its key.
 Case in(const std::string& section, const std::string& line, const std::string& said) {
     return {"[" + section + "]\n" + line + "\n", "6: " + section + "." + said};
+}
+Case look(const std::string& line, const std::string& said, const std::string& of = "layer.look.") {
+    return {"[layer.look]\n" + line + "\n", "6: " + of + said};
+}
+/// Of the first layer's source.
+Case source(const std::string& line, const std::string& said) {
+    return {"source." + line + "\n", "5: layer.source." + said};
 }
 /// Of a layer's source that is a disk.
 Case disk(const std::string& line, const std::string& said) {
@@ -139,48 +143,42 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"[nonsense]\n", "5: unknown key 'nonsense'; 'astrosplat parameters' lists all keys"},
         Case{"[layer.look]\n\"alpha.power\" = 2\n",
              "6: unknown key '\"alpha.power\"'; did you mean 'layer.look.alpha.power'?"},
-        in("layer.look", "alpha.power = \"6\"", "alpha.power: expected a number, found a string"),
-        in("layer.look", "density = [1, {}]", "density: expected a value, found a table"),
-        in("layer.look", "noise = [1, {}]", "noise: expected a table or a list of tables, found a list of 2"),
-        in("layer.look", "alpha = 6",
-           "alpha: expected a table, found a number; it has keys such as layer.look.alpha.power"),
-        in("layer.look", "density = { x = 6 }",
-           "density: expected a number from 0 to 1000000, found a table"),
-        in("layer.look", "density = 2020-01-01", "density: expected a value, found a date"),
-        in("layer.look", "density = nan", "density: expected a finite number, found nan"),
-        in("layer.look", "density = -inf", "density: expected a finite number, found inf"),
-        in("layer.look", "density = 1e39", "density: expected a number from 0 to 1000000, found 1e+39"),
-        in("layer.look", "density = -1", "density: expected a number from 0 to 1000000, found -1"),
-        in("layer.look", "crop = [{ shape = \"cone\" }]", "crop.shape: expected box or sphere, found 'cone'"),
-        in("layer.look", "crop = [{}, { radius = 0 }]",
-           "crop.radius: expected a number of at least 1e-06, found 0"),
+        look("alpha.power = \"6\"", "alpha.power: expected a number, found a string"),
+        look("density = [1, {}]", "density: expected a value, found a table"),
+        look("noise = [1, {}]", "noise: expected a table or a list of tables, found a list of 2"),
+        look("alpha = 6",
+             "alpha: expected a table, found a number; it has keys such as layer.look.alpha.power"),
+        look("density = { x = 6 }", "density: expected a number from 0 to 1000000, found a table"),
+        look("density = 2020-01-01", "density: expected a value, found a date"),
+        look("density = nan", "density: expected a finite number, found nan"),
+        look("density = -inf", "density: expected a finite number, found inf"),
+        look("density = 1e39", "density: expected a number from 0 to 1000000, found 1e+39"),
+        look("density = -1", "density: expected a number from 0 to 1000000, found -1"),
+        look("crop = [{ shape = \"cone\" }]", "crop.shape: expected box or sphere, found 'cone'"),
+        look("crop = [{}, { radius = 0 }]", "crop.radius: expected a number of at least 1e-06, found 0"),
         Case{"[layer.look]\ncrop = [{ box = [0, 0, 0] }]\n",
              "6: unknown key 'crop.box'; 'astrosplat parameters' lists all keys"},
-        in("layer.look", "noise = 3", "noise: expected a table or a list of tables, found a number"),
-        in("layer.look", "noise.octaves = 2.5", "noise.octaves: expected a whole number, found 2.5"),
-        in("layer.look", "noise.octaves = 17",
-           "noise.octaves: expected a whole number from 1 to 16, found 17"),
-        in("layer.look", "grade.tint = [1, 1]",
-           "grade.tint: expected 3 numbers from 0 to 1000000, found a list of 2"),
-        in("layer.look", "grade.tint = [1, 1, true]",
-           "grade.tint: expected 3 numbers from 0 to 1000000, found true among them"),
-        in("layer.look", "alpha.unpremultiply = 1",
-           "alpha.unpremultiply: expected true or false, found a number"),
-        in("layer.look", "pdf.points = [[0, 1]]", "pdf.points: expected at least 2 points, found 1"),
-        in("layer.look", "pdf.points = [[0, 1], [0, 0.5]]",
-           "pdf.points: expected points with ascending x, found 0 after 0"),
-        in("layer.look", "pdf.points = [0, 1]",
-           "pdf.points: expected a list of points [[x, y], ...], found a number"),
-        Case{"[layer.look]\npdf.shape = \"curve\"\n",
-             "6: layer.stars.look.pdf.shape: expected at least 2 points for shape \"curve\", found none"},
-        Case{
-            "[layer.look]\nvertical.shape = \"curve\"\n",
-            "6: layer.stars.look.vertical.shape: expected at least 2 points for shape \"curve\", found none"},
-        Case{"[layer.look]\nthickness.map = \"a.png\"\n",
-             "6: layer.stars.look.thickness.map: expected thickness.keys that the map's colours stand for, "
-             "found none"},
-        Case{"[layer.look]\nthickness.keys = [{}, {}]\n",
-             "6: layer.stars.look.thickness.keys: expected a thickness.map for several stops, found none"},
+        look("noise = 3", "noise: expected a table or a list of tables, found a number"),
+        look("noise.octaves = 2.5", "noise.octaves: expected a whole number, found 2.5"),
+        look("noise.octaves = 17", "noise.octaves: expected a whole number from 1 to 16, found 17"),
+        look("grade.tint = [1, 1]", "grade.tint: expected 3 numbers from 0 to 1000000, found a list of 2"),
+        look("grade.tint = [1, 1, true]",
+             "grade.tint: expected 3 numbers from 0 to 1000000, found true among them"),
+        look("alpha.unpremultiply = 1", "alpha.unpremultiply: expected true or false, found a number"),
+        look("pdf.points = [[0, 1]]", "pdf.points: expected at least 2 points, found 1"),
+        look("pdf.points = [[0, 1], [0, 0.5]]",
+             "pdf.points: expected points with ascending x, found 0 after 0"),
+        look("pdf.points = [0, 1]", "pdf.points: expected a list of points [[x, y], ...], found a number"),
+        look("pdf.shape = \"curve\"", "pdf.shape: expected at least 2 points for shape \"curve\", found none",
+             "layer.stars.look."),
+        look("vertical.shape = \"curve\"",
+             "vertical.shape: expected at least 2 points for shape \"curve\", found none",
+             "layer.stars.look."),
+        look("thickness.map = \"a.png\"",
+             "thickness.map: expected thickness.keys that the map's colours stand for, found none",
+             "layer.stars.look."),
+        look("thickness.keys = [{}, {}]",
+             "thickness.keys: expected a thickness.map for several stops, found none", "layer.stars.look."),
         Case{"[layer.look]\nradius.min = 0.2\nradius.max = 0.1\n",
              "7: layer.stars.look.radius.max: expected min not above max, found 0.2 and 0.1"},
         in("layer.render", "blend = \"ovr\"",
@@ -192,10 +190,9 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"[layer.source]\n", "5: duplicate key 'layer.source'"},
         Case{"source.voxels = [4, 4, 4]\nsource.voxel_size = 0.5\n",
              "6: layer.stars.source.voxel_size: expected voxels or voxel_size, found both"},
-        Case{"source.voxels = [4, 4, 0.5]\n",
-             "5: layer.source.voxels: expected 3 numbers from 1 to 1000000 or \"auto\", found 0.5"},
-        Case{"source.voxels = \"many\"\n",
-             "5: layer.source.voxels: expected 3 numbers from 1 to 1000000 or \"auto\", found a string"},
+        source("voxels = [4, 4, 0.5]", "voxels: expected 3 numbers from 1 to 1000000 or \"auto\", found 0.5"),
+        source("voxels = \"many\"",
+               "voxels: expected 3 numbers from 1 to 1000000 or \"auto\", found a string"),
         Case{"source.black = 3\nsource.white = 2\n",
              "6: layer.stars.source.white: expected black below white, found 3 and 2"},
         Case{"source.kind = \"splats\"\n",
@@ -203,30 +200,22 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"source.kind = \"stars\"\n",
              "5: layer.stars.source.kind: expected a star catalogue, or along = \"camera\", for kind "
              "\"stars\", found none"},
-        Case{"source.along = \"orbit\"\n", "5: layer.source.along: expected  or camera, found 'orbit'"},
-        Case{"source.spread = 0\n",
-             "5: layer.source.spread: expected a number from 1e-09 to 1000000000, found 0"},
+        source("along = \"orbit\"", "along: expected  or camera, found 'orbit'"),
+        source("spread = 0", "spread: expected a number from 1e-09 to 1000000000, found 0"),
         Case{"source.kind = \"stars\"\nsource.catalogue = \"a.csv\"\nsource.wings = { share = 0.5 "
              "}\nsource.spikes = { share = 0.75 }\n",
              "8: layer.stars.source.spikes.share: expected shares of wings and spikes of at most 1 together, "
              "found 0.5 and 0.75"},
-        Case{"source.wings = { share = 1.5 }\n",
-             "5: layer.source.wings.share: expected a number from 0 to 1, found 1.5"},
-        Case{"source.wings = { power = 1 }\n",
-             "5: layer.source.wings.power: expected a number from 1.01 to 20, found 1"},
-        Case{"source.wings = { px = 0 }\n",
-             "5: layer.source.wings.px: expected a number from 0.01 to 1000, found 0"},
+        source("wings = { share = 1.5 }", "wings.share: expected a number from 0 to 1, found 1.5"),
+        source("wings = { power = 1 }", "wings.power: expected a number from 1.01 to 20, found 1"),
+        source("wings = { px = 0 }", "wings.px: expected a number from 0.01 to 1000, found 0"),
         Case{"source.wings = { shar = 0.5 }\n",
              "5: unknown key 'wings.shar'; did you mean 'layer.source.wings.share'?"},
-        Case{"source.spikes = { vanes = 0 }\n",
-             "5: layer.source.spikes.vanes: expected a whole number from 1 to 16, found 0"},
-        Case{"source.spikes = { px = \"long\" }\n",
-             "5: layer.source.spikes.px: expected a number, found a string"},
-        Case{"source.spikes = { angle = [1] }\n",
-             "5: layer.source.spikes.angle: expected a number, found a list of 1"},
-        Case{"source.psf = 0\n", "5: layer.source.psf: expected a number from 0.01 to 100, found 0"},
-        Case{"source.zero_point = 1000\n",
-             "5: layer.source.zero_point: expected a number from -100 to 100, found 1000"},
+        source("spikes = { vanes = 0 }", "spikes.vanes: expected a whole number from 1 to 16, found 0"),
+        source("spikes = { px = \"long\" }", "spikes.px: expected a number, found a string"),
+        source("spikes = { angle = [1] }", "spikes.angle: expected a number, found a list of 1"),
+        source("psf = 0", "psf: expected a number from 0.01 to 100, found 0"),
+        source("zero_point = 1000", "zero_point: expected a number from -100 to 100, found 1000"),
         Case{"axis = [0, 0, 0]\n", "5: layer.stars.axis: expected a direction, found 0, 0, 0"},
         Case{"[[layer]]\nsource.kind = \"stars\"\n", "5: layer: expected a name, found none"},
         Case{"[[layer]]\nname = 3\n", "6: layer.name: expected a string, found a number"},
@@ -285,6 +274,10 @@ Case track(const std::string& key, const std::string& value, const std::string& 
     return {"\"" + key + "\" = " + value + "\n", key + ": " + said};
 }
 
+Case fov(const std::string& keyframes, const std::string& said) {
+    return track("camera.fov", "{ keys = [" + keyframes + "] }", said);
+}
+
 class WrongTracks : public testing::TestWithParam<Case> {};
 
 TEST_P(WrongTracks, SayWhatIsExpected) {
@@ -305,44 +298,36 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"camera.fov = { keys = [[1, 20]] }\n",
              "camera: expected the whole key in quotes, such as \"camera.position\", found a table"},
         track("camera.fov", "3", "expected { keys = [[frame, value], ...] }, found no keyframes"),
-        track("camera.fov", "{ keys = [] }", "expected { keys = [[frame, value], ...] }, found no keyframes"),
-        track("camera.fov", "{ keys = [[1]] }",
-              "expected keyframes [frame, value] or [frame, value, \"smooth\"], found a list of 1"),
-        track("camera.fov", "{ keys = [[\"a\", 3]] }",
-              "expected a frame number first in a keyframe, found a string"),
-        track("camera.fov", "{ keys = [[nan, 3]] }",
-              "expected a frame number first in a keyframe, found a number"),
-        track("camera.fov", "{ keys = [[1, 200]] }",
-              "frame 1: expected a number of at least 0.001 and below 180, found 200"),
-        track("camera.fov", "{ keys = [[1, nan]] }", "frame 1: expected a finite number, found nan"),
+        fov("", "expected { keys = [[frame, value], ...] }, found no keyframes"),
+        fov("[1]", "expected keyframes [frame, value] or [frame, value, \"smooth\"], found a list of 1"),
+        fov("[\"a\", 3]", "expected a frame number first in a keyframe, found a string"),
+        fov("[nan, 3]", "expected a frame number first in a keyframe, found a number"),
+        fov("[1, 200]", "frame 1: expected a number of at least 0.001 and below 180, found 200"),
+        fov("[1, nan]", "frame 1: expected a finite number, found nan"),
         track("camera.position", "{ keys = [[1, []]] }", "frame 1: expected 3 numbers, found none"),
         track("camera.rotation", "{ keys = [[1, [0, 0, 0, 0]]] }",
               "frame 1: expected a quaternion that is not zero, found 0, 0, 0, 0"),
-        track("camera.fov", "{ keys = [[2, 30], [2, 30]] }", "expected each frame once, found 2 twice"),
-        track("camera.fov", "{ keys = [[2, 30], [1, 30]] }", "expected ascending frames, found 1 after 2"),
-        track("camera.fov", "{ keys = [[2, 30, \"smoth\"]] }",
-              "the way to the next keyframe: expected linear, smooth, step, bezier, found 'smoth'; did you "
-              "mean 'smooth'?"),
-        track("camera.fov", "{ keys = [[2, 30, \"bezier\", \"round\"]] }",
-              "expected handles \"flat\" or { in = [frames, value], out = ... }, found 'round'"),
-        track("camera.fov", "{ keys = [[2, 30, \"bezier\", { out = 3 }]] }",
-              "out: expected auto, flat or [frames, value], found a number"),
-        track("camera.fov", "{ keys = [[2, 30, \"bezier\", { out = \"linear\" }]] }",
-              "out: expected auto, flat or [frames, value], found 'linear'"),
-        track("camera.fov", "{ keys = [[2, 30, \"bezier\", { in = [-3] }]] }",
-              "in: expected [frames, value] from the keyframe, found a list of 1"),
-        track("camera.fov", "{ keys = [[2, 30, \"bezier\", { in = [3, 1] }]] }",
-              "in: expected 0 or negative frames, found 3"),
-        track("camera.fov", "{ keys = [[2, 30, \"bezier\", { out = [-3, 1] }]] }",
-              "out: expected 0 or more frames, found -3"),
-        track("camera.fov", "{ keys = [[2, 30, \"bezier\", { out = [3, inf] }]] }",
-              "out: expected a finite number in a handle, found a number"),
+        fov("[2, 30], [2, 30]", "expected each frame once, found 2 twice"),
+        fov("[2, 30], [1, 30]", "expected ascending frames, found 1 after 2"),
+        fov("[2, 30, \"smoth\"]",
+            "the way to the next keyframe: expected linear, smooth, step, bezier, found 'smoth'; did you "
+            "mean 'smooth'?"),
+        fov("[2, 30, \"bezier\", \"round\"]",
+            "expected handles \"flat\" or { in = [frames, value], out = ... }, found 'round'"),
+        fov("[2, 30, \"bezier\", { out = 3 }]",
+            "out: expected auto, flat or [frames, value], found a number"),
+        fov("[2, 30, \"bezier\", { out = \"linear\" }]",
+            "out: expected auto, flat or [frames, value], found 'linear'"),
+        fov("[2, 30, \"bezier\", { in = [-3] }]",
+            "in: expected [frames, value] from the keyframe, found a list of 1"),
+        fov("[2, 30, \"bezier\", { in = [3, 1] }]", "in: expected 0 or negative frames, found 3"),
+        fov("[2, 30, \"bezier\", { out = [-3, 1] }]", "out: expected 0 or more frames, found -3"),
+        fov("[2, 30, \"bezier\", { out = [3, inf] }]",
+            "out: expected a finite number in a handle, found a number"),
         track("camera.position", "{ keys = [[2, [1, 2, 3], \"bezier\", { out = [3, 1] }]] }",
               "out: expected as many numbers as the keyframe's value has, 3, found 1"),
-        track("camera.fov", "{ keys = [[2, 30, \"bezier\", { broken = 1 }]] }",
-              "broken: expected true or false, found a number"),
-        track("camera.fov", "{ keys = [[2, 30, \"bezier\", { inn = \"flat\" }]] }",
-              "unknown key 'inn' of a keyframe; did you mean 'in'?"),
+        fov("[2, 30, \"bezier\", { broken = 1 }]", "broken: expected true or false, found a number"),
+        fov("[2, 30, \"bezier\", { inn = \"flat\" }]", "unknown key 'inn' of a keyframe; did you mean 'in'?"),
         track("camera.rotation", "{ keys = [[2, [0, 0, 0, 1]]], interpolation = \"bezier\" }",
               "expected linear, smooth or step for a rotation, found bezier"),
         track("camera.fov", "{ keys = [[2, 30]], ends = \"loop\" }",
@@ -366,9 +351,8 @@ TEST(Messages, WholeFiles) {
               "scene.toml:2: astrosplat: expected the format version 1, found 2");
     EXPECT_EQ(message("astrosplat = \"1\"\n"),
               "scene.toml:1: astrosplat: expected the format version 1, found a string");
-    EXPECT_EQ(
-        message_of<InputError>([] { check_renderable(parse_scene("astrosplat = 1\n", "scene.toml"), {}); }),
-        "scene.toml: expected at least one [[layer]], found none");
+    EXPECT_EQ(ERROR_OF(check_renderable(parse_scene("astrosplat = 1\n", "scene.toml"), {})),
+              "scene.toml: expected at least one [[layer]], found none");
     EXPECT_EQ(message("astrosplat = 1\n[layer]\nname = \"a\"\n"),
               "scene.toml:2: layer: expected [[layer]], found a table");
     EXPECT_EQ(message("astrosplat = 1\nanimation = 2\n"),
@@ -380,17 +364,10 @@ TEST(Messages, WholeFiles) {
 }
 
 TEST(Messages, FilesThatCannotBeRead) {
-    const auto load = [](const fs::path& file) -> std::string {
-        try {
-            load_scene(file);
-        } catch (const InputError& error) {
-            return error.what();
-        }
-        return "";
-    };
     const std::string folder = fs::temp_directory_path().string();
-    EXPECT_EQ(load(folder), folder + ": cannot be read: it is a folder");
-    EXPECT_EQ(load("no such.toml"), "no such.toml: cannot be read: No such file or directory");
+    EXPECT_EQ(ERROR_OF(load_scene(folder)), folder + ": cannot be read: it is a folder");
+    EXPECT_EQ(ERROR_OF(load_scene("no such.toml")),
+              "no such.toml: cannot be read: No such file or directory");
 }
 
 TEST(Messages, DomesAreSquareAndOfAPlanetariumsSize) {
@@ -411,23 +388,19 @@ TEST(Messages, DomesAreSquareAndOfAPlanetariumsSize) {
 
 TEST(Messages, PresetsNameTheirOwnFileAndLine) {
     const fs::path preset = fs::temp_directory_path() / "astrosplat preset messages.toml";
-    write_file_atomically(preset, "[look]\nalpha.powr = 2\n");
     const std::string text = head + "preset = \"" + preset.string() + "\"\n";
-    EXPECT_EQ(message(text),
-              preset.string() + ":2: unknown key 'alpha.powr'; did you mean 'look.alpha.power'?");
-    write_file_atomically(preset, "[look]\nalpha.power = -2\n");
-    EXPECT_EQ(message(text),
-              preset.string() + ":2: look.alpha.power: expected a number from 0 to 1000000, found -2");
-    write_file_atomically(preset, "[output]\nfps = 2\n");
-    EXPECT_EQ(message(text),
-              preset.string() + ":2: unknown key 'fps'; 'astrosplat parameters' lists all keys");
-    write_file_atomically(preset, "astrosplat = 2\n[look]\nalpha.power = 2\n");
-    EXPECT_EQ(message(text), preset.string() + ":1: astrosplat: expected the format version 1, found 2");
-    write_file_atomically(preset, "[look]\nradius = { min = 2.0 }\n");
-    EXPECT_EQ(message(text),
-              preset.string() + ":2: layer.stars.look.radius.min: expected min not above max, found 2 and 0");
-    write_file_atomically(preset, "astrosplat = 2\n[look]\ndensity = 0.5\n");
-    EXPECT_EQ(message(text), preset.string() + ":1: astrosplat: expected the format version 1, found 2");
+    const auto expect_said = [&](const std::string& lines, const std::string& said) {
+        write_file_atomically(preset, lines);
+        EXPECT_EQ(message(text), preset.string() + ":" + said);
+    };
+    expect_said("[look]\nalpha.powr = 2\n", "2: unknown key 'alpha.powr'; did you mean 'look.alpha.power'?");
+    expect_said("[look]\nalpha.power = -2\n",
+                "2: look.alpha.power: expected a number from 0 to 1000000, found -2");
+    expect_said("[output]\nfps = 2\n", "2: unknown key 'fps'; 'astrosplat parameters' lists all keys");
+    expect_said("astrosplat = 2\n[look]\nalpha.power = 2\n",
+                "1: astrosplat: expected the format version 1, found 2");
+    expect_said("[look]\nradius = { min = 2.0 }\n",
+                "2: layer.stars.look.radius.min: expected min not above max, found 2 and 0");
     fs::remove(preset);
     EXPECT_EQ(message(text), preset.string() +
                                  ": cannot be read: No such file or directory; the looks that come with "
@@ -436,41 +409,41 @@ TEST(Messages, PresetsNameTheirOwnFileAndLine) {
 }
 
 TEST(Messages, Assignments) {
-    const auto set = [](const std::string& assignment) { return message(head, {assignment}); };
-    EXPECT_EQ(
-        set("layer.stars.look.alpha.powr=6"),
-        "--set: unknown key 'layer.stars.look.alpha.powr'; did you mean 'layer.stars.look.alpha.power'?");
-    EXPECT_EQ(set("layer.star.look.alpha.power=6"),
-              "--set: layer.star.look.alpha.power: unknown layer 'star'; did you mean 'stars'?");
-    EXPECT_EQ(set("layer.stars.look.alpha.power=six"),
-              "--set: layer.stars.look.alpha.power: expected a number, found a string");
-    EXPECT_EQ(set("layer.stars.look.alpha.power="),
-              "--set: layer.stars.look.alpha.power: expected a number, found a string");
-    EXPECT_EQ(set("layer.stars.look.pdf=gaussian"),
-              "--set: layer.stars.look.pdf: expected a table, found a string; did you mean "
-              "layer.stars.look.pdf.shape=gaussian?");
-    EXPECT_EQ(set("camera=5"),
-              "--set: camera: expected a table, found a number; it has keys such as camera.projection");
-    EXPECT_EQ(set("camera.position=0,0,5"),
-              "--set: camera.position: expected 3 numbers, found a string; did you mean --set "
-              "'camera.position=[0, 0, 5]'?");
-    EXPECT_EQ(set("output.aovs=[depth]"),
-              "--set: output.aovs: expected a list of depth, coverage, count or layers, found a string; did "
-              "you mean --set 'output.aovs=[\"depth\"]'?");
-    EXPECT_EQ(set("output.aovs=depht"),
-              "--set: output.aovs: expected a list of depth, coverage, count or layers, found a string");
-    EXPECT_EQ(
-        set("layer.stars.look.noise.3.cull=0.5"),
-        "--set: layer.stars.look.noise.3.cull: expected an index of at most 0 in layer.look.noise, found 3");
-    EXPECT_EQ(set("output.resoluton=[1,1]"),
-              "--set: unknown key 'output.resoluton'; did you mean 'output.resolution'?");
-    EXPECT_EQ(set("output.frames=x"),
-              "--set: output.frames: expected frames such as 1-100,120,200-300x2, found 'x'");
-    EXPECT_EQ(set("layer.stars.name=9"),
-              "--set: layer.name: expected letters, digits and _ beginning with a letter, found '9'");
-    EXPECT_EQ(set("animation.camera.fow={keys=[[1,2]]}"),
-              "--set: unknown key 'camera.fow'; did you mean 'camera.fov'?");
-    EXPECT_EQ(set("output.preset=dom"), "dom: no preset of the output has this name; known are: dome");
+    const auto expect_said = [](const std::string& assignment, const std::string& said) {
+        EXPECT_EQ(message(head, {assignment}), "--set: " + said);
+    };
+    expect_said("layer.stars.look.alpha.powr=6",
+                "unknown key 'layer.stars.look.alpha.powr'; did you mean 'layer.stars.look.alpha.power'?");
+    expect_said("layer.star.look.alpha.power=6",
+                "layer.star.look.alpha.power: unknown layer 'star'; did you mean 'stars'?");
+    expect_said("layer.stars.look.alpha.power=six",
+                "layer.stars.look.alpha.power: expected a number, found a string");
+    expect_said("layer.stars.look.alpha.power=",
+                "layer.stars.look.alpha.power: expected a number, found a string");
+    expect_said("layer.stars.look.pdf=gaussian",
+                "layer.stars.look.pdf: expected a table, found a string; did you mean "
+                "layer.stars.look.pdf.shape=gaussian?");
+    expect_said("camera=5",
+                "camera: expected a table, found a number; it has keys such as camera.projection");
+    expect_said("camera.position=0,0,5",
+                "camera.position: expected 3 numbers, found a string; did you mean --set "
+                "'camera.position=[0, 0, 5]'?");
+    expect_said("output.aovs=[depth]",
+                "output.aovs: expected a list of depth, coverage, count or layers, found a string; did you "
+                "mean --set 'output.aovs=[\"depth\"]'?");
+    expect_said("output.aovs=depht",
+                "output.aovs: expected a list of depth, coverage, count or layers, found a string");
+    expect_said("layer.stars.look.noise.3.cull=0.5",
+                "layer.stars.look.noise.3.cull: expected an index of at most 0 in layer.look.noise, found 3");
+    expect_said("output.resoluton=[1,1]",
+                "unknown key 'output.resoluton'; did you mean 'output.resolution'?");
+    expect_said("output.frames=x", "output.frames: expected frames such as 1-100,120,200-300x2, found 'x'");
+    expect_said("layer.stars.name=9",
+                "layer.name: expected letters, digits and _ beginning with a letter, found '9'");
+    expect_said("animation.camera.fow={keys=[[1,2]]}",
+                "unknown key 'camera.fow'; did you mean 'camera.fov'?");
+    EXPECT_EQ(message(head, {"output.preset=dom"}),
+              "dom: no preset of the output has this name; known are: dome");
     EXPECT_THROW(parse_assignment("nothing"), InputError);
     EXPECT_THROW(parse_assignment("=3"), InputError);
 }

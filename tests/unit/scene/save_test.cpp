@@ -1,26 +1,16 @@
 // Saving: what is loaded again is what was saved, and the text keeps everything that did not change.
-#include <filesystem>
 
-#include "core/atomic_file.h"
+#include "scene/save.h"
 #include "scene/check.h"
 #include "scene/new_scene.h"
-#include "scene/save.h"
 #include "scene_texts.h"
 #include "support/bits.h"
 #include "support/errors.h"
+#include "support/random_values.h"
+#include "support/temp_folder.h"
 
 namespace astrosplat::test {
-namespace fs = std::filesystem;
 namespace {
-
-/// In [0, 1), by a mix of two words (Wellons' lowbias32).
-double hash_unit(std::uint32_t seed, std::uint32_t purpose) {
-    std::uint32_t x = seed * 0x9E3779B9u + purpose * 0x85EBCA6Bu + 1u;
-    x = (x ^ (x >> 16)) * 0x7feb352du;
-    x = (x ^ (x >> 15)) * 0x846ca68bu;
-    x ^= x >> 16;
-    return static_cast<double>(x) / 4294967296.0;
-}
 
 const char* const commented = R"(# My galaxy
 astrosplat = 1   # the format
@@ -209,57 +199,14 @@ TEST(Save, WindowsLineEndsStay) {
         EXPECT_EQ(written[i - 1], '\r');
 }
 
-/// A value that fits the parameter, picked by a hash.
+/// Of all that the parameter allows up to 1000.
 Value some_value(const ParameterSpec& spec, std::uint32_t seed) {
-    const auto unit = [&](std::uint32_t purpose) { return hash_unit(seed, purpose); };
-    const auto number = [&](std::uint32_t purpose) {
-        const double lo = std::max(spec.min, -1000.0), hi = std::min(spec.max, 1000.0);
-        return spec.below_max ? lo + (hi - lo) * (0.25 + 0.5 * unit(purpose))
-                              : lo + (hi - lo) * unit(purpose);
-    };
-    const std::size_t choice =
-        spec.choices.empty() ? 0
-                             : static_cast<std::size_t>(unit(1) * static_cast<double>(spec.choices.size()));
-    switch (spec.type) {
-        case ParameterType::boolean:
-            return unit(1) < 0.5;
-        case ParameterType::integer:
-            return static_cast<std::int64_t>(number(1));
-        case ParameterType::number:
-            return spec.nothing.text() && unit(2) < 0.3 ? spec.nothing : Value(number(1));
-        case ParameterType::text:
-            return spec.choices.empty() ? Value("\xC3\xA4 \"quoted\" \\ #" + std::to_string(seed))
-                                        : Value(spec.choices[choice]);
-        case ParameterType::choice:
-            return spec.choices[choice];
-        case ParameterType::words:
-            return Value::List{spec.choices[choice]};
-        case ParameterType::file:
-        case ParameterType::pattern:
-            return "dir/\xC3\xB6 " + std::to_string(seed) + ".####.png";
-        case ParameterType::files:
-            return Value::List{"a.png", "../b.png", "/c/" + std::to_string(seed)};
-        case ParameterType::curve:
-            return Value::List{Value::List{0.0, unit(1)}, Value::List{0.5, unit(2)},
-                               Value::List{1.0, unit(3)}};
-        default: {
-            const bool whole =
-                spec.generic_key == "layer.source.voxels" || spec.generic_key == "output.resolution";
-            Value::List list;
-            for (std::uint32_t i = 0; i < static_cast<std::uint32_t>(spec.components); ++i)
-                list.emplace_back(whole ? std::floor(number(i)) : number(i));
-            return list;
-        }
-    }
-}
-
-bool is_valid(const Scene& scene) {
-    try {
-        check_scene(scene, "", {});
-    } catch (const InputError&) {
-        return false;
-    }
-    return true;
+    Numbers numbers(seed);
+    if (spec.nothing.text() && numbers.below(3) == 0) return spec.nothing;
+    ParameterSpec wide = spec;
+    wide.slider_min = -1000.0;
+    wide.slider_max = 1000.0;
+    return random_value(wide, numbers);
 }
 
 /// The scene with one parameter changed; presets and camera files must exist and names are keys, so these
@@ -272,7 +219,7 @@ Scene changed(const Scene& scene, std::size_t index, std::uint32_t seed) {
     if (key == "layer.name" || key == "layer.preset" || key == "output.preset" || key == "camera.file")
         return scene;
     parameter.set(key == "output.frames" ? Value("1-9") : some_value(parameter.spec, seed));
-    return is_valid(edited) ? edited : scene;
+    return ERROR_OF(check_scene(edited, "", {})) == "no error" ? edited : scene;
 }
 
 TEST(Save, EveryParameterSurvives) {
@@ -294,9 +241,9 @@ TEST(Save, EveryParameterSurvives) {
 TEST(Save, RandomEditsOneAfterAnother) {
     std::string text = commented;
     Scene scene = parse(text);
+    Numbers numbers(77);
     for (std::uint32_t step = 1; step <= 200; ++step) {
-        const double count = static_cast<double>(describe(scene).parameters.size());
-        scene = changed(scene, static_cast<std::size_t>(hash_unit(step, 77) * count), step);
+        scene = changed(scene, numbers.below(describe(scene).parameters.size()), step);
         text = saved(scene, text);
     }
     for (const char* comment : {"# My galaxy", "# the format", "# cinema", "# The stars.", "# flat",
@@ -360,22 +307,17 @@ TEST(Save, PresetsGiveBackLookAndRender) {
     look.thickness.stops.resize(2);
     look.thickness.stops[1].pdf.shape = DensityCurve::Shape::gaussian;
     scene.layers[1].render.falloff.core = 0.25f;
-    const fs::path folder = fs::temp_directory_path() / "astrosplat save preset";
-    fs::create_directories(folder);
+    const TempFolder folder;
     look.thickness.map = folder / "m.png";
-    write_file_atomically(folder / "p.toml",
-                          save_preset_text(look, scene.layers[1].render, folder / "p.toml"));
+    folder.file("p.toml", save_preset_text(look, scene.layers[1].render, folder / "p.toml"));
     const Scene loaded = parse_scene(small_scene("preset = \"p.toml\""), folder / "s.toml");
     EXPECT_EQ(loaded.layers[0].look, look);
     EXPECT_EQ(loaded.layers[0].render, scene.layers[1].render);
-    fs::remove_all(folder);
 }
 
 TEST(Save, OverAPresetOnlyDifferencesAreWritten) {
-    const fs::path folder = fs::temp_directory_path() / "astrosplat over preset";
-    fs::create_directories(folder);
-    write_file_atomically(folder / "p.toml",
-                          "[look]\ndensity = 0.5\nnoise = [{ cull = 0.5 }, { cull = 0.25 }]\n");
+    const TempFolder folder;
+    folder.file("p.toml", "[look]\ndensity = 0.5\nnoise = [{ cull = 0.5 }, { cull = 0.25 }]\n");
     const std::string original = small_scene("preset = \"p.toml\"");
     Scene scene = parse_scene(original, folder / "s.toml");
     EXPECT_EQ(save_text(scene, original, folder / "s.toml"), original);
@@ -384,7 +326,6 @@ TEST(Save, OverAPresetOnlyDifferencesAreWritten) {
     const std::string text = save_text(scene, original, folder / "s.toml");
     EXPECT_HAS(text, "density = 1.0") << "the default, against the preset";
     EXPECT_EQ(parse_scene(text, folder / "s.toml"), scene);
-    fs::remove_all(folder);
 }
 
 TEST(NewScene, LoadsForEveryShapeAndOddNames) {

@@ -3,8 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <string>
-
 #include "core/error.h"
 #include "scene/describe.h"
 #include "scene/load.h"

@@ -1,10 +1,6 @@
 // Prepared pictures and skies kept beside the sets.
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <functional>
-
-#include "core/error.h"
 #include "core/file.h"
 #include "core/log.h"
 #include "sets/kept.h"
@@ -21,8 +17,6 @@ namespace {
 
 // source.prepare: a source that prepares its picture is one of the prepared picture, to the bit; the picture
 // is kept beside the sets, and everything that reaches it reaches both names.
-
-namespace fs = std::filesystem;
 
 // Twelve stars on a slope.
 std::string stars_on_a_slope() { return test::starry_pixmap({128, 96, 32, 32, 120.0, 3.0, 0.3, 2.0}); }
@@ -100,9 +94,7 @@ TEST_F(PreparedSource, DamagedPicturesArePreparedAgainWithAWarning) {
     fs::resize_file(pictures()[0], fs::file_size(pictures()[0]) / 2);
     const SplatSet set = load_source(cache_, source_, "dust").set;
     EXPECT_TRUE(same(set, load_source(source_, "dust")));
-    ASSERT_EQ(said_.warnings.size(), 1u);
-    EXPECT_NE(said_.warnings[0].find("; the picture is prepared again"), std::string::npos)
-        << said_.warnings[0];
+    EXPECT_HAS(said_.one_warning(), "; the picture is prepared again");
 }
 
 TEST_F(PreparedSource, PicturesMakeRoomForOthers) {
@@ -201,26 +193,23 @@ TEST_F(PreparedSource, BodiesLookForStarsUnlessThoseWereRemovedOrTheyAreTold) {
 TEST_F(PreparedSource, RefusesMasksOfAnotherSize) {
     const fs::path small = folder_.file("small.ppm", "P6\n16 16\n255\n" + std::string(16 * 16 * 3, 'x'));
     source_.texture.prepare.mask = small;
-    EXPECT_EQ(message_of<InputError>([&] { load_source(source_, "dust"); }),
+    EXPECT_EQ(ERROR_OF(load_source(source_, "dust")),
               "layer 'dust': prepare.mask:" + small.string() +
                   ": expected 128x96 px like the picture, found 16x16 px");
     source_.texture.prepare.mask.clear();
     source_.texture.prepare.fill = small;
-    EXPECT_NE(message_of<InputError>([&] { load_source(source_, "dust"); }).find("prepare.fill:"),
-              std::string::npos);
+    EXPECT_HAS(ERROR_OF(load_source(source_, "dust")), "prepare.fill:");
 }
 
 TEST_F(PreparedSource, RefusesToAlignWhatHasNoSky) {
     source_.texture.prepare.align = folder_ / "p.ppm";
-    EXPECT_EQ(message_of<InputError>([&] { load_source(source_, "dust"); }),
+    EXPECT_EQ(ERROR_OF(load_source(source_, "dust")),
               "layer 'dust': " + (folder_ / "p.ppm").string() +
                   ": expected a FITS picture whose header tells the sky (RA---TAN), found none");
 }
 
 // Skies of one picture are kept beside the sets, to the bit, under a name that everything enters that makes
 // them.
-
-namespace fs = std::filesystem;
 
 class KeptSky : public testing::Test {
   protected:
@@ -276,15 +265,9 @@ TEST_F(KeptSky, IsReadAndNotMadeAgain) {
 TEST_F(KeptSky, EverythingThatMakesItIsInItsName) {
     const fs::path file = folder_ / "p.ppm";
     const std::string own = sky_recipe_text(file, tiling_);
-    SkyTiling other = tiling_;
-    other.seed = 2;
-    EXPECT_NE(sky_recipe_text(file, other), own);
-    other = tiling_;
-    other.height_deg = 41.0;
-    EXPECT_NE(sky_recipe_text(file, other), own);
-    other = tiling_;
-    other.face_px = 64;
-    EXPECT_NE(sky_recipe_text(file, other), own);
+    SkyTiling seeded = tiling_, higher = tiling_, larger = tiling_;
+    seeded.seed = 2, higher.height_deg = 41.0, larger.face_px = 64;
+    for (const SkyTiling& other : {seeded, higher, larger}) EXPECT_NE(sky_recipe_text(file, other), own);
     folder_.file("q.ppm", picture(120.0));
     EXPECT_EQ(sky_recipe_text(folder_ / "q.ppm", tiling_), own) << "names of files stay out";
     folder_.file("q.ppm", picture(121.0));
@@ -297,8 +280,7 @@ TEST_F(KeptSky, ThatIsDamagedIsMadeAgain) {
     const fs::path file = entries_of(cache_.folder).at(0);
     fs::resize_file(file, fs::file_size(file) / 2);
     expect_same(sky(), made());
-    ASSERT_EQ(said_.warnings.size(), 1u);
-    EXPECT_NE(said_.warnings[0].find("the sky is made again"), std::string::npos) << said_.warnings[0];
+    EXPECT_HAS(said_.one_warning(), "the sky is made again");
     expect_same(sky(), made());
     EXPECT_EQ(said_.warnings.size(), 1u);
 }

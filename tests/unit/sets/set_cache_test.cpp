@@ -8,12 +8,9 @@
 #include <sys/stat.h>
 #include <sys/wait.h>
 
-#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <csignal>
-#include <functional>
-#include <optional>
 #include <thread>
 
 #include "core/log.h"
@@ -30,8 +27,6 @@
 
 namespace astrosplat {
 namespace {
-
-namespace fs = std::filesystem;
 
 std::string picture(int size, int blue = 128) {
     return test::pixmap(size, size,
@@ -52,6 +47,12 @@ class SetCacheTest : public testing::Test {
         cache_.folder = folder_ / "sets";
     }
 
+    int locked(const fs::path& file) const {
+        fs::create_directories(cache_.folder);
+        const int lock = open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+        EXPECT_EQ(flock(lock, LOCK_EX), 0);
+        return lock;
+    }
     /// A source with a mesh file whose picture comes from its own material.
     SourceParams mesh_source() const {
         folder_.file("a.obj", triangle);
@@ -71,11 +72,13 @@ class SetCacheTest : public testing::Test {
         return load_source(cache_, source, name);
     }
     LoadedSet load() const { return load(source_); }
-    fs::path entry_file(const std::string& ending) const {
-        return cache_.folder / (recipe_of(source_, "dust").name + ending);
+    static std::string name(const SourceParams& source, const std::string& layer = "dust") {
+        return recipe_of(source, layer).name;
     }
+    std::string name() const { return name(source_); }
+    fs::path entry_file(const std::string& ending) const { return cache_.folder / (name() + ending); }
     fs::path texel_file(const SourceParams& source) const {
-        return cache_.folder / (recipe_of(source, "dust").name + ".texels");
+        return cache_.folder / (name(source) + ".texels");
     }
     fs::path geometry_file(const SourceParams& source) const {
         return cache_.folder / (geometry_recipe(plan_columns(source, "dust", {})).name + ".splats");
@@ -146,6 +149,17 @@ UvCamera& seen_from(SourceParams& source, double y) {
     return source.uv_camera;
 }
 
+auto& shape(SourceParams& source, const char* mesh) {
+    source.meshes[0].mesh = mesh;
+    return source.meshes[0].shape;
+}
+
+/// Takes names of files that must differ from each other.
+void expect_different(std::vector<std::string> names) {
+    std::ranges::sort(names);
+    EXPECT_EQ(std::ranges::adjacent_find(names), names.end());
+}
+
 TEST_F(SetCacheTest, EveryParameterOfASourceChangesTheName) {
     using Settings = TextureSettings;
     const std::vector<std::function<void(SourceParams&)>> changes = {
@@ -207,73 +221,69 @@ TEST_F(SetCacheTest, EveryParameterOfASourceChangesTheName) {
         [](SourceParams& s) { seen_from(s, 3.0).height = 5.0; },
         [](SourceParams& s) { seen_from(s, 3.0).height = 6.0; },
         [](SourceParams& s) { s.meshes[0].mesh = "hourglass"; },
-        [](SourceParams& s) { s.meshes[0].mesh = "hourglass", s.meshes[0].shape.waist = 0.5; },
-        [](SourceParams& s) { s.meshes[0].mesh = "hourglass", s.meshes[0].shape.width = 0.6; },
+        [](SourceParams& s) { shape(s, "hourglass").waist = 0.5; },
+        [](SourceParams& s) { shape(s, "hourglass").width = 0.6; },
         [](SourceParams& s) { s.meshes[0].mesh = "shell"; },
-        [](SourceParams& s) { s.meshes[0].mesh = "shell", s.meshes[0].shape.thickness = 0.5; },
-        [](SourceParams& s) { s.meshes[0].mesh = "bubble", s.meshes[0].shape.opening = 50.0; },
-        [](SourceParams& s) { s.meshes[0].mesh = "bubble", s.meshes[0].shape.opening = 51.0; },
-        [](SourceParams& s) { s.meshes[0].mesh = "spheroid", s.meshes[0].shape.flattening = 0.5; },
-        [](SourceParams& s) { s.meshes[0].mesh = "spheroid", s.meshes[0].shape.shells = 2; },
-        [](SourceParams& s) { s.meshes[0].mesh = "spheroid", s.meshes[0].shape.concentration = 2; },
-        [](SourceParams& s) { s.meshes[0].mesh = "ring", s.meshes[0].shape.tube = 0.1; },
-        [](SourceParams& s) { s.meshes[0].mesh = "ring", s.meshes[0].shape.tube = 0.3; },
+        [](SourceParams& s) { shape(s, "shell").thickness = 0.5; },
+        [](SourceParams& s) { shape(s, "bubble").opening = 50.0; },
+        [](SourceParams& s) { shape(s, "bubble").opening = 51.0; },
+        [](SourceParams& s) { shape(s, "spheroid").flattening = 0.5; },
+        [](SourceParams& s) { shape(s, "spheroid").shells = 2; },
+        [](SourceParams& s) { shape(s, "spheroid").concentration = 2; },
+        [](SourceParams& s) { shape(s, "ring").tube = 0.1; },
+        [](SourceParams& s) { shape(s, "ring").tube = 0.3; },
         [](SourceParams& s) {
-            s.meshes[0].mesh = "revolution", s.meshes[0].shape.outline = {{1, 2}};
+            shape(s, "revolution").outline = {{1, 2}};
         },
         [](SourceParams& s) {
-            s.meshes[0].mesh = "revolution", s.meshes[0].shape.outline = {{2, 1}};
+            shape(s, "revolution").outline = {{2, 1}};
         },
         [](SourceParams& s) { s.meshes[0].mesh = "sheet"; },
-        [](SourceParams& s) { s.meshes[0].mesh = "sheet", s.meshes[0].shape.depth = 0.5; },
-        [](SourceParams& s) { s.meshes[0].mesh = "sheet", s.meshes[0].shape.blur = 0.05; },
-        [](SourceParams& s) {
-            s.meshes[0].mesh = "sheet", s.meshes[0].shape.depth_map = s.meshes[0].texture[0];
-        },
+        [](SourceParams& s) { shape(s, "sheet").depth = 0.5; },
+        [](SourceParams& s) { shape(s, "sheet").blur = 0.05; },
+        [](SourceParams& s) { shape(s, "sheet").depth_map = s.meshes[0].texture[0]; },
         [](SourceParams& s) { s.seed = 5; },
     };
-    std::vector<std::string> names = {recipe_of(source_, "dust").name, recipe_of(source_, "stars").name};
+    std::vector<std::string> names = {name(), name(source_, "stars")};
     for (const auto& change : changes) {
         SourceParams source = source_;
         change(source);
-        names.push_back(recipe_of(source, "dust").name);
+        names.push_back(name(source));
         EXPECT_EQ(names.back().size(), 64u);
     }
-    std::sort(names.begin(), names.end());
-    EXPECT_EQ(std::adjacent_find(names.begin(), names.end()), names.end());
+    expect_different(names);
 }
 
 TEST_F(SetCacheTest, WhatDoesNotReachTheSetStaysOutOfTheName) {
     SourceParams seeded = source_, sized = source_, moved = source_;
     seeded.seed = 5;
-    EXPECT_EQ(recipe_of(seeded, "dust").name, recipe_of(seeded, "stars").name);
+    EXPECT_EQ(name(seeded), name(seeded, "stars"));
     sized.voxel_size = 0.1;
-    const std::string name = recipe_of(sized, "dust").name;
+    const std::string of_sized = name(sized);
     sized.count = 7;
     sized.meshes[0].relief = 0.7;
     sized.meshes[0].shape.waist = 0.7;
     sized.uv_width = 3.0;
     sized.uv_camera.fov = 3.0;
     sized.back = BackWall::varied;
-    EXPECT_EQ(recipe_of(sized, "dust").name, name);
+    EXPECT_EQ(name(sized), of_sized);
     fs::copy_file(folder_ / "p.ppm", folder_ / "other.ppm");
     moved.meshes[0].texture = {folder_ / "other.ppm"};
-    EXPECT_EQ(recipe_of(moved, "dust").name, recipe_of(source_, "dust").name);
+    EXPECT_EQ(name(moved), name());
 }
 
 TEST_F(SetCacheTest, BytesOfEveryInputChangeTheName) {
     const SourceParams source = mesh_source();
-    std::vector<std::string> names = {recipe_of(source, "dust").name};
+    std::vector<std::string> names = {name(source)};
     folder_.file("p.ppm", picture(16, 129));
-    names.push_back(recipe_of(source, "dust").name);
+    names.push_back(name(source));
     folder_.file("a.obj", std::string(triangle) + "#\n");
-    names.push_back(recipe_of(source, "dust").name);
+    names.push_back(name(source));
     folder_.file("a.mtl", "newmtl m\nmap_Kd q.ppm\n");
-    names.push_back(recipe_of(source, "dust").name);
+    names.push_back(name(source));
     folder_.file("q.ppm", picture(8));
-    names.push_back(recipe_of(source, "dust").name);
-    std::sort(names.begin(), names.end());
-    EXPECT_EQ(std::adjacent_find(names.begin(), names.end()), names.end());
+    names.push_back(name(source));
+    expect_different(names);
 }
 
 TEST_F(SetCacheTest, HashingInputsCanBeCancelled) {
@@ -283,14 +293,10 @@ TEST_F(SetCacheTest, HashingInputsCanBeCancelled) {
 
 TEST_F(SetCacheTest, InputsThatCannotBeReadHaveNoNameAndTheLoaderSaysWhy) {
     source_.meshes[0].texture = {folder_ / "none.ppm"};
-    EXPECT_EQ(recipe_of(source_, "dust").name, "");
-    try {
-        load();
-        FAIL();
-    } catch (const InputError& error) {
-        EXPECT_HAS(std::string(error.what()), "layer 'dust': ") << error.what();
-        EXPECT_HAS(std::string(error.what()), "none.ppm") << error.what();
-    }
+    EXPECT_EQ(name(), "");
+    const std::string said = ERROR_OF(load());
+    EXPECT_HAS(said, "layer 'dust': ");
+    EXPECT_HAS(said, "none.ppm");
     EXPECT_FALSE(fs::exists(cache_.folder));
 }
 
@@ -361,8 +367,7 @@ TEST_F(SetCacheTest, DamagedEntriesAreMadeAgainWithAWarning) {
             EXPECT_FALSE(again.cached);
             EXPECT_EQ(again.geometry_cached, file == texel_file(source_));
             expect_same_set(again.set, set);
-            ASSERT_EQ(said_.warnings.size(), 1u);
-            EXPECT_HAS(said_.warnings[0], "; the set is generated again");
+            EXPECT_HAS(said_.one_warning(), "; the set is generated again");
             flush_warning_counts();
             EXPECT_EQ(bytes_of(file), whole);
             EXPECT_TRUE(load().cached);
@@ -480,8 +485,7 @@ TEST_F(SetCacheTest, AnEntryOfAnotherSetUnderThisNameIsNotTaken) {
         const LoadedSet again = load();
         EXPECT_FALSE(again.cached);
         expect_same_set(again.set, set);
-        ASSERT_EQ(said_.warnings.size(), 1u);
-        EXPECT_HAS(said_.warnings[0], "expected that of the set asked for");
+        EXPECT_HAS(said_.one_warning(), "expected that of the set asked for");
         EXPECT_TRUE(again.set.recipe.empty());
         flush_warning_counts();
         const LoadedSet repaired = load();
@@ -493,15 +497,13 @@ TEST_F(SetCacheTest, AnEntryOfAnotherSetUnderThisNameIsNotTaken) {
 TEST_F(SetCacheTest, AFolderThatCannotBeMadeIsAWarning) {
     cache_.folder = folder_.file("file", "x") / "sets";
     EXPECT_FALSE(load().cached);
-    ASSERT_EQ(said_.warnings.size(), 1u);
-    EXPECT_HAS(said_.warnings[0], "cannot be made");
+    EXPECT_HAS(said_.one_warning(), "cannot be made");
 }
 
 TEST_F(SetCacheTest, ThePlaceOfAnEntryTakenByAFolderIsAWarning) {
     fs::create_directories(entry_file(".texels"));
     EXPECT_FALSE(load().cached);
-    ASSERT_EQ(said_.warnings.size(), 1u);
-    EXPECT_HAS(said_.warnings[0], "what was generated is not kept");
+    EXPECT_HAS(said_.one_warning(), "what was generated is not kept");
 }
 
 TEST_F(SetCacheTest, AReadOnlyFolderIsReadAndItsLackIsAWarning) {
@@ -512,15 +514,14 @@ TEST_F(SetCacheTest, AReadOnlyFolderIsReadAndItsLackIsAWarning) {
     EXPECT_TRUE(said_.warnings.empty());
     EXPECT_FALSE(load(source_, "stars").cached);
     fs::permissions(cache_.folder, fs::perms::owner_all);
-    ASSERT_EQ(said_.warnings.size(), 1u);
-    EXPECT_HAS(said_.warnings[0], "what was generated is not kept");
+    EXPECT_HAS(said_.one_warning(), "what was generated is not kept");
 }
 
 // ---- several processes
 
 TEST_F(SetCacheTest, WhatDeadProcessesLeftIsRemovedAndNothingElse) {
     fs::create_directories(cache_.folder);
-    const std::string dead(64, 'd'), alive(64, 'a'), own = recipe_of(source_, "dust").name;
+    const std::string dead(64, 'd'), alive(64, 'a'), own = name();
     const auto leave = [&](const std::string& name) {
         std::ofstream(cache_.folder / name) << "x";
         return cache_.folder / name;
@@ -530,11 +531,7 @@ TEST_F(SetCacheTest, WhatDeadProcessesLeftIsRemovedAndNothingElse) {
                                         leave(temporary(own))};
     const std::vector<fs::path> stay = {leave(temporary(alive)), leave(alive + ".lock"), leave("mine.lock"),
                                         leave(".mine.part.splats"), leave("notes.txt")};
-    std::array<int, 2> locks{};
-    for (std::size_t i = 0; i < locks.size(); ++i) {
-        locks[i] = open(stay[i].c_str(), O_RDWR | O_CLOEXEC);
-        ASSERT_EQ(flock(locks[i], LOCK_EX), 0);
-    }
+    const int locks[] = {locked(stay[0]), locked(stay[1])};
     load();
     for (const int lock : locks) close(lock);
     for (const fs::path& file : gone) EXPECT_FALSE(fs::exists(file)) << file;
@@ -546,16 +543,15 @@ TEST_F(SetCacheTest, OthersWaitForTheOneThatGenerates) {
     const SplatSet set = load_source(elsewhere, source_, "dust").set;
     for (const bool same_texels : {true, false}) {
         fs::remove_all(cache_.folder);
-        fs::create_directories(cache_.folder);
         const fs::path held =
             (same_texels ? texel_file(source_) : geometry_file(source_)).replace_extension(".lock");
-        const int lock = open(held.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
-        ASSERT_EQ(flock(lock, LOCK_EX), 0);
+        const int lock = locked(held);
         std::optional<LoadedSet> loaded;
-        std::atomic<bool> waits{false};
+        std::atomic<bool> waits{false}, ended{false};
         set_log_sink([&](LogLevel, const std::string& line) { waits = waits || line.find("waiting") < 99; });
-        std::thread other([&] { loaded = load(); });
-        while (!waits) std::this_thread::yield();
+        std::thread other([&] { loaded = load(), ended = true; });
+        while (!waits && !ended) std::this_thread::yield();
+        EXPECT_FALSE(ended);
         for (const auto& file : fs::directory_iterator(elsewhere.folder))
             if (same_texels || file.path().extension() == ".splats")
                 fs::copy_file(file.path(), cache_.folder / file.path().filename());
@@ -569,9 +565,7 @@ TEST_F(SetCacheTest, OthersWaitForTheOneThatGenerates) {
 }
 
 TEST_F(SetCacheTest, WaitingCanBeCancelled) {
-    fs::create_directories(cache_.folder);
-    const int lock = open(entry_file(".lock").c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
-    ASSERT_EQ(flock(lock, LOCK_EX), 0);
+    const int lock = locked(entry_file(".lock"));
     std::atomic<bool> cancelled{false};
     set_log_sink([&](LogLevel, const std::string& line) { cancelled = line.find("waiting") < 99; });
     EXPECT_THROW(load_source(cache_, source_, "dust", Progress{{}, &cancelled}), Cancelled);
@@ -591,8 +585,8 @@ TEST_F(SetCacheTest, AProcessThatIsKilledGivesWay) {
     const fs::path ready = folder_ / "ready", lock_name = entry_file(".lock");
     const pid_t child = fork();
     if (child == 0) {  // takes the lock, says so, and is killed
-        const int lock = open(lock_name.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
-        if (flock(lock, LOCK_EX) == 0) close(open(ready.c_str(), O_CREAT | O_WRONLY, 0666));
+        locked(lock_name);
+        close(open(ready.c_str(), O_CREAT | O_WRONLY, 0666));
         for (;;) pause();
     }
     while (!fs::exists(ready)) std::this_thread::yield();

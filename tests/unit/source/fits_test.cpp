@@ -6,22 +6,17 @@
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
-#include <array>
 #include <atomic>
-#include <cmath>
-#include <optional>
-#include <vector>
 
 #include "core/error.h"
 #include "source/picture.h"
 #include "support/bits.h"
 #include "support/errors.h"
+#include "support/fits_text.h"
 #include "support/temp_folder.h"
 
 namespace astrosplat {
 namespace {
-
-namespace fs = std::filesystem;
 
 constexpr long width = 48, height = 20;
 
@@ -84,7 +79,7 @@ TEST(FitsCompressed, CardsThatCannotBeAreOneLine) {
                                                          {"PCOUNT", "4x"}};
     for (const auto& [keyword, value] : wrong) {
         const fs::path file = folder.file("bad.fits", with_value(whole, keyword, value));
-        const std::string message = message_of<InputError>([&] { read_fits(file, "auto", 0); });
+        const std::string message = ERROR_OF(read_fits(file, "auto", 0));
         EXPECT_EQ(message.rfind(fmt::format("{}:HDU 1: expected {} to be ", file.string(), keyword), 0), 0u)
             << message;
         EXPECT_EQ(message.find('\n'), std::string::npos);
@@ -93,11 +88,11 @@ TEST(FitsCompressed, CardsThatCannotBeAreOneLine) {
     }
     std::string flat = whole;
     flat.replace(flat.find("ZNAXIS2 ="), 1, "X");
-    EXPECT_EQ(message_of<InputError>([&] { read_fits(folder.file("bad.fits", flat), "auto", 0); }),
+    EXPECT_EQ(ERROR_OF(read_fits(folder.file("bad.fits", flat), "auto", 0)),
               (folder / "bad.fits").string() + ":HDU 1: expected ZNAXIS2 to be there, found none");
     std::string nameless = whole;
     nameless.replace(whole.find("ZVAL2   ="), 5, "XVAL2");
-    EXPECT_EQ(message_of<InputError>([&] { read_fits(folder.file("bad.fits", nameless), "auto", 0); }),
+    EXPECT_EQ(ERROR_OF(read_fits(folder.file("bad.fits", nameless), "auto", 0)),
               (folder / "bad.fits").string() + ":HDU 1: expected ZVAL2 to be there with ZNAME2, found none");
 }
 
@@ -108,7 +103,7 @@ TEST(FitsCompressed, AnyWrongByteOfTheDescriptionIsReadOrRefused) {
     int refused = 0;
     for (std::size_t card = header; card < end; card += 80) {
         if (whole[card] != 'Z') continue;
-        for (std::size_t byte = 0; byte < 32; byte += byte < 8 ? 3 : 1) {
+        for (std::size_t byte = 0; byte < 32; byte += byte < 8 ? 3 : 1)
             for (const char value : {'(', '0', '9', ' ', '.'}) {
                 std::string bytes = whole;
                 bytes[card + byte] = value;
@@ -118,7 +113,6 @@ TEST(FitsCompressed, AnyWrongByteOfTheDescriptionIsReadOrRefused) {
                     ++refused;
                 }
             }
-        }
     }
     EXPECT_GT(refused, 100);
 }
@@ -154,18 +148,9 @@ TEST(FitsCompressed, DamagedGzipTilesAreRefused) {
 TEST(Fits, CreditIsTheAuthorElseTheOrigin) {
     const TempFolder folder;
     const auto write = [&](const char* name, const std::vector<std::pair<const char*, const char*>>& keys) {
-        fitsfile* out = nullptr;
-        int status = 0;
-        long axes[] = {2, 1};
-        float values[] = {1.0f, 2.0f};
-        fits_create_diskfile(&out, (folder / name).c_str(), &status);
-        fits_create_img(out, FLOAT_IMG, 2, axes, &status);
-        for (const auto& [key, value] : keys)
-            fits_update_key(out, TSTRING, key, const_cast<char*>(value), nullptr, &status);
-        fits_write_img(out, TFLOAT, 1, 2, values, &status);
-        fits_close_file(out, &status);
-        EXPECT_EQ(status, 0);
-        return folder / name;
+        std::string cards;
+        for (const auto& [key, value] : keys) cards += fits_card(fmt::format("{:8}= '{:8}'", key, value));
+        return folder.file(name, fits_file(2, 1, cards, [](int x, int) { return 1 + x; }));
     };
     EXPECT_EQ(read_fits(write("a.fits", {{"ORIGIN", "KPNO-IRAF"}}), "auto", 0).credit, "KPNO-IRAF");
     EXPECT_EQ(read_fits(write("b.fits", {{"ORIGIN", "KPNO"}, {"AUTHOR", "A. Nobody"}}), "auto", 0).credit,
@@ -188,7 +173,7 @@ TEST(Fits, AFileOfTablesIsNoPicture) {
     fits_create_tbl(out, BINARY_TBL, 3, 1, names, forms, nullptr, "EVENTS", &status);
     fits_close_file(out, &status);
     ASSERT_EQ(status, 0);
-    EXPECT_EQ(message_of<InputError>([&] { require_picture(file); }),
+    EXPECT_EQ(ERROR_OF(require_picture(file)),
               file.string() + ": expected an HDU with a picture, found none in 2 HDUs");
     EXPECT_EQ(describe_fits(file).size(), 2u);
 }
@@ -197,8 +182,7 @@ TEST(Fits, PipesAreRefusedAndReadingStopsWhenAsked) {
     const TempFolder folder;
     const fs::path pipe = folder / "pipe.fits";
     ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
-    EXPECT_EQ(message_of<InputError>([&] { describe_fits(pipe); }),
-              pipe.string() + ": cannot be read: it is not a regular file");
+    EXPECT_EQ(ERROR_OF(describe_fits(pipe)), pipe.string() + ": cannot be read: it is not a regular file");
     const fs::path file = write_compressed(folder / "a.fits", RICE_1);
     const std::atomic<bool> stop{true};
     EXPECT_THROW(read_fits(file, "auto", 0, Progress{{}, &stop}), Cancelled);
@@ -209,19 +193,10 @@ TEST(Fits, PipesAreRefusedAndReadingStopsWhenAsked) {
 std::optional<FitsSky> sky_with(const std::vector<std::pair<const char*, double>>& keys,
                                 const char* type = "RA---TAN") {
     const TempFolder folder;
-    fitsfile* out = nullptr;
-    int status = 0;
-    long axes[] = {4, 4};
-    std::vector<float> values(16, 1.0f);
-    fits_create_diskfile(&out, (folder / "sky.fits").c_str(), &status);
-    fits_create_img(out, FLOAT_IMG, 2, axes, &status);
-    fits_write_key_str(out, "CTYPE1", type, nullptr, &status);
-    fits_write_key_str(out, "CTYPE2", "DEC--TAN", nullptr, &status);
-    for (auto [key, value] : keys) fits_write_key(out, TDOUBLE, key, &value, nullptr, &status);
-    fits_write_img(out, TFLOAT, 1, 16, values.data(), &status);
-    fits_close_file(out, &status);
-    EXPECT_EQ(status, 0);
-    return read_fits(folder / "sky.fits", "auto", 0).sky;
+    std::string cards = fits_card(fmt::format("CTYPE1  = '{}'", type)) + fits_card("CTYPE2  = 'DEC--TAN'");
+    for (const auto& [key, value] : keys) cards += fits_card(fmt::format("{:8}= {:20.12f}", key, value));
+    return read_fits(folder.file("sky.fits", fits_file(4, 4, cards, [](int, int) { return 1; })), "auto", 0)
+        .sky;
 }
 
 TEST(FitsSky, IsReadFromAllThreeKindsOfKeywords) {

@@ -6,12 +6,10 @@
 
 #include <atomic>
 #include <clocale>
-#include <cmath>
 #include <glm/geometric.hpp>
 #include <sstream>
 
 #include "core/error.h"
-#include "core/log.h"
 #include "core/real.h"
 #include "support/errors.h"
 #include "support/quiet.h"
@@ -19,8 +17,6 @@
 
 namespace astrosplat {
 namespace {
-
-namespace fs = std::filesystem;
 
 Mesh from_text(const std::string& text) {
     const TempFolder folder;
@@ -31,7 +27,7 @@ Mesh from_text(const std::string& text) {
 std::string obj_error(const std::string& text) {
     const TempFolder folder;
     const fs::path file = folder.file("m.obj", text);
-    const std::string message = message_of<InputError>([&] { load_obj(file); });
+    const std::string message = ERROR_OF(load_obj(file));
     EXPECT_EQ(message.rfind(file.string(), 0), 0u) << message;
     EXPECT_EQ(message.find('\n'), std::string::npos);
     return message.substr(std::min(message.size(), file.string().size()));
@@ -209,9 +205,8 @@ TEST(Obj, TinyobjloaderDoesNotReadOrRefuseAsWeDo) {
 
 TEST(ObjErrors, FolderAndMissingFile) {
     const TempFolder folder;
-    EXPECT_EQ(message_of<InputError>([&] { load_obj(folder.path()); }),
-              folder.path().string() + ": cannot be read: it is a folder");
-    EXPECT_EQ(message_of<InputError>([&] { load_obj(folder / "x.obj"); }),
+    EXPECT_EQ(ERROR_OF(load_obj(folder.path())), folder.path().string() + ": cannot be read: it is a folder");
+    EXPECT_EQ(ERROR_OF(load_obj(folder / "x.obj")),
               (folder / "x.obj").string() + ": cannot be read: No such file or directory");
 }
 
@@ -255,7 +250,7 @@ TEST(ApplyUv, PlanarProjectionsPointAsTheDesignSays) {
 TEST(ApplyUv, MissingUvIsAnErrorThatSaysWhatHelps) {
     Mesh mesh = from_text(square + "f 1 2 3\n");
     mesh.name = "m.obj";
-    EXPECT_EQ(message_of<InputError>([&] { apply_uv(mesh, UvMode::mesh, bounds(mesh)); }),
+    EXPECT_EQ(ERROR_OF(apply_uv(mesh, UvMode::mesh, bounds(mesh))),
               "m.obj: expected texture coordinates ('vt') at every face, or uv = \"planar-xz\" or another "
               "projection, "
               "found a face without them");

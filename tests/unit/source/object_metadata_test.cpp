@@ -1,14 +1,9 @@
 #include "source/object_metadata.h"
 
-#include <fitsio.h>
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <string>
-#include <utility>
-#include <vector>
-
 #include "source/picture.h"
+#include "support/fits_text.h"
 #include "support/temp_folder.h"
 #include "support/test_data.h"
 
@@ -193,34 +188,17 @@ TEST(DegreesPerPixel, FollowTheReferenceThatThePictureWasCutFrom) {
     EXPECT_FALSE(degrees_per_px_of(metadata, 721, 360)) << "wider than the sky";
 }
 
-void put(fitsfile* out, const char* key, double value, const char* comment = "") {
-    int status = 0;
-    fits_update_key(out, TDOUBLE, key, &value, comment, &status);
-    ASSERT_EQ(status, 0);
-}
-
 using Cards = std::vector<std::pair<const char*, double>>;
 
-std::filesystem::path write_sky(const TempFolder& folder, const char* name, const char* distance_unit,
-                                const Cards& cards) {
-    const std::filesystem::path file = folder / name;
-    fitsfile* out = nullptr;
-    int status = 0;
-    long axes[] = {4, 3};
-    std::array<float, 12> values{};
-    values[5] = 1.0f;
-    fits_create_diskfile(&out, file.c_str(), &status);
-    fits_create_img(out, FLOAT_IMG, 2, axes, &status);
-    fits_write_key_str(out, "OBJECT", "M 51", "", &status);
-    fits_write_key_str(out, "CTYPE1", "RA---TAN", "", &status);
-    fits_write_key_str(out, "CTYPE2", "DEC--TAN", "", &status);
-    put(out, "CRPIX1", 2.0), put(out, "CRPIX2", 1.5), put(out, "CRVAL1", 202.5), put(out, "CRVAL2", 47.2);
-    for (const auto& [key, value] : cards) put(out, key, value);
-    put(out, "DISTANCE", 2.0, distance_unit);
-    fits_write_img(out, TFLOAT, 1, 12, values.data(), &status);
-    fits_close_file(out, &status);
-    EXPECT_EQ(status, 0);
-    return file;
+std::filesystem::path write_sky(const TempFolder& folder, const char* name, const std::string& distance_unit,
+                                const Cards& more) {
+    Cards numbers{{"CRPIX1", 2.0}, {"CRPIX2", 1.5}, {"CRVAL1", 202.5}, {"CRVAL2", 47.2}};
+    numbers.insert(numbers.end(), more.begin(), more.end());
+    std::string cards = fits_card("OBJECT  = 'M 51    '") + fits_card("CTYPE1  = 'RA---TAN'") +
+                        fits_card("CTYPE2  = 'DEC--TAN'");
+    for (const auto& [key, value] : numbers) cards += fits_card(fmt::format("{:8}= {:20.12E}", key, value));
+    cards += fits_card("DISTANCE=                  2.0 / " + distance_unit);
+    return folder.file(name, fits_file(4, 3, cards, [](int x, int y) { return x == 1 && y == 1; }));
 }
 
 TEST(FitsMetadata, HasObjectPlaceAndDistance) {

@@ -6,11 +6,7 @@
 #include <OpenImageIO/imageio.h>
 #include <fitsio.h>
 
-#include <cmath>
-#include <limits>
-
 #include "core/color.h"
-#include "core/error.h"
 #include "core/real.h"
 #include "source/fits.h"
 #include "source/picture.h"
@@ -21,7 +17,6 @@
 namespace astrosplat {
 namespace {
 
-namespace fs = std::filesystem;
 using Alpha = TextureSettings::Alpha;
 using Colorspace = TextureSettings::Colorspace;
 using Stretch = TextureSettings::Stretch;
@@ -208,8 +203,7 @@ TEST_F(TextureTest, RawImagesKeepStoredValues) {
 TEST(TextureErrors, OneLineEach) {
     const TempFolder folder;
     const auto error = [](const std::vector<fs::path>& files, const TextureSettings& settings = {}) {
-        const std::string message =
-            message_of<InputError>([&] { load_texture(files, settings, Wrap::clamp); });
+        const std::string message = ERROR_OF(load_texture(files, settings, Wrap::clamp));
         EXPECT_EQ(message.find('\n'), std::string::npos) << message;
         return message;
     };
@@ -283,7 +277,7 @@ TEST(Fits, Errors) {
     const TempFolder folder;
     const fs::path file = write_fits(folder / "x.fits", {2, 2}, {1, 2, 3, 4});
     const auto error = [&](const char* hdu, int plane) {
-        const std::string message = message_of<InputError>([&] { read_fits(file, hdu, plane); });
+        const std::string message = ERROR_OF(read_fits(file, hdu, plane));
         return message.substr(std::min(message.size(), file.string().size()));
     };
     EXPECT_EQ(error("7", 0), ": expected an HDU from 0 to 0, found hdu = 7");
@@ -293,10 +287,10 @@ TEST(Fits, Errors) {
     settings.black = 2.0;
     settings.white = 1.0;
     EXPECT_EQ(
-        message_of<InputError>([&] { pixels_of(file, settings); }),
+        ERROR_OF(pixels_of(file, settings)),
         file.string() + ": expected a black point below the white point, found black = 2 and white = 1");
     fs::resize_file(write_fits(folder / "cut.fits", {100, 100}, std::vector<float>(10000)), 2880 + 1000);
-    const std::string cut = message_of<InputError>([&] { pixels_of(folder / "cut.fits"); });
+    const std::string cut = ERROR_OF(pixels_of(folder / "cut.fits"));
     EXPECT_EQ(cut.rfind((folder / "cut.fits").string() + ": FITS ", 0), 0u) << cut;
 }
 
@@ -312,7 +306,7 @@ TEST(Picture, ACutJpegIsAnError) {
         const fs::path cut = folder / "cut.jpg";
         fs::copy_file(whole, cut, fs::copy_options::overwrite_existing);
         fs::resize_file(cut, kept);
-        EXPECT_EQ(message_of<InputError>([&] { read_picture(cut); }),
+        EXPECT_EQ(ERROR_OF(read_picture(cut)),
                   cut.string() + ": cannot be read as a picture: the file ends before the picture does");
     }
 }

@@ -4,49 +4,33 @@
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
-#include <bit>
 #include <cfloat>
-#include <cstdint>
-#include <filesystem>
-#include <fstream>
 #include <iterator>
-#include <string>
 
 #include "core/error.h"
 #include "core/file_format.h"
 #include "core/parallel.h"
 #include "splats/splat_set.h"
 #include "support/bits.h"
+#include "support/temp_folder.h"
 
 namespace astrosplat {
 
 class SplatFileTest : public testing::Test {
   protected:
-    SplatFileTest() {
-        const auto* info = testing::UnitTest::GetInstance()->current_test_info();
-        folder_ =
-            std::filesystem::temp_directory_path() / (std::string("astrosplat ü ") + info->test_suite_name() +
-                                                      info->name() + std::to_string(getpid()));
-        std::filesystem::create_directories(folder_);
-    }
-    ~SplatFileTest() override {
-        set_thread_count(0);
-        std::filesystem::remove_all(folder_);
-    }
+    ~SplatFileTest() override { set_thread_count(0); }
 
     std::filesystem::path path(const std::string& name) const { return folder_ / name; }
 
     /// Writes the text as a file of this test.
     std::filesystem::path write(const std::string& name, const std::string& bytes) const {
         std::filesystem::remove(path(name));  // writing over a file waits for the disk on ext4
-        std::ofstream(path(name), std::ios::binary) << bytes;
-        return path(name);
+        return folder_.file(name, bytes);
     }
 
   private:
-    std::filesystem::path folder_;
+    TempFolder folder_;
 };
 
 using test::bytes_of;

@@ -2,15 +2,9 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <bit>
 #include <cfloat>
 #include <charconv>
 #include <csignal>
-#include <cstdint>
-#include <limits>
-#include <string>
-#include <vector>
 
 #include "core/file.h"
 #include "core/file_format.h"
@@ -286,7 +280,7 @@ TEST_F(NativeBlocksTest, DamageIsFoundWhereItIsLookedFor) {
     EXPECT_NO_THROW(damaged.read(1, all, NativeBlocks::Check::none, block));
     const std::string error =
         error_of(file, [&](const auto&) { damaged.read(1, all, NativeBlocks::Check::all, block); });
-    EXPECT_NE(error.find("block 1: expected the checksum written with it"), std::string::npos) << error;
+    EXPECT_HAS(error, "block 1: expected the checksum written with it");
 }
 
 TEST_F(NativeBlocksTest, AFileThatIsCutShortIsSaid) {
@@ -295,7 +289,7 @@ TEST_F(NativeBlocksTest, AFileThatIsCutShortIsSaid) {
     SplatSet block;
     const std::string error =
         error_of(path("a.splats"), [&](const auto&) { file.read(2, all, NativeBlocks::Check::none, block); });
-    EXPECT_NE(error.find("it became shorter while it was read"), std::string::npos) << error;
+    EXPECT_HAS(error, "it became shorter while it was read");
 }
 
 TEST_F(NativeBlocksTest, ASampleIsSomeOfTheRows) {

@@ -1,16 +1,11 @@
 // Gaussians of captures in PLY, glTF and USD text.
 #include <fmt/format.h>
 
-#include <cmath>
 #include <glm/geometric.hpp>
-#include <limits>
-#include <string>
-#include <vector>
 
 #include "core/color.h"
 #include "core/log.h"
 #include "core/rotation.h"
-#include "splat_files/formats.h"
 #include "splat_files/gaussian_rows.h"
 #include "splat_files/native.h"
 #include "splat_files/splat_file.h"
@@ -39,6 +34,9 @@ class GaussianFiles : public SplatFileTest {
     std::string error_glb(const std::string& bytes) { return error(bytes, "a.glb"); }
     std::string error_usda(const std::string& bytes) { return error(bytes, "a.usda"); }
 };
+
+const std::vector<std::string> columns = {"position", "color",    "alpha",    "radius",
+                                          "scale",    "rotation", "harmonics"};
 
 void expect_near(const SplatSet& set, const std::vector<Trained>& all, int degree) {
     ASSERT_EQ(set.size(), std::int64_t(all.size()));
@@ -76,9 +74,7 @@ TEST_F(GaussianFiles, PlyOfEveryDegree) {
         expect_near(set, all, degree);
         EXPECT_TRUE(set.display_harmonics);
     }
-    EXPECT_EQ(
-        splat_attributes(path("a.ply")),
-        (std::vector<std::string>{"position", "color", "alpha", "radius", "scale", "rotation", "harmonics"}));
+    EXPECT_EQ(splat_attributes(path("a.ply")), columns);
 }
 
 TEST_F(GaussianFiles, PlyInAnyOrderAsTextAndWithStrangers) {
@@ -151,9 +147,7 @@ TEST_F(GaussianFiles, GlbOfEveryDegree) {
         const std::vector<Trained> all = capture(20, degree);
         expect_near(read(glb_of(all, degree), "a.glb"), all, degree);
     }
-    EXPECT_EQ(
-        splat_attributes(path("a.glb")),
-        (std::vector<std::string>{"position", "color", "alpha", "radius", "scale", "rotation", "harmonics"}));
+    EXPECT_EQ(splat_attributes(path("a.glb")), columns);
     EXPECT_TRUE(may_hold_splats(path("a.glb")));
     EXPECT_FALSE(may_hold_splats(write("b.gltf", "{}")));
     const SplatSet linear = read(glb_of(capture(3, 0), 0, "", "lin_rec709_display"), "a.glb");
@@ -164,22 +158,24 @@ TEST_F(GaussianFiles, GlbOfEveryDegree) {
 
 TEST_F(GaussianFiles, WrongGlb) {
     const std::string good = glb_of(capture(2, 1), 1);
+    const auto json_error = [&](const std::string& from, const std::string& to) {
+        return error_glb(replaced_json(good, from, to));
+    };
     EXPECT_EQ(error_glb("glTF"), "a.glb: expected glTF 2.0, JSON or binary, found something else");
-    EXPECT_EQ(error_glb(replaced_json(good, "\"ellipse\"", "\"box\"")),
-              "a.glb: expected the kernel ellipse, found 'box'");
-    EXPECT_EQ(error_glb(replaced_json(good, "srgb_rec709_display", "acescg")),
+    EXPECT_EQ(json_error("\"ellipse\"", "\"box\""), "a.glb: expected the kernel ellipse, found 'box'");
+    EXPECT_EQ(json_error("srgb_rec709_display", "acescg"),
               "a.glb: expected the colorSpace srgb_rec709_display or lin_rec709_display, found 'acescg'");
-    EXPECT_EQ(error_glb(replaced_json(good, "splatting:SCALE", "splatting:SIZE")),
+    EXPECT_EQ(json_error("splatting:SCALE", "splatting:SIZE"),
               "a.glb: expected an attribute KHR_gaussian_splatting:SCALE, found none");
-    EXPECT_EQ(error_glb(replaced_json(good, "SH_DEGREE_1_COEF_1", "SH_DEGREE_2_COEF_1")),
+    EXPECT_EQ(json_error("SH_DEGREE_1_COEF_1", "SH_DEGREE_2_COEF_1"),
               "a.glb: expected all coefficients up to degree 1, found some of them");
-    EXPECT_EQ(error_glb(replaced_json(good, "\"VEC4\"", "\"VEC3\"")),
+    EXPECT_EQ(json_error("\"VEC4\"", "\"VEC3\""),
               "a.glb: expected KHR_gaussian_splatting:ROTATION as VEC4, found 'VEC3'");
-    EXPECT_EQ(error_glb(replaced_json(good, "\"extensions\"", "\"extras\"")),
+    EXPECT_EQ(json_error("\"extensions\"", "\"extras\""),
               "a.glb: expected Gaussians (KHR_gaussian_splatting) in a node of its scene, found none");
     EXPECT_EQ(
-        error_glb(replaced_json(good, "\"kernel\":\"ellipse\"",
-                                "\"extensions\":{\"KHR_gaussian_splatting_compression_spz_2\":{}}")),
+        json_error("\"kernel\":\"ellipse\"",
+                   "\"extensions\":{\"KHR_gaussian_splatting_compression_spz_2\":{}}"),
         "a.glb: expected Gaussians that are not compressed, found KHR_gaussian_splatting_compression_spz_2");
     EXPECT_EQ(error_glb(glb_of(capture(2, 0), 0, R"(,"scale":[1,2,1])")),
               "a.glb: expected nodes that scale Gaussians alike along all axes, found others");
@@ -188,8 +184,7 @@ TEST_F(GaussianFiles, WrongGlb) {
     EXPECT_EQ(error_glb(glb_of(capture(2, 0), 0, R"(,"rotation":["a",0,0,1])")).substr(0, 51),
               "a.glb: expected glTF as its specification says, fou");
     EXPECT_EQ(
-        error_glb(replaced_json(good, "{\"asset\"",
-                                "{\"extensionsRequired\":[\"EXT_meshopt_compression\"],\"asset\"")),
+        json_error("{\"asset\"", "{\"extensionsRequired\":[\"EXT_meshopt_compression\"],\"asset\""),
         "a.glb: expected no required extensions but KHR_gaussian_splatting and KHR_mesh_quantization, found "
         "EXT_meshopt_compression");
     EXPECT_EQ(error_glb(good.substr(0, good.size() - 8)).substr(0, 40),
@@ -230,9 +225,7 @@ TEST_F(GaussianFiles, UsdaOfEveryDegree) {
         expect_near(read(replaced(usda_of(all, degree), "HarmonicsDegree", "HarmonicsRank"), "a.usda"), all,
                     degree);
     }
-    EXPECT_EQ(
-        splat_attributes(path("a.usda")),
-        (std::vector<std::string>{"position", "color", "alpha", "radius", "scale", "rotation", "harmonics"}));
+    EXPECT_EQ(splat_attributes(path("a.usda")), columns);
     EXPECT_EQ(splat_count(path("a.usda")), 20);
     EXPECT_TRUE(may_hold_splats(path("a.usda")));
     EXPECT_FALSE(may_hold_splats(write("b.usda", "#usda 1.0\ndef Camera \"shot\"\n{\n}\n")));

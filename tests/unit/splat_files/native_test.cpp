@@ -2,10 +2,6 @@
 // with conversions between all formats.
 #include "splat_files/native.h"
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-
 #include "core/hash.h"
 #include "splat_files/splat_file.h"
 #include "splats/row_order.h"

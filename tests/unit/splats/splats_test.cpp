@@ -1,14 +1,10 @@
 // Sets: bounds, orders and rows; spherical harmonics.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <atomic>
-#include <cmath>
 #include <glm/geometric.hpp>
-#include <limits>
 #include <numbers>
 #include <numeric>
-#include <vector>
 
 #include "core/error.h"
 #include "core/parallel.h"
@@ -197,9 +193,7 @@ TEST(MortonOrder, StopsWhenAskedAndBetweenItsSteps) {
     EXPECT_THROW(morton_order(cloud(1000), Progress{{}, &stop}), Cancelled);
     for (const double when : {0.4, 0.8}) {
         std::atomic<bool> later{false};
-        Progress progress;
-        progress.cancelled = &later;
-        progress.report = [&](double fraction) { later = fraction >= when; };
+        const Progress progress{[&](double fraction) { later = fraction >= when; }, &later};
         if (when < 0.8)
             EXPECT_THROW(morton_order(cloud(1000), progress), Cancelled);
         else

@@ -169,13 +169,12 @@ TEST(Structure, LibrariesStayBehindTheFilesThatWrapThem) {
     };
     std::vector<Include> includes = includes_below("engine");
     for (const Include& include : includes_below("app")) includes.push_back(include);
-    for (const Include& include : includes) {
+    for (const Include& include : includes)
         for (const auto& [library, place] : rules) {
             if (!std::regex_search(include.name, library)) continue;
             EXPECT_TRUE(std::regex_search(include.file, place))
                 << include.file << " includes " << include.name;
         }
-    }
 }
 
 // "astrosplat::native Block" of what a file defines at the level of namespaces that have names. What ends
@@ -207,7 +206,7 @@ std::vector<std::string> types_defined_in(const fs::path& file) {
 // The linker takes one destructor for both, and no one says so.
 TEST(Structure, NoTwoTypesHaveOneName) {
     std::map<std::string, std::string> file_of;
-    for (const char* const folder : {"engine", "app"}) {
+    for (const char* const folder : {"engine", "app"})
         for (const auto& entry : fs::recursive_directory_iterator(root / folder)) {
             if (!entry.is_regular_file() || !is_source(entry.path())) continue;
             const std::string file = fs::relative(entry.path(), root).generic_string();
@@ -216,7 +215,6 @@ TEST(Structure, NoTwoTypesHaveOneName) {
                 EXPECT_TRUE(is_new) << type << ": in " << known->second << " and " << file;
             }
         }
-    }
     EXPECT_GT(file_of.size(), 300u);
     EXPECT_TRUE(file_of.contains("astrosplat SplatSet"));
     EXPECT_TRUE(file_of.contains("astrosplat::native Block"));

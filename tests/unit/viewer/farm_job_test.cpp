@@ -4,9 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <chrono>
-#include <filesystem>
 #include <thread>
 
 #include "support/run_program.h"
@@ -14,8 +12,6 @@
 
 namespace astrosplat {
 namespace {
-
-namespace fs = std::filesystem;
 
 using test::text_of;
 std::string status_of(int done, const std::string& frames, bool complete, const std::string& queue,
@@ -77,6 +73,16 @@ TEST(FarmReport, JobsOfASubmission) {
     EXPECT_TRUE(submitted_jobs("submitted as job x, which waits for the sets of job 2").empty());
 }
 
+/// Polls until `done`, for ten seconds at most; so much of the asked one's own time goes by in a moment.
+template <class Asked, class Done>
+bool poll_until(Asked& asked, double& now, double step, const Done& done) {
+    for (int i = 0; i < 2000 && !done(); ++i) {
+        asked.poll(now += step);
+        std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
+    return done();
+}
+
 class FarmJobTest : public testing::Test {
   protected:
     /// The program says `submitted`, then what lies in the file "status".
@@ -88,17 +94,12 @@ class FarmJobTest : public testing::Test {
         return FarmJob(commands);
     }
     void status(const std::string& text) { folder_.file("status", text); }
-    /// Until `done`; a second of the job's time goes by in a moment.
     template <class Done>
-    bool poll_until(FarmJob& job, const Done& done) {
-        for (int i = 0; i < 2000 && !done(); ++i) {
-            job.poll(now_ += 1.0);
-            std::this_thread::sleep_for(std::chrono::milliseconds(5));
-        }
-        return done();
+    bool comes(FarmJob& job, const Done& done) {
+        return poll_until(job, now_, 1.0, done);
     }
     bool ends(FarmJob& job) {
-        return poll_until(job, [&] { return job.state() != FarmJob::State::running; });
+        return comes(job, [&] { return job.state() != FarmJob::State::running; });
     }
 
     const std::string submitted_ =
@@ -110,13 +111,13 @@ class FarmJobTest : public testing::Test {
 TEST_F(FarmJobTest, IsDoneWhenAllFramesAreThere) {
     status(status_of(3, "1-3", false, at_work));
     FarmJob farm = job(submitted_);
-    ASSERT_TRUE(poll_until(farm, [&] { return farm.progress() > 0.0f; }));
+    ASSERT_TRUE(comes(farm, [&] { return farm.progress() > 0.0f; }));
     EXPECT_EQ(farm.progress(), 0.25f);
     EXPECT_EQ(farm.text(), "3 of 12 done, in the queue: 2 pending, 1 running");
     EXPECT_EQ(farm.files(), (std::vector<std::filesystem::path>{"/frames/a.0001.png", "/frames/a.0002.png",
                                                                 "/frames/a.0003.png"}));
     status("the disk is away");
-    EXPECT_TRUE(poll_until(farm, [&] { return farm.text() == "the disk is away"; }));
+    EXPECT_TRUE(comes(farm, [&] { return farm.text() == "the disk is away"; }));
     EXPECT_EQ(farm.state(), FarmJob::State::running);
     status(status_of(12, "1-12", true, over));
     ASSERT_TRUE(ends(farm));
@@ -193,22 +194,16 @@ TEST(EarlierFarmJobs, AreThoseThatStatusTells) {
                     "[[layer]]\nname = \"a\"\n[layer.source]\nmeshes = [ { mesh = \"plane\" } ]\n"));
     RenderQueue queue(SetCache(), program.string());
     double now = 0.0;
-    const auto poll_until = [&](std::size_t asked) {
-        for (int i = 0; i < 2000; ++i) {
-            queue.poll(now += 0.001);
-            const std::string text = text_of(folder / "asked");
-            if (std::count(text.begin(), text.end(), '\n') >= std::ptrdiff_t(asked)) break;
-            std::this_thread::sleep_for(std::chrono::milliseconds(5));
-        }
-        for (int i = 0; i < 20; ++i) {
-            queue.poll(now += 0.001);
-            std::this_thread::sleep_for(std::chrono::milliseconds(5));
-        }
+    const auto wait_for = [&](std::ptrdiff_t asked) {
+        EXPECT_TRUE(poll_until(queue, now, 0.001,
+                               [&] { return std::ranges::count(text_of(folder / "asked"), '\n') >= asked; }));
+        int more = 20;
+        poll_until(queue, now, 0.001, [&] { return --more < 0; });
     };
     queue.list_earlier(document);
-    poll_until(3);  // the question, and one about each of two jobs
+    wait_for(3);  // the question, and one about each of two jobs
     queue.list_earlier(document);
-    poll_until(4);
+    wait_for(4);
     ASSERT_EQ(queue.jobs().size(), 2u);
     EXPECT_EQ(queue.jobs()[0].title, "m51.toml: Frames 1-12, Slurm");
     EXPECT_EQ(queue.jobs()[1].title, "m51.toml: Frames 1-3, Slurm");
@@ -236,10 +231,8 @@ TEST(RenderQueue, JobsTakeNoMoreOfTheMachineThanTheWindow) {
             return job.state == QueuedJob::State::waiting || job.state == QueuedJob::State::running;
         });
     };
-    for (int i = 0; i < 4000 && !ended(); ++i) {
-        queue.poll(0.001 * i);
-        std::this_thread::sleep_for(std::chrono::milliseconds(5));
-    }
+    double now = 0.0;
+    EXPECT_TRUE(poll_until(queue, now, 0.001, ended));
     const std::string asked = text_of(folder / "asked"), render = asked.substr(0, asked.find('\n')),
                       prepare = asked.substr(render.size() + 1);
     EXPECT_NE(render.find(" --threads=4 --memory=8 "), std::string::npos) << asked;

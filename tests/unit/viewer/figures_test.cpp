@@ -1,9 +1,7 @@
 // Figures of layers and of differences, thumbnails, references, and the layer that a click selects.
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <glm/geometric.hpp>
-#include <limits>
 
 #include "core/color.h"
 #include "support/splats.h"

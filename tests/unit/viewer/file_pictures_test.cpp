@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <thread>
 
 #include "core/log.h"
@@ -16,8 +15,6 @@
 
 namespace astrosplat {
 namespace {
-
-namespace fs = std::filesystem;
 
 struct RenderedFramesTest : testing::Test {
     TempFolder folder;

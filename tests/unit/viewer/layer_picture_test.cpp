@@ -19,9 +19,12 @@
 namespace astrosplat {
 namespace {
 
-template <class Work>
-void wait(const Work& work) {
+/// What is found for the request.
+template <class Work, class Request>
+auto asked(Work& work, const Request& request) {
+    work.want(request);
     while (work.working()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    return work.found(request);
 }
 
 class FrontCheckTest : public testing::Test {
@@ -45,9 +48,7 @@ class FrontCheckTest : public testing::Test {
 TEST_F(FrontCheckTest, FindsWhatTheEngineMeasures) {
     FrontCheck check{front_check()};
     EXPECT_FALSE(check.working());
-    check.want(request());
-    wait(check);
-    const auto found = check.found(request());
+    const auto found = asked(check, request());
     ASSERT_TRUE(found);
     const FrontComparison expected = compare_front(scene, sets, fidelity_reference(scene, {}), 64);
     EXPECT_EQ(found->error, "");
@@ -61,9 +62,7 @@ TEST_F(FrontCheckTest, FindsWhatTheEngineMeasures) {
 TEST_F(FrontCheckTest, WhatIsFoundBelongsToItsRequest) {
     FrontCheck check{front_check(32)};
     const FrontRequest before = request();
-    check.want(before);
-    wait(check);
-    const auto found = check.found(before);
+    const auto found = asked(check, before);
     ASSERT_TRUE(found);
     EXPECT_EQ(found->fidelity.width_px, 32);
     scene.camera.position = {1.0, 2.0, 3.0};
@@ -72,10 +71,8 @@ TEST_F(FrontCheckTest, WhatIsFoundBelongsToItsRequest) {
     EXPECT_EQ(check.found(request()), found) << "no front depends on camera and exposure";
     scene.layers[0].look.grade.gain = 0.5f;
     EXPECT_FALSE(check.found(request()));
-    check.want(request());
-    wait(check);
+    ASSERT_TRUE(asked(check, request()));
     EXPECT_FALSE(check.found(before));
-    ASSERT_TRUE(check.found(request()));
     EXPECT_LT(check.found(request())->fidelity.flux.frame, 0.6 * found->fidelity.flux.frame);
 }
 
@@ -85,9 +82,7 @@ TEST_F(FrontCheckTest, CancelledItHasFoundNothingAndCanBeAskedAgain) {
     check.cancel();
     EXPECT_FALSE(check.working());
     EXPECT_FALSE(check.found(request()));
-    check.want(request());
-    wait(check);
-    EXPECT_TRUE(check.found(request()));
+    EXPECT_TRUE(asked(check, request()));
     check.cancel();
     EXPECT_TRUE(check.found(request())) << "nothing was under way";
 }
@@ -95,9 +90,7 @@ TEST_F(FrontCheckTest, CancelledItHasFoundNothingAndCanBeAskedAgain) {
 TEST_F(FrontCheckTest, ALayerWithoutAPictureSaysSo) {
     scene.layers[0].source.meshes[0].texture = {small.folder / "missing.ppm"};
     FrontCheck check{front_check()};
-    check.want(request());
-    wait(check);
-    const auto found = check.found(request());
+    const auto found = asked(check, request());
     ASSERT_TRUE(found);
     EXPECT_NE(found->error.find("missing.ppm"), std::string::npos) << found->error;
 }
@@ -150,9 +143,7 @@ class PreparePreviewTest : public testing::Test {
 
 TEST_F(PreparePreviewTest, ShowsThePictureBeforeAndAfter) {
     PreparePreview preview{prepare_preview()};
-    preview.want(request());
-    wait(preview);
-    const auto found = preview.found(request());
+    const auto found = asked(preview, request());
     ASSERT_TRUE(found);
     EXPECT_EQ(found->error, "");
     EXPECT_EQ(found->stars, 12);
@@ -214,9 +205,7 @@ TEST_F(PreparePreviewTest, WhatComesLaterIsLeftOut) {
 TEST_F(PreparePreviewTest, SaysWhyNothingCanBeShown) {
     PreparePreview preview{prepare_preview()};
     layer.source.meshes[0].texture = {folder / "missing.png"};
-    preview.want(request());
-    wait(preview);
-    ASSERT_TRUE(preview.found(request()));
+    ASSERT_TRUE(asked(preview, request()));
     EXPECT_NE(preview.found(request())->error.find("missing.png"), std::string::npos);
     EXPECT_FALSE(preview.found(request(1))) << "of another request nothing is known";
 }

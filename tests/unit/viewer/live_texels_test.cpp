@@ -4,8 +4,6 @@
 
 #include <gtest/gtest.h>
 
-#include <functional>
-#include <span>
 #include <thread>
 
 #include "edit/document.h"

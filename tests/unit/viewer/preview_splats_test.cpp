@@ -1,10 +1,8 @@
 // How many splats a preview draws, and which.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <chrono>
 #include <thread>
-#include <vector>
 
 #include "core/error.h"
 #include "core/progress.h"

@@ -2,12 +2,8 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <fstream>
-#include <optional>
-#include <string>
 #include <tuple>
 
 #include "core/file.h"
@@ -31,8 +27,6 @@ namespace {
 
 // Trees in the cache: the same bits as built, for every set with the same positions; what is damaged is built
 // again; how much they may take.
-
-namespace fs = std::filesystem;
 
 SplatSet cloud(std::uint32_t count, std::uint32_t seed = 1) {
     SplatSet set;

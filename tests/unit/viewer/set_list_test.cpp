@@ -1,8 +1,6 @@
 // The next task for each layer, and the sample of a set while it grows.
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
 #include <set>
 
 #include "sets/load_source.h"
@@ -20,10 +18,15 @@ class SetListTest : public testing::Test {
     Scene scene;
     SetList list{1000};
 
-    void add_layer(const std::string& name) {
-        LayerParams layer;
+    LayerParams& add_layer(const std::string& name) {
+        LayerParams& layer = scene.layers.emplace_back();
         layer.name = name;
-        scene.layers.push_back(layer);
+        return layer;
+    }
+    /// With these layers more.
+    void want(const std::vector<std::string>& names) {
+        for (const std::string& name : names) add_layer(name);
+        list.want(scene);
     }
     /// The task that the list begins next, as "task name"; "": nothing.
     std::string begun() {
@@ -51,12 +54,9 @@ class SetListTest : public testing::Test {
 };
 
 TEST_F(SetListTest, TheNewestWishComesFirst) {
-    add_layer("gas");
-    add_layer("dust");
-    list.want(scene);
+    want({"gas", "dust"});
     EXPECT_EQ(begun(), "load gas");
-    add_layer("stars");
-    list.want(scene);
+    want({"stars"});
     keep(true);
     EXPECT_EQ(begun(), "load stars");
     keep(true);
@@ -68,9 +68,7 @@ TEST_F(SetListTest, TheNewestWishComesFirst) {
 
 TEST_F(SetListTest, SamplesOfAllLayersComeBeforeAnySet) {
     list = SetList(1000, true);
-    add_layer("gas");
-    add_layer("dust");
-    list.want(scene);
+    want({"gas", "dust"});
     EXPECT_EQ(begun(), "sample gas");
     const SetList::Layer sampled = result(false);
     const std::uint64_t revision = list.revision();
@@ -99,8 +97,7 @@ TEST_F(SetListTest, ASampleGoesWithItsWish) {
     for (const bool fails : {false, true}) {
         list = SetList(1000, true);
         scene.layers.clear();
-        add_layer("gas");
-        list.want(scene);
+        want({"gas"});
         EXPECT_EQ(begun(), "sample gas");
         list.show_sample(*job, result(false));
         list.end();
@@ -116,9 +113,9 @@ TEST_F(SetListTest, ASampleGoesWithItsWish) {
 }
 
 TEST_F(SetListTest, HowStarsLookMakesNoOtherSet) {
-    add_layer("sky");
-    StarsParams& stars = scene.layers[0].source.stars;
-    scene.layers[0].source.kind = SourceKind::stars;
+    SourceParams& source = add_layer("sky").source;
+    StarsParams& stars = source.stars;
+    source.kind = SourceKind::stars;
     list.want(scene);
     EXPECT_EQ(begun(), "load sky");
     keep(true);
@@ -152,9 +149,7 @@ TEST_F(SetListTest, StarsAlongTheCameraFollowItsPath) {
 }
 
 TEST_F(SetListTest, WhatComesLaterWaitsForAllSetsAndWhileItIsHeld) {
-    add_layer("gas");
-    add_layer("dust");
-    list.want(scene);
+    want({"gas", "dust"});
     EXPECT_EQ(begun(), "load gas");
     keep(false);
     EXPECT_EQ(begun(), "load dust");
@@ -174,8 +169,7 @@ TEST_F(SetListTest, WhatComesLaterWaitsForAllSetsAndWhileItIsHeld) {
 }
 
 TEST_F(SetListTest, WhatIsAbandonedBeginsAgainWhenItIsWanted) {
-    add_layer("gas");
-    list.want(scene);
+    want({"gas"});
     begun();
     list.abandon("gas");
     EXPECT_TRUE(job->cancelled);
@@ -188,8 +182,7 @@ TEST_F(SetListTest, WhatIsAbandonedBeginsAgainWhenItIsWanted) {
 }
 
 TEST_F(SetListTest, AGrowingSetIsShownBesideAnOldOneFromHalfOnwards) {
-    add_layer("gas");
-    list.want(scene);
+    want({"gas"});
     begun();
     const auto keep_one = [&] {
         job->growing.begins({}, {});
@@ -213,8 +206,7 @@ TEST_F(SetListTest, AGrowingSetIsShownBesideAnOldOneFromHalfOnwards) {
 }
 
 TEST_F(SetListTest, AJobKeepsWhatItBeganWithWhateverBecomesOfItsLayer) {
-    add_layer("gas");
-    list.want(scene);
+    want({"gas"});
     begun();
     keep(false);
     const SetList::Layer first = list.shown("gas");
@@ -236,8 +228,7 @@ TEST_F(SetListTest, AJobKeepsWhatItBeganWithWhateverBecomesOfItsLayer) {
 }
 
 TEST_F(SetListTest, AResultGivesBackWhatItReplaces) {
-    add_layer("gas");
-    list.want(scene);
+    want({"gas"});
     begun();
     EXPECT_FALSE(keep(true));
     const SetList::Layer first = list.shown("gas");

@@ -3,18 +3,15 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <chrono>
 #include <condition_variable>
-#include <functional>
 #include <mutex>
-#include <optional>
 #include <thread>
-#include <utility>
 
 #include "core/error.h"
 #include "sets/load_source.h"
 #include "splat_files/formats.h"
+#include "support/bits.h"
 #include "support/fits_text.h"
 #include "support/small_scene.h"
 #include "support/splats.h"
@@ -42,9 +39,8 @@ TEST_F(SetLoaderTest, BringsWhatLoadingBrings) {
         const auto found = loaded(layer.name);
         ASSERT_TRUE(found);
         const SplatSet wanted = load_source(layer.source, layer.name);
-        EXPECT_TRUE(
-            std::equal(wanted.id.begin(), wanted.id.end(), found->set->id.begin(), found->set->id.end()));
-        EXPECT_TRUE(std::equal(wanted.color.begin(), wanted.color.end(), found->set->color.begin()));
+        EXPECT_TRUE(same_bits(wanted.id, found->set->id));
+        EXPECT_TRUE(same_bits(wanted.color, found->set->color));
         EXPECT_TRUE(found->arranged);
         EXPECT_EQ(found->sample.set->size(), 5000);
         EXPECT_EQ(found->sample.tree->rows.size(), 5000u);
@@ -272,8 +268,8 @@ TEST_F(GrowingSetsTest, ASetIsSeenGrowingAndThenWhole) {
     const SplatSet wanted = load_source(gas().source, gas().name);
     EXPECT_LT(growing->splats, wanted.size());
     EXPECT_EQ(whole->splats, wanted.size());
-    EXPECT_TRUE(std::equal(wanted.id.begin(), wanted.id.end(), whole->set->id.begin(), whole->set->id.end()));
-    EXPECT_TRUE(std::equal(wanted.position.begin(), wanted.position.end(), whole->set->position.begin()));
+    EXPECT_TRUE(same_bits(wanted.id, whole->set->id));
+    EXPECT_TRUE(same_bits(wanted.position, whole->set->position));
     EXPECT_NEAR(growing->radius.x, whole->radius.x, 1e-12);
 }
 

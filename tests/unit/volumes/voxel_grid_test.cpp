@@ -4,10 +4,8 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <map>
 #include <numbers>
-#include <utility>
 
 namespace astrosplat::test {
 namespace {
