@@ -274,10 +274,14 @@ const Knot& knot_of(const Placement& placement, std::int32_t knot) { return plac
 // How many of a knot's splats follow it: all, but none of a smooth galaxy's, nor of its spheroid's. Beyond
 // the galaxy, where knots are background galaxies, all of its light does.
 float share_in_knots(const Placement& placement, const BandSplats& splats, const Knot& knot) {
+    constexpr float widest_ball = 3.5f, fades_over = 2.0f;  // px, sigma of a knot
     if (placement.galaxies.empty()) return 1.0f;
     const GalaxyBody& galaxy = placement.galaxy_at(knot.x, knot.y, 0.5f);
     const float beyond = 1.0f - galaxy.value_at(galaxy.lit, knot.x, knot.y);
-    return splats.family == GalaxyFamily::spheroid ? beyond : std::max(beyond, galaxy.roughness);
+    if (splats.family == GalaxyFamily::spheroid) return beyond;
+    // Pieces of arms are no balls: from above a disk that is seen aslant would be made of beads.
+    const float compact = knot.ballness * std::clamp((widest_ball - knot.sigma) / fades_over, 0.0f, 1.0f);
+    return std::max(beyond, galaxy.roughness * std::lerp(1.0f, compact, galaxy.sin_i * galaxy.sin_i));
 }
 
 // Scale height over sigma. In a disk that is seen aslant knots are as deep as wide, or from above they were

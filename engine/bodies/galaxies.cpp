@@ -116,13 +116,11 @@ double roughness_of(const Image& light, const GalaxyPlane& plane) {
 
 // What the picture tells of each place of a galaxy: fields of the size of the light that was fitted.
 void set_fields(const Image& to_fit, double texels, double offset, GalaxyBody& body) {
+    constexpr float lit_light = 0.03f;                  // at which all points are the galaxy's
     constexpr float expected = 1.2f;                    // of the smooth galaxy's light, that is not above it
     constexpr float dark_sky = 0.02f, sky_fade = 1.5f;  // INCLINED 2: where all is halo
-    constexpr double halo_from_deg = 35.0, halo_to_deg = 66.0;
     const Image soft = gaussian_blur(to_fit, 6.0 * double(to_fit.width) / 960.0),
                 wide = gaussian_blur(to_fit, 12.0 * double(to_fit.width) / 960.0);
-    const double i = real::degrees(real::acos(double(body.cos_i)));
-    const auto halo = float(std::clamp((i - halo_from_deg) / (halo_to_deg - halo_from_deg), 0.0, 1.0));
     body.spheroid = unfilled_image(to_fit.width, to_fit.height, 1);
     body.excess = unfilled_image(to_fit.width, to_fit.height, 1);
     body.lit = unfilled_image(to_fit.width, to_fit.height, 1);
@@ -130,11 +128,11 @@ void set_fields(const Image& to_fit, double texels, double offset, GalaxyBody& b
         const auto texel = [&](std::int64_t px) { return float((double(px) + 0.5) * texels + offset); };
         const GalaxyLightAt light = light_at(body, texel(x), texel(y));
         const float sum = light.disk + light.spheroid, f = light.spheroid / std::max(sum, 1e-12f);
-        const float sky = halo * std::clamp(sky_fade - *wide.at(x, y) / dark_sky, 0.0f, 1.0f);
+        const float sky = body.hidden * std::clamp(sky_fade - *wide.at(x, y) / dark_sky, 0.0f, 1.0f);
         *body.spheroid.at(x, y) = f + sky * (1.0f - f);
         *body.excess.at(x, y) =
             body.roughness * std::clamp(1.0f - expected * sum / (*soft.at(x, y) + 0.01f), 0.0f, 1.0f);
-        *body.lit.at(x, y) = std::clamp(*wide.at(x, y) / 0.06f, 0.0f, 1.0f);
+        *body.lit.at(x, y) = std::clamp(*wide.at(x, y) / lit_light, 0.0f, 1.0f);
     });
     body.to_field = float(1.0 / texels);
     body.field_begins = float(offset);
@@ -157,6 +155,8 @@ std::vector<GalaxyBody> galaxies_of(const Image& light, const StructureParams& p
         const GalaxyLight gaussians =
             light_of_galaxy(galaxies.to_fit, galaxies.shares[k], plane, bulge == 1.0);
         GalaxyBody body = make_galaxy_body(gaussians, plane, {thicker, params.flare, bulge}, double(width));
+        log_detail(fmt::format("a galaxy of {:.0f} texels, {:.0f} % of its light a spheroid's", body.radius,
+                               100.0 * gaussians.bulge));
         body.center += float(margin_px);
         body.roughness = float(roughness_of(light, plane));
         set_fields(galaxies.to_fit, texels, double(margin_px), body);

@@ -235,6 +235,9 @@ TEST(Falloffs, BeginAtOneAndNeverRise) {
         EXPECT_EQ(falloff_value(falloff, 0.0), 1.0) << name(falloff);
         EXPECT_EQ(falloff_value(falloff, 1.0), 0.0) << name(falloff);
         EXPECT_EQ(falloff_value(falloff, 2.0), 0.0) << name(falloff);
+        for (int i = 1; i <= 100; ++i)
+            EXPECT_LE(falloff_value(falloff, i * 0.01), falloff_value(falloff, (i - 1) * 0.01))
+                << name(falloff);
         for (int i = 1; i < 1000; ++i)
             ASSERT_LE(falloff_value(falloff, i / 1000.0), falloff_value(falloff, (i - 1) / 1000.0) + 1e-7)
                 << name(falloff) << " at " << i;
