@@ -106,6 +106,7 @@ FidelityReference fidelity_reference(const Scene& now, const std::optional<fs::p
     reference.layer = layer.name;
     const StructureParams& structure = layer.source.structure;
     if (structure.kind != StructureKind::columns) reference.border = structure.border;
+    if (structure.kind == StructureKind::disk) reference.galaxy = structure.galaxy;
     reference.disk = structure.kind != StructureKind::sheet && structure.kind != StructureKind::walls;
     if (file) reference.file = *file;
     if (file) reference.picture = load_linear_image(*file, progress);
@@ -161,7 +162,7 @@ FidelityReport measure_fidelity(const Scene& now, const FidelityReference& refer
     report.front_view = std::move(front.seen);
     report.front_reference = std::move(front.picture);
     const auto render = [&](JudgingView view, const std::int64_t(&aspect)[2], const char* name) {
-        return views.render(reference.frame, view, settings.width_px,
+        return views.render(along_galaxy(reference.frame, reference.galaxy), view, settings.width_px,
                             settings.width_px * aspect[1] / aspect[0], step(name));
     };
     report.side_view = render(JudgingView::side, side_aspect, "from 60 degrees");

@@ -19,6 +19,7 @@ struct FidelityReference {
     std::string layer;    // whose picture it is, or stands for
     fs::path file;        // empty: the layer's own picture
     FrontFrame frame;     // world space
+    GalaxyParams galaxy;  // of a disk: how it lies in its picture, by which the side views are turned
     Image picture;        // linear light on black, in its own resolution
     double border = 0.0;  // share of its width along every edge where light fades: not compared
     bool disk = true;     // seen from its edge it is to look like a galaxy: not a sheet, nor walls

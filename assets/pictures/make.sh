@@ -10,14 +10,14 @@ trap 'rm -rf "$work"' EXIT
 oiiotool --nosoftwareattrib "$work/whirlpool.png" --eraseattrib ".*" --quality 88 -o "$here/whirlpool.jpg"
 
 # Four frames of each flight on one picture.
-for flight in spiral:800x600:140 nebula:800x500:160; do
-    IFS=: read -r name size close <<END
+for flight in inclined:0080:0120:0230 nebula:0100:0160:0240; do
+    IFS=: read -r name second third last <<END
 $flight
 END
-    "$program" --batch "$here/../scenes/$name.toml" --frames "1,100,$close,240" --resolution "$size" --no-cache \
-        --output "$work/$name.####.png"
-    oiiotool --nosoftwareattrib "$work/$name.0001.png" "$work/$name.0100.png" "$work/$name.0$close.png" \
-        "$work/$name.0240.png" --mosaic 2x2 --eraseattrib ".*" --quality 90 -o "$here/$name.jpg"
+    "$program" --batch "$here/../scenes/$name.toml" --frames "1,$second,$third,$last" --resolution 800x500 \
+        --no-cache --output "$work/$name.####.png"
+    oiiotool --nosoftwareattrib "$work/$name.0001.png" "$work/$name.$second.png" "$work/$name.$third.png" \
+        "$work/$name.$last.png" --mosaic 2x2 --eraseattrib ".*" --quality 90 -o "$here/$name.jpg"
 done
 
 # Three frames for a dome.

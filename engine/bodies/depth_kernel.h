@@ -21,7 +21,7 @@ struct DepthBlock {
     int count = 0;
     float x[size], y[size];
     float height[size];          // scale height H_k of the envelope
-    float clumping[size];        // disks: how much of the noise counts
+    float clumping[size];        // how much of the noise and of candidates' weights counts
     std::uint32_t random[size];  // a hash for each splat; all of its choices follow from it
     float z[size];               // out
 };

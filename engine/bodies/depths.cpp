@@ -213,9 +213,8 @@ void place_in_galaxy(const Placement& placement, const GalaxyBody& galaxy, const
     // Strong clumps are flat across the line of sight; in a disk that is seen aslant they would be seen to
     // be.
     const double aslant = double(galaxy.sin_i * galaxy.sin_i);
-    const double gain =
-        double(galaxy.roughness) * std::lerp(clump_gain(placement, splats.feature),
-                                             whole_gain * placement.clumps * double(force), aslant);
+    const double gain = std::lerp(clump_gain(placement, splats.feature),
+                                  whole_gain * placement.clumps * double(force), aslant);
     line_depths(stack(placement, longest_wave * double(galaxy.thickness), splats.feature, gain, steady_ratio),
                 candidates, block);
 }
@@ -281,7 +280,8 @@ float share_in_knots(const Placement& placement, const BandSplats& splats, const
     if (splats.family == GalaxyFamily::spheroid) return beyond;
     // Pieces of arms are no balls: from above a disk that is seen aslant would be made of beads.
     const float compact = knot.ballness * std::clamp((widest_ball - knot.sigma) / fades_over, 0.0f, 1.0f);
-    return std::max(beyond, galaxy.roughness * std::lerp(1.0f, compact, galaxy.sin_i * galaxy.sin_i));
+    return std::max(beyond, galaxy.value_at(galaxy.roughness, knot.x, knot.y) *
+                                std::lerp(1.0f, compact, galaxy.sin_i * galaxy.sin_i));
 }
 
 // Scale height over sigma. In a disk that is seen aslant knots are as deep as wide, or from above they were

@@ -83,35 +83,45 @@ PictureGalaxies galaxies_in(const Image& light, const StructureParams& params) {
     return galaxies;
 }
 
-// Of the light where a galaxy is lit, how much details change it along the major axis (across it, a disk that
-// is seen from the edge changes by itself): 0 where it is as smooth as a lenticular's, 1 as a spiral's. The
-// 85th percentile of the logarithm's distance from the mean of two neighbours: .02 and .03 for a lenticular
-// and a comet, .08 to .25 for six spirals.
-double roughness_of(const Image& light, const GalaxyPlane& plane) {
-    constexpr std::int64_t width = 960;  // px: INCLINED's pictures
-    constexpr double apart_px = 10.0, noise_px = 2.0, lit_share = 0.25, share_of_top = 0.1;
-    constexpr double smooth = 0.02, rough = 0.1, least = 0.12;
-    const Image small =
-        light.width > width
-            ? reduced_by_area(light, width, std::max<std::int64_t>(1, light.height * width / light.width))
-            : copied(light);
-    Image logarithm = brightest_channel(small);
+// The share of each pixel, where it is lit, by which the logarithm of the light differs from the mean of two
+// neighbours along the major axis (across it, a disk that is seen from the edge changes by itself). Channel
+// 1: whether it is lit.
+Image differences(const Image& light, const GalaxyPlane& plane) {
+    constexpr double apart_px = 10.0, noise_px = 2.0, lit_share = 0.1, share_of_top = 0.04;
+    Image logarithm = brightest_channel(light);
     const Image wide = gaussian_blur(logarithm, 12.0);
     for (float& value : logarithm.pixels) value = shared::as_log(value + 0.01f);
     logarithm = gaussian_blur(logarithm, noise_px);
     const auto lit = float(std::max(lit_share * percentile({wide.pixels.begin(), wide.pixels.end()}, 0.98),
                                     share_of_top * double(std::ranges::max(wide.pixels))));
     const auto dx = float(apart_px * real::cos(plane.angle)), dy = float(-apart_px * real::sin(plane.angle));
-    std::vector<float> away{0.0f};
-    for (std::int64_t y = 0; y < wide.height; ++y)
-        for (std::int64_t x = 0; x < wide.width; ++x) {
-            if (!(*wide.at(x, y) > lit)) continue;
-            const float px = float(x) + 0.5f, py = float(y) + 0.5f;
-            const float around =
-                0.5f * (bilinear(logarithm, 0, px + dx, py + dy) + bilinear(logarithm, 0, px - dx, py - dy));
-            away.push_back(std::fabs(*logarithm.at(x, y) - around));
-        }
-    return std::clamp((percentile({away.begin(), away.end()}, 0.85) - smooth) / (rough - smooth), least, 1.0);
+    Image away = make_image(light.width, light.height, 2);
+    for_each_pixel(wide, [&](std::int64_t x, std::int64_t y) {
+        if (!(*wide.at(x, y) > lit)) return;
+        const float px = float(x) + 0.5f, py = float(y) + 0.5f;
+        const float around =
+            0.5f * (bilinear(logarithm, 0, px + dx, py + dy) + bilinear(logarithm, 0, px - dx, py - dy));
+        away.at(x, y)[0] = std::fabs(*logarithm.at(x, y) - around);
+        away.at(x, y)[1] = 1.0f;
+    });
+    return away;
+}
+
+// How rough a galaxy's light is about each place: 0 where it is as smooth as a lenticular's or a comet's
+// (mean differences of .013 and .018), 1 as six spirals' (.05 to .15).
+Image roughness_of(const Image& light, const GalaxyPlane& plane, const Image& to_fit) {
+    constexpr std::int64_t width = 960;  // px: INCLINED's pictures
+    constexpr float smooth = 0.013f, rough = 0.06f, least = 0.12f;
+    constexpr double about_px = 20.0;
+    const Image small =
+        light.width > width
+            ? reduced_by_area(light, width, std::max<std::int64_t>(1, light.height * width / light.width))
+            : copied(light);
+    const Image mean = gaussian_blur(differences(small, plane), about_px);
+    const Image local = made_by_pixel(mean, 1, [&](const float* m, float* to) {
+        *to = std::clamp((m[0] / std::max(m[1], 1e-3f) - smooth) / (rough - smooth), least, 1.0f);
+    });
+    return reduced_by_area(local, to_fit.width, to_fit.height);
 }
 
 // What the picture tells of each place of a galaxy: fields of the size of the light that was fitted.
@@ -130,8 +140,8 @@ void set_fields(const Image& to_fit, double texels, double offset, GalaxyBody& b
         const float sum = light.disk + light.spheroid, f = light.spheroid / std::max(sum, 1e-12f);
         const float sky = body.hidden * std::clamp(sky_fade - *wide.at(x, y) / dark_sky, 0.0f, 1.0f);
         *body.spheroid.at(x, y) = f + sky * (1.0f - f);
-        *body.excess.at(x, y) =
-            body.roughness * std::clamp(1.0f - expected * sum / (*soft.at(x, y) + 0.01f), 0.0f, 1.0f);
+        *body.excess.at(x, y) = *body.roughness.at(x, y) *
+                                std::clamp(1.0f - expected * sum / (*soft.at(x, y) + 0.01f), 0.0f, 1.0f);
         *body.lit.at(x, y) = std::clamp(*wide.at(x, y) / lit_light, 0.0f, 1.0f);
     });
     body.to_field = float(1.0 / texels);
@@ -158,11 +168,11 @@ std::vector<GalaxyBody> galaxies_of(const Image& light, const StructureParams& p
         log_detail(fmt::format("a galaxy of {:.0f} texels, {:.0f} % of its light a spheroid's", body.radius,
                                100.0 * gaussians.bulge));
         body.center += float(margin_px);
-        body.roughness = float(roughness_of(light, plane));
+        body.roughness = roughness_of(light, plane, galaxies.to_fit);
         set_fields(galaxies.to_fit, texels, double(margin_px), body);
         if (galaxies.planes.size() > 1) body.share = std::move(galaxies.shares[k]);
         if (body.hidden > 0.0f)
-            invent_plane(body, params.spiral * double(body.roughness * body.hidden), seed + std::uint32_t(k));
+            invent_plane(body, params.spiral * double(body.hidden), seed + std::uint32_t(k));
         bodies.push_back(std::move(body));
     }
     return bodies;

@@ -12,14 +12,18 @@ namespace {
 
 using shared::as_exp, shared::as_log, shared::as_mix, shared::as_uniform;
 
-// INCLINED 2 and 4, of a Gaussian's width, and of the disk's rms width.
-// As flat as INCLINED has them, .085 and .022, a painted disk is .102 of its length thick from the edge; NGC
-// 891 is .076.
-constexpr double disk_flatness = 0.065, thinnest_disk = 0.05, thickest_disk = 0.35;
+// Of a Gaussian's width, and of the disk's rms width. INCLINED's are those of disks seen aslant, where
+// thicker ones are streaks along the line of sight; from above, where the picture tells nothing, thin ones
+// were .047 of their length thick (NGC 891: .076).
+struct Thickness {
+    double from_above, aslant;
+    double at(double sine) const { return std::lerp(from_above, aslant, sine * sine); }
+};
+constexpr Thickness disk_flatness{0.13, 0.085}, fine_thickness{0.038, 0.022};
+constexpr double dust_thickness = 0.012, thinnest_disk = 0.05, thickest_disk = 0.35;
 // Of the disk's rms width: wider Gaussians, which are the tail of its light, are no thicker, or from the edge
 // they were a slab.
 constexpr double widest_thickening = 0.7;
-constexpr double fine_thickness = 0.018, dust_thickness = 0.012;
 constexpr double least_dust = 1.2;  // texels
 constexpr double flattest_spheroid = 0.35;
 constexpr double widest = 0.42;  // of the picture's width: a Gaussian
@@ -72,7 +76,7 @@ FamilyScale scale_to(std::optional<double> wanted, double found) {
 
 // Of a disk's thickness over its width: seen, where it is seen from the edge.
 double own_flatness(const GalaxyLight& light, double i_deg, double c, double s) {
-    if (i_deg < seen_from_edge_deg) return disk_flatness;
+    if (i_deg < seen_from_edge_deg) return disk_flatness.at(s);
     const double square = (light.disk_ratio * light.disk_ratio - c * c) / (s * s);
     return std::sqrt(std::clamp(square, thinnest_disk * thinnest_disk, thickest_disk * thickest_disk));
 }
@@ -172,7 +176,7 @@ GalaxyBody make_galaxy_body(const GalaxyLight& light, const GalaxyPlane& plane, 
     const std::vector<SpaceGaussian> disk = in_space(light.disk, width, scale.disk, 0.2 * widest),
                                      ball = in_space(light.spheroid, width, scale.spheroid, 0.05 * widest);
     const double radius = rms_width(light.disk.empty() ? ball : disk),
-                 fine = std::max(fine_thickness * radius, double(least_disk_thickness)),
+                 fine = std::max(fine_thickness.at(s) * radius, double(least_disk_thickness)),
                  dust = std::max(dust_thickness * radius, least_dust),
                  flatness = own_flatness(light, plane.inclination_deg, c, s),
                  roundness = own_roundness(light, c, s);
@@ -353,7 +357,9 @@ float dust_weight(const GalaxyBody& body, const glm::vec3& p, float z) {
 void set_candidates(const GalaxyBody& body, GalaxyPart part, float force, DepthBlock& block,
                     DepthCandidates& candidates) {
     spread_candidates(body, part, block, candidates);
-    std::fill_n(block.clumping, block.count, 1.0f);
+    for (int i = 0; i < block.count; ++i)
+        block.clumping[i] =
+            part == GalaxyPart::dust ? 1.0f : body.value_at(body.roughness, block.x[i], block.y[i]);
     const bool weighs = !body.plane.pixels.empty();
     for (int k = 0; k < DepthCandidates::count; ++k)
         for (int i = 0; i < block.count; ++i) {

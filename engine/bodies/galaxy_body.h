@@ -57,12 +57,12 @@ struct GalaxyBody {
     std::array<std::vector<LineGaussian>, galaxy_parts> parts;
     std::optional<float> ring;  // of dust: its radius, texels
     // What the picture tells of a place, 0..1; one channel each, of the picture without its margin:
-    Image share;                                 // of the light that is this galaxy's; without pixels: all
-    Image spheroid;                              // of its light that is the spheroid's, or the sky's around
-    Image excess;                                // of its light that is above the smooth galaxy's
-    Image lit;                                   // how far stars there are the galaxy's
+    Image share;      // of the light that is this galaxy's; without pixels: all
+    Image spheroid;   // of its light that is the spheroid's, or the sky's around
+    Image excess;     // of its light that is above the smooth galaxy's
+    Image lit;        // how far stars there are the galaxy's
+    Image roughness;  // of its light around, by which depths gather in clouds and what is invented counts
     float to_field = 1.0f, field_begins = 0.0f;  // pixels of these a texel; texels of the margin
-    float roughness = 1.0f;  // 0..1: of the picture's details, by which depths gather in clouds
     GalaxyClouds clouds;
     Image plane;  // what is invented: logarithms of how likely matter is, over +-3 radii of the disk's plane
 

@@ -169,14 +169,13 @@ struct FittedSum {
     Ellipses ellipses;                              // their ratios, where the shape cannot tell them
 };
 
-// Parts the families by size: .4 of the rms width of their light lies between them. INCLINED 2 has the
-// disk's: but where both look alike, from above, its first share may be anything.
+// Parts the families by size: the disk's rms width times .4 lies between them (INCLINED 2).
 void allow_by_size(const FittedSum& found, double width, std::vector<bool>& allowed) {
     const std::size_t n = found.sigmas.size();
     double all = 1e-300, square = 0.0;
     for (std::size_t k = 0; k < n; ++k) {
         const double s = found.sigmas[k], seen = std::min(s, 0.4 * width);
-        const double flux = (found.amplitudes[k] + found.amplitudes[n + k]) * seen * seen;
+        const double flux = found.amplitudes[k] * seen * seen;
         all += flux;
         square += flux * seen * seen;
     }

@@ -7,6 +7,7 @@
 #include "core/error.h"
 #include "core/memory.h"
 #include "core/parallel.h"
+#include "core/real.h"
 #include "source/texture.h"
 
 namespace astrosplat {
@@ -115,6 +116,23 @@ FrontFrame in_world(const FrontFrame& frame, const RenderLayer& layer) {
     world.camera->near *= layer.scale;
     if (frame.camera->projection == Projection::orthographic) world.camera->focal_px /= layer.scale;
     return world;
+}
+
+FrontFrame along_galaxy(FrontFrame frame, const GalaxyParams& galaxy) {
+    if (!galaxy.inclination || !galaxy.near_side || !galaxy.center) return frame;
+    const double i = real::radians(*galaxy.inclination), near = real::radians(*galaxy.near_side);
+    const double c = real::cos(i), s = real::sin(i);
+    const glm::dvec3 b = real::cos(near) * frame.right + real::sin(near) * frame.up, d = frame.toward;
+    const auto turned = [&](const glm::dvec3& v) {
+        const double along_b = glm::dot(v, b), along_d = glm::dot(v, d);
+        return v + along_b * ((c - 1.0) * b + s * d) + along_d * ((c - 1.0) * d - s * b);
+    };
+    frame.center += (galaxy.center->x - 0.5) * frame.width * frame.right +
+                    (galaxy.center->y - 0.5) * frame.height * frame.up;
+    frame.right = turned(frame.right);
+    frame.up = turned(frame.up);
+    frame.toward = turned(frame.toward);
+    return frame;
 }
 
 CameraParams judging_camera(const FrontFrame& frame, JudgingView view, double aspect) {

@@ -31,6 +31,10 @@ FrontFrame in_world(const FrontFrame& frame, const RenderLayer& layer);
 
 enum class JudgingView { front, side, edge };
 
+/// The frame turned so that a galaxy's normal points to the viewer, about its middle: what its side and edge
+/// views are seen from. As it is where the scene does not say how the galaxy lies.
+FrontFrame along_galaxy(FrontFrame frame, const GalaxyParams& galaxy);
+
 /// Orthographic cameras, but for the front of a frame that has its own: `front` shows the frame's width
 /// exactly, and as much of its height as a picture of this aspect (width / height) shows; `side` stands 60
 /// degrees away from the frame's normal, which is up, `edge` in its plane, and both show its width.

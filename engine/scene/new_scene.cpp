@@ -283,7 +283,9 @@ glm::dvec3 subject_in_scene(const PictureScene& scene, double height) {
 
 std::string text_of(double value) { return fmt::format("{:.3g}", value + 0.0); }  // 0, not -0
 
-std::string text_of(const glm::dvec3& v) { return fmt::format("[{:.6g}, {:.6g}, {:.6g}]", v.x, v.y, v.z); }
+std::string text_of(const glm::dvec3& v) {
+    return fmt::format("[{:.6g}, {:.6g}, {:.6g}]", v.x + 0.0, v.y + 0.0, v.z + 0.0);
+}
 
 // Leaves out keyframes that are like both of their neighbours.
 template <class Value>
@@ -356,7 +358,7 @@ std::string galaxies_text(const PictureScene& scene) {
 // How far bodies reach along the line of sight. What lies between the things of a field is a thin, flat
 // sheet: folds of it would be drawn as lines across the sky.
 std::string extent_of(const PictureScene& scene) {
-    if (scene.structure == StructureKind::disk) return "flare = 0.05, warp = 0.003";
+    if (scene.structure == StructureKind::disk) return "flare = 0.25, warp = 0.01";
     if (scene.structure == StructureKind::walls) return fmt::format("depth = {}", wall_depth);
     if (scene.object == SkyObject::thin) return "height = 0.02, depth = 0.0";
     return scene.object == SkyObject::field ? "height = 0.05, depth = 0.01" : "depth = 0.15";

@@ -15,6 +15,7 @@ class Assets : public SceneTest {};
 
 TEST_F(Assets, DemoScenesListTheirFrames) {
     for (const auto& [name, last] : {std::pair{"whirlpool", "0240"},
+                                     {"inclined", "0240"},
                                      {"spiral", "0240"},
                                      {"nebula", "0240"},
                                      {"dome", "0240"},

@@ -98,6 +98,18 @@ TEST(FrontFrame, CamerasStandInFrontAtSixtyDegreesAndInThePlane) {
     EXPECT_NEAR(edge.height, 3.125, 1e-12);
 }
 
+// The sides of a galaxy are those of its disk, not of its picture.
+TEST(FrontFrame, TurnsAlongAGalaxy) {
+    const FrontFrame frame;
+    EXPECT_EQ(along_galaxy(frame, {}).toward, frame.toward) << "of which nothing is said";
+    const FrontFrame along = along_galaxy(frame, {60.0, 0.0, glm::dvec2(0.75, 0.5), 90.0, {}});
+    // What lies above in the picture is nearer: the disk's normal points down there.
+    EXPECT_LT(glm::length(along.toward - glm::dvec3(0.0, 0.5, std::sqrt(0.75))), 1e-9);
+    EXPECT_LT(glm::length(along.up - glm::dvec3(0.0, std::sqrt(0.75), -0.5)), 1e-9);
+    EXPECT_LT(glm::length(along.right - frame.right), 1e-9);
+    EXPECT_LT(glm::length(along.center - glm::dvec3(2.5, 0.0, 0.0)), 1e-9);
+}
+
 TEST(FrontFrame, AMeshWithoutAreaIsRefused) {
     const std::vector<TexturedMesh> line =
         moved(builtin("plane", 4, 4), [](const glm::vec3& p) { return glm::vec3(p.x, 0.0f, 0.0f); });
