@@ -60,7 +60,7 @@ struct Draw {
         shares.resize(count, weights.size() ? 0 : 1);
         int sum = 0;
         for (const int share : shares) sum += share;
-        int left = static_cast<int>(numbers->below(static_cast<std::size_t>(sum)));
+        int left = int(numbers->below(std::size_t(sum)));
         std::size_t level = 0;
         while (left >= shares[level]) left -= shares[level++];
         choice = static_cast<E>(level);
@@ -105,7 +105,7 @@ std::string path_text(const std::string& name) { return to_toml(input(name).stri
 
 std::string like_text(const Crossing& c) {
     const auto picture = std::ranges::find_if(c.layers, has_picture);
-    return layer_name(static_cast<std::size_t>(picture - c.layers.begin()));
+    return layer_name(std::size_t(picture - c.layers.begin()));
 }
 
 std::string mesh_text(const char* shape, const char* picture, const char* more) {
@@ -277,8 +277,8 @@ struct AddChoices {
     int* first;
     template <class E>
     void operator()(const char*, const E& choice, Weights) const {
-        choices->push_back(*first + static_cast<int>(choice));
-        *first += static_cast<int>(names_of(E{}).size());
+        choices->push_back(*first + int(choice));
+        *first += int(names_of(E{}).size());
     }
 };
 
@@ -320,7 +320,7 @@ Crossing crossing_of(std::uint32_t seed) {
     return c;
 }
 
-std::string layer_name(std::size_t index) { return std::string(1, static_cast<char>('a' + index)); }
+std::string layer_name(std::size_t index) { return std::string(1, char('a' + index)); }
 
 std::string folder_name(const Crossing& c) {
     switch (c.folder) {
@@ -342,12 +342,12 @@ std::string output_path(const Crossing& c) {
     return name_with(c, c.seen == Seen::pair ? ".%V" : "", token_text(c.token));
 }
 
-std::filesystem::path file_of_frame(const Crossing& c, std::int64_t frame, Eye eye) {
+fs::path file_of_frame(const Crossing& c, std::int64_t frame, Eye eye) {
     return name_with(c, c.seen == Seen::pair ? "." + std::string(name_of(eye)) : "",
                      c.token == Token::none ? "" : fmt::format(".{:04}", frame));
 }
 
-std::filesystem::path folder_of_movie(const Crossing& c) {
+fs::path folder_of_movie(const Crossing& c) {
     const bool has_places = c.token != Token::none || c.seen == Seen::pair;
     return c.token_in_folder == Answer::yes && !has_places ? "frames/shot" : "frames";
 }
@@ -418,7 +418,7 @@ std::vector<FeaturePair> possible_pairs() {
     for (std::size_t a = 0; a < names.size(); ++a)
         for (std::size_t b = a + 1; b < names.size(); ++b)
             if (factor_of(names[a]) != factor_of(names[b]) && can_meet(names[a], names[b]))
-                pairs.emplace_back(static_cast<int>(a), static_cast<int>(b));
+                pairs.emplace_back(int(a), int(b));
     return pairs;
 }
 
@@ -428,8 +428,7 @@ std::vector<std::uint32_t> covering_seeds(const std::vector<FeaturePair>& wanted
     std::vector<char> is_new(features * features, 0);
     std::size_t left = 0;
     const auto at = [&](const FeaturePair& pair) -> char& {
-        return is_new[static_cast<std::size_t>(pair.first) * features +
-                      static_cast<std::size_t>(pair.second)];
+        return is_new[std::size_t(pair.first) * features + std::size_t(pair.second)];
     };
     for (const FeaturePair& pair : wanted) at(pair) = 1, ++left;
     std::vector<std::vector<FeaturePair>> pairs;

@@ -118,9 +118,9 @@ inline constexpr const char* camera_table_name = "way.csv";
 
 /// output.path, and the file of a frame in the scene's folder as a person reads the pattern.
 std::string output_path(const Crossing& crossing);
-std::filesystem::path file_of_frame(const Crossing& crossing, std::int64_t frame, Eye eye);
+fs::path file_of_frame(const Crossing& crossing, std::int64_t frame, Eye eye);
 /// The innermost folder that all of them lie in.
-std::filesystem::path folder_of_movie(const Crossing& crossing);
+fs::path folder_of_movie(const Crossing& crossing);
 /// The frames that it asks for, and the eyes of every one.
 std::vector<std::int64_t> frames_of(const Crossing& crossing);
 std::vector<Eye> eyes_of(const Crossing& crossing);
