@@ -9,7 +9,6 @@
 #include <limits>
 #include <string_view>
 
-#include "batch_plan.h"
 #include "camera/camera.h"
 #include "command.h"
 #include "core/color.h"
@@ -20,6 +19,7 @@
 #include "core/memory.h"
 #include "core/progress.h"
 #include "core/text.h"
+#include "estimate.h"
 #include "exit.h"
 #include "gaussians/gaussian_file.h"
 #include "gaussians/gaussians.h"

@@ -107,7 +107,7 @@ FidelityReference fidelity_reference(const Scene& now, const std::optional<fs::p
     const StructureParams& structure = layer.source.structure;
     if (structure.kind != StructureKind::columns) reference.border = structure.border;
     if (structure.kind == StructureKind::disk) reference.galaxy = structure.galaxy;
-    reference.disk = structure.kind != StructureKind::sheet && structure.kind != StructureKind::walls;
+    reference.disk = structure.kind == StructureKind::columns || structure.kind == StructureKind::disk;
     if (file) reference.file = *file;
     if (file) reference.picture = load_linear_image(*file, progress);
     try {

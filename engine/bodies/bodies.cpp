@@ -6,9 +6,12 @@
 #include <cmath>
 #include <functional>
 #include <numeric>
+#include <optional>
 #include <utility>
 #include <vector>
 
+#include "bodies/axis_depths.h"
+#include "bodies/axis_fit.h"
 #include "bodies/dust.h"
 #include "bodies/front_fit.h"
 #include "bodies/picture_light.h"
@@ -20,6 +23,7 @@
 #include "core/log.h"
 #include "core/memory.h"
 #include "core/parallel.h"
+#include "core/real.h"
 #include "core/text.h"
 #include "image/channels.h"
 #include "image/resample.h"
@@ -49,17 +53,36 @@ struct BodiesTask {
     const std::string& layer_name;
 };
 
+// The axis of a picture's nebula, or none where it has none: said in a line.
+std::optional<AxisDepths> axis_of(const Image& light, const StructureParams& params,
+                                  const std::string& layer_name) {
+    if (params.kind != StructureKind::axis) return {};
+    GivenAxis given{{}, params.tilt};
+    if (params.axis_angle) given.angle = real::radians(*params.axis_angle);
+    AxisFit fit = fit_axis(light, given);
+    const std::string found = fmt::format("layer '{}': {}", layer_name, symmetry_words(fit));
+    if (!is_about_axis(fit)) {
+        log_warning(found + ", too little: walls are made instead");
+        return {};
+    }
+    log_detail(fmt::format("{}; axis at {:.1f} degrees, tilted by {:.0f}{}", found, real::degrees(fit.angle),
+                           fit.tilt_deg, fit.tilt_is_sure() ? "" : ", which is a guess"));
+    return make_axis_depths(std::move(fit), light);
+}
+
 // Adds all splats of a picture, with their colours as they would be if nothing hid anything.
 void add_splats(const PictureLight& picture, const UvSurface& surface, const BodiesTask& task,
                 const Progress& progress, PictureSplats& set) {
-    const StructureParams& params = task.params;
+    StructureParams params = task.params;
     Image rest = copied(picture.light);
     const PictureStars stars = take_picture_stars(rest, params, picture.enlarged);
     progress.check();
+    std::optional<AxisDepths> axis = axis_of(rest, params, task.layer_name);
+    if (params.kind == StructureKind::axis && !axis) params.kind = StructureKind::walls;
     progress.at(0.1);
     const Image brightest = brightest_channel(picture.light), without_stars = brightest_channel(rest);
-    const Placement placement =
-        make_placement(rest, params, surface.texels_per_unit(), surface.flat(), task.seed, stars.all);
+    const Placement placement = make_placement(rest, params, surface.texels_per_unit(), surface.flat(),
+                                               task.seed, stars.all, std::move(axis));
     const Opacity opacity{float(params.opacity), float(params.density)};
     const std::vector<Band> bands = make_bands(rest.width);
     const double dust = dust_of(params);

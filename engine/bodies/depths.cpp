@@ -87,6 +87,9 @@ float threshold_of(const Band& band, double each) {
     return float(band.index <= 1 ? fine_threshold : threshold_of_one / each);
 }
 
+// One looks into what lies about an axis from all sides: fewer large splats would be seen one by one.
+constexpr double more_about_axis = 4.0;
+
 BandSplats splats_of_size(const Band& band, bool glow, double sigma, double each) {
     BandSplats splats;
     splats.index = band.index;
@@ -134,10 +137,14 @@ std::vector<BandSplats> band_splats(const Band& band, bool coarsest, const Place
     const bool glow =
         placement.kind == StructureKind::walls && band.feature > widest_filament * placement.scale;
     const double widest =
-        std::max(widest_sigma_share * placement.height, glow ? widest_glow_share * placement.depth : 0.0);
+        std::max(widest_sigma_share * placement.height, glow ? widest_glow_share * placement.depth
+                                                        : placement.kind == StructureKind::axis
+                                                            ? widest_about_axis * placement.scale
+                                                            : 0.0);
     const double natural = coarsest ? 4.0 * widest : band.feature / 4.0;
-    const double usual =
+    double usual =
         by_feature(splats_each, band.index == 0 ? 2.0 : std::max(4.0, band.feature / placement.scale));
+    if (placement.kind == StructureKind::axis && band.index > last_fine_band) usual *= more_about_axis;
     if (!placement.galaxies.empty()) return splats_of_galaxy(band, usual, placement.galaxies.front());
     return {splats_of_size(band, glow, std::min(natural, widest), usual)};
 }
@@ -229,6 +236,41 @@ void place_in_galaxies(const Placement& placement, const BandSplats& splats, Pla
     for (int i = 0; i < block.count; ++i) block.z[i] += middle_plane(placement, block.x[i], block.y[i]);
 }
 
+constexpr float side_sharpness = 8.0f;  // of the change from one wall to the other
+constexpr float least_side = 0.15f;     // share of a filament's splats on the other one: no wall is ever bare
+
+// How many of the splats lie in front, by a smooth noise: a filament stays on one side for as long as it can.
+float share_in_front(float noise) {
+    return least_side + (1.0f - 2.0f * least_side) / (1.0f + as_exp(-side_sharpness * noise));
+}
+
+// -1..1 of any value.
+float between(float value) { return 2.0f / (1.0f + as_exp(-2.0f * value)) - 1.0f; }
+
+// Light that rings explain is where they are. What they do not, and details finer than they are, lies before
+// or behind the middle of their light, where a sheet bends through it.
+void place_about_axis(const Placement& placement, const BandSplats& splats, PlacedBlock& block) {
+    constexpr float detail = 0.6f, behind = 0.32f, before = 0.68f, bends = 0.12f;  // shares of the light
+    constexpr double finest_ring = 14.0;  // texels at a width of 1920
+    const AxisDepths& axis = *placement.axis;
+    const float least = double(splats.feature) < finest_ring * placement.scale ? detail : 0.0f;
+    DepthBlock side = block, bend = block;
+    noise_sum(waves(placement, 4, {{330.0, 1.0}, {120.0, 0.6}}), side);
+    noise_sum(waves(placement, 5, {{520.0, 1.0}, {210.0, 0.4}}), bend);
+    for (int i = 0; i < block.count; ++i) {
+        const float x = block.x[i], y = block.y[i];
+        std::uint32_t random = as_mix(block.random[i] ^ 0x3c6ef372u);
+        float share = block.even[i].x, spread = 0.0f;
+        if (as_uniform(random) < std::max(least, axis.residue_at(x, y))) {
+            random = as_mix(random);
+            share = (as_uniform(random) < share_in_front(side.z[i]) ? before : behind) +
+                    bends * between(bend.z[i]);
+            spread = logistic(as_uniform(as_mix(random)), splats.spread);
+        }
+        block.z[i] = axis.depth(x, y, share) + spread;
+    }
+}
+
 }  // namespace
 
 void place_small_in_galaxy(const Placement& placement, const GalaxyBody& galaxy, PlacedBlock& block) {
@@ -248,7 +290,9 @@ void place_freely(const Placement& placement, const BandSplats& splats, PlacedBl
     constexpr double sheet_folds = 0.22, sheet_ratio = 0.5;  // of that wave, their height; DEPTH 4
     set_heights(placement, splats, block);
     const double feature = splats.feature, h = placement.height;
-    if (splats.glow) {
+    if (placement.axis) {
+        place_about_axis(placement, splats, block);
+    } else if (splats.glow) {
         fill_between_walls(placement, feature, block);
     } else {
         const double gain = sheet_folds * octave_deviation * sheet_wave * h * placement.clumps;
@@ -265,21 +309,21 @@ namespace {
 constexpr float knot_depth = 0.6f, knot_depth_on_sheets = 0.35f;
 constexpr float round_knot_depth = 1.1f;  // sech^2 of that has the deviation of a Gaussian
 constexpr float widest_in_knots = 5.0f;   // texels, sigma of the largest splats that follow their knot
-constexpr float side_sharpness = 8.0f;    // of the change from one wall to the other
-constexpr float least_side = 0.15f;  // share of a filament's splats on the other one: no wall is ever bare
 
 const Knot& knot_of(const Placement& placement, std::int32_t knot) { return placement.knots.knots[knot]; }
 
-// How many of a knot's splats follow it: all, but none of a smooth galaxy's, nor of its spheroid's. Beyond
-// the galaxy, where knots are background galaxies, all of its light does.
+// How many of a knot's splats follow it: all, about an axis those of what may be a star, but none of a smooth
+// galaxy's, nor of its spheroid's. Beyond the galaxy, where knots are background galaxies, all of its light
+// does.
 float share_in_knots(const Placement& placement, const BandSplats& splats, const Knot& knot) {
     constexpr float widest_ball = 3.5f, fades_over = 2.0f;  // px, sigma of a knot
+    const float compact = knot.ballness * std::clamp((widest_ball - knot.sigma) / fades_over, 0.0f, 1.0f);
+    if (placement.axis) return compact;
     if (placement.galaxies.empty()) return 1.0f;
     const GalaxyBody& galaxy = placement.galaxy_at(knot.x, knot.y, 0.5f);
     const float beyond = 1.0f - galaxy.value_at(galaxy.lit, knot.x, knot.y);
     if (splats.family == GalaxyFamily::spheroid) return beyond;
     // Pieces of arms are no balls: from above a disk that is seen aslant would be made of beads.
-    const float compact = knot.ballness * std::clamp((widest_ball - knot.sigma) / fades_over, 0.0f, 1.0f);
     return std::max(beyond, galaxy.value_at(galaxy.roughness, knot.x, knot.y) *
                                 std::lerp(1.0f, compact, galaxy.sin_i * galaxy.sin_i));
 }
@@ -288,6 +332,7 @@ float share_in_knots(const Placement& placement, const BandSplats& splats, const
 // flat across the line of sight.
 float depth_of_knots(const Placement& placement, const Knot& knot) {
     if (placement.kind == StructureKind::sheet) return knot_depth_on_sheets;
+    if (placement.axis) return round_knot_depth;
     if (placement.galaxies.empty()) return knot_depth;
     const float aslant = placement.galaxy_at(knot.x, knot.y, 0.5f).sin_i;
     return std::lerp(knot_depth, round_knot_depth, aslant * aslant);
@@ -331,9 +376,6 @@ void add_relief(const Placement& placement, PlacedBlock& block) {
     }
 }
 
-// -1..1 of any value.
-float between(float value) { return 2.0f / (1.0f + as_exp(-2.0f * value)) - 1.0f; }
-
 // Those of the sky that belong to no knot.
 void spread_in_sky(const Placement& placement, double feature, const DepthReach* reaches,
                    PlacedBlock& block) {
@@ -370,12 +412,10 @@ void add_walls(const Placement& placement, double feature, PlacedBlock& block) {
     noise_sum(waves(placement, 3, {{640.0, 1.0}, {260.0, 0.3}}), within);
     DepthReach reaches[PlacedBlock::size];
     for (int i = 0; i < block.count; ++i) {
-        const float front =
-            least_side + (1.0f - 2.0f * least_side) / (1.0f + as_exp(-side_sharpness * side.z[i]));
         const std::uint32_t random = block.knot[i] < 0 ? block.random[i]
                                                        : as_hash(placement.seed, std::uint32_t(block.knot[i]),
                                                                  1u, shared::PURPOSE_KNOT);
-        const bool in_front = as_uniform(as_mix(random ^ 0x5bd1e995u)) < front;
+        const bool in_front = as_uniform(as_mix(random ^ 0x5bd1e995u)) < share_in_front(side.z[i]);
         const float anywhere = 2.0f * as_uniform(as_mix(random ^ 0x27d4eb2fu)) - 1.0f;
         reaches[i] = placement.reach_at(bend.x[i], bend.y[i], random, false);
         const float at = reaches[i].of == DepthReach::Of::walls  ? (in_front ? 1.0f : -1.0f)

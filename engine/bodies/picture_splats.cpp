@@ -112,7 +112,7 @@ struct BandMaker {
             block.x[i] = splat.x;
             block.y[i] = splat.y;
             block.random[i] = placement.hash_of(splat.id, shared::PURPOSE_DEPTH);
-            if (splats.family == GalaxyFamily::spheroid)
+            if (splats.family == GalaxyFamily::spheroid || placement.axis)
                 block.even[i] = {even_number(cells[i], shared::PURPOSE_EVEN),
                                  even_number(cells[i], shared::PURPOSE_EVEN + 1u)};
             shade(splat, hiding_of(splats), footprint, opacity, first + i, out.splats);
@@ -121,6 +121,8 @@ struct BandMaker {
         for (std::size_t i = 0; i < cells.size(); ++i) {
             out.splats.position[first + i] = placement.among_splats(block.x[i], block.y[i], block.z[i]);
             out.distance[first + i] = block.distance[i];
+            if (placement.axis)
+                out.splats.color[first + i] *= placement.axis->tint(block.x[i], block.y[i], block.z[i]);
         }
     }
 };

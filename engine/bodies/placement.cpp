@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/vec2.hpp>
+#include <utility>
 
 #include "bodies/bodies.h"
 #include "bodies/galaxies.h"
@@ -98,6 +99,7 @@ void set_knot_depths(Placement& placement, std::span<const Star> stars) {
             block.x[i] = knot.x;
             block.y[i] = knot.y;
             block.random[i] = as_hash(placement.seed, std::uint32_t(begin + i), 0u, shared::PURPOSE_KNOT);
+            block.even[i] = glm::vec2(as_uniform(block.random[i]));
         }
         place_freely(placement, like, block);
         for (int i = 0; i < block.count; ++i) {
@@ -109,6 +111,14 @@ void set_knot_depths(Placement& placement, std::span<const Star> stars) {
     });
     for (const Star& star : stars)
         placement.knot_z[star.body] = star_height(placement, star) + middle_plane(placement, star.x, star.y);
+}
+
+// A nebula's own star is in its middle.
+bool is_central(const Placement& placement, const Star& star) {
+    constexpr double about = 0.015;  // picture widths
+    const double width = double(placement.picture_width);
+    return placement.axis && std::hypot(double(star.x) / width - placement.axis->fit.x,
+                                        double(star.y) / width - placement.axis->fit.y) < about;
 }
 
 // The picture without its margin.
@@ -152,7 +162,7 @@ Placement placement_without_fields(std::int64_t width, std::int64_t height, cons
 }
 
 Placement make_placement(const Image& light, const StructureParams& params, double texels_per_unit, bool flat,
-                         std::uint32_t seed, std::span<const Star> stars) {
+                         std::uint32_t seed, std::span<const Star> stars, std::optional<AxisDepths> axis) {
     Placement placement = placement_without_fields(light.width, light.height, params, texels_per_unit);
     const Image brightest = brightest_channel(light);
     placement.field_halvings = field_halvings(brightest);
@@ -179,6 +189,8 @@ Placement make_placement(const Image& light, const StructureParams& params, doub
         placement.relief = relief_field(shown, placement.depth, steepest_relief);
     for (GalaxyBody& galaxy : placement.galaxies)
         if (galaxy.hidden > 0.0f) set_cloud_depths(placement, galaxy);
+    if (axis) placement.depth = axis->fit.reach * double(light.width);
+    placement.axis = std::move(axis);
     placement.knots = find_knots(brightest, around_stars(stars));
     set_knot_depths(placement, stars);
     return placement;
@@ -245,6 +257,7 @@ float star_height(const Placement& placement, float x, float y, float u) {
 }
 
 float star_height(const Placement& placement, const Star& star) {
+    if (is_central(placement, star)) return 0.0f;
     const std::uint32_t random =
         as_hash(placement.seed, std::uint32_t(star.x), std::uint32_t(star.y), shared::PURPOSE_DEPTH);
     return star_height(placement, star.x, star.y, as_uniform(random));

@@ -6,10 +6,12 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <initializer_list>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
 
+#include "bodies/axis_depths.h"
 #include "bodies/depth_kernel.h"
 #include "bodies/fields.h"
 #include "bodies/galaxy_body.h"
@@ -29,6 +31,8 @@ inline constexpr double disk_thickness = 0.018, sheet_thickness = 0.011;
 inline constexpr double widest_sigma_share = 0.45;
 /// The same of the glow between two walls, of how far each of them stands out.
 inline constexpr double widest_glow_share = 0.06;
+/// The same of a body of revolution, texels at a width of 1920.
+inline constexpr double widest_about_axis = 10.0;
 /// The same of a galaxy's disk, of the thickness of what is small in it (INCLINED 3).
 inline constexpr double widest_in_disk = 1.3;
 /// Sigma of the widest splats of its spheroid, texels.
@@ -55,8 +59,9 @@ struct Placement {
     Image thickness;                                     // H(x, y), texels, of other kinds
     Image relief;        // how far the middle of a sheet or a wall stands out, texels; empty: not at all
     FilledLight filled;  // of what has walls; empty: none
-    Knots knots;         // each at one depth; first those around stars, by their bodies
-    std::vector<float> knot_z;  // theirs, texels
+    std::optional<AxisDepths> axis;  // of a body of revolution
+    Knots knots;                     // each at one depth; first those around stars, by their bodies
+    std::vector<float> knot_z;       // theirs, texels
 
     /// Values of the fields at a place of the picture.
     float scale_height(float x, float y) const;
@@ -78,9 +83,11 @@ struct Placement {
 
 /// `texels_per_unit`: of the surface that carries the picture; `flat`: it is a plane, so a sheet takes its
 /// relief from the picture instead. What `stars` of a disk leave around themselves stays at their depth: a
-/// profile is never quite that of their Gaussians, and would be a row of splats in depth.
+/// profile is never quite that of their Gaussians, and would be a row of splats in depth. `axis`: of the
+/// kind.
 Placement make_placement(const Image& light, const StructureParams& params, double texels_per_unit, bool flat,
-                         std::uint32_t seed, std::span<const Star> stars = {});
+                         std::uint32_t seed, std::span<const Star> stars = {},
+                         std::optional<AxisDepths> axis = {});
 
 /// What the number of splats depends on, besides the light: no fields, but the galaxies of a disk.
 Placement placement_to_count(const Texture& texture, const StructureParams& params);

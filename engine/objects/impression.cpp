@@ -458,6 +458,7 @@ StructureKind structure_of(SkyObject object, const Impression& seen) {
         case SkyObject::cluster:
             return StructureKind::disk;
         case SkyObject::planetary:
+            return StructureKind::axis;
         case SkyObject::remnant:
             return StructureKind::walls;
         case SkyObject::nebula:

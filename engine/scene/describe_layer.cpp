@@ -194,10 +194,10 @@ void describe_galaxy(const Describer& d, GalaxyParams& g) {
 }
 
 void describe_structure(const Describer& d, StructureParams& s) {
-    const Describer bodies = d.only_with("kind", {"disk", "sheet", "walls"});
+    const Describer bodies = d.only_with("kind", {"disk", "sheet", "walls", "axis"});
     d(s.kind, "kind", "Structure", "",
-      "How the picture gets depth: columns extrudes it; disk (galaxies), sheet (nebulae) and walls (shells) "
-      "make bodies.");
+      "How the picture gets depth: columns extrudes it; disk (galaxies), sheet (nebulae), walls (shells) "
+      "and axis (bodies of revolution, as planetary nebulae) make bodies.");
     bodies(s.height, "height", "Scale height", "scene units",
            "Thickness; 0: 1.8 % of the picture's longest side for a disk, else 1.1 %.", at_least(0),
            slider(0, 1), zero_is("Auto"));
@@ -217,6 +217,14 @@ void describe_structure(const Describer& d, StructureParams& s) {
     disk(s.spiral, "spiral", "Invented arms", "",
          "How strongly arms are invented where a disk is seen from its edge, which no picture shows.",
          within(0, 10), slider(0, 3));
+    const Describer axis = d.only_with("kind", {"axis"});
+    axis(s.axis_angle, "axis_angle", "Axis of the nebula", "degrees",
+         "Direction of the axis in the picture, counter-clockwise from right; auto: found by symmetry.",
+         or_auto(), within(-360, 360), slider(0, 180));
+    axis(s.tilt, "tilt", "Tilt of the axis", "degrees",
+         "How far that end of the axis leans out of the picture, towards the viewer where positive; auto: "
+         "found.",
+         or_auto(), within(-80, 80));
     bodies(s.stars, "stars", "Stars apart", "",
            "Stars are found and become single splats; auto: unless prepare removes them.");
     bodies(s.dust, "dust", "Dust", "",

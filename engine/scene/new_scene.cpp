@@ -8,9 +8,11 @@
 #include <glm/vec3.hpp>
 #include <system_error>
 
+#include "bodies/bodies.h"
 #include "bodies/galaxy_fit.h"
 #include "bodies/picture_light.h"
 #include "bodies/picture_splats.h"
+#include "bodies/stars.h"
 #include "core/error.h"
 #include "core/file.h"
 #include "core/log.h"
@@ -233,8 +235,9 @@ std::vector<CameraKeyframe> flight(double distance, const PictureScene& scene, c
 }
 
 bool is_deep(const PictureScene& scene) {
-    return std::ranges::any_of(
-        scene.galaxies, [](const GalaxyParams& g) { return g.inclination.value_or(0.0) >= deep_from_deg; });
+    return scene.axis || std::ranges::any_of(scene.galaxies, [](const GalaxyParams& g) {
+               return g.inclination.value_or(0.0) >= deep_from_deg;
+           });
 }
 
 glm::dvec3 turned(const glm::dvec3& v, const glm::dvec3& about, double angle) {  // Rodrigues' formula
@@ -242,17 +245,46 @@ glm::dvec3 turned(const glm::dvec3& v, const glm::dvec3& about, double angle) { 
     return c * v + s * glm::cross(about, v) + (1.0 - c) * glm::dot(about, v) * about;
 }
 
-// Ten seconds at 24 frames/s about the first galaxy's own axes: the front, a turn until its disk is seen from
-// above, and down to its edge while the camera goes round. From above and from the edge less of it shines in
-// each pixel than in the picture of an inclined one, which the exposure makes up for (INCLINED 6).
-std::vector<CameraKeyframe> orbit(double distance, const PictureScene& scene, double height) {
-    constexpr int first = 30, above = 120, last = 230, step = 10;
-    constexpr double lowest_deg = 86.0, nearer = 0.22, round_deg = 70.0;
-    constexpr double stops_above = 0.9, stops_at_edge = 0.3;
-    const GalaxyParams& galaxy = scene.galaxies.front();
-    const double i = real::radians(*galaxy.inclination), near = real::radians(*galaxy.near_side);
+// An axis that a film goes about.
+struct OwnAxis {
+    double from_front;  // radians
+    double angle;       // radians in the picture, of where it leans away from
+    glm::dvec3 center;  // scene units
+    double away;        // times as far as the picture's camera
+    double stops_above, stops_aside;
+};
+
+// Of a nebula, or of the first galaxy. From above and from its edge less of an inclined one shines in each
+// pixel than in its picture, which the exposure makes up for (INCLINED 6).
+OwnAxis own_axis(const PictureScene& scene, double height) {
     const double width = height * double(scene.width_px) / double(scene.height_px);
-    const glm::dvec3 center((galaxy.center->x - 0.5) * width, 0.0, (0.5 - galaxy.center->y) * height);
+    if (scene.axis) {
+        constexpr double reach_share = 0.77;  // that shines
+        const AxisFit& fit = *scene.axis;
+        return {real::radians(90.0 - fit.tilt_deg),
+                fit.angle + real::pi,
+                glm::dvec3(fit.x * width - 0.5 * width, 0.0, fit.y * width - 0.5 * height),
+                std::clamp(2.0 * reach_share * fit.reach * width / height, 0.8, 1.6),
+                0.0,
+                0.0};
+    }
+    constexpr double away = 0.78, stops_above = 0.9, stops_at_edge = 0.3;
+    const GalaxyParams& galaxy = scene.galaxies.front();
+    const double i = real::radians(*galaxy.inclination), dim = real::sin(i);
+    return {i,
+            real::radians(*galaxy.near_side),
+            glm::dvec3((galaxy.center->x - 0.5) * width, 0.0, (0.5 - galaxy.center->y) * height),
+            away,
+            dim * stops_above,
+            dim * stops_at_edge};
+}
+
+// Ten seconds at 24 frames/s about an own axis: the front, a turn until one looks along the axis, and down to
+// its side while the camera goes round.
+std::vector<CameraKeyframe> orbit(double distance, const OwnAxis& own) {
+    constexpr int first = 30, above = 120, last = 230, step = 10;
+    constexpr double lowest_deg = 86.0, round_deg = 70.0;
+    const auto& [i, near, center, farther, stops_above, stops_aside] = own;
     const glm::dvec3 front(0.0, 1.0, 0.0), up_in_picture(0.0, 0.0, -1.0);
     const glm::dvec3 axis = glm::cross(front, glm::dvec3(real::cos(near), 0.0, -real::sin(near)));
     const glm::dvec3 normal = turned(front, axis, -i);
@@ -265,9 +297,9 @@ std::vector<CameraKeyframe> orbit(double distance, const PictureScene& scene, do
             const glm::dvec3 low = turned(v, glm::cross(up, away), real::radians(down * lowest_deg));
             return turned(low, normal, real::radians(down * round_deg));
         };
-        keyframes.push_back({frame, over * center + (1.0 - nearer * over) * distance * lowered(away),
+        keyframes.push_back({frame, over * center + std::lerp(1.0, farther, over) * distance * lowered(away),
                              over * center, lowered(up),
-                             real::sin(i) * ((1.0 - down) * over * stops_above + down * stops_at_edge)});
+                             (1.0 - down) * over * stops_above + down * stops_aside});
     }
     keyframes.insert(keyframes.begin(), keyframes.front());
     keyframes.front().frame = 1;
@@ -319,6 +351,7 @@ std::int64_t side_px(std::int64_t side, std::int64_t longest) {
 // Sigma of the widest splats, of the picture's longest side.
 double widest_sigma(StructureKind structure, std::int64_t longest) {
     if (structure == StructureKind::disk) return widest_in_spheroid_px / double(longest);
+    if (structure == StructureKind::axis) return widest_about_axis / double(longest_px);
     const double in_sheet = widest_sigma_share * sheet_thickness;
     return structure == StructureKind::walls ? std::max(in_sheet, widest_glow_share * 0.5 * wall_depth)
                                              : in_sheet;
@@ -335,6 +368,7 @@ double split_above_px(StructureKind structure, double longest_over_height, std::
 // the back one.
 std::string_view opacity_of(StructureKind structure) {
     if (structure == StructureKind::walls) return "opacity = 0.4, density = 0.4";
+    if (structure == StructureKind::axis) return "opacity = 0.4, density = 0.3";
     return structure == StructureKind::disk ? "opacity = 0.42, density = 0.8" : "opacity = 0.55";
 }
 
@@ -359,9 +393,32 @@ std::string galaxies_text(const PictureScene& scene) {
 // sheet: folds of it would be drawn as lines across the sky.
 std::string extent_of(const PictureScene& scene) {
     if (scene.structure == StructureKind::disk) return "flare = 0.25, warp = 0.01";
+    if (scene.structure == StructureKind::axis && scene.axis)
+        return fmt::format("axis_angle = {:.1f}, tilt = {:.0f}", real::degrees(scene.axis->angle),
+                           scene.axis->tilt_deg);
     if (scene.structure == StructureKind::walls) return fmt::format("depth = {}", wall_depth);
     if (scene.object == SkyObject::thin) return "height = 0.02, depth = 0.0";
     return scene.object == SkyObject::field ? "height = 0.05, depth = 0.01" : "depth = 0.15";
+}
+
+// Of a body of revolution; what is none becomes walls.
+void find_axis(const Image& light, PictureScene& scene) {
+    constexpr double area_px = 640.0 * 400.0;  // more than the fit looks at, and enough to find stars
+    Image small = at_area(light, area_px, 1.0);
+    StructureParams params;
+    params.kind = StructureKind::axis;
+    if (scene.stars.empty()) take_picture_stars(small, params);
+    AxisFit fit = fit_axis(small);
+    scene.lies_by = symmetry_words(fit);
+    if (!is_about_axis(fit)) {
+        scene.structure = StructureKind::walls;
+        log_info(std::exchange(scene.lies_by, "") + ", too little: it becomes walls");
+        return;
+    }
+    if (!fit.tilt_is_sure())
+        scene.lies_by += fmt::format("; how it is tilted is a guess: {:.0f} to {:.0f} degrees look alike",
+                                     fit.tilt_from_deg, fit.tilt_to_deg);
+    scene.axis = std::move(fit);
 }
 
 // The table that `prepare` writes beside a picture that it took stars from. Another table of that name says
@@ -399,6 +456,7 @@ std::string scale_text(const PictureScene& scene) {
 double margin_of(const PictureScene& scene) {
     constexpr std::int64_t most_px = std::int64_t{24} << 20;
     constexpr double lit = 0.1;
+    if (scene.structure == StructureKind::axis) return 0.0;  // what is mirrored does not turn about its axis
     if (scene.lit_rim <= lit || scene.width_px * scene.height_px > most_px) return 0.0;
     if (scene.structure != StructureKind::disk) return 0.16;  // a cloud does not grow dim outward
     return is_deep(scene) ? 0.2 : 0.08;  // seen from above, an inclined one was cut off nearer to its middle
@@ -417,20 +475,20 @@ void find_galaxies(const Image& light, const Identification& found, PictureScene
     const std::vector<GalaxyFit> fits = fit_galaxies(light, round ? Galaxies::one : Galaxies::all);
     for (const GalaxyFit& fit : fits) scene.galaxies.push_back(as_params(fit.plane, height_over_width));
     GalaxyParams& galaxy = scene.galaxies.front();
-    scene.galaxies_by = "its light: " + words_of(fits.front());
+    scene.lies_by = "its light: " + words_of(fits.front());
     if (round) {
         galaxy.inclination = 90.0;
         galaxy.bulge = 1.0;
-        scene.galaxies_by = "a spheroid: no disk, as flat in depth as it is seen";
+        scene.lies_by = "a spheroid: no disk, as flat in depth as it is seen";
     } else if (fits.size() > 1) {
-        scene.galaxies_by = fmt::format("{} galaxies, by their light", fits.size());
+        scene.lies_by = fmt::format("{} galaxies, by their light", fits.size());
     } else if (found.known && found.known->inclination_deg) {
         galaxy.inclination = *found.known->inclination_deg;
-        scene.galaxies_by = fmt::format("{} in the table: {:.0f} degrees; {}", found.known->names.front(),
-                                        *galaxy.inclination, scene.galaxies_by);
+        scene.lies_by = fmt::format("{} in the table: {:.0f} degrees; {}", found.known->names.front(),
+                                    *galaxy.inclination, scene.lies_by);
     } else if (is_unsure(fits.front())) {
         galaxy.inclination = 0.0;
-        scene.galaxies_by = "how it lies is unsure: in the picture's plane";
+        scene.lies_by = "how it lies is unsure: in the picture's plane";
     }
 }
 
@@ -459,6 +517,7 @@ PictureScene picture_scene(const fs::path& image, const PictureRequest& request,
     clues.named = request.named;
     found = identify(clues, light, request.as);
     scene.structure = found.structure;
+    if (scene.structure == StructureKind::axis) find_axis(light, scene);
     scene.object = found.guesses.front().object;
     scene.subject = found.middle;
     if (scene.structure == StructureKind::disk) find_galaxies(light, found, scene);
@@ -487,7 +546,7 @@ std::string picture_scene_text(const PictureScene& scene, const fs::path& file) 
         fmt::arg("kind", to_toml(std::string(name_of(scene.structure)))),
         fmt::arg("galaxies", galaxies_text(scene)),
         fmt::arg("because",
-                 scene.galaxies_by.empty() ? "disk, sheet, walls; columns extrudes it" : scene.galaxies_by),
+                 scene.lies_by.empty() ? "disk, sheet, walls, axis; columns extrudes it" : scene.lies_by),
         fmt::arg("split", std::lround(split_above_px(scene.structure, longest_side / height,
                                                      std::max(scene.width_px, scene.height_px)))),
         fmt::arg("points", fmt::format("{:.3g}", points_within * distance)),
@@ -500,7 +559,7 @@ std::string picture_scene_text(const PictureScene& scene, const fs::path& file) 
         text += stars_text(scene, name, frame_px / double(longest), file);
     }
     if (!scene.film) return text;
-    return text + animation_text(is_deep(scene) ? orbit(distance, scene, height)
+    return text + animation_text(is_deep(scene) ? orbit(distance, own_axis(scene, height))
                                                 : flight(distance, scene, subject_in_scene(scene, height)));
 }
 

@@ -5,6 +5,7 @@
 
 #include <glm/vec2.hpp>
 
+#include "bodies/axis_fit.h"
 #include "core/progress.h"
 #include "objects/identify.h"
 #include "source/source.h"
@@ -25,7 +26,8 @@ struct PictureScene {
     StructureKind structure = StructureKind::disk;
     SkyObject object = SkyObject::galaxy;
     std::vector<GalaxyParams> galaxies = {};  // how those of a disk lie, with all values
-    std::string galaxies_by = {};             // because of what
+    std::optional<AxisFit> axis = {};         // of a body of revolution
+    std::string lies_by = {};                 // because of what they lie so
     double lit_rim = 0.0;     // share of its rim beyond which what it shows goes on, as far as one can see
     double mean_light = 0.0;  // 0..1 of the displayed white
     double light_years_per_px = 0.0;  // at the object's distance; 0: unknown

@@ -197,9 +197,9 @@ struct UvCamera {
 };
 
 /// How a picture fills the neighbourhood of its mesh (DEPTH 7): columns extrudes it, the others make bodies.
-enum class StructureKind { columns, disk, sheet, walls };
+enum class StructureKind { columns, disk, sheet, walls, axis };
 constexpr auto names_of(StructureKind) {
-    return names_up_to<StructureKind::walls>("columns", "disk", "sheet", "walls");
+    return names_up_to<StructureKind::axis>("columns", "disk", "sheet", "walls", "axis");
 }
 
 /// How a galaxy lies in its picture; empty: found when its set is made.
@@ -225,6 +225,9 @@ struct StructureParams {
     GalaxyParams galaxy;  // disk: the only one of its picture
     std::vector<GalaxyParams> galaxies;  // disk: or several, each with a centre
     double spiral = 1.0;                 // disk: of the arms invented where the picture cannot tell its plane
+    /// Axis, degrees: in the picture, from right counter-clockwise; and how far that end of it leans out of
+    /// the picture towards the viewer, -80..80. Empty: as the picture's symmetry has it.
+    std::optional<double> axis_angle, tilt;
     Stars stars =
         Stars::automatic;  // found and made into single splats; automatic: unless prepare removes them
     std::optional<double>

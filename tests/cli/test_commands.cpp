@@ -2,6 +2,7 @@
 #include <sys/stat.h>
 
 #include "scene_fixture.h"
+#include "support/pixmap.h"
 #include "support/process_state.h"
 
 namespace astrosplat::test {
@@ -101,8 +102,8 @@ TEST_F(Commands, NewMakesBodiesOfAPicture) {
     EXPECT_HAS(chosen.err, "--as chooses another");
     for (const auto& [as, kind] :
          {std::pair("galaxy", "disk"), std::pair("nebula", "sheet"), std::pair("remnant", "walls"),
-          std::pair("field", "sheet"), std::pair("elliptical", "disk"), std::pair("planetary", "walls"),
-          std::pair("cluster", "disk"), std::pair("thin", "sheet")}) {
+          std::pair("field", "sheet"), std::pair("elliptical", "disk"), std::pair("cluster", "disk"),
+          std::pair("thin", "sheet")}) {
         const std::string scene = std::string(as) + ".toml";
         const RunResult made = expect_success(run({"new", "picture.ppm", "-o", scene, "--as", as, "--film"}));
         EXPECT_EQ(made.err, "");
@@ -112,6 +113,10 @@ TEST_F(Commands, NewMakesBodiesOfAPicture) {
         expect_success(run(
             {"--batch", scene, "-f", "1,160", "-o", std::string(as) + ".####.png", "--resolution", "48x32"}));
     }
+    const RunResult no_axis =
+        expect_success(run({"new", "picture.ppm", "-o", "planetary.toml", "--as", "planetary"}));
+    EXPECT_HAS(no_axis.err, "too little: it becomes walls");
+    EXPECT_HAS(text_of(folder / "planetary.toml"), "kind = \"walls\"");
     EXPECT_HAS(text_of(folder / "field.toml"), "height = 0.05, depth = 0.01");
     EXPECT_HAS(text_of(folder / "thin.toml"), "clumps = 0.0, height = 0.02, depth = 0.0");
     EXPECT_EQ(text_of(folder / "nebula.toml").find("height"), std::string::npos);
@@ -124,6 +129,20 @@ TEST_F(Commands, NewMakesBodiesOfAPicture) {
     expect_one_line(run({"new", "picture.ppm", "-o", "x.toml", "--as", "nebula", "--shape", "disk"}), 2,
                     "--shape");
     EXPECT_FALSE(fs::exists(folder / "x.toml"));
+}
+
+TEST_F(Commands, NewFindsTheAxisOfANebula) {
+    write_text(folder / "ring.ppm", pixmap(160, 100, [](int x, int y, int k) {
+                   const double r = std::hypot((x - 80) / 50.0, (y - 50) / 30.0);
+                   return static_cast<int>(200.0 * std::exp(-20.0 * (r - 0.8) * (r - 0.8))) + 4 - k;
+               }));
+    expect_success(run({"new", "ring.ppm", "--as", "planetary", "--film"}));
+    const std::string text = text_of(folder / "ring.toml");
+    EXPECT_HAS(text, "kind = \"axis\", clumps = 1.0, axis_angle = ");
+    EXPECT_HAS(text, "# rings about an axis explain 9");
+    EXPECT_HAS(text, "[animation]");
+    expect_success(
+        run({"--batch", "ring.toml", "-f", "1,120", "-o", "ring.####.png", "--resolution", "48x30"}));
 }
 
 // What a picture shows is told by a person, by its file's metadata and name, and by its light.

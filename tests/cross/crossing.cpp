@@ -118,7 +118,10 @@ std::string source_text(const Crossing& c, const CrossingLayer& layer) {
         case Source::mesh:
             return mesh_text("sphere", "picture.ppm", "count = 300");
         case Source::bodies:
-            return mesh_text("plane", "small.ppm", "count = 300\nstructure = { kind = \"sheet\" }");
+            return &layer == &c.layers.front()
+                       ? mesh_text("plane", "small.ppm", "count = 300\nstructure = { kind = \"sheet\" }")
+                       : mesh_text("plane", "shell.ppm",
+                                   "count = 300\nstructure = { kind = \"axis\", tilt = 20.0 }");
         case Source::table:
             return "kind = \"splats\"\nfile = " + path_text("table.pda") + "\n";
         case Source::native:

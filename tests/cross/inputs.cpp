@@ -19,6 +19,14 @@ std::string sky_picture(int width, int height, int number) {
     });
 }
 
+/// An ellipse, bright at its rim.
+std::string shell() {
+    return pixmap(12, 8, [](int x, int y, int k) {
+        const double u = (x - 5.5) / 4.5, v = (y - 3.5) / 2.8, r = u * u + v * v;
+        return r > 1.0 ? 3 : 60 + static_cast<int>(120.0 * r) - 20 * k;
+    });
+}
+
 /// A dark field with some small round objects.
 std::string deep_field() {
     return pixmap(64, 48, [](int x, int y, int k) {
@@ -61,6 +69,7 @@ struct Inputs {
     Inputs() {
         folder.file("picture.ppm", small_picture());
         folder.file("small.ppm", sky_picture(8, 6, 0));  // bodies have many splats a texel
+        folder.file("shell.ppm", shell());
         folder.file("table.pda", cube_of_splats(200));
         write_native(folder / "native.splats", read_splats(folder.file("other.pda", cube_of_splats(150))));
         folder.file("gaussians.ply", ply_of(capture(60, 1), 1));
@@ -80,7 +89,7 @@ const Inputs& inputs() {
 
 }  // namespace
 
-fs::path input(const std::string& name) { return inputs().folder / name; }
+std::filesystem::path input(const std::string& name) { return inputs().folder / name; }
 
 const SetCache& shared_sets() { return inputs().sets; }
 

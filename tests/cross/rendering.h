@@ -52,12 +52,13 @@ std::vector<Shot> samples_of(const Scene& scene, double frame, Eye eye);
 std::string hash_of(const Scene& scene, std::int64_t frame, Eye eye);
 
 /// Where --batch puts a frame; throws InputError where it refuses to.
-fs::path batch_file(const Scene& scene, std::int64_t frame, Eye eye);
+std::filesystem::path batch_file(const Scene& scene, std::int64_t frame, Eye eye);
 /// The same of what it is told by --output in a working directory.
-fs::path file_of_output(const fs::path& working_directory, const std::string& output, std::int64_t frame,
-                        Eye eye);
+std::filesystem::path file_of_output(const std::filesystem::path& working_directory,
+                                     const std::string& output, std::int64_t frame, Eye eye);
 
 /// Writes the frame as --batch does.
-void write_shot(const Scene& scene, const Shot& shot, std::int64_t frame, Eye eye, const fs::path& file);
+void write_shot(const Scene& scene, const Shot& shot, std::int64_t frame, Eye eye,
+                const std::filesystem::path& file);
 
 }  // namespace astrosplat::test

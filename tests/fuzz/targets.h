@@ -5,11 +5,15 @@
 
 #include <unistd.h>
 
+#include <algorithm>
+#include <cstddef>
+#include <filesystem>
 #include <fstream>
 #include <ostream>
 #include <stdexcept>
-
-#include "core/standard.h"
+#include <string>
+#include <string_view>
+#include <vector>
 
 namespace astrosplat::fuzz {
 
@@ -40,12 +44,13 @@ inline const Target& target(const std::string& name) {
 
 /// A file of this process that holds the bytes while the object lives; its name ends in `ending`.
 struct TemporaryFile {
-    fs::path path;
+    std::filesystem::path path;
     TemporaryFile(std::string_view bytes, const std::string& ending)
-        : path(fs::temp_directory_path() / ("astrosplat_fuzz_" + std::to_string(::getpid()) + ending)) {
+        : path(std::filesystem::temp_directory_path() /
+               ("astrosplat_fuzz_" + std::to_string(::getpid()) + ending)) {
         std::ofstream(path, std::ios::binary).write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
     }
-    ~TemporaryFile() { fs::remove(path); }
+    ~TemporaryFile() { std::filesystem::remove(path); }
     TemporaryFile(const TemporaryFile&) = delete;
     TemporaryFile& operator=(const TemporaryFile&) = delete;
 };

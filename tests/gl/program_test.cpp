@@ -1,8 +1,13 @@
 // Shader programs, for Mesa and for the reference compiler.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
 #include "gl/gl_fixture.h"
 #include "gl/objects.h"
 #include "gl/passes.h"
-#include "support/test.h"
+#include "support/errors.h"
+#include "support/temp_folder.h"
 
 namespace astrosplat {
 namespace {

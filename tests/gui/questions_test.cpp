@@ -1,7 +1,9 @@
 // Unsaved changes, recovery, files changed on disk, the hint, snapshots.
+#include <gtest/gtest.h>
+
 #include "gui/test_window.h"
 #include "gui/widgets.h"
-#include "support/test.h"
+#include "support/temp_folder.h"
 
 namespace astrosplat {
 namespace {
@@ -95,7 +97,7 @@ TEST(ChangedOnDisk, ReloadsOrKeeps) {
 class SaveConflict : public testing::Test {
   protected:
     TempFolder folder;
-    fs::path file = folder.file("a.toml", example_document().text_for(folder / "a.toml"));
+    std::filesystem::path file = folder.file("a.toml", example_document().text_for(folder / "a.toml"));
     TestWindow window{Document::open(file)};
 
     SaveConflict() {

@@ -13,11 +13,13 @@ namespace astrosplat::test {
 
 class CameraFileTest : public testing::Test {
   protected:
-    fs::path put(const std::string& name, const std::string& text) { return folder.file(name, text); }
+    std::filesystem::path put(const std::string& name, const std::string& text) {
+        return folder.file(name, text);
+    }
     /// The error that ends the reading of this text, without the folder's name.
     template <class Read>
     std::string refusal(const std::string& name, const std::string& text, const Read& read) {
-        const fs::path file = put(name, text);
+        const std::filesystem::path file = put(name, text);
         return without_folder(ERROR_OF(read(file, FrameRate{})));
     }
     std::string without_folder(std::string message) {

@@ -10,7 +10,6 @@
 #include <set>
 
 #include "core/color.h"
-#include "edit/layer_steps.h"
 #include "edit/layers.h"
 
 namespace astrosplat::panel {

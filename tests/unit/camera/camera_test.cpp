@@ -1,11 +1,16 @@
 // The camera and the table of projections.
 #include "camera/camera.h"
 
+#include <gtest/gtest.h>
+
+#include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
 #include "camera/projection.h"
+#include "core/error.h"
+#include "core/real.h"
 #include "core/rotation.h"
-#include "support/test.h"
+#include "support/errors.h"
 
 namespace astrosplat {
 namespace {

@@ -1,11 +1,12 @@
 // The list of layers, and every parameter of the description, as they are edited.
-#include "edit/layers.h"
+#include <gtest/gtest.h>
+
 #include "edit/document.h"
 #include "edit/edits.h"
-#include "edit/layer_steps.h"
+#include "edit/layers.h"
 #include "scenes.h"
+#include "support/errors.h"
 #include "support/random_values.h"
-#include "support/test.h"
 
 namespace astrosplat {
 namespace {
@@ -103,7 +104,7 @@ TEST(LayersInAFile, EveryChangeIsSavedAndLoaded) {
 
 TEST(Presets, GiveLookAndRender) {
     const TempFolder folder;
-    const fs::path preset =
+    const std::filesystem::path preset =
         folder.file("vorlage ä.toml", "[look]\nalpha = { power = 3.0 }\n[render]\nblend = \"add\"\n");
     Scene scene = parse_scene(test::edit_scene, folder / "scene.toml");
     LayerParams& layer = scene.layers[0];
@@ -172,7 +173,7 @@ TEST(EveryParameter, GoesForthAndBackAndThroughTheFile) {
             continue;
         }
         const Scene edited = document.scene();
-        const fs::path copy = f.folder / "kopie.toml";
+        const std::filesystem::path copy = f.folder / "kopie.toml";
         Scene loaded = parse_scene(document.text_for(copy), copy);
         loaded.file = edited.file;
         EXPECT_EQ(loaded, edited) << spec.key << " = " << to_toml(value);

@@ -1,8 +1,12 @@
 // Where layers are in the world and in a frame, and the handles that move them.
-#include "edit/placement.h"
+#include <gtest/gtest.h>
+
+#include <glm/geometric.hpp>
+
+#include "core/real.h"
 #include "core/rotation.h"
 #include "edit/edits.h"
-#include "support/test.h"
+#include "edit/placement.h"
 #include "unit/edit/scenes.h"
 
 namespace astrosplat {

@@ -1,5 +1,8 @@
 // match = "coverage", "sum" and "picture": what is drawn has the picture's light.
-#include "support/test.h"
+#include <gtest/gtest.h>
+
+#include "core/real.h"
+#include "support/bits.h"
 #include "unit/look/sets.h"
 
 namespace astrosplat {

@@ -1,5 +1,6 @@
 // Each operator alone, on one or many splats, against its closed form.
-#include "support/test.h"
+#include <gtest/gtest.h>
+
 #include "unit/look/sets.h"
 
 namespace astrosplat {

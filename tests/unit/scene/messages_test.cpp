@@ -3,6 +3,7 @@
 #include "core/atomic_file.h"
 #include "scene/check.h"
 #include "scene_texts.h"
+#include "support/errors.h"
 
 namespace astrosplat::test {
 namespace {

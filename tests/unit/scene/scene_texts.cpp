@@ -123,7 +123,7 @@ uv_width = 0.0
 uv_center = [0.0, 0.0, 0.0]
 back = "same"
 uv_camera = { position = [], target = [0.0, 0.0, 0.0], up = [0.0, 1.0, 0.0], fov = 45.0, height = 0.0 }
-structure = { kind = "columns", height = 0.0, depth = 0.15, clumps = 1.0, flare = 0.0, warp = 0.0, inclination = 0.0, position_angle = "auto", center = "auto", near_side = "auto", bulge = "auto", galaxies = [ { inclination = 0.0, position_angle = "auto", center = "auto", near_side = "auto", bulge = "auto" } ], spiral = 1.0, stars = "auto", dust = "auto", opacity = 0.55, density = 0.75, border = 0.0, margin = 0.0 }
+structure = { kind = "columns", height = 0.0, depth = 0.15, clumps = 1.0, flare = 0.0, warp = 0.0, inclination = 0.0, position_angle = "auto", center = "auto", near_side = "auto", bulge = "auto", galaxies = [ { inclination = 0.0, position_angle = "auto", center = "auto", near_side = "auto", bulge = "auto" } ], spiral = 1.0, axis_angle = "auto", tilt = "auto", stars = "auto", dust = "auto", opacity = 0.55, density = 0.75, border = 0.0, margin = 0.0 }
 seed = 0
 plane = 0
 voxel_size = 0.0

@@ -1,12 +1,16 @@
 // Prepared pictures and skies kept beside the sets.
+#include <gtest/gtest.h>
+
 #include "core/file.h"
 #include "core/log.h"
 #include "sets/kept.h"
 #include "sets/load_source.h"
 #include "source/prepared_picture.h"
 #include "source/write_image.h"
+#include "support/errors.h"
 #include "support/pixmap.h"
-#include "support/test.h"
+#include "support/quiet.h"
+#include "support/temp_folder.h"
 
 namespace astrosplat {
 namespace {
