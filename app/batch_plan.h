@@ -36,6 +36,14 @@ struct BatchPlan {
     bool resume = false;            // frames of the right hash are as good as rendered ones
 };
 
+/// "--memory GiB" in bytes. Throws InputError.
+std::int64_t parse_memory(const std::string& text);
+
+/// Sets most_texels of a layer of bodies whose pictures would take more than `bytes` with the program, so
+/// that it is made of smaller ones; a warning says so. The sizes follow from the pictures and `bytes` alone.
+/// Throws as load_meshes does.
+void limit_bodies(LayerParams& layer, std::int64_t bytes, const SetCache& cache);
+
 /// How many of the frames are rendered.
 std::int64_t count_to_render(const BatchPlan& plan);
 

@@ -318,26 +318,6 @@ JobNeed need_of(const BatchPlan& plan, std::vector<LayerNeed> layers) {
 
 }  // namespace
 
-std::int64_t parse_memory(const std::string& text) {
-    constexpr double least = 1e-9, most = 1048575.0;  // GiB
-    return static_cast<std::int64_t>(
-        option_number("--memory", text, "a size in GiB, such as 4", least, most) * 1073741824.0);
-}
-
-void limit_bodies(LayerParams& layer, std::int64_t bytes, const SetCache& cache) {
-    constexpr std::int64_t others_bytes = 189'000'000;  // never another number: pixels depend on it
-    bytes = std::max<std::int64_t>(bytes - others_bytes, 1);
-    SourceParams& source = layer.source;
-    if (source.kind != SourceKind::mesh || source.structure.kind == StructureKind::columns) return;
-    std::vector<TexturedMesh> meshes =
-        load_meshes(cache, source, stoppable(), most_texels_read(source, bytes));
-    enlarge_small_pictures(meshes, layer.name);
-    const std::int64_t largest = largest_picture(meshes);
-    reduce_pictures(meshes, source.structure, {bytes, 0}, layer.name);
-    const std::int64_t fitting = largest_picture(meshes);
-    if (fitting < largest) source.structure.most_texels = fitting;
-}
-
 JobEstimate estimate(const BatchPlan& plan) {
     {
         SampledRun sample(plan, SampledRun::Layers::there);

@@ -88,12 +88,4 @@ JobEstimate estimate(const BatchPlan& plan, SampledRun& sample);
 /// The same with a sample of what is there, and of what is not where much would be guessed.
 JobEstimate estimate(const BatchPlan& plan);
 
-/// "--memory GiB" in bytes. Throws InputError.
-std::int64_t parse_memory(const std::string& text);
-
-/// Sets most_texels of a layer of bodies whose pictures would take more than `bytes` with the program, so
-/// that it is made of smaller ones; a warning says so. The sizes follow from the pictures and `bytes` alone.
-/// Throws as load_meshes does.
-void limit_bodies(LayerParams& layer, std::int64_t bytes, const SetCache& cache);
-
 }  // namespace astrosplat

@@ -9,6 +9,7 @@
 #include <limits>
 #include <string_view>
 
+#include "batch_plan.h"
 #include "camera/camera.h"
 #include "command.h"
 #include "core/color.h"
@@ -19,7 +20,6 @@
 #include "core/memory.h"
 #include "core/progress.h"
 #include "core/text.h"
-#include "estimate.h"
 #include "exit.h"
 #include "gaussians/gaussian_file.h"
 #include "gaussians/gaussians.h"

@@ -10,12 +10,14 @@
 #include "core/error.h"
 #include "core/text.h"
 #include "exit.h"
+#include "objects/identify.h"
 #include "prepare/stages.h"
 #include "prepare/star_removal.h"
 #include "scene/check.h"
 #include "scene/describe.h"
 #include "scene/describe_layer.h"
 #include "source/fits.h"
+#include "source/object_metadata.h"
 #include "source/picture.h"
 #include "source/prepared_picture.h"
 #include "source/write_image.h"
@@ -132,26 +134,51 @@ std::vector<fs::path> pictures_of(const fs::path& folder, const PrepareOptions& 
     return files;
 }
 
-//// The part that the mask shows, and the picture with that part filled from around it.
-void write_split(const CommandOptions& options, const fs::path& mask_file, const Image& picture,
-                 const std::string& credit, const Progress& progress) {
+/// What the first of the files says of its object, and of the sky what the file says on whose grid it was
+/// put.
+std::string metadata_text(const fs::path& first, const PrepareParams& params, const std::string& credit) {
+    ObjectMetadata said = clues_of(first).metadata;
+    said.credit = credit;
+    if (!params.align.empty()) {
+        const ObjectMetadata grid = clues_of(params.align).metadata;
+        said.degrees_per_px = grid.degrees_per_px;
+        said.reference_px = grid.reference_px;
+        said.north_angle = grid.north_angle;
+        said.sky_position = grid.sky_position;
+    }
+    return xmp_packet(said);
+}
+
+/// Writes pictures made of the input, with what that says of itself.
+struct PictureWriter {
+    fs::path folder;
+    std::string credit, metadata;
+    Existing existing;
+
+    void operator()(const char* name, const Image& image) const {
+        write_linear_image(folder / name, image, credit, existing, metadata);
+    }
+};
+
+/// The part that the mask shows, and the picture with that part filled from around it.
+void write_split(const PictureWriter& write, const fs::path& mask_file, const Image& picture,
+                 const Progress& progress) {
     const Image mask = read_mask_like(picture, "--split", mask_file);
     Image front = picture, back = picture;
     cut_with_mask(front, mask);
-    write_linear_image(*options.output / "front.exr", front, credit, existing_of(options));
+    write("front.exr", front);
     fill(back, bright_pixels(mask), FillKind::texture, progress);
-    write_linear_image(*options.output / "back.exr", back, credit, existing_of(options));
+    write("back.exr", back);
 }
 
-void write_all(const CommandOptions& options, const PrepareParams& params, const PreparedPicture& result,
+void write_all(const PictureWriter& write, const PrepareParams& params, const PreparedPicture& result,
                const Image& picture) {
-    const fs::path& folder = *options.output;
-    const Existing existing = existing_of(options);
-    write_linear_image(folder / "picture.exr", picture, result.credit, existing);
+    write("picture.exr", picture);
     if (params.stars == PrepareParams::Stars::remove)
-        write_file_atomically(folder / "stars.csv", star_table(result.stars, picture.width, picture.height),
-                              existing);
-    if (result.sky) write_file_atomically(folder / "background.json", sky_text(*result.sky), existing);
+        write_file_atomically(write.folder / "stars.csv",
+                              star_table(result.stars, picture.width, picture.height), write.existing);
+    if (result.sky)
+        write_file_atomically(write.folder / "background.json", sky_text(*result.sky), write.existing);
 }
 
 std::string sky_summary(const std::optional<SkySurface>& sky) {
@@ -202,8 +229,10 @@ int run_prepare(const CommandOptions& options, const PrepareOptions& own) {
     if (three_filters) inputs = {own.red, own.green, own.blue};
     const PreparedPicture result = prepare_picture(inputs, settings, progress);
     const Image picture = without_plain_alpha(result.image);
-    if (own.split) write_split(options, *own.split, result.image, result.credit, progress);
-    write_all(options, params, result, picture);
+    const PictureWriter write{folder, result.credit, metadata_text(inputs.front(), params, result.credit),
+                              existing_of(options)};
+    if (own.split) write_split(write, *own.split, result.image, progress);
+    write_all(write, params, result, picture);
     print_summary(folder, files, params, result, picture);
     return exit_done;
 }

@@ -154,8 +154,10 @@ struct Pipeline::State {
         return found;
     }
 
-    /// Applies the look where anything that it depends on has changed since the last frame.
-    void shade(std::size_t index, const LayerParams& params, const Camera& seen, const Progress& progress) {
+    /// Applies the look where anything that it depends on has changed since the last frame. Refusals, as of a
+    /// matching that the layer's splats cannot have, name the layer.
+    void shade(std::size_t index, const LayerParams& params, const Camera& seen,
+               const Progress& progress) try {
         LayerState& layer = layers[index];
         LookInputs inputs = look_inputs(params);
         ShadingInputs shading{
@@ -188,6 +190,10 @@ struct Pipeline::State {
         layer.shaded_with = shading;
         statistics[index].drawn = layer.streamed ? layer.streamed->splats() : layer.shaded.size();
         statistics[index].look_seconds += counts.seconds;
+    } catch (const NotEnoughMemory&) {
+        throw;
+    } catch (const InputError& error) {
+        throw InputError("layer '" + params.name + "': " + error.what());
     }
 
     void shade_visible(const Scene& now, const Camera& seen, const Progress& progress) {

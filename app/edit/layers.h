@@ -1,6 +1,5 @@
-// Edits of the list of layers: functions on a scene, and the same as undo steps of a document. Names stay
-// unique and valid; tracks follow a layer's name. And first scenes for a file that is dropped on the window
-// or named on the command line, and for a built-in shape.
+// Edits of a scene's list of layers. Names stay unique and valid; tracks follow a layer's name. And first
+// scenes for a file that is dropped on the window or named on the command line, and for a built-in shape.
 #pragma once
 
 #include <array>
@@ -8,8 +7,6 @@
 #include <string>
 
 #include "core/file_format.h"
-#include "edit/document.h"
-#include "edit/view_state.h"
 #include "scene/scene.h"
 
 namespace astrosplat {
@@ -33,17 +30,6 @@ void rename_layer(Scene& scene, std::size_t index, const std::string& name);
 void apply_preset(LayerParams& layer, const std::filesystem::path& preset);
 
 bool is_visible(const Scene& scene, std::size_t index, double frame);
-
-// One undo step each, "Hide dust"; the selection follows. Throw InputError as Document::edit does.
-
-/// Shows a layer that is hidden at the view's frame, or hides it: by a keyframe there where that is animated.
-void toggle_visible(Document& document, const ViewState& view, std::size_t index);
-void duplicate_layer(Document& document, ViewState& view, std::size_t index);
-void remove_layer(Document& document, ViewState& view, std::size_t index);
-void move_layer(Document& document, ViewState& view, std::size_t from, std::size_t to);
-
-/// Only layers that are solo are seen, while there are any; of the window, not of the scene.
-void toggle_solo(ViewState& view, const std::string& layer);
 
 /// By content or ending (core/file_format.h); a .toml is a look when it has a [look] or [render] and no
 /// layers, else a scene. Unreadable files are what their ending says.

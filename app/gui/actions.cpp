@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "edit/edits.h"
+#include "edit/layer_steps.h"
 #include "edit/layers.h"
 #include "edit/view_camera.h"
 #include "scene/animate.h"

@@ -100,7 +100,9 @@ void draw_frames(GuiFrame& frame, const QueuedJob& job) {
     note_item(frame, "queue/play");
     ImGui::SameLine(0, px(card_gap));
     ImGui::SetNextItemWidth(width - px(64) - px(card_gap));
-    if (ImGui::SliderInt("##frame", &shown, 0, std::max(1, count - 1), "", ImGuiSliderFlags_AlwaysClamp)) {
+    const bool moved =
+        ImGui::SliderInt("##frame", &shown, 0, std::max(1, count - 1), "", ImGuiSliderFlags_AlwaysClamp);
+    if (moved || ImGui::IsItemActivated()) {  // a click on the frame shown stops there
         view.queue_frame = std::min(shown, count - 1);
         view.queue_playing = false;
     }

@@ -20,4 +20,9 @@ glm::dvec4 quaternion_product(const glm::dvec4& a, const glm::dvec4& b);
 /// Rotation about x, then y, then z.
 glm::dmat3 rotation_from_degrees(const glm::dvec3& degrees);
 
+/// The same turn from -180 up to 180 degrees.
+inline double within_half_turn(double degrees) {
+    return degrees - 360.0 * std::floor((degrees + 180.0) / 360.0);
+}
+
 }  // namespace astrosplat

@@ -6,6 +6,7 @@
 
 #include "core/parallel.h"
 #include "core/real.h"
+#include "core/rotation.h"
 #include "image/blur.h"
 #include "image/channels.h"
 #include "prepare/least_squares.h"
@@ -340,8 +341,6 @@ bool is_flat(const Image& image) {
            double(least_spread) * double(least_spread);
 }
 
-double turn_within_half(double degrees) { return degrees - 360.0 * std::floor((degrees + 180.0) / 360.0); }
-
 }  // namespace
 
 std::optional<Registration> registered(const Image& fixed, const Image& moving, const ImageOnImage& start,
@@ -368,7 +367,7 @@ std::optional<Registration> registered(const Image& fixed, const Image& moving, 
     if (best.score < least_likeness || overlap_of(views[level], images, best.place) < least_overlap)
         return std::nullopt;
     Registration result{zoomed(best.place, std::ldexp(1.0, int(level))), best.score};
-    result.place.turn_deg = turn_within_half(result.place.turn_deg);
+    result.place.turn_deg = within_half_turn(result.place.turn_deg);
     return result;
 }
 

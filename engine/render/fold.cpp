@@ -312,6 +312,10 @@ void fold_cells(const FoldJob& job, TilePlanes& planes) {
         const int column = n % planes.cell_columns, row = n / planes.cell_columns;
         Cell cell{std::size_t(n * TilePlanes::cell_pixels), float(planes.x0 + column * TilePlanes::cell_px),
                   float(planes.y0 + row * TilePlanes::cell_px), used_blocks(planes, column, row), caps};
+        // Of the columns in use: of two places of a splat the nearer one is the one whose square surely
+        // touches.
+        const int used_px = std::min(TilePlanes::cell_px, planes.width - column * TilePlanes::cell_px);
+        const float middle_px = cell.x0_px + 0.5f * float(used_px);
         found.count = 0;
         Cap whole;
         if constexpr (sphere) {
@@ -323,8 +327,8 @@ void fold_cells(const FoldJob& job, TilePlanes& planes) {
         for (std::size_t i = 0; i < job.splats.size() && cell.open != 0; i += step) {
             const std::size_t end = std::min(i + step, job.splats.size());
             if constexpr (sphere)
-                find_on_sphere(*scratch, i, end, whole, cell.x0_px + 0.5f * float(TilePlanes::cell_px),
-                               shared::period_px(job.settings.lens), found);
+                find_on_sphere(*scratch, i, end, whole, middle_px, shared::period_px(job.settings.lens),
+                               found);
             else
                 find_in_cell(scratch->discs, i, end, cell, found);
             fold_found<Pixels, kOutline>(job, common, end == job.splats.size(), found, scratch->batch, cell,

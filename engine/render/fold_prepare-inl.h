@@ -146,7 +146,7 @@ HWY_INLINE M reaches(V x, V y, V z, V reach, const Cap& cap) {
 }
 
 /// Appends those of the splats [begin, end) whose support may touch the cell and whose place on the frame is
-/// the nearest of theirs to the cell's middle.
+/// the nearest of theirs to the middle of the cell's columns in use.
 inline void find_on_sphere(const FoldScratch& scratch, std::size_t begin, std::size_t end, const Cap& cap,
                            float middle_px, float period_px, CellSplats& found) {
     if (cap.radius < 0.0f) return;

@@ -3,6 +3,7 @@
 #include <glm/geometric.hpp>
 
 #include "core/real.h"
+#include "core/rotation.h"
 #include "scene/frames.h"
 
 namespace astrosplat {
@@ -27,8 +28,6 @@ void put_middle(ReferenceParams& reference, glm::dvec2 px, const FrameOnScreen& 
 
 /// Degrees counter-clockwise on the screen.
 double angle_of(glm::dvec2 v) { return real::degrees(real::atan2(-v.y, v.x)); }
-
-double within_half_turn(double degrees) { return degrees - 360.0 * std::floor((degrees + 180.0) / 360.0); }
 
 double rounded(double x, double per_unit) { return std::round(x * per_unit) / per_unit; }
 

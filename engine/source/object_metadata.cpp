@@ -2,9 +2,11 @@
 // Alt of rdf:li; its prefixes are whatever the packet declares.
 #include "source/object_metadata.h"
 
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include <pugixml.hpp>
+#include <sstream>
 
 #include "core/file.h"
 #include "core/real.h"
@@ -229,6 +231,42 @@ ObjectMetadata find_xmp_metadata(std::string_view bytes) {
         bytes.remove_prefix(size);
     }
     return first.value_or(ObjectMetadata{});
+}
+
+std::string xmp_packet(const ObjectMetadata& m) {
+    if (m == ObjectMetadata{}) return "";
+    pugi::xml_document packet;
+    pugi::xml_node root = packet.append_child("x:xmpmeta");
+    root.append_attribute("xmlns:x") = "adobe:ns:meta/";
+    pugi::xml_node rdf = root.append_child("rdf:RDF");
+    rdf.append_attribute("xmlns:rdf") = "http://www.w3.org/1999/02/22-rdf-syntax-ns#";
+    pugi::xml_node description = rdf.append_child("rdf:Description");
+    description.append_attribute("rdf:about") = "";
+    description.append_attribute("xmlns:avm") = avm_space;
+    description.append_attribute("xmlns:dc") = dublin_core_space;
+    description.append_attribute("xmlns:photoshop") = photoshop_space;
+    const auto add = [&](const char* property, const char* kind, const std::vector<std::string>& values) {
+        if (std::ranges::all_of(values, &std::string::empty)) return;
+        pugi::xml_node list = description.append_child(property).append_child(kind);
+        for (const std::string& value : values) list.append_child("rdf:li").text() = value.c_str();
+    };
+    const auto number = [](double value) { return fmt::format("{}", value); };
+    const auto add_pair = [&](const char* property, const std::array<double, 2>& pair) {
+        add(property, "rdf:Seq", {number(pair[0]), number(pair[1])});
+    };
+    add("avm:Subject.Category", "rdf:Bag", m.categories);
+    add("dc:subject", "rdf:Bag", m.names);
+    add("dc:title", "rdf:Alt", {m.title});
+    add("photoshop:Credit", "rdf:Alt", {m.credit});
+    add("avm:Type", "rdf:Alt", {m.type});
+    if (m.distance_ly) add("avm:Distance", "rdf:Seq", {number(*m.distance_ly)});
+    if (m.degrees_per_px) add_pair("avm:Spatial.Scale", {-*m.degrees_per_px, *m.degrees_per_px});
+    if (m.north_angle) add("avm:Spatial.Rotation", "rdf:Seq", {number(*m.north_angle)});
+    if (m.reference_px[0] > 0.0) add_pair("avm:Spatial.ReferenceDimension", m.reference_px);
+    if (m.sky_position) add_pair("avm:Spatial.ReferenceValue", *m.sky_position);
+    std::ostringstream text;
+    packet.save(text, "", pugi::format_raw | pugi::format_no_declaration);
+    return text.str();
 }
 
 ObjectMetadata read_xmp_metadata(const fs::path& file) { return find_xmp_metadata(read_ends(file)); }

@@ -19,6 +19,7 @@ struct ObjectMetadata {
                                            // picture is mirrored; -180 to 180
     std::optional<std::array<double, 2>>
         sky_position;  // degrees: right ascension, declination of a place in it
+    bool operator==(const ObjectMetadata&) const = default;
 };
 
 /// Of the first XMP packet with AVM, else of the first one, in the first or last 4 MiB of the file: JPEG, PNG
@@ -29,6 +30,10 @@ ObjectMetadata read_xmp_metadata(const fs::path& file);
 
 /// The same of bytes in which packets stand.
 ObjectMetadata find_xmp_metadata(std::string_view bytes);
+
+/// A packet that says the same, for pictures made of one; empty where there is nothing to say. Angles and
+/// scales may differ in their last bits.
+std::string xmp_packet(const ObjectMetadata& metadata);
 
 /// Of the HDU of a FITS file that is taken for the picture: OBJECT, DISTANCE, and how the sky lies on it.
 /// Throws InputError.

@@ -87,12 +87,13 @@ void write_image(const fs::path& file, std::int64_t width, std::int64_t height,
 }
 
 void write_linear_image(const fs::path& file, const Image& image, const std::string& credit,
-                        Existing existing) {
+                        Existing existing, const std::string& xmp) {
     assert(image.channels == 3 || image.channels == 4);
     OIIO::ImageSpec spec(int(image.width), int(image.height), image.channels, OIIO::TypeDesc::FLOAT);
     spec.attribute("compression", "zip");
     spec.attribute("DateTime", "");
     if (!credit.empty()) spec.attribute("Copyright", credit);
+    if (!xmp.empty()) spec.attribute("xmp", xmp);  // as it is: headers of EXR are not compressed
     PictureFile picture(file, "exr", spec, existing);
     picture.write_all(OIIO::TypeDesc::FLOAT, image.pixels.data());
     picture.commit();

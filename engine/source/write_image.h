@@ -12,9 +12,10 @@ void write_image(const fs::path& file, std::int64_t width, std::int64_t height,
                  std::span<const unsigned char> rgba);
 
 /// Writes linear light of 3 channels, or 4 with a premultiplied alpha, as an EXR file of 32-bit floats,
-/// atomically. `credit` goes into its header where there is one. Throws OutputError.
+/// atomically. `credit`, and metadata as a packet (xmp_packet), go into its header where there are any.
+/// Throws OutputError.
 void write_linear_image(const fs::path& file, const Image& image, const std::string& credit,
-                        Existing existing);
+                        Existing existing, const std::string& xmp = "");
 
 /// A PNG file in memory, of width x height px of RGB bytes, top row first. Throws OutputError.
 std::string png_bytes(std::int64_t width, std::int64_t height, std::span<const unsigned char> rgb);

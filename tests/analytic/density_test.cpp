@@ -1,10 +1,7 @@
 // Density, matching and distance: how many splats there are, and the light they keep.
-#include <fmt/format.h>
-#include <gtest/gtest.h>
-
 #include "analytic/support.h"
-#include "core/real.h"
 #include "render/footprint.h"
+#include "support/test.h"
 
 namespace astrosplat {
 namespace {
@@ -75,12 +72,11 @@ TEST(Density, KeepsTheShareOfItsCurve) {
     };
     for (const Case& test : cases) {
         const LayerStatistics counts = statistics_of(test.look);
-        const double share = kept_share(test.density), n = static_cast<double>(counts.kept);
+        const double share = kept_share(test.density), n = double(counts.kept);
         ASSERT_GT(n, 80000.0);
         // Four standard deviations of a binomial; a jittered lattice fills the shells more evenly than
         // chance.
-        EXPECT_NEAR(static_cast<double>(counts.drawn) / n, share,
-                    4.0 * std::sqrt(share * (1.0 - share) / n) + 1e-12)
+        EXPECT_NEAR(double(counts.drawn) / n, share, 4.0 * std::sqrt(share * (1.0 - share) / n) + 1e-12)
             << test.look;
     }
 }
@@ -89,14 +85,14 @@ TEST(Density, KeepsTheShareOfItsCurve) {
 // 0.02.
 TEST(Density, CullingByNoiseKeepsHalf) {
     const LayerStatistics counts = statistics_of("noise = { frequency = 5.0, cull = 1.0 }");
-    EXPECT_NEAR(static_cast<double>(counts.drawn) / static_cast<double>(counts.kept), 0.5, 0.02);
+    EXPECT_NEAR(double(counts.drawn) / double(counts.kept), 0.5, 0.02);
     const LayerStatistics some = statistics_of("noise = { frequency = 5.0, cull = 0.5 }");
-    EXPECT_NEAR(static_cast<double>(some.drawn) / static_cast<double>(some.kept), 0.75, 0.01);
+    EXPECT_NEAR(double(some.drawn) / double(some.kept), 0.75, 0.01);
 }
 
 // "Positions kept" of voxels = "auto": about `count`, here within what the plane's rim adds.
 TEST(Density, AutomaticVoxelsKeepAboutCount) {
-    EXPECT_NEAR(static_cast<double>(statistics_of("").kept), 100000.0, 10000.0);
+    EXPECT_NEAR(double(statistics_of("").kept), 100000.0, 10000.0);
 }
 
 // Vertical matching, from scene text to pixels: a plane whose picture has one alpha everywhere, seen from the
@@ -179,7 +175,7 @@ class VerticalMatching : public ::testing::TestWithParam<double> {
         const std::vector<Setting> settings = all_settings();
         Pipeline pipeline(scene_of(folder, sheet_scene(blend, settings)));
         for (std::size_t i = 0; i < settings.size(); ++i)
-            check(mean(render_frame(pipeline, static_cast<double>(i)).beauty), settings[i].name());
+            check(mean(render_frame(pipeline, double(i)).beauty), settings[i].name());
     }
 };
 
@@ -212,7 +208,7 @@ const Shape shapes[] = {{"constant", {Falloff::Shape::constant, 0.5f, 4.5f}},
                         {"exponential", {Falloff::Shape::exponential, 0.5f, 4.5f}}};
 
 double light(const Image& image, int channel) {
-    return mean(image)[channel] * static_cast<double>(image.width * image.height);
+    return mean(image)[channel] * double(image.width * image.height);
 }
 
 /// One layer of a splat file under a perspective camera whose focal length is the picture's height (fov 2

@@ -1,13 +1,10 @@
 // Pictures keep their light, their colours and their side.
-#include <fmt/format.h>
-#include <gtest/gtest.h>
-
 #include "analytic/support.h"
 #include "core/color.h"
-#include "core/real.h"
 #include "scene/load.h"
 #include "scene/new_scene.h"
 #include "sets/load_source.h"
+#include "support/test.h"
 
 namespace astrosplat {
 namespace {
@@ -33,7 +30,7 @@ glm::dvec3 mean_light() {
     glm::dvec3 sum(0.0);
     for (int y = 0; y < galaxy_px; ++y)
         for (int x = 0; x < galaxy_px; ++x) sum += glm::dvec3(galaxy(x, y));
-    return sum / static_cast<double>(galaxy_px * galaxy_px);
+    return sum / double(galaxy_px * galaxy_px);
 }
 
 /// The scene as written, at a size for tests, with further assignments. The texture's alpha of 1 everywhere
@@ -184,7 +181,7 @@ constexpr const char* letter[8] = {"RR....GG",  //
 
 /// Colour at (u, v), v = 0 at the bottom.
 glm::vec3 letter_color(double u, double v) {
-    const auto cell = [](double t) { return std::clamp(static_cast<int>(std::floor(t * 8.0)), 0, 7); };
+    const auto cell = [](double t) { return std::clamp(int(std::floor(t * 8.0)), 0, 7); };
     switch (letter[cell(1.0 - v)][cell(u)]) {
         case 'R':
             return {1.0f, 0.0f, 0.0f};
@@ -232,9 +229,8 @@ double difference(const Image& image, Mapping mapping, int way, bool encoded) {
     double sum = 0.0, count = 0.0;
     for (std::int64_t y = 0; y < image.height; ++y)
         for (std::int64_t x = 0; x < image.width; ++x) {
-            const double right =
-                2.0 * (static_cast<double>(x) + 0.5) / static_cast<double>(image.width) - 1.0;
-            const double up = 1.0 - 2.0 * (static_cast<double>(y) + 0.5) / static_cast<double>(image.height);
+            const double right = 2.0 * (double(x) + 0.5) / double(image.width) - 1.0;
+            const double up = 1.0 - 2.0 * (double(y) + 0.5) / double(image.height);
             const std::optional<Uv> place = mapping(right, up);
             if (!place) continue;
             const Uv uv = turned(*place, way);

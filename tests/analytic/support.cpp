@@ -14,8 +14,8 @@
 namespace astrosplat::analytic {
 namespace {
 
-void write_image(const std::filesystem::path& file, const char* plugin, OIIO::TypeDesc type, int width,
-                 int height, const Texels& texels) {
+void write_image(const fs::path& file, const char* plugin, OIIO::TypeDesc type, int width, int height,
+                 const Texels& texels) {
     std::vector<float> values;
     for (int y = 0; y < height; ++y)
         for (int x = 0; x < width; ++x) {
@@ -32,11 +32,11 @@ void write_image(const std::filesystem::path& file, const char* plugin, OIIO::Ty
 
 }  // namespace
 
-void write_float_tiff(const std::filesystem::path& file, int width, int height, const Texels& texels) {
+void write_float_tiff(const fs::path& file, int width, int height, const Texels& texels) {
     write_image(file, "tiff", OIIO::TypeDesc::FLOAT, width, height, texels);
 }
 
-void write_png(const std::filesystem::path& file, int width, int height, const Texels& texels) {
+void write_png(const fs::path& file, int width, int height, const Texels& texels) {
     write_image(file, "png", OIIO::TypeDesc::UINT8, width, height, texels);
 }
 
@@ -46,7 +46,7 @@ float StoredFile::at(const std::string& name, std::int64_t x, std::int64_t y) co
     return image.at(x, y)[found - names.begin()];
 }
 
-StoredFile read_stored_file(const std::filesystem::path& file) {
+StoredFile read_stored_file(const fs::path& file) {
     OIIO::ImageSpec config;
     config.attribute("oiio:UnassociatedAlpha", 1);
     auto in = OIIO::ImageInput::open(file.string(), &config);
@@ -57,7 +57,7 @@ StoredFile read_stored_file(const std::filesystem::path& file) {
     if (!in->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, stored.image.pixels.data()))
         throw std::runtime_error(file.string() + ": " + in->geterror());
     for (int c = 0; c < spec.nchannels; ++c) {
-        stored.names.push_back(spec.channelnames[static_cast<std::size_t>(c)]);
+        stored.names.push_back(spec.channelnames[std::size_t(c)]);
         stored.types.emplace_back(spec.channelformat(c).c_str());
     }
     return stored;
@@ -81,11 +81,11 @@ RenderedFrame render_text(const TempFolder& folder, const std::string& toml, dou
     return render_frame(pipeline, frame);
 }
 
-std::filesystem::path write_text(const TempFolder& folder, const std::string& toml) {
+fs::path write_text(const TempFolder& folder, const std::string& toml) {
     const Scene scene = scene_of(folder, toml);
     Pipeline pipeline(scene);
     const RenderedFrame frame = render_frame(pipeline);
-    const std::filesystem::path file = OutputPattern{folder.path(), scene.output.path}.resolve(1);
+    const fs::path file = OutputPattern{folder.path(), scene.output.path}.resolve(1);
     const OutputParams& output = scene.output;
     write_frame(
         {file, output, output.width, output.height, {}, pipeline.layer_names(pipeline.frame_scene(1.0))},
@@ -99,7 +99,7 @@ glm::dvec4 mean(const Image& image, Region part) {
     for (std::int64_t y = part.y; y < part.y + part.height; ++y)
         for (std::int64_t x = part.x; x < part.x + part.width; ++x)
             for (int k = 0; k < 4; ++k) sum[k] += image.at(x, y)[k];
-    return sum / static_cast<double>(part.width * part.height);
+    return sum / double(part.width * part.height);
 }
 
 }  // namespace astrosplat::analytic

@@ -16,10 +16,10 @@ namespace astrosplat::analytic {
 using Texels = std::function<glm::vec4(int x, int y)>;
 
 /// Float TIFF with unassociated alpha: linear light, stored as it is.
-void write_float_tiff(const std::filesystem::path& file, int width, int height, const Texels& texels);
+void write_float_tiff(const fs::path& file, int width, int height, const Texels& texels);
 
 /// 8-bit PNG, values 0..1 of the file's own encoding (sRGB), alpha unassociated as always in PNG.
-void write_png(const std::filesystem::path& file, int width, int height, const Texels& texels);
+void write_png(const fs::path& file, int width, int height, const Texels& texels);
 
 /// A picture file as it lies on the disk: every channel as floats, with names and types.
 struct StoredFile {
@@ -29,7 +29,7 @@ struct StoredFile {
     /// One channel's value; a name that is not there is a failure of the test (std::out_of_range).
     float at(const std::string& name, std::int64_t x, std::int64_t y) const;
 };
-StoredFile read_stored_file(const std::filesystem::path& file);
+StoredFile read_stored_file(const fs::path& file);
 
 /// A PDA file of these rows, "x y z red green blue opacity radius" each.
 std::string pda(const std::string& rows);
@@ -42,7 +42,7 @@ RenderedFrame render_text(const TempFolder& folder, const std::string& toml, dou
 RenderedFrame render_frame(Pipeline& pipeline, double frame = 1.0);
 
 /// Renders frame 1 and writes it to output.path, in the folder, as batch does.
-std::filesystem::path write_text(const TempFolder& folder, const std::string& toml);
+fs::path write_text(const TempFolder& folder, const std::string& toml);
 
 /// Mean of each channel over a part of an RGBA picture; all of it when the part is empty.
 glm::dvec4 mean(const Image& image, Region part = {});

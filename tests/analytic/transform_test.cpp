@@ -1,11 +1,8 @@
 // Finished splats moved by their layer, and what layers and frames add up to.
-#include <fmt/format.h>
-#include <gtest/gtest.h>
-
 #include "analytic/support.h"
-#include "core/real.h"
 #include "output/compare.h"
 #include "output/write.h"
+#include "support/test.h"
 
 namespace astrosplat {
 namespace {
@@ -48,8 +45,8 @@ Blob blob_of(const Image& image) {
         for (std::int64_t x = 0; x < image.width; ++x) {
             const double light = image.at(x, y)[0];
             blob.light += light;
-            blob.x += light * (static_cast<double>(x) + 0.5 - 40.0) / 10.0;
-            blob.y += light * (40.0 - static_cast<double>(y) - 0.5) / 10.0;
+            blob.x += light * (double(x) + 0.5 - 40.0) / 10.0;
+            blob.y += light * (40.0 - double(y) - 0.5) / 10.0;
         }
     blob.x /= blob.light;
     blob.y /= blob.light;

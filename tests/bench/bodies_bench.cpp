@@ -13,7 +13,7 @@ namespace {
 TexturedMesh painted_galaxy(std::int64_t width, std::int64_t height) {
     const Image light = painted::galaxy(width, height);
     TexturedMesh result;
-    result.mesh = builtin_mesh("plane", static_cast<double>(width) / static_cast<double>(height));
+    result.mesh = builtin_mesh("plane", double(width) / double(height));
     result.textures.emplace_back().image = make_image(width, height, 4, 1.0f);
     float* const pixels = result.textures[0].image.pixels.data();
     for (std::int64_t i = 0; i < width * height; ++i) std::copy_n(&light.pixels[3 * i], 3, pixels + 4 * i);
@@ -30,12 +30,11 @@ void bodies(benchmark::State& state) {
     forget_peak();
     std::int64_t splats = 0;
     for (auto _ : state) splats = make_bodies(meshes, params, 1, "galaxy").size();
-    const auto texels = static_cast<double>(width * height);
-    state.counters["texel_B"] = static_cast<double>(peak_bytes() - before) / texels;
-    state.counters["told_B"] =
-        static_cast<double>(bodies_memory_bytes(meshes, expected_splats(meshes, params))) / texels;
+    const auto texels = double(width * height);
+    state.counters["texel_B"] = double(peak_bytes() - before) / texels;
+    state.counters["told_B"] = double(bodies_memory_bytes(meshes, expected_splats(meshes, params))) / texels;
     state.counters["Mpx"] = 1e-6 * texels;
-    state.counters["Msplats"] = 1e-6 * static_cast<double>(splats);
+    state.counters["Msplats"] = 1e-6 * double(splats);
 }
 
 BENCHMARK(bodies)->Arg(1920)->Arg(3840)->Unit(benchmark::kMillisecond)->UseRealTime()->Iterations(1);

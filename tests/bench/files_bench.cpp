@@ -17,13 +17,13 @@ const SplatSet& set() {
     return the_set;
 }
 
-std::filesystem::path file(const char* name) {
+fs::path file(const char* name) {
     static const TempFolder folder;
     return folder / name;
 }
 
-void report(benchmark::State& state, const std::filesystem::path& path) {
-    const auto bytes = static_cast<std::int64_t>(std::filesystem::file_size(path));
+void report(benchmark::State& state, const fs::path& path) {
+    const auto bytes = std::int64_t(fs::file_size(path));
     state.SetBytesProcessed(bytes * state.iterations());
     report_rate(state, set().size());
     report_traffic(state, bytes);
@@ -34,7 +34,7 @@ void write(benchmark::State& state, const char* name, const Write& write_file) {
     write_file(file(name));  // blocks of the disk that were never written may take several times as long
     for (auto _ : state) {
         state.PauseTiming();
-        std::filesystem::remove(file(name));
+        fs::remove(file(name));
         state.ResumeTiming();
         write_file(file(name));
     }
@@ -43,12 +43,12 @@ void write(benchmark::State& state, const char* name, const Write& write_file) {
 
 template <class Read, class Write>
 void read(benchmark::State& state, const char* name, const Read& read_file, const Write& write_file) {
-    if (!std::filesystem::exists(file(name))) write_file(file(name));
+    if (!fs::exists(file(name))) write_file(file(name));
     for (auto _ : state) benchmark::DoNotOptimize(read_file(file(name)).position.data());
     report(state, file(name));
 }
 
-using std::filesystem::path;
+using fs::path;
 void put_pda(const path& p) { write_pda(p, set()); }
 void put_ply(const path& p) { write_ply(p, set()); }
 void put_native(const path& p) { write_native(p, set()); }

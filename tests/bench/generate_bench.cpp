@@ -29,12 +29,11 @@ void generate(benchmark::State& state, const GenerateInput& input) {
     state.counters["first_ms"] =
         std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
     for (auto _ : state) run();
-    const auto positions = static_cast<double>(input.lattice.positions());
+    const auto positions = double(input.lattice.positions());
     report_rate(state, input.lattice.positions());
     report_traffic(state, kept * kept_bytes);
-    state.counters["kept_percent"] = 100.0 * static_cast<double>(kept) / positions;
-    state.counters["extra_MiB"] =
-        static_cast<double>(peak_bytes() - before - kept * kept_bytes) / (1024.0 * 1024.0);
+    state.counters["kept_percent"] = 100.0 * double(kept) / positions;
+    state.counters["extra_MiB"] = double(peak_bytes() - before - kept * kept_bytes) / (1024.0 * 1024.0);
 }
 
 /// Colours and alphas of columns that are there, as for every level that is tried: rows a second.

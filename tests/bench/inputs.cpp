@@ -12,11 +12,10 @@ constexpr double pi = 3.14159265358979323846;
 
 // Row by row through a lattice, as ids go.
 void fill(SplatSet& set, std::size_t i, std::size_t side) {
-    const auto k = static_cast<std::uint32_t>(i);
-    const glm::vec3 cell(static_cast<float>(i % side), static_cast<float>(i / side % side),
-                         static_cast<float>(i / side / side));
+    const auto k = std::uint32_t(i);
+    const glm::vec3 cell(float(i % side), float(i / side % side), float(i / side / side));
     const glm::vec3 jitter(random(k, 101), random(k, 102), random(k, 103));
-    set.position[i] = (cell + jitter) * (10.0f / static_cast<float>(side)) - 5.0f;
+    set.position[i] = (cell + jitter) * (10.0f / float(side)) - 5.0f;
     set.color[i] = {random(k, 104), random(k, 105), random(k, 106)};
     set.alpha[i] = 0.05f + 0.9f * random(k, 107);
     set.distance[i] = 0.2f * random(k, 108);
@@ -51,7 +50,7 @@ float random(std::uint32_t n, std::uint32_t purpose) {
 
 SplatSet random_set(std::int64_t count) {
     SplatSet set;
-    const auto n = static_cast<std::size_t>(count);
+    const auto n = std::size_t(count);
     set.position.resize(n);
     set.color.resize(n);
     set.alpha.resize(n);
@@ -60,9 +59,9 @@ SplatSet random_set(std::int64_t count) {
     set.uv.resize(n);
     set.normal.resize(n);
     set.mesh.resize(n);
-    const auto side = static_cast<std::size_t>(std::ceil(std::cbrt(static_cast<double>(count))));
+    const auto side = std::size_t(std::ceil(std::cbrt(double(count))));
     parallel_chunks(count, 1 << 16, [&](std::int64_t begin, std::int64_t end, int) {
-        for (std::int64_t i = begin; i < end; ++i) fill(set, static_cast<std::size_t>(i), side);
+        for (std::int64_t i = begin; i < end; ++i) fill(set, std::size_t(i), side);
     });
     set.spacing = glm::dvec3(0.02);
     set.max_distance = 0.2;
@@ -74,8 +73,8 @@ Image picture(std::int64_t size) {
     Image image = make_image(size, size, 4);
     parallel_for(size, [&](std::int64_t y, int) {
         for (std::int64_t x = 0; x < size; ++x) {
-            const auto s = static_cast<float>(x) / static_cast<float>(size);
-            const auto t = static_cast<float>(y) / static_cast<float>(size);
+            const auto s = float(x) / float(size);
+            const auto t = float(y) / float(size);
             const float alpha = s < 0.5f ? 1.0f : 1.1f - s;
             float* p = image.at(x, y);
             p[0] = alpha * s * t;
@@ -91,13 +90,11 @@ TexturedMesh dented_ball(int rings, int segments) {
     Mesh mesh;
     for (int ring = 0; ring <= rings; ++ring)
         for (int segment = 0; segment <= segments; ++segment) {
-            const double u = static_cast<double>(segment) / segments, v = static_cast<double>(ring) / rings;
+            const double u = double(segment) / segments, v = double(ring) / rings;
             mesh.positions.push_back(ball_point(segment == segments ? 0.0 : u, v));
-            mesh.uvs.emplace_back(static_cast<float>(u), static_cast<float>(v));
+            mesh.uvs.emplace_back(float(u), float(v));
         }
-    const auto corner = [&](int ring, int segment) {
-        return static_cast<std::uint32_t>(ring * (segments + 1) + segment);
-    };
+    const auto corner = [&](int ring, int segment) { return std::uint32_t(ring * (segments + 1) + segment); };
     const auto add = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
         mesh.triangles.push_back({{a, b, c}, {a, b, c}});
     };

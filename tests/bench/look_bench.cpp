@@ -42,7 +42,7 @@ void look(benchmark::State& state, const Look& look) {
     constexpr std::int64_t bytes_in = 40, bytes_out = 40;  // without uv, normal, mesh
     report_rate(state, set().size());
     report_traffic(state, set().size() * bytes_in + shaded.size() * bytes_out);
-    state.counters["kept"] = static_cast<double>(shaded.size());
+    state.counters["kept"] = double(shaded.size());
 }
 
 BENCHMARK_CAPTURE(look, plain, plain_look())->Unit(benchmark::kMillisecond)->UseRealTime()->Iterations(2);

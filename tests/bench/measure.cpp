@@ -28,12 +28,12 @@ void forget_peak() { std::ofstream("/proc/self/clear_refs") << "5"; }
 
 void report_rate(benchmark::State& state, std::int64_t count) {
     state.counters["M/s"] =
-        benchmark::Counter(static_cast<double>(count) * 1e-6, benchmark::Counter::kIsIterationInvariantRate);
+        benchmark::Counter(double(count) * 1e-6, benchmark::Counter::kIsIterationInvariantRate);
 }
 
 void report_traffic(benchmark::State& state, std::int64_t bytes) {
     state.counters["GB/s"] =
-        benchmark::Counter(static_cast<double>(bytes) * 1e-9, benchmark::Counter::kIsIterationInvariantRate);
+        benchmark::Counter(double(bytes) * 1e-9, benchmark::Counter::kIsIterationInvariantRate);
 }
 
 }  // namespace astrosplat::bench

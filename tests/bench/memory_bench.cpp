@@ -16,12 +16,13 @@ constexpr std::int64_t bytes = std::int64_t{1} << 30;
 constexpr std::int64_t chunk = 1 << 20;
 
 void copy(benchmark::State& state) {
-    Buffer<char> from(static_cast<std::size_t>(bytes)), to(static_cast<std::size_t>(bytes));
+    const auto size = std::size_t(bytes);
+    Buffer<char> from(size), to(size);
     std::memset(from.data(), 1, from.size());
     std::memset(to.data(), 1, to.size());
     for (auto _ : state)
         parallel_chunks(bytes, chunk, [&](std::int64_t begin, std::int64_t end, int) {
-            std::memcpy(to.data() + begin, from.data() + begin, static_cast<std::size_t>(end - begin));
+            std::memcpy(to.data() + begin, from.data() + begin, std::size_t(end - begin));
         });
     report_traffic(state, 2 * bytes);
 }
@@ -34,9 +35,9 @@ void fresh_memory(benchmark::State& state) {
         release_spare_pages();
         state.ResumeTiming();
         Buffer<char> to;
-        to.resize(static_cast<std::size_t>(bytes));
+        to.resize(std::size_t(bytes));
         parallel_chunks(bytes, 2 * chunk, [&](std::int64_t begin, std::int64_t end, int) {
-            std::memset(to.data() + begin, 1, static_cast<std::size_t>(end - begin));
+            std::memset(to.data() + begin, 1, std::size_t(end - begin));
         });
     }
     report_traffic(state, bytes);
@@ -46,7 +47,7 @@ BENCHMARK(fresh_memory)->Unit(benchmark::kMillisecond)->UseRealTime()->Iteration
 // A new file each time, as files_bench does it, and once before.
 void disk(benchmark::State& state) {
     const TempFolder folder;
-    const Buffer<char> block(static_cast<std::size_t>(chunk), 'x');
+    const Buffer<char> block(std::size_t(chunk), 'x');
     const auto write = [&] {
         AtomicFile file(folder / "raw");
         for (std::int64_t i = 0; i < bytes; i += chunk) file.write(block.data(), block.size());
@@ -55,7 +56,7 @@ void disk(benchmark::State& state) {
     write();
     for (auto _ : state) {
         state.PauseTiming();
-        std::filesystem::remove(folder / "raw");
+        fs::remove(folder / "raw");
         state.ResumeTiming();
         write();
     }

@@ -50,7 +50,7 @@ void batch_start(benchmark::State& state) {
     static const TempFolder folder;
     const auto scene = folder.file("scene.toml", scene_text(10000000, 1920, 1080));
     folder.file("picture.ppm", ppm(picture(1024)));
-    const std::filesystem::path stats = folder / "stats.json";
+    const fs::path stats = folder / "stats.json";
     const std::string command =
         fmt::format("'{}' --batch '{}' --cache '{}' -f 1 --region 952,532,16,16 --overwrite --stats '{}'",
                     ASTROSPLAT_PROGRAM, scene.string(), (folder / "cache").string(), stats.string());
@@ -98,7 +98,7 @@ void sequence(benchmark::State& state) {
     state.counters["very_first_ms"] = first;  // takes its memory and builds its tables
     state.counters["frame_1_ms"] = median(early);
     state.counters["frame_500_ms"] = median(late);
-    state.counters["growth_MiB"] = static_cast<double>(resident_bytes() - before) / (1024.0 * 1024.0);
+    state.counters["growth_MiB"] = double(resident_bytes() - before) / (1024.0 * 1024.0);
 }
 BENCHMARK(sequence)->Unit(benchmark::kMillisecond)->UseRealTime()->Iterations(1);
 

@@ -34,9 +34,7 @@ namespace {
 double processor_seconds() {
     rusage used{};
     getrusage(RUSAGE_SELF, &used);
-    const auto seconds = [](const timeval& t) {
-        return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
-    };
+    const auto seconds = [](const timeval& t) { return double(t.tv_sec) + 1e-6 * double(t.tv_usec); };
     return seconds(used.ru_utime) + seconds(used.ru_stime);
 }
 
@@ -101,11 +99,8 @@ class Viewer {
             widgets_->begin();
             Commands commands;
             gui_->draw(session_.document, session_.view, session_.status, commands);
-            const Layout layout =
-                make_layout(session_.view, static_cast<float>(width_), static_cast<float>(height_), 1.0f);
-            draw_viewport(session_,
-                          {static_cast<int>(layout.viewport.width), static_cast<int>(layout.viewport.height)},
-                          now, hurry);
+            const Layout layout = make_layout(session_.view, float(width_), float(height_), 1.0f);
+            draw_viewport(session_, {int(layout.viewport.width), int(layout.viewport.height)}, now, hurry);
             widgets_->end();
         } else {
             draw_viewport(session_, {width_, height_}, now, hurry);
@@ -211,7 +206,7 @@ Times drag_slider(Viewer& viewer, std::size_t first, std::size_t last) {
                 "Drag",
                 [&](Scene& scene) {
                     for (std::size_t k = first; k < last; ++k)
-                        scene.layers[k].look.alpha.power = 0.5f + 0.01f * static_cast<float>(i + 1);
+                        scene.layers[k].look.alpha.power = 0.5f + 0.01f * float(i + 1);
                 },
                 1);
             viewer.frame();
@@ -366,7 +361,7 @@ std::int64_t fluid_splats(const ViewerOptions& options, const GlInfo& gl) {
 }
 
 /// As sRGB, to be looked at.
-void save_picture(const Image& image, const std::filesystem::path& file) {
+void save_picture(const Image& image, const fs::path& file) {
     std::vector<unsigned char> rgba;
     for (std::int64_t y = 0; y < image.height; ++y)
         for (std::int64_t x = 0; x < image.width; ++x) {
@@ -382,7 +377,7 @@ void save_picture(const Image& image, const std::filesystem::path& file) {
 /// What moves beside the final frame (issue 18, 1), with `shown` splats, or where that is 0 with those of 24
 /// frames a second.
 void measure_truths(const ViewerOptions& options, const GlInfo& gl, std::int64_t shown,
-                    const std::filesystem::path& pictures) {
+                    const fs::path& pictures) {
     if (shown == 0) shown = fluid_splats(options, gl);
     for (const test::NamedView& view : test::preview_views()) {
         const test::ViewTruth truth = test::measure_truth(view, shown, options.cache);
@@ -407,7 +402,7 @@ float random(std::uint32_t n, std::uint32_t purpose) {
 /// A disk of splats, two or three pixels across where the whole disk is in the picture.
 std::shared_ptr<const SplatSet> disk(std::int64_t count, float radius) {
     auto set = std::make_shared<SplatSet>();
-    const auto n = static_cast<std::size_t>(count);
+    const auto n = std::size_t(count);
     set->position.resize(n);
     set->color.resize(n);
     set->alpha.resize(n);
@@ -415,8 +410,8 @@ std::shared_ptr<const SplatSet> disk(std::int64_t count, float radius) {
     set->id.resize(n);
     set->radius.resize(n);
     parallel_chunks(count, 1 << 16, [&](std::int64_t begin, std::int64_t end, int) {
-        for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
-            const auto k = static_cast<std::uint32_t>(i);
+        for (auto i = std::size_t(begin); i < std::size_t(end); ++i) {
+            const auto k = std::uint32_t(i);
             set->position[i] = {10.0f * random(k, 1) - 5.0f, random(k, 2) - 0.5f,
                                 10.0f * random(k, 3) - 5.0f};
             set->color[i] = {random(k, 4), random(k, 5), random(k, 6)};
@@ -456,7 +451,7 @@ void measure_blend(GlPreview& preview, const std::shared_ptr<const SplatSet>& se
 
 void measure_opengl(std::int64_t count, int width, int height) {
     GlPreview preview;
-    const float px = 12.0f / static_cast<float>(height);  // scene units a pixel covers, about
+    const float px = 12.0f / float(height);  // scene units a pixel covers, about
     const std::shared_ptr<const SplatSet> set = disk(count, 1.2f * px);
     const std::string what = fmt::format("OpenGL, {} thousand splats, {}x{}, ", count / 1000, width, height);
     measure_blend(preview, set, Blend::add, width, height, what + "add", ">= 60 frames/s on a GPU");

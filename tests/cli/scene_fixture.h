@@ -28,7 +28,7 @@ inline std::string cube_of_splats(int count) {
     std::uint32_t state = 12345;
     const auto next = [&state] {
         state = state * 1664525u + 1013904223u;
-        return static_cast<double>(state >> 8) / 16777216.0;
+        return double(state >> 8) / 16777216.0;
     };
     for (int i = 0; i < count; ++i) {
         const double x = next() * 4 - 2, y = next() * 4 - 2, z = next() * 4 - 2;

@@ -59,7 +59,7 @@ TEST_F(Batch, PairsAreWrittenWhereTheNameHasAPlaceForTheEye) {
         EXPECT_TRUE(bytes("one.exr") == bytes(fmt::format("{}.001.exr", eye))) << eye;
     }
     // One of them is missing; the other one is kept.
-    std::filesystem::remove(folder / "frames/right.001.exr");
+    fs::remove(folder / "frames/right.001.exr");
     EXPECT_EQ(count_of(batch({"--frames", "1", "--set", "camera.eye_separation=0.5", "-o",
                               "frames/%V.###.exr", "--resume"})
                            .err,
@@ -331,8 +331,7 @@ TEST_F(Batch, InputsThatChangeBeforeTheyAreLoadedAreRefused) {
                                  {.folder = folder});
     const auto waiting = [&] {
         int bytes = 0;
-        return ioctl(pipe, FIONREAD, &bytes) == 0 &&
-               static_cast<std::size_t>(bytes) >= filling.size() + planned.size();
+        return ioctl(pipe, FIONREAD, &bytes) == 0 && std::size_t(bytes) >= filling.size() + planned.size();
     };
     while (program.running() && !waiting()) std::this_thread::sleep_for(std::chrono::milliseconds(5));
     write_text(folder / "stars.pda", cube_of_splats(299));
@@ -341,7 +340,7 @@ TEST_F(Batch, InputsThatChangeBeforeTheyAreLoadedAreRefused) {
     for (bool running = true; running;) {
         running = program.running();
         for (ssize_t size = 0; (size = read(pipe, block, sizeof block)) > 0;)
-            said.append(block, static_cast<std::size_t>(size));
+            said.append(block, std::size_t(size));
         std::this_thread::sleep_for(std::chrono::milliseconds(5));
     }
     close(pipe);
@@ -473,7 +472,7 @@ TEST_F(ColorConfigBatch, PicturesHoldTheViewAndLightStaysLight) {
             const auto expected = test::film(2.0 * p[0], 2.0 * p[1], 2.0 * p[2]);
             bright += p[0] > 0.05f;
             for (int c = 0; c < 3; ++c)  // light is stored in half floats
-                ASSERT_NEAR(shown.at(x, y)[c], expected[static_cast<std::size_t>(c)], 2e-3) << x << " " << y;
+                ASSERT_NEAR(shown.at(x, y)[c], expected[std::size_t(c)], 2e-3) << x << " " << y;
         }
     EXPECT_GT(bright, 100);
 }

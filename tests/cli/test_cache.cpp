@@ -137,7 +137,7 @@ TEST_F(Cache, ADryRunMakesNoFolderButKnowsTheSet) {
     EXPECT_FALSE(fs::exists(folder / "sets"));
     const Figures first = figures({});
     const std::string plan = batch({"--dry-run", "--overwrite"}).out;
-    const std::string splats = human_count(static_cast<double>(first.kept));
+    const std::string splats = human_count(double(first.kept));
     EXPECT_NE(plan.find("layer gas: about " + splats + " splats"), std::string::npos) << plan << splats;
 }
 

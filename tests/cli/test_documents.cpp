@@ -108,7 +108,7 @@ TEST_F(Documents, KeysOfScenesExist) {
 /// The name under which GitHub finds a heading.
 std::string anchor_of(std::string heading) {
     heading = std::regex_replace(heading, std::regex("[^A-Za-z0-9 -]"), "");
-    for (char& c : heading) c = c == ' ' ? '-' : static_cast<char>(std::tolower(c));
+    for (char& c : heading) c = c == ' ' ? '-' : char(std::tolower(c));
     return heading;
 }
 
@@ -287,7 +287,7 @@ TEST_F(Manual, FishCompletesBehindAScene) {
     write_text(folder / "a.toml", "astrosplat = 1\n[[layer]]\nname = \"gas\"\n");
     write_text(folder / "completion.fish", printed({"completion", "fish"}));
     RunOptions options = in_folder();
-    options.environment.push_back("PATH=" + std::filesystem::path(ASTROSPLAT_PROGRAM).parent_path().string() +
+    options.environment.push_back("PATH=" + fs::path(ASTROSPLAT_PROGRAM).parent_path().string() +
                                   ":/usr/bin:/bin");
     const RunResult result = run_program(
         {"/usr/bin/env", "fish", "-c",

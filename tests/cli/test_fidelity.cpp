@@ -13,11 +13,11 @@ std::string first_picture(const std::string& page) {
     int count = 0;
     for (std::size_t at = page.find(start) + start.size(); letters.find(page[at]) != std::string::npos;
          ++at) {
-        bits = bits << 6 | static_cast<std::uint32_t>(letters.find(page[at]));
+        bits = bits << 6 | std::uint32_t(letters.find(page[at]));
         count += 6;
         if (count < 8) continue;
         count -= 8;
-        bytes += static_cast<char>(bits >> count & 255u);
+        bytes += char(bits >> count & 255u);
     }
     return bytes;
 }

@@ -242,7 +242,7 @@ std::string cloud_picture(double reach) {
     return pixmap(width, height, [&](int x, int y, int k) {
         if (k == 0) state = state * 1664525u + 1013904223u;
         const double r = std::hypot(x - 0.5 * width, y - 0.5 * height) / reach;
-        const double light = std::max(0.0, 1.0 - r) * (150.0 + static_cast<double>(state >> 26));
+        const double light = std::max(0.0, 1.0 - r) * (150.0 + double(state >> 26));
         return std::lround((1.0 - 0.2 * k) * light);
     });
 }
@@ -299,8 +299,8 @@ TEST_F(Estimate, BodiesOfAReducedPictureAreThoseThatWillBeMade) {
     const Words little = {"--memory", "0.19"};
     const double whole = told().splats, reduced = told(little).splats;
     EXPECT_LT(reduced, 0.6 * whole);
-    EXPECT_NEAR(reduced, static_cast<double>(made(little)), 0.1 * reduced);
-    EXPECT_NEAR(whole, static_cast<double>(made()), 0.1 * whole);
+    EXPECT_NEAR(reduced, double(made(little)), 0.1 * reduced);
+    EXPECT_NEAR(whole, double(made()), 0.1 * whole);
 }
 
 TEST_F(Estimate, TheMemoryOfBodiesIsThatOfMakingThem) {
@@ -345,7 +345,7 @@ TEST_F(Estimate, ADryRunTellsTimeAndTheSizeOfFiles) {
     expect_success(batch({"-q", "-f", "1-3", "--resolution", "320x240"}));
     double taken = 0.0;
     for (const std::string& name : names_in("frames"))
-        taken += static_cast<double>(fs::file_size(folder / "frames" / name)) / 3.0;
+        taken += double(fs::file_size(folder / "frames" / name)) / 3.0;
     EXPECT_NEAR(told, taken, 0.1 * taken);
 }
 

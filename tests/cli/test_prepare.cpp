@@ -5,6 +5,7 @@
 
 #include "prepare/stages.h"
 #include "scene_fixture.h"
+#include "source/object_metadata.h"
 #include "source/texture.h"
 #include "support/fits_text.h"
 #include "support/pixmap.h"
@@ -21,7 +22,7 @@ std::string starry_picture() { return starry_pixmap({96, 64, 32, 21, 120.0, 3.0,
 // pixel) the header tells the sky.
 std::string starry_fits(double scale = 0.0) {
     const std::string sky = scale > 0.0 ? fits_sky(48.5, 32.5, 10.0, 41.0, scale, 0.0) : "";
-    return fits_file(96, 64, sky, [](int x, int y) {
+    return fits_file(96, 64, fits_card("OBJECT  = 'M 51    '") + sky, [](int x, int y) {
         const double u = std::fmod(x, 32.0) - 16.0, v = std::fmod(y, 21.0) - 10.0;
         const double light = 1000.0 + (x * 7 + y * 13) % 5 + 900.0 * std::exp(-(u * u + v * v) / 3.0);
         return x == 3 && y == 3 ? std::nan("") : light;
@@ -38,7 +39,7 @@ class PrepareCommand : public SceneTest {
     // Lines of a table, its names among them.
     std::size_t lines(const std::string& file) const {
         const std::string text = text_of(folder / file);
-        return static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
+        return std::size_t(std::count(text.begin(), text.end(), '\n'));
     }
 };
 
@@ -65,6 +66,7 @@ TEST_F(PrepareCommand, KeepsWhatIsNotAsked) {
 TEST_F(PrepareCommand, TakesStarsFromFitsBeforeItIsStretched) {
     const RunResult result = expect_success(run({"prepare", "stars.fits", "-o", "ready"}));
     EXPECT_HAS(result.out, "9 taken away");
+    EXPECT_EQ(read_xmp_metadata(folder / "ready/picture.exr").names, std::vector<std::string>{"M 51"});
     EXPECT_NE(result.out.find("linear light, alpha"), std::string::npos)
         << "a pixel has no value: " << result.out;
     expect_success(run({"prepare", "stars.fits", "-o", "kept", "--stars", "keep", "--stretch", "linear"}));
@@ -213,12 +215,10 @@ class PrepareAlign : public SceneTest {
     static glm::dvec2 centroid(const Image& image, const glm::dvec2& about, double reach) {
         double sum = 0.0;
         glm::dvec2 moment(0.0);
-        for (auto y = static_cast<std::int64_t>(about.y - reach);
-             y <= static_cast<std::int64_t>(about.y + reach); ++y)
-            for (auto x = static_cast<std::int64_t>(about.x - reach);
-                 x <= static_cast<std::int64_t>(about.x + reach); ++x) {
-                const glm::dvec2 middle(static_cast<double>(x) + 0.5, static_cast<double>(y) + 0.5);
-                const double light = std::max(0.0, static_cast<double>(image.at(x, y)[0]) - 0.1);
+        for (auto y = std::int64_t(about.y - reach); y <= std::int64_t(about.y + reach); ++y)
+            for (auto x = std::int64_t(about.x - reach); x <= std::int64_t(about.x + reach); ++x) {
+                const glm::dvec2 middle(double(x) + 0.5, double(y) + 0.5);
+                const double light = std::max(0.0, double(image.at(x, y)[0]) - 0.1);
                 sum += light;
                 moment += light * middle;
             }
@@ -234,6 +234,11 @@ class PrepareAlign : public SceneTest {
                  "keep", "--stretch", "linear", "--white", "1000", "--black", "100"}));
         const std::string size = fmt::format("{}x{} px", reference.width, reference.height);
         EXPECT_HAS(result.out, size);
+        const ObjectMetadata said = read_xmp_metadata(folder / "out/picture.exr"),
+                             grid = read_fits_metadata(folder / "reference.fits");
+        EXPECT_EQ(said.reference_px, grid.reference_px);
+        EXPECT_DOUBLE_EQ(said.degrees_per_px.value(), grid.degrees_per_px.value());
+        EXPECT_NEAR(said.north_angle.value(), grid.north_angle.value(), 1e-9);
         const Image picture = load_linear_image(folder / "out/picture.exr");
         const double reach = 3.0 * star_sigma / reference.scale;
         int seen = 0;

@@ -133,8 +133,8 @@ TEST_F(Verify, OneValueThatIsOtherIsFoundAndMeasured) {
     std::string bytes = text_of(folder / "raw.exr");
     float value = 0.0f;  // R of the last pixel, as channels lie in the order of their names
     std::memcpy(&value, bytes.data() + bytes.size() - 4, 4);
-    const double before = static_cast<double>(value);
-    value = static_cast<float>(before + 2.5);
+    const double before = double(value);
+    value = float(before + 2.5);
     std::memcpy(bytes.data() + bytes.size() - 4, &value, 4);
     write_text(folder / "raw.exr", bytes);
     const nlohmann::json verdict = only_verdict("raw.exr", raw);

@@ -2,14 +2,6 @@
 // lane ci these are the fewest seeds that let every pair of features meet; at night others follow. A scene
 // that fails names its seed and prints its text; alone it runs as
 //   ASTROSPLAT_CROSSING=SEED test_cross --gtest_filter='Seeds/*'  (or 'Runs/*')
-#include <gtest/gtest.h>
-
-#include <cstdlib>
-#include <fstream>
-#include <map>
-#include <set>
-
-#include "core/error.h"
 #include "cross/crossing.h"
 #include "cross/inputs.h"
 #include "cross/rendering.h"
@@ -22,10 +14,9 @@
 #include "scene/describe.h"
 #include "scene/load.h"
 #include "support/printing.h"
-#include "support/quiet.h"
 #include "support/random_values.h"
 #include "support/run_program.h"
-#include "support/temp_folder.h"
+#include "support/test.h"
 
 namespace astrosplat::test {
 namespace {
@@ -50,7 +41,7 @@ class Crossings : public testing::TestWithParam<std::uint32_t> {
                           << text << camera_table(crossing);
     }
 
-    double frame() const { return static_cast<double>(crossing_frame); }
+    double frame() const { return double(crossing_frame); }
     Eye eye() const { return eyes_of(crossing).back(); }
 
     Quiet quiet;
@@ -64,7 +55,7 @@ class Crossings : public testing::TestWithParam<std::uint32_t> {
 /// Those chosen, or the one that a person asks for.
 std::vector<std::uint32_t> seeds_or_one(std::vector<std::uint32_t> (*chosen)()) {
     if (const char* const alone = std::getenv("ASTROSPLAT_CROSSING"))
-        return {static_cast<std::uint32_t>(std::strtoul(alone, nullptr, 10))};
+        return {std::uint32_t(std::strtoul(alone, nullptr, 10))};
     return chosen();
 }
 
@@ -121,6 +112,9 @@ Image light_of_sky(Window& window, Scene scene, double frame, Eye eye, const Ima
 }
 
 TEST_P(Crossings, LayersAndSkyMakeTheBeauty) {
+    // A pixel is closed once what lies behind it is below 2^-16 of exposed white, which with the sky's gain
+    // comes later: 2^-24 is far below what is asked for here.
+    if (crossing.sky != Sky::none) scene.output.exposure = 8.0f;
     Window window(scene);
     const Shot shot = window.shot_of(scene, frame(), eye());
     ASSERT_EQ(shot.layers.size(), shot.frame.layers.size());
@@ -134,8 +128,9 @@ TEST_P(Crossings, LayersAndSkyMakeTheBeauty) {
         return;
     }
     // The brighter of sky and layer arrives: what the layers leave is the sky's, and never below 0.
-    add(sum, beauty, -1.0);
-    EXPECT_LE(*std::ranges::max_element(sum.pixels), 1e-5f);
+    for (std::size_t i = 0; i < sum.pixels.size(); ++i)
+        sum.pixels[i] = std::max(sum.pixels[i], beauty.pixels[i]);
+    EXPECT_EQ(difference(sum, beauty, 1e-5), "");
 }
 
 TEST_P(Crossings, ABlurredFrameIsTheMeanOfItsSamples) {
@@ -323,9 +318,18 @@ TEST_P(Crossings, WhatIsSetIsWhatIsRendered) {
     stop_animation(expected);
     for (Scene* each : {&given, &expected}) each->camera.shutter = each->camera.f_number = 0.0;
     Window window(given);
-    EXPECT_EQ(difference(window.shot_of(given, frame(), eye()).frame.beauty,
-                         window.shot_of(expected, frame(), eye()).frame.beauty, 0.0),
-              "");
+    // A value that the layer's splats cannot have is refused when they are there, as ever.
+    const auto beauty_or_refusal = [&](const Scene& each) -> std::pair<Image, std::string> {
+        try {
+            return {window.shot_of(each, frame(), eye()).frame.beauty, ""};
+        } catch (const InputError& error) {
+            return {{}, error.what()};
+        }
+    };
+    const auto [found, refusal] = beauty_or_refusal(given);
+    const auto [wanted, expected_refusal] = beauty_or_refusal(expected);
+    EXPECT_EQ(refusal, expected_refusal);
+    EXPECT_EQ(difference(found, wanted, 0.0), "");
 }
 
 // --- names ---
@@ -416,6 +420,9 @@ std::vector<std::uint32_t> all_seeds() {
 }
 
 INSTANTIATE_TEST_SUITE_P(Seeds, Crossings, testing::ValuesIn(seeds_or_one(all_seeds)), seed_name);
+/// Each failed one night: splats were lost across a panorama's seam, a closed pixel's sky and a refusal were
+/// not foreseen.
+INSTANTIATE_TEST_SUITE_P(Found, Crossings, testing::Values(1519u, 1558u, 1654u, 1892u), seed_name);
 INSTANTIATE_TEST_SUITE_P(Nightly, Crossings, testing::Range(pool, pool + nightly_seeds), seed_name);
 
 TEST(CrossingSeeds, LetEveryPairOfFeaturesMeet) {
@@ -555,7 +562,7 @@ TEST_P(ProgramCrossings, AMovieIsMadeOfTheFramesThatBatchMakes) {
 std::vector<std::uint32_t> seeds_of_names() {
     std::vector<FeaturePair> wanted;
     const auto starts = [](int feature, const std::vector<std::string>& factors) {
-        const std::string& name = feature_names()[static_cast<std::size_t>(feature)];
+        const std::string& name = feature_names()[std::size_t(feature)];
         return std::ranges::any_of(factors, [&](const std::string& f) { return name.starts_with(f + " "); });
     };
     for (const FeaturePair& pair : possible_pairs())

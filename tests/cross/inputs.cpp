@@ -89,7 +89,7 @@ const Inputs& inputs() {
 
 }  // namespace
 
-std::filesystem::path input(const std::string& name) { return inputs().folder / name; }
+fs::path input(const std::string& name) { return inputs().folder / name; }
 
 const SetCache& shared_sets() { return inputs().sets; }
 

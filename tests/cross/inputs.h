@@ -8,7 +8,7 @@ namespace astrosplat::test {
 
 /// The path of an input: picture.ppm, small.ppm, shell.ppm, table.pda, native.splats, gaussians.ply,
 /// catalogue.csv, stars.csv, way.chan, sky.ppm, face0.ppm to face5.ppm, field.ppm.
-std::filesystem::path input(const std::string& name);
+fs::path input(const std::string& name);
 
 /// Sets are made once, however many scenes ask for them.
 const SetCache& shared_sets();

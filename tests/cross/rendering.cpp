@@ -85,7 +85,7 @@ Shot Window::shot_of(const Scene& scene, double frame, Eye eye, Extra extra) {
 
 std::vector<Shot> samples_of(const Scene& scene, double number, Eye eye) {
     const CameraParams camera = scene_at(scene, number).camera;
-    const int count = is_blurred(camera) ? static_cast<int>(scene.output.samples) : 1;
+    const int count = is_blurred(camera) ? int(scene.output.samples) : 1;
     Scene sharp = scene;
     sharp.camera.shutter = sharp.camera.f_number = 0.0;
     Pipeline pipeline(sharp, {}, shared_sets());
@@ -102,8 +102,8 @@ std::vector<Shot> samples_of(const Scene& scene, double number, Eye eye) {
         const std::vector<RenderLayer> layers = pipeline.shaded_layers(frame);
         CameraParams lens = frame.scene.camera;
         lens.f_number = count > 1 ? camera.f_number : 0.0;
-        const Camera seen = through_lens(pipeline.camera(frame, settings), lens, sample.lens,
-                                         static_cast<double>(settings.width));
+        const Camera seen =
+            through_lens(pipeline.camera(frame, settings), lens, sample.lens, double(settings.width));
         const EnvironmentParams& environment = frame.scene.environment;
         if (sky) set_environment_params(*sky, environment);
         const auto rendered = [&](const Environment* behind) {
@@ -117,25 +117,24 @@ std::vector<Shot> samples_of(const Scene& scene, double number, Eye eye) {
 }
 
 std::string hash_of(const Scene& scene, std::int64_t frame, Eye eye) {
-    return FrameHasher().frame_hash(frame_scene(scene, static_cast<double>(frame), eye));
+    return FrameHasher().frame_hash(frame_scene(scene, double(frame), eye));
 }
 
-std::filesystem::path batch_file(const Scene& scene, std::int64_t frame, Eye eye) {
+fs::path batch_file(const Scene& scene, std::int64_t frame, Eye eye) {
     return output_pattern(scene.file.parent_path(), scene.output.path).resolve(frame, eye);
 }
 
-std::filesystem::path file_of_output(const std::filesystem::path& working_directory,
-                                     const std::string& output, std::int64_t frame, Eye eye) {
+fs::path file_of_output(const fs::path& working_directory, const std::string& output, std::int64_t frame,
+                        Eye eye) {
     return output_pattern(working_directory, output).resolve(frame, eye);
 }
 
-void write_shot(const Scene& scene, const Shot& shot, std::int64_t frame, Eye eye,
-                const std::filesystem::path& file) {
+void write_shot(const Scene& scene, const Shot& shot, std::int64_t frame, Eye eye, const fs::path& file) {
     FrameMetadata metadata;
     metadata.frame = frame;
     metadata.eye = eye;
     metadata.frame_hash = hash_of(scene, frame, eye);
-    metadata.hashed_text = FrameHasher().canonical_text(frame_scene(scene, static_cast<double>(frame), eye));
+    metadata.hashed_text = FrameHasher().canonical_text(frame_scene(scene, double(frame), eye));
     metadata.pixel_hash = pixel_hash(shot.frame.beauty);
     const OutputParams& output = scene.output;
     write_frame({file, output, output.width, output.height, {}, shot.layers}, shot.frame, metadata);

@@ -52,13 +52,12 @@ std::vector<Shot> samples_of(const Scene& scene, double frame, Eye eye);
 std::string hash_of(const Scene& scene, std::int64_t frame, Eye eye);
 
 /// Where --batch puts a frame; throws InputError where it refuses to.
-std::filesystem::path batch_file(const Scene& scene, std::int64_t frame, Eye eye);
+fs::path batch_file(const Scene& scene, std::int64_t frame, Eye eye);
 /// The same of what it is told by --output in a working directory.
-std::filesystem::path file_of_output(const std::filesystem::path& working_directory,
-                                     const std::string& output, std::int64_t frame, Eye eye);
+fs::path file_of_output(const fs::path& working_directory, const std::string& output, std::int64_t frame,
+                        Eye eye);
 
 /// Writes the frame as --batch does.
-void write_shot(const Scene& scene, const Shot& shot, std::int64_t frame, Eye eye,
-                const std::filesystem::path& file);
+void write_shot(const Scene& scene, const Shot& shot, std::int64_t frame, Eye eye, const fs::path& file);
 
 }  // namespace astrosplat::test

@@ -314,8 +314,7 @@ class FaultTest : public FolderTest {
                 for (std::int64_t i = 0; i < count; ++i) {
                     const std::int64_t begin = i * calls / count, end = (i + 1) * calls / count;
                     const std::uint64_t h = hashed(points.size());
-                    const auto at =
-                        begin + static_cast<std::int64_t>(h % static_cast<std::uint64_t>(end - begin));
+                    const auto at = begin + std::int64_t(h % std::uint64_t(end - begin));
                     Point point{{kind.kind, at + 1, kind.errors[h / 7 % kind.errors.size()], false}, scene};
                     point.fault.onward =
                         kind.kind == "write" && point.fault.error == ENOSPC && h / 64 % 2 == 0;
@@ -329,10 +328,9 @@ class FaultTest : public FolderTest {
     std::vector<Point> kills(int count) {
         std::vector<Point> points;
         for (int i = 0; i < count; ++i) {
-            const FaultScene& scene = scenes[static_cast<std::size_t>(i) % scenes.size()];
+            const FaultScene& scene = scenes[std::size_t(i) % scenes.size()];
             const std::int64_t calls = counts_[scene.output]["write"];
-            const auto place =
-                static_cast<std::int64_t>(hashed(1000 + i) % static_cast<std::uint64_t>(calls));
+            const auto place = std::int64_t(hashed(1000 + i) % std::uint64_t(calls));
             points.push_back({{"write", place + 1, end_process, false}, scene});
         }
         return points;
@@ -408,7 +406,7 @@ class Disaster : public FolderTest {
         return program;
     }
     static std::size_t frame_count(const Tree& tree) {
-        return static_cast<std::size_t>(
+        return std::size_t(
             std::ranges::count_if(tree, [](const auto& file) { return file.first.starts_with("frames/"); }));
     }
     /// --resume gives all frames of the undisturbed run.
@@ -502,8 +500,8 @@ TEST_F(Disaster, InterruptsAreHeardSoon) {
         std::this_thread::sleep_for(std::chrono::milliseconds(1));
     // A second is promised, and a fraction of one usual; a machine under load gets more.
     EXPECT_LT(std::chrono::steady_clock::now() - asked, std::chrono::seconds(10));
-    RecordProperty("milliseconds", static_cast<int>((std::chrono::steady_clock::now() - asked) /
-                                                    std::chrono::milliseconds(1)));
+    RecordProperty("milliseconds",
+                   int((std::chrono::steady_clock::now() - asked) / std::chrono::milliseconds(1)));
     if (program->running()) program->signal(SIGKILL);
     EXPECT_EQ(program->wait().code, 130);
     for (const auto& [name, bytes] : tree_of(run.work() / "frames")) EXPECT_NE(name.front(), '.') << name;

@@ -76,7 +76,7 @@ void read_environment() {
     for (int i = 0; kind && i < kinds; ++i)
         if (strcmp(kind, kind_names[i]) == 0) failing = static_cast<Kind>(i);
     fail_at = number_of("ASTROSPLAT_FAULT_AT", 0);
-    failure = static_cast<int>(number_of("ASTROSPLAT_FAULT_ERROR", EIO));
+    failure = int(number_of("ASTROSPLAT_FAULT_ERROR", EIO));
     onward = number_of("ASTROSPLAT_FAULT_ONWARD", 0) != 0;
     count_file = getenv("ASTROSPLAT_FAULT_COUNT");
     linker_begin = getauxval(AT_BASE);
@@ -88,7 +88,7 @@ void read_environment() {
 /// Counts a call, and says whether it is to fail.
 bool fails(Kind kind) {
     if (loading || !counting.load(std::memory_order_relaxed)) return false;
-    const long call = ++calls[static_cast<int>(kind)];
+    const long call = ++calls[int(kind)];
     return kind == failing && fail_at > 0 && (call == fail_at || (onward && call > fail_at));
 }
 
@@ -155,7 +155,7 @@ void* allocated(size_t size, size_t alignment, const void* caller) {
 
 int opened(int folder, const char* path, int flags, mode_t mode) {
     if (fails_with_errno(Kind::open)) return -1;
-    return static_cast<int>(syscall(SYS_openat, folder, path, flags, mode));
+    return int(syscall(SYS_openat, folder, path, flags, mode));
 }
 
 mode_t mode_of(int flags, va_list arguments) {
@@ -225,34 +225,30 @@ FILE* fopen64(const char* path, const char* mode) {
 
 // --- rename, and whatever else changes names ---
 int rename(const char* from, const char* to) {
-    return fails_with_errno(Kind::rename) ? -1 : static_cast<int>(syscall(SYS_rename, from, to));
+    return fails_with_errno(Kind::rename) ? -1 : int(syscall(SYS_rename, from, to));
 }
 int renameat(int from_folder, const char* from, int to_folder, const char* to) {
     if (fails_with_errno(Kind::rename)) return -1;
-    return static_cast<int>(syscall(SYS_renameat2, from_folder, from, to_folder, to, 0));
+    return int(syscall(SYS_renameat2, from_folder, from, to_folder, to, 0));
 }
 int renameat2(int from_folder, const char* from, int to_folder, const char* to, unsigned flags) {
     if (fails_with_errno(Kind::rename)) return -1;
-    return static_cast<int>(syscall(SYS_renameat2, from_folder, from, to_folder, to, flags));
+    return int(syscall(SYS_renameat2, from_folder, from, to_folder, to, flags));
 }
 int link(const char* from, const char* to) {
-    return fails_with_errno(Kind::rename) ? -1 : static_cast<int>(syscall(SYS_link, from, to));
+    return fails_with_errno(Kind::rename) ? -1 : int(syscall(SYS_link, from, to));
 }
-int unlink(const char* path) {
-    return fails_with_errno(Kind::rename) ? -1 : static_cast<int>(syscall(SYS_unlink, path));
-}
+int unlink(const char* path) { return fails_with_errno(Kind::rename) ? -1 : int(syscall(SYS_unlink, path)); }
 int mkdir(const char* path, mode_t mode) {
-    return fails_with_errno(Kind::rename) ? -1 : static_cast<int>(syscall(SYS_mkdir, path, mode));
+    return fails_with_errno(Kind::rename) ? -1 : int(syscall(SYS_mkdir, path, mode));
 }
 
 // --- sync ---
-int fsync(int file) { return fails_with_errno(Kind::sync) ? -1 : static_cast<int>(syscall(SYS_fsync, file)); }
-int fdatasync(int file) {
-    return fails_with_errno(Kind::sync) ? -1 : static_cast<int>(syscall(SYS_fdatasync, file));
-}
+int fsync(int file) { return fails_with_errno(Kind::sync) ? -1 : int(syscall(SYS_fsync, file)); }
+int fdatasync(int file) { return fails_with_errno(Kind::sync) ? -1 : int(syscall(SYS_fdatasync, file)); }
 int sync_file_range(int file, off64_t offset, off64_t size, unsigned flags) {
     if (fails_with_errno(Kind::sync)) return -1;
-    return static_cast<int>(syscall(SYS_sync_file_range, file, offset, size, flags));
+    return int(syscall(SYS_sync_file_range, file, offset, size, flags));
 }
 
 // --- map ---

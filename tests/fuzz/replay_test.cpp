@@ -1,12 +1,9 @@
 // Every reader on some hundred damaged files: the right data or an InputError of one line, never anything
 // else. Runs in normal builds and, where it bites hardest, under the sanitizers.
-#include <gtest/gtest.h>
-
 #include <cctype>
 
-#include "core/error.h"
 #include "fuzz/targets.h"
-#include "support/quiet.h"
+#include "support/test.h"
 
 namespace astrosplat::fuzz {
 namespace {
@@ -20,7 +17,7 @@ struct Choices {
         state = state * 6364136223846793005u + 1442695040888963407u;
         std::uint64_t v = (state ^ state >> 33) * 0xff51afd7ed558ccdu;
         v = (v ^ v >> 33) * 0xc4ceb9fe1a85ec53u;
-        return static_cast<std::size_t>((v ^ v >> 33) % count);
+        return std::size_t((v ^ v >> 33) % count);
     }
 };
 
@@ -69,10 +66,10 @@ void edit(std::string& bytes, Choices& choices) {
     const std::size_t length = 1 + choices.below(std::min<std::size_t>(bytes.size() - at, 40));
     switch (choices.below(8)) {
         case 0:
-            bytes[at] = static_cast<char>(bytes[at] ^ (1 << choices.below(8)));
+            bytes[at] = char(bytes[at] ^ (1 << choices.below(8)));
             break;
         case 1:
-            bytes[at] = static_cast<char>(choices.below(256));
+            bytes[at] = char(choices.below(256));
             break;
         case 2:
             bytes.resize(at);
@@ -87,8 +84,7 @@ void edit(std::string& bytes, Choices& choices) {
             std::swap(bytes[at], bytes[choices.below(bytes.size())]);
             break;
         case 6:
-            std::fill_n(bytes.begin() + static_cast<std::ptrdiff_t>(at), length,
-                        choices.below(2) ? '\xff' : '\0');
+            std::fill_n(bytes.begin() + std::ptrdiff_t(at), length, choices.below(2) ? '\xff' : '\0');
             break;
         default:
             replace_word(bytes, choices);

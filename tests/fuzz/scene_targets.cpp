@@ -9,7 +9,7 @@ namespace astrosplat::fuzz {
 namespace {
 
 std::size_t read_toml_bytes(std::string_view bytes) {
-    const Scene scene = parse_scene(std::string(bytes), std::filesystem::temp_directory_path() / "fuzz.toml");
+    const Scene scene = parse_scene(std::string(bytes), fs::temp_directory_path() / "fuzz.toml");
     demand(scene.output.width > 0 && scene.output.height > 0, "a resolution");
     demand(std::isfinite(scene.camera.fov) && std::isfinite(scene.output.exposure), "finite numbers");
     return scene.layers.size();

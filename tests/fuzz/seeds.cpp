@@ -91,10 +91,9 @@ std::string gzipped(const std::string& text) {
 
 bool all_finite(const glm::vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
-std::size_t read_picture_bytes(const std::filesystem::path& file) {
+std::size_t read_picture_bytes(const fs::path& file) {
     const PictureTable table = read_picture_table(file);
-    demand(table.rows == table.bad.count + static_cast<std::int64_t>(table.stars.size()),
-           "every row on one side");
+    demand(table.rows == table.bad.count + std::int64_t(table.stars.size()), "every row on one side");
     for (const TableStar& star : table.stars) {
         demand(std::isfinite(star.uv.x) && std::isfinite(star.uv.y) && std::isfinite(star.sigma_px),
                "places");
@@ -188,7 +187,7 @@ std::size_t read_catalogue_bytes(std::string_view bytes) {
     const TemporaryFile file(bytes, ".stars");
     if (kind_of_catalogue(file.path) == CatalogueKind::picture) return read_picture_bytes(file.path);
     const StarCatalogue catalogue = read_catalogue(file.path);
-    demand(catalogue.rows == catalogue.bad.count + static_cast<std::int64_t>(catalogue.stars.size()),
+    demand(catalogue.rows == catalogue.bad.count + std::int64_t(catalogue.stars.size()),
            "every row on one side");
     const SplatSet set = star_set(catalogue, {1.0, 100.0, 4.0});
     check_consistent(set);

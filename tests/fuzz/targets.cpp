@@ -91,7 +91,7 @@ std::size_t read_fits_bytes(std::string_view bytes) {
         load_texture({TemporaryFile(bytes, ".fits").path}, TextureSettings{}, TextureSettings::Wrap::clamp);
     const Image& image = texture.image;
     demand(image.width > 0 && image.height > 0 && image.channels == 4, "an RGBA picture");
-    demand(image.pixels.size() == static_cast<std::size_t>(image.width * image.height * 4), "all its pixels");
+    demand(image.pixels.size() == std::size_t(image.width * image.height * 4), "all its pixels");
     for (const float value : image.pixels) demand(finite(value), "finite pixels");
     return image.pixels.size();
 }
@@ -101,13 +101,13 @@ std::size_t read_fits_bytes(std::string_view bytes) {
 SplatSet small_set() {
     SplatSet set;
     for (std::uint64_t i = 0; i < 5; ++i) {
-        const float f = static_cast<float>(i);
+        const float f = float(i);
         set.position.push_back({f, -0.5f * f, 0.1f});
         set.color.push_back({0.25f * f, 1.0f, 1e-5f});
         set.alpha.push_back(0.2f * f);
         set.distance.push_back(0.01f * f);
         set.id.push_back(i << 33);
-        set.mesh.push_back(static_cast<std::uint32_t>(i));
+        set.mesh.push_back(std::uint32_t(i));
         set.radius.push_back(0.5f);
         set.uv.push_back({0.5f, 0.25f * f});
     }
@@ -151,7 +151,7 @@ std::string compressed_fits(int compression) {
     int status = 0;
     long axes[] = {8, 6};
     short values[8 * 6];
-    for (int i = 0; i < 8 * 6; ++i) values[i] = static_cast<short>(i * 7 % 31);
+    for (int i = 0; i < 8 * 6; ++i) values[i] = short(i * 7 % 31);
     fits_create_diskfile(&out, file.path.c_str(), &status);
     fits_set_compression_type(out, compression, &status);
     fits_create_img(out, SHORT_IMG, 2, axes, &status);

@@ -5,15 +5,11 @@
 
 #include <unistd.h>
 
-#include <algorithm>
-#include <cstddef>
-#include <filesystem>
 #include <fstream>
 #include <ostream>
 #include <stdexcept>
-#include <string>
-#include <string_view>
-#include <vector>
+
+#include "core/standard.h"
 
 namespace astrosplat::fuzz {
 
@@ -44,13 +40,12 @@ inline const Target& target(const std::string& name) {
 
 /// A file of this process that holds the bytes while the object lives; its name ends in `ending`.
 struct TemporaryFile {
-    std::filesystem::path path;
+    fs::path path;
     TemporaryFile(std::string_view bytes, const std::string& ending)
-        : path(std::filesystem::temp_directory_path() /
-               ("astrosplat_fuzz_" + std::to_string(::getpid()) + ending)) {
+        : path(fs::temp_directory_path() / ("astrosplat_fuzz_" + std::to_string(::getpid()) + ending)) {
         std::ofstream(path, std::ios::binary).write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
     }
-    ~TemporaryFile() { std::filesystem::remove(path); }
+    ~TemporaryFile() { fs::remove(path); }
     TemporaryFile(const TemporaryFile&) = delete;
     TemporaryFile& operator=(const TemporaryFile&) = delete;
 };

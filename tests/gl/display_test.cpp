@@ -1,13 +1,11 @@
 // Pixels on the screen against those that the writer puts into a file.
 #include "gl/display.h"
 
-#include <gtest/gtest.h>
-
 #include "gl/gl_fixture.h"
 #include "gl/objects.h"
 #include "output/format.h"
 #include "support/color_config.h"
-#include "support/temp_folder.h"
+#include "support/test.h"
 
 namespace astrosplat {
 namespace {
@@ -85,7 +83,7 @@ TEST_F(DisplayPicture, EveryViewAsTheWriter) {
 // Matrix and root, a table, and the light itself: at most half a code of 8 bits and what OpenGL's roots lose.
 TEST_F(DisplayPicture, ViewsOfAConfigurationAsTheWriter) {
     const TempFolder folder;
-    const std::filesystem::path config = test::write_color_config(folder.path());
+    const fs::path config = test::write_color_config(folder.path());
     Image image = ramp(width, height);
     for (float& value : image.pixels)
         if (std::isnan(value)) value = 0.0f;  // a matrix spreads it to all three
@@ -115,7 +113,7 @@ TEST_F(DisplayPicture, ViewsOfAConfigurationAsTheWriter) {
 
 TEST_F(DisplayPicture, AConfigurationsViewIsNotThatOfAReference) {
     const TempFolder folder;
-    const std::filesystem::path config = test::write_color_config(folder.path());
+    const fs::path config = test::write_color_config(folder.path());
     DisplaySettings settings = compared(grey(0.25f), grey(0.25f));
     settings.ocio = display_transform({config, "Screen", "Film", ""});
     settings.b_is_display = true;

@@ -1,11 +1,8 @@
 // Tests that need OpenGL: one context without a window for all of them, or a message why they are skipped.
 #pragma once
 
-#include <gtest/gtest.h>
-
-#include <stdexcept>
-
 #include "gl/objects.h"
+#include "support/test.h"
 
 namespace astrosplat::test {
 

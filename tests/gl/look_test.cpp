@@ -1,15 +1,12 @@
 // The look on the GPU, splat by splat, against apply_look, for every operator; and the uniform block it
 // reads.
-#include <gtest/gtest.h>
-
-#include <cstring>
-#include <map>
 #include <unordered_map>
 
 #include "gl/gl_fixture.h"
 #include "gl/passes.h"
 #include "gl/picture_scenes.h"
 #include "look/prepare.h"
+#include "support/test.h"
 
 namespace astrosplat {
 namespace {

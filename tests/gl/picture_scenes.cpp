@@ -71,7 +71,7 @@ Environment small_sky(int faces) {
         Buffer<float>& pixels = frame.beauty.pixels;
         for (std::uint32_t i = 0; i < pixels.size(); ++i)
             if (i % 4 != 3) pixels[i] = random(11, i / 12, std::uint32_t(face * 3) + i % 4);
-        const std::filesystem::path file = folder / ("sky" + std::to_string(face) + ".exr");
+        const fs::path file = folder / ("sky" + std::to_string(face) + ".exr");
         write_frame({file, {}, frame.beauty.width, frame.beauty.height}, frame, {});
         if (faces == 1)
             params.image = file;

@@ -1,15 +1,12 @@
 // The preview's picture against the offline renderer's, and the order it blends in.
-#include <gtest/gtest.h>
-
-#include <chrono>
-
+#include "gl/preview.h"
 #include "camera/camera.h"
 #include "core/rotation.h"
 #include "gl/gl_fixture.h"
 #include "gl/picture_scenes.h"
-#include "gl/preview.h"
 #include "gl/splat_buffers.h"
 #include "merge/cut.h"
+#include "support/test.h"
 #include "unit/render/scenes.h"
 
 namespace astrosplat {
@@ -65,7 +62,7 @@ LayerRender render_with(Falloff::Shape shape, Blend blend = Blend::over) {
 
 TEST_F(PreviewPicture, EveryFalloff) {
     for (const auto shape : test::all_shapes) {
-        SCOPED_TRACE(static_cast<int>(shape));
+        SCOPED_TRACE(int(shape));
         for (float radius : {0.002f, 0.03f, 0.15f})
             expect_like_offline({test::cloud_layer(3000, 5, radius, render_with(shape))});
     }
@@ -86,7 +83,7 @@ TEST_F(PreviewPicture, EveryBlendMergedAndIsolated) {
     for (const auto blend :
          {Blend::over, Blend::add, Blend::screen, Blend::lighten, Blend::hybrid, Blend::absorb}) {
         for (bool isolate : {false, true}) {
-            SCOPED_TRACE(static_cast<int>(blend));
+            SCOPED_TRACE(int(blend));
             LayerRender render = render_with(Falloff::Shape::gaussian, blend);
             render.isolate = isolate;
             render.opacity = 0.8f;
@@ -218,9 +215,8 @@ class CutLayers {
         }
         std::vector<CutLayer> seen;
         for (std::size_t l = 0; l < layers.size(); ++l)
-            seen.push_back(
-                {&merged_[l], &merging_[l],
-                 make_projection(layers[l].layer, static_cast<std::uint16_t>(l), camera, picture)});
+            seen.push_back({&merged_[l], &merging_[l],
+                            make_projection(layers[l].layer, std::uint16_t(l), camera, picture)});
         splats_ = cut_splats(seen, {budget, 0.0f, width, height});
         for (std::size_t l = 0; l < layers.size(); ++l) {
             layers[l].layer.splats = &splats_[l];
@@ -239,7 +235,7 @@ TEST_F(PreviewPicture, ACutLooksAsTheProcessorDrawsItUnderEveryBlend) {
     const Camera camera = test::perspective_camera(width, height);
     for (const auto blend :
          {Blend::over, Blend::add, Blend::screen, Blend::lighten, Blend::hybrid, Blend::absorb}) {
-        SCOPED_TRACE(static_cast<int>(blend));
+        SCOPED_TRACE(int(blend));
         LayerRender render = render_with(Falloff::Shape::gaussian, blend);
         render.opacity = 0.8f;
         std::vector<PreviewLayer> layers = {
@@ -342,8 +338,7 @@ TEST(PreviewOrder, FarthestFirst) { EXPECT_EQ(order_of(job_at({-2, -5, -3, -1}))
 TEST(PreviewOrder, BehindTheEyeCountsByDistanceToo) {
     EXPECT_EQ(order_of(job_at({-2, 5, -3})), (Indices{1, 2, 0}));
     OrderJob job = job_at({-2, 5, -3});
-    job.lens.projection =
-        static_cast<int>(Projection::orthographic);  // by depth: what lies behind comes last
+    job.lens.projection = int(Projection::orthographic);  // by depth: what lies behind comes last
     EXPECT_EQ(order_of(job), (Indices{2, 0, 1}));
     job.places = job_at({0, -2, -1}).places;  // one beside the eye
     EXPECT_EQ(order_of(job), (Indices{1, 2, 0}));

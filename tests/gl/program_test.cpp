@@ -1,13 +1,8 @@
 // Shader programs, for Mesa and for the reference compiler.
-#include <gtest/gtest.h>
-
-#include <cstdlib>
-
 #include "gl/gl_fixture.h"
 #include "gl/objects.h"
 #include "gl/passes.h"
-#include "support/errors.h"
-#include "support/temp_folder.h"
+#include "support/test.h"
 
 namespace astrosplat {
 namespace {

@@ -1,15 +1,10 @@
 // The file dialog: what it lists and completes, and its questions.
-#include <gtest/gtest.h>
-
-#include <set>
-#include <sstream>
-
 #include "gui/file_dialog.h"
 #include "gui/reference_screens.h"
 #include "gui/test_window.h"
 #include "gui/widgets.h"
 #include "scene/describe.h"
-#include "support/temp_folder.h"
+#include "support/test.h"
 
 namespace astrosplat {
 namespace {
@@ -168,7 +163,7 @@ class FileDialogTest : public testing::Test {
     }
     void begin(const std::string& command) { window.choose(command); }
     /// The dialog of a command, led to a file or folder by its path.
-    void begin_at(const std::string& command, const std::filesystem::path& place) {
+    void begin_at(const std::string& command, const fs::path& place) {
         begin(command);
         type_path(place.string());
         window.tap(key_code::enter);
@@ -205,9 +200,9 @@ TEST_F(FileDialogTest, SizesHaveTheUnitThatKeepsThemShort) {
         fs::resize_file(folder.file(std::string("scenes/") + name, ""), size);
     begin_at("File/Open...", folder / "scenes");
     const glm::vec2 first = window.at("file/a.toml"), last = window.at("file/e.toml");
-    const int top = static_cast<int>(first.y) - 12, bottom = static_cast<int>(last.y) + 12;
-    expect_like_reference("file_sizes", cropped(window.picture(Style::schematic),
-                                                static_cast<int>(first.x) + 200, top, 90, bottom - top));
+    const int top = int(first.y) - 12, bottom = int(last.y) + 12;
+    expect_like_reference(
+        "file_sizes", cropped(window.picture(Style::schematic), int(first.x) + 200, top, 90, bottom - top));
 }
 
 TEST_F(FileDialogTest, AColumnSortsAndClickedAgainTheOtherWayRound) {
@@ -252,9 +247,9 @@ TEST_F(FileDialogTest, PicturesAreListedAsTheyLook) {
     EXPECT_EQ(window.view.listed_pictures, listed);
     window.keep_screen("thumbnails");
     const glm::vec2 first = window.at("file/more"), last = window.at("file/c.FITS");
-    const int top = static_cast<int>(first.y) - 14, bottom = static_cast<int>(last.y) + 28;
-    expect_like_reference("thumbnails", cropped(window.picture(Style::schematic),
-                                                static_cast<int>(first.x) - 300, top, 380, bottom - top));
+    const int top = int(first.y) - 14, bottom = int(last.y) + 28;
+    expect_like_reference(
+        "thumbnails", cropped(window.picture(Style::schematic), int(first.x) - 300, top, 380, bottom - top));
     window.tap(key_code::escape);
     window.tap(key_code::escape);
     EXPECT_TRUE(window.view.listed_pictures.empty()) << "nothing is read behind a closed dialog";

@@ -1,10 +1,9 @@
 // Handles and the camera's path over the viewport.
-#include <gtest/gtest.h>
-
 #include "edit/edits.h"
 #include "edit/placement.h"
 #include "gui/test_window.h"
 #include "gui/widgets.h"
+#include "support/test.h"
 
 namespace astrosplat {
 namespace {
@@ -218,7 +217,7 @@ struct PathPointsTest : testing::Test {
     PathPointsTest() {
         CameraParams params;
         params.position = glm::dvec3(0.0, 40.0, 0.01);  // from above: right is +x, down +z
-        camera = make_camera(params, static_cast<double>(area.width), static_cast<double>(area.height), {});
+        camera = make_camera(params, double(area.width), double(area.height), {});
         window.status.viewport_camera = camera;
         window.view.view = ViewKind::free;
         window.frame(2);

@@ -1,15 +1,13 @@
 // Where things lie, menus and settings.
-#include <gtest/gtest.h>
-
 #include <tuple>
 
 #include "core/color.h"
-#include "core/real.h"
 #include "edit/view_camera.h"
 #include "gui/parts.h"
 #include "gui/test_window.h"
 #include "gui/widgets.h"
 #include "scene/describe.h"
+#include "support/test.h"
 
 namespace astrosplat {
 namespace {
@@ -124,7 +122,7 @@ TEST_F(MenusTest, ADomeMasterIsASquareFisheye) {
 TEST_F(MenusTest, CameraMoves) {
     window.view.frame = 240;  // no keyframe of the camera comes later
     window.choose("Camera/Add move/Fly in");
-    EXPECT_EQ(window.take_only(Kind::add_move).index, static_cast<std::size_t>(CameraMove::fly_in));
+    EXPECT_EQ(window.take_only(Kind::add_move).index, std::size_t(CameraMove::fly_in));
 }
 
 TEST_F(MenusTest, ThePanelsMovesAskTheSame) {
@@ -144,7 +142,7 @@ TEST_F(MenusTest, AMoveAsksAboutLaterKeyframes) {
     window.keep_screen("move");
     window.click("move/shift");
     window.click("move/Add");
-    EXPECT_EQ(window.take_only(Kind::add_move).index, static_cast<std::size_t>(CameraMove::orbit));
+    EXPECT_EQ(window.take_only(Kind::add_move).index, std::size_t(CameraMove::orbit));
     EXPECT_EQ(window.view.later_keys, LaterKeys::shift);
     EXPECT_FALSE(window.view.asked_move);
 

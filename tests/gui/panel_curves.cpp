@@ -1,11 +1,7 @@
 // Curves, levels and lists of the panel, and a way to every parameter.
-#include <gtest/gtest.h>
-
-#include <set>
-
 #include "gui/panel_driver.h"
 #include "scene/describe.h"
-#include "support/temp_folder.h"
+#include "support/test.h"
 
 namespace astrosplat {
 namespace {
@@ -82,8 +78,7 @@ TEST_F(PanelCurvesTest, ArrowsNudgeTheSelectedPoint) {
 }
 
 TEST_F(PanelCurvesTest, AtMostSixteenPoints) {
-    for (int i = 0; i < 20; ++i)
-        d.click(on_plot(d, 0.04f + 0.045f * static_cast<float>(i), i % 2 ? 0.3f : 0.7f));
+    for (int i = 0; i < 20; ++i) d.click(on_plot(d, 0.04f + 0.045f * float(i), i % 2 ? 0.3f : 0.7f));
     EXPECT_EQ(curve(d).size(), 16u);
     EXPECT_EQ(d.panel.message(), "");
 }

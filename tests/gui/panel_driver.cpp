@@ -1,13 +1,13 @@
 // Frames of ImGui without a window; the font atlas is built but drawn by nobody.
 #include "gui/panel_driver.h"
 
-#include <gtest/gtest.h>
 #include <imgui_internal.h>
 
 #include "gui/gui.h"
 #include "gui/key_map.h"
 #include "gui/widgets.h"
 #include "scene/describe.h"
+#include "support/test.h"
 
 namespace astrosplat {
 namespace {
@@ -89,7 +89,7 @@ void PanelDriver::drag(glm::vec2 from, glm::vec2 by, int steps) {
     frames(30);
     move(from);
     press();
-    for (int i = 1; i <= steps; ++i) move(from + by * (static_cast<float>(i) / static_cast<float>(steps)));
+    for (int i = 1; i <= steps; ++i) move(from + by * (float(i) / float(steps)));
     release();
 }
 

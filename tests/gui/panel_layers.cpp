@@ -1,9 +1,8 @@
 // The layers list, driven by mouse and keyboard: visibility, solo, names, order, additions; and what it asks
 // of the viewer.
-#include <gtest/gtest.h>
-
 #include "gui/panel_driver.h"
 #include "scene/describe.h"
+#include "support/test.h"
 
 namespace astrosplat {
 namespace {
@@ -26,7 +25,7 @@ meshes = [ { mesh = "plane", texture = "c.png" } ]
 )";
 
 // Rows of 28 px begin below a head of 32 px.
-glm::vec2 at(int row, float x) { return {x, 32.0f + 28.0f * (static_cast<float>(row) + 0.5f)}; }
+glm::vec2 at(int row, float x) { return {x, 32.0f + 28.0f * (float(row) + 0.5f)}; }
 constexpr float eye = 24.0f, name = 90.0f, solo = 360.0f - 66.0f, holdout = 360.0f - 46.0f,
                 isolate = 360.0f - 16.0f;
 

@@ -1,9 +1,8 @@
 // Rows of the side panel, driven by mouse and keyboard, and their values in words.
-#include <gtest/gtest.h>
-
 #include "edit/edits.h"
 #include "gui/panel/parts.h"
 #include "gui/panel_driver.h"
+#include "support/test.h"
 
 namespace astrosplat::panel {
 namespace {

@@ -1,10 +1,9 @@
 // Sections of the panel: colours, prepare, edits that need others, folded heads.
-#include <gtest/gtest.h>
-
 #include "gui/panel/context.h"
 #include "gui/panel/parts.h"
 #include "gui/panel_driver.h"
 #include "gui/reference_screens.h"
+#include "support/test.h"
 
 namespace astrosplat::panel {
 namespace {
@@ -127,7 +126,7 @@ TEST_F(PanelPreparation, TheLineBetweenBeforeAndAfterIsDragged) {
     driver.move({before.x + before.z * 0.5f, before.y + 40.0f});
     driver.frames(3);
     const Picture8 moved = drawn();
-    const auto x = static_cast<int>(before.x + before.z * 0.75f), y = static_cast<int>(before.y + 60.0f);
+    const auto x = int(before.x + before.z * 0.75f), y = int(before.y + 60.0f);
     int differing = 0;
     for (int dx = -2; dx <= 2; ++dx) differing += half.at(x + dx, y) != moved.at(x + dx, y);
     EXPECT_GT(differing, 0) << "the line lies there now";
@@ -152,8 +151,8 @@ TEST_F(PanelPreparation, LooksLikeItsReference) {
     const glm::vec4 place = area();
     Picture8 picture(360, 2400);
     software_draw(*ImGui::GetDrawData(), picture, Style::schematic);
-    expect_like_reference("panel_preparation", cropped(picture, 0, static_cast<int>(place.y) - 330, 360,
-                                                       static_cast<int>(place.w) + 420));
+    expect_like_reference("panel_preparation",
+                          cropped(picture, 0, int(place.y) - 330, 360, int(place.w) + 420));
 }
 
 TEST(PanelPreparationOfSplats, IsNotThere) {

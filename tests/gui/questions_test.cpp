@@ -1,9 +1,7 @@
 // Unsaved changes, recovery, files changed on disk, the hint, snapshots.
-#include <gtest/gtest.h>
-
 #include "gui/test_window.h"
 #include "gui/widgets.h"
-#include "support/temp_folder.h"
+#include "support/test.h"
 
 namespace astrosplat {
 namespace {
@@ -97,7 +95,7 @@ TEST(ChangedOnDisk, ReloadsOrKeeps) {
 class SaveConflict : public testing::Test {
   protected:
     TempFolder folder;
-    std::filesystem::path file = folder.file("a.toml", example_document().text_for(folder / "a.toml"));
+    fs::path file = folder.file("a.toml", example_document().text_for(folder / "a.toml"));
     TestWindow window{Document::open(file)};
 
     SaveConflict() {

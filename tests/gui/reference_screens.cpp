@@ -3,17 +3,15 @@
 #include "gui/reference_screens.h"
 
 #include <OpenImageIO/imageio.h>
-#include <gtest/gtest.h>
 
-#include <cstdlib>
-#include <filesystem>
+#include "support/test.h"
 
 namespace astrosplat {
 namespace {
 
 constexpr int bad_difference = 6, most_bad = 8, most_difference = 24;  // of 255; pixels; of 255
 
-std::optional<Picture8> read_reference(const std::filesystem::path& file) {
+std::optional<Picture8> read_reference(const fs::path& file) {
     const auto in = OIIO::ImageInput::open(file.string());
     if (!in) return std::nullopt;
     Picture8 picture(in->spec().width, in->spec().height);
@@ -25,8 +23,8 @@ std::optional<Picture8> read_reference(const std::filesystem::path& file) {
     return picture;
 }
 
-void write_png(const std::filesystem::path& file, const Picture8& picture) {
-    std::filesystem::create_directories(file.parent_path());
+void write_png(const fs::path& file, const Picture8& picture) {
+    fs::create_directories(file.parent_path());
     std::vector<std::uint8_t> rgb;
     for (const Rgba8& p : picture.pixels) rgb.insert(rgb.end(), {p.r, p.g, p.b});
     OIIO::ImageSpec spec(picture.width, picture.height, 3, OIIO::TypeDesc::UINT8);
@@ -44,8 +42,8 @@ int difference(const Rgba8& a, const Rgba8& b) {
 }  // namespace
 
 void expect_like_reference(const std::string& name, const Picture8& drawn) {
-    const auto output = std::filesystem::path(ASTROSPLAT_BINARY_DIR) / "test-output" / "gui-references";
-    const auto file = std::filesystem::path(ASTROSPLAT_SOURCE_DIR) / "tests/gui/references" / (name + ".png");
+    const auto output = fs::path(ASTROSPLAT_BINARY_DIR) / "test-output" / "gui-references";
+    const auto file = fs::path(ASTROSPLAT_SOURCE_DIR) / "tests/gui/references" / (name + ".png");
     const std::optional<Picture8> wanted = read_reference(file);
     if (!wanted || wanted->width != drawn.width || wanted->height != drawn.height) {
         write_png(output / (name + ".png"), drawn);
@@ -56,10 +54,10 @@ void expect_like_reference(const std::string& name, const Picture8& drawn) {
     int bad = 0, most = 0, first = -1;
     for (std::size_t i = 0; i < drawn.pixels.size(); ++i) {
         const int d = difference(drawn.pixels[i], wanted->pixels[i]);
-        const auto shown = static_cast<std::uint8_t>(std::min(255, 4 * d));
+        const auto shown = std::uint8_t(std::min(255, 4 * d));
         differences.pixels[i] = {shown, shown, shown, 255};
         most = std::max(most, d);
-        if (d > bad_difference && bad++ == 0) first = static_cast<int>(i);
+        if (d > bad_difference && bad++ == 0) first = int(i);
     }
     if (bad <= most_bad && most <= most_difference) return;
     write_png(output / (name + ".png"), drawn);

@@ -1,12 +1,11 @@
 // The window, state by state: every control lies inside the window at every size, and at one size it looks as
 // in a committed picture. A change that is meant to be seen comes with new references; one that is not fails
 // here. With $ASTROSPLAT_GUI_PICTURES all pictures are kept to be looked at.
-#include <gtest/gtest.h>
-
 #include "gui/panel_driver.h"
 #include "gui/reference_screens.h"
 #include "gui/test_window.h"
 #include "gui/widgets.h"
+#include "support/test.h"
 
 namespace astrosplat {
 namespace {
@@ -124,7 +123,7 @@ TEST_P(References, Recovery) {
 }
 TEST_P(References, OpenAFile) {
     window.status.recent = {"/usr/share/doc/a.toml",
-                            std::filesystem::path(ASTROSPLAT_SOURCE_DIR) / "assets/scenes/nebula.toml"};
+                            fs::path(ASTROSPLAT_SOURCE_DIR) / "assets/scenes/nebula.toml"};
     window.choose("File/Open...");
     window.type(ASTROSPLAT_SOURCE_DIR "/assets");
     window.click("file/Open");
@@ -183,9 +182,8 @@ TEST(NoticeReferences, WhatTheButtonsDo) {
         const glm::vec2 place = window.at("notice/" + button);
         window.move(place);
         window.frame(60);
-        expect_like_reference("notice_" + button,
-                              cropped(window.picture(Style::schematic), static_cast<int>(place.x) - 60,
-                                      static_cast<int>(place.y) - 10, 420, 80));
+        expect_like_reference("notice_" + button, cropped(window.picture(Style::schematic), int(place.x) - 60,
+                                                          int(place.y) - 10, 420, 80));
     }
 }
 
@@ -236,9 +234,8 @@ TEST(PanelReferences, AnglesOfAHybridLayer) {
 TEST(IconReferences, Sheet) {
     TestWindow window(example_document(), 480, 320);
     ImGui::NewFrame();
-    for (int i = 0; i <= static_cast<int>(Icon::dots); ++i) {
-        const ImVec2 center{40.0f + 80.0f * static_cast<float>(i % 6),
-                            40.0f + 80.0f * static_cast<float>(i / 6)};
+    for (int i = 0; i <= int(Icon::dots); ++i) {
+        const ImVec2 center{40.0f + 80.0f * float(i % 6), 40.0f + 80.0f * float(i / 6)};
         draw_icon(ImGui::GetForegroundDrawList(), static_cast<Icon>(i), center, 64.0f, color::text);
     }
     draw_bracket(ImGui::GetForegroundDrawList(), 360.0f, 250.0f, 310.0f, color::text);

@@ -1,10 +1,9 @@
 // The dialog that renders to files, and the queue.
 #include "gui/parts.h"
 
-#include <gtest/gtest.h>
-
 #include "gui/test_window.h"
 #include "gui/widgets.h"
+#include "support/test.h"
 
 namespace astrosplat {
 namespace {
@@ -144,9 +143,17 @@ TEST(Queue, FramesOfTheChosenJobAreFlippedThrough) {
     ASSERT_TRUE(window.has("queue/frame"));
     window.click("queue/play");
     EXPECT_TRUE(window.view.queue_playing);
-    window.frame(14);  // a click on the frame that is shown changes nothing
+    window.frame(14);
     EXPECT_GE(window.view.queue_frame, 0);
     window.click("queue/frame");  // its middle
+    EXPECT_EQ(window.view.queue_frame, 1);
+    EXPECT_FALSE(window.view.queue_playing);
+    // The frame that is shown while it plays, too.
+    window.document.edit("Rate", [](Scene& scene) { scene.output.fps = 1.2 / ImGui::GetTime(); });
+    window.view.queue_playing = true;
+    window.frame();
+    ASSERT_EQ(window.view.queue_frame, 1);
+    window.click("queue/frame");
     EXPECT_EQ(window.view.queue_frame, 1);
     EXPECT_FALSE(window.view.queue_playing);
 }

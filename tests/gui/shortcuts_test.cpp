@@ -1,8 +1,4 @@
 // Shortcuts pressed over the window: what they change and ask for.
-#include <gtest/gtest.h>
-
-#include <map>
-
 #include "edit/edits.h"
 #include "edit/view_camera.h"
 #include "gui/panel/context.h"
@@ -10,6 +6,7 @@
 #include "gui/test_window.h"
 #include "gui/widgets.h"
 #include "scene/animate.h"
+#include "support/test.h"
 
 namespace astrosplat {
 namespace {
@@ -60,8 +57,8 @@ TEST_F(ShortcutsTest, WhatIsUndoneIsSaid) {
 TEST(Menus, TheHistoryGoesToAnyStep) {
     TestWindow window(example_document());
     for (const double opacity : {0.9, 0.8, 0.7})
-        window.document.edit(
-            "Opacity", [&](Scene& scene) { scene.layers[0].render.opacity = static_cast<float>(opacity); });
+        window.document.edit("Opacity",
+                             [&](Scene& scene) { scene.layers[0].render.opacity = float(opacity); });
     const auto go_to = [&](const char* step) {
         window.choose(std::string("Edit/History/") + step);
         return window.document.scene().layers[0].render.opacity;

@@ -2,17 +2,12 @@
 // are found behind this program's own, which the C++ library calls instead.
 #include <dirent.h>
 #include <dlfcn.h>
-#include <gtest/gtest.h>
 #include <sys/stat.h>
-
-#include <atomic>
-#include <chrono>
-#include <thread>
 
 #include "gui/file_dialog.h"
 #include "gui/test_window.h"
 #include "gui/widgets.h"
-#include "support/temp_folder.h"
+#include "support/test.h"
 
 namespace {
 std::atomic<bool> folders_stand_still{false};

@@ -19,17 +19,15 @@ float edge(const ImVec2& a, const ImVec2& b, float x, float y) {
 
 // Bilinear, clamped.
 std::array<float, 4> sample(const Picture8& texture, float u, float v) {
-    const float x =
-        std::clamp(u * static_cast<float>(texture.width) - 0.5f, 0.0f, static_cast<float>(texture.width - 1));
-    const float y = std::clamp(v * static_cast<float>(texture.height) - 0.5f, 0.0f,
-                               static_cast<float>(texture.height - 1));
-    const int x0 = static_cast<int>(x), y0 = static_cast<int>(y);
+    const float x = std::clamp(u * float(texture.width) - 0.5f, 0.0f, float(texture.width - 1));
+    const float y = std::clamp(v * float(texture.height) - 0.5f, 0.0f, float(texture.height - 1));
+    const int x0 = int(x), y0 = int(y);
     const int x1 = std::min(x0 + 1, texture.width - 1), y1 = std::min(y0 + 1, texture.height - 1);
-    const float fx = x - static_cast<float>(x0), fy = y - static_cast<float>(y0);
+    const float fx = x - float(x0), fy = y - float(y0);
     std::array<float, 4> sum{};
     const auto add = [&](const Rgba8& p, float weight) {
         const std::array<std::uint8_t, 4> channels{p.r, p.g, p.b, p.a};
-        for (std::size_t i = 0; i < 4; ++i) sum[i] += weight * static_cast<float>(channels[i]) / 255.0f;
+        for (std::size_t i = 0; i < 4; ++i) sum[i] += weight * float(channels[i]) / 255.0f;
     };
     add(texture.at(x0, y0), (1 - fx) * (1 - fy));
     add(texture.at(x1, y0), fx * (1 - fy));
@@ -40,8 +38,8 @@ std::array<float, 4> sample(const Picture8& texture, float u, float v) {
 
 void blend(Rgba8& under, const std::array<float, 4>& over) {
     const auto mix = [&](std::uint8_t& channel, float value) {
-        const float sum = value * over[3] + static_cast<float>(channel) / 255.0f * (1.0f - over[3]);
-        channel = static_cast<std::uint8_t>(std::lround(std::clamp(sum, 0.0f, 1.0f) * 255.0f));
+        const float sum = value * over[3] + float(channel) / 255.0f * (1.0f - over[3]);
+        channel = std::uint8_t(std::lround(std::clamp(sum, 0.0f, 1.0f) * 255.0f));
     };
     mix(under.r, over[0]);
     mix(under.g, over[1]);
@@ -75,13 +73,11 @@ void draw_triangle(Picture8& target, const Clip& clip, const Surface& surface,
     }
     const auto [lx, hx] = std::minmax({v[0]->pos.x, v[1]->pos.x, v[2]->pos.x});
     const auto [ly, hy] = std::minmax({v[0]->pos.y, v[1]->pos.y, v[2]->pos.y});
-    const int x0 = std::max(clip.x0, static_cast<int>(std::floor(lx))),
-              x1 = std::min(clip.x1, static_cast<int>(std::ceil(hx)));
-    const int y0 = std::max(clip.y0, static_cast<int>(std::floor(ly))),
-              y1 = std::min(clip.y1, static_cast<int>(std::ceil(hy)));
+    const int x0 = std::max(clip.x0, int(std::floor(lx))), x1 = std::min(clip.x1, int(std::ceil(hx)));
+    const int y0 = std::max(clip.y0, int(std::floor(ly))), y1 = std::min(clip.y1, int(std::ceil(hy)));
     for (int y = y0; y < y1; ++y)
         for (int x = x0; x < x1; ++x) {
-            const float px = static_cast<float>(x) + 0.5f, py = static_cast<float>(y) + 0.5f;
+            const float px = float(x) + 0.5f, py = float(y) + 0.5f;
             std::array<float, 3> w{};
             bool inside = true;
             for (std::size_t i = 0; i < 3 && inside; ++i) {
@@ -97,7 +93,7 @@ void draw_triangle(Picture8& target, const Clip& clip, const Surface& surface,
                 u += w[i] * v[i]->uv.x;
                 t += w[i] * v[i]->uv.y;
                 for (std::size_t c = 0; c < 4; ++c)
-                    color[c] += w[i] * static_cast<float>((v[i]->col >> (8 * c)) & 0xFF) / 255.0f;
+                    color[c] += w[i] * float((v[i]->col >> (8 * c)) & 0xFF) / 255.0f;
             }
             const std::array<float, 4> texel = surface.texel(v, u, t);
             for (std::size_t c = 0; c < 4; ++c) color[c] *= texel[c];
@@ -113,10 +109,9 @@ void software_draw(const ImDrawData& data, Picture8& target, Style style) {
         for (const ImDrawCmd& command : list.CmdBuffer) {
             const bool schematic = style == Style::schematic;
             if (command.UserCallback || !(command.GetTexID() || schematic)) continue;
-            const Clip clip{std::max(0, static_cast<int>(command.ClipRect.x)),
-                            std::max(0, static_cast<int>(command.ClipRect.y)),
-                            std::min(target.width, static_cast<int>(command.ClipRect.z)),
-                            std::min(target.height, static_cast<int>(command.ClipRect.w))};
+            const Clip clip{std::max(0, int(command.ClipRect.x)), std::max(0, int(command.ClipRect.y)),
+                            std::min(target.width, int(command.ClipRect.z)),
+                            std::min(target.height, int(command.ClipRect.w))};
             const bool font = command.GetTexID() == ImGui::GetIO().Fonts->TexID;
             const Surface surface{!schematic ? Surface::Kind::texture
                                   : font     ? Surface::Kind::glyphs
@@ -138,11 +133,10 @@ Picture8 cropped(const Picture8& picture, int x, int y, int width, int height) {
     return part;
 }
 
-void write_ppm(const std::filesystem::path& file, const Picture8& picture) {
+void write_ppm(const fs::path& file, const Picture8& picture) {
     std::ofstream out(file, std::ios::binary);
     out << "P6\n" << picture.width << ' ' << picture.height << "\n255\n";
-    for (const Rgba8& p : picture.pixels)
-        out.put(static_cast<char>(p.r)).put(static_cast<char>(p.g)).put(static_cast<char>(p.b));
+    for (const Rgba8& p : picture.pixels) out.put(char(p.r)).put(char(p.g)).put(char(p.b));
 }
 
 }  // namespace astrosplat

@@ -19,12 +19,8 @@ struct Picture8 {
     std::vector<Rgba8> pixels;  // top row first
 
     Picture8() = default;
-    Picture8(int w, int h)
-        : width(w), height(h), pixels(static_cast<std::size_t>(w) * static_cast<std::size_t>(h)) {}
-    Rgba8& at(int x, int y) {
-        return pixels[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
-                      static_cast<std::size_t>(x)];
-    }
+    Picture8(int w, int h) : width(w), height(h), pixels(std::size_t(w) * std::size_t(h)) {}
+    Rgba8& at(int x, int y) { return pixels[std::size_t(y) * std::size_t(width) + std::size_t(x)]; }
     const Rgba8& at(int x, int y) const { return const_cast<Picture8*>(this)->at(x, y); }
 };
 
@@ -39,6 +35,6 @@ enum class Style { as_seen, schematic };
 void software_draw(const ImDrawData& data, Picture8& target, Style style = Style::as_seen);
 
 /// Binary PPM, colours only.
-void write_ppm(const std::filesystem::path& file, const Picture8& picture);
+void write_ppm(const fs::path& file, const Picture8& picture);
 
 }  // namespace astrosplat

@@ -1,12 +1,9 @@
 // Frames of 1/60 s; every press and every move is seen by at least one of them, as ImGui 1.86 wants it.
 #include "gui/test_window.h"
 
-#include <gtest/gtest.h>
-
-#include <cstdlib>
-
 #include "gui/key_map.h"
 #include "gui/widgets.h"
+#include "support/test.h"
 
 namespace astrosplat {
 namespace {
@@ -31,7 +28,7 @@ Picture8 galaxy_picture(int width, int height) {
             const double arm = 0.5 + 0.5 * std::cos(2 * angle - 9 * std::log(r + 0.05));
             const double light = std::exp(-4.5 * r) * (0.35 + arm) + 0.9 * std::exp(-30 * r);
             const auto level = [&](double gain) {
-                return static_cast<std::uint8_t>(255.0 * std::min(1.0, std::pow(light * gain, 0.8)));
+                return std::uint8_t(255.0 * std::min(1.0, std::pow(light * gain, 0.8)));
             };
             picture.at(x, y) = {level(1.0), level(0.85), level(0.8 + 0.3 * r), 255};
         }
@@ -48,7 +45,7 @@ TestWindow::TestWindow(Document document_, int width, int height, float content_
     image_ = galaxy_picture(1222, 668);
     ImGuiIO& io = ImGui::GetIO();
     io.Fonts->SetTexID(&font_);
-    io.DisplaySize = {static_cast<float>(width), static_cast<float>(height)};
+    io.DisplaySize = {float(width), float(height)};
     io.BackendFlags |= ImGuiBackendFlags_RendererHasVtxOffset;
     status = example_status();
     status.viewport_texture = &image_;
@@ -102,7 +99,7 @@ void TestWindow::drag(glm::vec2 from, glm::vec2 by, int button) {
     hover(from);
     press(button);
     for (int step = 1; step <= 4; ++step) {
-        move(from + by * (static_cast<float>(step) / 4.0f));
+        move(from + by * (float(step) / 4.0f));
         frame();
     }
     release(button);
@@ -172,7 +169,7 @@ Picture8 TestWindow::picture(Style style) {
 
 void TestWindow::keep_screen(const std::string& name) {
     const char* folder = std::getenv("ASTROSPLAT_GUI_PICTURES");
-    if (folder && *folder) write_ppm(std::filesystem::path(folder) / (name + ".ppm"), picture());
+    if (folder && *folder) write_ppm(fs::path(folder) / (name + ".ppm"), picture());
 }
 
 Document example_document() {

@@ -2,12 +2,11 @@
 // asked for kept.
 #pragma once
 
-#include <gtest/gtest.h>
-
 #include <imgui.h>
 
 #include "gui/gui.h"
 #include "gui/software_draw.h"
+#include "support/test.h"
 
 namespace astrosplat {
 

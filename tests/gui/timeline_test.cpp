@@ -1,10 +1,9 @@
 // The timeline and its graph by mouse and keys.
-#include <gtest/gtest.h>
-
+#include "gui/timeline.h"
 #include "edit/edits.h"
 #include "gui/test_window.h"
-#include "gui/timeline.h"
 #include "gui/widgets.h"
+#include "support/test.h"
 
 namespace astrosplat {
 namespace {
@@ -137,8 +136,8 @@ TEST(TimelineOfAnother, EveryInterpolationHasAMarkOfItsOwn) {
                 set_interpolation(scene, opacity, 24, static_cast<Interpolation>(interpolation));
         });
         window.frame(2);
-        const Picture8 mark = cropped(window.picture(Style::schematic), static_cast<int>(place.x) - 4,
-                                      static_cast<int>(place.y) - 4, 9, 9);
+        const Picture8 mark =
+            cropped(window.picture(Style::schematic), int(place.x) - 4, int(place.y) - 4, 9, 9);
         for (const auto& other : marks) EXPECT_FALSE(mark.pixels == other) << interpolation;
         marks.push_back(mark.pixels);
     }
@@ -317,8 +316,7 @@ TEST_F(GraphTest, TheMenuTicksWhatIsSet) {
         open_menu();
         window.hover({-100, -100});
         const glm::vec2 at = window.at(std::string("keyframe menu/") + item);
-        const Picture8 seen = cropped(window.picture(Style::schematic), static_cast<int>(at.x),
-                                      static_cast<int>(at.y) - 8, 170, 16);
+        const Picture8 seen = cropped(window.picture(Style::schematic), int(at.x), int(at.y) - 8, 170, 16);
         window.tap(key_code::escape);
         return seen.pixels;
     };

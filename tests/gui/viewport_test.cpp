@@ -1,11 +1,10 @@
 // The viewport: drags, flying, wipe, 1:1, and the badge.
-#include <gtest/gtest.h>
-
+#include "gui/viewport.h"
 #include "gui/gui_frame.h"
 #include "gui/test_window.h"
-#include "gui/viewport.h"
 #include "gui/viewport_overlay.h"
 #include "gui/widgets.h"
+#include "support/test.h"
 
 namespace astrosplat {
 namespace {
@@ -149,7 +148,7 @@ class Placing : public testing::Test {
         frame = frame_on_screen(place_frame(window.view, picture, shown.width, shown.height));
     }
     const ReferenceParams& placed() const { return window.document.scene().references[0]; }
-    float h() const { return static_cast<float>(frame.height); }
+    float h() const { return float(frame.height); }
     double px() const { return 1.0 / frame.height; }  // the mouse lies on whole ones
 
     TestWindow window{example_document()};
@@ -330,9 +329,7 @@ TEST(MessageBar, AnErrorStaysUntilItIsClicked) {
     const Rect bar = make_layout(window.view, 1600.0f, 900.0f, 1.0f).status;
     const auto seen = [&] {
         window.hover({-100.0f, -100.0f});
-        return cropped(window.picture(Style::schematic), 0, static_cast<int>(bar.y), 800,
-                       static_cast<int>(bar.height))
-            .pixels;
+        return cropped(window.picture(Style::schematic), 0, int(bar.y), 800, int(bar.height)).pixels;
     };
     window.status.message = {};
     const auto empty = seen();

@@ -2,14 +2,13 @@
 // scenes/*.toml, one picture each in references/. A picture is judged by three numbers: the difference that
 // makes a pixel bad, the share of bad pixels that is allowed, and the difference that no pixel may exceed.
 //   A scene without a reference fails, and leaves its picture to be looked at and copied to references/.
-#include <gtest/gtest.h>
-
 #include <iostream>
 
 #include "analytic/support.h"
 #include "output/write.h"
 #include "scene/load.h"
 #include "source/write_image.h"
+#include "support/test.h"
 
 namespace astrosplat {
 namespace {
@@ -40,8 +39,8 @@ Image differences(const Image& got, const Image& reference) {
     for (std::int64_t y = 0; y < got.height; ++y)
         for (std::int64_t x = 0; x < got.width; ++x)
             for (int c = 0; c < got.channels; ++c)
-                *result.at(x, y) = std::max(
-                    *result.at(x, y), static_cast<float>(difference(got.at(x, y)[c], reference.at(x, y)[c])));
+                *result.at(x, y) =
+                    std::max(*result.at(x, y), float(difference(got.at(x, y)[c], reference.at(x, y)[c])));
     return result;
 }
 
@@ -88,7 +87,7 @@ TEST_P(Images, AreThoseOfTheReferences) {
     const Image pixels = differences(got.image, reference.image);
     const auto bad =
         std::count_if(pixels.pixels.begin(), pixels.pixels.end(), [](float d) { return d > bad_pixel; });
-    EXPECT_LE(static_cast<double>(bad), bad_share * static_cast<double>(pixels.pixels.size()));
+    EXPECT_LE(double(bad), bad_share * double(pixels.pixels.size()));
     EXPECT_LE(*std::max_element(pixels.pixels.begin(), pixels.pixels.end()), never);
     if (!HasFailure()) return;
     fs::copy_file(reference_file, output / "reference.exr", fs::copy_options::overwrite_existing);

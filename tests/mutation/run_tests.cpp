@@ -3,21 +3,14 @@
 // the test reached and how long it took. (What is reached between tests, as by the set-up of a suite, counts
 // for all tests of the suite.) Otherwise it waits for lines "MUTANT SECONDS LOG FILTER" on its input and
 // answers each with the exit code of a child that ran those tests: the program is loaded once.
-#include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/wait.h>
-#include <unistd.h>
 
-#include <chrono>
-#include <cstdio>
-#include <cstdlib>
 #include <iostream>
-#include <set>
-#include <sstream>
-#include <string>
 #include <utility>
 
 #include "mutant.h"
+#include "support/test.h"
 
 namespace {
 

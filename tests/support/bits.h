@@ -52,7 +52,7 @@ class Bits {
     std::string bytes_;
 };
 
-inline std::string bytes_of(const std::filesystem::path& file) {
+inline std::string bytes_of(const fs::path& file) {
     std::ifstream in(file, std::ios::binary);
     return {std::istreambuf_iterator<char>(in), {}};
 }

@@ -13,13 +13,11 @@ namespace astrosplat::test {
 
 class CameraFileTest : public testing::Test {
   protected:
-    std::filesystem::path put(const std::string& name, const std::string& text) {
-        return folder.file(name, text);
-    }
+    fs::path put(const std::string& name, const std::string& text) { return folder.file(name, text); }
     /// The error that ends the reading of this text, without the folder's name.
     template <class Read>
     std::string refusal(const std::string& name, const std::string& text, const Read& read) {
-        const std::filesystem::path file = put(name, text);
+        const fs::path file = put(name, text);
         return without_folder(ERROR_OF(read(file, FrameRate{})));
     }
     std::string without_folder(std::string message) {

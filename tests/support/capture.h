@@ -28,24 +28,24 @@ inline std::vector<Trained> capture(std::uint32_t count, int degree, double size
     for (std::uint32_t i = 0; i < count; ++i) {
         Trained g;
         for (int k = 0; k < 3; ++k) {
-            const auto n = static_cast<std::uint32_t>(k);
+            const auto n = std::uint32_t(k);
             g.position[k] = 6.0 * drawn(i, n) - 3.0;
             g.scale[k] = size * std::exp(-3.0 * drawn(i, 10 + n));
         }
-        for (int k = 0; k < 4; ++k) g.rotation[k] = drawn(i, 20 + static_cast<std::uint32_t>(k)) - 0.5;
+        for (int k = 0; k < 4; ++k) g.rotation[k] = drawn(i, 20 + std::uint32_t(k)) - 0.5;
         g.rotation = glm::normalize(g.rotation);
         g.opacity = 0.02 + 0.97 * drawn(i, 30);
         for (int j = 0; j < (degree + 1) * (degree + 1); ++j)
             for (int k = 0; k < 3; ++k)
-                g.harmonics[static_cast<std::size_t>(j)][k] =
-                    (drawn(i, static_cast<std::uint32_t>(40 + 3 * j + k)) - 0.5) * (j == 0 ? 3.0 : 0.5);
+                g.harmonics[std::size_t(j)][k] =
+                    (drawn(i, std::uint32_t(40 + 3 * j + k)) - 0.5) * (j == 0 ? 3.0 : 0.5);
         all.push_back(g);
     }
     return all;
 }
 
 inline void put(std::string& bytes, double value) {
-    const auto number = static_cast<float>(value);
+    const auto number = float(value);
     bytes.append(reinterpret_cast<const char*>(&number), sizeof number);
 }
 
@@ -65,7 +65,7 @@ inline std::string ply_of(const std::vector<Trained>& all, int degree) {
         for (int k = 0; k < 3; ++k) put(bytes, 0.0);
         for (int k = 0; k < 3; ++k) put(bytes, g.harmonics[0][k]);
         for (int k = 0; k < 3; ++k)
-            for (int j = 1; j <= rest; ++j) put(bytes, g.harmonics[static_cast<std::size_t>(j)][k]);
+            for (int j = 1; j <= rest; ++j) put(bytes, g.harmonics[std::size_t(j)][k]);
         put(bytes, std::log(g.opacity / (1.0 - g.opacity)));
         for (int k = 0; k < 3; ++k) put(bytes, std::log(g.scale[k]));
         for (const int k : {3, 0, 1, 2}) put(bytes, 2.5 * g.rotation[k]);  // of any length
@@ -75,7 +75,7 @@ inline std::string ply_of(const std::vector<Trained>& all, int degree) {
 
 inline std::string little_endian(std::size_t n) {
     std::string bytes;
-    for (int i = 0; i < 4; ++i) bytes += static_cast<char>(n >> 8 * i & 255);
+    for (int i = 0; i < 4; ++i) bytes += char(n >> 8 * i & 255);
     return bytes;
 }
 
@@ -103,9 +103,8 @@ inline std::string glb_of(const std::vector<Trained>& all, int degree, const std
     column(prefix + "OPACITY", 1, [](const Trained& g, int) { return g.opacity; });
     for (int l = 0; l <= degree; ++l)
         for (int n = 0; n < 2 * l + 1; ++n)
-            column(
-                prefix + "SH_DEGREE_" + std::to_string(l) + "_COEF_" + std::to_string(n), 3,
-                [&](const Trained& g, int k) { return g.harmonics[static_cast<std::size_t>(l * l + n)][k]; });
+            column(prefix + "SH_DEGREE_" + std::to_string(l) + "_COEF_" + std::to_string(n), 3,
+                   [&](const Trained& g, int k) { return g.harmonics[std::size_t(l * l + n)][k]; });
     std::string json = R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0)" +
                        node + R"(}],"meshes":[{"primitives":[{"mode":0,"attributes":{)" + attributes +
                        R"(},"extensions":{"KHR_gaussian_splatting":{"kernel":"ellipse","colorSpace":")" +
@@ -128,7 +127,7 @@ inline std::string usda_of(const std::vector<Trained>& all, int degree, const st
                 text += components > 1 ? "        (" : "        ";
                 for (int k = 0; k < components; ++k) {
                     char number[32];
-                    std::snprintf(number, sizeof number, "%.9g", double(static_cast<float>(value(g, j, k))));
+                    std::snprintf(number, sizeof number, "%.9g", double(float(value(g, j, k))));
                     text += (k > 0 ? ", " : "") + std::string(number);
                 }
                 text += components > 1 ? "),\n" : ",\n";
@@ -146,7 +145,7 @@ inline std::string usda_of(const std::vector<Trained>& all, int degree, const st
            list("float[] opacities", 1, 1, [](const Trained& g, int, int) { return g.opacity; }) +
            "    uniform int radiance:sphericalHarmonicsDegree = " + std::to_string(degree) + "\n" +
            list("float3[] radiance:sphericalHarmonicsCoefficients", 3, each,
-                [](const Trained& g, int j, int k) { return g.harmonics[static_cast<std::size_t>(j)][k]; }) +
+                [](const Trained& g, int j, int k) { return g.harmonics[std::size_t(j)][k]; }) +
            "    }\n}\n";
 }
 

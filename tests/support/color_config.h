@@ -48,7 +48,7 @@ colorspaces:
 )";
 
 /// The configuration in this folder, with its table.
-inline std::filesystem::path write_color_config(const std::filesystem::path& folder) {
+inline fs::path write_color_config(const fs::path& folder) {
     std::ofstream(folder / "colors.ocio") << color_config_text;
     std::ofstream table(folder / "negative.cube");
     table << "LUT_3D_SIZE 2\n";

@@ -19,9 +19,8 @@ namespace astrosplat {
 /// Writes a cube map of `edge` px with value(x, y) in all three channels; y runs through the six faces. It is
 /// an uncompressed EXR with the attribute "envmap" put before its others and the offsets of the rows moved.
 /// (OpenImageIO 2.4 cannot write one.)
-inline void write_cube_map(const std::filesystem::path& file, int edge,
-                           const std::function<float(int x, int y)>& value) {
-    const auto rows = static_cast<std::size_t>(6 * edge), row_bytes = static_cast<std::size_t>(edge) * 12;
+inline void write_cube_map(const fs::path& file, int edge, const std::function<float(int x, int y)>& value) {
+    const auto rows = std::size_t(6 * edge), row_bytes = std::size_t(edge) * 12;
     OIIO::ImageSpec spec(edge, 6 * edge, 3, OIIO::TypeFloat);
     spec.attribute("compression", "none");
     std::vector<float> pixels;

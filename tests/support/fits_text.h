@@ -37,10 +37,10 @@ std::string fits_file(int width, int height, const std::string& cards, const Val
     file.resize((file.size() + 2879) / 2880 * 2880, ' ');
     for (int y = 0; y < height; ++y)
         for (int x = 0; x < width; ++x) {
-            const auto number = static_cast<float>(value(x, y));
+            const auto number = float(value(x, y));
             std::uint32_t bits;
             std::memcpy(&bits, &number, 4);
-            for (int shift = 24; shift >= 0; shift -= 8) file += static_cast<char>(bits >> shift & 255u);
+            for (int shift = 24; shift >= 0; shift -= 8) file += char(bits >> shift & 255u);
         }
     file.resize((file.size() + 2879) / 2880 * 2880, '\0');
     return file;

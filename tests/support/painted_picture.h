@@ -10,34 +10,33 @@ namespace astrosplat {
 namespace painted {
 
 inline float fbm(double x, double y, double frequency, std::uint32_t seed) {
-    return shared::as_fbm(static_cast<float>(x), static_cast<float>(y), 0.5f, static_cast<float>(frequency),
-                          6, 2.0f, 0.55f, 0.5f, seed);
+    return shared::as_fbm(float(x), float(y), 0.5f, float(frequency), 6, 2.0f, 0.55f, 0.5f, seed);
 }
 
 inline double random(std::uint32_t i, std::uint32_t purpose) {
-    return static_cast<double>(shared::as_uniform(shared::as_hash(20261123u, i, 0u, purpose)));
+    return double(shared::as_uniform(shared::as_hash(20261123u, i, 0u, purpose)));
 }
 
 inline void add_point(Image& image, double x, double y, double sigma, double r, double g, double b) {
-    const auto reach = static_cast<std::int64_t>(std::ceil(5.0 * sigma));
-    const auto cx = static_cast<std::int64_t>(x), cy = static_cast<std::int64_t>(y);
+    const auto reach = std::int64_t(std::ceil(5.0 * sigma));
+    const auto cx = std::int64_t(x), cy = std::int64_t(y);
     for (std::int64_t j = std::max<std::int64_t>(0, cy - reach); j <= std::min(image.height - 1, cy + reach);
          ++j) {
         for (std::int64_t i = std::max<std::int64_t>(0, cx - reach);
              i <= std::min(image.width - 1, cx + reach); ++i) {
-            const double dx = static_cast<double>(i) + 0.5 - x, dy = static_cast<double>(j) + 0.5 - y;
+            const double dx = double(i) + 0.5 - x, dy = double(j) + 0.5 - y;
             const double light = std::exp(-(dx * dx + dy * dy) / (2.0 * sigma * sigma));
-            image.at(i, j)[0] += static_cast<float>(r * light);
-            image.at(i, j)[1] += static_cast<float>(g * light);
-            image.at(i, j)[2] += static_cast<float>(b * light);
+            image.at(i, j)[0] += float(r * light);
+            image.at(i, j)[1] += float(g * light);
+            image.at(i, j)[2] += float(b * light);
         }
     }
 }
 
 inline void add_stars(Image& image, int count, double sigma) {
-    for (std::uint32_t i = 0; i < static_cast<std::uint32_t>(count); ++i) {
-        const double x = 8.0 + random(i, 1) * (static_cast<double>(image.width) - 16.0);
-        const double y = 8.0 + random(i, 2) * (static_cast<double>(image.height) - 16.0);
+    for (std::uint32_t i = 0; i < std::uint32_t(count); ++i) {
+        const double x = 8.0 + random(i, 1) * (double(image.width) - 16.0);
+        const double y = 8.0 + random(i, 2) * (double(image.height) - 16.0);
         const double light = 0.1 + 0.8 * std::pow(random(i, 3), 4.0), warm = random(i, 4);
         add_point(image, x, y, sigma, light * (0.7 + 0.3 * warm), light * 0.85, light * (1.0 - 0.3 * warm));
     }
@@ -47,13 +46,13 @@ inline void add_stars(Image& image, int count, double sigma) {
 template <class Color>
 Image of_colors(std::int64_t width, std::int64_t height, const Color& color) {
     Image image = make_image(width, height, 3);
-    const double w = static_cast<double>(width);
+    const double w = double(width);
     for (std::int64_t y = 0; y < height; ++y)
         for (std::int64_t x = 0; x < width; ++x) {
-            const double u = (static_cast<double>(x) + 0.5 - 0.5 * w) / w;
-            const double v = (static_cast<double>(y) + 0.5 - 0.5 * static_cast<double>(height)) / w;
+            const double u = (double(x) + 0.5 - 0.5 * w) / w;
+            const double v = (double(y) + 0.5 - 0.5 * double(height)) / w;
             const std::array<double, 3> rgb = color(u, v);
-            for (std::size_t k = 0; k < 3; ++k) image.at(x, y)[k] = static_cast<float>(rgb[k]);
+            for (std::size_t k = 0; k < 3; ++k) image.at(x, y)[k] = float(rgb[k]);
         }
     return image;
 }
@@ -62,7 +61,7 @@ Image of_colors(std::int64_t width, std::int64_t height, const Color& color) {
 inline Image galaxy(std::int64_t width, std::int64_t height) {
     Image image = of_colors(width, height, [](double u, double v) {
         const double r = std::hypot(u, v), turn = std::atan2(v, u) + 4.5 * std::log(r + 0.05);
-        const double clouds = 1.0 + 1.2 * static_cast<double>(fbm(u, v, 14.0, 3u));
+        const double clouds = 1.0 + 1.2 * double(fbm(u, v, 14.0, 3u));
         const double arms = std::pow(0.5 + 0.5 * std::cos(2.0 * turn), 2.0) * std::exp(-r / 0.08);
         const double dust =
             1.0 - 0.6 * std::pow(0.5 + 0.5 * std::cos(2.0 * turn + 0.9), 6.0) * std::exp(-r / 0.3);
@@ -72,14 +71,13 @@ inline Image galaxy(std::int64_t width, std::int64_t height) {
                           dust * (0.85 * bulge + 0.9 * disk + 0.85 * young) + 0.004,
                           dust * (0.6 * bulge + 0.8 * disk + 1.2 * young) + 0.004};
     });
-    const double w = static_cast<double>(width);
+    const double w = double(width);
     for (std::uint32_t i = 0; i < 400; ++i) {
         const double r = 0.06 + 0.3 * random(i, 11), side = i % 2 == 0 ? 0.0 : 3.14159265;
         const double angle = side - 4.5 * std::log(r + 0.05) + 0.25 * (random(i, 12) - 0.5);
         const double light = 0.15 * random(i, 13), size = 1.5 + 3.0 * random(i, 14);
-        add_point(image, 0.5 * w + r * w * std::cos(angle),
-                  0.5 * static_cast<double>(height) + r * w * std::sin(angle), size * w / 1920.0 + 0.8,
-                  0.7 * light, 0.8 * light, 1.3 * light);
+        add_point(image, 0.5 * w + r * w * std::cos(angle), 0.5 * double(height) + r * w * std::sin(angle),
+                  size * w / 1920.0 + 0.8, 0.7 * light, 0.8 * light, 1.3 * light);
     }
     add_stars(image, 120, 1.0);
     return image;
@@ -100,7 +98,7 @@ struct Tilted {
 /// lines of sight.
 inline Image tilted_galaxy(std::int64_t width, std::int64_t height, const Tilted& t) {
     Image image = make_image(width, height, 3);
-    const double w = static_cast<double>(width), degree = 3.14159265358979 / 180.0;
+    const double w = double(width), degree = 3.14159265358979 / 180.0;
     const double c = std::cos(t.inclination_deg * degree), s = std::sin(t.inclination_deg * degree);
     const double ca = std::cos(t.angle_deg * degree), sa = std::sin(t.angle_deg * degree);
     const double thick = 0.09 * t.size, thin = 0.03 * t.size;
@@ -108,8 +106,8 @@ inline Image tilted_galaxy(std::int64_t width, std::int64_t height, const Tilted
     const auto squared = [](double value) { return value * value; };
     parallel_for(height, [&](std::int64_t y, int) {
         for (std::int64_t x = 0; x < width; ++x) {
-            const double right = (static_cast<double>(x) + 0.5) / w - 0.5;
-            const double up = (0.5 * static_cast<double>(height) - static_cast<double>(y) - 0.5) / w;
+            const double right = (double(x) + 0.5) / w - 0.5;
+            const double up = (0.5 * double(height) - double(y) - 0.5) / w;
             const double u = right * ca + up * sa, across = up * ca - right * sa,
                          v = t.near_above ? across : -across;
             double light[3] = {0.0, 0.0, 0.0}, passed = 1.0;
@@ -136,7 +134,7 @@ inline Image tilted_galaxy(std::int64_t width, std::int64_t height, const Tilted
                 light[2] += add * (1.0 * stars + 0.6 * ball);
                 passed *= std::exp(-tau);
             }
-            for (int k = 0; k < 3; ++k) image.at(x, y)[k] = static_cast<float>(light[k] + 0.003);
+            for (int k = 0; k < 3; ++k) image.at(x, y)[k] = float(light[k] + 0.003);
         }
     });
     add_stars(image, 60, 1.0);
@@ -146,11 +144,11 @@ inline Image tilted_galaxy(std::int64_t width, std::int64_t height, const Tilted
 /// Two lobes of glowing gas with filaments and a bright middle.
 inline Image nebula(std::int64_t width, std::int64_t height) {
     Image image = of_colors(width, height, [](double u, double v) {
-        const double warp = 0.04 * static_cast<double>(fbm(u, v, 6.0, 9u));
+        const double warp = 0.04 * double(fbm(u, v, 6.0, 9u));
         const double waist = 0.03 + 0.5 * std::fabs(u) * (1.2 - std::fabs(u) * 2.0);
         const double inside =
             std::exp(-std::pow(std::fabs(v + warp) / waist, 4.0)) * std::exp(-std::fabs(u) / 0.25);
-        const double ridge = 1.0 - std::fabs(2.0 * static_cast<double>(fbm(u + warp, v, 11.0, 5u)));
+        const double ridge = 1.0 - std::fabs(2.0 * double(fbm(u + warp, v, 11.0, 5u)));
         const double gas = inside * (0.25 + 0.75 * std::pow(std::max(0.0, ridge), 6.0));
         const double core = std::exp(-std::hypot(u, v) / 0.02);
         return std::array{0.8 * gas + core + 0.003, 0.35 * gas + 0.9 * core + 0.003,
@@ -163,14 +161,12 @@ inline Image nebula(std::int64_t width, std::int64_t height) {
 /// A shell of thin filaments about a faint blue glow.
 inline Image remnant(std::int64_t width, std::int64_t height) {
     Image image = of_colors(width, height, [](double u, double v) {
-        const double edge = 0.26 + 0.05 * static_cast<double>(fbm(u, v, 5.0, 21u));
+        const double edge = 0.26 + 0.05 * double(fbm(u, v, 5.0, 21u));
         const double r = std::hypot(u, 1.3 * v) / edge;
         const double body = r < 1.0 ? std::sqrt(1.0 - r * r) : 0.0,
                      shell = std::exp(-std::pow((r - 0.9) / 0.12, 2.0));
-        const double a =
-            std::pow(std::max(0.0, 1.0 - std::fabs(4.0 * static_cast<double>(fbm(u, v, 13.0, 22u)))), 8.0);
-        const double b =
-            std::pow(std::max(0.0, 1.0 - std::fabs(4.0 * static_cast<double>(fbm(u, v, 19.0, 23u)))), 8.0);
+        const double a = std::pow(std::max(0.0, 1.0 - std::fabs(4.0 * double(fbm(u, v, 13.0, 22u)))), 8.0);
+        const double b = std::pow(std::max(0.0, 1.0 - std::fabs(4.0 * double(fbm(u, v, 19.0, 23u)))), 8.0);
         const double threads = (0.4 * body + shell);
         return std::array{0.5 * threads * a + 0.05 * body + 0.003,
                           0.3 * threads * (a + b) * 0.7 + 0.10 * body + 0.003,

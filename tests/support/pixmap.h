@@ -12,7 +12,7 @@ std::string pixmap(int width, int height, const Value& value) {
     std::string text = "P6\n" + std::to_string(width) + " " + std::to_string(height) + "\n255\n";
     for (int y = 0; y < height; ++y)
         for (int x = 0; x < width; ++x)
-            for (int k = 0; k < 3; ++k) text += static_cast<char>(static_cast<unsigned char>(value(x, y, k)));
+            for (int k = 0; k < 3; ++k) text += char(static_cast<unsigned char>(value(x, y, k)));
     return text;
 }
 
@@ -27,8 +27,8 @@ struct StarryPicture {
 inline std::string starry_pixmap(const StarryPicture& p) {
     return pixmap(p.width, p.height, [&](int x, int y, int) {
         const double u = x % p.step_x - p.step_x / 2, v = y % p.step_y - (p.step_y - 1) / 2;
-        return static_cast<int>(60.0 + p.slope * x + p.noise * ((x * 7 + y * 13) % 5) +
-                                p.peak * std::exp(-(u * u + v * v) / p.spread));
+        return int(60.0 + p.slope * x + p.noise * ((x * 7 + y * 13) % 5) +
+                   p.peak * std::exp(-(u * u + v * v) / p.spread));
     });
 }
 

@@ -38,7 +38,7 @@ double brightness(const Image& image, const Region& part) {
             const float* p = image.at(x, y);
             sum += 0.2126 * double(p[0]) + 0.7152 * double(p[1]) + 0.0722 * double(p[2]);
         }
-    return sum / static_cast<double>(part.width * part.height);
+    return sum / double(part.width * part.height);
 }
 
 std::vector<double> block_brightness(const Image& image) {
@@ -57,7 +57,7 @@ double thickness(const Image& image) {
     const double half = 0.5 * rows[middle];
     const auto edge = [&](std::ptrdiff_t step) {
         std::ptrdiff_t y = middle;
-        const auto last = static_cast<std::ptrdiff_t>(rows.size()) - 1;
+        const auto last = std::ptrdiff_t(rows.size()) - 1;
         while (y > 0 && y < last && rows[y] > half) y += step;
         return std::fabs(double(y - middle)) - (half - rows[y]) / (rows[y - step] - rows[y]);
     };
@@ -111,7 +111,7 @@ ViewTruth measure_truth(const NamedView& view, std::int64_t shown, const SetCach
     const TempFolder folder;
     ViewerOptions options;
     options.cache = cache;
-    options.input = view.scene ? std::filesystem::path(ASTROSPLAT_SOURCE_DIR) / "assets/scenes" / view.scene
+    options.input = view.scene ? fs::path(ASTROSPLAT_SOURCE_DIR) / "assets/scenes" / view.scene
                                : folder.file("plane.toml", picture_on_a_plane);
     Session session(options, {});
     session.gl.software = true;

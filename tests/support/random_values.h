@@ -11,7 +11,7 @@ class Numbers {
     explicit Numbers(std::uint32_t seed) : seed_(seed) {}
     std::uint32_t next() { return shared::as_hash(seed_, count_++, 0u, 1u); }
     std::size_t below(std::size_t n) { return next() % n; }
-    double frame() { return static_cast<double>(1 + below(48)); }
+    double frame() { return double(1 + below(48)); }
     double between(double lo, double hi) { return lo + (hi - lo) * (next() / 4294967296.0); }
 
   private:
@@ -30,7 +30,7 @@ inline Value random_list(const ParameterSpec& spec, Numbers& numbers) {
     for (int i = 0; i < spec.components; ++i) {
         const double x = random_number(spec, numbers);
         if (whole)
-            list.emplace_back(static_cast<std::int64_t>(x));
+            list.emplace_back(std::int64_t(x));
         else
             list.emplace_back(x);
     }
@@ -58,7 +58,7 @@ inline Value random_value(const ParameterSpec& spec, Numbers& numbers) {
         case ParameterType::boolean:
             return numbers.below(2) == 1;
         case ParameterType::integer:
-            return static_cast<std::int64_t>(random_number(spec, numbers));
+            return std::int64_t(random_number(spec, numbers));
         case ParameterType::number:
             return random_number(spec, numbers);
         case ParameterType::text:

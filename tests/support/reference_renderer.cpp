@@ -193,7 +193,7 @@ Image reference_render(std::span<const RenderLayer> layers, const Camera& camera
     std::size_t shared = layers.size();
     for (std::size_t l = 0; l < layers.size(); ++l) {
         const bool isolated = layers[l].render.isolate || layers[l].render.blend == Blend::lighten;
-        std::vector<Disc> discs = project_layer(layers[l], static_cast<int>(l), camera, filter_px);
+        std::vector<Disc> discs = project_layer(layers[l], int(l), camera, filter_px);
         if (isolated || shared == layers.size()) {
             if (!isolated) shared = crowds.size();
             crowds.push_back(std::move(discs));
@@ -207,7 +207,7 @@ Image reference_render(std::span<const RenderLayer> layers, const Camera& camera
     Image image = make_image(settings.width, settings.height, 4);
     for (std::int64_t row = 0; row < settings.height; ++row)
         for (std::int64_t column = 0; column < settings.width; ++column) {
-            const double x = static_cast<double>(column) + 0.5, y = static_cast<double>(row) + 0.5;
+            const double x = double(column) + 0.5, y = double(row) + 0.5;
             glm::dvec4 pixel(0.0);
             if (environment) {
                 const double spread =
@@ -218,14 +218,12 @@ Image reference_render(std::span<const RenderLayer> layers, const Camera& camera
             }
             for (const std::vector<Disc>& crowd : crowds) {
                 if (crowd.empty()) continue;
-                const LayerRender& first =
-                    layers[static_cast<std::size_t>(std::get<1>(crowd[0].order))].render;
+                const LayerRender& first = layers[std::size_t(std::get<1>(crowd[0].order))].render;
                 const bool alone = (first.isolate || first.blend == Blend::lighten) && !first.holdout &&
                                    first.blend != Blend::absorb;
                 glm::dvec4 under = alone ? glm::dvec4(0.0) : pixel;
                 for (const Disc& disc : crowd) {
-                    const LayerRender& render =
-                        layers[static_cast<std::size_t>(std::get<1>(disc.order))].render;
+                    const LayerRender& render = layers[std::size_t(std::get<1>(disc.order))].render;
                     const double seen =
                         filtered_profile(render.falloff, disc.radius_px, filter_px, x - disc.x, y - disc.y);
                     const double weight = corrected(render.falloff, seen, disc.gain);
@@ -236,7 +234,7 @@ Image reference_render(std::span<const RenderLayer> layers, const Camera& camera
                 else
                     pixel = under;
             }
-            for (int k = 0; k < 4; ++k) image.at(column, row)[k] = static_cast<float>(pixel[k]);
+            for (int k = 0; k < 4; ++k) image.at(column, row)[k] = float(pixel[k]);
         }
     return image;
 }

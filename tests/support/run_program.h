@@ -27,18 +27,18 @@ struct RunResult {
 };
 
 struct RunOptions {
-    std::filesystem::path folder = ".";      // working directory
+    fs::path folder = ".";                   // working directory
     std::vector<std::string> environment{};  // NAME=VALUE, over those of the test; DISPLAY only from here
     std::vector<std::string> without{};      // names taken out of the environment
 };
 
-inline std::string text_of(const std::filesystem::path& file) {
+inline std::string text_of(const fs::path& file) {
     std::ifstream in(file, std::ios::binary);
     return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
 }
 
-inline void write_text(const std::filesystem::path& file, const std::string& text) {
-    std::filesystem::create_directories(file.parent_path());
+inline void write_text(const fs::path& file, const std::string& text) {
+    fs::create_directories(file.parent_path());
     std::ofstream(file, std::ios::binary) << text;
 }
 
@@ -46,7 +46,7 @@ inline void write_text(const std::filesystem::path& file, const std::string& tex
 class RunningProgram {
   public:
     RunningProgram(const std::vector<std::string>& arguments, const RunOptions& options = {}) {
-        std::string pattern = (std::filesystem::temp_directory_path() / "astrosplat-run-XXXXXX").string();
+        std::string pattern = (fs::temp_directory_path() / "astrosplat-run-XXXXXX").string();
         if (!mkdtemp(pattern.data())) throw std::runtime_error("no temporary folder");
         logs_ = pattern;
         posix_spawn_file_actions_t actions;
@@ -67,7 +67,7 @@ class RunningProgram {
     RunningProgram& operator=(const RunningProgram&) = delete;
     ~RunningProgram() {
         std::error_code ignored;
-        std::filesystem::remove_all(logs_, ignored);
+        fs::remove_all(logs_, ignored);
     }
 
     void signal(int number) const { kill(process_, number); }
@@ -88,9 +88,9 @@ class RunningProgram {
     bool has_open(const std::string& name) const {
         const std::string descriptors = "/proc/" + std::to_string(process_) + "/fd";
         std::error_code error;
-        for (std::filesystem::directory_iterator entry(descriptors, error), end; !error && entry != end;
+        for (fs::directory_iterator entry(descriptors, error), end; !error && entry != end;
              entry.increment(error)) {
-            if (std::filesystem::read_symlink(entry->path(), error).filename() == name) return true;
+            if (fs::read_symlink(entry->path(), error).filename() == name) return true;
             error.clear();
         }
         return false;
@@ -124,7 +124,7 @@ class RunningProgram {
         return variables;
     }
 
-    std::filesystem::path logs_;
+    fs::path logs_;
     pid_t process_ = -1;
 };
 
@@ -143,26 +143,25 @@ class FolderTest : public testing::Test {
   protected:
     FolderTest() {
         const testing::TestInfo& info = *testing::UnitTest::GetInstance()->current_test_info();
-        folder = std::filesystem::path(ASTROSPLAT_BINARY_DIR) / "test-output" / info.test_suite_name() /
-                 info.name();
-        std::filesystem::remove_all(folder);
-        std::filesystem::create_directories(folder);
+        folder = fs::path(ASTROSPLAT_BINARY_DIR) / "test-output" / info.test_suite_name() / info.name();
+        fs::remove_all(folder);
+        fs::create_directories(folder);
     }
     ~FolderTest() override {
         std::error_code ignored;
-        if (!HasFailure()) std::filesystem::remove_all(folder, ignored);
+        if (!HasFailure()) fs::remove_all(folder, ignored);
     }
 
     /// Of what lies in a folder below that one; empty where there is none.
-    std::set<std::string> names_in(const std::filesystem::path& place) const {
+    std::set<std::string> names_in(const fs::path& place) const {
         std::set<std::string> names;
         std::error_code ignored;
-        for (const auto& entry : std::filesystem::directory_iterator(folder / place, ignored))
+        for (const auto& entry : fs::directory_iterator(folder / place, ignored))
             names.insert(entry.path().filename().string());
         return names;
     }
 
-    std::filesystem::path folder;
+    fs::path folder;
 };
 
 }  // namespace astrosplat::test

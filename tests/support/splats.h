@@ -9,7 +9,7 @@ namespace astrosplat {
 
 /// One more splat, on its surface; its id is its number.
 inline void add_splat(SplatSet& set, const glm::vec3& position, const glm::vec3& color, float alpha) {
-    set.id.push_back(static_cast<std::uint64_t>(set.size()));
+    set.id.push_back(std::uint64_t(set.size()));
     set.position.push_back(position);
     set.color.push_back(color);
     set.alpha.push_back(alpha);

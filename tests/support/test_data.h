@@ -12,7 +12,7 @@
 namespace astrosplat {
 
 /// The file or folder `relative` below the test data, if it is there.
-inline std::optional<std::filesystem::path> test_data(const std::string& relative) {
+inline std::optional<fs::path> test_data(const std::string& relative) {
     namespace fs = std::filesystem;
     const char* variable = std::getenv("ASTROSPLAT_TEST_DATA");
     const fs::path root =
@@ -26,6 +26,6 @@ inline std::optional<std::filesystem::path> test_data(const std::string& relativ
 
 /// In a test body: `name` is the path, or the test is skipped.
 #define ASTROSPLAT_TEST_DATA_OR_SKIP(name, relative)                                                    \
-    const std::optional<std::filesystem::path> name##_found = astrosplat::test_data(relative);          \
+    const std::optional<fs::path> name##_found = astrosplat::test_data(relative);                       \
     if (!name##_found) GTEST_SKIP() << "no test data '" << (relative) << "'; set ASTROSPLAT_TEST_DATA"; \
-    const std::filesystem::path name = *name##_found
+    const fs::path name = *name##_found

@@ -1,9 +1,8 @@
 // Pictures to compare with: two looks, the output's own pixels, a reference.
-#include <gtest/gtest.h>
-
 #include "gui/widgets.h"
 #include "output/metadata.h"
 #include "source/texture.h"
+#include "support/test.h"
 #include "window/window_test.h"
 
 namespace astrosplat::test {
@@ -48,17 +47,17 @@ TEST_F(WindowCompare, OutputPixelsAreThoseOfTheFrame) {
     view.size = SizeMode::one_to_one;
     const Rect viewport = layout().viewport;
     const Rect whole = place_frame(view, viewport, 1600, 1200);
-    const auto left = static_cast<int>(viewport.x - whole.x), top = static_cast<int>(viewport.y - whole.y);
+    const auto left = int(viewport.x - whole.x), top = int(viewport.y - whole.y);
     ASSERT_GT(left, 0);
     ASSERT_GT(top, 0);
     int wrong = 0;
     for (int y = 150; y < shown.height - 150; ++y)  // words and a frame lie over the edges
         for (int x = 200; x < shown.width - 200; ++x)
             for (int c = 0; c < 3; ++c) {
-                const int wanted = static_cast<int>(std::lround(255.0f * frame.at(x + left, y + top)[c]));
+                const int wanted = int(std::lround(255.0f * frame.at(x + left, y + top)[c]));
                 const std::uint32_t rgb =
                     shown.rgb[std::size_t(y) * std::size_t(shown.width) + std::size_t(x)];
-                wrong += std::abs(static_cast<int>(rgb >> (16 - 8 * c) & 255) - wanted) > 1;
+                wrong += std::abs(int(rgb >> (16 - 8 * c) & 255) - wanted) > 1;
             }
     EXPECT_EQ(wrong, 0);
 }
@@ -66,9 +65,7 @@ TEST_F(WindowCompare, OutputPixelsAreThoseOfTheFrame) {
 TEST_F(WindowCompare, WhatACommandDidIsSaid) {
     start_settled();
     const Rect bar = layout().status;
-    const auto message = [&] {
-        return screen->pixels({0, static_cast<int>(bar.y), 400, static_cast<int>(bar.height)});
-    };
+    const auto message = [&] { return screen->pixels({0, int(bar.y), 400, int(bar.height)}); };
     const Pixels before = message();
     choose("Render/Copy batch command");
     EXPECT_TRUE(comes_true([&] { return message() != before; }));

@@ -1,7 +1,5 @@
 // Files that change, that are dropped, and that are chosen in the dialog.
 
-#include <thread>
-
 #include "edit/preferences.h"
 #include "gui/widgets.h"
 #include "source/write_image.h"

@@ -1,9 +1,8 @@
 // One xdotool a gesture: its words are events and the waits between them.
 #include "window/person.h"
 
-#include <gtest/gtest.h>
-
 #include "support/run_program.h"
+#include "support/test.h"
 
 namespace astrosplat::test {
 namespace {
@@ -50,7 +49,7 @@ void Person::drag(glm::vec2 from, glm::vec2 by) const {
     Words words = to(from);
     add(words, {"sleep", "0.4", "mousedown", "1", "sleep", "0.15"});
     for (int i = 1; i <= steps; ++i) {
-        add(words, to(from + by * (static_cast<float>(i) / steps)));
+        add(words, to(from + by * (float(i) / steps)));
         add(words, {"sleep", "0.04"});
     }
     add(words, {"sleep", "0.2", "mouseup", "1", "sleep", "0.15"});

@@ -1,8 +1,7 @@
 // What survives a crash: unsaved changes and snapshots.
-#include <gtest/gtest.h>
-
 #include "edit/kept_files.h"
 #include "gui/widgets.h"
+#include "support/test.h"
 #include "window/window_test.h"
 
 namespace astrosplat::test {
@@ -75,8 +74,7 @@ class WindowDisk : public WindowSafety {
     /// In the colour of errors: the badge where it cannot render.
     bool picture_failed() const {
         const Rect port = layout().viewport;
-        return count_of(screen->pixels({0, static_cast<int>(port.y + port.height) - 50, 100, 50}),
-                        color::error) > 10;
+        return count_of(screen->pixels({0, int(port.y + port.height) - 50, 100, 50}), color::error) > 10;
     }
     int complaints() const { return count_of(pixels_of(&Layout::status), color::error); }
 };
@@ -127,8 +125,7 @@ class WindowSnapshots : public WindowTest {
     }
     bool says_an_error() const {
         const Rect bar = layout().status;
-        return count_of(screen->pixels({0, static_cast<int>(bar.y), 600, static_cast<int>(bar.height)}),
-                        color::error) > 0;
+        return count_of(screen->pixels({0, int(bar.y), 600, int(bar.height)}), color::error) > 0;
     }
 };
 
@@ -149,8 +146,8 @@ TEST_F(WindowSnapshots, SurviveACrashAndAreComparedAfterIt) {
     person->click(same_widgets().at("snapshot 0"));
     const Rect viewport = layout().viewport;
     const auto upper_half = [&] {  // without badge and strip
-        return screen->pixels({static_cast<int>(viewport.x), static_cast<int>(viewport.y),
-                               static_cast<int>(viewport.width), static_cast<int>(viewport.height / 2)});
+        return screen->pixels(
+            {int(viewport.x), int(viewport.y), int(viewport.width), int(viewport.height / 2)});
     };
     ViewState with_strip;
     with_strip.snapshots_open = true;

@@ -180,7 +180,7 @@ class WindowLevels : public WindowTest {
     static double brightness(const Pixels& pixels) {
         double sum = 0.0;
         for (const std::uint32_t rgb : pixels.rgb) sum += (rgb >> 16 & 255) + (rgb >> 8 & 255) + (rgb & 255);
-        return sum / (3.0 * static_cast<double>(pixels.rgb.size()));
+        return sum / (3.0 * double(pixels.rgb.size()));
     }
 };
 

@@ -56,12 +56,12 @@ pid_t begin_server(const std::string& geometry, std::string& number) {
 }
 
 /// file:// addresses, one a line.
-std::string uri_list(const std::vector<std::filesystem::path>& files) {
+std::string uri_list(const std::vector<fs::path>& files) {
     constexpr const char* digits = "0123456789ABCDEF";
     std::string text;
-    for (const std::filesystem::path& file : files) {
+    for (const fs::path& file : files) {
         text += "file://";
-        for (const char c : std::filesystem::absolute(file).string()) {
+        for (const char c : fs::absolute(file).string()) {
             const auto byte = static_cast<unsigned char>(c);
             const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
                                c == '/' || c == '.' || c == '_' || c == '-';
@@ -90,9 +90,9 @@ class DragSource {
     DragSource& operator=(const DragSource&) = delete;
 
     bool drop(int x, int y) {
-        const auto list = static_cast<long>(atom("text/uri-list"));
+        const auto list = long(atom("text/uri-list"));
         send("XdndEnter", 5L << 24, list, 0, 0);
-        send("XdndPosition", 0, long(x) << 16 | y, CurrentTime, static_cast<long>(atom("XdndActionCopy")));
+        send("XdndPosition", 0, long(x) << 16 | y, CurrentTime, long(atom("XdndActionCopy")));
         const auto status = wait_for("XdndStatus");
         if (!status || !(status->data.l[1] & 1)) return false;
         send("XdndDrop", 0, CurrentTime, 0, 0);
@@ -109,7 +109,7 @@ class DragSource {
         event.xclient.window = target_;
         event.xclient.message_type = atom(type);
         event.xclient.format = 32;
-        const long words[] = {static_cast<long>(own_), l1, l2, l3, l4};
+        const long words[] = {long(own_), l1, l2, l3, l4};
         for (int i = 0; i < 5; ++i) event.xclient.data.l[i] = words[i];
         XSendEvent(x_, target_, False, NoEventMask, &event);
         XFlush(x_);
@@ -117,7 +117,7 @@ class DragSource {
 
     void hand_over(const XSelectionRequestEvent& wish) const {
         XChangeProperty(x_, wish.requestor, wish.property, wish.target, 8, PropModeReplace,
-                        reinterpret_cast<const unsigned char*>(text_.data()), static_cast<int>(text_.size()));
+                        reinterpret_cast<const unsigned char*>(text_.data()), int(text_.size()));
         XEvent reply = {};
         reply.xselection.type = SelectionNotify;
         reply.xselection.requestor = wish.requestor;
@@ -156,7 +156,7 @@ class DragSource {
 
 int count_of(const Pixels& pixels, std::uint32_t color) {
     const std::uint32_t rgb = (color & 0xFF) << 16 | (color & 0xFF00) | (color >> 16 & 0xFF);
-    return static_cast<int>(std::count(pixels.rgb.begin(), pixels.rgb.end(), rgb));
+    return int(std::count(pixels.rgb.begin(), pixels.rgb.end(), rgb));
 }
 
 Screen::Screen(int width, int height) : impl_(std::make_unique<Impl>()) {
@@ -179,14 +179,14 @@ const std::string& Screen::display() const { return impl_->name; }
 Pixels Screen::pixels(const Area& area) const {
     ::Display* x = impl_->connection;
     Pixels pixels;
-    XImage* image = XGetImage(x, DefaultRootWindow(x), area.x, area.y, static_cast<unsigned>(area.width),
-                              static_cast<unsigned>(area.height), AllPlanes, ZPixmap);
+    XImage* image = XGetImage(x, DefaultRootWindow(x), area.x, area.y, unsigned(area.width),
+                              unsigned(area.height), AllPlanes, ZPixmap);
     if (!image) throw std::runtime_error("no picture of the screen");
     pixels.width = image->width;
     pixels.height = image->height;
     for (int row = 0; row < image->height; ++row)
         for (int column = 0; column < image->width; ++column)
-            pixels.rgb.push_back(static_cast<std::uint32_t>(XGetPixel(image, column, row) & 0xFFFFFF));
+            pixels.rgb.push_back(std::uint32_t(XGetPixel(image, column, row) & 0xFFFFFF));
     XDestroyImage(image);
     return pixels;
 }
@@ -228,7 +228,7 @@ void Screen::set_dpi(int dpi) const {
     const std::string resources = "Xft.dpi:\t" + std::to_string(dpi) + "\n";
     XChangeProperty(impl_->connection, DefaultRootWindow(impl_->connection), XA_RESOURCE_MANAGER, XA_STRING,
                     8, PropModeReplace, reinterpret_cast<const unsigned char*>(resources.data()),
-                    static_cast<int>(resources.size()));
+                    int(resources.size()));
     XSync(impl_->connection, False);
 }
 
@@ -237,11 +237,11 @@ void Screen::focus() const {
     XSync(impl_->connection, False);
 }
 
-bool Screen::drop(const std::vector<std::filesystem::path>& files, glm::vec2 at) const {
+bool Screen::drop(const std::vector<fs::path>& files, glm::vec2 at) const {
     const ::Window window = impl_->window();
     if (!window) return false;
     DragSource source(impl_->connection, window, uri_list(files));
-    return source.drop(static_cast<int>(at.x), static_cast<int>(at.y));
+    return source.drop(int(at.x), int(at.y));
 }
 
 }  // namespace astrosplat::test

@@ -2,12 +2,9 @@
 // it, and files dropped on its window.
 #pragma once
 
-#include <cstdint>
-#include <filesystem>
 #include <glm/vec2.hpp>
-#include <memory>
-#include <string>
-#include <vector>
+
+#include "core/standard.h"
 
 namespace astrosplat::test {
 
@@ -46,7 +43,7 @@ class Screen {
     void focus() const;
     /// Drags the files of another program over the window and lets go there. False where the window does not
     /// take them.
-    bool drop(const std::vector<std::filesystem::path>& files, glm::vec2 at) const;
+    bool drop(const std::vector<fs::path>& files, glm::vec2 at) const;
 
   private:
     struct Impl;

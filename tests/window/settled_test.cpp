@@ -1,7 +1,5 @@
 // From the start of the window to its settled picture.
-#include <cstring>
 #include <nlohmann/json.hpp>
-#include <set>
 
 #include "edit/edits.h"
 #include "edit/preferences.h"

@@ -1,8 +1,4 @@
 // The view by hand: looking around, selecting, handles, the camera's path.
-#include <fmt/format.h>
-
-#include <fstream>
-#include <sstream>
 
 #include "edit/edits.h"
 #include "edit/placement.h"
@@ -40,7 +36,7 @@ double processor_seconds(pid_t process) {
     for (int field = 3; field < 14; ++field) fields >> skipped;
     double user = 0.0, system = 0.0;
     fields >> user >> system;
-    return (user + system) / static_cast<double>(sysconf(_SC_CLK_TCK));
+    return (user + system) / double(sysconf(_SC_CLK_TCK));
 }
 
 // Time of the processor, not of the clock: what else the machine does counts little. A window that drew
@@ -80,7 +76,7 @@ position = [0.0, 30.0, 0.0]
     }
     glm::vec2 row(int index) const {  // of the list of layers
         const Rect panel = layout().panel;
-        return {panel.x + 100.0f, panel.y + 32.0f + 28.0f * (static_cast<float>(index) + 0.5f)};
+        return {panel.x + 100.0f, panel.y + 32.0f + 28.0f * (float(index) + 0.5f)};
     }
     Area list_area() const {
         const Rect panel = layout().panel;
@@ -173,7 +169,7 @@ class WindowPath : public WindowTest {
         const Rect area = layout().viewport;
         const Pixels seen = frame_pixels();
         const auto is_key = [&](int x, int y) {
-            return seen.rgb[static_cast<std::size_t>(y * seen.width + x)] == 0xD9A441;
+            return seen.rgb[std::size_t(y * seen.width + x)] == 0xD9A441;
         };
         for (int y = 0; y + 7 < seen.height; ++y)
             for (int x = 0; x + 7 < seen.width; ++x) {

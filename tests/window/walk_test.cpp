@@ -2,7 +2,6 @@
 // same. Nothing ends it, nothing grows for ever, and undo to the start brings the file back byte for byte.
 #include <glm/common.hpp>
 
-#include "core/shared_maths.h"
 #include "window/window_test.h"
 
 namespace astrosplat::test {
@@ -67,7 +66,7 @@ class WindowWalk : public WindowTest {
     }
 
     std::uint32_t chance(std::uint32_t below) { return shared::as_hash(18u, step_++, 0u, 7u) % below; }
-    float within(float low, float size) { return low + size * 0.001f * static_cast<float>(chance(1000)); }
+    float within(float low, float size) { return low + size * 0.001f * float(chance(1000)); }
 
     /// Somewhere below the menus, which lead out of the scene.
     glm::vec2 anywhere() { return {within(10.0f, width - 20.0f), within(70.0f, height - 110.0f)}; }

@@ -1,7 +1,5 @@
 // Ways out of the window: files, movies, jobs, a farm.
 
-#include <set>
-
 #include "edit/command_lines.h"
 #include "gui/widgets.h"
 #include "output/metadata.h"
@@ -47,12 +45,12 @@ class WindowWaysOut : public WindowTest {
 /// A picture file of the window, as the screen has it.
 Pixels load_pixels(const fs::path& file) {
     const Image image = load_raw_image(file);
-    Pixels pixels{static_cast<int>(image.width), static_cast<int>(image.height), {}};
+    Pixels pixels{int(image.width), int(image.height), {}};
     for (std::int64_t i = 0; i < image.width * image.height; ++i) {
         std::uint32_t rgb = 0;
         for (int c = 0; c < 3; ++c)
-            rgb = rgb << 8 | static_cast<std::uint32_t>(std::lround(
-                                 255.0f * image.pixels[static_cast<std::size_t>(i * image.channels + c)]));
+            rgb = rgb << 8 |
+                  std::uint32_t(std::lround(255.0f * image.pixels[std::size_t(i * image.channels + c)]));
         pixels.rgb.push_back(rgb);
     }
     return pixels;
@@ -71,8 +69,7 @@ TEST_F(WindowWaysOut, AScreenshotIsTheWindow) {
     ASSERT_EQ(saved.width, width);
     ASSERT_EQ(saved.height, height);
     const Rect status = layout().status;  // memory, messages
-    for (Pixels* pixels : {&shown, &saved})
-        pixels->rgb.resize(static_cast<std::size_t>(status.y) * static_cast<std::size_t>(width));
+    for (Pixels* pixels : {&shown, &saved}) pixels->rgb.resize(std::size_t(status.y) * std::size_t(width));
     EXPECT_EQ(saved, shown);
 }
 
@@ -181,8 +178,8 @@ TEST_F(WindowWaysOut, TheFrameAsSeenIsSaved) {
     ASSERT_TRUE(comes("seen.png"));
     const Pixels saved = load_pixels(folder / "seen.png");
     const Rect port = layout().viewport;
-    EXPECT_NEAR(static_cast<float>(saved.width) / static_cast<float>(saved.height), 320.0f / 180.0f, 0.01f);
-    EXPECT_LE(saved.width, static_cast<int>(port.width) + 1);
+    EXPECT_NEAR(float(saved.width) / float(saved.height), 320.0f / 180.0f, 0.01f);
+    EXPECT_LE(saved.width, int(port.width) + 1);
     std::set<std::uint32_t> colors(saved.rgb.begin(), saved.rgb.end()),
         on_screen(seen.rgb.begin(), seen.rgb.end());
     EXPECT_GT(colors.size(), 100u);

@@ -33,10 +33,7 @@ bool on_path(const std::string& program) {
     return run_program({"/bin/sh", "-c", "command -v " + program}).code == 0;
 }
 
-Area area_of(const Rect& rect) {
-    return {static_cast<int>(rect.x), static_cast<int>(rect.y), static_cast<int>(rect.width),
-            static_cast<int>(rect.height)};
-}
+Area area_of(const Rect& rect) { return {int(rect.x), int(rect.y), int(rect.width), int(rect.height)}; }
 
 constexpr int badge_height = 50;  // px at the viewport's lower end
 
@@ -186,15 +183,14 @@ glm::vec2 WindowTest::diamond(const std::string& key) { return row(key).diamond;
 // Blending rounds differently on the GPU.
 bool WindowTest::shows(const Picture8& widgets, glm::vec2 middle) const {
     constexpr int radius = 8, tolerance = 3;
-    const Area area{static_cast<int>(middle.x) - radius, static_cast<int>(middle.y) - radius, 2 * radius,
-                    2 * radius};
+    const Area area{int(middle.x) - radius, int(middle.y) - radius, 2 * radius, 2 * radius};
     const Pixels shown = screen->pixels(area);
     std::size_t alike = 0;
     for (std::size_t i = 0; i < shown.rgb.size(); ++i) {
-        const auto x = static_cast<int>(i) % area.width, y = static_cast<int>(i) / area.width;
+        const auto x = int(i) % area.width, y = int(i) / area.width;
         const Rgba8& wanted = widgets.at(area.x + x, area.y + y);
-        const int found[] = {static_cast<int>(shown.rgb[i] >> 16 & 255),
-                             static_cast<int>(shown.rgb[i] >> 8 & 255), static_cast<int>(shown.rgb[i] & 255)};
+        const int found[] = {int(shown.rgb[i] >> 16 & 255), int(shown.rgb[i] >> 8 & 255),
+                             int(shown.rgb[i] & 255)};
         alike += std::abs(wanted.r - found[0]) <= tolerance && std::abs(wanted.g - found[1]) <= tolerance &&
                  std::abs(wanted.b - found[2]) <= tolerance;
     }

@@ -2,13 +2,11 @@
 // and the places of its controls, asked of the same widgets drawn beside it.
 #pragma once
 
-#include <chrono>
 #include <csignal>
 
 #include "gui/panel/context.h"
 #include "gui/test_window.h"
 #include "scene/load.h"
-#include "support/bits.h"
 #include "support/run_program.h"
 #include "window/person.h"
 #include "window/screen.h"

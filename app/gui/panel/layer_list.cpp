@@ -10,6 +10,7 @@
 #include <set>
 
 #include "core/color.h"
+#include "edit/layer_steps.h"
 #include "edit/layers.h"
 
 namespace astrosplat::panel {

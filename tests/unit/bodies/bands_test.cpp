@@ -1,10 +1,9 @@
 // Bands of a picture, and the dust that takes their light away.
-#include <gtest/gtest.h>
-
 #include "bodies/dust.h"
 #include "bodies/picture_light.h"
 #include "image/channels.h"
 #include "support/painted_picture.h"
+#include "support/test.h"
 
 namespace astrosplat {
 namespace {
@@ -13,7 +12,7 @@ std::vector<Image> all_bands(const Image& light) {
     std::vector<Image> images;
     const std::vector<Band> bands = make_bands(light.width);
     split_bands(light, bands, false, [&](const Band& band, const Image& image) {
-        EXPECT_EQ(band.index, static_cast<int>(images.size()));
+        EXPECT_EQ(band.index, int(images.size()));
         images.push_back(image);
     });
     EXPECT_EQ(images.size(), bands.size());
@@ -47,9 +46,9 @@ TEST(Bands, AddUpToThePictureAndAreNeverNegative) {
         double sum = 0.0;
         for (const Image& band : bands) {
             ASSERT_GE(band.pixels[i], 0.0f);
-            sum += static_cast<double>(band.pixels[i]);
+            sum += double(band.pixels[i]);
         }
-        ASSERT_NEAR(sum, light.pixels[i], 4e-7 * (1.0 + static_cast<double>(light.pixels[i]))) << "at " << i;
+        ASSERT_NEAR(sum, light.pixels[i], 4e-7 * (1.0 + double(light.pixels[i]))) << "at " << i;
     }
 }
 
@@ -102,9 +101,8 @@ Image with_lane() {
     Image light = make_image(size_px, size_px, 3, 0.4f);
     for (std::int64_t y = 0; y < size_px; ++y)
         for (std::int64_t x = 0; x < size_px; ++x) {
-            const double d = (static_cast<double>(y) - 120.0) / 6.0;
-            for (int c = 0; c < 3; ++c)
-                light.at(x, y)[c] *= static_cast<float>(1.0 - 0.6 * std::exp(-0.5 * d * d));
+            const double d = (double(y) - 120.0) / 6.0;
+            for (int c = 0; c < 3; ++c) light.at(x, y)[c] *= float(1.0 - 0.6 * std::exp(-0.5 * d * d));
         }
     return light;
 }
@@ -150,12 +148,12 @@ Placement flat_placement() {
 double optical_depth(const PictureSplats& set, std::int64_t first = 0) {
     double sum = 0.0;
     for (std::int64_t i = first; i < set.splats.size(); ++i) {
-        const double s = set.splats.alpha[static_cast<std::size_t>(i)], sigma = 1.3;
+        const double s = set.splats.alpha[std::size_t(i)], sigma = 1.3;
         double dilogarithm = 0.0, power = s;
         for (int k = 1; k < 200; ++k, power *= s) dilogarithm += power / (k * k);
         sum += 2.0 * 3.14159265358979 * sigma * sigma * 0.9494 * dilogarithm;
     }
-    return sum / static_cast<double>(size_px * size_px);
+    return sum / double(size_px * size_px);
 }
 
 TEST(Dust, ASheetBeforeAllLightHasTheDepthThatIsSeen) {
@@ -180,7 +178,7 @@ TEST(Dust, LightBeforeTheSheetIsMadeUpFor) {
     for (int y = 2; y < size_px; y += 4)
         for (int x = 2; x < size_px; x += 4)
             for (const float z : {-20.0f, 20.0f}) {
-                set.splats.position.emplace_back(static_cast<float>(x - 120), static_cast<float>(120 - y), z);
+                set.splats.position.emplace_back(float(x - 120), float(120 - y), z);
                 set.splats.color.emplace_back(1.0f);
                 set.splats.alpha.push_back(0.1f);
                 set.splats.radius.push_back(2.0f * radius_sigmas);
@@ -197,10 +195,10 @@ TEST(Dust, LiesTornAboutASheetBeforeTheMiddle) {
     add_dust(make_image(size_px, size_px, 1, 0.5f), 1.0, dust_exponents, flat_placement(), set);
     double sum = 0.0, squares = 0.0;
     for (const glm::vec3& p : set.splats.position) {
-        sum += static_cast<double>(p.z);
-        squares += static_cast<double>(p.z * p.z);
+        sum += double(p.z);
+        squares += double(p.z * p.z);
     }
-    const double count = static_cast<double>(set.splats.size()), mean = sum / count;
+    const double count = double(set.splats.size()), mean = sum / count;
     EXPECT_NEAR(mean, 2.0, 1.2);  // .2 H, give or take the widest waves
     const double deviation = std::sqrt(squares / count - mean * mean);
     EXPECT_GT(deviation, 1.6);  // more than the sheet's own .05 H
@@ -228,16 +226,16 @@ TEST(Dust, IsThinAtEveryPlace) {
     constexpr std::size_t cells = size_px / 4;
     std::vector<std::array<double, 3>> sums(cells * cells);  // of 1, z, z^2
     for (const glm::vec3& p : set.splats.position) {
-        const auto column = static_cast<std::size_t>(p.x + 0.5f * size_px) / 4,
-                   row = static_cast<std::size_t>(0.5f * size_px - p.y) / 4;
+        const auto column = std::size_t(p.x + 0.5f * size_px) / 4,
+                   row = std::size_t(0.5f * size_px - p.y) / 4;
         auto& sum = sums[std::min(row, cells - 1) * cells + std::min(column, cells - 1)];
-        const auto z = static_cast<double>(p.z);
+        const auto z = double(p.z);
         sum = {sum[0] + 1.0, sum[1] + z, sum[2] + z * z};
     }
     double within = 0.0;
     for (const auto& [count, z, square] : sums)
         if (count > 0.0) within += square - z * z / count;
-    EXPECT_LT(std::sqrt(within / static_cast<double>(set.splats.size())), 0.8);  // .08 H
+    EXPECT_LT(std::sqrt(within / double(set.splats.size())), 0.8);  // .08 H
 }
 
 }  // namespace

@@ -20,7 +20,7 @@ inline Texture as_texture(const Image& rgb, float alpha = 1.0f) {
 /// 10 units along its longer side.
 inline TexturedMesh on_plane(const Image& rgb, float alpha = 1.0f) {
     TexturedMesh result;
-    result.mesh = builtin_mesh("plane", static_cast<double>(rgb.width) / static_cast<double>(rgb.height));
+    result.mesh = builtin_mesh("plane", double(rgb.width) / double(rgb.height));
     result.textures.push_back(as_texture(rgb, alpha));
     return result;
 }
@@ -36,7 +36,7 @@ inline PlacedBlock splats_about(const glm::vec2& middle, const glm::vec2& size, 
     PlacedBlock block;
     block.count = DepthBlock::size;
     for (int i = 0; i < block.count; ++i) {
-        const auto id = number * DepthBlock::size + static_cast<std::uint32_t>(i);
+        const auto id = number * DepthBlock::size + std::uint32_t(i);
         const auto random = [&](std::uint32_t purpose) { return shared::as_hash(8u, id, 0u, purpose); };
         block.x[i] = middle.x + size.x * (shared::as_uniform(random(1u)) - 0.5f);
         block.y[i] = middle.y + size.y * (shared::as_uniform(random(2u)) - 0.5f);

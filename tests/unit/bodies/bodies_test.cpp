@@ -1,24 +1,18 @@
 // Whole pictures on meshes, and what carries them.
 #include "bodies/bodies.h"
 
-#include <gtest/gtest.h>
-
-#include <glm/geometric.hpp>
-
 #include "bodies/front_fit.h"
 #include "bodies/picture_splats.h"
 #include "bodies/uv_surface.h"
 #include "camera/camera.h"
 #include "core/color.h"
-#include "core/error.h"
-#include "core/parallel.h"
-#include "core/real.h"
 #include "image/blur.h"
 #include "image/channels.h"
 #include "image/resample.h"
 #include "render/render.h"
 #include "support/painted_picture.h"
 #include "support/printing.h"
+#include "support/test.h"
 #include "unit/bodies/bodies_support.h"
 
 namespace astrosplat {
@@ -26,7 +20,7 @@ namespace {
 
 double sum_of(const Image& image) {
     double sum = 0.0;
-    for (const float value : image.pixels) sum += static_cast<double>(value);
+    for (const float value : image.pixels) sum += double(value);
     return sum;
 }
 
@@ -52,8 +46,8 @@ TEST(Bodies, PicturesThatDoNotFitAreReducedAsFarAsIsNeeded) {
     const Image& reduced = meshes[0].textures[0].image;
     EXPECT_LE(told_bytes(meshes, sheet), whole / 3);
     EXPECT_GT(told_bytes(meshes, sheet), whole / 3 * 85 / 100);
-    const auto texels = static_cast<double>(reduced.width * reduced.height);
-    EXPECT_NEAR(static_cast<double>(reduced.width) / static_cast<double>(reduced.height), 1.6, 0.01);
+    const auto texels = double(reduced.width * reduced.height);
+    EXPECT_NEAR(double(reduced.width) / double(reduced.height), 1.6, 0.01);
     EXPECT_NEAR(sum_of(reduced) / texels, before, 0.003 * before);
     EXPECT_EQ(meshes[1].textures[0].image.width, 256);
     reduce_pictures(meshes, sheet, {1, 0}, "gas");  // to no less than 64 px
@@ -80,10 +74,9 @@ TEST(Bodies, PicturesOfMoreSplatsThanAskedForAreReducedUntilTheyAreNot) {
 TEST(Bodies, AreNeverMoreThanTheMostForTheirSize) {
     Image noise = painted::galaxy(320, 200);
     for (std::size_t i = 0; i < noise.pixels.size(); ++i)
-        noise.pixels[i] = static_cast<float>(painted::random(static_cast<std::uint32_t>(i), 1));
+        noise.pixels[i] = float(painted::random(std::uint32_t(i), 1));
     for (const StructureKind kind : {StructureKind::sheet, StructureKind::disk}) {
-        const auto made =
-            static_cast<double>(make_bodies({on_plane(noise)}, of_kind(kind), 3u, "gas").size());
+        const auto made = double(make_bodies({on_plane(noise)}, of_kind(kind), 3u, "gas").size());
         const double most = splats_at_most(320, 200, of_kind(kind));
         EXPECT_LE(made, most);
         EXPECT_GE(made, 0.5 * most);
@@ -116,7 +109,7 @@ TEST(Bodies, PicturesOfMoreTexelsThanTheMostAreReduced) {
     EXPECT_EQ(meshes[1].textures[0].image.width, 100);
     EXPECT_NEAR(sum_of(meshes[0].textures[0].image) / (160.0 * 100.0), before, 0.003 * before);
     reduce_to(meshes, 15'000, "gas");
-    EXPECT_NEAR(static_cast<double>(largest_picture(meshes)), 15'000.0, 150.0);
+    EXPECT_NEAR(double(largest_picture(meshes)), 15'000.0, 150.0);
 }
 
 TEST(Bodies, SmallPicturesAreEnlargedUpToThoseOf2048x2048) {
@@ -169,9 +162,8 @@ TEST(UvSurface, EveryPlaceOfASphereIsOnItOnce) {
     const UvSurface surface(sphere, 0, 2000, 1000, false);
     EXPECT_FALSE(surface.flat());
     for (int i = 0; i < 400; ++i) {
-        const glm::vec2 uv(
-            static_cast<float>(painted::random(static_cast<std::uint32_t>(i), 1)),
-            0.02f + 0.96f * static_cast<float>(painted::random(static_cast<std::uint32_t>(i), 2)));
+        const glm::vec2 uv(float(painted::random(std::uint32_t(i), 1)),
+                           0.02f + 0.96f * float(painted::random(std::uint32_t(i), 2)));
         const auto found = places(surface, uv);
         ASSERT_EQ(found.size(), 1u) << uv.x << " " << uv.y;
         EXPECT_NEAR(glm::length(found[0].position), 5.0, 0.05);
@@ -221,10 +213,9 @@ TEST(UvSurface, APlaceSeenByACameraIsOnItsRay) {
                 const auto seen = place_in_picture(camera, glm::dvec3(found[0].position + found[0].rise * z));
                 ASSERT_TRUE(seen);
                 EXPECT_LT(glm::distance(seen->uv, glm::dvec2(uv)), 1e-6);
-                EXPECT_NEAR(seen->depth, static_cast<double>(found[0].depth - z), 1e-5);
+                EXPECT_NEAR(seen->depth, double(found[0].depth - z), 1e-5);
                 // A texel there covers a hundredth of the picture's height.
-                const double scale =
-                    static_cast<double>(found[0].units_per_texel * (1.0f - found[0].approach * texels));
+                const double scale = double(found[0].units_per_texel * (1.0f - found[0].approach * texels));
                 EXPECT_NEAR(100.0 * scale, picture_height_at(camera, seen->depth), 1e-5);
             }
         }
@@ -263,21 +254,21 @@ TEST(Bodies, KeepTheirPlaceInThePictureOfTheirCamera) {
         const glm::vec3 p = plain.position[k];  // the picture's plane is 8 from the camera
         const auto place = place_in_picture(*front.camera, glm::dvec3(seen.position[i]));
         ASSERT_TRUE(place);
-        ASSERT_NEAR(place->uv.x, 0.5 + static_cast<double>(p.x) / 10.0, 2e-6);
-        ASSERT_NEAR(place->uv.y, 0.5 - static_cast<double>(p.z) / 6.25, 2e-6);
-        const auto y = static_cast<double>(p.y);  // what is plane stays plane where rays meet
+        ASSERT_NEAR(place->uv.x, 0.5 + double(p.x) / 10.0, 2e-6);
+        ASSERT_NEAR(place->uv.y, 0.5 - double(p.z) / 6.25, 2e-6);
+        const auto y = double(p.y);  // what is plane stays plane where rays meet
         ASSERT_NEAR(place->depth, 8.0 - y / (1.0 + y / 8.0), 2e-5);
-        ASSERT_NEAR(seen.radius[i], plain.radius[k] * static_cast<float>(place->depth) / 8.0f, 1e-5f);
+        ASSERT_NEAR(seen.radius[i], plain.radius[k] * float(place->depth) / 8.0f, 1e-5f);
         ASSERT_EQ(seen.color[i], plain.color[k]);
     }
 }
 
 TEST(Opacity, FollowsBrightnessAndNeverExceedsThePicturesAlpha) {
     const Opacity opacity{0.5f, 0.8f};
-    EXPECT_NEAR(1.0 - std::exp(-static_cast<double>(opacity.depth_of(1.0f, 1.0f))), 0.8, 1e-6);
-    EXPECT_NEAR(1.0 - std::exp(-static_cast<double>(opacity.depth_of(0.25f, 1.0f))), 0.4, 1e-6);
-    EXPECT_NEAR(1.0 - std::exp(-static_cast<double>(opacity.depth_of(0.25f, 0.1f))), 0.1, 1e-6);
-    EXPECT_NEAR(1.0 - std::exp(-static_cast<double>(opacity.depth_of(100.0f, 1.0f))), 0.985, 1e-6);
+    EXPECT_NEAR(1.0 - std::exp(-double(opacity.depth_of(1.0f, 1.0f))), 0.8, 1e-6);
+    EXPECT_NEAR(1.0 - std::exp(-double(opacity.depth_of(0.25f, 1.0f))), 0.4, 1e-6);
+    EXPECT_NEAR(1.0 - std::exp(-double(opacity.depth_of(0.25f, 0.1f))), 0.1, 1e-6);
+    EXPECT_NEAR(1.0 - std::exp(-double(opacity.depth_of(100.0f, 1.0f))), 0.985, 1e-6);
     EXPECT_EQ(opacity.depth_of(0.0f, 1.0f), 0.0f);
 }
 
@@ -306,7 +297,7 @@ Fitted fitted(const Image& light, StructureKind kind, double texels_per_unit, bo
     Fitted result;
     const std::vector<Band> bands = make_bands(light.width);
     split_bands(light, bands, false, [&](const Band& band, const Image& image) {
-        const bool coarsest = band.index + 1 == static_cast<int>(bands.size());
+        const bool coarsest = band.index + 1 == int(bands.size());
         for (const BandSplats& size : band_splats(band, coarsest, placement))
             add_band(image, size, brightest, {}, placement, {}, result.set);
     });
@@ -326,7 +317,7 @@ TEST(FrontFit, GivesAnEvenPictureItsColour) {
 TEST(FrontFit, IsCloseToItsPictureAfterSevenSteps) {
     Image light = painted::nebula(480, 300);
     for (std::size_t i = 0; i < light.pixels.size(); ++i)
-        light.pixels[i] *= static_cast<float>(0.5 + painted::random(static_cast<std::uint32_t>(i), 7));
+        light.pixels[i] *= float(0.5 + painted::random(std::uint32_t(i), 7));
     const FrontFit fit = fitted(light, StructureKind::sheet, 48.0).fit;
     EXPECT_EQ(fit.steps, 7);
     EXPECT_GT(fit.psnr_db, 44.0);
@@ -339,12 +330,11 @@ Image view_along_z(const PictureSplats& set, const Image& light, double from) {
     params.projection = Projection::orthographic;
     params.position = glm::dvec3(0.0, 0.0, from);
     params.target = glm::dvec3(0.0);
-    params.height = static_cast<double>(light.height);
+    params.height = double(light.height);
     RenderSettings settings;
     settings.width = light.width;
     settings.height = light.height;
-    const Camera camera =
-        make_camera(params, static_cast<double>(light.width), static_cast<double>(light.height), {});
+    const Camera camera = make_camera(params, double(light.width), double(light.height), {});
     return render({&layer, 1}, camera, nullptr, settings).beauty;
 }
 
@@ -353,8 +343,8 @@ double share_seen(const Image& seen, const Image& light, std::int64_t margin = 0
     double here = 0.0, there = 0.0;
     for (std::int64_t y = margin; y < light.height - margin; ++y)
         for (std::int64_t x = margin; x < light.width - margin; ++x) {
-            here += static_cast<double>(seen.at(x, y)[1]);
-            there += static_cast<double>(light.at(x, y)[1]);
+            here += double(seen.at(x, y)[1]);
+            there += double(light.at(x, y)[1]);
         }
     return here / there;
 }
@@ -374,12 +364,12 @@ TEST(FrontFit, OfALargePictureIsAsClose) {
     double squares = 0.0;
     for (std::int64_t y = 0; y < light.height; ++y)
         for (std::int64_t x = 0; x < light.width; ++x) {
-            const double difference = static_cast<double>(display_srgb(seen.at(x, y)[1])) -
-                                      static_cast<double>(display_srgb(wanted.at(x, y)[1]));
+            const double difference =
+                double(display_srgb(seen.at(x, y)[1])) - double(display_srgb(wanted.at(x, y)[1]));
             squares += difference * difference;
         }
     EXPECT_NEAR(share_seen(seen, wanted), 1.0, 0.001);
-    EXPECT_GT(-10.0 * std::log10(squares / static_cast<double>(light.width * light.height)), 44.0);
+    EXPECT_GT(-10.0 * std::log10(squares / double(light.width * light.height)), 44.0);
 }
 
 // Seen on pixels of two texels, crowded points hide less of themselves: fitted so, their light is 1.3 % too
@@ -405,11 +395,11 @@ TEST(FrontFit, WallsHaveTheSameLightFromBehind) {
     double squares = 0.0;
     for (std::int64_t y = 0; y < light.height; ++y)
         for (std::int64_t x = 0; x < light.width; ++x) {
-            const double difference = static_cast<double>(display_srgb(front.at(x, y)[0])) -
-                                      static_cast<double>(display_srgb(back.at(light.width - 1 - x, y)[0]));
+            const double difference = double(display_srgb(front.at(x, y)[0])) -
+                                      double(display_srgb(back.at(light.width - 1 - x, y)[0]));
             squares += difference * difference;
         }
-    EXPECT_LT(std::sqrt(squares / static_cast<double>(light.width * light.height)), 0.014);
+    EXPECT_LT(std::sqrt(squares / double(light.width * light.height)), 0.014);
 }
 
 class EveryStructure : public testing::TestWithParam<StructureKind> {};
@@ -444,7 +434,7 @@ TEST_P(EveryStructure, MakesAWholeSet) {
         ASSERT_EQ(set.color[i].x < 0.0f, dust);
         ASSERT_GT(set.radius[i], 0.0f);
         ASSERT_EQ(set.normal[i], glm::vec3(0, 1, 0));
-        farthest = std::max(farthest, static_cast<double>(set.distance[i]));
+        farthest = std::max(farthest, double(set.distance[i]));
     }
     EXPECT_EQ(set.max_distance, farthest);
     EXPECT_EQ(set.absorbs, GetParam() == StructureKind::disk);
@@ -478,8 +468,8 @@ TEST(Bodies, AFadingBorderIsNoDust) {
         double sum = 0.0, most = 0.0;
         for (std::size_t i = 0; i < set.color.size(); ++i) {
             if (set.color[i].x >= 0.0f) continue;
-            sum += static_cast<double>(set.alpha[i]);
-            most = std::max(most, static_cast<double>(set.alpha[i]));
+            sum += double(set.alpha[i]);
+            most = std::max(most, double(set.alpha[i]));
         }
         return std::pair(sum, most);
     };
@@ -506,8 +496,7 @@ TEST(Bodies, DisksWarpAndFlare) {
     const auto disk = [](const Placement& p) { return p.galaxies[0].parts[std::size_t(GalaxyPart::disk)]; };
     for (std::size_t k = 0; k < disk(plain).size(); ++k) {
         // Where it is what is seen: at three times its width from the middle, in halves of the picture's.
-        const double width = std::sqrt(0.5 / static_cast<double>(disk(plain)[k].u2)),
-                     out = std::min(1.0, width / 100.0);
+        const double width = std::sqrt(0.5 / double(disk(plain)[k].u2)), out = std::min(1.0, width / 100.0);
         EXPECT_NEAR(disk(bent)[k].deviation / disk(plain)[k].deviation, 1.0 + 0.5 * out * out, 1e-3);
     }
 }

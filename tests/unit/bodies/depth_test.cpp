@@ -1,14 +1,11 @@
 // Depths: the envelope, the noise that all bands share, and the same bits everywhere.
-#include <gtest/gtest.h>
-
 #include "bodies/depth_kernel.h"
 #include "bodies/fields.h"
 #include "bodies/picture_light.h"
 #include "bodies/placement.h"
-#include "core/parallel.h"
-#include "core/shared_maths.h"
 #include "image/channels.h"
 #include "support/painted_picture.h"
+#include "support/test.h"
 #include "unit/bodies/bodies_support.h"
 
 namespace astrosplat {
@@ -19,7 +16,7 @@ std::vector<std::unique_ptr<PlacedBlock>> scattered(int blocks, float height) {
     std::vector<std::unique_ptr<PlacedBlock>> result;
     for (int b = 0; b < blocks; ++b) {
         auto block = std::make_unique<PlacedBlock>(
-            splats_about(glm::vec2(500.0f), glm::vec2(1000.0f), static_cast<std::uint32_t>(b)));
+            splats_about(glm::vec2(500.0f), glm::vec2(1000.0f), std::uint32_t(b)));
         std::fill_n(block->height, block->count, height);
         std::fill_n(block->clumping, block->count, 1.0f);
         result.push_back(std::move(block));
@@ -31,7 +28,7 @@ NoiseStack octaves(int count, float gain, float longest = 80.0f) {
     NoiseStack noise;
     noise.seed = 5u;
     for (int i = 0; i < count; ++i) {
-        noise.frequency[i] = static_cast<float>(1 << i) / longest;
+        noise.frequency[i] = float(1 << i) / longest;
         noise.gain[i] = gain;
     }
     noise.count = count;
@@ -51,9 +48,7 @@ TEST(Depths, WithoutClumpsFollowTheEnvelope) {
     // Quantiles of sech^2(z / 20), of which 1.5 % are cut off at either side: z = 10 ln(v / (1 - v)).
     for (const double u : {0.05, 0.25, 0.5, 0.75, 0.95}) {
         const double v = 0.015 + 0.97 * u;
-        EXPECT_NEAR(z[static_cast<std::size_t>(u * static_cast<double>(z.size()))],
-                    10.0 * std::log(v / (1.0 - v)), 1.0)
-            << u;
+        EXPECT_NEAR(z[std::size_t(u * double(z.size()))], 10.0 * std::log(v / (1.0 - v)), 1.0) << u;
     }
     EXPECT_LE(z.back(), 41.9);
 }
@@ -67,8 +62,8 @@ TEST(Depths, GatherWhereTheNoiseIsHigh) {
         disk_depths(noise, *block);
         for (int i = 0; i < block->count; ++i, ++count) {
             const auto octave = [&](int k) {
-                return static_cast<double>(shared::as_noise_octave(block->x[i], block->y[i], block->z[i],
-                                                                   noise.frequency[k], noise.seed, k));
+                return double(shared::as_noise_octave(block->x[i], block->y[i], block->z[i],
+                                                      noise.frequency[k], noise.seed, k));
             };
             coarse += octave(0) + octave(1) + octave(2);
             fine += octave(3) + octave(4);
@@ -82,26 +77,24 @@ TEST(Depths, GatherWhereTheNoiseIsHigh) {
 float drawn_plainly(const NoiseStack& noise, const DepthBlock& block, int i) {
     constexpr int candidates = 24;
     const auto random = [&](int which) {
-        return shared::as_uniform(
-            shared::as_mix(block.random[i] + static_cast<std::uint32_t>(which) * 0x9e3779b9u));
+        return shared::as_uniform(shared::as_mix(block.random[i] + std::uint32_t(which) * 0x9e3779b9u));
     };
     double place[candidates], weight[candidates], sum = 0.0;
     for (int c = 0; c < candidates; ++c) {
-        const double u = 0.015 + 0.97 * (c + static_cast<double>(random(c))) / candidates;
-        place[c] = 0.5 * static_cast<double>(block.height[i]) * std::log(u / (1.0 - u));
+        const double u = 0.015 + 0.97 * (c + double(random(c))) / candidates;
+        place[c] = 0.5 * double(block.height[i]) * std::log(u / (1.0 - u));
         double energy = 0.0;
         for (int k = 0; k < noise.count; ++k)
-            energy +=
-                static_cast<double>(noise.gain[k]) / 0.26 *
-                static_cast<double>(shared::as_noise_octave(
-                    block.x[i], block.y[i], static_cast<float>(place[c]), noise.frequency[k], noise.seed, k));
-        weight[c] = std::exp(static_cast<double>(block.clumping[i]) * energy);
+            energy += double(noise.gain[k]) / 0.26 *
+                      double(shared::as_noise_octave(block.x[i], block.y[i], float(place[c]),
+                                                     noise.frequency[k], noise.seed, k));
+        weight[c] = std::exp(double(block.clumping[i]) * energy);
         sum += weight[c];
     }
-    double rest = sum * static_cast<double>(random(32));
+    double rest = sum * double(random(32));
     int chosen = 0;
     for (int c = 0; c < candidates && rest >= 0.0; rest -= weight[c++]) chosen = c;
-    return static_cast<float>(place[chosen]);
+    return float(place[chosen]);
 }
 
 // Heights of .1 to 3 times the longest wave: few planes of the noise's lattice, and many.
@@ -110,7 +103,7 @@ TEST(Depths, AreThoseOfTheNoiseItself) {
     int others = 0, count = 0;
     for (auto& block : scattered(8, 20.0f)) {
         for (int i = 0; i < block->count; ++i) {
-            block->height[i] = 8.0f * static_cast<float>(1 + i % 30);
+            block->height[i] = 8.0f * float(1 + i % 30);
             block->clumping[i] = i % 3 == 0 ? 0.4f : 1.0f;
         }
         disk_depths(noise, *block);
@@ -126,8 +119,8 @@ TEST(Depths, AnOctaveHasTheDeviationThatGainsCount) {
     for (auto& block : scattered(80, 1.0f)) {
         noise_sum(octaves(1, 1.0f, 8.0f), *block);
         for (int i = 0; i < block->count; ++i, ++count) {
-            sum += static_cast<double>(block->z[i]);
-            squares += static_cast<double>(block->z[i]) * static_cast<double>(block->z[i]);
+            sum += double(block->z[i]);
+            squares += double(block->z[i]) * double(block->z[i]);
         }
     }
     EXPECT_NEAR(sum / count, 0.0, 0.03);
@@ -227,15 +220,15 @@ double spread_at(const Placement& placement, float cx, float cy) {
     PlacedBlock block;
     block.count = 200;
     for (int i = 0; i < block.count; ++i) {
-        block.x[i] = cx + 0.01f * static_cast<float>(i % 10);
-        block.y[i] = cy + 0.01f * static_cast<float>(i / 10);
-        block.random[i] = shared::as_hash(3u, static_cast<std::uint32_t>(i), 0u, 4u);
+        block.x[i] = cx + 0.01f * float(i % 10);
+        block.y[i] = cy + 0.01f * float(i / 10);
+        block.random[i] = shared::as_hash(3u, std::uint32_t(i), 0u, 4u);
     }
     place(placement, splats, block);
     double sum = 0.0, squares = 0.0;
     for (int i = 0; i < block.count; ++i) {
-        sum += static_cast<double>(block.z[i]);
-        squares += static_cast<double>(block.z[i]) * static_cast<double>(block.z[i]);
+        sum += double(block.z[i]);
+        squares += double(block.z[i]) * double(block.z[i]);
     }
     const double mean = sum / block.count;
     return std::sqrt(squares / block.count - mean * mean);
@@ -249,8 +242,7 @@ TEST(Placement, AKnotIsABall) {
         const Placement placement = make_placement(brightest_channel(light), of_kind(kind), 32.0, true, 9u);
         ASSERT_EQ(placement.knots.knots.size(), 1u);
         const bool disk = kind == StructureKind::disk;
-        const double sigmas =
-            spread_at(placement, 160.0f, 100.0f) / static_cast<double>(placement.knots.knots[0].sigma);
+        const double sigmas = spread_at(placement, 160.0f, 100.0f) / double(placement.knots.knots[0].sigma);
         EXPECT_GT(sigmas, disk ? 0.45 : 0.25);
         EXPECT_LT(sigmas, disk ? 0.7 : 0.4);
         if (disk) {
@@ -268,7 +260,7 @@ TEST(Placement, KnotsOfAFilamentLieOnTheRelief) {
     ASSERT_EQ(placement.knots.knots.size(), 1u);
     placement.relief = make_image(320, 200, 1);
     for (std::int64_t i = 0; i < 320 * 200; ++i)
-        placement.relief.pixels[static_cast<std::size_t>(i)] = 0.5f * static_cast<float>(i % 320);
+        placement.relief.pixels[std::size_t(i)] = 0.5f * float(i % 320);
     const BandSplats splats = band_splats(make_bands(320)[0], false, placement)[0];
     for (const float roundness : {0.0f, 1.0f}) {
         placement.knots.knots[0].roundness = roundness;
@@ -277,11 +269,11 @@ TEST(Placement, KnotsOfAFilamentLieOnTheRelief) {
         for (int i = 0; i < block.count; ++i) {
             block.x[i] = i < 100 ? 158.0f : 162.0f;
             block.y[i] = 100.0f;
-            block.random[i] = shared::as_hash(3u, static_cast<std::uint32_t>(i % 100), 0u, 4u);
+            block.random[i] = shared::as_hash(3u, std::uint32_t(i % 100), 0u, 4u);
         }
         place(placement, splats, block);
         double rise = 0.0;
-        for (int i = 0; i < 100; ++i) rise += static_cast<double>(block.z[i + 100] - block.z[i]) / 100.0;
+        for (int i = 0; i < 100; ++i) rise += double(block.z[i + 100] - block.z[i]) / 100.0;
         EXPECT_NEAR(rise, roundness > 0.5f ? 0.0 : 4.0, 1e-4);
     }
 }
@@ -295,12 +287,10 @@ TEST(Placement, WallsLieOnBothSidesAndASheetOnOne) {
         const BandSplats splats = band_splats(make_bands(320)[1], false, placement)[0];
         int front = 0, back = 0;
         for (int repeat = 0; repeat < 20; ++repeat) {
-            PlacedBlock block =
-                splats_about({160.0f, 100.0f}, {60.0f, 40.0f}, static_cast<std::uint32_t>(repeat));
+            PlacedBlock block = splats_about({160.0f, 100.0f}, {60.0f, 40.0f}, std::uint32_t(repeat));
             place(placement, splats, block);
             for (int i = 0; i < block.count; ++i) {
-                const float out = *placement.relief.at(static_cast<std::int64_t>(block.x[i]),
-                                                       static_cast<std::int64_t>(block.y[i]));
+                const float out = *placement.relief.at(std::int64_t(block.x[i]), std::int64_t(block.y[i]));
                 EXPECT_LT(block.distance[i], 6.0 * placement.height) << i;
                 front += block.z[i] > 0.5f * out;
                 back += block.z[i] < -0.5f * out;

@@ -1,13 +1,11 @@
 #include "bodies/galaxy_body.h"
 
-#include <gtest/gtest.h>
-
 #include "bodies/galaxies.h"
 #include "bodies/picture_splats.h"
 #include "bodies/placement.h"
-#include "core/shared_maths.h"
 #include "image/channels.h"
 #include "support/painted_picture.h"
+#include "support/test.h"
 
 namespace astrosplat {
 namespace {
@@ -50,7 +48,7 @@ TEST(GalaxyBody, DepthsAreThoseOfGaussiansInSpace) {
     const GalaxyBody body = body_of(70.0);
     for (const GalaxyPart part : {GalaxyPart::disk, GalaxyPart::spheroid}) {
         for (const LineGaussian& g : body.parts[std::size_t(part)]) {
-            const double S2 = 0.5 / static_cast<double>(g.u2), V = 0.5 / static_cast<double>(g.v2);
+            const double S2 = 0.5 / double(g.u2), V = 0.5 / double(g.v2);
             const double t2 = (V - S2 * c * c) / (s * s), v = 37.0;
             double all = 0.0, mean = 0.0, square = 0.0;
             for (double z = -900.0; z <= 900.0; z += 0.5) {
@@ -59,7 +57,7 @@ TEST(GalaxyBody, DepthsAreThoseOfGaussiansInSpace) {
                 all += density, mean += density * z, square += density * z * z;
             }
             mean /= all;
-            EXPECT_NEAR(v * static_cast<double>(g.slope), mean, 1e-3 * std::fabs(mean) + 1e-3);
+            EXPECT_NEAR(v * double(g.slope), mean, 1e-3 * std::fabs(mean) + 1e-3);
             EXPECT_NEAR(g.deviation, std::sqrt(square / all - mean * mean), 2e-3 * g.deviation);
         }
     }
@@ -77,7 +75,7 @@ TEST(GalaxyBody, WhatIsSmallLiesInItsPlane) {
         constexpr int count = 2000;
         for (int i = 0; i < count; ++i) {
             const auto random = [&](std::uint32_t k) {
-                return shared::as_uniform(shared::as_hash(7u, static_cast<std::uint32_t>(i), k, 1u));
+                return shared::as_uniform(shared::as_hash(7u, std::uint32_t(i), k, 1u));
             };
             const float x = 500.0f + 60.0f * (random(0) - 0.5f), y = 400.0f + 20.0f * (random(1) - 0.5f);
             const float z = depth_of(body, GalaxyPart::fine, x, y, random(2), random(3));
@@ -135,11 +133,10 @@ TEST(GalaxyFamilies, ASpheroidIsRoundAndADiskFlat) {
         double along = 0.0, up = 0.0, all = 0.0;
         for (std::size_t i = 0; i < set.splats.position.size(); ++i) {
             const glm::vec3 p = set.splats.position[i];
-            const double light = static_cast<double>(set.splats.color[i].y * set.splats.alpha[i] *
-                                                     set.splats.radius[i] * set.splats.radius[i]);
+            const double light = double(set.splats.color[i].y * set.splats.alpha[i] * set.splats.radius[i] *
+                                        set.splats.radius[i]);
             const glm::vec3 q = body.in_disk(p.x + 160.0f, 100.0f - p.y, p.z);
-            along += light * static_cast<double>(q.x * q.x), up += light * static_cast<double>(q.z * q.z),
-                all += light;
+            along += light * double(q.x * q.x), up += light * double(q.z * q.z), all += light;
         }
         return std::sqrt(up / along);
     };
@@ -155,9 +152,8 @@ TEST(GalaxyFamilies, ShareTheLight) {
         const PictureSplats set = families.of(family, 3);
         std::pair<double, double> sum;  // light and opacity
         for (std::size_t i = 0; i < set.splats.position.size(); ++i) {
-            const auto covers =
-                static_cast<double>(set.splats.radius[i] * set.splats.radius[i] * set.splats.alpha[i]);
-            sum.first += covers * static_cast<double>(set.splats.color[i].y);
+            const auto covers = double(set.splats.radius[i] * set.splats.radius[i] * set.splats.alpha[i]);
+            sum.first += covers * double(set.splats.color[i].y);
             sum.second += covers;
         }
         return sum;

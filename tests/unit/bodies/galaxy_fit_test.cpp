@@ -1,9 +1,7 @@
 #include "bodies/galaxy_fit.h"
 
-#include <gtest/gtest.h>
-
-#include "core/parallel.h"
 #include "support/painted_picture.h"
+#include "support/test.h"
 
 namespace astrosplat {
 namespace {

@@ -1,11 +1,10 @@
 // Pictures that no telescope took: every row of their sets is read, of all structures.
-#include <gtest/gtest.h>
-
 #include <glm/common.hpp>
 
 #include "bodies/bodies.h"
 #include "core/text.h"
 #include "support/printing.h"
+#include "support/test.h"
 
 namespace astrosplat {
 namespace {
@@ -18,14 +17,14 @@ class HostilePictures : public testing::TestWithParam<StructureKind> {
     // Its bodies on a plane of 10 units along the longer side, with every row looked at.
     SplatSet set_of(Image rgba) const {
         TexturedMesh mesh;
-        const double aspect = static_cast<double>(rgba.width) / static_cast<double>(rgba.height);
+        const double aspect = double(rgba.width) / double(rgba.height);
         mesh.mesh = builtin_mesh("plane", aspect);
         mesh.textures.emplace_back().image = std::move(rgba);
         StructureParams params;
         params.kind = GetParam();
         const SplatSet set = make_bodies({mesh}, params, 3u, "gas");
         check_consistent(set);
-        const auto side = static_cast<float>(aspect >= 1.0 ? 10.0 / aspect : 10.0 * aspect);
+        const auto side = float(aspect >= 1.0 ? 10.0 / aspect : 10.0 * aspect);
         const glm::vec2 half = 0.5f * (aspect >= 1.0 ? glm::vec2(10.0f, side) : glm::vec2(side, 10.0f));
         for (std::size_t i = 0; i < set.id.size(); ++i) expect_sound(set, i, half * 1.001f);
         return set;
@@ -49,8 +48,8 @@ class HostilePictures : public testing::TestWithParam<StructureKind> {
         for (std::size_t i = 0; i < set.id.size(); ++i) {
             const glm::vec2 from = glm::vec2(set.position[i].x, set.position[i].z) - about;
             if (set.color[i].x < 0.0f || std::hypot(from.x, from.y) > reach) continue;
-            const double radius = static_cast<double>(set.radius[i]);
-            sum += static_cast<double>(set.alpha[i] * set.color[i].y) * radius * radius;
+            const double radius = double(set.radius[i]);
+            sum += double(set.alpha[i] * set.color[i].y) * radius * radius;
         }
         return sum;
     }

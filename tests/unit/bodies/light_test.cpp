@@ -1,13 +1,11 @@
 // The light of a picture's splats, and pictures continued beyond their edges.
-#include <gtest/gtest.h>
-
 #include "bodies/fields.h"
 #include "bodies/front_fit.h"
 #include "bodies/margin.h"
 #include "bodies/placement.h"
-#include "core/real.h"
 #include "image/channels.h"
 #include "support/painted_picture.h"
+#include "support/test.h"
 #include "unit/bodies/bodies_support.h"
 
 namespace astrosplat {
@@ -25,18 +23,18 @@ Image shell_with(float core, float filament) {
     Image light = make_image(shell_width, shell_height, 1, 0.001f);
     for (std::int64_t y = 0; y < shell_height; ++y)
         for (std::int64_t x = 0; x < shell_width; ++x) {
-            const double r = from_shell(static_cast<double>(x), static_cast<double>(y));
+            const double r = from_shell(double(x), double(y));
             float& value = *light.at(x, y);
             if (r < 150.0) value += 0.1f;
             if (r < 28.0) value += core;
-            if (r < 150.0 && std::fabs(static_cast<double>(y) - 250.0) < 8.0) value += filament;
+            if (r < 150.0 && std::fabs(double(y) - 250.0) < 8.0) value += filament;
         }
     return light;
 }
 
 float at(const Image& field, double x, double y) {
-    const double share = static_cast<double>(field.width) / static_cast<double>(shell_width);
-    return bilinear(field, 0, static_cast<float>(x * share), static_cast<float>(y * share));
+    const double share = double(field.width) / double(shell_width);
+    return bilinear(field, 0, float(x * share), float(y * share));
 }
 
 TEST(FilledLight, ACoreIsAsDeepAsItIsWide) {
@@ -81,11 +79,11 @@ Depths depths_about(double x, double y, bool fine, double clumps = 0.0, float ar
         PlacedBlock block = splats_about(glm::vec2(x, y), glm::vec2(around), number);
         place(placement, splats, block);
         for (int i = 0; i < block.count; ++i) {
-            const auto z = static_cast<double>(block.z[i]);
+            const auto z = double(block.z[i]);
             sum += z;
             squares += z * z;
             depths.farthest = std::max(depths.farthest, std::fabs(z));
-            ++depths.eighths[static_cast<std::size_t>(std::clamp(4.0 * (z / 103.0 + 1.0), 0.0, 7.99))];
+            ++depths.eighths[std::size_t(std::clamp(4.0 * (z / 103.0 + 1.0), 0.0, 7.99))];
             ++count;
         }
     }
@@ -159,7 +157,7 @@ PictureSplats some_splats() {
     for (const float sigma : {0.5f, 1.7f, 6.0f}) {
         const auto begin = set.splats.size();
         for (int i = 0; i < 300; ++i, ++n) {
-            const auto x = static_cast<float>((painted::random(n, 1) - 0.5) * static_cast<double>(width));
+            const auto x = float((painted::random(n, 1) - 0.5) * double(width));
             add_splat(set, {x, 31.9f - 0.21f * float(i), 0.0f}, {1.0f, 0.5f, float(painted::random(n, 2))},
                       0.1f, radius_sigmas * sigma);
         }
@@ -179,14 +177,13 @@ PictureSplats one_splat(float x, float y, float sigma) {
 // Flux, centre and variance along the axes of one splat, on every grid.
 TEST(FlatLight, OneSplatIsItsFootprint) {
     for (const double sigma : {0.45, 0.5, 0.6, 0.75, 0.9, 1.3, 3.0, 7.0}) {
-        PictureSplats set = one_splat(3.3f, -5.6f, static_cast<float>(sigma));
+        PictureSplats set = one_splat(3.3f, -5.6f, float(sigma));
         const Image light = FlatLight(set, width, height, filter_px).sum();
         double sum = 0.0, x_sum = 0.0, y_sum = 0.0, squares = 0.0;
         for (std::int64_t y = 0; y < height; ++y)
             for (std::int64_t x = 0; x < width; ++x) {
-                const auto value = static_cast<double>(light.at(x, y)[1]);
-                const double dx = static_cast<double>(x) + 0.5 - (48.0 + 3.3),
-                             dy = static_cast<double>(y) + 0.5 - (32.0 + 5.6);
+                const auto value = double(light.at(x, y)[1]);
+                const double dx = double(x) + 0.5 - (48.0 + 3.3), dy = double(y) + 0.5 - (32.0 + 5.6);
                 sum += value;
                 x_sum += value * dx;
                 y_sum += value * dy;
@@ -321,8 +318,8 @@ TEST(Margin, ThePictureStaysAsItIs) {
 double mean_above(const Texture& texture, std::int64_t px_away) {
     double sum = 0.0;
     for (std::int64_t x = 0; x < picture_width; ++x)
-        sum += static_cast<double>(texture.image.at(x + margin_px, margin_px - px_away)[1]);
-    return sum / static_cast<double>(picture_width);
+        sum += double(texture.image.at(x + margin_px, margin_px - px_away)[1]);
+    return sum / double(picture_width);
 }
 
 TEST(Margin, FadesToNothingFromTheEdgeOutward) {
@@ -356,7 +353,7 @@ TEST(Margin, AGalaxyGoesOnAsItIsOnItsOtherSide) {
         const double ratio = std::cos(inclination * 3.14159265358979 / 180.0);
         const auto disk = [&](double x, double y) {  // its middle is far to the left
             const double u = (x - 60.0) / 70.0, v = (y - 60.0) / (70.0 * ratio);
-            return static_cast<float>(std::exp(-std::sqrt(u * u + v * v)));
+            return float(std::exp(-std::sqrt(u * u + v * v)));
         };
         Image light = make_image(picture_width, picture_height, 3);
         for (std::int64_t y = 0; y < picture_height; ++y)
@@ -369,8 +366,8 @@ TEST(Margin, AGalaxyGoesOnAsItIsOnItsOtherSide) {
         const Image& image = meshes[0].textures[0].image;
         double here = 0.0, wanted = 0.0;
         for (std::int64_t y = 40; y < 120; ++y) {
-            here += static_cast<double>(image.at(10, y)[1]);
-            wanted += static_cast<double>(disk(10.5 - margin_px, static_cast<double>(y) + 0.5 - margin_px));
+            here += double(image.at(10, y)[1]);
+            wanted += double(disk(10.5 - margin_px, double(y) + 0.5 - margin_px));
         }
         EXPECT_NEAR(here / wanted, 1.0, 0.1) << inclination;
     }
@@ -385,7 +382,7 @@ TEST(Margin, CloudsGoOnAllAroundAndHaveRoundCorners) {
         double sum = 0.0;
         for (std::int64_t x = x_begin; x < x_end; ++x)
             for (std::int64_t y = 0; y < margin_px; ++y) sum += texture.image.at(x, y)[1] / 0.01;
-        return sum / static_cast<double>((x_end - x_begin) * margin_px);
+        return sum / double((x_end - x_begin) * margin_px);
     };
     EXPECT_GT(lit(40, 100), 0.25);
     EXPECT_GT(lit(0, margin_px), 0.02);
@@ -398,8 +395,8 @@ TEST(Margin, DoesNotGrowBrighterBeyondADimEdge) {
     for (std::int64_t y = 0; y < picture_height; ++y)
         for (std::int64_t x = 0; x < picture_width; ++x)
             for (int c = 0; c < 3; ++c)
-                light.at(x, y)[c] = 0.02f + 0.02f * static_cast<float>(std::min({x, y, picture_width - 1 - x,
-                                                                                 picture_height - 1 - y}));
+                light.at(x, y)[c] =
+                    0.02f + 0.02f * float(std::min({x, y, picture_width - 1 - x, picture_height - 1 - y}));
     const Texture texture = continued(light)[0].textures[0];
     EXPECT_LT(mean_above(texture, 8), 2.0 * mean_above(texture, 1))
         << "what is mirrored there has eight times the light of the rim";

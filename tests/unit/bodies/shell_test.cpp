@@ -1,6 +1,4 @@
 // Shells: their walls, what lies on them and fills them, and flights near them.
-#include <gtest/gtest.h>
-
 #include "bodies/bodies.h"
 #include "bodies/fields.h"
 #include "bodies/placement.h"
@@ -8,6 +6,7 @@
 #include "image/channels.h"
 #include "render/render.h"
 #include "support/painted_picture.h"
+#include "support/test.h"
 #include "unit/bodies/bodies_support.h"
 
 namespace astrosplat {
@@ -20,8 +19,8 @@ Image ellipse(double half_width, double half_height) {
     Image image = make_image(640, 400, 1);
     for (std::int64_t y = 0; y < image.height; ++y)
         for (std::int64_t x = 0; x < image.width; ++x)
-            *image.at(x, y) = std::hypot((static_cast<double>(x) + 0.5 - middle_x) / half_width,
-                                         (static_cast<double>(y) + 0.5 - middle_y) / half_height) < 1.0
+            *image.at(x, y) = std::hypot((double(x) + 0.5 - middle_x) / half_width,
+                                         (double(y) + 0.5 - middle_y) / half_height) < 1.0
                                   ? 0.5f
                                   : 0.0f;
     return image;
@@ -33,8 +32,7 @@ TEST(Shell, OverAnEllipseIsAnEllipsoid) {
         const double outline =
             width + 9.0;  // an eleventh of the light is left there after the blur of 6.7 px
         const auto at = [&](double share) {
-            return static_cast<double>(bilinear(field, 0, static_cast<float>(middle_x + share * width),
-                                                static_cast<float>(middle_y)));
+            return double(bilinear(field, 0, float(middle_x + share * width), float(middle_y)));
         };
         for (const double share : {0.0, 0.3, 0.6, 0.8})
             EXPECT_NEAR(at(share),
@@ -98,7 +96,7 @@ TEST(Shell, GlowFillsItEvenly) {
         for (int k = 0; k < block.count; ++k) {
             const float out = block.z[k] / remnant.placement.relief_at(block.x[k], block.y[k]);
             ASSERT_LT(std::fabs(out), 1.0f);
-            ++eighths[static_cast<std::size_t>(4.0f * (out + 1.0f))];
+            ++eighths[std::size_t(4.0f * (out + 1.0f))];
         }
     }
     for (const int count : eighths) EXPECT_NEAR(count, 512, 80);
@@ -115,7 +113,7 @@ TEST(Shell, OnlyBallsAreKnots) {
     placement.knot_z = {0.0f};
     for (std::int64_t y = 0; y < placement.relief.height; ++y)
         for (std::int64_t x = 0; x < placement.relief.width; ++x)
-            *placement.relief.at(x, y) = 40.0f + 0.5f * static_cast<float>(x - placement.relief.width / 2);
+            *placement.relief.at(x, y) = 40.0f + 0.5f * float(x - placement.relief.width / 2);
     const BandSplats splats = band_splats(make_bands(640)[0], false, placement)[0];
     for (const float ballness : {0.0f, 1.0f}) {
         placement.knots.knots[0].ballness = ballness;
@@ -162,7 +160,7 @@ std::vector<double> changes(const ShadedSplats& splats, const glm::dvec3& from, 
     Image before;
     for (int t = 0; t < frames; ++t) {
         CameraParams params;
-        params.position = from + static_cast<double>(t) * step;
+        params.position = from + double(t) * step;
         params.target = *params.position + glm::dvec3(0.2, -1.0, -0.8);
         params.fov = 40.0;
         Image now = render({&layer, 1}, make_camera(params, flight_width, flight_height, {}), nullptr,
@@ -170,7 +168,7 @@ std::vector<double> changes(const ShadedSplats& splats, const glm::dvec3& from, 
                         .beauty;
         double sum = 0.0;
         for (std::size_t i = 0; t > 0 && i < now.pixels.size(); ++i)
-            sum += std::fabs(static_cast<double>(now.pixels[i]) - static_cast<double>(before.pixels[i]));
+            sum += std::fabs(double(now.pixels[i]) - double(before.pixels[i]));
         if (t > 0) found.push_back(sum);
         before = std::move(now);
     }

@@ -1,15 +1,14 @@
 // Stars of a picture: those that are found, those too wide for one splat, and their places in depth.
-#include <gtest/gtest.h>
-
+#include "bodies/stars.h"
 #include "bodies/bodies.h"
 #include "bodies/picture_light.h"
 #include "bodies/picture_splats.h"
 #include "bodies/star_places.h"
-#include "bodies/stars.h"
 #include "detect/peaks.h"
 #include "image/channels.h"
 #include "splats/splat_set.h"
 #include "support/painted_picture.h"
+#include "support/test.h"
 #include "unit/bodies/bodies_support.h"
 
 namespace astrosplat {
@@ -21,9 +20,8 @@ Image sky(std::int64_t width = 256, std::int64_t height = 128) {
     for (std::int64_t y = 0; y < height; ++y)
         for (std::int64_t x = 0; x < width; ++x)
             for (int c = 0; c < 3; ++c)
-                image.at(x, y)[c] =
-                    0.02f + 0.1f * static_cast<float>(x) / static_cast<float>(width) +
-                    0.004f * painted::fbm(static_cast<double>(x), static_cast<double>(y), 0.11, 7u);
+                image.at(x, y)[c] = 0.02f + 0.1f * float(x) / float(width) +
+                                    0.004f * painted::fbm(double(x), double(y), 0.11, 7u);
     return image;
 }
 
@@ -113,10 +111,10 @@ TEST(Knots, OwnThePixelsAroundThem) {
     EXPECT_NEAR(knots.knots[0].y, 60.0, 1.0);
     EXPECT_GT(knots.knots[0].sigma, 2.0f);
     EXPECT_LT(knots.knots[0].sigma, 5.0f);
-    const auto at = [&](std::int64_t x, std::int64_t y) { return static_cast<std::size_t>(y * 256 + x); };
+    const auto at = [&](std::int64_t x, std::int64_t y) { return std::size_t(y * 256 + x); };
     EXPECT_EQ(knots.owner[at(80, 60)], 0);
     EXPECT_EQ(knots.weight[at(80, 60)], 1.0f);
-    const auto rim = static_cast<std::int64_t>(80.0f + 2.6f * knots.knots[0].sigma);
+    const auto rim = std::int64_t(80.0f + 2.6f * knots.knots[0].sigma);
     EXPECT_GT(knots.weight[at(rim, 60)], 0.0f);
     EXPECT_LT(knots.weight[at(rim, 60)], 0.6f);
     EXPECT_EQ(knots.owner[at(200, 100)], -1);
@@ -170,8 +168,7 @@ TEST(Stars, ThoseOfARangeAreAboutOfOneSize) {
     EXPECT_GE(set.ranges.size(), 3u);
     for (const SplatRange& range : set.ranges)
         for (std::int64_t i = range.begin; i < range.end; ++i)
-            EXPECT_NEAR(set.splats.radius[static_cast<std::size_t>(i)] / radius_sigmas, range.sigma,
-                        0.25f * range.sigma);
+            EXPECT_NEAR(set.splats.radius[std::size_t(i)] / radius_sigmas, range.sigma, 0.25f * range.sigma);
 }
 
 TEST(Knots, ThereAreNoneInAnEvenSky) { EXPECT_TRUE(find_knots(brightest_channel(sky())).knots.empty()); }
@@ -208,17 +205,16 @@ TEST(BrightStars, AreTakenWholeWithoutAHole) {
             EXPECT_NEAR(star.x, c.x, 0.3);
             EXPECT_NEAR(star.y, c.y, 0.3);
             EXPECT_LT(star.sigma, 2.5 * c.half_width);
-            flux += 6.2831853 * static_cast<double>(star.sigma * star.sigma * star.peak.x);
+            flux += 6.2831853 * double(star.sigma * star.sigma * star.peak.x);
         }
         for (std::size_t i = 0; i < light.pixels.size(); i += 3) {
-            taken += static_cast<double>(before.pixels[i] - light.pixels[i]);
+            taken += double(before.pixels[i] - light.pixels[i]);
             ASSERT_GE(light.pixels[i], 0.89f * sky_light) << "pixel " << i / 3;
             ASSERT_LE(light.pixels[i], before.pixels[i]);
         }
         EXPECT_NEAR(taken / flux, 1.0, 0.08) << c.sigma;
         double all = 0.0;
-        for (std::size_t i = 0; i < light.pixels.size(); i += 3)
-            all += static_cast<double>(before.pixels[i] - sky_light);
+        for (std::size_t i = 0; i < light.pixels.size(); i += 3) all += double(before.pixels[i] - sky_light);
         EXPECT_GT(taken, 0.4 * all) << c.sigma;  // no sum of Gaussians has an edge so steep
     }
 }
@@ -228,7 +224,7 @@ double light_at(const std::vector<Star>& stars, float x, float y) {
     double sum = 0.0;
     for (const Star& star : stars)
         if (std::hypot(star.x - x, star.y - y) < 0.5f)
-            sum += 6.2831853 * static_cast<double>(star.sigma * star.sigma * star.peak.x);
+            sum += 6.2831853 * double(star.sigma * star.sigma * star.peak.x);
     return sum;
 }
 
@@ -271,26 +267,26 @@ TEST(BrightStars, WhatTheyLeaveIsAtTheirDepth) {
     painted::add_point(image, x, y, 2.5, 4.0, 3.0, 2.5);
     image = saturated(std::move(image));
     const SplatSet set = make_bodies({on_plane(image)}, of_kind(StructureKind::disk), 5u, "disk");
-    const double texel = 10.0 / static_cast<double>(width);
+    const double texel = 10.0 / double(width);
     double depth = 0.0, star = 0.0, near_light = 0.0, far_light = 0.0;
     const auto light_of = [&](std::size_t i) {
-        const double r = static_cast<double>(set.radius[i]) / texel;
-        return static_cast<double>(std::max(0.0f, set.color[i].x) * set.alpha[i]) * r * r;
+        const double r = double(set.radius[i]) / texel;
+        return double(std::max(0.0f, set.color[i].x) * set.alpha[i]) * r * r;
     };
     const auto away = [&](std::size_t i) {
-        return std::hypot(static_cast<double>(set.position[i].x) / texel + 0.5 * width - x,
-                          static_cast<double>(set.position[i].z) / texel + 0.5 * height - y);
+        return std::hypot(double(set.position[i].x) / texel + 0.5 * width - x,
+                          double(set.position[i].z) / texel + 0.5 * height - y);
     };
     for (std::size_t i = 0; i < set.id.size(); ++i) {
         if (!is_star(set.id[i]) || away(i) > 1.0) continue;
         star += light_of(i);
-        depth += light_of(i) * static_cast<double>(set.position[i].y);
+        depth += light_of(i) * double(set.position[i].y);
     }
     ASSERT_GT(star, 0.0);
     depth /= star;
     for (std::size_t i = 0; i < set.id.size(); ++i) {
         if (is_star(set.id[i]) || away(i) > 3.0 || set.radius[i] > 3.0 * texel) continue;
-        const bool near = std::fabs(static_cast<double>(set.position[i].y) - depth) < 6.0 * texel;
+        const bool near = std::fabs(double(set.position[i].y) - depth) < 6.0 * texel;
         (near ? near_light : far_light) += light_of(i);
     }
     EXPECT_GT(near_light, 0.0);

@@ -1,16 +1,11 @@
 // The camera and the table of projections.
 #include "camera/camera.h"
 
-#include <gtest/gtest.h>
-
-#include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
 #include "camera/projection.h"
-#include "core/error.h"
-#include "core/real.h"
 #include "core/rotation.h"
-#include "support/errors.h"
+#include "support/test.h"
 
 namespace astrosplat {
 namespace {

@@ -1,10 +1,6 @@
 // Interpolation along a camera's path and along Bezier curves, against values worked out by hand.
-#include <gtest/gtest.h>
-
-#include <glm/geometric.hpp>
-
 #include "camera/keyframe.h"
-#include "core/real.h"
+#include "support/test.h"
 
 namespace astrosplat {
 namespace {
@@ -89,7 +85,7 @@ TEST(Scalars, SmoothNeverLeavesTheRangeOfItsTwoKeyframes) {
         {0, 0.0, smooth}, {10, 0.0, smooth}, {20, 10.0, smooth}, {30, 10.0, smooth}, {40, -3.0, smooth}};
     for (int f = 0; f <= 400; ++f) {
         double v = evaluate_scalar(keyframes, f * 0.1, Ends::through);
-        auto i = std::min<std::size_t>(static_cast<std::size_t>(f) / 100, 3);
+        auto i = std::min<std::size_t>(std::size_t(f) / 100, 3);
         EXPECT_GE(v, std::fmin(keyframes[i].value, keyframes[i + 1].value));
         EXPECT_LE(v, std::fmax(keyframes[i].value, keyframes[i + 1].value));
     }
@@ -335,8 +331,8 @@ TEST(BezierPositions, AutomaticHandlesTurnWithThePath) {
     };
     Positions before, after;
     for (std::size_t i = 0; i < points.size(); ++i) {
-        before.push_back({10.0 * static_cast<double>(i), points[i], bezier});
-        after.push_back({10.0 * static_cast<double>(i), turned(points[i]), bezier});
+        before.push_back({10.0 * double(i), points[i], bezier});
+        after.push_back({10.0 * double(i), turned(points[i]), bezier});
     }
     for (double frame = 0.0; frame <= 30.0; frame += 0.7)
         EXPECT_NEAR(glm::distance(turned(evaluate_position(before, frame, Ends::ease, false)),

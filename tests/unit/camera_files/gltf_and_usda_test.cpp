@@ -1,15 +1,9 @@
 // Cameras of glTF and USD.
-#include <gtest/gtest.h>
-
-#include <cstring>
-#include <glm/geometric.hpp>
-
 #include "camera/camera.h"
 #include "camera_files/formats.h"
 #include "core/text.h"
-#include "support/bits.h"
 #include "support/camera_tracks.h"
-#include "support/errors.h"
+#include "support/test.h"
 
 namespace astrosplat {
 namespace {
@@ -90,7 +84,7 @@ TEST_F(Gltf, BinaryFilesAndBuffersBesideAreReadAlike) {
     const std::string binary = floats({0.0f, 2.0f}) + floats(values);
     const auto word = [](std::size_t n) {
         std::string bytes;
-        for (int i = 0; i < 4; ++i) bytes += static_cast<char>(n >> 8 * i & 255);
+        for (int i = 0; i < 4; ++i) bytes += char(n >> 8 * i & 255);
         return bytes;
     };
     const std::string glb = "glTF" + word(2) + word(28 + json.size() + binary.size()) + word(json.size()) +

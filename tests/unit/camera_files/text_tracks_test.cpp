@@ -1,16 +1,12 @@
 // Camera tracks as text: .chan, recordings of Gaia Sky and OpenSpace, transforms.json.
-#include <gtest/gtest.h>
-
-#include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
 #include "camera/camera.h"
 #include "camera_files/camera_track.h"
 #include "camera_files/formats.h"
-#include "core/real.h"
 #include "core/rotation.h"
 #include "support/camera_tracks.h"
-#include "support/errors.h"
+#include "support/test.h"
 #include "support/test_data.h"
 
 namespace astrosplat {

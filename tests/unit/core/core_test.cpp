@@ -1,34 +1,22 @@
 // Errors, log, text, memory, buffers, hashes, vector targets, and numbers.
-#include <gtest/gtest.h>
 #include <malloc.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/un.h>
-#include <unistd.h>
 
-#include <atomic>
-#include <cstring>
-#include <fstream>
 #include <glm/vec3.hpp>
-#include <stdexcept>
-#include <thread>
 
 #include "core/bounds.h"
 #include "core/buffer.h"
 #include "core/color.h"
-#include "core/error.h"
 #include "core/file.h"
 #include "core/hash.h"
 #include "core/log.h"
 #include "core/memory.h"
-#include "core/parallel.h"
 #include "core/progress.h"
-#include "core/real.h"
 #include "core/sorting.h"
 #include "core/text.h"
-#include "support/errors.h"
-#include "support/quiet.h"
-#include "support/temp_folder.h"
+#include "support/test.h"
 
 namespace astrosplat {
 namespace {
@@ -222,7 +210,7 @@ TEST(Buffer, FreedBlocksServeTheNextOfTheirSize) {
     void* const first = written_pages(size);
     const std::int64_t used = resident_memory_bytes();
     free_pages(first, size);
-    EXPECT_LT(resident_memory_bytes(), used - static_cast<std::int64_t>(size / 2));
+    EXPECT_LT(resident_memory_bytes(), used - std::int64_t(size / 2));
     void* const nearly = allocate_pages(size - 100);
     EXPECT_EQ(nearly, first);
     free_pages(nearly, size - 100);
@@ -237,10 +225,9 @@ TEST(Buffer, SpareBlocksAddLittleToTheMostInUse) {
     constexpr std::size_t large = std::size_t{512} << 20;  // more than any test before; half of it is 256 MiB
     for (std::size_t size = large / 4; size <= large; size += large / 8)
         free_pages(written_pages(size), size);
-    EXPECT_LE((pages_of_process() - before) * page,
-              static_cast<std::int64_t>(large + large / 2 + large / 16));
+    EXPECT_LE((pages_of_process() - before) * page, std::int64_t(large + large / 2 + large / 16));
     release_spare_pages();
-    EXPECT_LT((pages_of_process() - before) * page, static_cast<std::int64_t>(large / 16));
+    EXPECT_LT((pages_of_process() - before) * page, std::int64_t(large / 16));
 }
 
 TEST(Buffer, TooMuchIsBadAlloc) {
@@ -255,7 +242,7 @@ TEST(Sha256, KnownDigests) {  // FIPS 180-4 examples
 }
 
 TEST(Sha256, ManyLeaveNoMemoryBehind) {
-    const auto in_use = [] { return static_cast<std::int64_t>(mallinfo2().uordblks); };
+    const auto in_use = [] { return std::int64_t(mallinfo2().uordblks); };
     EXPECT_EQ(Sha256().add("a").hex().size(), 64u);
     const std::int64_t before = in_use();
     for (int i = 0; i < 1000; ++i) Sha256().add("a").hex();
@@ -331,9 +318,9 @@ TEST(VectorTarget, EachOfferedOneCanBeChosen) {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 double ulps(double value, long double truth) {
-    const double nearest = static_cast<double>(truth);
+    const double nearest = double(truth);
     const double unit = std::nextafter(std::fabs(nearest), infinity) - std::fabs(nearest);
-    return static_cast<double>(std::fabs((static_cast<long double>(value) - truth) / unit));
+    return double(std::fabs((static_cast<long double>(value) - truth) / unit));
 }
 
 // The largest error over a dense, irrational walk through [lo, hi].
@@ -370,15 +357,15 @@ TEST(Real, SinAndCosNextToMultiplesOfHalfPi) {
 TEST(Real, OnACircleTheBitsAreThoseOfCosAndSin) {
     constexpr int turn = 1 << 24;
     for (int i = 0; i < turn; ++i) {
-        const float turns = static_cast<float>(i) / turn;
+        const float turns = float(i) / turn;
         const real::OnCircle at = real::on_circle(turns);
         if (i % (turn / 4) == 0) continue;  // exact: see below
-        const double angle = 2.0 * real::pi * static_cast<double>(turns);
-        ASSERT_EQ(at.cosine, static_cast<float>(real::cos(angle))) << i;
-        ASSERT_EQ(at.sine, static_cast<float>(real::sin(angle))) << i;
+        const double angle = 2.0 * real::pi * double(turns);
+        ASSERT_EQ(at.cosine, float(real::cos(angle))) << i;
+        ASSERT_EQ(at.sine, float(real::sin(angle))) << i;
     }
     for (int quarter = 0; quarter < 4; ++quarter) {
-        const real::OnCircle at = real::on_circle(0.25f * static_cast<float>(quarter));
+        const real::OnCircle at = real::on_circle(0.25f * float(quarter));
         EXPECT_EQ(at.cosine, quarter == 0 ? 1.0f : quarter == 2 ? -1.0f : 0.0f) << quarter;
         EXPECT_EQ(at.sine, quarter == 1 ? 1.0f : quarter == 3 ? -1.0f : 0.0f) << quarter;
     }
@@ -418,8 +405,7 @@ TEST(Real, PowOfExtremesStaysWithinTenToTheMinusThirteen) {
     for (const double x : {1e-300, 1e-10, 0.999, 1.001, 1e10, 1e300})
         for (const double y : {-1.01, -0.3, 0.9, 1.02}) {
             const L truth = std::pow(static_cast<L>(x), static_cast<L>(y));
-            EXPECT_LE(std::fabs(static_cast<double>((real::pow(x, y) - truth) / truth)), 1e-13)
-                << x << "^" << y;
+            EXPECT_LE(std::fabs(double((real::pow(x, y) - truth) / truth)), 1e-13) << x << "^" << y;
         }
 }
 
@@ -505,8 +491,7 @@ using Pair = std::pair<std::uint64_t, int>;
 
 std::vector<Pair> values(std::size_t count, std::uint64_t mask) {
     std::vector<Pair> all;
-    for (std::size_t i = 0; i < count; ++i)
-        all.emplace_back((i + 1) * 0x9e3779b97f4a7c15u & mask, static_cast<int>(i));
+    for (std::size_t i = 0; i < count; ++i) all.emplace_back((i + 1) * 0x9e3779b97f4a7c15u & mask, int(i));
     return all;
 }
 

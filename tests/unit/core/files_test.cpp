@@ -1,15 +1,10 @@
 // Files that are whole or absent, and the table of their formats.
-#include <gtest/gtest.h>
 #include <sys/stat.h>
 
-#include <set>
-
 #include "core/atomic_file.h"
-#include "core/error.h"
 #include "core/file.h"
 #include "core/file_format.h"
-#include "support/errors.h"
-#include "support/temp_folder.h"
+#include "support/test.h"
 
 namespace astrosplat {
 namespace {
@@ -123,7 +118,7 @@ TEST_F(AtomicFileTest, WhatKilledProgramsLeftIsRemovedAndNothingElse) {
     write_file_atomically(folder / "x.exr", "new");
     for (const fs::path& file : gone) EXPECT_FALSE(fs::exists(file)) << file;
     for (const fs::path& file : stay) EXPECT_TRUE(fs::exists(file)) << file;
-    EXPECT_EQ(entries(folder.path()), 1 + static_cast<std::ptrdiff_t>(stay.size()));
+    EXPECT_EQ(entries(folder.path()), 1 + std::ptrdiff_t(stay.size()));
     alive.commit();
     EXPECT_EQ(read_file(other / "y.exr"), "alive");
 }

@@ -1,18 +1,9 @@
 // The pool of threads, single workers, and memory that the C library keeps.
-#include <gtest/gtest.h>
-
-#include <atomic>
 #include <deque>
-#include <fstream>
-#include <mutex>
-#include <numeric>
-#include <set>
-#include <stdexcept>
-#include <thread>
 
 #include "core/memory.h"
-#include "core/parallel.h"
 #include "core/worker.h"
+#include "support/test.h"
 
 namespace astrosplat {
 namespace {
@@ -27,7 +18,7 @@ class Parallel : public testing::TestWithParam<int> {
 
 TEST_P(Parallel, EveryIndexExactlyOnce) {
     std::vector<int> visits(10007, 0);
-    parallel_for(10007, [&](std::int64_t i, int) { ++visits[static_cast<std::size_t>(i)]; });
+    parallel_for(10007, [&](std::int64_t i, int) { ++visits[std::size_t(i)]; });
     EXPECT_EQ(visits, std::vector<int>(10007, 1));
 }
 
@@ -43,12 +34,12 @@ TEST_P(Parallel, ChunksDependOnCountAndChunkAlone) {
 }
 
 TEST_P(Parallel, WorkerNumbersAreBelowTheThreadCountAndNeverShared) {
-    std::vector<std::atomic<int>> inside(static_cast<std::size_t>(thread_count()));
+    const auto threads = std::size_t(thread_count());
+    std::vector<std::atomic<int>> inside(threads);
     std::atomic<bool> wrong{false};
     parallel_for(5000, [&](std::int64_t, int worker) {
-        if (worker < 0 || worker >= thread_count() || inside[static_cast<std::size_t>(worker)]++ != 0)
-            wrong = true;
-        --inside[static_cast<std::size_t>(worker)];
+        if (worker < 0 || worker >= thread_count() || inside[std::size_t(worker)]++ != 0) wrong = true;
+        --inside[std::size_t(worker)];
     });
     EXPECT_FALSE(wrong);
 }
@@ -84,7 +75,7 @@ TEST_P(Parallel, SeveralThreadsMayCallAtOnce) {
         callers.emplace_back([&sums, c] {
             for (int round = 0; round < 50; ++round) {
                 std::vector<std::int64_t> values(1000, 0);
-                parallel_for(1000, [&](std::int64_t i, int) { values[static_cast<std::size_t>(i)] = i; });
+                parallel_for(1000, [&](std::int64_t i, int) { values[std::size_t(i)] = i; });
                 sums[c] += std::accumulate(values.begin(), values.end(), std::int64_t{0});
             }
         });
@@ -199,7 +190,7 @@ TEST(FreedMemory, GoesBackToTheSystem) {
     }).join();
     const std::int64_t before = resident_memory_bytes();
     return_freed_memory();
-    EXPECT_LT(resident_memory_bytes(), before - static_cast<std::int64_t>(block * count / 2));
+    EXPECT_LT(resident_memory_bytes(), before - std::int64_t(block * count / 2));
 }
 
 /// Resident memory before and after many blocks of another thread, once a large one was freed.

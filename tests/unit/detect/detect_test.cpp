@@ -1,21 +1,20 @@
 // Peaks, connected parts and backgrounds against what one counts by hand.
-#include <gtest/gtest.h>
-
 #include "detect/background.h"
 #include "detect/parts.h"
 #include "detect/peaks.h"
+#include "support/test.h"
 
 namespace astrosplat {
 namespace {
 
 Image picture_of(std::int64_t width, const std::vector<float>& values) {
-    Image image = make_image(width, static_cast<std::int64_t>(values.size()) / width, 1);
+    Image image = make_image(width, std::int64_t(values.size()) / width, 1);
     std::ranges::copy(values, image.pixels.begin());
     return image;
 }
 
 PixelMask mask_of(std::int64_t width, const std::vector<unsigned char>& pixels) {
-    PixelMask mask = make_mask(width, static_cast<std::int64_t>(pixels.size()) / width);
+    PixelMask mask = make_mask(width, std::int64_t(pixels.size()) / width);
     std::ranges::copy(pixels, mask.pixels.begin());
     return mask;
 }
@@ -80,8 +79,7 @@ TEST(Backgrounds, AreMediansThatForgetWhatStandsOut) {
 
 TEST(Backgrounds, MedianAboutAPixelIsThatOfItsSquare) {
     Image image = make_image(40, 30, 1);
-    for (std::size_t i = 0; i < image.pixels.size(); ++i)
-        image.pixels[i] = static_cast<float>(i * 7919 % 1000) / 1000.0f;
+    for (std::size_t i = 0; i < image.pixels.size(); ++i) image.pixels[i] = float(i * 7919 % 1000) / 1000.0f;
     for (const auto& [x, y] : {std::pair(0, 0), std::pair(20, 15), std::pair(39, 12)}) {
         std::vector<float> square;
         for (int j = std::max(0, y - 5); j <= std::min(29, y + 5); ++j)

@@ -1,17 +1,14 @@
 // What is kept beside a scene: autosaves and snapshots.
-#include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/wait.h>
-#include <unistd.h>
 
 #include "core/log.h"
 #include "edit/edits.h"
 #include "edit/kept_files.h"
 #include "edit/layers.h"
 #include "scenes.h"
-#include "support/errors.h"
-#include "support/quiet.h"
 #include "support/run_program.h"
+#include "support/test.h"
 
 namespace astrosplat {
 namespace {
@@ -26,8 +23,7 @@ const Autosave::Clock::time_point start{};
 
 std::size_t files_in(const fs::path& folder) {
     std::error_code ignored;
-    return static_cast<std::size_t>(
-        std::distance(fs::directory_iterator(folder, ignored), fs::directory_iterator()));
+    return std::size_t(std::distance(fs::directory_iterator(folder, ignored), fs::directory_iterator()));
 }
 
 struct AutosaveTest : testing::Test {
@@ -107,7 +103,7 @@ TEST_F(AutosaveTest, ALivingProcessIsNotRecovered) {
 /// Of processes that are gone, in an order that neither names nor the folder give.
 TEST_F(AutosaveTest, TheNewestRecoveryComesFirst) {
     const auto leave = [&](const std::string& name, const std::string& time) {
-        std::filesystem::create_directories(folder);
+        fs::create_directories(folder);
         std::ofstream(folder / (name + "-999999999-0.toml"))
             << R"(# astrosplat autosave {"file":"/scene.toml","titled":true,"time":")" << time << "\"}\n";
     };

@@ -1,17 +1,12 @@
 // Keyframes as they are edited, of cameras and of any track, and camera moves.
 #include "edit/view_camera.h"
 
-#include <gtest/gtest.h>
-
-#include <glm/geometric.hpp>
-
 #include "camera/camera.h"
-#include "core/real.h"
 #include "edit/document.h"
 #include "edit/edits.h"
 #include "scene/animate.h"
 #include "scenes.h"
-#include "support/errors.h"
+#include "support/test.h"
 
 namespace astrosplat {
 namespace {

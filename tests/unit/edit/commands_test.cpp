@@ -1,13 +1,9 @@
 // What the window asks of the command line: --batch, prepare, movies.
-#include <gtest/gtest.h>
-
-#include <cstdio>
-
 #include "edit/command_lines.h"
 #include "edit/edits.h"
 #include "edit/layers.h"
 #include "scenes.h"
-#include "support/errors.h"
+#include "support/test.h"
 
 namespace astrosplat {
 namespace {
@@ -157,7 +153,7 @@ TEST(ShellWord, QuotesWhatAShellWouldTakeApart) {
 
 using Words = std::vector<std::string>;
 
-SourceParams source_of(std::vector<std::filesystem::path> pictures) {
+SourceParams source_of(std::vector<fs::path> pictures) {
     SourceParams source;
     source.meshes = {{"plane", std::move(pictures)}};
     return source;
@@ -282,7 +278,7 @@ TEST(RenderTask, PlacesMayStandInTheNamesOfFolders) {
     const Document document = Document::untitled(text, "/films/scene.toml");
     EXPECT_EQ(render_problem(make_render_task(document, RenderKind::range, 1.0), {}), "");
     const RenderTask movie = make_render_task(document, RenderKind::movie, 1.0);
-    EXPECT_EQ(render_target(movie).parent_path(), std::filesystem::current_path());
+    EXPECT_EQ(render_target(movie).parent_path(), fs::current_path());
     EXPECT_EQ(movie.name, "shot.mp4");
 }
 

@@ -1,12 +1,9 @@
 // The document: undo and redo, gestures, refused edits, saving, the file on disk.
 #include "edit/document.h"
 
-#include <gtest/gtest.h>
-
 #include "edit/edits.h"
 #include "scenes.h"
-#include "support/errors.h"
-#include "support/process_state.h"
+#include "support/test.h"
 
 namespace astrosplat {
 namespace {
@@ -109,7 +106,7 @@ TEST_F(DocumentTest, AnEditAfterUndoEndsRedo) {
 }
 
 TEST_F(DocumentTest, FiveHundredStepsCanBeUndone) {
-    for (int i = 1; i <= 510; ++i) document.set("camera.roll", static_cast<double>(i) / 10, 1.0);
+    for (int i = 1; i <= 510; ++i) document.set("camera.roll", double(i) / 10, 1.0);
     int steps = 0;
     for (; document.can_undo(); ++steps) document.undo();
     EXPECT_EQ(steps, 500);
@@ -243,8 +240,8 @@ TEST_F(DocumentTest, WhatWasSavedIsSavedAgainByteForByte) {
 
 TEST_F(DocumentTest, SavingElsewhereMovesTheDocument) {
     document.set(opacity, 0.25, 1.0);
-    std::filesystem::create_directories(f.folder / "neu ü");
-    const std::filesystem::path target = f.folder / "neu ü/zweite szene.toml";
+    fs::create_directories(f.folder / "neu ü");
+    const fs::path target = f.folder / "neu ü/zweite szene.toml";
     const std::string text = document.text_for(target);
     document.save_as(target);
     EXPECT_EQ(f.text(), edit_scene);
@@ -264,8 +261,8 @@ TEST_F(DocumentTest, SavingElsewhereKeepsWhereFramesGo) {
     const auto place = [&] {
         return (document.file().parent_path() / document.scene().output.path).lexically_normal();
     };
-    const std::filesystem::path before = place();
-    std::filesystem::create_directories(f.folder / "neu ü");
+    const fs::path before = place();
+    fs::create_directories(f.folder / "neu ü");
     document.save_as(f.folder / "neu ü/zweite szene.toml");
     EXPECT_EQ(place(), before);
     EXPECT_EQ(load_scene(document.file()).output.path, document.scene().output.path);
@@ -292,7 +289,7 @@ TEST(UntitledDocument, UntitledAsksForAFile) {
 
 TEST_F(DocumentTest, AFileThatCannotBeWrittenLeavesTheDocument) {
     document.set(opacity, 0.25, 1.0);
-    const std::filesystem::path blocked = f.file / "inside a file.toml";
+    const fs::path blocked = f.file / "inside a file.toml";
     EXPECT_EQ(message_of<OutputError>([&] { document.save_as(blocked); }),
               blocked.string() + ": cannot be written: Not a directory");
     EXPECT_EQ(document.file(), f.file);
@@ -341,16 +338,16 @@ TEST_F(DocumentTest, AnAssignedListElementIsMarkedWithoutItsIndex) {
 
 TEST_F(DocumentTest, NoticesOtherHands) {
     EXPECT_FALSE(document.changed_on_disk());
-    const auto time = std::filesystem::last_write_time(f.file);
-    std::filesystem::last_write_time(f.file, time + std::chrono::seconds(5));
+    const auto time = fs::last_write_time(f.file);
+    fs::last_write_time(f.file, time + std::chrono::seconds(5));
     EXPECT_FALSE(document.changed_on_disk());  // touched, but the same
     f.folder.file("szene ä.toml", test::replaced(edit_scene, "fov = 40.0", "fov = 35.0"));
-    std::filesystem::last_write_time(f.file, time + std::chrono::seconds(10));
+    fs::last_write_time(f.file, time + std::chrono::seconds(10));
     EXPECT_TRUE(document.changed_on_disk());
     EXPECT_TRUE(document.changed_on_disk());
     document.ignore_change_on_disk();
     EXPECT_FALSE(document.changed_on_disk());
-    std::filesystem::remove(f.file);
+    fs::remove(f.file);
     EXPECT_FALSE(document.changed_on_disk());
 }
 

@@ -1,12 +1,11 @@
 // The list of layers, and every parameter of the description, as they are edited.
-#include <gtest/gtest.h>
-
+#include "edit/layers.h"
 #include "edit/document.h"
 #include "edit/edits.h"
-#include "edit/layers.h"
+#include "edit/layer_steps.h"
 #include "scenes.h"
-#include "support/errors.h"
 #include "support/random_values.h"
+#include "support/test.h"
 
 namespace astrosplat {
 namespace {
@@ -104,7 +103,7 @@ TEST(LayersInAFile, EveryChangeIsSavedAndLoaded) {
 
 TEST(Presets, GiveLookAndRender) {
     const TempFolder folder;
-    const std::filesystem::path preset =
+    const fs::path preset =
         folder.file("vorlage ä.toml", "[look]\nalpha = { power = 3.0 }\n[render]\nblend = \"add\"\n");
     Scene scene = parse_scene(test::edit_scene, folder / "scene.toml");
     LayerParams& layer = scene.layers[0];
@@ -173,7 +172,7 @@ TEST(EveryParameter, GoesForthAndBackAndThroughTheFile) {
             continue;
         }
         const Scene edited = document.scene();
-        const std::filesystem::path copy = f.folder / "kopie.toml";
+        const fs::path copy = f.folder / "kopie.toml";
         Scene loaded = parse_scene(document.text_for(copy), copy);
         loaded.file = edited.file;
         EXPECT_EQ(loaded, edited) << spec.key << " = " << to_toml(value);

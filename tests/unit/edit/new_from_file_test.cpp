@@ -1,15 +1,11 @@
 // First scenes: what a dropped file becomes, and what the engine then makes of it.
 #include "edit/layers.h"
 
-#include <gtest/gtest.h>
-
-#include <glm/geometric.hpp>
-
 #include "scenes.h"
 #include "source/textured_mesh.h"
 #include "splat_files/splat_file.h"
 #include "support/capture.h"
-#include "support/errors.h"
+#include "support/test.h"
 #include "support/test_data.h"
 
 namespace astrosplat {

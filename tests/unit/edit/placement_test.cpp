@@ -1,12 +1,8 @@
 // Where layers are in the world and in a frame, and the handles that move them.
-#include <gtest/gtest.h>
-
-#include <glm/geometric.hpp>
-
-#include "core/real.h"
+#include "edit/placement.h"
 #include "core/rotation.h"
 #include "edit/edits.h"
-#include "edit/placement.h"
+#include "support/test.h"
 #include "unit/edit/scenes.h"
 
 namespace astrosplat {

@@ -1,18 +1,12 @@
 // The window's settings on disk, and the files in use that change there.
-#include <gtest/gtest.h>
-
-#include <chrono>
-
+#include "edit/preferences.h"
 #include "core/file.h"
 #include "core/log.h"
 #include "edit/document.h"
 #include "edit/kept_files.h"
-#include "edit/preferences.h"
 #include "scene/layer_setup.h"
 #include "scenes.h"
-#include "support/process_state.h"
-#include "support/quiet.h"
-#include "support/temp_folder.h"
+#include "support/test.h"
 
 namespace astrosplat {
 namespace {

@@ -51,7 +51,7 @@ inline const std::string opacity = "layer.stars.render.opacity";
 /// A folder with edit_scene as "szene ä.toml".
 struct SceneFolder {
     TempFolder folder;
-    std::filesystem::path file = folder.file("szene ä.toml", edit_scene);
+    fs::path file = folder.file("szene ä.toml", edit_scene);
 
     std::string text() const { return test::bytes_of(file); }
 };

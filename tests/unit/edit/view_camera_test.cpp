@@ -1,15 +1,10 @@
 // Views and navigation, by closed forms: what is under the mouse stays under it.
 #include "edit/view_camera.h"
 
-#include <gtest/gtest.h>
-
-#include <glm/geometric.hpp>
-
-#include "core/real.h"
 #include "edit/edits.h"
 #include "scene/animate.h"
 #include "scenes.h"
-#include "support/errors.h"
+#include "support/test.h"
 
 namespace astrosplat {
 namespace {

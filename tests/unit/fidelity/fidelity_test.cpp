@@ -1,6 +1,4 @@
 // Measures of pictures: colours, a front view, views from the side.
-#include <gtest/gtest.h>
-
 #include <glm/vec4.hpp>
 
 #include "core/color.h"
@@ -9,6 +7,7 @@
 #include "fidelity/front.h"
 #include "fidelity/side.h"
 #include "image/resample.h"
+#include "support/test.h"
 
 namespace astrosplat {
 namespace {
@@ -19,7 +18,7 @@ Image drawn(std::int64_t width, std::int64_t height, const Color& color) {
     Image image = make_image(width, height, 3);
     for (std::int64_t y = 0; y < height; ++y)
         for (std::int64_t x = 0; x < width; ++x)
-            for (int c = 0; c < 3; ++c) image.at(x, y)[c] = static_cast<float>(color(x, y, c));
+            for (int c = 0; c < 3; ++c) image.at(x, y)[c] = float(color(x, y, c));
     return image;
 }
 
@@ -38,16 +37,15 @@ double waves_and_stars(double x, double y, int c) {
 /// The same as a picture of 240 x 160 px times `scale`.
 Image waves_and_stars(int scale) {
     return drawn(240 * scale, 160 * scale, [&](std::int64_t x, std::int64_t y, int c) {
-        return waves_and_stars((static_cast<double>(x) + 0.5) / scale, (static_cast<double>(y) + 0.5) / scale,
-                               c);
+        return waves_and_stars((double(x) + 0.5) / scale, (double(y) + 0.5) / scale, c);
     });
 }
 
 /// As a renderer might show it: rippled by 5 % and with a little noise.
 Image rendered_waves_and_stars() {
     return drawn(240, 160, [&](std::int64_t x, std::int64_t y, int c) {
-        const auto i = static_cast<double>(x), j = static_cast<double>(y);
-        const double noise = static_cast<double>((x * 7919 + y * 104729 + c * 1299709) % 1000) / 1000.0 - 0.5;
+        const auto i = double(x), j = double(y);
+        const double noise = double((x * 7919 + y * 104729 + c * 1299709) % 1000) / 1000.0 - 0.5;
         return waves_and_stars(i + 0.5, j + 0.5, c) * (1.0 + 0.05 * std::sin(0.9 * i + 1.3 * j)) +
                0.01 * noise;
     });
@@ -67,7 +65,7 @@ Image times(Image image, float r, float g, float b) {
 // Displayed values a and b everywhere.
 double psnr_of_flat(double a, double b) {
     const auto flat = [](double displayed) {
-        return make_image(40, 30, 3, static_cast<float>(real::srgb_to_linear(displayed)));
+        return make_image(40, 30, 3, float(real::srgb_to_linear(displayed)));
     };
     return psnr_db(flat(a), flat(b));
 }
@@ -82,8 +80,8 @@ TEST(Psnr, OfAKnownError) {
 TEST(Ssim, OfItselfIsOneAndOfFlatPicturesItsFormula) {
     const Image image = waves_and_stars(1);
     EXPECT_NEAR(ssim(image, image), 1.0, 1e-12);
-    const Image dark = make_image(30, 20, 3, static_cast<float>(real::srgb_to_linear(0.2)));
-    const Image light = make_image(30, 20, 3, static_cast<float>(real::srgb_to_linear(0.6)));
+    const Image dark = make_image(30, 20, 3, float(real::srgb_to_linear(0.2)));
+    const Image light = make_image(30, 20, 3, float(real::srgb_to_linear(0.6)));
     EXPECT_NEAR(ssim(dark, light), (2 * 0.2 * 0.6 + 1e-4) / (0.04 + 0.36 + 1e-4), 1e-4);
 }
 
@@ -126,7 +124,7 @@ TEST(Flux, ThePercentilesAreThoseOfTheCells) {
     const Image reference = make_image(320, 320, 3, 0.5f);
     Image seen = reference;  // the columns of cells hold 1.00, 1.01 ... 1.31 of the light
     for (std::int64_t y = 0; y < 320; ++y)
-        for (std::int64_t x = 0; x < 320; ++x) seen.at(x, y)[1] *= 1.0f + 0.03f * static_cast<float>(x / 10);
+        for (std::int64_t x = 0; x < 320; ++x) seen.at(x, y)[1] *= 1.0f + 0.03f * float(x / 10);
     const FluxRatios flux = flux_ratios(seen, reference);
     EXPECT_NEAR(flux.cells_5, 1.01, 1e-5);
     EXPECT_NEAR(flux.cells_50, 1.155, 1e-5);
@@ -155,7 +153,7 @@ TEST(ScalePower, OfAScaledWaveIsTheSquareInItsBandAlone) {
     // Waves of displayed values about one half, of periods 8 and 64 px; the short one is drawn at 60 %.
     const auto wave = [](double share) {
         return drawn(256, 256, [&](std::int64_t x, std::int64_t, int) {
-            const double phase = 2.0 * 3.14159265358979 * static_cast<double>(x);
+            const double phase = 2.0 * 3.14159265358979 * double(x);
             return real::srgb_to_linear(0.5 + 0.1 * share * std::sin(phase / 8.0) +
                                         0.1 * std::sin(phase / 64.0));
         });
@@ -181,8 +179,8 @@ Image points(const Sigma& sigma) {
         double value = 0.0;
         for (int i = 0; i < 60; ++i) {
             const auto [sx, sy] = sigma(i);
-            const double dx = (static_cast<double>(x) - (30 + 36 * (i % 10))) / sx;
-            const double dy = (static_cast<double>(y) - (30 + 46 * (i / 10))) / sy;
+            const double dx = (double(x) - (30 + 36 * (i % 10))) / sx;
+            const double dy = (double(y) - (30 + 46 * (i / 10))) / sy;
             if (dx * dx + dy * dy < 60.0) value += 0.5 * std::exp(-0.5 * (dx * dx + dy * dy));
         }
         return value;
@@ -216,7 +214,7 @@ TEST(Needles, TwoPointsAboveEachOtherAreNotOne) {
     const Image pairs = drawn(400, 300, [](std::int64_t x, std::int64_t y, int) {
         double value = 0.0;
         for (const double above : {0.0, 8.0}) {
-            const double dx = static_cast<double>(x % 50 - 25), dy = static_cast<double>(y % 60 - 30) + above;
+            const double dx = double(x % 50 - 25), dy = double(y % 60 - 30) + above;
             value += 0.5 * std::exp(-0.5 * (dx * dx + dy * dy));
         }
         return value;
@@ -228,7 +226,7 @@ TEST(Needles, TwoPointsAboveEachOtherAreNotOne) {
 
 TEST(Needles, AreCountedAmongTheStrongestAwayFromTheEdges) {
     const Image crowded = drawn(1280, 720, [](std::int64_t x, std::int64_t y, int) {
-        const auto dx = static_cast<double>(x % 32 - 16), dy = static_cast<double>(y % 24 - 12);
+        const auto dx = double(x % 32 - 16), dy = double(y % 24 - 12);
         return std::exp(-0.5 * (dx * dx + dy * dy) / 1.44);
     });
     EXPECT_EQ(needles(crowded).points, 400);
@@ -238,11 +236,10 @@ TEST(Needles, AreCountedAmongTheStrongestAwayFromTheEdges) {
 
 TEST(Needles, AreTheNumberOfTheMeasuresThatTargetsWereSetWith) {
     const Image image = drawn(400, 300, [](std::int64_t x, std::int64_t y, int c) {
-        double value = 0.02 + 0.0001 * static_cast<double>(x);
+        double value = 0.02 + 0.0001 * double(x);
         for (int i = 0; i < 60; ++i) {
             const double px = 30 + 36 * (i % 10) + 0.3 * (i % 3), py = 30 + 46 * (i / 10) + 0.25 * (i % 4);
-            const double dx = (static_cast<double>(x) - px) / 1.5,
-                         dy = (static_cast<double>(y) - py) / (1.5 * (1.0 + 0.3 * (i % 7)));
+            const double dx = (double(x) - px) / 1.5, dy = (double(y) - py) / (1.5 * (1.0 + 0.3 * (i % 7)));
             value += (0.2 + 0.01 * i) * std::exp(-0.5 * (dx * dx + dy * dy));
         }
         return value * (c == 0 ? 1.0 : c == 1 ? 0.8 : 0.6);
@@ -255,8 +252,7 @@ TEST(Needles, AreTheNumberOfTheMeasuresThatTargetsWereSetWith) {
 // A disk of 400 px, sech^2 of `height` px from top to bottom, fading outward, with a lane of a depth.
 Image disk(double height, double fall_px, double lane) {
     return drawn(640, 200, [&](std::int64_t x, std::int64_t y, int) {
-        const double r = std::fabs(static_cast<double>(x) - 319.5),
-                     z = (static_cast<double>(y) - 99.5) / height;
+        const double r = std::fabs(double(x) - 319.5), z = (double(y) - 99.5) / height;
         if (r > 200.0) return 0.0;
         const double dust = 1.0 - lane * std::exp(-0.5 * (z * height / 3.0) * (z * height / 3.0));
         return 0.8 * std::exp(-r / fall_px) * dust / (std::cosh(z) * std::cosh(z));
@@ -291,7 +287,7 @@ TEST(EdgeOn, TheLaneIsAsDeepAsDrawn) {
 
 TEST(EdgeOn, IsTheNumbersOfTheMeasuresThatTargetsWereSetWith) {
     const Image image = drawn(640, 200, [](std::int64_t x, std::int64_t y, int c) {
-        const double X = static_cast<double>(x) - 319.5, z = static_cast<double>(y) - 99.5;
+        const double X = double(x) - 319.5, z = double(y) - 99.5;
         const double height = 9.0 + 3.0 * std::exp(-X * X / (2.0 * 40.0 * 40.0));
         const double lane =
             1.0 - 0.55 * std::exp(-0.5 * (z - 1.0) * (z - 1.0) / 4.0) * std::exp(-std::pow(X / 260.0, 4));
@@ -393,10 +389,10 @@ TEST(ColorDifferences, ArePercentilesOverThePixels) {
 
 // Larger pictures are looked at here and there: every step-th pixel both ways.
 TEST(ColorDifferences, OfALargePictureAreThoseOfASample) {
-    const Image a = drawn(
-        2100, 1000, [](std::int64_t x, std::int64_t, int) { return 0.2 + 1e-4 * static_cast<double>(x); });
-    const Image b = drawn(
-        2100, 1000, [](std::int64_t x, std::int64_t, int) { return 0.2 + 2e-4 * static_cast<double>(x); });
+    const Image a =
+        drawn(2100, 1000, [](std::int64_t x, std::int64_t, int) { return 0.2 + 1e-4 * double(x); });
+    const Image b =
+        drawn(2100, 1000, [](std::int64_t x, std::int64_t, int) { return 0.2 + 2e-4 * double(x); });
     const Image left = drawn(1, 1, [](std::int64_t, std::int64_t, int) { return 0.2 + 0.105; });
     const Image right = drawn(1, 1, [](std::int64_t, std::int64_t, int) { return 0.2 + 0.21; });
     const double middle = ciede2000(lab_of_linear(left.at(0, 0)), lab_of_linear(right.at(0, 0)));
@@ -405,7 +401,7 @@ TEST(ColorDifferences, OfALargePictureAreThoseOfASample) {
 
 /// One pixel of linear light whose displayed value is `displayed`.
 Image pixel(float displayed) {
-    const float linear = static_cast<float>(real::srgb_to_linear(displayed));
+    const float linear = float(real::srgb_to_linear(displayed));
     return make_image(1, 1, 3, linear);
 }
 

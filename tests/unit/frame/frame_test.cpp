@@ -1,12 +1,4 @@
 // Frames: means of renderings, their names, and their hash.
-#include <fmt/format.h>
-#include <gtest/gtest.h>
-#include <unistd.h>
-
-#include <atomic>
-#include <fstream>
-
-#include "core/error.h"
 #include "core/file.h"
 #include "frame/frame_hash.h"
 #include "frame/frame_scene.h"
@@ -15,8 +7,7 @@
 #include "scene/describe.h"
 #include "scene/load.h"
 #include "support/color_config.h"
-#include "support/errors.h"
-#include "support/temp_folder.h"
+#include "support/test.h"
 
 namespace astrosplat {
 namespace {
@@ -65,7 +56,7 @@ TEST(MeanFrame, ALayerThatOneRenderingShowsHasItsShareInItsPlace) {
     divide_sum(sum, 4, 4);
     ASSERT_EQ(sum.layers.size(), 4u);
     for (const auto& [layer, light] : {std::pair{0, 0.125f}, {1, 0.0f}, {2, 0.5f}, {3, 0.0f}})
-        EXPECT_EQ(sum.layers[static_cast<std::size_t>(layer)].pixels[0], light) << layer;
+        EXPECT_EQ(sum.layers[std::size_t(layer)].pixels[0], light) << layer;
 }
 
 // Frame numbers and eyes in file names, and folders whose names look like them.
@@ -198,7 +189,7 @@ file = "dust.pda"
     }
 
     std::string hash(const Scene& scene, std::int64_t frame = 1) {
-        return FrameHasher().frame_hash(frame_scene(scene, static_cast<double>(frame)));
+        return FrameHasher().frame_hash(frame_scene(scene, double(frame)));
     }
     std::string text(const Scene& scene) { return FrameHasher().canonical_text(frame_scene(scene, 1.0)); }
     std::string changed(const std::function<void(Scene&)>& change, std::int64_t frame = 1) {

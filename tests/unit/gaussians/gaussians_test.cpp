@@ -1,23 +1,17 @@
 // Splats as Gaussians, and captures with colours by direction.
 #include "gaussians/gaussians.h"
 
-#include <gtest/gtest.h>
-
-#include <glm/geometric.hpp>
-#include <iterator>
 #include <numbers>
 
 #include "core/color.h"
-#include "core/real.h"
 #include "core/rotation.h"
 #include "gaussians/gaussian_file.h"
 #include "render/footprint.h"
 #include "render/render.h"
 #include "splat_files/splat_file.h"
 #include "splats/harmonics.h"
-#include "support/bits.h"
 #include "support/capture.h"
-#include "support/temp_folder.h"
+#include "support/test.h"
 
 namespace astrosplat::test {
 namespace {
@@ -233,7 +227,7 @@ struct ShownCapture {
     ShadedSplats splats;
     RenderLayer layer;
 
-    explicit ShownCapture(const std::filesystem::path& file) : set(read_splats(file)) {
+    explicit ShownCapture(const fs::path& file) : set(read_splats(file)) {
         splats.position = set.position;
         splats.color = set.color;
         splats.alpha = set.alpha;
@@ -351,7 +345,7 @@ TEST(GaussianFile, UsdTextSaysWhatTheyAre) {
 // where nothing changed them, and those of the frame in the direction it is seen from where something did.
 
 glm::vec3 linear(glm::vec3 color) {
-    for (int k = 0; k < 3; ++k) color[k] = static_cast<float>(real::srgb_to_linear(color[k]));
+    for (int k = 0; k < 3; ++k) color[k] = float(real::srgb_to_linear(color[k]));
     return color;
 }
 
@@ -404,7 +398,7 @@ struct SeenCapture {
         return gaussians;
     }
     SplatSet again(const Gaussians& gaussians, const std::string& name, bool encoded) {
-        const std::filesystem::path file = folder / name;
+        const fs::path file = folder / name;
         if (name.ends_with(".ply"))
             write_gaussian_ply({file, Existing::replace}, gaussians);
         else if (name.ends_with(".usda"))

@@ -1,15 +1,9 @@
 // Columns of a set, written in parts and read again, and the runs that are kept of it.
-#include <gtest/gtest.h>
-
-#include <map>
-#include <mutex>
-
-#include "core/parallel.h"
 #include "generate/generate.h"
 #include "generate/kept_store.h"
 #include "source/textured_mesh.h"
 #include "splat_files/native.h"
-#include "support/temp_folder.h"
+#include "support/test.h"
 #include "unit/generate/generate_support.h"
 
 namespace astrosplat {
@@ -24,8 +18,8 @@ Texture stripes(std::int64_t n, TextureSettings::Filter filter) {
     for (std::int64_t y = 0; y < 16; ++y)
         for (std::int64_t x = 0; x < 32; ++x) {
             float* const p = texture.image.at(x, y);
-            p[3] = x % n == 0 ? 0.0f : 0.5f + 0.01f * static_cast<float>(y);
-            for (int c = 0; c < 3; ++c) p[c] = p[3] * static_cast<float>(x + c) / 64.0f;
+            p[3] = x % n == 0 ? 0.0f : 0.5f + 0.01f * float(y);
+            for (int c = 0; c < 3; ++c) p[c] = p[3] * float(x + c) / 64.0f;
         }
     texture.filter = filter;
     texture.credit = "of " + std::to_string(n);
@@ -93,10 +87,9 @@ TEST_F(ColumnsTest, TheEstimateTellsOfPositionsThatAreDark) {
     source.count = 40000;
     const Lattice lattice = make_lattice(source, made, 0.3);
     const Columns columns = make_columns(made, lattice, 0.3, 1.0, 1);
-    const double bytes =
-        static_cast<double>(columns.splats.size()) * (68.0 + 36.0);  // and half of them twice
+    const double bytes = double(columns.splats.size()) * (68.0 + 36.0);  // and half of them twice
     EXPECT_LT(lit_splats(columns).size() * 50, columns.splats.size());
-    EXPECT_NEAR(static_cast<double>(columns_memory_bytes(made, lattice, 0.3)) / bytes, 1.0, 0.25);
+    EXPECT_NEAR(double(columns_memory_bytes(made, lattice, 0.3)) / bytes, 1.0, 0.25);
 }
 
 // A set written in parts is the file of the set written as a whole, whatever the parts.
@@ -161,7 +154,7 @@ TEST_F(WriteColumns, NothingLitIsAFileOfNothing) {
 // Runs of splats from several stores join a set in order of id.
 
 KeptSplat splat_of(std::uint64_t id) {
-    const auto v = static_cast<float>(id);
+    const auto v = float(id);
     return {glm::vec3(v), glm::vec3(0.5f), 1.0f, v, id, glm::vec2(v), glm::vec3(0, 1, 0), 7, 8};
 }
 
@@ -201,11 +194,11 @@ TEST(KeptStore, PartAfterPartJoinsASetInOrder) {
             begin[n] = end;
         }
         append_sorted(runs, set);
-        ASSERT_EQ(set.size(), static_cast<std::int64_t>(end_id));
+        ASSERT_EQ(set.size(), std::int64_t(end_id));
     }
     for (std::size_t i = 0; i < set.id.size(); ++i) {
         ASSERT_EQ(set.id[i], i);
-        ASSERT_EQ(set.position[i], glm::vec3(static_cast<float>(i)));
+        ASSERT_EQ(set.position[i], glm::vec3(float(i)));
         ASSERT_EQ(set.mesh[i], 7u);
         ASSERT_EQ(set.face[i], 8u);
     }
@@ -237,7 +230,7 @@ class Collector : public KeptWatcher {
     void ends(Columns sample, std::int64_t of) override {
         ++ended;
         EXPECT_EQ(sample.splats.size(), 1000);
-        EXPECT_EQ(static_cast<std::size_t>(of), kept.size());
+        EXPECT_EQ(std::size_t(of), kept.size());
         for (std::size_t i = 0; i < sample.splats.id.size(); ++i)
             EXPECT_EQ(kept.at(sample.splats.id[i]).face, sample.splats.face[i]);
     }
@@ -271,7 +264,7 @@ TEST(KeptWatcher, SeesEverySplatOnceAndChangesNothing) {
         EXPECT_EQ(watcher.max_distance, alone.max_distance);
         EXPECT_TRUE(watcher.generated);
         EXPECT_EQ(watcher.lattice_box.lo, lattice.box.lo);
-        ASSERT_EQ(static_cast<std::int64_t>(watcher.kept.size()), alone.size());
+        ASSERT_EQ(std::int64_t(watcher.kept.size()), alone.size());
         std::size_t row = 0;
         for (const auto& [id, splat] : watcher.kept) {
             ASSERT_EQ(id, alone.id[row]);

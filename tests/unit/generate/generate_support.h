@@ -1,17 +1,12 @@
 // Small meshes, one-colour pictures and the slow but plain generation that the tests compare with.
 #pragma once
 
-#include <gtest/gtest.h>
-
-#include <glm/geometric.hpp>
 #include <glm/vec4.hpp>
 
-#include "core/real.h"
-#include "core/shared_maths.h"
 #include "generate/generate.h"
 #include "generate/lattice.h"
 #include "generate/triangle_tree.h"
-#include "support/bits.h"
+#include "support/test.h"
 
 namespace astrosplat {
 
@@ -24,22 +19,22 @@ inline ClosestPoint closest_on_triangle(const glm::dvec3& p, const glm::dvec3& a
 
 /// Position of lattice id before jitter; corners come first, then centres.
 inline glm::dvec3 lattice_position(const Lattice& lattice, std::uint64_t id) {
-    const auto corners = static_cast<std::uint64_t>(lattice.corners());
+    const auto corners = std::uint64_t(lattice.corners());
     const bool centre = id >= corners;
     const std::uint64_t index = centre ? id - corners : id;
-    const auto nx = static_cast<std::uint64_t>(lattice.n.x + (centre ? 0 : 1));
-    const auto ny = static_cast<std::uint64_t>(lattice.n.y + (centre ? 0 : 1));
+    const auto nx = std::uint64_t(lattice.n.x + (centre ? 0 : 1));
+    const auto ny = std::uint64_t(lattice.n.y + (centre ? 0 : 1));
     const double half = centre ? 0.5 : 0.0;
-    return {lattice_coordinate(lattice, 0, static_cast<double>(index % nx) + half),
-            lattice_coordinate(lattice, 1, static_cast<double>(index / nx % ny) + half),
-            lattice_coordinate(lattice, 2, static_cast<double>(index / nx / ny) + half)};
+    return {lattice_coordinate(lattice, 0, double(index % nx) + half),
+            lattice_coordinate(lattice, 1, double(index / nx % ny) + half),
+            lattice_coordinate(lattice, 2, double(index / nx / ny) + half)};
 }
 
 /// Displacement of a position by jitter: half_range * uniform[-1, 1) per axis, hashed from (seed, id).
 inline glm::dvec3 jitter_offset(std::uint64_t id, std::uint32_t seed, const glm::dvec3& half_range) {
-    const auto low = static_cast<std::uint32_t>(id), high = static_cast<std::uint32_t>(id >> 32);
+    const auto low = std::uint32_t(id), high = std::uint32_t(id >> 32);
     const auto random = [&](std::uint32_t purpose) {
-        return 2.0 * static_cast<double>(shared::as_uniform(shared::as_hash(seed, low, high, purpose))) - 1.0;
+        return 2.0 * double(shared::as_uniform(shared::as_hash(seed, low, high, purpose))) - 1.0;
     };
     return {half_range.x * random(shared::PURPOSE_JITTER_X), half_range.y * random(shared::PURPOSE_JITTER_Y),
             half_range.z * random(shared::PURPOSE_JITTER_Z)};
@@ -116,7 +111,7 @@ class Oracle {
             for (std::size_t i = begin; i < end; ++i) {
                 if (squared(i, p) > (reach + r_[i]) * (reach + r_[i])) continue;
                 ClosestPoint other = closest_on_triangle(p, corners_[i].a, corners_[i].b, corners_[i].c);
-                other.triangle = static_cast<std::uint32_t>(i);
+                other.triangle = std::uint32_t(i);
                 if (other.distance_squared < best.distance_squared ||
                     (best.triangle == ClosestPoint::none &&
                      other.distance_squared == best.distance_squared)) {

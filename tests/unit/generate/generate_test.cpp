@@ -1,17 +1,10 @@
 // Generation against a plain loop over the lattice, and the lattice itself.
 #include "generate/generate.h"
 
-#include <gtest/gtest.h>
-
-#include <atomic>
-#include <set>
-
-#include "core/error.h"
-#include "core/parallel.h"
 #include "generate/lattice.h"
 #include "source/texture.h"
 #include "source/textured_mesh.h"
-#include "support/errors.h"
+#include "support/test.h"
 #include "unit/generate/generate_support.h"
 
 namespace astrosplat {
@@ -30,7 +23,7 @@ SplatSet plain_generate(const TexturedMesh& m, const Lattice& lattice, double ma
                         std::uint32_t seed) {
     const test::Oracle oracle(m.mesh);
     SplatSet set;
-    for (std::uint64_t id = 0; id < static_cast<std::uint64_t>(lattice.positions()); ++id) {
+    for (std::uint64_t id = 0; id < std::uint64_t(lattice.positions()); ++id) {
         const dvec3 p = jittered_position(lattice, id, jitter, seed);
         const ClosestPoint c = oracle.closest(p, max_distance);
         if (c.triangle == ClosestPoint::none) continue;
@@ -49,7 +42,7 @@ SplatSet plain_generate(const TexturedMesh& m, const Lattice& lattice, double ma
         set.position.push_back(glm::vec3(p));
         set.color.push_back(picture.color);
         set.alpha.push_back(picture.alpha);
-        set.distance.push_back(static_cast<float>(std::sqrt(c.distance_squared)));
+        set.distance.push_back(float(std::sqrt(c.distance_squared)));
         set.uv.push_back(uv);
         set.normal.push_back(glm::vec3(n / std::sqrt(glm::dot(n, n))));
         set.mesh.push_back(0);
@@ -136,7 +129,7 @@ TEST_F(GenerateTest, IdsAscendAndDistancesStayBelowTheLimit) {
     EXPECT_GT(*std::max_element(set.distance.begin(), set.distance.end()), 0.39f);
     const auto inside = std::count_if(set.position.begin(), set.position.end(),
                                       [](const glm::vec3& p) { return glm::length(p) < 5.0f; });
-    EXPECT_NEAR(static_cast<double>(inside) / static_cast<double>(set.size()), 0.47,
+    EXPECT_NEAR(double(inside) / double(set.size()), 0.47,
                 0.02);  // both sides count
 }
 
@@ -161,7 +154,7 @@ TEST_F(GenerateTest, AutomaticVoxelsKeepAboutCount) {
         source.count = 50000;
         const double distance = resolved_max_distance(source, bounds(meshes));
         const SplatSet set = generate(meshes, make_lattice(source, meshes, distance), distance, 1.0, 3);
-        EXPECT_NEAR(static_cast<double>(set.size()), 50000.0, 7500.0) << name;
+        EXPECT_NEAR(double(set.size()), 50000.0, 7500.0) << name;
     }
 }
 
@@ -458,7 +451,7 @@ struct Kept {
 Kept kept(const SourceParams& source, const std::vector<TexturedMesh>& meshes) {
     const double d = resolved_max_distance(source, bounds(meshes));
     const SplatSet set = generate(meshes, make_lattice(source, meshes, d), d, 1.0, 3);
-    return {static_cast<double>(set.size()), static_cast<double>(set.size() + set.zero_alpha)};
+    return {double(set.size()), double(set.size() + set.zero_alpha)};
 }
 
 TEST(AutomaticVoxels, CountIsKeptOnThinMeshesAndWithStrayVertices) {

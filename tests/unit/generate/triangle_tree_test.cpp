@@ -1,15 +1,9 @@
 // The closest triangle: of one, of blocks of positions, and of real meshes.
-#include <gtest/gtest.h>
-
-#include <atomic>
-#include <glm/geometric.hpp>
-
-#include "core/parallel.h"
-#include "core/shared_maths.h"
+#include "generate/triangle_tree.h"
 #include "generate/lattice.h"
 #include "generate/lattice_cull.h"
-#include "generate/triangle_tree.h"
 #include "source/mesh.h"
+#include "support/test.h"
 #include "support/test_data.h"
 #include "unit/generate/generate_support.h"
 
@@ -137,31 +131,30 @@ TEST(TriangleTree, BoxesHoldWhatLiesBelowThem) {
             ASSERT_LT(box, level.count);
             for (const glm::vec3& p : {corners.a, corners.b, corners.c}) {
                 const dvec3 local = dvec3(p) - tree.origin;
-                EXPECT_LE(static_cast<double>(level.lo_x[box]), local.x);
-                EXPECT_LE(static_cast<double>(level.lo_y[box]), local.y);
-                EXPECT_LE(static_cast<double>(level.lo_z[box]), local.z);
-                EXPECT_GE(static_cast<double>(level.hi_x[box]), local.x);
-                EXPECT_GE(static_cast<double>(level.hi_y[box]), local.y);
-                EXPECT_GE(static_cast<double>(level.hi_z[box]), local.z);
+                EXPECT_LE(double(level.lo_x[box]), local.x);
+                EXPECT_LE(double(level.lo_y[box]), local.y);
+                EXPECT_LE(double(level.lo_z[box]), local.z);
+                EXPECT_GE(double(level.hi_x[box]), local.x);
+                EXPECT_GE(double(level.hi_y[box]), local.y);
+                EXPECT_GE(double(level.hi_z[box]), local.z);
             }
             box /= TriangleTree::fan;
         }
     }
-    EXPECT_EQ(std::count(seen.begin(), seen.end(), true), static_cast<std::ptrdiff_t>(seen.size()));
+    EXPECT_EQ(std::count(seen.begin(), seen.end(), true), std::ptrdiff_t(seen.size()));
 }
 
 // Points all around a mesh, also far from the origin, where floats are coarse.
 TEST(TriangleTree, EqualsBruteForceWhereverTheMeshLies) {
     for (const double offset : {0.0, 1000.0, 1.0e6}) {
         Mesh mesh = builtin_mesh("sphere", 1.0);
-        for (glm::vec3& p : mesh.positions) p = p * 20.0f + static_cast<float>(offset);
+        for (glm::vec3& p : mesh.positions) p = p * 20.0f + float(offset);
         const TriangleTree tree = tree_of({mesh});
         const test::Oracle oracle(mesh);
         std::uint32_t hint = ClosestPoint::none;
         for (std::uint32_t i = 0; i < 300; ++i) {
             const auto random = [&](std::uint32_t axis) {
-                return 200.0 * static_cast<double>(shared::as_uniform(shared::as_hash(i, axis, 0, 99))) -
-                       100.0;
+                return 200.0 * double(shared::as_uniform(shared::as_hash(i, axis, 0, 99))) - 100.0;
             };
             const dvec3 p = offset + dvec3(random(0), random(1), random(2));
             const NearTriangle fast = closest_point(tree, p, 60.0, hint);
@@ -172,7 +165,7 @@ TEST(TriangleTree, EqualsBruteForceWhereverTheMeshLies) {
             if (slow.triangle != ClosestPoint::none) {
                 EXPECT_EQ(tree.triangles[fast.slot].number, slow.triangle);
             }
-            hint = i % static_cast<std::uint32_t>(mesh.triangles.size());
+            hint = i % std::uint32_t(mesh.triangles.size());
         }
     }
 }
@@ -193,12 +186,12 @@ Mesh soup(std::uint32_t count) {
     Mesh mesh;
     for (std::uint32_t n = 0; n < count; ++n) {
         const glm::vec3 a = random_point(n, 100);
-        const float size = 1.0f / static_cast<float>(1u << n % 9);
+        const float size = 1.0f / float(1u << n % 9);
         glm::vec3 b = a + size * random_point(n, 110), c = a + size * random_point(n, 120);
         if (n % 16 == 3) c = a + (b - a) * 0.3f + glm::vec3(0, 1e-6f, 0);
         if (n % 16 == 7) c = a + (b - a) * 0.5f;
         if (n % 16 == 11) b = c = a;
-        const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+        const auto first = std::uint32_t(mesh.positions.size());
         mesh.positions.insert(mesh.positions.end(), {a, b, c});
         mesh.triangles.push_back({{first, first + 1, first + 2}, {}});
         if (n % 16 == 15) mesh.triangles.push_back(mesh.triangles[n / 2]);
@@ -230,7 +223,7 @@ std::int64_t expect_brute_force(const Mesh& mesh, const Lattice& lattice, double
             }
         }
     std::int64_t near_enough = 0;
-    for (std::uint64_t id = 0; id < static_cast<std::uint64_t>(lattice.positions()); ++id) {
+    for (std::uint64_t id = 0; id < std::uint64_t(lattice.positions()); ++id) {
         const glm::dvec3 p = jittered_position(lattice, id, jitter, 3);
         near_enough += oracle.closest(p, max_distance).triangle != ClosestPoint::none;
     }
@@ -271,8 +264,8 @@ TEST_F(BlockQuery, FineSurfacesWithNarrowTriangles) {
     for (glm::vec3& p : mesh.positions) p *= 0.2f;
     for (std::uint32_t n = 0; n < 300; ++n) {
         const glm::vec3 a = random_point(n, 130), b = a + 0.3f * random_point(n, 140);
-        const float height = 0.3f / static_cast<float>(1u << n % 24);
-        const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+        const float height = 0.3f / float(1u << n % 24);
+        const auto first = std::uint32_t(mesh.positions.size());
         mesh.positions.insert(mesh.positions.end(), {a, b, b + height * random_point(n, 150)});
         mesh.triangles.push_back({{first + n % 3, first + (n + 1) % 3, first + (n + 2) % 3}, {}});
     }
@@ -295,7 +288,7 @@ TEST_F(BlockQuery, FarFromTheOriginAndForAnyDistance) {
 TEST_F(BlockQuery, BlocksThatOnlyDiscsComeNearTo) {
     Mesh mesh;
     for (const glm::vec3 middle : {glm::vec3(0), glm::vec3(39.84f, 0.5f, 0.5f)}) {
-        const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+        const auto first = std::uint32_t(mesh.positions.size());
         for (const glm::vec3 corner : {glm::vec3(0.3f, 0, 0), {0, -0.3f, 0}, {0, 0.3f, 0}})
             mesh.positions.push_back(middle + corner);
         for (std::size_t copy = 0; copy < TriangleTree::fan; ++copy)
@@ -351,7 +344,7 @@ TEST_P(RealMeshes, EqualBruteForceBitForBit) {
     const glm::dvec3 grown = box.extent() + 2.0 * max_distance;
     source.voxel_size = std::cbrt(2.0 * grown.x * grown.y * grown.z / positions);
     const Lattice lattice = make_lattice(source, meshes, max_distance);
-    ASSERT_GE(static_cast<double>(lattice.positions()), positions);
+    ASSERT_GE(double(lattice.positions()), positions);
 
     const SplatSet set = generate(meshes, lattice, max_distance, 1.0, 11);
     const Mesh* const shape = &meshes[0].mesh;
@@ -359,10 +352,9 @@ TEST_P(RealMeshes, EqualBruteForceBitForBit) {
     const test::Oracle oracle(meshes[0].mesh);
     std::atomic<std::int64_t> kept{0}, different{0};
     parallel_chunks(lattice.positions(), 256, [&](std::int64_t begin, std::int64_t end, int) {
-        auto at = static_cast<std::size_t>(
-            std::lower_bound(set.id.begin(), set.id.end(), static_cast<std::uint64_t>(begin)) -
-            set.id.begin());
-        for (auto id = static_cast<std::uint64_t>(begin); id < static_cast<std::uint64_t>(end); ++id) {
+        auto at = std::size_t(std::lower_bound(set.id.begin(), set.id.end(), std::uint64_t(begin)) -
+                              set.id.begin());
+        for (auto id = std::uint64_t(begin); id < std::uint64_t(end); ++id) {
             const glm::dvec3 p = jittered_position(lattice, id, 1.0, 11);
             const ClosestPoint slow = oracle.closest(p, max_distance),
                                fast = closest_point(tree, p, max_distance).closest;
@@ -375,7 +367,7 @@ TEST_P(RealMeshes, EqualBruteForceBitForBit) {
                 const glm::vec2 uv(corner(0) + (corner(1) - corner(0)) * slow.barycentric.x +
                                    (corner(2) - corner(0)) * slow.barycentric.y);
                 same = fast.barycentric == slow.barycentric && set.uv[at] == uv &&
-                       set.distance[at] == static_cast<float>(std::sqrt(slow.distance_squared));
+                       set.distance[at] == float(std::sqrt(slow.distance_squared));
             }
             at += in_set ? 1 : 0;
             kept += in_set ? 1 : 0;
@@ -384,7 +376,7 @@ TEST_P(RealMeshes, EqualBruteForceBitForBit) {
     });
     EXPECT_EQ(different, 0);
     EXPECT_EQ(kept, set.size());
-    EXPECT_GT(kept, static_cast<std::int64_t>(positions / 50.0));
+    EXPECT_GT(kept, std::int64_t(positions / 50.0));
 }
 
 INSTANTIATE_TEST_SUITE_P(Meshes, RealMeshes,
@@ -399,7 +391,7 @@ TEST(RealMesh, AutomaticVoxelsKeepAboutCount) {
     source.count = 200000;
     const double distance = resolved_max_distance(source, bounds(meshes));
     const SplatSet set = generate(meshes, make_lattice(source, meshes, distance), distance, 1.0, 3);
-    EXPECT_NEAR(static_cast<double>(set.size()), 200000.0, 30000.0);
+    EXPECT_NEAR(double(set.size()), 200000.0, 30000.0);
 }
 
 }  // namespace

@@ -1,12 +1,10 @@
 // Pictures enlarged, reduced, blurred and opened, against plain sums.
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <numeric>
 
 #include "image/blur.h"
 #include "image/channels.h"
 #include "image/resample.h"
+#include "support/test.h"
 
 namespace astrosplat {
 namespace {
@@ -15,7 +13,7 @@ namespace {
 
 TEST(Area, EachPixelIsTheMeanOfWhatItCovers) {
     Image image = make_image(3, 2, 2);
-    for (std::int64_t i = 0; i < 12; ++i) image.pixels[static_cast<std::size_t>(i)] = static_cast<float>(i);
+    for (std::int64_t i = 0; i < 12; ++i) image.pixels[std::size_t(i)] = float(i);
     const Image out = reduced_by_area(image, 2, 1);
     // The columns' means are 3, 5 and 7 (4, 6 and 8); a new one covers one and a half.
     EXPECT_NEAR(out.at(0, 0)[0], (3.0 + 0.5 * 5.0) / 1.5, 1e-5);
@@ -27,7 +25,7 @@ TEST(Area, EachPixelIsTheMeanOfWhatItCovers) {
 TEST(Area, EnlargedPixelsKeepTheirLightAndRiseTowardsBrighterNeighbours) {
     Image image = make_image(5, 4, 2);
     for (std::size_t i = 0; i < image.pixels.size(); ++i)
-        image.pixels[i] = i % 7 == 0 ? 0.0f : std::fmod(0.37f * static_cast<float>(i * i), 2.0f);
+        image.pixels[i] = i % 7 == 0 ? 0.0f : std::fmod(0.37f * float(i * i), 2.0f);
     for (const int times : {1, 2, 3, 4}) {
         const Image out = enlarged(image, times);
         ASSERT_EQ(out.width, 5 * times);
@@ -38,10 +36,10 @@ TEST(Area, EnlargedPixelsKeepTheirLightAndRiseTowardsBrighterNeighbours) {
     }
     Image slope = make_image(5, 3, 1);
     for (std::int64_t y = 0; y < 3; ++y)
-        for (std::int64_t x = 0; x < 5; ++x) *slope.at(x, y) = static_cast<float>(x + 1);
+        for (std::int64_t x = 0; x < 5; ++x) *slope.at(x, y) = float(x + 1);
     const Image out = enlarged(slope, 2);
     for (std::int64_t x = 2; x < 8; ++x)  // at the ends it is level
-        EXPECT_NEAR(*out.at(x, 3), 0.75 + 0.5 * static_cast<double>(x), 1e-5) << x;
+        EXPECT_NEAR(*out.at(x, 3), 0.75 + 0.5 * double(x), 1e-5) << x;
 }
 
 TEST(Area, EnlargedLightIsFiniteAndNotBelowZero) {
@@ -59,8 +57,8 @@ Image ramp(std::int64_t width, std::int64_t height) {
     Image image = make_image(width, height, 3);
     for (std::int64_t y = 0; y < height; ++y)
         for (std::int64_t x = 0; x < width; ++x) {
-            image.at(x, y)[0] = static_cast<float>(x) + 0.5f;
-            image.at(x, y)[1] = static_cast<float>(y) + 0.5f;
+            image.at(x, y)[0] = float(x) + 0.5f;
+            image.at(x, y)[1] = float(y) + 0.5f;
             image.at(x, y)[2] = 1.0f;
         }
     return image;
@@ -73,8 +71,7 @@ TEST(Resample, ARampShowsItsPlaceAwayFromTheEdges) {
         EXPECT_NEAR(small.at(x, y)[0], (x + 0.5) * 3.0, 1e-4);
         EXPECT_NEAR(small.at(x, y)[1], (y + 0.5) * 3.0 + 1.0, 1e-4);
     }
-    for (std::int64_t i = 0; i < 40 * 26; ++i)
-        EXPECT_NEAR(small.pixels[static_cast<std::size_t>(3 * i + 2)], 1.0f, 1e-6f);
+    for (std::int64_t i = 0; i < 40 * 26; ++i) EXPECT_NEAR(small.pixels[std::size_t(3 * i + 2)], 1.0f, 1e-6f);
 }
 
 TEST(Resample, OfTheSameSizeWithoutAFilterIsThePicture) {
@@ -118,7 +115,7 @@ Image noise(std::int64_t width, std::int64_t height, int channels) {
     std::uint32_t state = 1;
     for (float& value : image.pixels) {
         state = state * 1664525u + 1013904223u;
-        value = static_cast<float>(state >> 8) / 16777216.0f;
+        value = float(state >> 8) / 16777216.0f;
     }
     return image;
 }
@@ -132,11 +129,11 @@ std::int64_t reflected(std::int64_t i, std::int64_t n) {
 
 // The definition: every weight of the two-dimensional kernel, without a cut.
 double direct(const Image& image, double sigma, std::int64_t x, std::int64_t y, int channel) {
-    const auto reach = static_cast<std::int64_t>(std::ceil(8.0 * sigma));
+    const auto reach = std::int64_t(std::ceil(8.0 * sigma));
     double weights = 0.0, result = 0.0;
     for (std::int64_t j = -reach; j <= reach; ++j)
         for (std::int64_t i = -reach; i <= reach; ++i) {
-            const double w = std::exp(-0.5 * static_cast<double>(i * i + j * j) / (sigma * sigma));
+            const double w = std::exp(-0.5 * double(i * i + j * j) / (sigma * sigma));
             weights += w;
             result += w * image.at(reflected(x + i, image.width), reflected(y + j, image.height))[channel];
         }
@@ -177,9 +174,9 @@ TEST(Blur, RowsAreWeightedAlikeAtEveryPlace) {
         for (std::int64_t i = 0; i < count; ++i) {
             float sum = 0.0f;
             for (std::size_t k = 0; k < 3; ++k) sum += weights[k] * rows[k][i];
-            ASSERT_EQ(out[static_cast<std::size_t>(i)], sum) << count << " " << i;
+            ASSERT_EQ(out[std::size_t(i)], sum) << count << " " << i;
         }
-        ASSERT_EQ(out[static_cast<std::size_t>(count)], -1.0f) << count;
+        ASSERT_EQ(out[std::size_t(count)], -1.0f) << count;
     }
 }
 
@@ -192,7 +189,7 @@ TEST(Blur, OfAPointIsWithinAHundredthOfTheGaussiansPeak) {
         double worst = 0.0;
         for (std::int64_t y = 80; y < 180; ++y)
             for (std::int64_t x = 80; x < 180; ++x) {
-                const double r2 = static_cast<double>((x - 127) * (x - 127) + (y - 130) * (y - 130));
+                const double r2 = double((x - 127) * (x - 127) + (y - 130) * (y - 130));
                 worst = std::max(worst,
                                  std::fabs(*blurred.at(x, y) - peak * std::exp(-0.5 * r2 / (sigma * sigma))));
             }
@@ -206,7 +203,7 @@ TEST(Blur, OfAStripIsAsWideAsItsKernel) {
     for (std::int64_t y = 0; y < 3; ++y) *strip.at(15000, y) = 1.0f;
     const Image blurred = gaussian_blur(strip, 1250.0);
     for (const std::int64_t x : {12000, 13750, 15000, 16250}) {
-        const double t = static_cast<double>(x - 15000) / 1250.0;
+        const double t = double(x - 15000) / 1250.0;
         EXPECT_NEAR(*blurred.at(x, 1), std::exp(-0.5 * t * t) / (1250.0 * std::sqrt(2.0 * 3.14159265358979)),
                     1e-5);
     }
@@ -230,20 +227,18 @@ TEST(Blur, KeepsConstantsAndTheSum) {
 TEST(Blur, HalvingAndDoublingKeepARampAwayFromTheEdges) {
     Image ramp = make_image(33, 8, 1);
     for (std::int64_t y = 0; y < 8; ++y)
-        for (std::int64_t x = 0; x < 33; ++x) *ramp.at(x, y) = static_cast<float>(x);
+        for (std::int64_t x = 0; x < 33; ++x) *ramp.at(x, y) = float(x);
     const Image half = halved(ramp);
     ASSERT_EQ(half.width, 17);
     ASSERT_EQ(half.height, 4);
-    for (std::int64_t x = 1; x < 15; ++x)
-        EXPECT_FLOAT_EQ(*half.at(x, 2), 2.0f * static_cast<float>(x) + 0.5f);
+    for (std::int64_t x = 1; x < 15; ++x) EXPECT_FLOAT_EQ(*half.at(x, 2), 2.0f * float(x) + 0.5f);
     const Image again = doubled(half, 33, 8);
-    for (std::int64_t x = 3; x < 29; ++x) EXPECT_FLOAT_EQ(*again.at(x, 3), static_cast<float>(x));
+    for (std::int64_t x = 3; x < 29; ++x) EXPECT_FLOAT_EQ(*again.at(x, 3), float(x));
 }
 
 Image noise(std::int64_t width, std::int64_t height) {
     Image image = make_image(width, height, 1);
-    for (std::size_t i = 0; i < image.pixels.size(); ++i)
-        image.pixels[i] = static_cast<float>(i * 2654435761u % 1009u);
+    for (std::size_t i = 0; i < image.pixels.size(); ++i) image.pixels[i] = float(i * 2654435761u % 1009u);
     return image;
 }
 

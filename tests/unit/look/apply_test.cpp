@@ -1,15 +1,7 @@
 // The look as a whole: the same bits, messages, progress.
-#include <gtest/gtest.h>
-
-#include <atomic>
-
-#include "core/error.h"
 #include "core/log.h"
-#include "core/parallel.h"
 #include "look/prepare.h"
-#include "support/bits.h"
-#include "support/errors.h"
-#include "support/quiet.h"
+#include "support/test.h"
 #include "unit/look/sets.h"
 
 namespace astrosplat {

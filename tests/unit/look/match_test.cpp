@@ -1,8 +1,5 @@
 // match = "coverage", "sum" and "picture": what is drawn has the picture's light.
-#include <gtest/gtest.h>
-
-#include "core/real.h"
-#include "support/bits.h"
+#include "support/test.h"
 #include "unit/look/sets.h"
 
 namespace astrosplat {

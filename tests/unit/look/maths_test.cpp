@@ -1,8 +1,6 @@
 // Mathematics that C++ and GLSL share: functions, hashes, noise.
-#include <gtest/gtest.h>
-
-#include "core/shared_maths.h"
 #include "look/shared_look.h"
+#include "support/test.h"
 #include "unit/look/sets.h"
 
 namespace astrosplat::shared {

@@ -1,6 +1,5 @@
 // Each operator alone, on one or many splats, against its closed form.
-#include <gtest/gtest.h>
-
+#include "support/test.h"
 #include "unit/look/sets.h"
 
 namespace astrosplat {

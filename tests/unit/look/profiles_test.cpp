@@ -1,11 +1,6 @@
 // Shapes over x against published numbers and closed forms, and crops.
-#include <gtest/gtest.h>
-
-#include <cstring>
-
-#include "core/real.h"
 #include "look/prepare.h"
-#include "support/errors.h"
+#include "support/test.h"
 #include "unit/look/sets.h"
 
 namespace astrosplat {

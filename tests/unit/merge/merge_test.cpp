@@ -1,19 +1,12 @@
 // Merged splats: trees, and clouds for a preview.
-#include <gtest/gtest.h>
-
-#include <atomic>
-
-#include "core/error.h"
-#include "core/real.h"
-#include "core/shared_maths.h"
 #include "merge/cut.h"
 #include "merge/tree.h"
 #include "render/footprint.h"
 #include "render/lod.h"
 #include "render/render.h"
 #include "splats/splat_set.h"
-#include "support/bits.h"
 #include "support/splats.h"
+#include "support/test.h"
 
 namespace astrosplat {
 namespace {
@@ -34,7 +27,7 @@ struct Cloud {
         splats.id.push_back(id);
     }
     void add(const glm::vec3& position, const glm::vec3& color, float alpha, float radius) {
-        add(position, color, alpha, radius, static_cast<std::uint64_t>(set->size()));
+        add(position, color, alpha, radius, std::uint64_t(set->size()));
     }
     MergedSplats merged(float weight = 1.0f) const {
         const auto tree = std::make_shared<const MergeTree>(build_merge_tree(*set));
@@ -118,7 +111,7 @@ TEST(Merge, ATreeHasEveryRowOnceAndChildrenOfBoth) {
     std::sort(rows.begin(), rows.end());
     for (std::int64_t i = 0; i < 5000; ++i) ASSERT_EQ(rows[i], i);
     ASSERT_EQ(tree.root_count(), 1);
-    EXPECT_EQ(tree.levels.back(), static_cast<std::int64_t>(tree.nodes.size()));
+    EXPECT_EQ(tree.levels.back(), std::int64_t(tree.nodes.size()));
     for (const MergeNode& node : tree.nodes) {
         if (node.is_leaf()) {
             EXPECT_LE(node.end - node.first, MergeTree::leaf_rows);
@@ -262,7 +255,7 @@ TEST(Merge, AColumnLetsThroughWhatItDidUnderEveryBlend) {
         const Cloud cloud = random_cloud(12000, glm::vec3(1.0f), 0.03f, alpha);
         const MergedSplats merged = cloud.merged();
         for (const Blend blend : {Blend::over, Blend::add, Blend::screen, Blend::hybrid, Blend::absorb}) {
-            SCOPED_TRACE(testing::Message() << "alpha " << alpha << ", blend " << static_cast<int>(blend));
+            SCOPED_TRACE(testing::Message() << "alpha " << alpha << ", blend " << int(blend));
             const Image whole = picture_of(cloud.splats, render_as(blend));
             const Image cut = picture_of(cut_of(merged, 1500, render_as(blend)), render_as(blend));
             for (int k = 0; k < 4; ++k) {
@@ -364,7 +357,7 @@ TEST(Merge, WhatTheLookDropsIsNotThere) {
     Cloud cloud = random_cloud(2000, glm::vec3(1.0f), 0.02f, 0.5f);
     Cloud kept;
     for (std::size_t i = 0; i < 2000; ++i)
-        if (uniform(static_cast<std::uint32_t>(i), 9) < 0.4f) {
+        if (uniform(std::uint32_t(i), 9) < 0.4f) {
             kept.add(cloud.splats.position[i], cloud.splats.color[i], cloud.splats.alpha[i],
                      cloud.splats.radius[i]);
             kept.splats.id.back() = i;
@@ -467,7 +460,7 @@ struct CloseBy {
         std::vector<double> sums(blocks * blocks);
         for (int y = 0; y < side; ++y)
             for (int x = 0; x < side; ++x)
-                sums[static_cast<std::size_t>(y / block * blocks + x / block)] += double(image.at(x, y)[0]);
+                sums[std::size_t(y / block * blocks + x / block)] += double(image.at(x, y)[0]);
         return sums;
     }
 };
@@ -476,7 +469,7 @@ struct CloseBy {
 double difference(const std::vector<double>& shown, const std::vector<double>& wanted) {
     double sum = 0.0;
     for (std::size_t i = 0; i < wanted.size(); ++i) sum += std::pow(shown[i] / wanted[i] - 1.0, 2);
-    return std::sqrt(sum / static_cast<double>(wanted.size()));
+    return std::sqrt(sum / double(wanted.size()));
 }
 
 double total(const std::vector<double>& blocks) {
@@ -547,7 +540,7 @@ struct Seen {
 Seen seen_through_splats(bool lattice, int deep = 48, double degrees = 0.0) {
     constexpr int splats_a_side = 48, side = 256, first = 96, end = 160;  // px
     Cloud cloud;
-    const auto at = [](int i) { return (static_cast<float>(i) + 0.5f) / splats_a_side * 2.0f - 1.0f; };
+    const auto at = [](int i) { return (float(i) + 0.5f) / splats_a_side * 2.0f - 1.0f; };
     const int count = splats_a_side * splats_a_side * deep;
     for (int i = 0; i < count; ++i) {
         const int slice = i / splats_a_side / splats_a_side + (splats_a_side - deep) / 2;
@@ -605,8 +598,7 @@ TEST(MergedLattice, HasNoStripesAslantEither) {
 TEST(MergedLattice, KeepsToItsBudgetFromEverySide) {
     for (const int deep : {2, 8, 48})
         for (double degrees = 0.0; degrees < 90.0; degrees += 5.0)
-            EXPECT_LE(seen_through_splats(true, deep, degrees).splats,
-                      48u * 48u * static_cast<unsigned>(deep) / 64u)
+            EXPECT_LE(seen_through_splats(true, deep, degrees).splats, 48u * 48u * unsigned(deep) / 64u)
                 << deep << " deep, from " << degrees;
 }
 
@@ -622,7 +614,7 @@ int mixed_leaves(double spacing) {
         add_splat(set, {10.0f * uniform(i, 1), 0.72f * uniform(i, 2), 10.0f * uniform(i, 3)}, glm::vec3(0.5f),
                   0.5f);
     }
-    const auto middle = static_cast<float>(bounds(set).center().y);
+    const auto middle = float(bounds(set).center().y);
     const MergeTree tree = build_merge_tree(set);
     int mixed = 0;
     for (const MergeNode& node : tree.nodes) {

@@ -1,15 +1,13 @@
 
 #include "objects/identify.h"
 
-#include <gtest/gtest.h>
-
 #include "bodies/picture_light.h"
-#include "core/error.h"
 #include "objects/catalogue.h"
 #include "objects/impression.h"
 #include "source/texture.h"
 #include "support/painted_picture.h"
 #include "support/printing.h"
+#include "support/test.h"
 #include "support/test_data.h"
 
 namespace astrosplat {
@@ -51,8 +49,7 @@ TEST(Identify, BelievesTheFileMoreThanTheLight) {
     for (const SkyObject object : {elliptical, nebula, planetary, remnant, field, cluster, thin}) {
         const char* const category[] = {"",        "C.5.1.4", "B.4.2.1",   "B.4.1.3",
                                         "B.4.1.4", "D.6.1.1", "B.3.6.4.2", "A.2.2"};
-        EXPECT_EQ(likeliest(said_in({category[static_cast<int>(object)]}), spiral), object)
-            << name_of(object);
+        EXPECT_EQ(likeliest(said_in({category[int(object)]}), spiral), object) << name_of(object);
     }
     ObjectClues clues = said_in({"B.4.1.3"});
     clues.named = object_named("M 87");

@@ -2,12 +2,8 @@
 // each way in which a name or a file can be wrong.
 #include "ocio/display_transform.h"
 
-#include <gtest/gtest.h>
-
 #include "support/color_config.h"
-#include "support/errors.h"
-#include "support/process_state.h"
-#include "support/temp_folder.h"
+#include "support/test.h"
 
 namespace astrosplat {
 namespace {

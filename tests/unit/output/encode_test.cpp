@@ -1,8 +1,4 @@
 // What a frame file holds: pixels, text, and settings that go together.
-#include <fmt/format.h>
-#include <gtest/gtest.h>
-#include <unistd.h>
-
 #include "core/color.h"
 #include "core/text.h"
 #include "output/compare.h"
@@ -10,8 +6,7 @@
 #include "output/metadata.h"
 #include "output/write.h"
 #include "support/color_config.h"
-#include "support/errors.h"
-#include "support/temp_folder.h"
+#include "support/test.h"
 
 namespace astrosplat {
 namespace {
@@ -42,8 +37,8 @@ Image flat(std::int64_t width, std::int64_t height, float r, float g, float b, f
 
 TEST(View, SrgbMatchesTheCurve) {
     for (int i = 0; i <= 100000; ++i) {
-        float x = static_cast<float>(i) / 100000.0f;
-        EXPECT_NEAR(apply_view(View::srgb, x), real::linear_to_srgb(static_cast<double>(x)), 2e-7) << x;
+        float x = float(i) / 100000.0f;
+        EXPECT_NEAR(apply_view(View::srgb, x), real::linear_to_srgb(double(x)), 2e-7) << x;
     }
     EXPECT_EQ(apply_view(View::srgb, 1.0f), 1.0f);
     EXPECT_EQ(apply_view(View::srgb, 0.0f), 0.0f);
@@ -52,8 +47,7 @@ TEST(View, SrgbMatchesTheCurve) {
 TEST(View, SoftIsItsFormulaThenSrgb) {
     for (double x : {0.001, 0.18, 1.0, 4.0, 100.0}) {
         double soft = x * (2.51 * x + 0.03) / (x * (2.43 * x + 0.59) + 0.14);
-        EXPECT_NEAR(apply_view(View::soft, static_cast<float>(x)), real::linear_to_srgb(std::fmin(soft, 1.0)),
-                    1e-6);
+        EXPECT_NEAR(apply_view(View::soft, float(x)), real::linear_to_srgb(std::fmin(soft, 1.0)), 1e-6);
     }
 }
 
@@ -78,13 +72,12 @@ TEST(View, OfAConfigurationIsThatOfTheStraightColour) {
     float stored[4];
     encode_pixel(format, 2.0f, rgba, stored);
     const auto expected = test::film(0.4, 0.1, 0.8);
-    for (int c = 0; c < 3; ++c)
-        EXPECT_NEAR(stored[c], expected[static_cast<std::size_t>(c)] * 0.5, 1e-6) << c;
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(stored[c], expected[std::size_t(c)] * 0.5, 1e-6) << c;
     EXPECT_EQ(stored[3], a);
     const std::vector<std::uint16_t> rows = encode_16bit(format, flat(3, 2, 0.2f, 0.05f, 0.4f, 1.0f));
     encode_pixel(format, 1.0f, std::array{0.2f, 0.05f, 0.4f, 1.0f}.data(), stored);
     for (std::size_t i = 0; i < rows.size(); ++i)
-        EXPECT_EQ(rows[i], static_cast<std::uint16_t>(stored[i % 4] * 65535.0f + 0.5f)) << i;
+        EXPECT_EQ(rows[i], std::uint16_t(stored[i % 4] * 65535.0f + 0.5f)) << i;
 }
 
 TEST(Encode, NoneIsOpaqueOverBlack) {
@@ -140,7 +133,7 @@ TEST(Encode, ExposureIsAPowerOfTwoBeforeTheView) {
 TEST(Encode, SixteenBitCodesSurvive) {
     FrameFormat format = format_of(Depth::uint16, Alpha::none);
     for (int code = 0; code <= 65535; ++code) {
-        auto linear = static_cast<float>(real::srgb_to_linear(code / 65535.0));
+        auto linear = float(real::srgb_to_linear(code / 65535.0));
         ASSERT_EQ(encode_16bit(format, flat(1, 1, linear, 0, 0, 1))[0], code);
     }
 }
@@ -148,7 +141,7 @@ TEST(Encode, SixteenBitCodesSurvive) {
 TEST(Dither, KeepsEveryCodeAtEveryPlace) {
     FrameFormat format = format_of(Depth::uint8, Alpha::none);
     for (int code = 0; code <= 255; ++code) {
-        auto linear = static_cast<float>(real::srgb_to_linear(code / 255.0));
+        auto linear = float(real::srgb_to_linear(code / 255.0));
         for (std::uint8_t stored : encode_8bit(format, flat(40, 40, linear, linear, linear, 1), 1000, 77))
             ASSERT_EQ(stored, code);
     }
@@ -158,13 +151,13 @@ TEST(Dither, KeepsTheMeanBetweenCodes) {
     FrameFormat format = format_of(Depth::uint8, Alpha::none, View::linear);
     for (double value : {100.25, 100.5, 100.9, 0.3}) {
         double sum = 0.0;
-        auto x = static_cast<float>(value / 255.0);
+        auto x = float(value / 255.0);
         std::vector<std::uint8_t> bytes = encode_8bit(format, flat(64, 64, x, x, x, 1), 0, 0);
         for (std::uint8_t b : bytes) {
             EXPECT_LE(std::fabs(b - value), 1.0);
             sum += b;
         }
-        EXPECT_NEAR(sum / static_cast<double>(bytes.size()), value, 0.01);
+        EXPECT_NEAR(sum / double(bytes.size()), value, 0.01);
     }
 }
 

@@ -2,25 +2,13 @@
 #include "output/write.h"
 #include "output/metadata.h"
 
-#include <fmt/format.h>
-// fmt first: OpenImageIO brings a copy of it with other settings.
+#include "support/test.h"
+// its fmt first: OpenImageIO's copy has other settings
 #include <OpenImageIO/imageio.h>
-#include <gtest/gtest.h>
-#include <unistd.h>
-
-#include <fstream>
-#include <iterator>
-#include <map>
-#include <stdexcept>
 
 #include "core/color.h"
-#include "core/error.h"
 #include "output/format.h"
 #include "source/write_image.h"
-#include "support/bits.h"
-#include "support/errors.h"
-#include "support/process_state.h"
-#include "support/temp_folder.h"
 
 namespace astrosplat {
 namespace {
@@ -37,10 +25,10 @@ struct RawFile {
     float at(int x, int y, const std::string& channel) const {
         int c = spec.channelindex(channel);
         EXPECT_GE(c, 0) << channel;
-        return values[static_cast<std::size_t>((y * spec.width + x) * spec.nchannels + c)];
+        return values[std::size_t((y * spec.width + x) * spec.nchannels + c)];
     }
     int code(int x, int y, const std::string& channel, float largest) const {
-        return static_cast<int>(std::lround(at(x, y, channel) * largest));
+        return int(std::lround(at(x, y, channel) * largest));
     }
 };
 
@@ -50,7 +38,7 @@ RawFile read_raw(const fs::path& file) {
     auto in = OIIO::ImageInput::open(file.string(), &config);
     EXPECT_TRUE(in) << OIIO::geterror();
     RawFile raw{in->spec(), {}};
-    raw.values.resize(raw.spec.image_pixels() * static_cast<std::size_t>(raw.spec.nchannels));
+    raw.values.resize(raw.spec.image_pixels() * std::size_t(raw.spec.nchannels));
     EXPECT_TRUE(in->read_image(0, 0, 0, raw.spec.nchannels, OIIO::TypeDesc::FLOAT, raw.values.data()));
     return raw;
 }
@@ -69,8 +57,7 @@ RenderedFrame soft_frame(std::int64_t width, std::int64_t height) {
     frame.beauty = make_image(width, height, 4);
     for (std::int64_t y = 0; y < height; ++y)
         for (std::int64_t x = 0; x < width; ++x) {
-            float a = static_cast<float>(x) / static_cast<float>(width - 1),
-                  light = 2 * y < height ? 1.0f : 3.0f;
+            float a = float(x) / float(width - 1), light = 2 * y < height ? 1.0f : 3.0f;
             float* p = frame.beauty.at(x, y);
             p[0] = 0.8f * a * light, p[1] = 0.4f * a * light, p[2] = 0.1f * a, p[3] = a;
         }
@@ -86,7 +73,7 @@ RenderedFrame noisy_frame(std::int64_t size) {
     RenderedFrame frame;
     frame.beauty = make_image(size, size, 4, 1.0f);
     for (std::size_t i = 0; i < frame.beauty.pixels.size(); ++i)
-        frame.beauty.pixels[i] = static_cast<float>((i * 2654435761u) % 1009) / 1009.0f;
+        frame.beauty.pixels[i] = float((i * 2654435761u) % 1009) / 1009.0f;
     return frame;
 }
 
@@ -193,7 +180,7 @@ TEST_F(WriteTest, ExtraChannelsHaveTheirNamesAndPrecision) {
     RawFile raw = read_raw(write("a.exr", output, soft_frame(5, 3)));
     std::map<std::string, OIIO::TypeDesc> types;
     for (int c = 0; c < raw.spec.nchannels; ++c)
-        types[raw.spec.channelnames[static_cast<std::size_t>(c)]] = raw.spec.channelformat(c);
+        types[raw.spec.channelnames[std::size_t(c)]] = raw.spec.channelformat(c);
     const OIIO::TypeDesc half(OIIO::TypeDesc::HALF), full(OIIO::TypeDesc::FLOAT);
     const std::map<std::string, OIIO::TypeDesc> expected = {
         {"R", half},        {"G", half},      {"B", half},       {"A", half},       {"Z", full},
@@ -211,10 +198,10 @@ TEST_F(WriteTest, TallFramesAreWrittenInBands) {
     OutputParams output = of_depth(Depth::float32);
     constexpr std::int64_t height = 2100;  // more than an EXR's band, and than a TIFF's group of strips
     RenderedFrame frame = soft_frame(3, height);
-    for (std::int64_t y = 0; y < height; ++y) frame.beauty.at(1, y)[0] = static_cast<float>(y);
+    for (std::int64_t y = 0; y < height; ++y) frame.beauty.at(1, y)[0] = float(y);
     for (const char* name : {"a.exr", "a.tif"}) {
         RawFile raw = read_raw(write(name, output, frame));
-        for (int y = 0; y < height; ++y) ASSERT_EQ(raw.at(1, y, "R"), static_cast<float>(y)) << name;
+        for (int y = 0; y < height; ++y) ASSERT_EQ(raw.at(1, y, "R"), float(y)) << name;
     }
 }
 

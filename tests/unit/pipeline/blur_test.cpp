@@ -1,16 +1,13 @@
 // Motion blur and depth of field: the means of renderings against means made by hand, the thin lens in closed
 // form, and no trace of either where they are off.
-#include <gtest/gtest.h>
-
-#include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
-#include <set>
 
 #include "camera/camera.h"
 #include "camera/projection.h"
 #include "pipeline.h"
 #include "support/frames.h"
 #include "support/small_scene.h"
+#include "support/test.h"
 
 namespace astrosplat {
 namespace {

@@ -1,7 +1,4 @@
 // Captures from their file to the picture: against a second renderer, seen from elsewhere, and bit by bit.
-#include <gtest/gtest.h>
-
-#include <glm/geometric.hpp>
 #include <glm/mat2x2.hpp>
 #include <glm/matrix.hpp>
 
@@ -11,10 +8,9 @@
 #include "core/rotation.h"
 #include "pipeline.h"
 #include "scene/scene.h"
-#include "support/bits.h"
 #include "support/capture.h"
 #include "support/frames.h"
-#include "support/temp_folder.h"
+#include "support/test.h"
 
 namespace astrosplat {
 namespace {
@@ -59,7 +55,7 @@ Image ewa_reference(std::vector<Trained> capture, const Camera& camera, std::int
                     std::int64_t height, const EwaSettings& settings = {}) {
     std::ranges::stable_sort(capture, {},
                              [&](const Trained& g) { return glm::distance(g.position, camera.eye); });
-    std::vector<glm::dvec4> sums(static_cast<std::size_t>(width * height), glm::dvec4(0.0, 0.0, 0.0, 1.0));
+    std::vector<glm::dvec4> sums(std::size_t(width * height), glm::dvec4(0.0, 0.0, 0.0, 1.0));
     const glm::dmat3 view = glm::transpose(camera.world_from_camera);
     for (const Trained& g : capture) {
         const glm::dvec3 p = view * (g.position - camera.eye);
@@ -86,15 +82,14 @@ Image ewa_reference(std::vector<Trained> capture, const Camera& camera, std::int
                 if (d > 60.0) continue;  // 1e-13 of the peak
                 const double alpha = peak * std::exp(-0.5 * d);
                 if (alpha < settings.least_alpha) continue;
-                glm::dvec4& sum = sums[static_cast<std::size_t>(y * width + x)];
+                glm::dvec4& sum = sums[std::size_t(y * width + x)];
                 sum += glm::dvec4(sum.w * alpha * color, -sum.w * alpha);
             }
     }
     Image image = make_image(width, height, 4);
     for (std::size_t i = 0; i < sums.size(); ++i) {
-        for (int k = 0; k < 3; ++k)
-            image.pixels[4 * i + static_cast<std::size_t>(k)] = static_cast<float>(sums[i][k]);
-        image.pixels[4 * i + 3] = static_cast<float>(1.0 - sums[i].w);
+        for (int k = 0; k < 3; ++k) image.pixels[4 * i + std::size_t(k)] = float(sums[i][k]);
+        image.pixels[4 * i + 3] = float(1.0 - sums[i].w);
     }
     return image;
 }
@@ -134,7 +129,7 @@ struct CaptureScene {
 
 Image displayed(Image image) {
     for (std::size_t i = 0; i < image.pixels.size(); ++i)
-        if (i % 4 != 3) image.pixels[i] = static_cast<float>(real::linear_to_srgb(image.pixels[i]));
+        if (i % 4 != 3) image.pixels[i] = float(real::linear_to_srgb(image.pixels[i]));
     return image;
 }
 

@@ -1,23 +1,14 @@
 // Pictures in whole scenes: their fidelity, and their stars.
-#include <fmt/format.h>
-#include <gtest/gtest.h>
-
-#include <atomic>
-
-#include "core/error.h"
-#include "core/parallel.h"
 #include "image/resample.h"
 #include "measure_fidelity.h"
 #include "pipeline.h"
 #include "scene/layer_setup.h"
 #include "scene/load.h"
 #include "source/write_image.h"
-#include "support/bits.h"
-#include "support/errors.h"
 #include "support/frames.h"
 #include "support/painted_picture.h"
 #include "support/small_scene.h"
-#include "support/temp_folder.h"
+#include "support/test.h"
 
 namespace astrosplat {
 namespace {
@@ -33,7 +24,7 @@ class Fidelity : public testing::Test {
         scene.layers[0].source.count = 10000;
     }
 
-    FidelityReport measured(const std::optional<std::filesystem::path>& reference = {}) const {
+    FidelityReport measured(const std::optional<fs::path>& reference = {}) const {
         FidelitySettings settings;
         settings.width_px = 160;
         return measure_fidelity(scene, fidelity_reference(scene, reference), settings);
@@ -209,13 +200,11 @@ class PictureStars : public testing::Test {
     void expect_in_place(const Image& image, double times, double light_within) const {
         for (const Planted& star : planted) {
             const double x = star.x * times, y = star.y * times;
-            const auto reach = static_cast<std::int64_t>(12.0 * times);
+            const auto reach = std::int64_t(12.0 * times);
             glm::dvec3 sum(0.0);
             glm::dvec2 middle(0.0);
-            for (auto j = static_cast<std::int64_t>(y) - reach; j <= static_cast<std::int64_t>(y) + reach;
-                 ++j)
-                for (auto i = static_cast<std::int64_t>(x) - reach; i <= static_cast<std::int64_t>(x) + reach;
-                     ++i) {
+            for (auto j = std::int64_t(y) - reach; j <= std::int64_t(y) + reach; ++j)
+                for (auto i = std::int64_t(x) - reach; i <= std::int64_t(x) + reach; ++i) {
                     const float* const p = image.at(i, j);
                     sum += glm::dvec3(p[0], p[1], p[2]);
                     middle += double(p[1]) * (glm::dvec2(i, j) + 0.5);

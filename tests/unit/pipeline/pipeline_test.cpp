@@ -1,20 +1,14 @@
 // A pipeline: one scene after the other, layers that stay on disk, and the ends of every range.
-#include <gtest/gtest.h>
-#include <unistd.h>
-
-#include <atomic>
-
-#include "output/write.h"
 #include "pipeline.h"
+#include "output/write.h"
 #include "scene/describe.h"
 #include "scene/layer_setup.h"
 #include "sets/load_source.h"
 #include "splat_files/native.h"
 #include "streamed/streamed_set.h"
-#include "support/errors.h"
 #include "support/frames.h"
-#include "support/quiet.h"
 #include "support/small_scene.h"
+#include "support/test.h"
 
 namespace astrosplat {
 namespace {
@@ -47,6 +41,18 @@ class SetScene : public testing::Test {
 TEST_F(SetScene, IsWhatLoadingGives) {
     Pipeline loaded(small.scene);
     EXPECT_EQ(picture(loaded), picture_of(small.scene, sets));
+}
+
+TEST_F(SetScene, WhatALookRefusesNamesTheLayer) {
+    SplatSet unknown = *sets[1];
+    unknown.spacing = glm::dvec3(0.0);
+    small.scene.layers[1].look.vertical.match = VerticalAlpha::Match::sum;
+    pipeline.set_scene(small.scene, {sets[0], std::make_shared<const SplatSet>(std::move(unknown))});
+    EXPECT_EQ(
+        ERROR_OF(frame_of(pipeline, 1.0)),
+        "layer '" + small.scene.layers[1].name +
+            "': look.vertical.match: expected none, since the spacing of the splat file's lattice is not "
+            "known, found sum");
 }
 
 TEST_F(SetScene, AnyChangeGivesWhatANewPipelineGives) {
@@ -169,7 +175,7 @@ class Streamed : public testing::Test {
         scene.output.aovs = {"depth", "coverage", "count", "layers"};
         for (LayerParams& layer : scene.layers) {
             layer.source.count = 90000;  // two blocks
-            const std::filesystem::path file = folder / (layer.name + ".splats");
+            const fs::path file = folder / (layer.name + ".splats");
             SplatSet set = load_source(layer.source, layer.name);
             set.max_distance = 0.0;  // as in files that do not say it: it is found in the rows
             write_native(file, set);
@@ -305,9 +311,9 @@ class Extremes : public testing::Test {
 };
 
 Value all_components(const ParameterSpec& spec, double x) {
-    if (spec.type == ParameterType::integer) return static_cast<std::int64_t>(x);
+    if (spec.type == ParameterType::integer) return std::int64_t(x);
     if (spec.components == 1) return x;
-    return Value::List(static_cast<std::size_t>(spec.components), Value(x));
+    return Value::List(std::size_t(spec.components), Value(x));
 }
 
 TEST_F(Extremes, BothEndsOfEveryRangeGiveFinitePictures) {

@@ -16,8 +16,7 @@ Image painted(std::int64_t width, std::int64_t height, int channels, const Value
     for (std::int64_t y = 0; y < height; ++y)
         for (std::int64_t x = 0; x < width; ++x)
             for (int c = 0; c < channels; ++c)
-                image.at(x, y)[c] =
-                    static_cast<float>(value(static_cast<double>(x) + 0.5, static_cast<double>(y) + 0.5, c));
+                image.at(x, y)[c] = float(value(double(x) + 0.5, double(y) + 0.5, c));
     return image;
 }
 
@@ -27,7 +26,7 @@ struct Random {
 
     double operator()() {
         state = state * 6364136223846793005u + 1442695040888963407u;
-        return static_cast<double>(state >> 11) / 9007199254740992.0;
+        return double(state >> 11) / 9007199254740992.0;
     }
     /// Of mean 0 and standard deviation 1 (the sum of twelve).
     double normal() {
@@ -39,7 +38,7 @@ struct Random {
 
 inline Image add_noise(Image image, double deviation, std::uint64_t seed) {
     Random random{seed};
-    for (float& value : image.pixels) value += static_cast<float>(deviation * random.normal());
+    for (float& value : image.pixels) value += float(deviation * random.normal());
     return image;
 }
 
@@ -56,10 +55,10 @@ template <class Noise>
 std::vector<PictureStar> random_stars(const Image& image, const Injection& wanted, const Noise& noise) {
     Random random{wanted.seed};
     std::vector<PictureStar> stars;
-    while (static_cast<int>(stars.size()) < wanted.count) {
+    while (int(stars.size()) < wanted.count) {
         PictureStar star;
-        star.x = 8.0 + random() * static_cast<double>(image.width - 16);
-        star.y = 8.0 + random() * static_cast<double>(image.height - 16);
+        star.x = 8.0 + random() * double(image.width - 16);
+        star.y = 8.0 + random() * double(image.height - 16);
         star.profile = wanted.profiles[stars.size() % wanted.profiles.size()];
         const double exponent = random(), red = 0.7 + 0.6 * random();
         const bool near = std::any_of(stars.begin(), stars.end(), [&](const PictureStar& other) {
@@ -136,8 +135,8 @@ inline Score score(const std::vector<PictureStar>& truth, const std::vector<Pict
     }
     std::size_t real = 0;
     for (const PictureStar& star : found) real += known.nearest(star, 1.5) || old.nearest(star, 1.5);
-    result.completeness = static_cast<double>(ratios.size()) / static_cast<double>(truth.size());
-    result.purity = static_cast<double>(real) / static_cast<double>(std::max<std::size_t>(1, found.size()));
+    result.completeness = double(ratios.size()) / double(truth.size());
+    result.purity = double(real) / double(std::max<std::size_t>(1, found.size()));
     result.flux_bias = percentile(ratios, 0.5);
     result.flux_error = percentile(errors, 0.5);
     result.place_px = percentile(places, 0.5);

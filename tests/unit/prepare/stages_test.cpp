@@ -1,13 +1,8 @@
 // Stages of prepare: sky, cuts, colours, holes and registration.
-#include <gtest/gtest.h>
-
-#include <glm/geometric.hpp>
-
-#include "core/color.h"
-#include "core/real.h"
-#include "core/shared_maths.h"
-#include "prepare/registration.h"
 #include "prepare/stages.h"
+#include "core/color.h"
+#include "prepare/registration.h"
+#include "support/test.h"
 #include "unit/prepare/painted.h"
 
 namespace astrosplat {
@@ -56,7 +51,7 @@ TEST(Cut, AnEllipseHasItsAreaAndFadesInwards) {
     Image image = make_image(100, 80, 4, 1.0f);
     cut_ellipse(image, sharp);
     double area = 0.0;
-    for (std::size_t i = 3; i < image.pixels.size(); i += 4) area += static_cast<double>(image.pixels[i]);
+    for (std::size_t i = 3; i < image.pixels.size(); i += 4) area += double(image.pixels[i]);
     EXPECT_NEAR(area / (real::pi * 30.0 * 12.0), 1.0, 0.01);
     EXPECT_EQ(inside(sharp, 50.0 + 29.0 * std::cos(real::pi / 6.0), 40.0 + 29.0 * 0.5), 1.0);
     EXPECT_EQ(inside(sharp, 50.0 + 29.0 * std::cos(real::pi / 6.0), 40.0 - 29.0 * 0.5), 0.0);
@@ -88,8 +83,7 @@ TEST(Lupton, KeepsColoursAndIsLinearWhereItIsFaint) {
         std::copy(light.begin(), light.end(), image.pixels.begin());
         apply_lupton(image, {8.0, 0.1});
         std::array<double, 3> values;
-        for (std::size_t c = 0; c < 3; ++c)
-            values[c] = real::linear_to_srgb(static_cast<double>(image.pixels[c]));
+        for (std::size_t c = 0; c < 3; ++c) values[c] = real::linear_to_srgb(double(image.pixels[c]));
         return values;
     };
     const double tenth = 0.1 / std::asinh(0.8);
@@ -149,9 +143,9 @@ TEST(SkyGrid, PicturesOfOtherScaleAndAngleMeet) {
             const double left = place.x - 0.5, top = 160.0 + 0.5 - place.y;
             for (std::int64_t j = 0; j < 160; ++j)
                 for (std::int64_t i = 0; i < 200; ++i) {
-                    const double u = static_cast<double>(i) + 0.5, v = static_cast<double>(j) + 0.5;
+                    const double u = double(i) + 0.5, v = double(j) + 0.5;
                     if (std::hypot(u - left, v - top) > 12.0 || outside.at(i, j)) continue;
-                    const auto light = static_cast<double>(*seen.at(i, j));
+                    const auto light = double(*seen.at(i, j));
                     sum += light;
                     x += light * u;
                     y += light * v;
@@ -169,15 +163,14 @@ PixelMask disc(std::int64_t width, std::int64_t height, double x, double y, doub
     PixelMask mask = make_mask(width, height);
     for (std::int64_t j = 0; j < height; ++j)
         for (std::int64_t i = 0; i < width; ++i)
-            mask.at(i, j) =
-                std::hypot(static_cast<double>(i) + 0.5 - x, static_cast<double>(j) + 0.5 - y) < radius;
+            mask.at(i, j) = std::hypot(double(i) + 0.5 - x, double(j) + 0.5 - y) < radius;
     return mask;
 }
 
 // Two harmonic functions: a plane, and a saddle.
 Image harmonic(std::int64_t size) {
     return painted(size, size, 2, [&](double x, double y, int c) {
-        const double u = x / static_cast<double>(size) - 0.5, v = y / static_cast<double>(size) - 0.5;
+        const double u = x / double(size) - 0.5, v = y / double(size) - 0.5;
         return c == 0 ? 1.0 + 0.5 * u - 0.25 * v : 1.0 + u * u - v * v;
     });
 }
@@ -215,7 +208,7 @@ TEST(Fill, TextureHasTheSpreadOfItsSurroundings) {
         for (std::int64_t y = 0; y < 160; ++y)
             for (std::int64_t x = 0; x < 160; ++x) {
                 if (!holes.at(x, y)) continue;
-                const double d = image.at(x, y)[1] - (0.5 + (static_cast<double>(x) + 0.5) / 640.0);
+                const double d = image.at(x, y)[1] - (0.5 + (double(x) + 0.5) / 640.0);
                 sum += d;
                 squares += d * d;
                 count += 1.0;
@@ -290,7 +283,7 @@ Image clouds_on(std::int64_t width, std::int64_t height, const ImageOnImage& pla
         for (std::int64_t x = 0; x < width; ++x) {
             const double dx = (double(x) + 0.5 - place.middle.x) / place.scale / 100.0;
             const double dy = (double(y) + 0.5 - place.middle.y) / place.scale / 100.0;
-            *image.at(x, y) = static_cast<float>(clouds(c * dx - s * dy, s * dx + c * dy));
+            *image.at(x, y) = float(clouds(c * dx - s * dy, s * dx + c * dy));
         }
     return image;
 }
@@ -343,7 +336,7 @@ TEST(Registration, SomethingRoundIsFoundWithAnyTurn) {
         for (std::int64_t y = 0; y < height; ++y)
             for (std::int64_t x = 0; x < width; ++x) {
                 const double r = glm::distance(glm::dvec2(double(x) + 0.5, double(y) + 0.5), middle) / radius;
-                *image.at(x, y) = static_cast<float>(real::exp(-r * r) * (1.0 + 0.5 * real::cos(6.0 * r)));
+                *image.at(x, y) = float(real::exp(-r * r) * (1.0 + 0.5 * real::cos(6.0 * r)));
             }
         return image;
     };
@@ -357,8 +350,7 @@ TEST(Registration, SomethingRoundIsFoundWithAnyTurn) {
 Image noise(std::int64_t width, std::int64_t height, std::uint32_t seed) {
     Image image = make_image(width, height, 1);
     for (std::size_t i = 0; i < image.pixels.size(); ++i)
-        image.pixels[i] =
-            static_cast<float>(shared::as_hash(seed, static_cast<std::uint32_t>(i), 0u, 1u)) / 4294967296.0f;
+        image.pixels[i] = float(shared::as_hash(seed, std::uint32_t(i), 0u, 1u)) / 4294967296.0f;
     return image;
 }
 

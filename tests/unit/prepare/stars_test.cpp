@@ -1,12 +1,8 @@
 // Stars found again: painted ones in a painted nebula, and in real pictures where these are present.
-#include <gtest/gtest.h>
-
-#include <numeric>
-
-#include "core/real.h"
 #include "image/channels.h"
 #include "prepare/star_removal.h"
 #include "source/texture.h"
+#include "support/test.h"
 #include "support/test_data.h"
 #include "unit/prepare/painted.h"
 
@@ -154,13 +150,13 @@ TEST(Stars, LeaveTheNoiseAndTheLightOfTheClouds) {
     const StarRemoval removal = search_clouds(stars_in_clouds({gaussian, moffat}, 10.0, 300.0)).removal;
     const Image truth = clouds();
     double squares = 0.0, sum = 0.0, light = 0.0, far = 0.0;
-    const auto count = static_cast<double>(truth.pixels.size());
+    const auto count = double(truth.pixels.size());
     for (std::size_t i = 0; i < truth.pixels.size(); ++i) {
-        const double away = static_cast<double>(removal.starless.pixels[i] - truth.pixels[i]);
+        const double away = double(removal.starless.pixels[i] - truth.pixels[i]);
         squares += away * away;
         far += std::fabs(away) > 5.0 * pixel_noise ? 1.0 : 0.0;
-        sum += static_cast<double>(removal.starless.pixels[i]);
-        light += static_cast<double>(truth.pixels[i]);
+        sum += double(removal.starless.pixels[i]);
+        light += double(truth.pixels[i]);
     }
     EXPECT_NEAR(std::sqrt(squares / count) / pixel_noise, 1.0, 0.02);
     EXPECT_LT(far / count, 2e-4);
@@ -236,8 +232,8 @@ TEST(Stars, SaturatedOnesAreFittedFromTheirWings) {
     for (const PictureStar& star : truth)
         for (std::int64_t i = -25; i <= 25; ++i)
             for (int c = 0; c < 3; ++c) {
-                image.at(static_cast<std::int64_t>(star.x) + i, static_cast<std::int64_t>(star.y))[c] += 0.3f;
-                image.at(static_cast<std::int64_t>(star.x), static_cast<std::int64_t>(star.y) + i)[c] += 0.3f;
+                image.at(std::int64_t(star.x) + i, std::int64_t(star.y))[c] += 0.3f;
+                image.at(std::int64_t(star.x), std::int64_t(star.y) + i)[c] += 0.3f;
             }
     image = add_noise(std::move(image), pixel_noise, 9);
     for (float& value : image.pixels) value = std::min(value, 1.0f);
@@ -251,7 +247,7 @@ TEST(Stars, SaturatedOnesAreFittedFromTheirWings) {
     const Image clean = clouds();
     for (const PictureStar& star : truth)
         for (std::int64_t i = -22; i <= 22; ++i) {
-            const auto x = static_cast<std::int64_t>(star.x), y = static_cast<std::int64_t>(star.y);
+            const auto x = std::int64_t(star.x), y = std::int64_t(star.y);
             EXPECT_NEAR(removal.starless.at(x + i, y)[1], clean.at(x + i, y)[1], 0.12) << star.x << " " << i;
             EXPECT_NEAR(removal.starless.at(x, y + i)[1], clean.at(x, y + i)[1], 0.12) << star.x << " " << i;
         }
@@ -291,10 +287,10 @@ double residual(const Image& left, const Image& truth, const std::vector<Picture
         for (double y = star.y - reach; y <= star.y + reach; ++y)
             for (double x = star.x - reach; x <= star.x + reach; ++x) {
                 if (std::hypot(x - star.x, y - star.y) > reach) continue;
-                const auto i = static_cast<std::int64_t>(x), j = static_cast<std::int64_t>(y);
+                const auto i = std::int64_t(x), j = std::int64_t(y);
                 for (int c = 0; c < 3; ++c) {
                     const double noise = std::max(1e-3, interpolated(cells.noise, cells.cell_px, x, y, c));
-                    const double away = static_cast<double>(left.at(i, j)[c] - truth.at(i, j)[c]) / noise;
+                    const double away = double(left.at(i, j)[c] - truth.at(i, j)[c]) / noise;
                     squares += away * away;
                     count += 1.0;
                 }
@@ -311,7 +307,7 @@ struct RealSearch {
 };
 
 // 2,000 stars painted into a real picture, in which its own were found before.
-RealSearch search_real(const std::filesystem::path& file, const StarProfile& profile, double brightest) {
+RealSearch search_real(const fs::path& file, const StarProfile& profile, double brightest) {
     const Image image = load_linear_image(file);
     const StarSettings settings{5.0, 0.98};
     const Cells noise = noise_of_heights(matched_heights(mean_of_channels(image), 1.3), 1e-4);
@@ -327,7 +323,7 @@ RealSearch search_real(const std::filesystem::path& file, const StarProfile& pro
 }
 
 // Signal to noise from 10 to 300, and 10 of all of them.
-void expect_found(const std::filesystem::path& file, const StarProfile& profile, double brightest = 300.0) {
+void expect_found(const fs::path& file, const StarProfile& profile, double brightest = 300.0) {
     const auto [s, diffuse_ratio, residual] = search_real(file, profile, brightest);
     EXPECT_GE(s.completeness, 0.95);
     EXPECT_GE(s.purity, 0.90);

@@ -1,9 +1,7 @@
 // Blending by hand: one and two splats under every blend, holdout, hybrid, isolation, alpha, the stop rule,
 // AOVs.
-#include <gtest/gtest.h>
-
-#include "core/real.h"
 #include "render/shared_render.h"
+#include "support/test.h"
 #include "unit/render/scenes.h"
 
 namespace astrosplat {
@@ -205,7 +203,7 @@ TEST(Blend, HybridInBetweenFollowsTheFormula) {
 // h rises as smoothstep does, not straight: a fifth of the way it is 0.104.
 TEST(Blend, HybridRisesSmoothly) {
     const auto at = [](double deg) {
-        return shared::hybrid_amount(static_cast<float>(real::cos(real::radians(deg))), 30.0f, 80.0f);
+        return shared::hybrid_amount(float(real::cos(real::radians(deg))), 30.0f, 80.0f);
     };
     EXPECT_NEAR(at(40.0), 0.104, 1e-4);
     EXPECT_NEAR(at(55.0), 0.5, 1e-4);
@@ -237,8 +235,7 @@ TEST(Blend, OpaqueHoldoutLeavesExactlyNothing) {
 
 TEST(Blend, AnOpaqueStackHasAlphaExactlyOne) {
     std::vector<OneSplat> stack;
-    for (int i = 0; i < 400; ++i)
-        stack.push_back({{0.0f, 0.0f, static_cast<float>(-i)}, 14.0f, 0.05f, glm::vec3(0.5f)});
+    for (int i = 0; i < 400; ++i) stack.push_back({{0.0f, 0.0f, float(-i)}, 14.0f, 0.05f, glm::vec3(0.5f)});
     const ShadedSplats splats = make_splats(stack);
     const RenderedFrame frame = render_layers({layer_of("stack", splats)});
     EXPECT_EQ(middle(frame.beauty)[3], 1.0f);
@@ -256,8 +253,7 @@ Environment grey_environment(float value) {
 /// Nine black splats of alpha 3/4 in front of a white one, or of the environment: 2^-18 of its light arrives.
 RenderedFrame light_behind_a_dark_stack(float exposure, const Environment* environment) {
     std::vector<OneSplat> stack;
-    for (int i = 0; i < 9; ++i)
-        stack.push_back({{0.0f, 0.0f, static_cast<float>(-i)}, 14.0f, 0.75f, glm::vec3(0.0f)});
+    for (int i = 0; i < 9; ++i) stack.push_back({{0.0f, 0.0f, float(-i)}, 14.0f, 0.75f, glm::vec3(0.0f)});
     if (!environment) stack.push_back({{0.0f, 0.0f, -20.0f}, 14.0f, 1.0f, glm::vec3(1.0f)});
     const ShadedSplats splats = make_splats(stack);
     const RenderLayer layer = layer_of("stack", splats);
@@ -281,8 +277,7 @@ TEST(StopRule, KnowsOfABrightSky) {
 
 TEST(Blend, AlphaOfAFaintStackFollowsTheProduct) {
     std::vector<OneSplat> stack;
-    for (int i = 0; i < 20; ++i)
-        stack.push_back({{0.0f, 0.0f, static_cast<float>(-i)}, 14.0f, 0.05f, glm::vec3(1.0f)});
+    for (int i = 0; i < 20; ++i) stack.push_back({{0.0f, 0.0f, float(-i)}, 14.0f, 0.05f, glm::vec3(1.0f)});
     const ShadedSplats splats = make_splats(stack);
     EXPECT_NEAR(middle(render_layers({layer_of("stack", splats)}).beauty)[3], 1.0 - std::pow(0.95, 20.0),
                 1e-6);
@@ -351,7 +346,7 @@ RenderSettings with_aovs() {
 TEST(Aov, LayersAndEnvironmentSumToTheBeauty) {
     std::vector<OneSplat> a, b, c;
     for (int i = 0; i < 60; ++i) {
-        const float t = static_cast<float>(i);
+        const float t = float(i);
         const glm::vec3 p(std::fmod(t * 7.3f, 24.0f) - 12.0f, std::fmod(t * 3.1f, 24.0f) - 12.0f,
                           std::fmod(t * 5.7f, 40.0f));
         (i % 3 == 0   ? a

@@ -1,17 +1,12 @@
 // Splats that are not round, through the whole renderer: on the plane and onto the sphere.
-#include <gtest/gtest.h>
-
-#include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
-#include <ostream>
 
-#include "core/real.h"
 #include "core/rotation.h"
-#include "core/shared_maths.h"
 #include "render/footprint.h"
 #include "render/shape.h"
 #include "render/sphere_shape.h"
 #include "support/printing.h"
+#include "support/test.h"
 #include "unit/render/scenes.h"
 #include "unit/render/sphere_scenes.h"
 
@@ -49,7 +44,7 @@ Image ellipse_picture(const EllipseCase& e, const Falloff& falloff, std::int64_t
     layer.render.falloff = falloff;
     RenderSettings settings = settings_of(size_px, size_px);
     settings.tile_px = tile_px;
-    const auto size = static_cast<double>(size_px);
+    const auto size = double(size_px);
     return render({&layer, 1}, pixel_camera(size, size), nullptr, settings, {}, tables).beauty;
 }
 
@@ -73,7 +68,7 @@ TEST_P(EllipseLight, IsConservedAtEverySizePlaceAndOrientation) {
                                                                                 {40.0, 3.0},
                                                                                 {230.0, 0.5},
                                                                                 {230.0, 90.0}}) {
-        const auto size = static_cast<std::int64_t>(4.6 * larger) + 32;
+        const auto size = std::int64_t(4.6 * larger) + 32;
         for (const double degrees : {0.0, 3.0, 45.0, 117.0})
             for (const glm::dvec2 offset : {glm::dvec2(0.0), glm::dvec2(0.29, 0.77)}) {
                 if (larger > 100.0 && degrees != 3.0) continue;

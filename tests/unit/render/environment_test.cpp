@@ -1,21 +1,11 @@
 // Environments: lookup, the backdrop, and cube maps in one file.
 #include "render/environment.h"
 
-#include <fmt/format.h>
-#include <gtest/gtest.h>
-
-#include <atomic>
-#include <fstream>
-#include <glm/geometric.hpp>
-
 #include "camera/camera.h"
-#include "core/error.h"
-#include "core/real.h"
 #include "render/render.h"
 #include "support/cube_map.h"
-#include "support/errors.h"
 #include "support/printing.h"
-#include "support/temp_folder.h"
+#include "support/test.h"
 
 namespace astrosplat {
 namespace {
@@ -33,12 +23,12 @@ class EnvironmentTest : public testing::Test {
 };
 
 void append(std::string& bytes, std::uint32_t value, int size) {
-    for (int i = 0; i < size; ++i) bytes += static_cast<char>(value >> (8 * i));
+    for (int i = 0; i < size; ++i) bytes += char(value >> (8 * i));
 }
 
 fs::path EnvironmentTest::write(const std::string& name, int width, int height,
                                 const std::function<glm::vec3(int, int)>& color) {
-    const auto w = static_cast<std::uint32_t>(width), h = static_cast<std::uint32_t>(height);
+    const auto w = std::uint32_t(width), h = std::uint32_t(height);
     constexpr std::uint32_t tags = 11, pixels_at = 8 + 2 + tags * 12 + 4 + 12;
     const std::uint32_t shorts_at = 8 + 2 + tags * 12 + 4;
     const std::uint32_t table[tags][4] = {{256, 4, 1, w},
@@ -197,7 +187,7 @@ TEST_F(CubeTest, EachFaceShowsItsPictureTheRightWayRound) {
         for (double x : {2.0, 8.0, 13.7})
             for (double y : {1.5, 7.0, 14.0})
                 expect_color(sample_environment(environment, ray_direction(camera, x, y), 0.0),
-                             {x / 16, y / 16, static_cast<float>(face) / 8.0f}, 1e-5f);
+                             {x / 16, y / 16, float(face) / 8.0f}, 1e-5f);
     }
 }
 
@@ -322,7 +312,7 @@ TEST(EnvironmentBehind, IsSeenFromWhereTheEyeIs) {
 TEST_F(EnvironmentTest, OneTiledPictureFillsTheSky) {
     EnvironmentParams params;
     params.tile = write("tile.tif", 64, 48, [](int x, int y) {
-        return glm::vec3(0.1f + 0.01f * static_cast<float>((x * 7 + y * 3) % 11), 0.2f, 0.05f);
+        return glm::vec3(0.1f + 0.01f * float((x * 7 + y * 3) % 11), 0.2f, 0.05f);
     });
     params.tiling.face_px = 64;
     params.tiling.height_deg = 40.0;
@@ -415,7 +405,7 @@ class CubeMapFile : public testing::Test {
   protected:
     void SetUp() override {
         params_.image = folder_ / "sky.exr";
-        write_cube_map(params_.image, 8, [](int, int y) { return static_cast<float>(1 + y / 8) / 8.0f; });
+        write_cube_map(params_.image, 8, [](int, int y) { return float(1 + y / 8) / 8.0f; });
     }
     TempFolder folder_;
     EnvironmentParams params_;
@@ -428,7 +418,7 @@ TEST_F(CubeMapFile, IsAnEnvironmentOfSixFaces) {
     for (int face = 0; face < 6; ++face)
         for (const double spread : {0.0, 0.1}) {
             const glm::vec3 color = sample_environment(environment, axes[face], spread);
-            EXPECT_FLOAT_EQ(color.r, static_cast<float>(1 + face) / 8.0f) << face << " " << spread;
+            EXPECT_FLOAT_EQ(color.r, float(1 + face) / 8.0f) << face << " " << spread;
         }
 }
 

@@ -1,12 +1,8 @@
 // Footprints and their falloffs.
 #include "render/footprint.h"
 
-#include <gtest/gtest.h>
-
-#include <cstring>
-
-#include "core/real.h"
 #include "support/printing.h"
+#include "support/test.h"
 #include "unit/render/scenes.h"
 
 namespace astrosplat {
@@ -42,11 +38,11 @@ TEST(Falloff, OfATrapezoidFallsFromItsCore) {
 double pixel_sum(const FootprintTable& table, float radius_px, float x_px, float y_px) {
     Footprint footprint;
     footprint_at(table, radius_px, x_px, y_px, footprint);
-    const int reach = static_cast<int>(footprint.support_px) + 2;
+    const int reach = int(footprint.support_px) + 2;
     double sum = 0.0;
     for (int y = -reach; y <= reach; ++y)
         for (int x = -reach; x <= reach; ++x) {
-            const float dx = static_cast<float>(x) + 0.5f - x_px, dy = static_cast<float>(y) + 0.5f - y_px;
+            const float dx = float(x) + 0.5f - x_px, dy = float(y) + 0.5f - y_px;
             sum += footprint_weight(table, footprint, std::sqrt(dx * dx + dy * dy));
         }
     return sum;
@@ -75,8 +71,8 @@ TEST_P(FootprintLight, IsConservedAtEverySizeAndOffset) {
         const int offsets = radius < 40.0f ? 8 : 2;
         for (int i = 0; i < offsets; ++i)
             for (int j = 0; j < offsets; ++j) {
-                const float x = static_cast<float>((i * 256 / offsets + 3) % 256) / 256.0f;
-                const float y = static_cast<float>((j * 256 / offsets + 7) % 256) / 256.0f;
+                const float x = float((i * 256 / offsets + 3) % 256) / 256.0f;
+                const float y = float((j * 256 / offsets + 7) % 256) / 256.0f;
                 const double error = pixel_sum(table, radius, x, y) / (integral * radius * radius) - 1.0;
                 worst = std::max(worst, std::fabs(error));
                 EXPECT_NEAR(error, 0.0, 0.005) << "radius " << radius << " at " << x << ", " << y;
@@ -110,7 +106,7 @@ TEST(Footprint, ConstantDiscIsExactlyOneInside) {
             footprint_at(table, radius, 0.25f, 0.5f, footprint);
             if (radius <= 4.0f * filter) continue;
             for (int i = 0; i <= 100; ++i) {
-                const float d = (radius - 4.0f * filter) * static_cast<float>(i) * 0.0099f;
+                const float d = (radius - 4.0f * filter) * float(i) * 0.0099f;
                 ASSERT_EQ(footprint_weight(table, footprint, d), 1.0f) << filter << " " << radius << " " << d;
             }
         }
@@ -154,7 +150,7 @@ TEST(Footprint, ProfileIsTheConvolution) {
             footprint_at(table, radius, 0.25f, 0.25f,
                          footprint);  // where the ripple's first harmonics cancel
             for (int i = 0; i <= 40; ++i) {
-                const float d = (radius + 2.0f) * static_cast<float>(i) / 40.0f;
+                const float d = (radius + 2.0f) * float(i) / 40.0f;
                 EXPECT_NEAR(footprint_weight(table, footprint, d), convolved(falloff, radius, 0.5, d), 0.004)
                     << "shape " << int(shape) << " radius " << radius << " d " << d;
             }
@@ -196,7 +192,7 @@ void expect_cubics_in_unit_interval(const Falloff& falloff) {
     for (const FootprintNode& node : table.nodes)
         for (int s = 0; s < FootprintNode::segments; ++s)
             for (int k = 0; k <= 32; ++k) {
-                const float f = static_cast<float>(k) / 32.0f;
+                const float f = float(k) / 32.0f;
                 const auto(&c)[4][FootprintNode::segments] = node.cubic;
                 const float p = ((c[3][s] * f + c[2][s]) * f + c[1][s]) * f + c[0][s];
                 least = std::min(least, p);

@@ -1,23 +1,15 @@
 // The same bits whatever shares the work or holds the splats, and the reference renderer's picture.
-#include <gtest/gtest.h>
-
-#include <atomic>
-#include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
-#include <numeric>
 #include <random>
 
 #include "camera/camera.h"
-#include "core/parallel.h"
-#include "core/real.h"
 #include "core/rotation.h"
-#include "core/shared_maths.h"
 #include "render/frame.h"
 #include "render/render.h"
 #include "render/scatter.h"
-#include "support/errors.h"
 #include "support/printing.h"
 #include "support/reference_renderer.h"
+#include "support/test.h"
 #include "unit/render/scenes.h"
 #include "unit/render/sphere_scenes.h"
 
@@ -58,9 +50,7 @@ struct RandomScene {
     }
 
   private:
-    double between(double lo, double hi) {
-        return lo + (hi - lo) * static_cast<double>(random_() >> 8) / 16777216.0;
-    }
+    double between(double lo, double hi) { return lo + (hi - lo) * double(random_() >> 8) / 16777216.0; }
     float pick(const std::vector<float>& values) { return values[random_() % values.size()]; }
 
     void add_layer(std::size_t number, int splats) {
@@ -68,8 +58,8 @@ struct RandomScene {
         for (int i = 0; i < splats; ++i) {
             set.id.push_back(random_());
             set.position.push_back({between(-3, 3), between(-2, 2), between(-2, 2)});
-            set.radius.push_back(static_cast<float>(std::exp2(between(-5, 1))));
-            set.alpha.push_back(static_cast<float>(between(0.05, 1)));
+            set.radius.push_back(float(std::exp2(between(-5, 1))));
+            set.alpha.push_back(float(between(0.05, 1)));
             set.color.push_back({between(0, 1.5), between(0, 1.5), between(0, 1.5)});
         }
         RenderLayer& layer = layers.emplace_back();
@@ -93,7 +83,7 @@ struct RandomScene {
     }
 
     glm::vec3 exponents() {
-        const auto one = [this] { return 0.2f + 1.8f * static_cast<float>(dust_() >> 8) / 16777216.0f; };
+        const auto one = [this] { return 0.2f + 1.8f * float(dust_() >> 8) / 16777216.0f; };
         const float r = one(), g = one();
         return {r, g, one()};
     }
@@ -213,10 +203,10 @@ Differences differences(const Image& got, const Image& reference) {
     for (std::size_t i = 0; i < got.pixels.size(); ++i) {
         const double here =
             std::fabs(got.pixels[i] - reference.pixels[i]) / std::max(1.0f, reference.pixels[i]);
-        d.mean += here / static_cast<double>(got.pixels.size());
+        d.mean += here / double(got.pixels.size());
         if (here <= d.largest) continue;
         d.largest = here;
-        const auto n = static_cast<std::int64_t>(i) / got.channels;
+        const auto n = std::int64_t(i) / got.channels;
         d.place = "channel " + std::to_string(i % 4) + " of pixel " + std::to_string(n % got.width) + ", " +
                   std::to_string(n / got.width) + ": " + std::to_string(got.pixels[i]) + " instead of " +
                   std::to_string(reference.pixels[i]);
@@ -227,8 +217,7 @@ Differences differences(const Image& got, const Image& reference) {
 Environment sky() {
     auto faces = std::make_shared<EnvironmentFaces>();
     Image one = make_image(4, 2, 3);
-    for (std::size_t i = 0; i < one.pixels.size(); ++i)
-        one.pixels[i] = 0.1f + 0.05f * static_cast<float>(i % 7);
+    for (std::size_t i = 0; i < one.pixels.size(); ++i) one.pixels[i] = 0.1f + 0.05f * float(i % 7);
     faces->push_back({one});
     return {faces, glm::dmat3(1.0), 1.0f, 0.4f, 0.4f};
 }
@@ -366,11 +355,11 @@ ShadedSplats cloud_around_origin(std::uint32_t count, std::uint32_t seed) {
 class BlocksInMemory : public ShadedBlocks {
   public:
     BlocksInMemory(const ShadedSplats& set, std::size_t rows_per_block) : set_(set) {
-        rows_.resize(static_cast<std::size_t>(set.size()));
+        rows_.resize(std::size_t(set.size()));
         std::iota(rows_.begin(), rows_.end(), std::size_t{0});
         const auto cell = [&](std::size_t row) {
             const glm::vec3 p = glm::floor(set.position[row] / 2.0f);
-            return std::tuple(p.x, p.y, p.z, shared::as_hash(3u, static_cast<std::uint32_t>(row), 0u, 0u));
+            return std::tuple(p.x, p.y, p.z, shared::as_hash(3u, std::uint32_t(row), 0u, 0u));
         };
         std::ranges::stable_sort(rows_, {}, cell);
         splats_ = set.size();
@@ -387,7 +376,7 @@ class BlocksInMemory : public ShadedBlocks {
                 largest_light_ = std::max(largest_light_, set.alpha[row] * std::max({c.x, c.y, c.z}));
                 if (i % 8 == 0) add(row, sample_);
             }
-            facts.splats = static_cast<std::int64_t>(end - begin);
+            facts.splats = std::int64_t(end - begin);
             blocks_.push_back(facts);
         }
         begins_.push_back(rows_.size());
@@ -427,11 +416,11 @@ struct Sky {
     explicit Sky(const std::vector<Blend>& blends, float lod_px = 0.0f, std::uint32_t count = 1500) {
         sets.reserve(blends.size());
         for (std::size_t i = 0; i < blends.size(); ++i) {
-            sets.push_back(cloud_around_origin(count, static_cast<std::uint32_t>(i + 1)));
+            sets.push_back(cloud_around_origin(count, std::uint32_t(i + 1)));
             RenderLayer layer = layer_of("layer", sets.back(), blends[i], all_shapes[1 + i % 4]);
             layer.axis = {0.3, 0.9, 0.1};
-            layer.translate = {0.1 * static_cast<double>(i), 0.0, 0.0};
-            layer.scale = 1.0 + 0.2 * static_cast<double>(i);
+            layer.translate = {0.1 * double(i), 0.0, 0.0};
+            layer.scale = 1.0 + 0.2 * double(i);
             layer.render.lod.max_px = lod_px;
             layer.render.lod.max_children = 64;
             layer.render.lod.noise = lod_px > 0.0f ? 0.7f : 0.0f;
@@ -496,7 +485,7 @@ const std::vector<Blend> affine = {Blend::over, Blend::add, Blend::screen, Blend
 TEST(ByTheBlock, EveryBlendAlone) {
     for (const Blend blend :
          {Blend::over, Blend::add, Blend::screen, Blend::hybrid, Blend::absorb, Blend::lighten}) {
-        SCOPED_TRACE(static_cast<int>(blend));
+        SCOPED_TRACE(int(blend));
         Sky({blend}).expect_same_bits({0});
     }
 }
@@ -517,7 +506,7 @@ TEST(ByTheBlock, Children) {
 TEST(ByTheBlock, Lenses) {
     for (const Projection projection :
          {Projection::orthographic, Projection::fisheye, Projection::equirectangular}) {
-        SCOPED_TRACE(static_cast<int>(projection));
+        SCOPED_TRACE(int(projection));
         Sky sky({Blend::over, Blend::screen}, 60.0f, 200);
         sky.camera.projection = projection;
         sky.camera.focal_px =

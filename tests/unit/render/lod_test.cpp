@@ -1,13 +1,10 @@
 // Level of detail, and the structure of children.
 #include "render/lod.h"
 
-#include <gtest/gtest.h>
-
 #include "camera/camera.h"
-#include "core/real.h"
-#include "core/shared_maths.h"
 #include "splats/splat_set.h"
 #include "support/printing.h"
+#include "support/test.h"
 #include "unit/render/scenes.h"
 
 namespace astrosplat {
@@ -44,9 +41,9 @@ TEST(Children, LieInTheBallAndStayWhereTheyAre) {
     table.prepare(3);
     glm::vec3 mean(0.0f);
     for (std::int64_t i = 0; i < 4000; ++i) {
-        const glm::vec3 p = table.child_offset(3, i % 64, 5, static_cast<std::uint64_t>(i / 64));
+        const glm::vec3 p = table.child_offset(3, i % 64, 5, std::uint64_t(i / 64));
         EXPECT_LE(std::sqrt(p.x * p.x + p.y * p.y + p.z * p.z), 1.0f - 0.125f + 1e-6f);
-        EXPECT_EQ(p, table.child_offset(3, i % 64, 5, static_cast<std::uint64_t>(i / 64)));
+        EXPECT_EQ(p, table.child_offset(3, i % 64, 5, std::uint64_t(i / 64)));
         mean += p / 4000.0f;
     }
     for (int k = 0; k < 3; ++k) EXPECT_NEAR(mean[k], 0.0f, 0.025f);
@@ -56,7 +53,7 @@ TEST(Children, LieInTheBallAndStayWhereTheyAre) {
 /// alone cover a point with weight q on average, the light is Integral[1 - (1 - alpha q)^N].
 TEST(Children, AloneHaveTheLightOfTheirParent) {
     constexpr int level = 2, places = 500, steps = 60;
-    const auto children = static_cast<double>(children_of_level(level));
+    const auto children = double(children_of_level(level));
     for (const Falloff::Shape shape : {Falloff::Shape::linear, Falloff::Shape::gaussian}) {
         const Falloff falloff{shape, 0.5f, 4.5f};
         LodTable table(falloff);
@@ -171,7 +168,7 @@ struct OneStar {
 
 double light_of(const Image& image) {
     double sum = 0.0;
-    for (std::size_t i = 0; i < image.pixels.size(); i += static_cast<std::size_t>(image.channels))
+    for (std::size_t i = 0; i < image.pixels.size(); i += std::size_t(image.channels))
         sum += double(image.pixels[i]);
     return sum;
 }

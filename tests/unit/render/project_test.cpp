@@ -1,19 +1,12 @@
 // Projection of splats, their bins and memory; tiles, the order of their work, and who watches them.
 #include "render/project.h"
 
-#include <gtest/gtest.h>
-
-#include <atomic>
-#include <cstring>
-#include <mutex>
-
-#include "core/error.h"
-#include "core/parallel.h"
 #include "render/bin_rects.h"
 #include "render/fold.h"
 #include "render/screen_splat.h"
 #include "splats/splat_set.h"
 #include "support/printing.h"
+#include "support/test.h"
 #include "unit/render/scenes.h"
 
 namespace astrosplat {
@@ -135,7 +128,7 @@ TEST(Project, NothingOutsideNearAndFar) {
 ShadedSplats mixed_splats() {
     std::vector<OneSplat> splats;
     for (int i = 0; i < 4000; ++i) {
-        const auto part = [&](int n) { return static_cast<float>(i * n % 3989) / 3989.0f; };
+        const auto part = [&](int n) { return float(i * n % 3989) / 3989.0f; };
         const float size = part(1117) * part(1117) * part(1117);
         splats.push_back({{12.0f * part(727) - 6.0f, 12.0f * part(1931) - 6.0f, 4.0f - 12.0f * part(2953)},
                           0.01f + 1.5f * size,
@@ -195,7 +188,7 @@ BinRect expected(const std::vector<BinLevel>& levels, const Disc& disc) {
     float bin_px = tile_px;
     while (disc.reach_px > bin_px && l + 1 < levels.size()) bin_px *= 2.0f, ++l;
     const auto bin = [&](float px, float last) {
-        return static_cast<std::uint32_t>(std::clamp(std::floor(px / bin_px), 0.0f, last));
+        return std::uint32_t(std::clamp(std::floor(px / bin_px), 0.0f, last));
     };
     const BinLevel& level = levels[l];
     const float x = disc.x_px - x0_px, y = disc.y_px - y0_px;
@@ -210,8 +203,8 @@ std::vector<Disc> many_discs() {
     std::vector<Disc> discs;
     for (int i = 0; i < 1003; ++i) {  // no whole number of vectors
         const float reach_px = 0.5f * std::ldexp(1.0f, i % 11);
-        discs.push_back({x0_px + static_cast<float>(i * 37 % 300) - 20.25f,
-                         y0_px + static_cast<float>(i * 53 % 170) - 20.5f, reach_px});
+        discs.push_back(
+            {x0_px + float(i * 37 % 300) - 20.25f, y0_px + float(i * 53 % 170) - 20.5f, reach_px});
     }
     discs.push_back({x0_px + 64.0f, y0_px + 64.0f, 32.0f});  // on the edges of bins
     discs.push_back({1e30f, -1e30f, 3.0f});
@@ -253,7 +246,7 @@ ShadedSplats some_splats(int step) {
     std::uint32_t state = 5;
     const auto next = [&state] {
         state = state * 1664525u + 1013904223u;
-        return static_cast<float>(state >> 8) / 16777216.0f;
+        return float(state >> 8) / 16777216.0f;
     };
     for (int i = 0; i < count; ++i) {
         OneSplat splat{
@@ -276,11 +269,11 @@ std::int64_t bytes_of(const ShadedSplats& splats, double each, int tile_px = 0, 
 
 TEST(ScatteredBytes, APartTellsWhatAllTake) {
     const ShadedSplats all = some_splats(1), part = some_splats(9);
-    const double each = static_cast<double>(all.size()) / static_cast<double>(part.size());
+    const double each = double(all.size()) / double(part.size());
     for (const float max_px : {0.0f, 40.0f}) {
-        const auto whole = static_cast<double>(bytes_of(all, 1.0, 0, max_px));
-        EXPECT_NEAR(static_cast<double>(bytes_of(part, each, 0, max_px)), whole, 0.04 * whole);
-        EXPECT_GT(whole, static_cast<double>(all.size()) * sizeof(ScreenSplat));
+        const auto whole = double(bytes_of(all, 1.0, 0, max_px));
+        EXPECT_NEAR(double(bytes_of(part, each, 0, max_px)), whole, 0.04 * whole);
+        EXPECT_GT(whole, double(all.size()) * sizeof(ScreenSplat));
     }
 }
 
@@ -300,7 +293,7 @@ std::vector<ScreenSplat> shuffled_splats(std::uint32_t count) {
     for (std::uint32_t i = 0; i < count; ++i) {
         const std::uint32_t n = i * 7919u % count;
         ScreenSplat s{16.0f, 16.0f, 5.0f, 0.01f, {1.0f, 1.0f, 1.0f}, 0, n, 0, 0};
-        s.depth = std::bit_cast<std::uint32_t>(static_cast<float>(n % 97u) + 1.0f);
+        s.depth = std::bit_cast<std::uint32_t>(float(n % 97u) + 1.0f);
         splats.push_back(s);
     }
     return splats;
@@ -342,11 +335,10 @@ TEST(Cancelling, StopsTheSortAndTheFold) {
 std::vector<ScreenSplat> splats_of(std::span<const float> radii_px) {
     std::vector<ScreenSplat> splats;
     for (std::size_t i = 0; i < radii_px.size(); ++i) {
-        const float x = 8.0f + 16.0f * static_cast<float>(i % 8),
-                    y = 8.0f + 16.0f * static_cast<float>(i / 8);
+        const float x = 8.0f + 16.0f * float(i % 8), y = 8.0f + 16.0f * float(i / 8);
         ScreenSplat s{
             x + 3.0f / 256.0f, y - 9.0f / 256.0f, radii_px[i], 0.5f, {1.0f, 0.5f, 0.25f}, 0, 0, 0, 0};
-        s.depth = std::bit_cast<std::uint32_t>(1.0f + static_cast<float>(i));
+        s.depth = std::bit_cast<std::uint32_t>(1.0f + float(i));
         splats.push_back(s);
     }
     return splats;
@@ -419,7 +411,7 @@ constexpr int frame_width_px = 211, frame_height_px = 133;
 ShadedSplats dense_splats() {
     std::vector<OneSplat> splats;
     for (int i = 0; i < 4000; ++i) {
-        const auto x = static_cast<float>(i % 100), y = static_cast<float>(i / 100);
+        const auto x = float(i % 100), y = float(i / 100);
         splats.push_back({{2.0f * x - 100.0f, 3.0f * y - 60.0f, 0.1f * x}, 3.0f, 0.5f, {1.0f, 0.5f, 0.25f}});
     }
     return make_splats(splats);
@@ -447,13 +439,13 @@ class TileDoneTest : public ::testing::TestWithParam<std::int64_t> {  // memory 
 TEST_P(TileDoneTest, ReportsEachPixelOnceAndFinal) {
     const Region region = settings().region;
     Image reported = make_image(region.width, region.height, 4);
-    std::vector<int> times(static_cast<std::size_t>(region.width * region.height), 0);
+    std::vector<int> times(std::size_t(region.width * region.height), 0);
     std::mutex mutex;
     const RenderedFrame frame = watch(settings(), [&](const Region& tile, const RenderedFrame& so_far) {
         const std::lock_guard lock(mutex);
         for (std::int64_t y = tile.y - region.y; y < tile.y - region.y + tile.height; ++y)
             for (std::int64_t x = tile.x - region.x; x < tile.x - region.x + tile.width; ++x) {
-                ++times[static_cast<std::size_t>(y * region.width + x)];
+                ++times[std::size_t(y * region.width + x)];
                 for (int k = 0; k < 4; ++k) reported.at(x, y)[k] = so_far.beauty.at(x, y)[k];
             }
     });
@@ -498,7 +490,7 @@ TEST(TileDone, ManySplatsComeInBandsFromTheMiddle) {
     constexpr int wide_px = 128, high_px = 256, rows = high_px / 32;
     std::vector<OneSplat> splats(2'000'000);
     for (std::size_t i = 0; i < splats.size(); ++i) {
-        const auto x = static_cast<float>(i % 2000), y = static_cast<float>(i / 2000);
+        const auto x = float(i % 2000), y = float(i / 2000);
         splats[i] = {{0.064f * x - 64.0f, 0.256f * y - 128.0f, 0.01f * x}, 0.3f, 0.01f, {1.0f, 0.5f, 0.25f}};
     }
     const ShadedSplats set = make_splats(splats);
@@ -518,7 +510,7 @@ TEST(TileDone, ManySplatsComeInBandsFromTheMiddle) {
     const std::size_t columns = wide_px / 32;
     EXPECT_EQ(order.size(), columns * rows);
     for (std::size_t i = 0; i < columns; ++i) EXPECT_EQ(order[i], order[0]) << "a band of one row";
-    EXPECT_NEAR(static_cast<double>(order[0]), 0.5 * (rows - 1), 0.5);
+    EXPECT_NEAR(double(order[0]), 0.5 * (rows - 1), 0.5);
     EXPECT_EQ(watched.beauty.pixels, whole.beauty.pixels);
     EXPECT_EQ(watched.statistics.splats_drawn, whole.statistics.splats_drawn);
 }

@@ -1,14 +1,11 @@
 // Small hand-made sets of splats and cameras whose pictures can be worked out by hand.
 #pragma once
 
-#include <gtest/gtest.h>
-
 #include <glm/vec3.hpp>
 
-#include "core/shared_maths.h"
 #include "render/footprint.h"
 #include "render/render.h"
-#include "support/bits.h"
+#include "support/test.h"
 
 namespace astrosplat::test {
 
@@ -76,8 +73,7 @@ inline RenderSettings settings_of(std::int64_t width, std::int64_t height) {
 /// Sum of one channel over all pixels.
 inline double total(const Image& image, int channel) {
     double sum = 0.0;
-    for (std::size_t i = static_cast<std::size_t>(channel); i < image.pixels.size();
-         i += static_cast<std::size_t>(image.channels))
+    for (std::size_t i = std::size_t(channel); i < image.pixels.size(); i += std::size_t(image.channels))
         sum += image.pixels[i];
     return sum;
 }

@@ -1,9 +1,6 @@
 // Cameras that show the sphere, directions, and light by solid angle.
 #pragma once
 
-#include <ostream>
-
-#include "core/real.h"
 #include "unit/render/scenes.h"
 
 namespace astrosplat::test {

@@ -1,13 +1,8 @@
 // Projections onto the sphere through the whole renderer: light at every place and size, pixels against the
 // falloff over angles by brute force, no seams and no poles, the same bits for every tile size, number of
 // threads, region and instruction set.
-#include <gtest/gtest.h>
-
-#include <glm/geometric.hpp>
-
-#include "core/real.h"
-#include "core/shared_maths.h"
 #include "support/printing.h"
+#include "support/test.h"
 #include "unit/render/sphere_scenes.h"
 
 namespace astrosplat {
@@ -20,8 +15,8 @@ using namespace astrosplat::test;
 Image one_splat(const Camera& camera, const glm::dvec3& toward, double radius_px, const Falloff& falloff,
                 RenderCache* tables = nullptr) {
     constexpr double distance = 7.0;
-    const ShadedSplats splats = make_splats(
-        {{glm::vec3(distance * toward), static_cast<float>(radius_px / camera.focal_px * distance), 0.5f}});
+    const ShadedSplats splats =
+        make_splats({{glm::vec3(distance * toward), float(radius_px / camera.focal_px * distance), 0.5f}});
     RenderLayer layer = layer_of("splat", splats);
     layer.render.falloff = falloff;
     return render({&layer, 1}, camera, nullptr, settings_of(wide_px, high_px), {}, tables).beauty;
@@ -124,6 +119,22 @@ class SphereCloud : public ::testing::TestWithParam<Projection> {
 TEST_P(SphereCloud, HasTheSameBitsHoweverThePictureIsMade) {
     expect_same_picture([&](const RenderSettings& settings) { return picture(settings); },
                         settings_of(wide_px, high_px), 200000, {{0, 31, 77, 60}, {401, 0, 111, 256}});
+}
+
+/// Tiles are narrower than a cell there, and the last ones than the others.
+TEST(Sphere, NarrowTilesTakeWhatReachesAcrossTheSeam) {
+    const ShadedSplats splats = cloud_around(300);
+    for (const Projection projection : {Projection::equirectangular, Projection::cylindrical}) {
+        RenderLayer layer = layer_of("cloud", splats, Blend::over, Falloff::Shape::gaussian);
+        const Camera camera = make_camera(params_of(projection), 88, 44, {});
+        RenderSettings settings = settings_of(88, 44);
+        const auto picture = [&](int tile_px) {
+            settings.tile_px = tile_px;
+            return render({&layer, 1}, camera, nullptr, settings).beauty.pixels;
+        };
+        const auto whole = picture(128);
+        for (const int tile_px : {16, 32, 64}) EXPECT_EQ(picture(tile_px) == whole, true) << tile_px;
+    }
 }
 
 TEST(Sphere, HasNoSeam) {

@@ -1,10 +1,8 @@
 // Stars through the whole renderer: their light at every place and size of their image, what flying past,
 // other lenses and splats before them do to it, and the same bits for every tile size, thread and instruction
 // set.
-#include <gtest/gtest.h>
-
 #include "camera/projection.h"
-#include "core/shared_maths.h"
+#include "support/test.h"
 #include "unit/render/sphere_scenes.h"
 
 namespace astrosplat {
@@ -47,8 +45,7 @@ glm::dvec2 centroid(const Image& image) {
 
 /// Where a place seen px to the right and down of the middle lies, 10 units away.
 glm::vec3 place_at(const Camera& camera, double x_px, double y_px) {
-    return {static_cast<float>(10.0 * x_px / camera.focal_px),
-            static_cast<float>(-10.0 * y_px / camera.focal_px), -10.0f};
+    return {float(10.0 * x_px / camera.focal_px), float(-10.0 * y_px / camera.focal_px), -10.0f};
 }
 
 TEST(Stars, KeepTheirLightAndPlaceAtEverySizeAndOffset) {
@@ -98,8 +95,8 @@ TEST(Stars, WingsAndSpikesTakeTheirLightFromTheCore) {
         std::vector<double> ring;
         for (int i = 0; i < 360; ++i) {
             const double turn = 2.0 * 3.14159265358979 * i / 360.0;
-            ring.push_back(picture.at(static_cast<std::int64_t>(128.0 + 30.0 * std::cos(turn)),
-                                      static_cast<std::int64_t>(128.0 - 30.0 * std::sin(turn)))[0]);
+            ring.push_back(picture.at(std::int64_t(128.0 + 30.0 * std::cos(turn)),
+                                      std::int64_t(128.0 - 30.0 * std::sin(turn)))[0]);
         }
         const auto is_bright = [&](int i) { return ring[(i + 360) % 360] > 0.3 * ring[90]; };
         int spikes = 0;
@@ -122,8 +119,8 @@ Spikes spikes_at(const Image& picture, const Camera& camera, const glm::dvec3& t
         double sum = 0.0;  // over 5 x 5 px
         for (int y = -2; y <= 2; ++y)
             for (int x = -2; x <= 2; ++x)
-                sum += double(picture.at(static_cast<std::int64_t>(double(at.x_px) + right) + x,
-                                         static_cast<std::int64_t>(double(at.y_px) + down) + y)[0]);
+                sum += double(picture.at(std::int64_t(double(at.x_px) + right) + x,
+                                         std::int64_t(double(at.y_px) + down) + y)[0]);
         return sum;
     };
     const double aslant = px / std::sqrt(2.0);
@@ -155,8 +152,7 @@ TEST(Stars, HaveTheirSpikesOnDomesAndPanoramas) {
             SCOPED_TRACE(std::string(name_of(projection)) + ", longitude " + std::to_string(place.x));
             EXPECT_NEAR(light_on_sphere(picture, solid_angles(camera), 0), 5000.0, 25.0);
             const shared::Instance at = shared::instance_of(make_lens(camera), glm::vec3(toward));
-            const double area = 1.0 / solid_angle(camera, static_cast<std::int64_t>(at.x_px),
-                                                  static_cast<std::int64_t>(at.y_px));
+            const double area = 1.0 / solid_angle(camera, std::int64_t(at.x_px), std::int64_t(at.y_px));
             for (const double px : {12.0, 24.0}) {
                 const Spikes wanted = spikes_at(flat, star_camera(), ahead, px),
                              found = spikes_at(picture, camera, toward, px);
@@ -233,12 +229,11 @@ TEST(Stars, KeepTheirLightWhileTheCameraPans) {
                 const double x = panned.center_x_px - 98.0 + 26.0 * (n % 8) + 0.37 * n,
                              y = panned.center_y_px - 98.0 + 26.0 * (n / 8) + 0.11 * n;
                 double sum = 0.0;
-                for (auto j = static_cast<std::int64_t>(y) - 11; j <= static_cast<std::int64_t>(y) + 11; ++j)
-                    for (auto i = static_cast<std::int64_t>(x) - 11; i <= static_cast<std::int64_t>(x) + 11;
-                         ++i)
+                for (auto j = std::int64_t(y) - 11; j <= std::int64_t(y) + 11; ++j)
+                    for (auto i = std::int64_t(x) - 11; i <= std::int64_t(x) + 11; ++i)
                         sum += double(picture.at(i, j)[0]);
                 if (frame == 0) first.push_back(sum);
-                ASSERT_NEAR(sum / first[static_cast<std::size_t>(n / 9)], 1.0, 0.02)
+                ASSERT_NEAR(sum / first[std::size_t(n / 9)], 1.0, 0.02)
                     << "star " << n << ", frame " << frame;
             }
         }

@@ -1,10 +1,6 @@
 // Every function that shares its work among threads or has kernels for several instruction sets: the same
 // bits however many threads and whichever instructions. A new one adds its row. What needs a frame, a look or
 // a file of errors to show it does so in its own tests.
-#include <gtest/gtest.h>
-
-#include <map>
-
 #include "bodies/bodies.h"
 #include "bodies/front_fit.h"
 #include "bodies/margin.h"
@@ -24,9 +20,8 @@
 #include "splat_files/native.h"
 #include "splats/row_order.h"
 #include "stars/star_set.h"
-#include "support/bits.h"
 #include "support/painted_picture.h"
-#include "support/temp_folder.h"
+#include "support/test.h"
 #include "volumes/voxel_grid.h"
 
 namespace astrosplat {
@@ -118,9 +113,9 @@ Bits flat_light() {
     for (const float sigma : {0.5f, 1.7f, 6.0f}) {
         const auto begin = set.splats.size();
         for (int i = 0; i < 300; ++i, ++n) {
-            set.splats.position.emplace_back(96.0f * (static_cast<float>(painted::random(n, 1)) - 0.5f),
-                                             31.9f - 0.21f * static_cast<float>(i), 0.0f);
-            set.splats.color.emplace_back(1.0f, 0.5f, static_cast<float>(painted::random(n, 2)));
+            set.splats.position.emplace_back(96.0f * (float(painted::random(n, 1)) - 0.5f),
+                                             31.9f - 0.21f * float(i), 0.0f);
+            set.splats.color.emplace_back(1.0f, 0.5f, float(painted::random(n, 2)));
             set.splats.alpha.push_back(0.1f);
             set.splats.radius.push_back(radius_sigmas * sigma);
         }
@@ -160,12 +155,12 @@ Bits voxels() {
     std::vector<VoxelSplat> splats(400);
     for (int i = 0; i < 400; ++i) {
         const double variance = std::pow(0.02 + 0.0002 * i, 2.0);
-        VoxelSplat& splat = splats[static_cast<std::size_t>(i)];
+        VoxelSplat& splat = splats[std::size_t(i)];
         splat.place = {std::sin(i * 1.7), std::cos(i * 0.9), std::sin(i * 0.3)};
         splat.ray = {0.0f, 0.0f, -1.0f};
         splat.covariance = {variance, i % 9 == 0 ? 400.0 * variance : variance, variance, 0.0, 0.0, 0.0};
-        splat.shows = splat.hides = 0.002f * static_cast<float>(i);
-        splat.light = {0.001f * static_cast<float>(i), 0.1f, 0.2f};
+        splat.shows = splat.hides = 0.002f * float(i);
+        splat.light = {0.001f * float(i), 0.1f, 0.2f};
     }
     const VoxelGrid grid = fill_voxels(splats, 0.03);
     return Bits() << grid.blocks << grid.density << grid.emission << grid.color << grid.density_put;
@@ -197,7 +192,7 @@ Bits frame(const std::string& ending) {
     RenderedFrame frame;
     frame.beauty = make_image(200, 300, 4);
     for (std::size_t i = 0; i < frame.beauty.pixels.size(); ++i)
-        frame.beauty.pixels[i] = static_cast<float>(i * 7919 % 1009) / 1009.0f;
+        frame.beauty.pixels[i] = float(i * 7919 % 1009) / 1009.0f;
     frame.depth = make_image(200, 300, 1, 123.456f);
     frame.layers = {frame.beauty, make_image(200, 300, 4, 0.25f)};
     FrameFile target{{}, {}, 200, 300, {}, {"gas", "dust"}};

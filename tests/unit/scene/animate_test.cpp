@@ -1,12 +1,10 @@
 // The scene at one frame, and what the renderer takes of it.
-#include <gtest/gtest.h>
-
 #include "scene/animate.h"
 #include "scene/check.h"
 #include "scene/layer_setup.h"
 #include "scene/load.h"
 #include "scene_texts.h"
-#include "support/errors.h"
+#include "support/test.h"
 
 namespace astrosplat::test {
 namespace {

@@ -1,19 +1,14 @@
 // Cameras of other programs: read by camera.file, and written for them.
-#include <gtest/gtest.h>
-
-#include <glm/geometric.hpp>
-#include <numeric>
-#include <sstream>
-
+#include "scene/camera_file.h"
 #include "camera/camera.h"
 #include "core/file_format.h"
 #include "core/text.h"
 #include "scene/animate.h"
-#include "scene/camera_file.h"
 #include "scene/load.h"
 #include "scene/save.h"
 #include "scene_texts.h"
 #include "support/camera_tracks.h"
+#include "support/test.h"
 
 namespace astrosplat {
 namespace {

@@ -1,13 +1,9 @@
 // Where a picture lies in the world, and a reference over the frame.
-#include <gtest/gtest.h>
-
-#include <glm/geometric.hpp>
-
-#include "core/rotation.h"
 #include "scene/front_frame.h"
+#include "core/rotation.h"
 #include "scene/reference_place.h"
 #include "source/textured_mesh.h"
-#include "support/errors.h"
+#include "support/test.h"
 
 namespace astrosplat {
 namespace {
@@ -19,8 +15,8 @@ Texture numbered_texture(std::int64_t width, std::int64_t height) {
     texture.image = make_image(width, height, 4, 1.0f);
     for (std::int64_t y = 0; y < height; ++y)
         for (std::int64_t x = 0; x < width; ++x) {
-            texture.image.at(x, y)[0] = static_cast<float>(x);
-            texture.image.at(x, y)[1] = static_cast<float>(y);
+            texture.image.at(x, y)[0] = float(x);
+            texture.image.at(x, y)[1] = float(y);
             texture.image.at(x, y)[2] = 0.5f;
         }
     return texture;
@@ -28,7 +24,7 @@ Texture numbered_texture(std::int64_t width, std::int64_t height) {
 
 std::vector<TexturedMesh> builtin(const std::string& name, std::int64_t width, std::int64_t height) {
     std::vector<TexturedMesh> meshes(1);
-    meshes[0].mesh = builtin_mesh(name, static_cast<double>(width) / static_cast<double>(height));
+    meshes[0].mesh = builtin_mesh(name, double(width) / double(height));
     meshes[0].textures.push_back(numbered_texture(width, height));
     return meshes;
 }
@@ -122,8 +118,8 @@ void expect_numbered(const Image& picture, std::int64_t width, std::int64_t heig
     ASSERT_EQ(picture.height, height);
     for (std::int64_t j = 0; j < height; ++j)
         for (std::int64_t i = 0; i < width; ++i) {
-            ASSERT_NEAR(picture.at(i, j)[0], static_cast<float>(i), tolerance) << i << " " << j;
-            ASSERT_NEAR(picture.at(i, j)[1], static_cast<float>(j), tolerance) << i << " " << j;
+            ASSERT_NEAR(picture.at(i, j)[0], float(i), tolerance) << i << " " << j;
+            ASSERT_NEAR(picture.at(i, j)[1], float(j), tolerance) << i << " " << j;
         }
 }
 
@@ -175,8 +171,7 @@ TEST(FrontFrame, ItsCameraFollowsTheLayersTransform) {
 
 TEST(FrontPicture, TransparencyIsSeenOnBlack) {
     std::vector<TexturedMesh> plane = builtin("plane", 8, 8);
-    for (std::int64_t i = 0; i < 64; ++i)
-        plane[0].textures[0].image.pixels[static_cast<std::size_t>(4 * i + 3)] = 0.75f;
+    for (std::int64_t i = 0; i < 64; ++i) plane[0].textures[0].image.pixels[std::size_t(4 * i + 3)] = 0.75f;
     const Image picture = front_picture(plane, front_frame(plane));  // the texture is premultiplied already
     EXPECT_NEAR(picture.at(4, 4)[2], 0.5f, 1e-6f);
     EXPECT_NEAR(picture.at(6, 2)[0], 6.0f, 1e-3f);
@@ -189,12 +184,12 @@ TEST(FrontPicture, OfADiskIsBlackAroundIt) {
     ASSERT_EQ(picture.height, 64);
     for (std::int64_t j = 0; j < 64; ++j)
         for (std::int64_t i = 0; i < 64; ++i) {
-            const double r = std::hypot(static_cast<double>(i) - 31.5, static_cast<double>(j) - 31.5);
+            const double r = std::hypot(double(i) - 31.5, double(j) - 31.5);
             if (std::fabs(r - 32.0) > 0.6) {
                 EXPECT_EQ(picture.at(i, j)[2], r < 32.0 ? 0.5f : 0.0f) << i << " " << j;
             }
             if (r < 31.0) {
-                EXPECT_NEAR(picture.at(i, j)[0], static_cast<float>(i), 1e-3f);
+                EXPECT_NEAR(picture.at(i, j)[0], float(i), 1e-3f);
             }
         }
 }

@@ -1,13 +1,10 @@
 // Loading: every key, precedence, paths, --set, tracks.
 
 #include <clocale>
-#include <set>
 
 #include "scene/layer_setup.h"
 #include "scene/toml_text.h"
 #include "scene_texts.h"
-#include "support/process_state.h"
-#include "support/temp_folder.h"
 
 namespace astrosplat::test {
 namespace {

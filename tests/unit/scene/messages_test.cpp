@@ -3,7 +3,6 @@
 #include "core/atomic_file.h"
 #include "scene/check.h"
 #include "scene_texts.h"
-#include "support/errors.h"
 
 namespace astrosplat::test {
 namespace {

@@ -1,9 +1,4 @@
 // Parameters and words of a scene.
-#include <gtest/gtest.h>
-
-#include <map>
-#include <set>
-
 #include "look/picture_fit.h"
 #include "look/prepare.h"
 #include "scene/describe.h"
@@ -11,8 +6,7 @@
 #include "scene/parameter_key.h"
 #include "scene/toml_text.h"
 #include "scene_texts.h"
-#include "support/errors.h"
-#include "support/quiet.h"
+#include "support/test.h"
 #include "unit/look/sets.h"
 
 namespace astrosplat::test {
@@ -71,7 +65,7 @@ bool operator==(const ShadedSplats& a, const ShadedSplats& b) {
 
 Value number(const ParameterSpec& spec, double share) {
     const double x = spec.slider_min + share * (spec.slider_max - spec.slider_min);
-    if (spec.type == ParameterType::integer) return static_cast<std::int64_t>(x);
+    if (spec.type == ParameterType::integer) return std::int64_t(x);
     if (spec.components == 1) return x;
     Value::List list;
     for (int i = 0; i < spec.components; ++i) list.emplace_back(x * (1.0 - 0.3 * i));

@@ -1,15 +1,11 @@
 #include "scene/new_scene.h"
 
-#include <gtest/gtest.h>
-
-#include <glm/geometric.hpp>
-
 #include "prepare/star_removal.h"
 #include "scene/animate.h"
 #include "scene/load.h"
 #include "scene/save.h"
 #include "source/textured_mesh.h"
-#include "support/temp_folder.h"
+#include "support/test.h"
 
 namespace astrosplat {
 namespace {
@@ -30,9 +26,8 @@ TEST(PictureScene, BeginsWithThePictureAsItIs) {
         EXPECT_EQ(std::max(scene.output.width, scene.output.height), 1920);
         EXPECT_EQ(scene.output.width % 2, 0);
         EXPECT_EQ(scene.output.height % 2, 0);
-        const double aspect = static_cast<double>(width) / static_cast<double>(height);
-        EXPECT_NEAR(static_cast<double>(scene.output.width) / static_cast<double>(scene.output.height),
-                    aspect, 0.002 * aspect);
+        const double aspect = double(width) / double(height);
+        EXPECT_NEAR(double(scene.output.width) / double(scene.output.height), aspect, 0.002 * aspect);
         // What the camera sees of the plane, which is 10 units along its longer side.
         const double seen =
             2.0 * scene.camera.position->y * std::tan(0.5 * scene.camera.fov * 3.14159265358979 / 180.0);
@@ -79,7 +74,7 @@ TEST(PictureScene, StarsThatWereTakenOutAreALayerOfTheirOwn) {
 // Any program may write a stars.csv: only prepare's own, which says so, is of the picture beside it.
 TEST(PictureScene, AForeignTableBesideAPictureIsLeftAlone) {
     const TempFolder folder;
-    const std::filesystem::path picture = folder.file("picture.ppm", "P3\n2 1\n255\n9 9 9 200 90 10\n");
+    const fs::path picture = folder.file("picture.ppm", "P3\n2 1\n255\n9 9 9 200 90 10\n");
     Identification choice;
     for (const char* foreign :
          {"name,ra,dec,mag\nVega,279.2,38.8,0.03\n", "u,v,flux_r,flux_g,flux_b\n0.5,0.5,1,1,1\n", "", "#"}) {
@@ -88,7 +83,7 @@ TEST(PictureScene, AForeignTableBesideAPictureIsLeftAlone) {
     }
     PictureStar star;
     star.amplitude = {1.0, 1.0, 1.0};
-    const std::filesystem::path own = folder.file("stars.csv", star_table(std::vector{star}, 2, 1));
+    const fs::path own = folder.file("stars.csv", star_table(std::vector{star}, 2, 1));
     EXPECT_EQ(picture_scene(picture, {}, choice).stars, own);
     EXPECT_NEAR(picture_scene(picture, {}, choice).star_px, star.sigma_px(), 1e-3);
 }

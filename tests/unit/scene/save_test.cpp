@@ -4,10 +4,7 @@
 #include "scene/check.h"
 #include "scene/new_scene.h"
 #include "scene_texts.h"
-#include "support/bits.h"
-#include "support/errors.h"
 #include "support/random_values.h"
-#include "support/temp_folder.h"
 
 namespace astrosplat::test {
 namespace {

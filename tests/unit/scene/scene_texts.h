@@ -1,11 +1,9 @@
 // Scene texts and helpers that several tests share.
 #pragma once
 
-#include <gtest/gtest.h>
-
-#include "core/error.h"
 #include "scene/describe.h"
 #include "scene/load.h"
+#include "support/test.h"
 
 namespace astrosplat::test {
 

@@ -1,21 +1,15 @@
 // Sets of sources: whole, and what is seen before that.
 #include "sets/load_source.h"
 
-#include <gtest/gtest.h>
-
-#include <fstream>
-
 #include "bodies/bodies.h"
 #include "sets/kept.h"
 #include "sets/set_sample.h"
 #include "source/textured_mesh.h"
 #include "splat_files/native.h"
 #include "splat_files/splat_file.h"
-#include "support/errors.h"
 #include "support/pixmap.h"
-#include "support/quiet.h"
 #include "support/splats.h"
-#include "support/temp_folder.h"
+#include "support/test.h"
 #include "support/test_data.h"
 #include "unit/splat_files/file_support.h"
 
@@ -27,8 +21,7 @@ namespace {
 class LoadSourceTest : public SplatFileTest {
   protected:
     static std::string error_of(const SourceParams& source) { return ERROR_OF(load_source(source, "dust")); }
-    static SourceParams mesh_source(const std::filesystem::path& mesh,
-                                    std::vector<std::filesystem::path> texture = {}) {
+    static SourceParams mesh_source(const fs::path& mesh, std::vector<fs::path> texture = {}) {
         SourceParams source;
         source.meshes.push_back({mesh, std::move(texture), 0.15});
         source.count = 5000;
@@ -116,7 +109,7 @@ TEST_F(LoadSourceTest, NeedsAMesh) {
 
 TEST_F(LoadSourceTest, MeshesWithoutPicturesAreNeutralGrey) {
     const auto obj = write("bare.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\n");
-    for (const std::filesystem::path& mesh : {std::filesystem::path("sphere"), std::filesystem::path(obj)}) {
+    for (const fs::path& mesh : {fs::path("sphere"), fs::path(obj)}) {
         SourceParams source = mesh_source(mesh);
         source.count = 2000;
         const SplatSet set = load_source(source, "dust");
@@ -235,7 +228,7 @@ TEST_F(LoadSourceTest, PlaneTakesThePicturesAspectAndSaysWhatWasChosen) {
     const Bounds box = bounds(set);
     EXPECT_NEAR(box.extent().x, 10.4, 0.3);  // the longer side, and 2 % on either side
     EXPECT_NEAR(box.extent().z, 6.65, 0.3);
-    EXPECT_NEAR(static_cast<double>(set.size() + set.zero_alpha), 5000.0, 750.0);
+    EXPECT_NEAR(double(set.size() + set.zero_alpha), 5000.0, 750.0);
     EXPECT_HAS(said_.text(), "layer 'dust': ");
     EXPECT_HAS(said_.text(), "max distance 0.2");
     const SplatSet other = load_source(source, "stars");  // another name, another seed
@@ -245,7 +238,7 @@ TEST_F(LoadSourceTest, PlaneTakesThePicturesAspectAndSaysWhatWasChosen) {
 TEST_F(LoadSourceTest, MeshesBringTheirOwnPicture) {
     ASTROSPLAT_TEST_DATA_OR_SKIP(mesh, "meshes/smallbodies/phobos.obj");
     const SplatSet set = load_source(mesh_source(mesh), "phobos");
-    EXPECT_NEAR(static_cast<double>(set.size()), 5000.0, 1000.0);
+    EXPECT_NEAR(double(set.size()), 5000.0, 1000.0);
     EXPECT_GT(set.color[0].x, 0.0f);
 }
 
@@ -268,7 +261,7 @@ class SetSampleTest : public testing::Test {
         folder_.file("p.ppm", test::pixmap(640, 480, [](int column, int row, int k) {
                          const int x = column - 320, y = row - 240;
                          const bool lit = x * x + y * y < 200 * 200;
-                         return lit ? 200 - 50 * k + static_cast<int>(50.0 * std::sin(0.02 * x * y)) : 0;
+                         return lit ? 200 - 50 * k + int(50.0 * std::sin(0.02 * x * y)) : 0;
                      }));
         columns_.meshes = {{"plane", {folder_ / "p.ppm"}, 0.15}};
         columns_.count = 600000;
@@ -281,12 +274,12 @@ class SetSampleTest : public testing::Test {
     static double mean_alpha(const SplatSet& set) {
         double sum = 0.0;
         for (const float alpha : set.alpha) sum += alpha;
-        return sum / static_cast<double>(set.size());
+        return sum / double(set.size());
     }
     /// Of all discs together.
     static double area(const SplatSet& set, double each) {
         double sum = 0.0;
-        for (const float radius : set.radius) sum += static_cast<double>(radius) * radius;
+        for (const float radius : set.radius) sum += double(radius) * radius;
         return sum * each;
     }
 
@@ -304,9 +297,8 @@ TEST_F(SetSampleTest, OfWhatIsKeptItHoldsRows) {
         const auto sample = sample_there(cache_, source, "a");
         ASSERT_TRUE(sample);
         EXPECT_EQ(sample->making_seconds, 0.0);
-        EXPECT_NEAR(static_cast<double>(sample->splats), static_cast<double>(whole.size()),
-                    0.02 * static_cast<double>(whole.size()));
-        EXPECT_LT(sample->set.size(), 0.75 * static_cast<double>(whole.size()));
+        EXPECT_NEAR(double(sample->splats), double(whole.size()), 0.02 * double(whole.size()));
+        EXPECT_LT(sample->set.size(), 0.75 * double(whole.size()));
         EXPECT_NEAR(mean_alpha(sample->set), mean_alpha(whole), 0.02 * mean_alpha(whole));
         std::size_t row = 0;
         for (std::size_t i = 0; i < sample->set.id.size(); i += 97) {
@@ -324,10 +316,9 @@ TEST_F(SetSampleTest, ItHasAsManyRowsAsAreAskedFor) {
         load_source(cache_, source, "a");
         const SetSample usual = sample_there(cache_, source, "a").value();
         const SetSample small = sample_there(cache_, source, "a", 5000).value();
-        const double rows = 0.05 * static_cast<double>(usual.set.size());
-        EXPECT_NEAR(static_cast<double>(small.set.size()), rows, 0.05 * rows);
-        EXPECT_NEAR(static_cast<double>(small.splats), static_cast<double>(usual.splats),
-                    0.03 * static_cast<double>(usual.splats));
+        const double rows = 0.05 * double(usual.set.size());
+        EXPECT_NEAR(double(small.set.size()), rows, 0.05 * rows);
+        EXPECT_NEAR(double(small.splats), double(usual.splats), 0.03 * double(usual.splats));
     }
 }
 
@@ -336,9 +327,9 @@ TEST_F(SetSampleTest, OfWhatIsNotKeptItIsMadeAsWide) {
         const SetSample sample = sample_set(cache_, source, "a");
         EXPECT_FALSE(fs::exists(cache_.folder));
         const SplatSet whole = load_source(source, "a");
-        const auto splats = static_cast<double>(whole.size());
+        const auto splats = double(whole.size());
         EXPECT_GT(sample.making_seconds, 0.0);
-        EXPECT_NEAR(static_cast<double>(sample.splats), splats, 0.15 * splats);
+        EXPECT_NEAR(double(sample.splats), splats, 0.15 * splats);
         EXPECT_GT(sample.each(), 1.3);
         // A smaller picture has fewer sizes of splats; were the rest not made narrower, they would cover 1.5
         // times as much.
@@ -358,7 +349,7 @@ TEST_F(SetSampleTest, OfASplatFileItHoldsRowsWhateverItsFormat) {
     const auto sample = sample_there({}, source, "a");
     ASSERT_TRUE(sample);
     EXPECT_EQ(sample->splats, set.size());
-    EXPECT_NEAR(static_cast<double>(sample->set.size()), 100000.0, 4.0);
+    EXPECT_NEAR(double(sample->set.size()), 100000.0, 4.0);
     std::ofstream(folder_ / "few.pda") << "ATTRIBUTES\n position rgbPP opacityPP radiusPP\nTYPES\n V V R R\n"
                                           "NUMBER_OF_PARTICLES: 1\nBEGIN DATA\n0 0 0 1 1 1 1 1\n";
     source.file = folder_ / "few.pda";

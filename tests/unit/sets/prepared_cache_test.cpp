@@ -1,16 +1,12 @@
 // Prepared pictures and skies kept beside the sets.
-#include <gtest/gtest.h>
-
 #include "core/file.h"
 #include "core/log.h"
 #include "sets/kept.h"
 #include "sets/load_source.h"
 #include "source/prepared_picture.h"
 #include "source/write_image.h"
-#include "support/errors.h"
 #include "support/pixmap.h"
-#include "support/quiet.h"
-#include "support/temp_folder.h"
+#include "support/test.h"
 
 namespace astrosplat {
 namespace {

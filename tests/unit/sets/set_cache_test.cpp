@@ -3,26 +3,18 @@
 #include "sets/kept.h"
 
 #include <fcntl.h>
-#include <gtest/gtest.h>
 #include <sys/file.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 
-#include <atomic>
-#include <chrono>
 #include <csignal>
-#include <thread>
 
 #include "core/log.h"
 #include "sets/load_source.h"
 #include "sets/set_sample.h"
 #include "splat_files/native.h"
-#include "support/bits.h"
-#include "support/errors.h"
 #include "support/pixmap.h"
-#include "support/process_state.h"
-#include "support/quiet.h"
-#include "support/temp_folder.h"
+#include "support/test.h"
 #include "unit/splat_files/file_support.h"
 
 namespace astrosplat {
@@ -334,7 +326,7 @@ TEST_F(SetCacheTest, TheLeastRecentlyUsedGoFirst) {
     };
     age(1, 30), age(2, 20), age(3, 10);
     EXPECT_TRUE(load(with_seed(1)).cached);  // used now: 2 is the oldest
-    cache_.limit_bytes = static_cast<std::int64_t>(three) + 2000;
+    cache_.limit_bytes = std::int64_t(three) + 2000;
     load(with_seed(4));
     EXPECT_EQ(entries().size(), 3u);
     EXPECT_EQ(entries(".texels").size(), 3u);
@@ -469,8 +461,8 @@ TEST_F(SetCacheTest, SplatsAreCountedAfterTheLevels) {
     source_.texture.mask.emplace_back().luminance = glm::dvec2(0.3, 1.0);
     const LoadedSet masked = load();
     EXPECT_FALSE(masked.geometry_cached);  // as many of fewer: another lattice
-    EXPECT_NEAR(static_cast<double>(masked.set.size()), 3000.0, 300.0);
-    EXPECT_NEAR(static_cast<double>(all.set.size()), 3000.0, 300.0);
+    EXPECT_NEAR(double(masked.set.size()), 3000.0, 300.0);
+    EXPECT_NEAR(double(all.set.size()), 3000.0, 300.0);
 }
 
 // As after a collision of hashes, or by a hand that renames files.
@@ -592,12 +584,30 @@ TEST_F(SetCacheTest, AProcessThatIsKilledGivesWay) {
         close(open(ready.c_str(), O_CREAT | O_WRONLY, 0666));
         for (;;) pause();
     }
-    while (!fs::exists(ready)) std::this_thread::yield();
+    const auto soon = [](const auto& is_so) {
+        const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+        while (!is_so() && std::chrono::steady_clock::now() < end) std::this_thread::yield();
+        return is_so();
+    };
+    EXPECT_TRUE(soon([&] { return fs::exists(ready); }));
     std::optional<LoadedSet> loaded;
-    std::thread other([&] { loaded = load(); });
+    std::atomic<bool> waits{false}, ended{false}, cancelled{false};
+    set_log_sink([&](LogLevel, const std::string& line) { waits = waits || line.find("waiting") < 99; });
+    std::thread other([&] {
+        try {
+            loaded = load_source(cache_, source_, "dust", Progress{{}, &cancelled});
+        } catch (const Cancelled&) {
+        }
+        ended = true;
+    });
+    EXPECT_TRUE(soon([&] { return waits || ended; }));
+    EXPECT_FALSE(ended) << "it lives";
     kill(child, SIGKILL);
     waitpid(child, nullptr, 0);
+    EXPECT_TRUE(soon([&] { return ended.load(); })) << "it is gone";
+    cancelled = true;
     other.join();
+    ASSERT_TRUE(loaded);
     EXPECT_FALSE(loaded->cached);
     EXPECT_TRUE(load().cached);
     EXPECT_TRUE(entries(".lock").empty());

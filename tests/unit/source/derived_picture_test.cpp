@@ -1,18 +1,12 @@
 // Pictures made of pictures: maps, reworked ones, masks, and a sky of cut-outs.
-#include <gtest/gtest.h>
-
-#include <glm/geometric.hpp>
-
 #include "core/color.h"
-#include "core/real.h"
 #include "detect/parts.h"
 #include "source/texture.h"
 #include "source/textured_mesh.h"
 #include "source/tiled_sky.h"
-#include "support/errors.h"
 #include "support/painted_picture.h"
 #include "support/pixmap.h"
-#include "support/temp_folder.h"
+#include "support/test.h"
 
 namespace astrosplat {
 namespace {
@@ -27,9 +21,7 @@ Image slope(const glm::vec3& color, std::int64_t side = 64) {
     Image light = make_image(side, side, 4, 1.0f);
     for (std::int64_t y = 0; y < side; ++y)
         for (std::int64_t x = 0; x < side; ++x)
-            for (int c = 0; c < 3; ++c)
-                light.at(x, y)[c] =
-                    color[c] * (0.2f + 0.8f * static_cast<float>(x) / static_cast<float>(side));
+            for (int c = 0; c < 3; ++c) light.at(x, y)[c] = color[c] * (0.2f + 0.8f * float(x) / float(side));
     return light;
 }
 
@@ -69,16 +61,15 @@ TEST(DerivedPicture, EvenLightHasNoDustAndADarkLaneIsAbsorbed) {
     // A lane that takes 60 % in its middle, 3 px wide: narrow against the coarse bands, which fill it.
     for (std::int64_t y = 0; y < height; ++y)
         for (std::int64_t x = 0; x < width; ++x) {
-            const double t = static_cast<double>(x - width / 2) / 3.0;
-            for (int c = 0; c < 3; ++c)
-                light.at(x, y)[c] *= static_cast<float>(1.0 - 0.6 * real::exp(-0.5 * t * t));
+            const double t = double(x - width / 2) / 3.0;
+            for (int c = 0; c < 3; ++c) light.at(x, y)[c] *= float(1.0 - 0.6 * real::exp(-0.5 * t * t));
         }
     const Image lane = derived_picture(light, Derived::dust);
     EXPECT_NEAR(*lane.at(width / 2, 30), 0.6f, 0.1f);
     EXPECT_LT(*lane.at(30, 30), 0.02f);
     double inside = 0.0, outside = 0.0;
     for (std::int64_t x = 0; x < width; ++x)
-        (std::abs(x - width / 2) < 12 ? inside : outside) += static_cast<double>(*lane.at(x, 30));
+        (std::abs(x - width / 2) < 12 ? inside : outside) += double(*lane.at(x, 30));
     EXPECT_GT(inside, 4.0 * outside);
 }
 
@@ -108,7 +99,7 @@ TEST_F(ReworkedTextureTest, SmoothIsAGaussianOfTheWidthAndKeepsTheLight) {
     settings.smooth = 3.0 / 64.0;
     const Image blurred = load_texture({file}, settings, Wrap::clamp).image;
     double sum = 0.0;
-    for (std::int64_t i = 0; i < 64 * 64; ++i) sum += static_cast<double>(blurred.pixels[4 * i]);
+    for (std::int64_t i = 0; i < 64 * 64; ++i) sum += double(blurred.pixels[4 * i]);
     EXPECT_NEAR(sum, 1.0, 1e-4);
     EXPECT_NEAR(blurred.at(32, 32)[0], 1.0 / (2.0 * real::pi * 9.0), 2e-4);
     EXPECT_NEAR(blurred.at(35, 32)[0] / blurred.at(32, 32)[0], real::exp(-0.5), 1e-3);
@@ -193,7 +184,7 @@ Image row_of(int width, const Color& color) {
     Image row = make_image(width, 1, 4, 1.0f);
     for (int x = 0; x < width; ++x) {
         const glm::dvec3 c = color(x);
-        for (int k = 0; k < 3; ++k) row.at(x, 0)[k] = static_cast<float>(real::srgb_to_linear(c[k]));
+        for (int k = 0; k < 3; ++k) row.at(x, 0)[k] = float(real::srgb_to_linear(c[k]));
     }
     return row;
 }
@@ -208,7 +199,7 @@ glm::dvec3 hue_color(double degrees) {
 
 double sum(const Image& weights) {
     double total = 0.0;
-    for (const float w : weights.pixels) total += static_cast<double>(w);
+    for (const float w : weights.pixels) total += double(w);
     return total;
 }
 
@@ -357,8 +348,7 @@ Image deep_field() {
     for (std::int64_t y = 0; y < picture_px; ++y)
         for (std::int64_t x = 0; x < picture_px; ++x)
             for (int c = 0; c < 3; ++c)
-                image.at(x, y)[c] =
-                    static_cast<float>(sky + 0.002 * double(painted::fbm(double(x), double(y), 0.31, 9u)));
+                image.at(x, y)[c] = float(sky + 0.002 * double(painted::fbm(double(x), double(y), 0.31, 9u)));
     for (int n = 0; n < galaxies; ++n) {
         const double x = 14.0 + 40.0 * (n % 6) + 12.0 * painted::random(std::uint32_t(n), 71),
                      y = 18.0 + 46.0 * (n / 6) + 12.0 * painted::random(std::uint32_t(n), 72);
@@ -384,7 +374,7 @@ TEST(TiledSky, HasThePicturesLightAndItsObjectsWholeAndAsMany) {
     constexpr std::uint32_t seeds = 4;
     for (std::uint32_t seed = 1; seed <= seeds; ++seed)
         for (const Image& face : tiled_sky(picture, small_tiling(seed))) {
-            const auto n = static_cast<double>(face.width);
+            const auto n = double(face.width);
             for (std::int64_t y = 0; y < face.height; ++y)
                 for (std::int64_t x = 0; x < face.width; ++x) {
                     const double share = solid_angle(double(x) + 0.5, double(y) + 0.5, n);

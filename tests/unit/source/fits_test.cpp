@@ -2,18 +2,11 @@
 #include "source/fits.h"
 
 #include <fitsio.h>
-#include <fmt/format.h>
-#include <gtest/gtest.h>
 #include <sys/stat.h>
 
-#include <atomic>
-
-#include "core/error.h"
 #include "source/picture.h"
-#include "support/bits.h"
-#include "support/errors.h"
 #include "support/fits_text.h"
-#include "support/temp_folder.h"
+#include "support/test.h"
 
 namespace astrosplat {
 namespace {
@@ -26,7 +19,7 @@ fs::path write_compressed(const fs::path& file, int compression) {
     int status = 0;
     long axes[] = {width, height};
     std::vector<short> values;
-    for (int i = 0; i < width * height; ++i) values.push_back(static_cast<short>(i * 7 % 101));
+    for (int i = 0; i < width * height; ++i) values.push_back(short(i * 7 % 101));
     fits_create_diskfile(&out, file.c_str(), &status);
     fits_set_compression_type(out, compression, &status);
     fits_create_img(out, SHORT_IMG, 2, axes, &status);
@@ -50,7 +43,7 @@ TEST(FitsCompressed, AllKindsAreRead) {
     for (const int compression : {RICE_1, GZIP_1, GZIP_2, HCOMPRESS_1, PLIO_1}) {
         const FitsPlane plane =
             read_fits(write_compressed(folder / fmt::format("{}.fits", compression), compression), "auto", 0);
-        ASSERT_EQ(plane.values.size(), static_cast<std::size_t>(width * height));
+        ASSERT_EQ(plane.values.size(), std::size_t(width * height));
         EXPECT_EQ(plane.values[(height - 1) * width + 9], 63.0) << compression;  // the bottom row comes last
     }
 }
@@ -128,7 +121,7 @@ TEST(FitsCompressed, DamagedGzipTilesAreRefused) {
         int refused = 0;
         for (std::size_t byte = 0; byte < 60; ++byte) {
             std::string bytes = whole;
-            bytes[tile + byte] = static_cast<char>(bytes[tile + byte] ^ 0x15);
+            bytes[tile + byte] = char(bytes[tile + byte] ^ 0x15);
             try {
                 read_fits(folder.file("bad.fits", bytes), "auto", 0);
             } catch (const InputError& error) {

@@ -1,19 +1,11 @@
 // OBJ files small enough to read, measures, projections, built-in shapes.
 #include "source/mesh.h"
 
-#include <gtest/gtest.h>
 #include <tiny_obj_loader.h>
 
-#include <atomic>
 #include <clocale>
-#include <glm/geometric.hpp>
-#include <sstream>
 
-#include "core/error.h"
-#include "core/real.h"
-#include "support/errors.h"
-#include "support/quiet.h"
-#include "support/temp_folder.h"
+#include "support/test.h"
 
 namespace astrosplat {
 namespace {
@@ -191,8 +183,7 @@ TEST(Obj, TinyobjloaderDoesNotReadOrRefuseAsWeDo) {
         std::string warning, error;
         if (!tinyobj::LoadObj(&attributes, &shapes, &materials, &warning, &error, &in)) return -1;
         int count = 0;
-        for (const tinyobj::shape_t& shape : shapes)
-            count += static_cast<int>(shape.mesh.num_face_vertices.size());
+        for (const tinyobj::shape_t& shape : shapes) count += int(shape.mesh.num_face_vertices.size());
         return count;
     };
     EXPECT_EQ(triangles(square + "f 1// 2// 3//\n"), -1);  // as in trimesh's polygonfaces.obj
@@ -304,8 +295,7 @@ TEST(Builtin, DiskShowsTheLargestCircleUndistorted) {
 TEST(Builtin, SphereMapReadsRightFromOutside) {
     const Mesh mesh = builtin_mesh("sphere", 2.0);
     const auto at = [&](std::size_t column, std::size_t row) {
-        EXPECT_EQ(mesh.uvs[row * 129 + column],
-                  glm::vec2(static_cast<float>(column) / 128.0f, static_cast<float>(row) / 64.0f));
+        EXPECT_EQ(mesh.uvs[row * 129 + column], glm::vec2(float(column) / 128.0f, float(row) / 64.0f));
         return mesh.positions[row * 129 + column];
     };
     const auto near = [](glm::vec3 p, glm::vec3 q) { return glm::length(p - q) < 1e-5f; };

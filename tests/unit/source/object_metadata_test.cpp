@@ -1,10 +1,8 @@
 #include "source/object_metadata.h"
 
-#include <gtest/gtest.h>
-
 #include "source/picture.h"
 #include "support/fits_text.h"
-#include "support/temp_folder.h"
+#include "support/test.h"
 #include "support/test_data.h"
 
 namespace astrosplat {
@@ -47,6 +45,29 @@ TEST(XmpMetadata, FromAttributesAndLists) {
     EXPECT_EQ(found.reference_px, (std::array{4000.0, 3000.0}));
     EXPECT_NEAR(*found.north_angle, 84.5, 1e-12);
     EXPECT_EQ(found.sky_position, (std::array{140.5, -51.0}));
+}
+
+TEST(XmpMetadata, APacketSaysAllOfItAgain) {
+    EXPECT_EQ(xmp_packet({}), "");
+    ObjectMetadata said;
+    said.names = {"M 51", "A & <B>"};
+    EXPECT_EQ(find_xmp_metadata(xmp_packet(said)), said);
+    said.categories = {"C.5.1.1"};
+    said.title = "A \"spiral\"";
+    said.credit = "Größe";
+    said.type = "Observation";
+    said.distance_ly = 2.6e7;
+    said.degrees_per_px = 0.25e-4;
+    said.north_angle = 0.0;
+    said.reference_px = {4000.0, 3000.5};
+    said.sky_position = {202.469575, -47.1952583};
+    EXPECT_EQ(find_xmp_metadata("junk" + xmp_packet(said) + "junk"), said);
+    for (const double turn : {-179.5, -36.9, 90.0, 180.0}) {
+        said.north_angle = turn;
+        const ObjectMetadata found = find_xmp_metadata(xmp_packet(said));
+        EXPECT_DOUBLE_EQ(*found.north_angle, turn);
+        EXPECT_DOUBLE_EQ(*found.degrees_per_px, 0.25e-4);
+    }
 }
 
 TEST(XmpMetadata, PrefixesAreThoseThatThePacketDeclares) {
@@ -190,8 +211,8 @@ TEST(DegreesPerPixel, FollowTheReferenceThatThePictureWasCutFrom) {
 
 using Cards = std::vector<std::pair<const char*, double>>;
 
-std::filesystem::path write_sky(const TempFolder& folder, const char* name, const std::string& distance_unit,
-                                const Cards& more) {
+fs::path write_sky(const TempFolder& folder, const char* name, const std::string& distance_unit,
+                   const Cards& more) {
     Cards numbers{{"CRPIX1", 2.0}, {"CRPIX2", 1.5}, {"CRVAL1", 202.5}, {"CRVAL2", 47.2}};
     numbers.insert(numbers.end(), more.begin(), more.end());
     std::string cards = fits_card("OBJECT  = 'M 51    '") + fits_card("CTYPE1  = 'RA---TAN'") +
@@ -222,7 +243,7 @@ TEST(FitsMetadata, NorthAndScaleAlsoInMirroredPictures) {
     const auto expect = [&](const Cards& cards, double north) {
         const std::string name = std::to_string(north) + std::to_string(cards.size()) + ".fits";
         const ObjectMetadata found = read_fits_metadata(write_sky(folder, name.c_str(), "", cards));
-        std::filesystem::remove(folder / name);
+        fs::remove(folder / name);
         ASSERT_TRUE(found.north_angle && found.degrees_per_px);
         EXPECT_NEAR(std::remainder(*found.north_angle - north, 360.0), 0.0, 1e-9);
         EXPECT_NEAR(*found.degrees_per_px, s, 1e-16);

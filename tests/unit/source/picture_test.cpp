@@ -1,17 +1,10 @@
 // Picture files, lookup in them, and pictures that are reduced while they are read.
-#include <gtest/gtest.h>
-#include <sys/stat.h>
-
-#include <fmt/format.h>
-// fmt first: OpenImageIO's copy of it would turn exceptions off.
+#include "support/test.h"
+// its fmt first: OpenImageIO's copy would turn exceptions off
 #include <OpenImageIO/imageio.h>
 #include <fitsio.h>
+#include <sys/stat.h>
 
-#include <atomic>
-#include <fstream>
-#include <glm/geometric.hpp>
-
-#include "core/error.h"
 #include "image/resample.h"
 #include "source/picture.h"
 #include "source/stored_picture.h"
@@ -19,9 +12,6 @@
 #include "source/textured_mesh.h"
 #include "source/write_image.h"
 #include "support/cube_map.h"
-#include "support/errors.h"
-#include "support/quiet.h"
-#include "support/temp_folder.h"
 
 namespace astrosplat {
 namespace {
@@ -47,7 +37,7 @@ Bytes noise(std::size_t count) {
 
 fs::path write_noise(const fs::path& file, int width, int height) {
     return write_bytes(file, OIIO::ImageSpec(width, height, 3, OIIO::TypeUInt8),
-                       noise(static_cast<std::size_t>(width * height) * 3));
+                       noise(std::size_t(width * height) * 3));
 }
 
 class PictureFileTest : public testing::Test {
@@ -94,8 +84,7 @@ TEST_F(PictureFileTest, LibrariesPrintNothingOfTheirOwn) {
         const auto size = fs::file_size(whole);
         std::string bytes(size, '\0');
         std::ifstream(whole, std::ios::binary).read(bytes.data(), static_cast<std::streamsize>(size));
-        for (std::size_t i = size / 2; i < size / 2 + 20 && i < size; ++i)
-            bytes[i] = static_cast<char>(bytes[i] ^ 0x55);
+        for (std::size_t i = size / 2; i < size / 2 + 20 && i < size; ++i) bytes[i] = char(bytes[i] ^ 0x55);
         testing::internal::CaptureStderr();
         for (const fs::path& bad :
              {folder.file("bad." + std::string(ending), bytes),
@@ -159,7 +148,7 @@ TEST(Orientation, EachOfTheEightIsTurnedUpright) {
         ASSERT_EQ(image.height, height) << s.tag;
         for (int y = 0; y < height; ++y)
             for (int x = 0; x < width; ++x)
-                EXPECT_FLOAT_EQ(image.at(x, y)[0], static_cast<float>(seen(x, y)) / 255.0f)
+                EXPECT_FLOAT_EQ(image.at(x, y)[0], float(seen(x, y)) / 255.0f)
                     << s.tag << " " << x << " " << y;
         EXPECT_EQ(said.lines.size(), s.tag == 1 ? 0u : 1u) << s.tag;
     }
@@ -178,14 +167,14 @@ TEST(Orientation, OfAJpegAndInWords) {
 TEST(CubeMap, AllSixFacesOfAnExrAreRead) {
     const TempFolder folder;
     const fs::path file = folder / "sky.exr";
-    write_cube_map(file, 4, [](int x, int y) { return static_cast<float>(4 * y + x); });
+    write_cube_map(file, 4, [](int x, int y) { return float(4 * y + x); });
     const std::vector<Image> faces = load_environment_pictures(file, 1);
     ASSERT_EQ(faces.size(), 6u);
     for (std::size_t face = 0; face < 6; ++face) {
         ASSERT_EQ(faces[face].width, 6);
         ASSERT_EQ(faces[face].height, 6);
-        EXPECT_EQ(faces[face].at(1, 1)[0], static_cast<float>(16 * face));
-        EXPECT_EQ(faces[face].at(4, 4)[2], static_cast<float>(16 * face + 15));
+        EXPECT_EQ(faces[face].at(1, 1)[0], float(16 * face));
+        EXPECT_EQ(faces[face].at(4, 4)[2], float(16 * face + 15));
     }
     EXPECT_EQ(load_environment_pictures(write_noise(folder / "a.png", 4, 24), 0).size(), 1u);
 }
@@ -304,7 +293,7 @@ TEST(Relief, LiftsTheBrightSideAndKeepsThePlane) {
 TEST(Relief, IsAsHighForADarkPicture) {
     std::vector<float> bright(16 * 16), dark(16 * 16);
     for (std::size_t i = 0; i < bright.size(); ++i) {
-        bright[i] = static_cast<float>(i % 16) / 16.0f;
+        bright[i] = float(i % 16) / 16.0f;
         dark[i] = bright[i] / 1024.0f;
     }
     const Mesh a = relief_mesh(gray(16, 16, bright), 0.15), b = relief_mesh(gray(16, 16, dark), 0.15);
@@ -330,9 +319,7 @@ TEST(Relief, CoversThePlaneOnceFacingUp) {
 constexpr int tall_width = 300, tall_height = 10000;  // more than one band of rows
 constexpr std::int64_t few_texels = 200'000;
 
-float value_at(int x, int y, int c) {
-    return static_cast<float>((x * 37 + y * 101 + c * 7 + x * y) % 97) / 97.0f;
-}
+float value_at(int x, int y, int c) { return float((x * 37 + y * 101 + c * 7 + x * y) % 97) / 97.0f; }
 
 struct WrittenRows {
     const char* name;
@@ -366,13 +353,13 @@ std::vector<float> at_once(const fs::path& file) {
     OIIO::ImageSpec as_stored;
     as_stored.attribute("oiio:UnassociatedAlpha", 1);
     const auto in = OIIO::ImageInput::open(file.string(), &as_stored);
-    std::vector<float> pixels(static_cast<std::size_t>(tall_width) * tall_height * in->spec().nchannels);
+    std::vector<float> pixels(std::size_t(tall_width) * tall_height * in->spec().nchannels);
     EXPECT_TRUE(in->read_image(0, 0, 0, -1, OIIO::TypeFloat, pixels.data()));
     return pixels;
 }
 
 Image reduced_afterwards(const Image& image) {
-    const ImageSize size = size_of_area(image.width, image.height, static_cast<double>(few_texels), 1.0);
+    const ImageSize size = size_of_area(image.width, image.height, double(few_texels), 1.0);
     return reduced_by_area(image, size.width, size.height);
 }
 
@@ -447,8 +434,7 @@ TEST(PictureRows, OfSmallPicturesAreNotReduced) {
 TEST(PictureRows, OfOneColumnBecomeFewer) {
     for (const std::int64_t rows : {1, 2, 7, 1000}) {
         Image image = make_image(3, 1000, 2);
-        for (std::size_t i = 0; i < image.pixels.size(); ++i)
-            image.pixels[i] = std::sin(static_cast<float>(i));
+        for (std::size_t i = 0; i < image.pixels.size(); ++i) image.pixels[i] = std::sin(float(i));
         std::int64_t next = 0;
         ImageRows from = rows_of(image);
         from.read = [&, read = from.read](std::int64_t begin, std::int64_t end, float* out) {
@@ -466,7 +452,7 @@ fs::path write_float_fits(const fs::path& file, int compression) {
     int status = 0;
     long axes[] = {60, 45};
     std::vector<float> values;
-    for (int i = 0; i < 60 * 45; ++i) values.push_back(std::sin(static_cast<float>(i * i)) - 0.3f);
+    for (int i = 0; i < 60 * 45; ++i) values.push_back(std::sin(float(i * i)) - 0.3f);
     values[700] = std::numeric_limits<float>::quiet_NaN();
     fits_create_diskfile(&out, file.c_str(), &status);
     fits_set_compression_type(out, compression, &status);
@@ -513,8 +499,8 @@ TEST(PictureRows, PercentilesOfPartsAreThoseOfSortedValues) {
     std::ranges::copy_if(values, std::back_inserter(finite), [](double v) { return std::isfinite(v); });
     std::ranges::sort(finite);
     const auto rank = [&](double fraction) {
-        const double at = fraction * static_cast<double>(finite.size() - 1);
-        const auto below = static_cast<std::size_t>(at);
+        const double at = fraction * double(finite.size() - 1);
+        const auto below = std::size_t(at);
         return finite[below] + (finite[below + 1] - finite[below]) * (at - std::floor(at));
     };
     const ValueRange range = value_range([&](const ValueTaker& take) {

@@ -1,14 +1,10 @@
 // Published meshes, pictures and FITS files: what their makers say is in them.
-#include <gtest/gtest.h>
-
-#include "core/error.h"
 #include "core/log.h"
 #include "source/fits.h"
 #include "source/mesh.h"
 #include "source/picture.h"
 #include "source/texture.h"
-#include "support/errors.h"
-#include "support/quiet.h"
+#include "support/test.h"
 #include "support/test_data.h"
 
 namespace astrosplat {
@@ -16,7 +12,7 @@ namespace {
 
 using Wrap = TextureSettings::Wrap;
 
-Texture load(const std::filesystem::path& file, const TextureSettings& settings = {}) {
+Texture load(const fs::path& file, const TextureSettings& settings = {}) {
     return load_texture({file}, settings, Wrap::clamp);
 }
 
@@ -60,7 +56,7 @@ TEST(RealMeshes, EveryOtherFileLoads) {
     ASTROSPLAT_TEST_DATA_OR_SKIP(folder, "meshes");
     const Said some_name_libraries_that_are_not_there;
     int files = 0;
-    for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
+    for (const auto& entry : fs::recursive_directory_iterator(folder)) {
         if (entry.path().extension() != ".obj") continue;
         ++files;
         EXPECT_NO_THROW(EXPECT_GT(load_obj(entry.path()).triangles.size(), 0u)) << entry.path();
@@ -78,7 +74,7 @@ TEST(RealMeshes, PhobosNamesItsMap) {
 TEST(RealPictures, EveryFileLoadsWithFiniteValues) {
     ASTROSPLAT_TEST_DATA_OR_SKIP(folder, "images");
     int files = 0;
-    for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
+    for (const auto& entry : fs::recursive_directory_iterator(folder)) {
         if (!entry.is_regular_file() || entry.path().filename() == "StarField.exr") continue;
         ++files;
         const Texture texture = load(entry.path());
@@ -116,7 +112,7 @@ TEST(RealPictures, DerivedAlphaTimesColourIsThePicture) {
     const Image linear = load_linear_image(file);
     EXPECT_TRUE(texture.divided);
     for (std::int64_t i = 0; i < linear.width * linear.height; ++i) {
-        const auto at = static_cast<std::size_t>(4 * i);
+        const auto at = std::size_t(4 * i);
         for (std::size_t c = 0; c < 3; ++c) ASSERT_EQ(texture.image.pixels[at + c], linear.pixels[at + c]);
         ASSERT_EQ(texture.image.pixels[at + 3],
                   std::max({linear.pixels[at], linear.pixels[at + 1], linear.pixels[at + 2]}));
@@ -130,8 +126,7 @@ TEST(RealPictures, GrayWithAlphaUsesTheFilesAlpha) {
     const Texture texture = load(file);
     EXPECT_EQ(texture.credit, "Stockdisc");
     for (std::int64_t i = 0; i < texture.image.width * texture.image.height; ++i)
-        ASSERT_EQ(texture.image.pixels[static_cast<std::size_t>(4 * i + 3)],
-                  picture.image.pixels[static_cast<std::size_t>(4 * i + 3)]);
+        ASSERT_EQ(texture.image.pixels[std::size_t(4 * i + 3)], picture.image.pixels[std::size_t(4 * i + 3)]);
 }
 
 TEST(RealFits, M51HasTheValuesItsReadmeStates) {
@@ -148,7 +143,7 @@ TEST(RealFits, M51HasTheValuesItsReadmeStates) {
 TEST(RealFits, EveryFileLoads) {
     ASTROSPLAT_TEST_DATA_OR_SKIP(folder, "fits");
     int files = 0;
-    for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    for (const auto& entry : fs::directory_iterator(folder)) {
         ++files;
         ASSERT_TRUE(is_fits(entry.path())) << entry.path();
         EXPECT_FALSE(describe_fits(entry.path()).empty());
@@ -195,7 +190,7 @@ TEST(RealFits, ThreeBandsBecomeOnePicture) {
                 blue = load(j, settings).image;
     ASSERT_EQ(rgb.image.width, 721);
     for (std::int64_t i = 0; i < rgb.image.width * rgb.image.height; ++i) {
-        const auto at = static_cast<std::size_t>(4 * i);
+        const auto at = std::size_t(4 * i);
         ASSERT_EQ(rgb.image.pixels[at], red.pixels[at]);
         ASSERT_EQ(rgb.image.pixels[at + 1], green.pixels[at + 1]);
         ASSERT_EQ(rgb.image.pixels[at + 2], blue.pixels[at + 2]);

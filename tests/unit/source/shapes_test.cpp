@@ -1,13 +1,6 @@
 // Built-in shapes, and how pictures lie on them.
-#include <gtest/gtest.h>
-
-#include <glm/geometric.hpp>
-#include <map>
-
-#include "core/real.h"
 #include "source/textured_mesh.h"
-#include "support/errors.h"
-#include "support/temp_folder.h"
+#include "support/test.h"
 
 namespace astrosplat {
 namespace {
@@ -195,7 +188,7 @@ TEST(Sheet, WithoutAMapItsHeightIsTheBlurredBrightness) {
     const Mesh sheet = sheet_mesh(texture, shape);
     for (const glm::vec3& p : sheet.positions) {  // an edge blurred by 0.5 scene units: the error function
         if (std::fabs(p.z) < 0.1f) {
-            ASSERT_NEAR(p.y, std::erf(static_cast<double>(p.x) / (0.5 * std::sqrt(2.0))), 0.03) << p.x;
+            ASSERT_NEAR(p.y, std::erf(double(p.x) / (0.5 * std::sqrt(2.0))), 0.03) << p.x;
         }
     }
     for (std::int64_t i = 0; i < side * side; ++i) std::fill_n(texture.image.pixels.data() + 4 * i, 3, 0.5f);
@@ -259,7 +252,7 @@ TEST(PlanarUv, AMirroredBackReadsRightFromBehind) {
             ASSERT_NEAR(uv.y, 0.5f + 0.1f * p.y, 1e-5f);
         }
     }
-    EXPECT_EQ(behind, static_cast<int>(mesh.triangles.size() / 2));
+    EXPECT_EQ(behind, int(mesh.triangles.size() / 2));
 }
 
 TEST(PlanarUv, AVariedBackLeavesTheFrontAndHasNoJump) {
@@ -267,7 +260,7 @@ TEST(PlanarUv, AVariedBackLeavesTheFrontAndHasNoJump) {
     double sum = 0.0, most = 0.0;
     int behind = 0;
     for (std::size_t i = 0; i < same.positions.size(); ++i) {
-        const auto off = static_cast<double>(glm::length(varied.uvs[i] - same.uvs[i]));
+        const auto off = double(glm::length(varied.uvs[i] - same.uvs[i]));
         if (same.positions[i].z >= 0.0f) {
             ASSERT_EQ(off, 0.0);
         } else if (same.positions[i].z < -2.5f) {

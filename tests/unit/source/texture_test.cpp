@@ -1,18 +1,13 @@
 // Small pictures written here and read back: colour space, alpha rules, windows, FITS, messages.
-#include <gtest/gtest.h>
-
-#include <fmt/format.h>
-// fmt first: OpenImageIO's copy of it would turn exceptions off.
+#include "support/test.h"
+// its fmt first: OpenImageIO's copy would turn exceptions off
 #include <OpenImageIO/imageio.h>
 #include <fitsio.h>
 
 #include "core/color.h"
-#include "core/real.h"
 #include "source/fits.h"
 #include "source/picture.h"
 #include "source/texture.h"
-#include "support/errors.h"
-#include "support/temp_folder.h"
 
 namespace astrosplat {
 namespace {
@@ -35,10 +30,10 @@ struct Written {
 };
 
 fs::path write(const fs::path& file, const Written& what, const Pixels& pixels) {
-    OIIO::ImageSpec spec(what.width, what.height, static_cast<int>(what.channels.size()), what.type);
+    OIIO::ImageSpec spec(what.width, what.height, int(what.channels.size()), what.type);
     spec.channelnames = what.channels;
     for (std::size_t c = 0; c < what.channels.size(); ++c)
-        if (what.channels[c] == "A") spec.alpha_channel = static_cast<int>(c);
+        if (what.channels[c] == "A") spec.alpha_channel = int(c);
     if (what.straight) spec.attribute("oiio:UnassociatedAlpha", 1);
     const auto out = OIIO::ImageOutput::create(file.string());
     EXPECT_TRUE(out && out->open(file.string(), spec) && out->write_image(OIIO::TypeFloat, pixels.data()) &&
@@ -64,19 +59,19 @@ TEST_F(TextureTest, EightBitsAreSrgbFloatIsLinear) {
     const fs::path exr = write(folder / "x.exr", {1, 1, rgb}, {1.0f, 0.5f, 0.0f});
     TextureSettings settings;
     settings.alpha = Alpha::one;
-    const auto middle = static_cast<float>(real::srgb_to_linear(128.0 / 255.0));
+    const auto middle = float(real::srgb_to_linear(128.0 / 255.0));
     EXPECT_EQ(pixels_of(png, settings), (Pixels{1.0f, middle, 0.0f, 1.0f}));
     EXPECT_EQ(pixels_of(exr, settings), (Pixels{1.0f, 0.5f, 0.0f, 1.0f}));
     settings.colorspace = Colorspace::linear;
     EXPECT_EQ(pixels_of(png, settings), (Pixels{1.0f, 128.0f / 255.0f, 0.0f, 1.0f}));
     settings.colorspace = Colorspace::srgb;
-    EXPECT_EQ(pixels_of(exr, settings)[1], static_cast<float>(real::srgb_to_linear(0.5)));
+    EXPECT_EQ(pixels_of(exr, settings)[1], float(real::srgb_to_linear(0.5)));
 }
 
 TEST_F(TextureTest, SixteenBitsAreSrgbToTheLastStep) {
     const fs::path tif =
         write(folder / "x.tif", {1, 1, rgb, OIIO::TypeUInt16}, {1.0f / 65535, 30000.0f / 65535, 1.0f});
-    EXPECT_EQ(pixels_of(tif)[1], static_cast<float>(real::srgb_to_linear(30000.0 / 65535.0)));
+    EXPECT_EQ(pixels_of(tif)[1], float(real::srgb_to_linear(30000.0 / 65535.0)));
 }
 
 TEST_F(TextureTest, DerivedAlphaIsTheBrightestChannelAndKeepsThePicture) {
@@ -103,7 +98,7 @@ TEST_F(TextureTest, StraightFileAlphaIsMultipliedInLinearLight) {
     const TextureSample s = sample(texture, {0.5f, 0.5f});
     EXPECT_FLOAT_EQ(s.alpha, 0.2f);
     EXPECT_FLOAT_EQ(s.color.x, 1.0f);
-    EXPECT_FLOAT_EQ(s.color.y, static_cast<float>(real::srgb_to_linear(128.0 / 255.0)));
+    EXPECT_FLOAT_EQ(s.color.y, float(real::srgb_to_linear(128.0 / 255.0)));
 }
 
 TEST_F(TextureTest, AssociatedFileAlphaIsDividedOut) {
@@ -228,7 +223,7 @@ fs::path write_fits(const fs::path& file, std::vector<long> axes, std::vector<fl
     fitsfile* out = nullptr;
     int status = 0;
     fits_create_diskfile(&out, file.c_str(), &status);
-    fits_create_img(out, FLOAT_IMG, static_cast<int>(axes.size()), axes.data(), &status);
+    fits_create_img(out, FLOAT_IMG, int(axes.size()), axes.data(), &status);
     fits_write_img(out, TFLOAT, 1, static_cast<LONGLONG>(values.size()), values.data(), &status);
     fits_close_file(out, &status);
     EXPECT_EQ(status, 0);
@@ -298,7 +293,7 @@ TEST(Fits, Errors) {
 TEST(Picture, ACutJpegIsAnError) {
     const TempFolder folder;
     Pixels pixels;
-    for (int i = 0; i < 64 * 48 * 3; ++i) pixels.push_back(static_cast<float>(i * 37 % 101) / 100.0f);
+    for (int i = 0; i < 64 * 48 * 3; ++i) pixels.push_back(float(i * 37 % 101) / 100.0f);
     const fs::path whole = write(folder / "whole.jpg", {64, 48, rgb, OIIO::TypeUInt8}, pixels);
     EXPECT_EQ(read_picture(whole).image.width, 64);
     const std::uintmax_t size = fs::file_size(whole);
@@ -328,8 +323,8 @@ TEST(Stretch, AsinhIsADisplayValueLinearIsLight) {
     settings.alpha = Alpha::one;
     settings.black = 0.0;
     settings.white = 2.0;
-    const auto display = static_cast<float>(real::asinh(5.0) / real::asinh(10.0));
-    EXPECT_EQ(pixels_of(file, settings)[4], static_cast<float>(real::srgb_to_linear(display)));
+    const auto display = float(real::asinh(5.0) / real::asinh(10.0));
+    EXPECT_EQ(pixels_of(file, settings)[4], float(real::srgb_to_linear(display)));
     settings.stretch = Stretch::linear;
     EXPECT_EQ(pixels_of(file, settings)[4], 0.5f);
     settings.stretch = Stretch::asinh;

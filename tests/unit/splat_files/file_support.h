@@ -2,18 +2,11 @@
 // bit, and the message of an InputError.
 #pragma once
 
-#include <fmt/format.h>
-#include <gtest/gtest.h>
-
 #include <cfloat>
-#include <iterator>
 
-#include "core/error.h"
 #include "core/file_format.h"
-#include "core/parallel.h"
 #include "splats/splat_set.h"
-#include "support/bits.h"
-#include "support/temp_folder.h"
+#include "support/test.h"
 
 namespace astrosplat {
 
@@ -21,11 +14,11 @@ class SplatFileTest : public testing::Test {
   protected:
     ~SplatFileTest() override { set_thread_count(0); }
 
-    std::filesystem::path path(const std::string& name) const { return folder_ / name; }
+    fs::path path(const std::string& name) const { return folder_ / name; }
 
     /// Writes the text as a file of this test.
-    std::filesystem::path write(const std::string& name, const std::string& bytes) const {
-        std::filesystem::remove(path(name));  // writing over a file waits for the disk on ext4
+    fs::path write(const std::string& name, const std::string& bytes) const {
+        fs::remove(path(name));  // writing over a file waits for the disk on ext4
         return folder_.file(name, bytes);
     }
 
@@ -42,7 +35,7 @@ inline std::string known_endings(FileUse use) {
 
 /// The line an InputError says, without the folder of the file; "" when nothing is thrown.
 template <class Read>
-std::string error_of(const std::filesystem::path& file, Read&& read) {
+std::string error_of(const fs::path& file, Read&& read) {
     try {
         read(file);
     } catch (const InputError& error) {
@@ -76,7 +69,7 @@ inline SplatSet awkward_set(std::uint32_t rows) {
         const std::uint32_t n = i * 20;
         set.position.push_back({awkward(n), awkward(n + 1), awkward(n + 2)});
         set.color.push_back({awkward(n + 3), awkward(n + 4), awkward(n + 5)});
-        set.alpha.push_back(static_cast<float>(mix(n) >> 8) / 16777216.0f);
+        set.alpha.push_back(float(mix(n) >> 8) / 16777216.0f);
         set.distance.push_back(positive(awkward(n + 6)));
         set.radius.push_back(positive(awkward(n + 7)));
         set.id.push_back(i * 0x123456789abull + i);

@@ -1,7 +1,4 @@
 // What all formats of splats share, and files that are read in part.
-#include <fmt/format.h>
-#include <gtest/gtest.h>
-
 #include <cfloat>
 #include <charconv>
 #include <csignal>
@@ -14,9 +11,7 @@
 #include "splat_files/native.h"
 #include "splat_files/number_text.h"
 #include "splat_files/splat_file.h"
-#include "support/errors.h"
-#include "support/quiet.h"
-#include "support/temp_folder.h"
+#include "support/test.h"
 #include "unit/splat_files/file_support.h"
 
 namespace astrosplat {
@@ -187,7 +182,7 @@ TEST(NumberScan, WholeNumbers) {
 
 std::string text_of(float value) {
     std::string text(float_text_room, '?');
-    text.resize(static_cast<std::size_t>(put_float(text.data(), value) - text.data()));
+    text.resize(std::size_t(put_float(text.data(), value) - text.data()));
     return text;
 }
 
@@ -222,7 +217,7 @@ TEST(FloatText, PlainValues) {
 // Every 1021st float, from zero through infinity to the last NaN. (All of them were compared once.)
 TEST(FloatText, IsWhatToCharsWrites) {
     for (std::uint64_t bits = 0; bits < std::uint64_t{1} << 31; bits += 1021)
-        expect_same(static_cast<std::uint32_t>(bits));
+        expect_same(std::uint32_t(bits));
 }
 
 // Where the spacing of floats or of decimals changes: around powers of two and of ten, and short decimals.
@@ -233,7 +228,7 @@ TEST(FloatText, AroundPowersAndShortDecimals) {
         for (std::uint32_t near = 0; near < 129; ++near)
             expect_same(std::bit_cast<std::uint32_t>(power) + near - 64);
     for (int thousandth = 1; thousandth < 200000; ++thousandth)
-        expect_same(std::bit_cast<std::uint32_t>(static_cast<float>(thousandth) / 1000.0f));
+        expect_same(std::bit_cast<std::uint32_t>(float(thousandth) / 1000.0f));
 }
 
 // Native files block by block, and files that shrink while they are read.
@@ -285,7 +280,7 @@ TEST_F(NativeBlocksTest, DamageIsFoundWhereItIsLookedFor) {
 
 TEST_F(NativeBlocksTest, AFileThatIsCutShortIsSaid) {
     const NativeBlocks file(path("a.splats"));
-    std::filesystem::resize_file(path("a.splats"), 1000);
+    fs::resize_file(path("a.splats"), 1000);
     SplatSet block;
     const std::string error =
         error_of(path("a.splats"), [&](const auto&) { file.read(2, all, NativeBlocks::Check::none, block); });
@@ -299,8 +294,7 @@ TEST_F(NativeBlocksTest, ASampleIsSomeOfTheRows) {
     EXPECT_GT(sample.size(), 630);
     EXPECT_LE(sample.size(), 640);
     for (std::size_t i = 0; i < sample.id.size(); ++i) {
-        const auto row =
-            static_cast<std::size_t>(std::ranges::find(whole.id, sample.id[i]) - whole.id.begin());
+        const auto row = std::size_t(std::ranges::find(whole.id, sample.id[i]) - whole.id.begin());
         ASSERT_LT(row, whole.id.size());
         EXPECT_EQ(std::bit_cast<std::uint32_t>(whole.alpha[row]),
                   std::bit_cast<std::uint32_t>(sample.alpha[i]));
@@ -326,11 +320,11 @@ TEST_F(MappedFileTest, MissingPagesReadAsZerosAndTheReaderIsToldSo) {
     const auto file = write("a.txt", std::string(100000, 'x'));
     const MappedFile first(file), second(file);
     EXPECT_NO_THROW(first.require_whole());
-    std::filesystem::resize_file(file, 5000);
+    fs::resize_file(file, 5000);
     EXPECT_EQ(first.bytes().substr(0, 5000), std::string(5000, 'x'));
     EXPECT_EQ(std::count(first.bytes().begin(), first.bytes().end(), '\0'), 95000);
     EXPECT_EQ(second.bytes()[99999], '\0');
-    std::filesystem::resize_file(file, 100000);  // long enough again, but what was read was not the file
+    fs::resize_file(file, 100000);  // long enough again, but what was read was not the file
     EXPECT_THROW(first.require_whole(), InputError);
     EXPECT_THROW(second.require_whole(), InputError);
     EXPECT_NO_THROW(MappedFile(file).require_whole());
@@ -344,9 +338,9 @@ TEST_F(MappedFileTest, ManyOneAfterTheOther) {
 
 /// Reads a file that loses all but its first page once the first part of it was read.
 template <class Read>
-std::string error_of_shrinking(const std::filesystem::path& file, const Read& read) {
+std::string error_of_shrinking(const fs::path& file, const Read& read) {
     Progress progress;
-    progress.report = [&](double) { std::filesystem::resize_file(file, 4096); };
+    progress.report = [&](double) { fs::resize_file(file, 4096); };
     return error_of(file, [&](const auto& each) { read(each, progress); });
 }
 

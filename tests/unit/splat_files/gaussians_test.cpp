@@ -1,7 +1,4 @@
 // Gaussians of captures in PLY, glTF and USD text.
-#include <fmt/format.h>
-
-#include <glm/geometric.hpp>
 
 #include "core/color.h"
 #include "core/log.h"
@@ -9,10 +6,7 @@
 #include "splat_files/gaussian_rows.h"
 #include "splat_files/native.h"
 #include "splat_files/splat_file.h"
-#include "support/bits.h"
 #include "support/capture.h"
-#include "support/errors.h"
-#include "support/quiet.h"
 #include "unit/splat_files/file_support.h"
 
 namespace astrosplat {

@@ -6,7 +6,6 @@
 #include "splat_files/splat_file.h"
 #include "splats/row_order.h"
 #include "splats/splat_set.h"
-#include "support/errors.h"
 #include "unit/splat_files/file_support.h"
 
 namespace astrosplat {
@@ -67,8 +66,7 @@ TEST_F(Native, ARecipeSurvivesBesideTheCredit) {
         const SplatSet got = read_native(path("a.splats"));
         EXPECT_EQ(got.credit, credit);
         EXPECT_EQ(got.recipe, set.recipe);
-        EXPECT_EQ(static_cast<std::int64_t>(std::filesystem::file_size(path("a.splats"))),
-                  native_file_bytes(set));
+        EXPECT_EQ(std::int64_t(fs::file_size(path("a.splats"))), native_file_bytes(set));
     }
 }
 
@@ -112,8 +110,7 @@ TEST_F(Native, PartsOfASetTogetherAreTheSet) {
     write_native(path("c.splats"), set, {}, RowOrder::id, NativePart::colors);
     for (const auto& [file, part] :
          {std::pair{"g.splats", NativePart::geometry}, {"c.splats", NativePart::colors}})
-        EXPECT_EQ(std::filesystem::file_size(path(file)),
-                  static_cast<std::uintmax_t>(native_file_bytes(set, part)));
+        EXPECT_EQ(fs::file_size(path(file)), static_cast<std::uintmax_t>(native_file_bytes(set, part)));
     SplatSet got = read_native(path("g.splats"), {}, {true, true, true, true}, NativePart::geometry);
     EXPECT_TRUE(got.color.empty() && got.alpha.empty());
     SplatSet colors = read_native(path("c.splats"), {}, {}, NativePart::colors);
@@ -132,11 +129,11 @@ TEST_F(Native, RowsAreThoseOfTheWhole) {
     for (std::size_t i = 0; i < set.alpha.size(); ++i)
         set.alpha[i] = i % 3 == 0 || i / 70000 == 1 ? 0.0f : 0.5f;
     for (const NativePart part : {NativePart::geometry, NativePart::colors, NativePart::whole})
-        write_native(path(std::to_string(static_cast<int>(part))), set, {}, RowOrder::id, part);
-    const auto file = [&](NativePart part) { return path(std::to_string(static_cast<int>(part))); };
+        write_native(path(std::to_string(int(part))), set, {}, RowOrder::id, part);
+    const auto file = [&](NativePart part) { return path(std::to_string(int(part))); };
     const LitRows lit = native_lit_rows(file(NativePart::colors));
     EXPECT_EQ(lit.of, 150000);
-    ASSERT_EQ(static_cast<std::int64_t>(lit.rows.size()), native_splat_count(file(NativePart::colors)));
+    ASSERT_EQ(std::int64_t(lit.rows.size()), native_splat_count(file(NativePart::colors)));
     for (const std::int64_t row : lit.rows) ASSERT_GT(set.alpha[row], 0.0f);
     const Buffer<std::int64_t> few = {0, 65535, 65536, 149999}, none;
     const NativeRows choices[] = {{lit.rows, {}}, {few, {false, true, false}}, {none, {}}};
@@ -190,7 +187,7 @@ TEST_F(Native, RowsByIdNeedNoSorting) {
     std::sort(set.id.begin(), set.id.end());
     write_native(path("a.splats"), set, {}, RowOrder::id);
     expect_same_set(read_native(path("a.splats")), set);
-    EXPECT_EQ(native_file_bytes(set), static_cast<std::int64_t>(bytes_of(path("a.splats")).size()));
+    EXPECT_EQ(native_file_bytes(set), std::int64_t(bytes_of(path("a.splats")).size()));
     EXPECT_EQ(native_splat_count(path("a.splats")), 200000);
 }
 
@@ -211,8 +208,7 @@ TEST_F(Native, NeighboursShareBlocks) {
     SplatSet set;
     constexpr int side = 64;
     for (std::uint32_t i = 0; i < side * side * side; ++i) {
-        set.position.push_back({static_cast<float>(i % side), static_cast<float>(i / side % side),
-                                static_cast<float>(i / side / side)});
+        set.position.push_back({float(i % side), float(i / side % side), float(i / side / side)});
         set.id.push_back(i);
     }
     const auto order = spatial_order<std::uint32_t>(set);
@@ -253,7 +249,7 @@ TEST_F(Native, EveryDamagedByteAndEveryTruncationIsFound) {
     const std::string whole = bytes_of(path("whole.splats"));
     for (std::size_t at = 0; at < whole.size(); ++at) {
         std::string damaged = whole;
-        damaged[at] = static_cast<char>(damaged[at] ^ 0x10);
+        damaged[at] = char(damaged[at] ^ 0x10);
         EXPECT_NE(error(damaged), "") << at;
         EXPECT_NE(error(whole.substr(0, at)), "") << at;
     }
@@ -330,7 +326,7 @@ TEST_F(SplatFile, UnknownEndingsNameTheKnownOnes) {
 TEST_F(SplatFile, ContentCountsMoreThanTheName) {
     for (const char* ending : {"pda", "ply", "splats"}) {
         write_splats(path(std::string("a.") + ending), awkward_set(5));
-        std::filesystem::copy_file(path(std::string("a.") + ending), path(std::string("copy of ") + ending));
+        fs::copy_file(path(std::string("a.") + ending), path(std::string("copy of ") + ending));
         EXPECT_EQ(read_splats(path(std::string("copy of ") + ending)).size(), 5);
     }
 }
@@ -364,7 +360,7 @@ TEST_F(SplatFile, ConversionsKeepEveryBit) {
     for (const char* from : names) {
         write_splats(path(from), set);
         for (const char* to : names) {
-            const std::filesystem::path target = path(std::string("to_") + to);
+            const fs::path target = path(std::string("to_") + to);
             write_splats(target, read_splats(path(from)));
             SplatSet got = read_splats(target);
             sort_by_id(got);

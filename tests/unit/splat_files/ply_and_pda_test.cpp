@@ -1,13 +1,9 @@
 // PLY and PDA.
-#include <fmt/format.h>
 
 #include <csignal>
 
 #include "splat_files/formats.h"
 #include "splat_files/ply_bytes.h"
-#include "support/errors.h"
-#include "support/process_state.h"
-#include "support/quiet.h"
 #include "support/test_data.h"
 #include "unit/splat_files/file_support.h"
 
@@ -494,7 +490,7 @@ TEST_F(Pda, EveryTruncationIsAnErrorOrTheSameRows) {
 TEST_F(Pda, MissingFileFolderAndReadOnlyTarget) {
     const auto read = [](const auto& file) { read_pda(file); };
     EXPECT_EQ(error_of(path("none.pda"), read), "none.pda: cannot be read: No such file or directory");
-    std::filesystem::create_directories(path("folder.pda"));
+    fs::create_directories(path("folder.pda"));
     EXPECT_EQ(error_of(path("folder.pda"), read), "folder.pda: cannot be read: it is a folder");
     EXPECT_THROW(write_pda(path("no such folder") / "a.pda", awkward_set(1)), OutputError);
 }
@@ -502,7 +498,7 @@ TEST_F(Pda, MissingFileFolderAndReadOnlyTarget) {
 TEST_F(Pda, CancelLeavesNothing) {
     const std::atomic<bool> stop{true};
     EXPECT_THROW(write_pda(path("a.pda"), awkward_set(10), {{}, &stop}), Cancelled);
-    EXPECT_TRUE(std::filesystem::is_empty(path("a.pda").parent_path()));
+    EXPECT_TRUE(fs::is_empty(path("a.pda").parent_path()));
 }
 
 TEST_F(Pda, CancelInTheMiddleLeavesNothing) {
@@ -512,7 +508,7 @@ TEST_F(Pda, CancelInTheMiddleLeavesNothing) {
         std::atomic<bool> stop{false};
         const Progress progress{[&](double fraction) { stop = fraction > 0.3; }, &stop};
         EXPECT_THROW(write_pda(path("a.pda"), set, progress), Cancelled);
-        EXPECT_TRUE(std::filesystem::is_empty(path("a.pda").parent_path()));
+        EXPECT_TRUE(fs::is_empty(path("a.pda").parent_path()));
     }
 }
 
@@ -522,7 +518,7 @@ TEST_F(Pda, AFullDiskIsOneErrorAndLeavesNothing) {
     for (const int threads : {1, 2, 5}) {
         set_thread_count(threads);
         EXPECT_THROW(write_pda(path("a.pda"), set), OutputError);
-        EXPECT_TRUE(std::filesystem::is_empty(path("a.pda").parent_path()));
+        EXPECT_TRUE(fs::is_empty(path("a.pda").parent_path()));
     }
 }
 

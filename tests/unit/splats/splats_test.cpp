@@ -1,18 +1,11 @@
 // Sets: bounds, orders and rows; spherical harmonics.
-#include <gtest/gtest.h>
-
-#include <atomic>
-#include <glm/geometric.hpp>
 #include <numbers>
-#include <numeric>
 
-#include "core/error.h"
-#include "core/parallel.h"
 #include "core/rotation.h"
-#include "core/shared_maths.h"
 #include "splats/harmonics.h"
 #include "splats/row_order.h"
 #include "splats/splat_set.h"
+#include "support/test.h"
 
 namespace astrosplat {
 namespace {
@@ -23,11 +16,11 @@ SplatSet unsorted() {
     SplatSet set;
     const std::uint64_t ids[] = {5, 1, 5, std::uint64_t{1} << 40, 0, 1};
     for (int i = 0; i < 6; ++i) {
-        set.position.push_back(glm::vec3(static_cast<float>(i), static_cast<float>(-i), 2.0f));
-        set.color.push_back(glm::vec3(static_cast<float>(i)));
-        set.alpha.push_back(static_cast<float>(i));
-        set.distance.push_back(static_cast<float>(i));
-        set.radius.push_back(static_cast<float>(i));
+        set.position.push_back(glm::vec3(float(i), float(-i), 2.0f));
+        set.color.push_back(glm::vec3(float(i)));
+        set.alpha.push_back(float(i));
+        set.distance.push_back(float(i));
+        set.radius.push_back(float(i));
         set.id.push_back(ids[i]);
     }
     return set;
@@ -72,11 +65,11 @@ TEST(SplatSet, SortsManyRowsAsAStableSortDoes) {
         set.color.resize(ids.size());
         set.alpha.resize(ids.size());
         set.distance.resize(ids.size());
-        for (std::size_t i = 0; i < ids.size(); ++i) set.distance[i] = static_cast<float>(i);
+        for (std::size_t i = 0; i < ids.size(); ++i) set.distance[i] = float(i);
         sort_by_id(set);
         for (std::size_t i = 0; i < ids.size(); ++i) {
             ASSERT_EQ(set.id[i], ids[expected[i]]) << i;
-            ASSERT_EQ(set.distance[i], static_cast<float>(expected[i])) << i;
+            ASSERT_EQ(set.distance[i], float(expected[i])) << i;
         }
     }
     set_thread_count(0);

@@ -2,19 +2,12 @@
 #include "stars/star_set.h"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <zlib.h>
-
-#include <glm/geometric.hpp>
-#include <iterator>
 
 #include "catalogues.h"
 #include "core/text.h"
 #include "stars/catalogue.h"
-#include "support/bits.h"
-#include "support/errors.h"
-#include "support/process_state.h"
-#include "support/temp_folder.h"
+#include "support/test.h"
 #include "support/test_data.h"
 
 namespace astrosplat {
@@ -29,8 +22,7 @@ CatalogueStar star_at(double ra_deg, double dec_deg, double distance_pc, double 
 SplatSet set_of(std::vector<CatalogueStar> stars, const StarScale& scale = {}, StarCounts* counts = nullptr) {
     StarCatalogue catalogue;
     catalogue.stars = std::move(stars);
-    for (std::size_t i = 0; i < catalogue.stars.size(); ++i)
-        catalogue.stars[i].row = static_cast<std::int64_t>(i);
+    for (std::size_t i = 0; i < catalogue.stars.size(); ++i) catalogue.stars[i].row = std::int64_t(i);
     return star_set(catalogue, scale, counts);
 }
 
@@ -196,7 +188,7 @@ const std::vector<StarKind> suns = {{4.83, 0.65}};
 double share_of(const SplatSet& set, const std::function<bool(const glm::dvec3&)>& inside) {
     const auto count =
         std::ranges::count_if(set.position, [&](const glm::vec3& p) { return inside(glm::dvec3(p)); });
-    return static_cast<double>(count) / static_cast<double>(set.size());
+    return double(count) / double(set.size());
 }
 
 TEST(RandomStars, ABallIsFilledEvenly) {
@@ -263,7 +255,7 @@ TEST(RandomStars, MagnitudesAndColorsGoTogether) {
         EXPECT_EQ(bright, set.color[i].x > set.color[i].z);
         red += set.color[i].x > set.color[i].z;
     }
-    EXPECT_NEAR(static_cast<double>(red) / 30000.0, 1.0 / 3.0, 0.01);
+    EXPECT_NEAR(double(red) / 30000.0, 1.0 / 3.0, 0.01);
 }
 
 TEST(RandomStars, ACatalogueGivesTheKindsOfItsStarsWithADistance) {
@@ -281,7 +273,7 @@ TEST(RandomStars, TheMainSequenceIsSalpeters) {
     // Of stars between 0.1 and 30 solar masses, (1 - 30^-1.35) / (0.1^-1.35 - 30^-1.35) are above one.
     const auto brighter =
         std::ranges::count_if(kinds, [](const StarKind& k) { return k.absolute_magnitude < 4.83; });
-    EXPECT_NEAR(static_cast<double>(brighter) / static_cast<double>(kinds.size()),
+    EXPECT_NEAR(double(brighter) / double(kinds.size()),
                 (1.0 - std::pow(30.0, -1.35)) / (std::pow(0.1, -1.35) - std::pow(30.0, -1.35)), 2e-4);
     for (const StarKind& kind : kinds) {
         const double mass = std::pow(10.0, (4.83 - kind.absolute_magnitude) / 8.75);
@@ -458,7 +450,7 @@ std::string gzipped(const std::string& text) {
     const TempFolder folder;
     const std::string file = folder / "packed";
     const gzFile out = gzopen(file.c_str(), "wb");
-    gzwrite(out, text.data(), static_cast<unsigned>(text.size()));
+    gzwrite(out, text.data(), unsigned(text.size()));
     gzclose(out);
     return test::bytes_of(file);
 }
@@ -472,7 +464,7 @@ TEST(Catalogue, GzipIsReadWhateverTheName) {
     const std::string packed = gzipped(hipparcos_line({}));
     EXPECT_EQ(read_catalogue(folder.file("packed.dat", packed)).stars.size(), 1u);
     EXPECT_EQ(read_catalogue(folder.file("two.dat", packed + packed)).stars.size(), 2u);
-    const std::filesystem::path cut = folder.file("cut.dat.gz", packed.substr(0, packed.size() / 2));
+    const fs::path cut = folder.file("cut.dat.gz", packed.substr(0, packed.size() / 2));
     EXPECT_EQ(ERROR_OF(read_catalogue(cut)),
               cut.string() + ": expected a whole gzip file, found damaged data");
     EXPECT_THAT(ERROR_OF(read_catalogue(folder / "absent.dat")), HasSubstr("cannot be read"));

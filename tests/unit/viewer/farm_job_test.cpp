@@ -2,13 +2,8 @@
 // The program is a stand-in here; tests/window has the real one.
 #include "viewer/render_queue.h"
 
-#include <gtest/gtest.h>
-
-#include <chrono>
-#include <thread>
-
 #include "support/run_program.h"
-#include "support/temp_folder.h"
+#include "support/test.h"
 
 namespace astrosplat {
 namespace {
@@ -114,8 +109,8 @@ TEST_F(FarmJobTest, IsDoneWhenAllFramesAreThere) {
     ASSERT_TRUE(comes(farm, [&] { return farm.progress() > 0.0f; }));
     EXPECT_EQ(farm.progress(), 0.25f);
     EXPECT_EQ(farm.text(), "3 of 12 done, in the queue: 2 pending, 1 running");
-    EXPECT_EQ(farm.files(), (std::vector<std::filesystem::path>{"/frames/a.0001.png", "/frames/a.0002.png",
-                                                                "/frames/a.0003.png"}));
+    EXPECT_EQ(farm.files(),
+              (std::vector<fs::path>{"/frames/a.0001.png", "/frames/a.0002.png", "/frames/a.0003.png"}));
     status("the disk is away");
     EXPECT_TRUE(comes(farm, [&] { return farm.text() == "the disk is away"; }));
     EXPECT_EQ(farm.state(), FarmJob::State::running);

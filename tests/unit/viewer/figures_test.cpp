@@ -1,11 +1,7 @@
 // Figures of layers and of differences, thumbnails, references, and the layer that a click selects.
-#include <gtest/gtest.h>
-
-#include <glm/geometric.hpp>
-
 #include "core/color.h"
 #include "support/splats.h"
-#include "support/temp_folder.h"
+#include "support/test.h"
 #include "viewer/comparison.h"
 #include "viewer/loaded_layer.h"
 #include "viewer/preview_splats.h"
@@ -69,8 +65,8 @@ TEST(Thumbnail, AveragesBoxes) {
     ASSERT_EQ(small.width, 2);
     ASSERT_EQ(small.height, 1);
     for (int c = 0; c < 3; ++c) {
-        EXPECT_FLOAT_EQ(small.at(0, 0)[c], (25.0f + static_cast<float>(c)) / 255.0f);
-        EXPECT_FLOAT_EQ(small.at(1, 0)[c], (45.0f + static_cast<float>(c)) / 255.0f);
+        EXPECT_FLOAT_EQ(small.at(0, 0)[c], (25.0f + float(c)) / 255.0f);
+        EXPECT_FLOAT_EQ(small.at(1, 0)[c], (45.0f + float(c)) / 255.0f);
     }
     EXPECT_EQ(small.at(1, 0)[3], 1.0f);
     EXPECT_EQ(thumbnail_of(rgba, 4, 3, 8).width, 4) << "small pictures stay as they are";
@@ -85,7 +81,7 @@ TEST(Thumbnail, AveragesBoxes) {
 /// Three blobs that make no symmetric figure, on a picture of this size.
 Image blobs(std::int64_t width, std::int64_t height) {
     Image image = make_image(width, height, 4, 1.0f);
-    const double h = static_cast<double>(height);
+    const double h = double(height);
     for (std::int64_t y = 0; y < height; ++y)
         for (std::int64_t x = 0; x < width; ++x) {
             double light = 0.0;
@@ -94,7 +90,7 @@ Image blobs(std::int64_t width, std::int64_t height) {
                     glm::distance(glm::dvec2(double(x), double(y)) / h, glm::dvec2(blob)) / blob.z;
                 light += 0.6 * std::exp(-r * r);
             }
-            for (int c = 0; c < 3; ++c) image.at(x, y)[c] = static_cast<float>(light * (1.0 - 0.2 * c));
+            for (int c = 0; c < 3; ++c) image.at(x, y)[c] = float(light * (1.0 - 0.2 * c));
         }
     return image;
 }
@@ -110,8 +106,8 @@ Image view_of(const Image& picture, const ReferenceParams& placed, const FrameOn
             const double u = glm::dot(from, place.right) / glm::dot(place.right, place.right);
             const double v = glm::dot(from, place.down) / glm::dot(place.down, place.down);
             if (u < 0.0 || v < 0.0 || u >= 1.0 || v >= 1.0) continue;
-            const auto px = static_cast<std::int64_t>(u * double(picture.width));
-            const auto py = static_cast<std::int64_t>(v * double(picture.height));
+            const auto px = std::int64_t(u * double(picture.width));
+            const auto py = std::int64_t(v * double(picture.height));
             std::copy_n(picture.at(px, py), 4, view.at(x, y));
         }
     return view;

@@ -1,17 +1,11 @@
 // Picture files, small: how each kind looks, frames that play, what is read again, kept and let go.
 #include "viewer/files.h"
 
-#include <gtest/gtest.h>
-
-#include <thread>
-
 #include "core/log.h"
 #include "output/write.h"
 #include "source/write_image.h"
-#include "support/bits.h"
 #include "support/fits_text.h"
-#include "support/quiet.h"
-#include "support/temp_folder.h"
+#include "support/test.h"
 
 namespace astrosplat {
 namespace {
@@ -88,8 +82,7 @@ TEST_F(RenderedFramesTest, FinishedOnesAreSeenThroughTheView) {
     Image light = make_image(8, 8, 4, 0.2f);
     write_linear_image(folder / "a.exr", light, "", Existing::replace);
     const auto level = [&](OutputParams::View view, double exposure, const fs::path& file) {
-        return static_cast<int>(
-            std::lround(255.0f * *finished_view({file, view, nullptr, exposure}, 64).image.at(3, 3)));
+        return int(std::lround(255.0f * *finished_view({file, view, nullptr, exposure}, 64).image.at(3, 3)));
     };
     using View = OutputParams::View;
     EXPECT_NEAR(level(View::linear, 1.0, folder / "a.exr"), 102, 1);
@@ -157,7 +150,7 @@ struct ThumbnailsTest : testing::Test {
         return thumbnails.found(picture);
     }
     static int grey(const PackedImage& t, std::int64_t x, std::int64_t y) {
-        return t.codes[static_cast<std::size_t>(3 * (y * t.width + x))];
+        return t.codes[std::size_t(3 * (y * t.width + x))];
     }
 };
 

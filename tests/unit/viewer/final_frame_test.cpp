@@ -1,20 +1,14 @@
 // The settled picture, other views, and frames that are played.
 #include "viewer/view_frame.h"
 
-#include <gtest/gtest.h>
-
-#include <chrono>
-#include <cstdio>
-#include <thread>
-
 #include "core/memory.h"
-#include "core/shared_maths.h"
 #include "edit/view_camera.h"
 #include "output/write.h"
 #include "pipeline.h"
 #include "sets/load_source.h"
 #include "support/frames.h"
 #include "support/small_scene.h"
+#include "support/test.h"
 #include "unit/edit/scenes.h"
 #include "viewer/view_motion.h"
 
@@ -39,7 +33,7 @@ class FinalFrameTest : public testing::Test {
         wanted.sets = sets;
         wanted.width = which % 2 ? 200 : 161;
         wanted.height = 99;
-        wanted.scene.layers[0].look.grade.gain = 1.0f + 0.1f * static_cast<float>(which / 2 % 2);
+        wanted.scene.layers[0].look.grade.gain = 1.0f + 0.1f * float(which / 2 % 2);
         wanted.scene.camera.position = glm::dvec3(4.0, 6.0 + which / 4, 12.0);
         return wanted;
     }

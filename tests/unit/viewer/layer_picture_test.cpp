@@ -2,11 +2,6 @@
 // engine prepares, small. Both of the last request and of no other.
 #include "viewer/comparison.h"
 
-#include <gtest/gtest.h>
-
-#include <chrono>
-#include <thread>
-
 #include "core/color.h"
 #include "measure_fidelity.h"
 #include "sets/load_source.h"
@@ -14,7 +9,7 @@
 #include "support/fits_text.h"
 #include "support/pixmap.h"
 #include "support/small_scene.h"
-#include "support/temp_folder.h"
+#include "support/test.h"
 
 namespace astrosplat {
 namespace {
@@ -153,7 +148,7 @@ TEST_F(PreparePreviewTest, ShowsThePictureBeforeAndAfter) {
     EXPECT_LT(removed, 0.35f);
     EXPECT_EQ(found->after.at(32, 31)[3], 1.0f);
     const Image exact = prepare_picture(layer.source.meshes[0].texture, layer.source.texture).image;
-    EXPECT_NEAR(removed, real::linear_to_srgb(static_cast<double>(exact.at(32, 31)[0])), 1e-6);
+    EXPECT_NEAR(removed, real::linear_to_srgb(double(exact.at(32, 31)[0])), 1e-6);
 }
 
 TEST_F(PreparePreviewTest, IsSmallAndCutsWhereThePictureIsCut) {

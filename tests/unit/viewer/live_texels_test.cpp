@@ -2,16 +2,12 @@
 // that come of it, and a hand that never rests.
 #include "viewer/set_loader.h"
 
-#include <gtest/gtest.h>
-
-#include <thread>
-
 #include "edit/document.h"
 #include "sets/kept.h"
 #include "sets/load_source.h"
-#include "support/bits.h"
 #include "support/fits_text.h"
 #include "support/small_scene.h"
+#include "support/test.h"
 
 namespace astrosplat {
 namespace {
@@ -132,7 +128,7 @@ TEST_F(LiveTexelsTest, StructuresFollowTheRatioOfThePictures) {
 
 TEST_F(LiveTexelsTest, APictureThatIsGoneIsNoPreview) {
     const auto loaded = loaded_layer(source);
-    std::filesystem::remove(source.meshes[0].texture[0]);
+    fs::remove(source.meshes[0].texture[0]);
     source.texture.black = 60.0;
     EXPECT_THROW(live_set(loaded, source), InputError);
 }

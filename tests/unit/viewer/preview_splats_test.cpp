@@ -1,17 +1,12 @@
 // How many splats a preview draws, and which.
-#include <gtest/gtest.h>
-
-#include <chrono>
-#include <thread>
-
-#include "core/error.h"
+#include "viewer/preview_splats.h"
 #include "core/progress.h"
 #include "output/write.h"
 #include "render/render.h"
 #include "scene/layer_setup.h"
 #include "sets/load_source.h"
 #include "support/small_scene.h"
-#include "viewer/preview_splats.h"
+#include "support/test.h"
 
 namespace astrosplat {
 namespace {
@@ -248,9 +243,7 @@ TEST_F(SampledSplatsTest, ASampleComesFirstAndTheWholeSetOnceItsSumsAreThere) {
 /// Milliseconds of a frame: a fixed part and so much per thousand splats.
 struct Machine {
     double fixed_ms, ms_per_thousand;
-    double frame(std::int64_t splats) const {
-        return fixed_ms + ms_per_thousand * static_cast<double>(splats) / 1000.0;
-    }
+    double frame(std::int64_t splats) const { return fixed_ms + ms_per_thousand * double(splats) / 1000.0; }
     friend void PrintTo(const Machine& given, std::ostream* out) {
         *out << given.fixed_ms << " ms and " << given.ms_per_thousand << " per thousand";
     }

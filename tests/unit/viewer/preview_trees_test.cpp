@@ -1,23 +1,14 @@
 // Trees of previews: kept in the cache, and true to the light of the whole.
-#include <fmt/format.h>
-#include <gtest/gtest.h>
-
-#include <chrono>
-#include <fstream>
 #include <tuple>
 
 #include "core/file.h"
 #include "core/log.h"
-#include "core/parallel.h"
-#include "core/real.h"
-#include "core/shared_maths.h"
 #include "gl/gl_fixture.h"
 #include "merge/cut.h"
 #include "render/footprint.h"
 #include "support/preview_views.h"
-#include "support/quiet.h"
 #include "support/splats.h"
-#include "support/temp_folder.h"
+#include "support/test.h"
 #include "viewer/loaded_layer.h"
 #include "viewer/preview_splats.h"
 #include "viewer/set_loader.h"
@@ -106,14 +97,14 @@ TEST_F(KeptTreesTest, ATreeIsOfPositionsAndOfWhatAbsorbs) {
 TEST_F(KeptTreesTest, WhatIsDamagedIsBuiltAgainWithoutAWord) {
     const SplatSet set = cloud(5000);
     const fs::path file = begin(set).file;
-    const auto whole = static_cast<std::int64_t>(fs::file_size(file));
+    const auto whole = std::int64_t(fs::file_size(file));
     const std::int64_t header = 32, version = 8, rows = 16, nodes = 24;
     for (const std::int64_t place :
          {std::int64_t{0}, version, rows, nodes, header + 3, whole / 2, whole - 1}) {
         SCOPED_TRACE(place);
         std::fstream damaged(file, std::ios::binary | std::ios::in | std::ios::out);
         damaged.seekg(place);
-        const auto byte = static_cast<char>(damaged.get() ^ 0x41);
+        const auto byte = char(damaged.get() ^ 0x41);
         damaged.seekp(place).put(byte);
         damaged.close();
         const KeptTree kept = begin(set);
@@ -132,10 +123,10 @@ TEST_F(KeptTreesTest, WhatIsDamagedIsBuiltAgainWithoutAWord) {
 
 TEST_F(KeptTreesTest, TreesCountInTheCachesLimitAndDriveOutNoSet) {
     begin(cloud(5000, 1));
-    const auto bytes = static_cast<std::int64_t>(fs::file_size(trees().front()));
+    const auto bytes = std::int64_t(fs::file_size(trees().front()));
     const auto hour_ago = fs::file_time_type::clock::now() - std::chrono::hours(1);
     fs::last_write_time(trees().front(), hour_ago);
-    folder_.file("cache/0.splats", std::string(static_cast<std::size_t>(6 * bytes), 'x'));
+    folder_.file("cache/0.splats", std::string(std::size_t(6 * bytes), 'x'));
     cache_.limit_bytes = 8 * bytes;
     begin(cloud(5000, 2));
     EXPECT_EQ(trees().size(), 2u);
@@ -213,15 +204,15 @@ std::shared_ptr<const SplatSet> galaxy() {
     for (std::int64_t k = 0; k < across; ++k)
         for (std::int64_t j = 0; j < up; ++j)
             for (std::int64_t i = 0; i < across; ++i) {
-                const auto n = static_cast<std::uint32_t>((k * up + j) * across + i);
+                const auto n = std::uint32_t((k * up + j) * across + i);
                 const glm::dvec3 p =
                     (glm::dvec3(i, j, k) + glm::dvec3(uniform(n, 1), uniform(n, 2), uniform(n, 3))) *
                         spacing -
                     glm::dvec3(5.0, 0.4, 5.0);
                 if (p.x * p.x + p.z * p.z > 25.0) continue;
-                const auto a = static_cast<float>(spiral(p.x, p.z));
+                const auto a = float(spiral(p.x, p.z));
                 add_splat(*set, glm::vec3(p), {0.4f + 0.5f * a, 0.5f, 0.8f - 0.4f * a}, a);
-                set->distance.back() = static_cast<float>(std::fabs(p.y));
+                set->distance.back() = float(std::fabs(p.y));
                 set->id.back() = n;
             }
     set->spacing = spacing;

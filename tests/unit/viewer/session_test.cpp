@@ -1,18 +1,10 @@
 // A window's session without a window, and the queues beneath it.
 #include "viewer/session.h"
 
-#include <fmt/format.h>
-#include <gtest/gtest.h>
-
-#include <chrono>
 #include <glm/vec2.hpp>
-#include <thread>
 
-#include "core/error.h"
 #include "gl/gl_fixture.h"
-#include "support/process_state.h"
-#include "support/quiet.h"
-#include "support/temp_folder.h"
+#include "support/test.h"
 #include "viewer/background_work.h"
 #include "viewer/render_queue.h"
 #include "viewer/window.h"
@@ -221,7 +213,7 @@ TEST(Messages, MessagesGoAndErrorsStay) {
 Image numbered() {
     Image image = make_image(3, 2, 4, 1.0f);
     for (std::int64_t y = 0; y < 2; ++y)
-        for (std::int64_t x = 0; x < 3; ++x) image.at(x, y)[0] = static_cast<float>(10 * x + y);
+        for (std::int64_t x = 0; x < 3; ++x) image.at(x, y)[0] = float(10 * x + y);
     return image;
 }
 

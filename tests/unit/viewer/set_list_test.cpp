@@ -1,10 +1,7 @@
 // The next task for each layer, and the sample of a set while it grows.
-#include <gtest/gtest.h>
-
-#include <set>
-
 #include "sets/load_source.h"
 #include "support/small_scene.h"
+#include "support/test.h"
 #include "viewer/loaded_layer.h"
 #include "viewer/set_loader.h"
 
@@ -33,7 +30,7 @@ class SetListTest : public testing::Test {
         if (!list.next_task()) return "";
         job = list.begin_next();
         static constexpr const char* names[] = {"sample ", "load ", "arrange ", "describe "};
-        return names[static_cast<int>(job->task)] + job->name;
+        return names[int(job->task)] + job->name;
     }
     /// The result that a job would bring.
     SetList::Layer result(bool whole) const {
@@ -250,7 +247,7 @@ std::vector<KeptSplat> splats(std::uint64_t first, std::size_t count) {
         made[i] = {};
         made[i].id = first + i;
         made[i].alpha = 1.0f;
-        made[i].position.x = static_cast<float>(first + i);
+        made[i].position.x = float(first + i);
     }
     return made;
 }
@@ -258,12 +255,12 @@ std::vector<KeptSplat> splats(std::uint64_t first, std::size_t count) {
 void keep(GrowingSet& growing, const std::vector<KeptSplat>& kept) {
     const auto lit =
         std::count_if(kept.begin(), kept.end(), [](const KeptSplat& s) { return s.alpha > 0.0f; });
-    const KeptStore::Run run{kept.data(), kept.size(), static_cast<std::size_t>(lit)};
+    const KeptStore::Run run{kept.data(), kept.size(), std::size_t(lit)};
     growing.keeps({&run, 1});
 }
 
 std::set<std::uint64_t> ids(const SplatSet& set, std::int64_t count) {
-    return {set.id.begin(), set.id.begin() + static_cast<std::ptrdiff_t>(count)};
+    return {set.id.begin(), set.id.begin() + std::ptrdiff_t(count)};
 }
 
 TEST(GrowingSet, IsAllOfAFewSplats) {
@@ -276,7 +273,7 @@ TEST(GrowingSet, IsAllOfAFewSplats) {
     ASSERT_EQ(sample.set->size(), 40);
     EXPECT_EQ(*ids(*sample.set, 40).begin(), 7u);
     for (std::int64_t i = 0; i < 40; ++i)
-        EXPECT_EQ(sample.set->position[std::size_t(i)].x, static_cast<float>(sample.set->id[std::size_t(i)]));
+        EXPECT_EQ(sample.set->position[std::size_t(i)].x, float(sample.set->id[std::size_t(i)]));
 }
 
 TEST(GrowingSet, IsAFairShareOfMany) {

@@ -1,20 +1,14 @@
 // Sets in the background: what comes, what stays, what is begun again and what is not.
 #include "viewer/set_loader.h"
 
-#include <gtest/gtest.h>
-
-#include <chrono>
 #include <condition_variable>
-#include <mutex>
-#include <thread>
 
-#include "core/error.h"
 #include "sets/load_source.h"
 #include "splat_files/formats.h"
-#include "support/bits.h"
 #include "support/fits_text.h"
 #include "support/small_scene.h"
 #include "support/splats.h"
+#include "support/test.h"
 
 namespace astrosplat {
 namespace {
@@ -44,7 +38,7 @@ TEST_F(SetLoaderTest, BringsWhatLoadingBrings) {
         EXPECT_TRUE(found->arranged);
         EXPECT_EQ(found->sample.set->size(), 5000);
         EXPECT_EQ(found->sample.tree->rows.size(), 5000u);
-        EXPECT_FLOAT_EQ(found->sample.weight, static_cast<float>(wanted.size()) / 5000.0f);
+        EXPECT_FLOAT_EQ(found->sample.weight, float(wanted.size()) / 5000.0f);
         EXPECT_EQ(found->whole.set, found->set);
         EXPECT_EQ(found->whole.tree->rows.size(), wanted.id.size());
         EXPECT_EQ(found->whole.weight, 1.0f);
@@ -288,9 +282,9 @@ TEST_F(GrowingSetsTest, WhatIsKeptIsSeenBeforeItIsRead) {
     const auto sampled = loader.layer("gas");
     ASSERT_TRUE(sampled);
     EXPECT_FALSE(sampled->set) << "what is not whole is no final picture";
-    EXPECT_NEAR(static_cast<double>(sampled->sample.set->size()), 20000.0, 4.0);
-    const auto splats = static_cast<double>(wanted.size());
-    EXPECT_NEAR(static_cast<double>(sampled->splats), splats, 0.01 * splats);
+    EXPECT_NEAR(double(sampled->sample.set->size()), 20000.0, 4.0);
+    const auto splats = double(wanted.size());
+    EXPECT_NEAR(double(sampled->splats), splats, 0.01 * splats);
     EXPECT_NEAR(sampled->sample.weight, splats / 20000.0, 0.01 * splats / 20000.0);
     for (int axis = 0; axis < 3; ++axis)
         EXPECT_NEAR(sampled->box.hi[axis], bounds(wanted).hi[axis], 0.05) << axis;

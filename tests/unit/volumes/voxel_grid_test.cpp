@@ -2,10 +2,9 @@
 // columns, and the same bits for any threads.
 #include "volumes/voxel_grid.h"
 
-#include <gtest/gtest.h>
-
-#include <map>
 #include <numbers>
+
+#include "support/test.h"
 
 namespace astrosplat::test {
 namespace {
@@ -26,7 +25,7 @@ VoxelSplat ball(const glm::dvec3& place, double sigma, float hides, const glm::v
 template <class Visit>
 void each_voxel(const VoxelGrid& grid, const Visit& visit) {
     for (std::size_t i = 0; i < grid.density.size(); ++i) {
-        const auto in = static_cast<int>(i % block_voxels);
+        const auto in = int(i % block_voxels);
         const glm::ivec3 voxel =
             block_side * grid.blocks[i / block_voxels] + glm::ivec3(in / 64, in / 8 % 8, in % 8);
         visit(grid.voxel_size * glm::dvec3(voxel), i);
@@ -69,7 +68,7 @@ TEST(Voxels, OfAThinSplatHaveItsIntegralMiddleAndWidth) {
         EXPECT_NEAR(m.sum / put, 1.0, 1e-4) << h;
         for (int k = 0; k < 3; ++k) {
             EXPECT_NEAR(m.middle[k], place[k], 0.025 * h) << h;
-            EXPECT_NEAR(m.spread[static_cast<std::size_t>(k)], sigma * sigma + 0.25 * h * h,
+            EXPECT_NEAR(m.spread[std::size_t(k)], sigma * sigma + 0.25 * h * h,
                         0.03 * h * h + 0.004 * sigma * sigma)
                 << h;
         }
