@@ -140,16 +140,15 @@ ASTROSPLAT_DEPTH_LOOP clear(float* HWY_RESTRICT values, int count) {
 
 ASTROSPLAT_DEPTH_LOOP coarse_places(const DepthBlock& block, int candidate, float* HWY_RESTRICT z) {
     for (int i = 0; i < block.count; ++i) {
-        const float u =
-            (float(candidate) + uniform_of(block.random[i], candidate)) / float(coarse_candidates);
-        z[i] = logistic(u, block.height[i]);
+        const float place = block.even[i] * float(coarse_candidates), within = place - floor(place);
+        z[i] = logistic((float(candidate) + within) / float(coarse_candidates), block.height[i]);
     }
 }
 
 ASTROSPLAT_DEPTH_LOOP fine_places(const DepthBlock& block, float longest, int candidate,
                                   float* HWY_RESTRICT z) {
     for (int i = 0; i < block.count; ++i) {
-        const float u = uniform_of(block.random[i], coarse_candidates + candidate);
+        const float u = uniform_of(block.random[i], 1 + candidate);
         const float span = min(0.6f * longest, block.height[i]);
         z[i] = block.z[i] + span * ((float(candidate) + u) / float(fine_candidates) - 0.5f);
     }
@@ -162,8 +161,12 @@ ASTROSPLAT_DEPTH_LOOP weights(const DepthBlock& block, float* HWY_RESTRICT energ
     }
 }
 
-ASTROSPLAT_DEPTH_LOOP start_choice(const DepthBlock& block, int which, float* HWY_RESTRICT rest) {
-    for (int i = 0; i < block.count; ++i) rest[i] = rest[i] * uniform_of(block.random[i], which);
+ASTROSPLAT_DEPTH_LOOP uniform_choices(const DepthBlock& block, float* HWY_RESTRICT choice) {
+    for (int i = 0; i < block.count; ++i) choice[i] = uniform_of(block.random[i], 1 + fine_candidates);
+}
+
+ASTROSPLAT_DEPTH_LOOP start_choice(const float* HWY_RESTRICT choice, int count, float* HWY_RESTRICT rest) {
+    for (int i = 0; i < count; ++i) rest[i] = rest[i] * choice[i];
 }
 
 // Takes the candidate where the rest of the weight is not used up yet, so that the last one taken is the
@@ -187,7 +190,8 @@ ASTROSPLAT_DEPTH_LOOP widen(const float* HWY_RESTRICT place, int count, float* H
 // One draw among `candidates` places, with octaves [first, end) as weights. places(candidate, z, weight) sets
 // them; weights are 0 before.
 template <int candidates, class Places>
-void draw(const NoiseStack& noise, int first, int end, int which, DepthBlock& block, Places places) {
+void draw(const NoiseStack& noise, int first, int end, const float* choice, DepthBlock& block,
+          Places places) {
     Lane place[candidates], weight[candidates], rest, lowest, highest;
     for (int candidate = 0; candidate < candidates; ++candidate) {
         clear(weight[candidate], block.count);
@@ -204,7 +208,7 @@ void draw(const NoiseStack& noise, int first, int end, int which, DepthBlock& bl
     }
     clear(rest, block.count);
     for (int candidate = 0; candidate < candidates; ++candidate) weights(block, weight[candidate], rest);
-    start_choice(block, which, rest);
+    start_choice(choice, block.count, rest);
     for (int candidate = 0; candidate < candidates; ++candidate)
         choose(weight[candidate], place[candidate], rest, block.z, block.count);
 }
@@ -212,8 +216,7 @@ void draw(const NoiseStack& noise, int first, int end, int which, DepthBlock& bl
 ASTROSPLAT_DEPTH_LOOP add_spread(float spread, DepthBlock& block) {
     for (int i = 0; i < block.count; ++i) {
         const float most = 2.0f * block.height[i];
-        block.z[i] = clamp(block.z[i], -most, most) +
-                     logistic(uniform_of(block.random[i], 0), min(spread, block.height[i]));
+        block.z[i] = clamp(block.z[i], -most, most) + logistic(block.even[i], min(spread, block.height[i]));
     }
 }
 
@@ -221,12 +224,13 @@ ASTROSPLAT_DEPTH_LOOP add_spread(float spread, DepthBlock& block) {
 
 template <class Places>
 void draw_twice(const NoiseStack& noise, DepthBlock& block, Places places) {
-    constexpr int choices = coarse_candidates + fine_candidates;
-    draw<coarse_candidates>(noise, 0, min(noise.count, coarse_octaves), choices, block, places);
+    draw<coarse_candidates>(noise, 0, min(noise.count, coarse_octaves), block.even, block, places);
     if (noise.count <= coarse_octaves) return;
     const float longest = 1.0f / noise.frequency[coarse_octaves];
+    Lane choice;
+    uniform_choices(block, choice);
     draw<fine_candidates>(
-        noise, coarse_octaves, noise.count, choices + 1, block,
+        noise, coarse_octaves, noise.count, choice, block,
         [&](int candidate, float* z, float*) { fine_places(block, longest, candidate, z); });
 }
 

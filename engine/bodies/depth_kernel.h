@@ -22,7 +22,8 @@ struct DepthBlock {
     float x[size], y[size];
     float height[size];          // scale height H_k of the envelope
     float clumping[size];        // how much of the noise and of candidates' weights counts
-    std::uint32_t random[size];  // a hash for each splat; all of its choices follow from it
+    std::uint32_t random[size];  // a hash for each splat; all of its choices follow from it, but
+    float even[size];            // 0..1, spread evenly over neighbours: the share of what is before its depth
     float z[size];               // out
 };
 
@@ -33,12 +34,12 @@ struct DepthCandidates {
     float weight[count][DepthBlock::size];  // logarithm
 };
 
-/// z drawn from the candidates, each as likely as exp(weight + sum of gain N(x, y, z)), by the first three
-/// octaves; then from eight places about the one chosen, H_k apart at most, by the others.
+/// z drawn from the candidates, each as likely as exp(weight + sum of gain N(x, y, z)), by the
+/// first three octaves; then from eight places about the one chosen, H_k apart at most, by the others.
 void line_depths(const NoiseStack& noise, const DepthCandidates& candidates, DepthBlock& block);
 
-/// z drawn from sech^2(z / H_k) exp(clumping * sum of gain N(x, y, z)), normalised in every column: 24
-/// stratified candidates by the first three octaves, then eight about the one chosen by the others.
+/// z drawn from sech^2(z / H_k) exp(clumping * sum of gain N(x, y, z)), normalised in every column: `even`
+/// among 24 candidates by the first three octaves, then eight about the one chosen by the others.
 void disk_depths(const NoiseStack& noise, DepthBlock& block);
 
 /// z = sum of gain N(x, y, 0), at most 2 H_k from 0, and a draw from sech^2(z / spread) with the spread at

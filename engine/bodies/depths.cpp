@@ -107,15 +107,15 @@ BandSplats splats_of_size(const Band& band, bool glow, double sigma, double each
 namespace {
 
 // A spheroid is seen into and through, so its splats are large and soft (INCLINED 3, by band).
-constexpr double spheroid_sigmas[] = {1.2, 1.6, 2.4, 5.0, 9.0, 14.0, 20.0, widest_in_spheroid_px};
+constexpr double spheroid_sigmas[] = {1.2, 1.6, 2.4, 5.0, 9.0, 14.0, 20.0, widest_in_galaxy_px};
 constexpr double thickest_small_px = 4.0;  // sigma of the widest splats of the disk's finer bands
 constexpr int last_fine_band = 3;          // the widest of what is as thin as the disk's small things
 
 std::vector<BandSplats> splats_of_galaxy(const Band& band, double usual, const GalaxyBody& galaxy) {
     constexpr double most_behind = 12.0;
     const double thick = double(galaxy.thickness);
-    const double widest = band.index > last_fine_band ? std::max(2.0, widest_in_disk * thick)
-                                                      : std::max(thickest_small_px, widest_in_disk * thick);
+    const double least = band.index > last_fine_band ? 2.0 : thickest_small_px,
+                 widest = std::clamp(widest_in_disk * thick, least, widest_in_galaxy_px);
     // So many bodies behind each other: from along the normal fewer would be grains.
     const double behind = std::min(most_behind, std::round(1.0 / std::max(0.08, double(galaxy.cos_i))));
     BandSplats disk =
@@ -207,8 +207,7 @@ void place_in_galaxy(const Placement& placement, const GalaxyBody& galaxy, const
                      PlacedBlock& block) {
     if (splats.family == GalaxyFamily::spheroid) {
         for (int i = 0; i < block.count; ++i)
-            block.z[i] = depth_of(galaxy, GalaxyPart::spheroid, block.x[i], block.y[i], block.even[i].x,
-                                  block.even[i].y);
+            block.z[i] = depth_of(galaxy, GalaxyPart::spheroid, block.x[i], block.y[i], block.even[i]);
         return;
     }
     constexpr double longest_wave = 10.0;  // of what is small in the disk: INCLINED 3
@@ -260,7 +259,7 @@ void place_about_axis(const Placement& placement, const BandSplats& splats, Plac
     for (int i = 0; i < block.count; ++i) {
         const float x = block.x[i], y = block.y[i];
         std::uint32_t random = as_mix(block.random[i] ^ 0x3c6ef372u);
-        float share = block.even[i].x, spread = 0.0f;
+        float share = block.even[i], spread = 0.0f;
         if (as_uniform(random) < std::max(least, axis.residue_at(x, y))) {
             random = as_mix(random);
             share = (as_uniform(random) < share_in_front(side.z[i]) ? before : behind) +
@@ -387,6 +386,7 @@ void spread_in_sky(const Placement& placement, double feature, const DepthReach*
         sky.x[sky.count] = block.x[i];
         sky.y[sky.count] = block.y[i];
         sky.random[sky.count] = block.random[i];
+        sky.even[sky.count] = block.even[i];
         sky.height[sky.count++] = reaches[i].texels;
     }
     if (sky.count == 0) return;
@@ -428,16 +428,24 @@ void add_walls(const Placement& placement, double feature, PlacedBlock& block) {
 
 }  // namespace
 
+void add_small(float x, float y, std::uint32_t random, PlacedBlock& block) {
+    const int i = block.count++;
+    block.x[i] = x;
+    block.y[i] = y;
+    block.random[i] = random;
+    block.even[i] = as_uniform(as_mix(random));
+}
+
 void copy_splat(const DepthBlock& from, int i, DepthBlock& to, int k) {
     to.x[k] = from.x[i];
     to.y[k] = from.y[i];
     to.random[k] = from.random[i];
+    to.even[k] = from.even[i];
     to.z[k] = from.z[i];
 }
 
 void copy_splat(const PlacedBlock& from, int i, PlacedBlock& to, int k) {
     copy_splat(static_cast<const DepthBlock&>(from), i, static_cast<DepthBlock&>(to), k);
-    to.even[k] = from.even[i];
     to.distance[k] = from.distance[i];
     to.knot[k] = from.knot[i];
 }

@@ -91,6 +91,7 @@ Image dust_depths(const Placement& placement) {
                 for (int k = 0; k < depths_a_cell; ++k) {
                     block.x[block.count] = (float(cell % depths.width) + 0.5f) * float(share_cell_px);
                     block.y[block.count] = (float(cell / depths.width) + 0.5f) * float(share_cell_px);
+                    block.even[block.count] = (float(k) + 0.5f) / float(depths_a_cell);
                     block.random[block.count++] =
                         placement.hash_of(std::uint64_t(cell) << 8 | std::uint64_t(k), shared::PURPOSE_SHEET);
                 }
@@ -189,6 +190,7 @@ struct DustMaker {
     }
 
     void make_splats(std::span<const LatticeCell> cells, std::size_t first, PictureSplats& out) const {
+        const std::uint32_t even_key = placement.hash_of(dust_band << 48, shared::PURPOSE_EVEN);
         DepthBlock block;
         block.count = int(cells.size());
         for (std::size_t i = 0; i < cells.size(); ++i) {
@@ -196,6 +198,7 @@ struct DustMaker {
             block.x[i] = splat.x;
             block.y[i] = splat.y;
             block.random[i] = placement.hash_of(splat.id, shared::PURPOSE_DEPTH);
+            block.even[i] = even_number(cells[i], even_key);
             out.splats.alpha[first + i] = splat.alpha;
             out.splats.color[first + i] = -exponents;
             out.splats.id[first + i] = splat.id;

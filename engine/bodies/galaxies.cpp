@@ -111,7 +111,7 @@ Image differences(const Image& light, const GalaxyPlane& plane) {
 // (mean differences of .013 and .018), 1 as six spirals' (.05 to .15).
 Image roughness_of(const Image& light, const GalaxyPlane& plane, const Image& to_fit) {
     constexpr std::int64_t width = 960;  // px: INCLINED's pictures
-    constexpr float smooth = 0.013f, rough = 0.06f, least = 0.12f;
+    constexpr float smooth = 0.013f, rough = 0.06f;
     constexpr double about_px = 20.0;
     const Image small =
         light.width > width
@@ -119,9 +119,21 @@ Image roughness_of(const Image& light, const GalaxyPlane& plane, const Image& to
             : copied(light);
     const Image mean = gaussian_blur(differences(small, plane), about_px);
     const Image local = made_by_pixel(mean, 1, [&](const float* m, float* to) {
-        *to = std::clamp((m[0] / std::max(m[1], 1e-3f) - smooth) / (rough - smooth), least, 1.0f);
+        *to = std::clamp((m[0] / std::max(m[1], 1e-3f) - smooth) / (rough - smooth), 0.0f, 1.0f);
     });
     return reduced_by_area(local, to_fit.width, to_fit.height);
+}
+
+// How much of a galaxy is rough, of its light: up to .24 in a lenticular by the noise of its sky and by what
+// lies around it, .45 and more in spirals.
+double rough_share(const Image& light, const Image& roughness) {
+    constexpr double smooth = 0.15, rough = 0.4;
+    double sum = 0.0, all = 1e-30;
+    for (std::size_t i = 0; i < light.pixels.size(); ++i) {
+        sum += double(light.pixels[i]) * double(roughness.pixels[i]);
+        all += double(light.pixels[i]);
+    }
+    return std::clamp((sum / all - smooth) / (rough - smooth), 0.0, 1.0);
 }
 
 // What the picture tells of each place of a galaxy: fields of the size of the light that was fitted.
@@ -140,7 +152,7 @@ void set_fields(const Image& to_fit, double texels, double offset, GalaxyBody& b
         const float sum = light.disk + light.spheroid, f = light.spheroid / std::max(sum, 1e-12f);
         const float sky = body.hidden * std::clamp(sky_fade - *wide.at(x, y) / dark_sky, 0.0f, 1.0f);
         *body.spheroid.at(x, y) = f + sky * (1.0f - f);
-        *body.excess.at(x, y) = *body.roughness.at(x, y) *
+        *body.excess.at(x, y) = *body.roughness.at(x, y) * (1.0f - f) *
                                 std::clamp(1.0f - expected * sum / (*soft.at(x, y) + 0.01f), 0.0f, 1.0f);
         *body.lit.at(x, y) = std::clamp(*wide.at(x, y) / lit_light, 0.0f, 1.0f);
     });
@@ -164,11 +176,16 @@ std::vector<GalaxyBody> galaxies_of(const Image& light, const StructureParams& p
         const std::optional<double> bulge = galaxies.told[k].bulge;
         const GalaxyLight gaussians =
             light_of_galaxy(galaxies.to_fit, galaxies.shares[k], plane, bulge == 1.0);
-        GalaxyBody body = make_galaxy_body(gaussians, plane, {thicker, params.flare, bulge}, double(width));
-        log_detail(fmt::format("a galaxy of {:.0f} texels, {:.0f} % of its light a spheroid's", body.radius,
-                               100.0 * gaussians.bulge));
+        Image roughness = roughness_of(light, plane, galaxies.to_fit);
+        const double rough = rough_share(galaxies.to_fit, roughness);
+        GalaxyBody body =
+            make_galaxy_body(gaussians, plane, {thicker, params.flare, bulge, rough}, double(width));
+        log_detail(
+            fmt::format("a galaxy of {:.0f} texels, what is small in it {:.1f} thick; {:.0f} % rough, {:.0f} "
+                        "% of its light a spheroid's",
+                        body.radius, body.thickness, 100.0 * rough, 100.0 * gaussians.bulge));
         body.center += float(margin_px);
-        body.roughness = roughness_of(light, plane, galaxies.to_fit);
+        body.roughness = std::move(roughness);
         set_fields(galaxies.to_fit, texels, double(margin_px), body);
         if (galaxies.planes.size() > 1) body.share = std::move(galaxies.shares[k]);
         if (body.hidden > 0.0f)

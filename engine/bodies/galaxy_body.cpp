@@ -176,10 +176,11 @@ GalaxyBody make_galaxy_body(const GalaxyLight& light, const GalaxyPlane& plane, 
     const std::vector<SpaceGaussian> disk = in_space(light.disk, width, scale.disk, 0.2 * widest),
                                      ball = in_space(light.spheroid, width, scale.spheroid, 0.05 * widest);
     const double radius = rms_width(light.disk.empty() ? ball : disk),
-                 fine = std::max(fine_thickness.at(s) * radius, double(least_disk_thickness)),
-                 dust = std::max(dust_thickness * radius, least_dust),
                  flatness = own_flatness(light, plane.inclination_deg, c, s),
-                 roundness = own_roundness(light, c, s);
+                 fine = std::max(
+                     std::lerp(flatness * widest_thickening, fine_thickness.at(s), shape.roughness) * radius,
+                     double(least_disk_thickness)),
+                 dust = std::max(dust_thickness * radius, least_dust), roundness = own_roundness(light, c, s);
     body.radius = float(radius);
     body.thickness = float(shape.thicker * fine);
     const auto add = [&](GalaxyPart part, SpaceGaussian g, double thickness) {
@@ -191,7 +192,7 @@ GalaxyBody make_galaxy_body(const GalaxyLight& light, const GalaxyPlane& plane, 
         const double out = std::min(1.0, 3.0 * g.width / width),
                      times = shape.thicker * (1.0 + shape.flare * out * out);
         add(GalaxyPart::disk, g, times * flatness * std::min(g.width, widest_thickening * radius));
-        add(GalaxyPart::fine, g, times * std::min(fine, 0.5 * g.width));
+        add(GalaxyPart::fine, g, times * std::min(fine, std::lerp(flatness, 0.5, shape.roughness) * g.width));
         add(GalaxyPart::dust, g, times * std::min(dust, 0.5 * g.width));
     }
     for (const SpaceGaussian& g : ball) add(GalaxyPart::spheroid, g, roundness * g.width);
@@ -229,13 +230,16 @@ void invent_plane(GalaxyBody& body, double strength, std::uint32_t seed) {
     });
 }
 
-float depth_of(const GalaxyBody& body, GalaxyPart part, float x, float y, float which, float where) {
+float depth_of(const GalaxyBody& body, GalaxyPart part, float x, float y, float share) {
     const glm::vec2 uv = along_and_across(body, x, y);
     const std::vector<LineGaussian>& gaussians = part_of(body, part);
-    float rest = which * sum_there(gaussians, uv);
-    for (const LineGaussian& g : gaussians)
-        if ((rest -= light_there(g, uv)) < 0.0f || &g == &gaussians.back())
-            return uv.y * g.slope + g.deviation * spread_of(where);
+    float before = share * sum_there(gaussians, uv);
+    for (const LineGaussian& g : gaussians) {
+        const float light = light_there(g, uv);
+        if (before < light || &g == &gaussians.back())
+            return uv.y * g.slope + g.deviation * spread_of(before / std::max(light, 1e-30f));
+        before -= light;
+    }
     return 0.0f;
 }
 
@@ -303,7 +307,8 @@ float star_depth(const GalaxyBody& body, float x, float y, float u, float in_dis
 
 namespace {
 
-// Candidates of even shares of each splat's light: Gaussian by Gaussian those that fall into its share.
+// Candidates of even shares of each splat's light: Gaussian by Gaussian those that fall into its share. Where
+// all are as likely, a splat's even number is the share before its very depth.
 void spread_candidates(const GalaxyBody& body, GalaxyPart part, DepthBlock& block,
                        DepthCandidates& candidates) {
     constexpr int count = DepthCandidates::count;
@@ -311,6 +316,7 @@ void spread_candidates(const GalaxyBody& body, GalaxyPart part, DepthBlock& bloc
     for (int i = 0; i < block.count; ++i) {
         const glm::vec2 uv = along_and_across(body, block.x[i], block.y[i]);
         const float all = std::max(sum_there(gaussians, uv), 1e-30f);
+        const float place = block.even[i] * float(count), within = place - std::floor(place);
         float begin = 0.0f, deviations = 0.0f;
         int next = 0;
         for (const LineGaussian& g : gaussians) {
@@ -319,9 +325,7 @@ void spread_candidates(const GalaxyBody& body, GalaxyPart part, DepthBlock& bloc
             const float end = last ? 2.0f : begin + share;
             deviations += share * g.deviation;
             for (; next < count; ++next) {
-                const float u =
-                    (float(next) + as_uniform(as_mix(block.random[i] + std::uint32_t(next) * 0x9e3779b9u))) /
-                    float(count);
+                const float u = (float(next) + within) / float(count);
                 if (u >= end) break;
                 candidates.z[next][i] = uv.y * g.slope + g.deviation * spread_of((u - begin) / share);
             }

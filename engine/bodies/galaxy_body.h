@@ -80,6 +80,7 @@ struct GalaxyShape {
     double thicker = 1.0;         // times the usual
     double flare = 0.0;           // how much thicker at the rim than in the middle, less 1
     std::optional<double> bulge;  // 0..1, share of the spheroid in the light; empty: as found
+    double roughness = 1.0;       // 0..1, of its light: in a smooth galaxy what is sharp is no thinner
 };
 
 /// `width`: of the picture the light was fitted in, texels. Without the images.
@@ -95,8 +96,9 @@ GalaxyLightAt light_at(const GalaxyBody& body, float x, float y);
 /// Fills body.plane: two arms and clouds in their direction, as strong as `strength`.
 void invent_plane(GalaxyBody& body, double strength, std::uint32_t seed);
 
-/// A depth of one part there; two random numbers of 0..1: which Gaussian, and where in it.
-float depth_of(const GalaxyBody& body, GalaxyPart part, float x, float y, float which, float where);
+/// A depth of one part there: the share (0..1) of its light along the line of sight that is counted before
+/// it, Gaussian by Gaussian.
+float depth_of(const GalaxyBody& body, GalaxyPart part, float x, float y, float share);
 
 /// (u, v) along and across the major axis of a place of the picture, and the other way.
 glm::vec2 along_and_across(const GalaxyBody& body, float x, float y);
@@ -110,8 +112,9 @@ void gather_in_clouds(const GalaxyBody& body, DepthBlock& block);
 /// the others about the spheroid.
 float star_depth(const GalaxyBody& body, float x, float y, float u, float in_disk);
 
-/// Candidates of one part for every splat of a block, weighed by what is invented, `force` times; and the
-/// splats' heights, about which fine candidates are drawn. Of dust, what absorbs stands in front.
+/// Candidates of one part for every splat of a block, weighed by what is invented,
+/// `force` times; and the splats' heights, about which fine candidates are drawn. Of dust, what absorbs
+/// stands in front.
 void set_candidates(const GalaxyBody& body, GalaxyPart part, float force, DepthBlock& block,
                     DepthCandidates& candidates);
 

@@ -89,22 +89,10 @@ struct BandMaker {
         return splat;
     }
 
-    // Each block of 8x8 cells has one number of each 64th, in an order of its own: even from every side, and
-    // no pattern (INCLINED 3).
-    float even_number(const LatticeCell& cell, std::uint32_t purpose) const {
-        const std::uint64_t block =
-            lattice.number({cell.column / 8, cell.row / 8}) << 8 | std::uint64_t(splats.index);
-        const std::uint32_t key = placement.hash_of(block, purpose);
-        std::uint32_t n = std::uint32_t(cell.row % 8 * 8 + cell.column % 8) ^ (key & 63u);
-        n = n * (key >> 6 | 1u) & 63u;
-        n ^= n >> 3;
-        n = n * (key >> 12 | 1u) & 63u;
-        const float within = as_uniform(placement.hash_of(lattice.number(cell), purpose));
-        return (float(n) + within) / 64.0f;
-    }
-
     void make_splats(std::span<const LatticeCell> cells, std::size_t first, PictureSplats& out) const {
         const float footprint = footprint_share * float(2.0 * real::pi) * splats.sigma * splats.sigma;
+        const std::uint32_t even_key = placement.hash_of(
+            std::uint64_t(splats.index) << 8 | std::uint64_t(splats.size), shared::PURPOSE_EVEN);
         PlacedBlock block;
         block.count = int(cells.size());
         for (std::size_t i = 0; i < cells.size(); ++i) {
@@ -112,9 +100,7 @@ struct BandMaker {
             block.x[i] = splat.x;
             block.y[i] = splat.y;
             block.random[i] = placement.hash_of(splat.id, shared::PURPOSE_DEPTH);
-            if (splats.family == GalaxyFamily::spheroid || placement.axis)
-                block.even[i] = {even_number(cells[i], shared::PURPOSE_EVEN),
-                                 even_number(cells[i], shared::PURPOSE_EVEN + 1u)};
+            block.even[i] = even_number(cells[i], even_key);
             shade(splat, hiding_of(splats), footprint, opacity, first + i, out.splats);
         }
         place(placement, splats, block);
@@ -128,6 +114,47 @@ struct BandMaker {
 };
 
 }  // namespace
+
+namespace {
+
+std::uint32_t reversed_bits(std::uint32_t n) {
+    n = n >> 16 | n << 16;
+    n = (n & 0xff00ff00u) >> 8 | (n & 0x00ff00ffu) << 8;
+    n = (n & 0xf0f0f0f0u) >> 4 | (n & 0x0f0f0f0fu) << 4;
+    n = (n & 0xccccccccu) >> 2 | (n & 0x33333333u) << 2;
+    return (n & 0xaaaaaaaau) >> 1 | (n & 0x55555555u) << 1;
+}
+
+// A permutation in which a bit depends on it and on the lower ones alone (Laine and Karras 2011).
+std::uint32_t mixed_upwards(std::uint32_t n, std::uint32_t key) {
+    n += key;
+    n ^= n * 0x6c50b47cu;
+    n ^= n * 0xb82f1e52u;
+    n ^= n * 0xc7afe638u;
+    return n ^ n * 0x8d22f6e6u;
+}
+
+// The same from the highest bit down: aligned blocks of cells change places, and halves of these within them.
+std::uint32_t scrambled(std::int64_t number, std::uint32_t key) {
+    return reversed_bits(mixed_upwards(reversed_bits(std::uint32_t(number)), key));
+}
+
+// Bit k becomes the parity of those bits j of n of which binomial(k, j) is odd: of subsets of k (Lucas).
+std::uint32_t by_pascal(std::uint32_t n) {
+    n ^= (n & 0x55555555u) << 1;
+    n ^= (n & 0x33333333u) << 2;
+    n ^= (n & 0x0f0f0f0fu) << 4;
+    n ^= (n & 0x00ff00ffu) << 8;
+    return n ^ n << 16;
+}
+
+}  // namespace
+
+float even_number(const LatticeCell& cell, std::uint32_t key) {
+    const std::uint32_t n =
+        scrambled(cell.column, key) ^ by_pascal(scrambled(cell.row, shared::as_mix(key + 1u)));
+    return as_uniform(reversed_bits(mixed_upwards(n, shared::as_mix(key + 2u))));
+}
 
 void reserve_splats(PictureSplats& set, std::int64_t count) {
     const auto size = std::size_t(count);

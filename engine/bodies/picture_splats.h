@@ -80,6 +80,12 @@ struct SplatLattice {
     }
 };
 
+/// 0..1, spread evenly over neighbours: of any 2^p x 2^q cells (from multiples of these on) one number lies
+/// in each 2^-(p + q) of the range, so whatever a body is seen along, its splats are even, and no pattern
+/// shows. A digital net (Niederreiter 1987) by Pascal's matrix (Faure 1982), each coordinate scrambled by a
+/// nested hash (Owen 1995; Laine and Karras 2011).
+float even_number(const LatticeCell& cell, std::uint32_t key);
+
 /// Which cells of some rows have a splat.
 struct LatticeRows {
     std::int64_t begin = 0, columns = 0;

@@ -65,12 +65,10 @@ void set_cloud_depths(Placement& placement, GalaxyBody& galaxy) {
     clouds.z.resize(std::size_t(clouds.columns * clouds.rows));
     parallel_chunks(std::ssize(clouds.z), DepthBlock::size, [&](std::int64_t begin, std::int64_t end, int) {
         PlacedBlock block;
-        block.count = int(end - begin);
-        for (int i = 0; i < block.count; ++i) {
-            const glm::vec2 place = place_of(galaxy, clouds.middle(std::size_t(begin + i)));
-            block.x[i] = place.x;
-            block.y[i] = place.y;
-            block.random[i] = as_hash(placement.seed, std::uint32_t(begin + i), 2u, shared::PURPOSE_KNOT);
+        for (std::int64_t i = begin; i < end; ++i) {
+            const glm::vec2 place = place_of(galaxy, clouds.middle(std::size_t(i)));
+            add_small(place.x, place.y, as_hash(placement.seed, std::uint32_t(i), 2u, shared::PURPOSE_KNOT),
+                      block);
         }
         place_small_in_galaxy(placement, galaxy, block);
         std::copy_n(block.z, block.count, clouds.z.data() + begin);
@@ -93,13 +91,10 @@ void set_knot_depths(Placement& placement, std::span<const Star> stars) {
     placement.knot_z.resize(std::size_t(count));
     parallel_chunks(count, DepthBlock::size, [&](std::int64_t begin, std::int64_t end, int) {
         PlacedBlock block;
-        block.count = int(end - begin);
-        for (int i = 0; i < block.count; ++i) {
-            const Knot& knot = placement.knots.knots[begin + i];
-            block.x[i] = knot.x;
-            block.y[i] = knot.y;
-            block.random[i] = as_hash(placement.seed, std::uint32_t(begin + i), 0u, shared::PURPOSE_KNOT);
-            block.even[i] = glm::vec2(as_uniform(block.random[i]));
+        for (std::int64_t i = begin; i < end; ++i) {
+            const Knot& knot = placement.knots.knots[i];
+            add_small(knot.x, knot.y, as_hash(placement.seed, std::uint32_t(i), 0u, shared::PURPOSE_KNOT),
+                      block);
         }
         place_freely(placement, like, block);
         for (int i = 0; i < block.count; ++i) {

@@ -35,8 +35,8 @@ inline constexpr double widest_glow_share = 0.06;
 inline constexpr double widest_about_axis = 10.0;
 /// The same of a galaxy's disk, of the thickness of what is small in it (INCLINED 3).
 inline constexpr double widest_in_disk = 1.3;
-/// Sigma of the widest splats of its spheroid, texels.
-inline constexpr double widest_in_spheroid_px = 28.0;
+/// Sigma of the widest splats of a galaxy, texels.
+inline constexpr double widest_in_galaxy_px = 28.0;
 
 /// How far from the middle light of a shell lies: on its two walls, or anywhere between in a core or the sky.
 struct DepthReach {
@@ -137,10 +137,12 @@ std::vector<BandSplats> band_splats(const Band& band, bool coarsest, const Place
 
 /// A block's splats with their distances from the middle of what they belong to.
 struct PlacedBlock : DepthBlock {
-    glm::vec2 even[size];     // 0..1, spread evenly over neighbours; of a spheroid's splats
     float distance[size];     // texels, >= 0
     std::int32_t knot[size];  // whose depth it has; or -1
 };
+
+/// Adds something by itself, without neighbours to be even with.
+void add_small(float x, float y, std::uint32_t random, PlacedBlock& block);
 
 /// Values of one splat of a block, to another's place.
 void copy_splat(const DepthBlock& from, int i, DepthBlock& to, int k);
@@ -167,7 +169,8 @@ void place_by_galaxy(const Placement& placement, Block& block, const Place& plac
     }
 }
 
-/// Fills z and distance from x, y and random; splats of fine bands that belong to a knot take its depth.
+/// Fills z and distance from x, y, random and even; splats of fine bands that belong to a knot take its
+/// depth.
 void place(const Placement& placement, const BandSplats& splats, PlacedBlock& block);
 
 /// The same without knots and without the relief or the walls that the depths are about.

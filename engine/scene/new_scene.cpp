@@ -350,7 +350,7 @@ std::int64_t side_px(std::int64_t side, std::int64_t longest) {
 
 // Sigma of the widest splats, of the picture's longest side.
 double widest_sigma(StructureKind structure, std::int64_t longest) {
-    if (structure == StructureKind::disk) return widest_in_spheroid_px / double(longest);
+    if (structure == StructureKind::disk) return widest_in_galaxy_px / double(longest);
     if (structure == StructureKind::axis) return widest_about_axis / double(longest_px);
     const double in_sheet = widest_sigma_share * sheet_thickness;
     return structure == StructureKind::walls ? std::max(in_sheet, widest_glow_share * 0.5 * wall_depth)

@@ -88,4 +88,4 @@ const uint PURPOSE_STAR_PLACE = 20u;
 const uint PURPOSE_STAR_KIND = 21u;
 const uint PURPOSE_SKY_PATCH = 22u;  // of a tiled sky
 const uint PURPOSE_SHEET = 25u;      // depths that dust has in a cell
-const uint PURPOSE_EVEN = 23u;       // depths of a spheroid: 23, 24
+const uint PURPOSE_EVEN = 23u;       // depths of bodies

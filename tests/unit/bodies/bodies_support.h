@@ -41,6 +41,7 @@ inline PlacedBlock splats_about(const glm::vec2& middle, const glm::vec2& size, 
         block.x[i] = middle.x + size.x * (shared::as_uniform(random(1u)) - 0.5f);
         block.y[i] = middle.y + size.y * (shared::as_uniform(random(2u)) - 0.5f);
         block.random[i] = random(3u);
+        block.even[i] = shared::as_uniform(random(4u));
     }
     return block;
 }

@@ -76,12 +76,11 @@ TEST(Depths, GatherWhereTheNoiseIsHigh) {
 // The first of the two draws, candidate by candidate.
 float drawn_plainly(const NoiseStack& noise, const DepthBlock& block, int i) {
     constexpr int candidates = 24;
-    const auto random = [&](int which) {
-        return shared::as_uniform(shared::as_mix(block.random[i] + std::uint32_t(which) * 0x9e3779b9u));
-    };
+    const double even = double(block.even[i]),
+                 within = even * candidates - std::floor(even * candidates);
     double place[candidates], weight[candidates], sum = 0.0;
     for (int c = 0; c < candidates; ++c) {
-        const double u = 0.015 + 0.97 * (c + double(random(c))) / candidates;
+        const double u = 0.015 + 0.97 * (c + within) / candidates;
         place[c] = 0.5 * double(block.height[i]) * std::log(u / (1.0 - u));
         double energy = 0.0;
         for (int k = 0; k < noise.count; ++k)
@@ -91,7 +90,7 @@ float drawn_plainly(const NoiseStack& noise, const DepthBlock& block, int i) {
         weight[c] = std::exp(double(block.clumping[i]) * energy);
         sum += weight[c];
     }
-    double rest = sum * double(random(32));
+    double rest = sum * even;
     int chosen = 0;
     for (int c = 0; c < candidates && rest >= 0.0; rest -= weight[c++]) chosen = c;
     return float(place[chosen]);
@@ -223,6 +222,7 @@ double spread_at(const Placement& placement, float cx, float cy) {
         block.x[i] = cx + 0.01f * float(i % 10);
         block.y[i] = cy + 0.01f * float(i / 10);
         block.random[i] = shared::as_hash(3u, std::uint32_t(i), 0u, 4u);
+        block.even[i] = shared::as_uniform(shared::as_mix(block.random[i]));
     }
     place(placement, splats, block);
     double sum = 0.0, squares = 0.0;
@@ -270,6 +270,7 @@ TEST(Placement, KnotsOfAFilamentLieOnTheRelief) {
             block.x[i] = i < 100 ? 158.0f : 162.0f;
             block.y[i] = 100.0f;
             block.random[i] = shared::as_hash(3u, std::uint32_t(i % 100), 0u, 4u);
+            block.even[i] = shared::as_uniform(shared::as_mix(block.random[i]));
         }
         place(placement, splats, block);
         double rise = 0.0;

@@ -78,7 +78,7 @@ TEST(GalaxyBody, WhatIsSmallLiesInItsPlane) {
                 return shared::as_uniform(shared::as_hash(7u, std::uint32_t(i), k, 1u));
             };
             const float x = 500.0f + 60.0f * (random(0) - 0.5f), y = 400.0f + 20.0f * (random(1) - 0.5f);
-            const float z = depth_of(body, GalaxyPart::fine, x, y, random(2), random(3));
+            const float z = depth_of(body, GalaxyPart::fine, x, y, random(2));
             square += std::pow(body.in_disk(x, y, z).z, 2) / count;
         }
         EXPECT_NEAR(std::sqrt(square), body.thickness, 0.15 * body.thickness) << inclination;
