@@ -21,7 +21,8 @@ namespace astrosplat {
 namespace {
 
 // Found in films of W5, the Bubble, M42 and Sh2-106: no straight edge and no corner stands out.
-constexpr std::int64_t local_px = 48;     // pixels along the longer side of the local brightness
+// Pixels along the longer side of the local brightness: fewer where details are added to it.
+constexpr std::int64_t local_px = 48, local_px_of_smooth = 192;
 constexpr float brightest_detail = 1.6f;  // times the local brightness; what is brighter is a star
 constexpr float least_reach = 0.6f;       // of the margin, that what is lit goes on
 constexpr float dark_light = 0.004f, dark_share = 0.1f;  // light that is dark, and of the brightest rim
@@ -30,12 +31,12 @@ constexpr std::uint32_t outline_seed = 0xed6eu;
 float fourth_root(float v) { return std::sqrt(std::sqrt(std::max(v, 0.0f))); }
 
 // The mean of fourth roots, which a star hardly moves.
-Image local_brightness(const Image& image) {
+Image local_brightness(const Image& image, std::int64_t longest_px) {
     Image roots = unfilled_image(image.width, image.height, 3);
     for_each_pixel(image, [&](std::int64_t x, std::int64_t y) {
         for (int c = 0; c < 3; ++c) roots.at(x, y)[c] = fourth_root(image.at(x, y)[c]);
     });
-    const double ratio = std::min(1.0, double(local_px) / double(std::max(image.width, image.height)));
+    const double ratio = std::min(1.0, double(longest_px) / double(std::max(image.width, image.height)));
     const auto side = [&](std::int64_t px) {
         return std::max<std::int64_t>(1, std::llround(ratio * double(px)));
     };
@@ -69,9 +70,9 @@ struct Surroundings {
 
 float brightest_of(const glm::vec3& light) { return std::max({light.r, light.g, light.b}); }
 
-Surroundings surroundings_of(const Image& image, std::int64_t margin_px) {
+Surroundings surroundings_of(const Image& image, std::int64_t margin_px, bool smooth) {
     Surroundings around;
-    around.local = local_brightness(image);
+    around.local = local_brightness(image, smooth ? local_px_of_smooth : local_px);
     around.to_local = float(around.local.width) / float(image.width);
     around.middle = 0.5f * glm::vec2(float(image.width), float(image.height));
     around.margin_px = float(margin_px);
@@ -108,9 +109,10 @@ float fade_at(const Surroundings& around, glm::vec2 px, float away_px, float rea
 }
 
 // The texel at x, y of the picture, which lies beyond it: its mirrored details on the light of the rim, which
-// would otherwise rise again towards what is bright.
+// would otherwise rise again towards what is bright. `detail`: the share of these; where light is smooth,
+// they would be a second head of a comet.
 void continue_texel(const Surroundings& around, const Image& image, std::int64_t x, std::int64_t y,
-                    float* to) {
+                    float detail, float* to) {
     const std::int64_t from_x = mirrored(x, image.width), from_y = mirrored(y, image.height);
     const auto dx = float(beyond(x, image.width)), dy = float(beyond(y, image.height));
     const glm::vec3 rim = around.light_at(std::clamp<std::int64_t>(x, 0, image.width - 1),
@@ -124,9 +126,11 @@ void continue_texel(const Surroundings& around, const Image& image, std::int64_t
     const glm::vec3 near = around.light_at(from_x, from_y);
     const glm::vec2 px(float(x) + 0.5f, float(y) + 0.5f);
     const float fade = fade_at(around, px, away_px, reach_px);
+    const float kept = std::max(detail, 1.0f - std::min(1.0f, away_px * around.to_local));
     for (int c = 0; c < 3; ++c) {
-        const float level = std::min(rim[c], near[c]);
-        to[c] = fade * level * std::min(to[c] / std::max(near[c], 1e-12f), brightest_detail);
+        const float level = std::min(rim[c], near[c]),
+                    detailed = std::min(to[c] / std::max(near[c], 1e-12f), brightest_detail);
+        to[c] = fade * level * std::lerp(1.0f, detailed, kept);
     }
     to[3] *= fade;
 }
@@ -202,8 +206,9 @@ void turn_texel(const TurnedGalaxy& turned, const Surroundings& around, const Im
 
 Image continued(const Texture& texture, std::int64_t margin_px, const StructureParams& structure) {
     const Image& image = texture.image;
-    const Surroundings around = surroundings_of(image, margin_px);
     const bool disk = structure.kind == StructureKind::disk;
+    const float detail = std::min(1.0f, float(structure.clumps));
+    const Surroundings around = surroundings_of(image, margin_px, !disk && detail == 0.0f);
     const TurnedGalaxy galaxy = disk ? turned_galaxy(image, structure) : TurnedGalaxy();
     Image out = unfilled_image(image.width + 2 * margin_px, image.height + 2 * margin_px, image.channels);
     for_each_pixel(out, [&](std::int64_t column, std::int64_t row) {
@@ -216,7 +221,7 @@ Image continued(const Texture& texture, std::int64_t margin_px, const StructureP
         if (disk)
             turn_texel(galaxy, around, image, x, y, to);
         else
-            continue_texel(around, image, x, y, to);
+            continue_texel(around, image, x, y, detail, to);
     });
     return out;
 }
