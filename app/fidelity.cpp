@@ -49,7 +49,7 @@ struct FrontTargets {
     double psnr_db, ssim;
 };
 constexpr FrontTargets small_targets{39.0, 0.98}, full_targets{36.0, 0.96};
-constexpr double frame_off = 0.005, cells_off = 0.02, most_needles = 0.05;
+constexpr double frame_off = 0.005, cells_off = 0.02, most_needles = 0.05, most_mottle = 1.15;
 
 Judgement verdict(bool met) { return met ? Judgement::met : Judgement::missed; }
 
@@ -88,6 +88,14 @@ void add_front(std::vector<FidelityRow>& rows, const FrontFidelity& front, const
     add("CIEDE2000, median, 95 %",
         fmt::format("{:.2f}, {:.2f}", front.ciede2000.median, front.ciede2000.percentile_95), "", true);
     add("power, fine to coarse", power_text(front.power), "", true);
+}
+
+void add_above(std::vector<FidelityRow>& rows, const DiskFromAbove& above) {
+    constexpr double least_round = 0.85, least_grain = 0.75, most_grain = 1.35;
+    rows.push_back({"from above", "roundness", fmt::format("{:.2f}", above.roundness), "at least 0.85",
+                    verdict(above.roundness >= least_round)});
+    rows.push_back({"from above", "grain", fmt::format("{:.2f}", above.grain), "0.75 to 1.35",
+                    verdict(within(above.grain, least_grain, most_grain))});
 }
 
 // Targets of a disk say nothing of sheets and walls.
@@ -135,6 +143,9 @@ std::vector<FidelityRow> fidelity_rows(const FidelityReport& report) {
     std::vector<FidelityRow> rows;
     add_front(rows, report.front, small_targets);
     if (report.full.width_px != report.front.width_px) add_front(rows, report.full, full_targets);
+    rows.push_back({"from 45 degrees", "mottle", fmt::format("{:.2f}", report.mottle), "at most 1.15",
+                    verdict(report.mottle <= most_mottle)});
+    if (report.disk) add_above(rows, report.above);
     const double needles = report.needles.share;
     rows.push_back({"from 60 degrees", "needles",
                     fmt::format("{:.3f} of {} points", needles, report.needles.points), "at most 0.05",
@@ -155,6 +166,10 @@ Report fidelity_json(const FidelityReport& report, const std::string& scene) {
         report.reference.empty() ? "the layer's picture" : report.reference.filename().string();
     json["front"] = front_json(report.front);
     json["full_size"] = front_json(report.full);
+    json["tilted"] = {{"mottle", number(report.mottle)}};
+    if (report.disk)
+        json["above"] = {{"roundness", number(report.above.roundness)},
+                         {"grain", number(report.above.grain)}};
     json["side"] = {{"needles_share", number(report.needles.share)},
                     {"points", report.needles.points},
                     {"flat_picture_needles_share", number(report.flat_needles.share)}};

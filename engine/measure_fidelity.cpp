@@ -165,6 +165,14 @@ FidelityReport measure_fidelity(const Scene& now, const FidelityReference& refer
         return views.render(along_galaxy(reference.frame, reference.galaxy), view, settings.width_px,
                             settings.width_px * aspect[1] / aspect[0], step(name));
     };
+    const auto aside = [&](const FrontFrame& frame, JudgingView view, const char* name) {
+        return views.render(frame, view, aside_width_px, reference.height_px(aside_width_px), step(name));
+    };
+    report.mottle = mottle(aside(reference.frame, JudgingView::above, "front"),
+                           aside(reference.frame, JudgingView::tilted, "from 45 degrees"));
+    if (report.disk)
+        report.above = disk_from_above(
+            aside(along_galaxy(reference.frame, reference.galaxy), JudgingView::above, "from above"));
     report.side_view = render(JudgingView::side, side_aspect, "from 60 degrees");
     report.needles = needles(report.side_view);
     report.flat_needles = flat_needles(report.front_reference);

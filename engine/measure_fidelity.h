@@ -37,12 +37,17 @@ struct FidelityReference {
 FidelityReference fidelity_reference(const Scene& now, const std::optional<fs::path>& file,
                                      const Progress& progress = {}, const SetCache& cache = {});
 
+/// Width of the views that mottle and what is seen from above are measured in, px.
+inline constexpr std::int64_t aside_width_px = 800;
+
 struct FidelityReport {
     std::string layer;
     fs::path reference;
     FrontFidelity front, full;  // at FidelitySettings::width_px and at the picture's own width
     Needles needles;            // from 60 degrees
     Needles flat_needles;       // of the picture, without any depth
+    double mottle = 0.0;        // from 45 degrees
+    DiskFromAbove above;        // of a disk
     EdgeOnProfile edge;
     bool disk = true;                   // FidelityReference::disk
     Image front_view, front_reference;  // of `front`: linear light on black

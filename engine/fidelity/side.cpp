@@ -214,4 +214,106 @@ Needles flat_needles(const Image& picture) {
     return needles(resampled(picture, half_as_high, picture.width, picture.height / 2, 0.5));
 }
 
+namespace {
+
+Image mean_of_channels(const Image& light, bool displayed) {
+    return made_by_pixel(light, 1, [&](const float* from, float* to) {
+        float sum = 0.0f;
+        for (int c = 0; c < 3; ++c) sum += displayed ? display_srgb(from[c]) : from[c];
+        *to = sum / 3.0f;
+    });
+}
+
+Image blurred_along_x(const Image& light, double sigma_px) {
+    Image out = unfilled_image(light.width, light.height, 1);
+    Image row = unfilled_image(light.width, 1, 1);
+    for (std::int64_t y = 0; y < light.height; ++y) {
+        std::copy_n(light.at(0, y), light.width, row.pixels.data());
+        std::ranges::copy(convolved_with_gaussian(row, sigma_px).pixels, out.at(0, y));
+    }
+    return out;
+}
+
+// Of an octave: the median of what the band is of the local mean, where that is not dark.
+double local_contrast(const Image& light, double octave_px) {
+    constexpr double half_octave = 1.4, lit_share = 0.15, lit_percentile = 0.99;
+    constexpr float least_mean = 1e-4f;
+    const Image fine = blurred_along_x(light, octave_px / half_octave),
+                coarse = blurred_along_x(light, octave_px * half_octave),
+                mean = gaussian_blur(light, 2.0 * octave_px);
+    const auto lit = float(lit_share * percentile({mean.pixels.begin(), mean.pixels.end()}, lit_percentile));
+    std::vector<float> contrast;
+    for (std::size_t i = 0; i < light.pixels.size(); ++i)
+        if (mean.pixels[i] > lit)
+            contrast.push_back(std::fabs(fine.pixels[i] - coarse.pixels[i]) / (mean.pixels[i] + least_mean));
+    return contrast.empty() ? 0.0 : double(median(contrast));
+}
+
+// Minor over major axis of the part above a level that holds the brightest place.
+std::optional<double> isophote_roundness(const Image& light, std::size_t brightest, float level) {
+    constexpr std::size_t fewest = 50;  // pixels
+    PixelMask mask = make_mask(light.width, light.height);
+    for (std::size_t i = 0; i < light.pixels.size(); ++i) mask.pixels[i] = light.pixels[i] > level;
+    const PixelPart part = take_part(mask, std::int64_t(brightest), Touching::sides);
+    if (part.pixels.size() < fewest) return {};
+    double x1 = 0.0, y1 = 0.0, xx = 0.0, yy = 0.0, xy = 0.0;
+    for (const auto pixel : part.pixels) {
+        const auto x = double(std::int64_t(pixel) % light.width),
+                   y = double(std::int64_t(pixel) / light.width);
+        x1 += x, y1 += y, xx += x * x, yy += y * y, xy += x * y;
+    }
+    const auto n = double(part.pixels.size());
+    xx = xx / n - x1 * x1 / (n * n), yy = yy / n - y1 * y1 / (n * n), xy = xy / n - x1 * y1 / (n * n);
+    const double half = std::sqrt(0.25 * (xx - yy) * (xx - yy) + xy * xy), mean = 0.5 * (xx + yy);
+    return std::sqrt(std::max(0.0, mean - half) / (mean + half));
+}
+
+double roundness_of(const Image& above) {
+    constexpr double blur_px = 8.0, dark_percentile = 0.05;
+    Image light = gaussian_blur(brightest_channel(above), blur_px);
+    const auto dark = float(percentile({light.pixels.begin(), light.pixels.end()}, dark_percentile));
+    for (float& value : light.pixels) value -= dark;
+    const auto brightest = std::size_t(std::ranges::max_element(light.pixels) - light.pixels.begin());
+    double sum = 0.0, count = 0.0;
+    for (const float share : {0.35f, 0.5f, 0.7f}) {
+        const std::optional<double> found =
+            isophote_roundness(light, brightest, share * light.pixels[brightest]);
+        if (found) sum += *found, count += 1.0;
+    }
+    return count > 0.0 ? sum / count : 0.0;
+}
+
+double grain_of(const Image& above) {
+    constexpr double least_blur_px = 0.8, around_px = 8.0, detail_px = 4.0;
+    constexpr float lit = 0.06f;  // of white, as displayed
+    const Image light = convolved_with_gaussian(mean_of_channels(above, true), least_blur_px),
+                around = gaussian_blur(light, around_px), detail = gaussian_blur(light, detail_px);
+    double along_x = 0.0, along_y = 0.0;
+    for (std::int64_t y = 1; y + 1 < light.height; ++y)
+        for (std::int64_t x = 1; x + 1 < light.width; ++x) {
+            if (!(*around.at(x, y) > lit)) continue;
+            const auto dx = double(*detail.at(x + 1, y) - *detail.at(x - 1, y)),
+                       dy = double(*detail.at(x, y + 1) - *detail.at(x, y - 1));
+            along_x += dx * dx, along_y += dy * dy;
+        }
+    return along_y > 0.0 ? along_x / along_y : 0.0;
+}
+
+}  // namespace
+
+double mottle(const Image& front, const Image& tilted) {
+    const Image flat = mean_of_channels(front, false), aside = mean_of_channels(tilted, false);
+    double most = 0.0;
+    for (const double octave_px : {2.0, 4.0, 8.0, 16.0, 32.0}) {
+        const double before = local_contrast(flat, octave_px);
+        if (before > 0.0) most = std::max(most, local_contrast(aside, octave_px) / before);
+    }
+    return most;
+}
+
+DiskFromAbove disk_from_above(const Image& above) {
+    if (above.pixels.empty() || !(std::ranges::max(above.pixels) > 0.0f)) return {};
+    return {roundness_of(above), grain_of(above)};
+}
+
 }  // namespace astrosplat

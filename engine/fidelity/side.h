@@ -29,6 +29,21 @@ struct Needles {
 /// px.
 Needles needles(const Image& side_view);
 
+/// Structure that a view 45 degrees off has and the front has not: the largest ratio, over octaves of 2 to 32
+/// px, of local contrast along x, the axis that the tilt does not shorten, where it is lit. Both about 800 px
+/// wide. 1: none, above 1.15 smooth light has become spots. 0 where there is no light.
+double mottle(const Image& front, const Image& tilted);
+
+/// A galaxy seen along its normal.
+struct DiskFromAbove {
+    double roundness = 0.0;  // minor over major axis of its isophotes, mean of three: 1 is round
+    double grain = 0.0;  // detail of 4 px long along y over that along x, where y is the picture's line of
+                         // sight: 1 is neither
+};
+
+/// About 800 px wide. All 0 where it is black.
+DiskFromAbove disk_from_above(const Image& above);
+
 /// Needles that a flat picture has from 60 degrees: the upright rims in it, that no depth can make round.
 Needles flat_needles(const Image& picture);
 

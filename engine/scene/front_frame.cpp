@@ -138,15 +138,17 @@ FrontFrame along_galaxy(FrontFrame frame, const GalaxyParams& galaxy) {
 CameraParams judging_camera(const FrontFrame& frame, JudgingView view, double aspect) {
     if (view == JudgingView::front && frame.camera) return params_of(*frame.camera);
     constexpr double distance = 2.0;  // widths
-    const double half_root_3 = std::sqrt(0.75);
-    const glm::dvec3 from = view == JudgingView::front  ? frame.toward
-                            : view == JudgingView::side ? 0.5 * frame.toward - half_root_3 * frame.up
-                                                        : -frame.up;
+    const double half_root_2 = std::sqrt(0.5), half_root_3 = std::sqrt(0.75);
+    const bool upright = view == JudgingView::front || view == JudgingView::above;
+    const glm::dvec3 from = upright                       ? frame.toward
+                            : view == JudgingView::tilted ? half_root_2 * (frame.toward - frame.up)
+                            : view == JudgingView::side   ? 0.5 * frame.toward - half_root_3 * frame.up
+                                                          : -frame.up;
     CameraParams camera;
     camera.projection = Projection::orthographic;
     camera.target = frame.center;
     camera.position = frame.center + distance * frame.width * from;
-    camera.up = view == JudgingView::front ? frame.up : frame.toward;
+    camera.up = upright ? frame.up : frame.toward;
     camera.height = frame.width / aspect;
     return camera;
 }

@@ -29,15 +29,16 @@ FrontFrame front_frame(std::span<const TexturedMesh> meshes);
 /// The same in the world, as the layer's transform has it.
 FrontFrame in_world(const FrontFrame& frame, const RenderLayer& layer);
 
-enum class JudgingView { front, side, edge };
+enum class JudgingView { front, above, tilted, side, edge };
 
 /// The frame turned so that a galaxy's normal points to the viewer, about its middle: what its side and edge
 /// views are seen from. As it is where the scene does not say how the galaxy lies.
 FrontFrame along_galaxy(FrontFrame frame, const GalaxyParams& galaxy);
 
 /// Orthographic cameras, but for the front of a frame that has its own: `front` shows the frame's width
-/// exactly, and as much of its height as a picture of this aspect (width / height) shows; `side` stands 60
-/// degrees away from the frame's normal, which is up, `edge` in its plane, and both show its width.
+/// exactly, and as much of its height as a picture of this aspect (width / height) shows; `above` sees the
+/// same with parallel rays, `tilted` from 45 degrees below; `side` stands 60 degrees away from the frame's
+/// normal, which is up, `edge` in its plane, and all show its width.
 CameraParams judging_camera(const FrontFrame& frame, JudgingView view, double aspect);
 
 /// Red, green and blue of linear light on black, as many pixels per scene unit as the pictures have on

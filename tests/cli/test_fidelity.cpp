@@ -49,6 +49,8 @@ TEST_F(FidelityCommand, WritesNumbersThatReadBack) {
     EXPECT_TRUE(report.at("side").contains("needles_share"));
     EXPECT_TRUE(report.at("side").contains("flat_picture_needles_share"));
     EXPECT_TRUE(report.at("edge").contains("fwhm_over_length"));
+    EXPECT_TRUE(report.at("tilted").contains("mottle"));
+    EXPECT_TRUE(report.at("above").contains("roundness"));
     // The terminal shows the same numbers, a line each.
     EXPECT_HAS(result.out, fmt::format("{:.4f}", report.at("front").at("ssim").get<double>()));
     EXPECT_HAS(result.out, "from 60 degrees\n  needles");

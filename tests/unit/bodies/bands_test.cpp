@@ -1,6 +1,7 @@
 // Bands of a picture, and the dust that takes their light away.
 #include "bodies/dust.h"
 #include "bodies/picture_light.h"
+#include "bodies/picture_splats.h"
 #include "image/channels.h"
 #include "support/painted_picture.h"
 #include "support/test.h"
@@ -236,6 +237,26 @@ TEST(Dust, IsThinAtEveryPlace) {
     for (const auto& [count, z, square] : sums)
         if (count > 0.0) within += square - z * z / count;
     EXPECT_LT(std::sqrt(within / double(set.splats.size())), 0.8);  // .08 H
+}
+
+// As far as 24 bits tell them apart.
+TEST(EvenNumber, EveryBlockOfCellsHasOneInEachShare) {
+    for (const std::uint32_t key : {1u, 77u})
+        for (int p = 0; p <= 6; ++p)
+            for (int q = 0; q <= 6; ++q) {
+                const std::int64_t wide = std::int64_t{1} << p, high = std::int64_t{1} << q;
+                std::vector<int> found(std::size_t(wide * high));
+                for (std::int64_t y = 5 * high; y < 6 * high; ++y)
+                    for (std::int64_t x = 11 * wide; x < 12 * wide; ++x)
+                        ++found[std::size_t(even_number({x, y}, key) * float(wide * high))];
+                EXPECT_EQ(std::ranges::count(found, 1), wide * high) << wide << " x " << high;
+            }
+}
+
+TEST(EvenNumber, IsAnotherWithEveryKey) {
+    int equal = 0;
+    for (std::int64_t x = 0; x < 100; ++x) equal += even_number({x, 3}, 1u) == even_number({x, 3}, 2u);
+    EXPECT_LT(equal, 3);
 }
 
 }  // namespace

@@ -76,8 +76,7 @@ TEST(Depths, GatherWhereTheNoiseIsHigh) {
 // The first of the two draws, candidate by candidate.
 float drawn_plainly(const NoiseStack& noise, const DepthBlock& block, int i) {
     constexpr int candidates = 24;
-    const double even = double(block.even[i]),
-                 within = even * candidates - std::floor(even * candidates);
+    const double even = double(block.even[i]), within = even * candidates - std::floor(even * candidates);
     double place[candidates], weight[candidates], sum = 0.0;
     for (int c = 0; c < candidates; ++c) {
         const double u = 0.015 + 0.97 * (c + within) / candidates;

@@ -413,6 +413,25 @@ TEST(Margin, AStarByTheEdgeIsNotSeenTwice) {
     EXPECT_LT(there, 4.0f * beside) << "250 times as bright in the picture";
 }
 
+TEST(Margin, ASmoothHeadByTheEdgeIsNotSeenTwice) {
+    Image light = make_image(picture_width, picture_height, 3);
+    for_each_pixel(light, [&](std::int64_t x, std::int64_t y) {
+        const auto dx = double(x - 100), dy = double(y - 8);
+        for (int c = 0; c < 3; ++c)
+            light.at(x, y)[c] = float(0.02 + 0.5 * std::exp(-0.02 * (dx * dx + dy * dy)));
+    });
+    for (const bool smooth : {true, false}) {
+        std::vector<TexturedMesh> meshes{lit_plane(light)};
+        StructureParams params = with_margin(0.1);
+        params.clumps = smooth ? 0.0 : 1.0;
+        add_margins(meshes, params, "a");
+        const Image& image = meshes[0].textures[0].image;
+        const float rim = image.at(100 + margin_px, margin_px - 1)[1],
+                    mirrored = image.at(100 + margin_px, margin_px - 9)[1];
+        EXPECT_EQ(mirrored < 0.95f * rim, smooth) << mirrored << " beyond " << rim;
+    }
+}
+
 TEST(Margin, ACameraSeesThePictureWhereItWas) {
     std::vector<TexturedMesh> meshes{lit_plane(even_light())};
     UvCamera params;

@@ -249,6 +249,41 @@ TEST(Needles, AreTheNumberOfTheMeasuresThatTargetsWereSetWith) {
     EXPECT_NEAR(found.share, 34.0 / 60.0, 1e-9);
 }
 
+// Waves of all sizes, `more` of one of them, across a band `wide` px wide.
+Image waves_in_a_band(double wide, double more) {
+    return drawn(400, 300, [&](std::int64_t column, std::int64_t row, int c) {
+        const auto x = double(column), y = double(row);
+        double value = 0.3 + more * std::sin(x / 6.0 + y / 7.0);
+        for (const double length : {1.5, 3.0, 6.0, 12.0, 24.0}) value += 0.02 * std::sin(x / length);
+        const double across = (y - 149.5) / wide;
+        return value * std::exp(-0.5 * across * across) * (c == 0 ? 1.0 : c == 1 ? 0.8 : 0.6);
+    });
+}
+
+// The numbers are those of the measures that targets were set with; wide blurs are made at half the size.
+TEST(Mottle, IsWhatAViewFromAsideHasAndTheFrontHasNot) {
+    const Image front = waves_in_a_band(60.0, 0.0);
+    EXPECT_NEAR(mottle(front, waves_in_a_band(42.0, 0.03)), 1.448, 0.02);
+    EXPECT_NEAR(mottle(front, front), 1.0, 1e-12);
+    EXPECT_EQ(mottle(make_image(64, 64, 3), make_image(64, 64, 3)), 0.0);
+}
+
+TEST(DiskFromAbove, IsAsRoundAndAsGrainyAsDrawn) {
+    const Image image = drawn(640, 400, [](std::int64_t column, std::int64_t row, int c) {
+        const double x = double(column), y = double(row);
+        const double u = (x - 319.5) / 120.0, v = (y - 199.5) / 90.0;
+        return 0.6 * std::exp(-0.5 * (u * u + v * v)) *
+               (1.0 + 0.2 * std::sin(x / 4.0) + 0.1 * std::sin(y / 5.0)) *
+               (c == 0   ? 1.0
+                : c == 1 ? 0.8
+                         : 0.6);
+    });
+    const DiskFromAbove found = disk_from_above(image);
+    EXPECT_NEAR(found.roundness, 0.7528, 0.005);
+    EXPECT_NEAR(found.grain, 2.406, 0.06);
+    EXPECT_EQ(disk_from_above(make_image(64, 64, 3)).roundness, 0.0);
+}
+
 // A disk of 400 px, sech^2 of `height` px from top to bottom, fading outward, with a lane of a depth.
 Image disk(double height, double fall_px, double lane) {
     return drawn(640, 200, [&](std::int64_t x, std::int64_t y, int) {
