@@ -98,23 +98,33 @@ glm::dvec2 middle_of_light(const Image& root) {
     return glm::dvec2(sum) / sum.z;
 }
 
-// The line about which the picture is most symmetric and the one at right angles to it, for what is symmetric
-// about one is often so about the other; or that of a given angle. Each through where the halves are most
-// alike.
+// The two lines about which a picture is most symmetric among their neighbours, and the one at right angles
+// to the best, for what is symmetric about one is often so about the other; or that of a given angle. Looked
+// for without details, which are never quite alike; each through where the halves are most alike.
 std::vector<Line> likely_axes(const Image& light, std::optional<double> angle) {
     constexpr int angles = 60;
+    constexpr std::int64_t coarser = 2;
     Image root = copied(light);  // of amplitudes: what is bright alone does not decide
     for (float& value : root.pixels) value = std::sqrt(value);
-    const glm::dvec2 middle = middle_of_light(root);
+    const Image coarse = reduced_by_area(root, (root.width + 1) / coarser, (root.height + 1) / coarser);
+    const glm::dvec2 middle = middle_of_light(coarse), finer(double(root.width) / double(coarse.width),
+                                                             double(root.height) / double(coarse.height));
     std::vector<Symmetric> found;
     for (int k = 0; k < (angle ? 1 : angles); ++k)
-        found.push_back(best_about(root, {middle, angle.value_or(real::pi * k / angles)}, 16.0, 2.0));
-    const auto best = std::size_t(std::ranges::max_element(found, {}, &Symmetric::value) - found.begin());
-    std::vector<Line> axes{found[best].line};
-    if (!angle) axes.push_back(found[(best + angles / 2) % angles].line);
-    for (Line& axis : axes) {
-        axis = best_about(root, axis, 2.0, 0.5, angle ? 0.0 : real::radians(3.0)).line;
+        found.push_back(best_about(coarse, {middle, angle.value_or(real::pi * k / angles)}, 8.0, 1.0));
+    std::vector<std::size_t> peaks;
+    for (std::size_t k = 0, n = found.size(); k < n; ++k)
+        if (found[k].value >= found[(k + n - 1) % n].value && found[k].value >= found[(k + 1) % n].value)
+            peaks.push_back(k);
+    std::ranges::stable_sort(peaks, std::ranges::greater{}, [&](std::size_t k) { return found[k].value; });
+    if (peaks.size() > 2) peaks.resize(2);
+    if (!angle) peaks.push_back((peaks[0] + angles / 2) % angles);
+    std::vector<Line> axes;
+    for (const std::size_t k : peaks) {
+        const Line start{finer * found[k].line.place, found[k].line.angle};
+        Line axis = best_about(root, start, 2.0, 0.5, angle ? 0.0 : real::radians(3.0)).line;
         axis.place = best_about(root, {axis.place, axis.angle + 0.5 * real::pi}, 24.0, 1.0).line.place;
+        axes.push_back(axis);
     }
     return axes;
 }
