@@ -90,7 +90,7 @@ TEST(Shell, GlowFillsItEvenly) {
     const BandSplats splats = band_splats(bands.back(), true, remnant.placement)[0];
     ASSERT_TRUE(splats.glow);
     std::array<int, 8> eighths{};
-    for (std::uint32_t i = 0; i < 16; ++i) {
+    for (std::uint32_t i = 0; i < 128; ++i) {
         PlacedBlock block = splats_about({320.0f, 200.0f}, glm::vec2(4.0f), i);
         place(remnant.placement, splats, block);
         for (int k = 0; k < block.count; ++k) {
@@ -99,7 +99,7 @@ TEST(Shell, GlowFillsItEvenly) {
             ++eighths[std::size_t(4.0f * (out + 1.0f))];
         }
     }
-    for (const int count : eighths) EXPECT_NEAR(count, 512, 80);
+    for (const int count : eighths) EXPECT_NEAR(count, 4096, 640);
 }
 
 // A piece nearly as wide as long is a ball at one place of one wall; a piece of a filament lies along the
