@@ -2,13 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
-#include <functional>
 #include <numeric>
-#include <optional>
-#include <utility>
-#include <vector>
 
 #include "bodies/axis_depths.h"
 #include "bodies/axis_fit.h"

@@ -1,10 +1,5 @@
 // Bright stars are looked for in the picture and in its halves, quarters and so on, so that rings of a few
 // pixels measure any of them. Medians around each ring leave out spikes and neighbours.
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <optional>
-#include <utility>
 
 #include "bodies/stars.h"
 #include "core/parallel.h"

@@ -1,7 +1,5 @@
 // Depths are drawn for a block of splats at a time, by the kind of the structure: about a disk's plane, on or
 // between two walls, or about a sheet.
-#include <algorithm>
-#include <cmath>
 
 #include "bodies/placement.h"
 #include "core/real.h"

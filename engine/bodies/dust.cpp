@@ -2,13 +2,6 @@
 // than the picture shows: the share before it is measured, cell by cell, from the splats as they were placed.
 #include "bodies/dust.h"
 
-#include <algorithm>
-#include <cmath>
-#include <functional>
-#include <optional>
-#include <span>
-#include <vector>
-
 #include "bodies/picture_splats.h"
 #include "core/parallel.h"
 #include "core/real.h"

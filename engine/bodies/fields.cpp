@@ -1,10 +1,5 @@
 #include "bodies/fields.h"
 
-#include <algorithm>
-#include <cmath>
-#include <utility>
-#include <vector>
-
 #include "core/parallel.h"
 #include "core/real.h"
 #include "core/sorting.h"

@@ -6,10 +6,7 @@
 // are worth ten without.
 #include "bodies/front_fit.h"
 
-#include <algorithm>
-#include <cmath>
 #include <numeric>
-#include <vector>
 
 #include "camera/camera.h"
 #include "core/color.h"

@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
 #include <glm/vec2.hpp>
 
 #include "bodies/galaxy_fit.h"

@@ -1,8 +1,5 @@
 #include "bodies/galaxy_body.h"
 
-#include <algorithm>
-#include <cmath>
-
 #include "core/real.h"
 #include "core/shared_maths.h"
 #include "image/channels.h"

@@ -2,13 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <functional>
 #include <glm/common.hpp>
 #include <glm/vec2.hpp>
-#include <optional>
 
 #include "bodies/gaussian_sum.h"
 #include "core/parallel.h"

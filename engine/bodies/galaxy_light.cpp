@@ -1,12 +1,8 @@
 #include "bodies/galaxy_light.h"
 
-#include <algorithm>
-#include <array>
-#include <cmath>
 #include <glm/vec2.hpp>
 #include <queue>
 #include <tuple>
-#include <utility>
 
 #include "core/parallel.h"
 #include "core/real.h"

@@ -1,10 +1,6 @@
 #include "bodies/gaussian_sum.h"
 
-#include <algorithm>
-#include <cmath>
-#include <functional>
 #include <numeric>
-#include <optional>
 
 #include "core/parallel.h"
 #include "core/real.h"

@@ -1,10 +1,5 @@
 #include "bodies/picture_light.h"
 
-#include <algorithm>
-#include <cassert>
-#include <cmath>
-#include <utility>
-
 #include "core/parallel.h"
 #include "core/real.h"
 #include "image/blur.h"

@@ -1,10 +1,5 @@
 #include "bodies/picture_splats.h"
 
-#include <algorithm>
-#include <cmath>
-#include <optional>
-#include <span>
-
 #include "core/real.h"
 #include "core/shared_maths.h"
 #include "image/channels.h"

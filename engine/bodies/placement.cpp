@@ -1,9 +1,6 @@
 #include "bodies/placement.h"
 
-#include <algorithm>
-#include <cmath>
 #include <glm/vec2.hpp>
-#include <utility>
 
 #include "bodies/bodies.h"
 #include "bodies/galaxies.h"

@@ -2,11 +2,7 @@
 // stars that it may hide, on a grid of the picture.
 #include "bodies/star_places.h"
 
-#include <algorithm>
-#include <cassert>
-#include <cmath>
 #include <glm/geometric.hpp>
-#include <optional>
 
 #include "bodies/picture_light.h"
 #include "bodies/picture_splats.h"

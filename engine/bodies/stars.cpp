@@ -2,12 +2,6 @@
 // roundness is a star.
 #include "bodies/stars.h"
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <optional>
-#include <span>
-
 #include "core/parallel.h"
 #include "core/real.h"
 #include "core/sorting.h"

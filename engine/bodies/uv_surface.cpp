@@ -1,11 +1,7 @@
 #include "bodies/uv_surface.h"
 
-#include <algorithm>
-#include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
-#include <optional>
-#include <utility>
 
 namespace astrosplat {
 namespace {

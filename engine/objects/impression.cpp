@@ -2,15 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
-#include <functional>
 #include <glm/common.hpp>
 #include <glm/vec3.hpp>
 #include <numeric>
 #include <tuple>
-#include <utility>
-#include <vector>
 
 #include "bodies/stars.h"
 #include "core/real.h"
