@@ -169,15 +169,15 @@ SplatSet LiveSample::structure(const SourceParams& source) const {
     std::size_t pictures = 0;
     for (const TexturedMesh& m : meshes)
         first.push_back(std::exchange(pictures, pictures + m.textures.size()));
-    SplatSet set = *sample.set;
+    SplatSet rows = *sample.set;
     const auto power = static_cast<float>(source.structure.opacity);
-    parallel_each(set.id.size(), live_rows_at_once, [&](std::size_t i) {
-        const std::size_t picture = first[set.mesh[i]];
+    parallel_each(rows.id.size(), live_rows_at_once, [&](std::size_t i) {
+        const std::size_t picture = first[rows.mesh[i]];
         if (now[picture].width == 0) return;
-        follow(light_at(before[picture], set.uv[i]), light_at(now[picture], set.uv[i]), power, set.color[i],
-               set.alpha[i]);
+        follow(light_at(before[picture], rows.uv[i]), light_at(now[picture], rows.uv[i]), power,
+               rows.color[i], rows.alpha[i]);
     });
-    return set;
+    return rows;
 }
 
 LiveFound LiveSample::under(const LiveRequest& request, const Progress& progress) {

@@ -87,12 +87,12 @@ double DepthTable::alpha(double depth) const {
     return x * interpolated(alpha_, x * steps);
 }
 
-MergeSettings::MergeSettings(const LayerRender& r, bool lattice)
+MergeSettings::MergeSettings(const LayerRender& r, bool on_lattice)
     : render(r),
-      lattice(lattice),
+      lattice(on_lattice),
       depths(r.falloff),
       variance(falloff_variance(r.falloff)),
-      overlap(lattice ? 1.5 : least_overlap) {}
+      overlap(on_lattice ? 1.5 : least_overlap) {}
 
 NodeSplat splat_of(const MergeSettings& settings, const NodeSums& sums, const Across& across, float hybrid) {
     const LayerRender& render = settings.render;

@@ -325,11 +325,11 @@ TEST(OrientationOfFiles, PngTiffAndExrReadRight) {
         SCOPED_TRACE(name);
         const bool encoded = std::string(name) != "out.exr";
         const std::string output = fmt::format("frames = \"1\"\npath = \"{}\"", name);
-        const StoredFile stored = read_stored_file(write_text(folder, view_scene(plane, true, output)));
+        const StoredFile frame = read_stored_file(write_text(folder, view_scene(plane, true, output)));
         Image rgb = make_image(view_px, view_px, 3);
         for (std::int64_t y = 0; y < view_px; ++y)
             for (std::int64_t x = 0; x < view_px; ++x)
-                for (int k = 0; k < 3; ++k) rgb.at(x, y)[k] = stored.at(std::string(1, "RGB"[k]), x, y);
+                for (int k = 0; k < 3; ++k) rgb.at(x, y)[k] = frame.at(std::string(1, "RGB"[k]), x, y);
         expect_reads_right(rgb, whole, encoded);
     }
 }

@@ -258,8 +258,8 @@ struct Shown {
     Memory memory;
     std::vector<DrawnItem> drawn;
 
-    explicit Shown(const std::string& look, const LayerStatus& layer = {})
-        : document(Document::untitled(dust_scene(look), "/nowhere/scene.toml")) {
+    explicit Shown(const std::string& of_dust, const LayerStatus& layer = {})
+        : document(Document::untitled(dust_scene(of_dust), "/nowhere/scene.toml")) {
         status.layers = {layer};
         describe_current(memory, document, 1.0);
     }
@@ -267,8 +267,8 @@ struct Shown {
 };
 
 /// Of the section of that title.
-std::string state_of(const std::string& title, const std::string& look) {
-    return std::ranges::find(tab_sections(), title, &TabSection::title)->state(Shown(look).context());
+std::string state_of(const std::string& title, const std::string& of_dust) {
+    return std::ranges::find(tab_sections(), title, &TabSection::title)->state(Shown(of_dust).context());
 }
 
 TEST(PanelStates, SayWhatALookDoes) {

@@ -3,9 +3,7 @@
 
 #include <imgui.h>
 
-#include <cstdint>
-#include <filesystem>
-#include <vector>
+#include "core/standard.h"
 
 namespace astrosplat {
 

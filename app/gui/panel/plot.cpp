@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "edit/edits.h"
 #include "look/shared_uniforms.h"
 #include "scene/describer.h"
 

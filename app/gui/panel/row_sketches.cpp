@@ -9,6 +9,7 @@
 
 #include "core/color.h"
 #include "core/real.h"
+#include "edit/edits.h"
 #include "generate/lattice.h"
 #include "look/prepare.h"
 #include "look/shared_look.h"
@@ -243,12 +244,12 @@ void draw_distances(const Context& context, const Rect& area, double reach) {
 
 /// The profile whose shape `spec` chooses, and its points to be dragged where it is a curve.
 void draw_profile(Context& context, const Rect& area, const ParameterSpec& spec,
-                  const std::vector<float>& samples, double reach) {
+                  const std::vector<float>& curve, double reach) {
     const ImVec2 below = ImGui::GetCursorScreenPos();
     if (find(context, spec.key)->get() == Value("curve"))
-        edit_curve(context, spec.key.parent() / "points", area, samples);
+        edit_curve(context, spec.key.parent() / "points", area, curve);
     else
-        draw_curve(area, samples, 1.05f, color::accent);
+        draw_curve(area, curve, 1.05f, color::accent);
     ImGui::SetCursorScreenPos(below);
     captions("surface", reach_caption(reach));
 }

@@ -100,7 +100,7 @@ TEST_F(AtomicFileTest, KeptFilesLeaveNoTemporary) {
 }
 
 TEST_F(AtomicFileTest, WhatKilledProgramsLeftIsRemovedAndNothingElse) {
-    const TempFolder folder, other;
+    const TempFolder other;
     const std::vector<fs::path> gone = {folder.file(".shot.0001.1a2b-3c4d5e-0.part.exr", "half"),
                                         folder.file(".scene.1-2-3.part", "")};
     // Another AtomicFile's, made before its folder is looked at for the first time.

@@ -156,11 +156,11 @@ void killed_process(const Work& work) {
 
 TEST_F(AutosaveTest, AKilledProcessIsRecovered) {
     killed_process([&](const auto& ready) {
-        Document document = Document::open(f.file);
-        document.set(opacity, 0.25, 1.0);
-        document.set("output.path", "neue bilder/a.####.exr", 1.0);
+        Document edited = Document::open(f.file);
+        edited.set(opacity, 0.25, 1.0);
+        edited.set("output.path", "neue bilder/a.####.exr", 1.0);
         Autosave autosave(folder);
-        ready(autosave.write(document) && recoveries(folder).empty());
+        ready(autosave.write(edited) && recoveries(folder).empty());
     });
     const std::vector<Recovery> found = recoveries(folder);
     ASSERT_EQ(found.size(), 1u);
@@ -169,15 +169,15 @@ TEST_F(AutosaveTest, AKilledProcessIsRecovered) {
     EXPECT_EQ(found[0].name(), "szene ä.toml");
     EXPECT_EQ(found[0].time.size(), 19u);
 
-    Document document = recover(found[0].autosave);
-    EXPECT_EQ(document.file(), f.file);
-    EXPECT_TRUE(document.edited());
-    EXPECT_FALSE(document.can_undo());
+    Document recovered = recover(found[0].autosave);
+    EXPECT_EQ(recovered.file(), f.file);
+    EXPECT_TRUE(recovered.edited());
+    EXPECT_FALSE(recovered.can_undo());
     Document wanted = Document::open(f.file);
     wanted.set(opacity, 0.25, 1.0);
     wanted.set("output.path", "neue bilder/a.####.exr", 1.0);
-    EXPECT_EQ(document.scene(), wanted.scene());
-    document.save();
+    EXPECT_EQ(recovered.scene(), wanted.scene());
+    recovered.save();
     const std::string text = f.text();
     EXPECT_EQ(text.rfind("# by hand, keep this\n", 0), 0u);  // saved into the original, as if edited there
     EXPECT_NE(text.find("Bilder/m 51 ä.png"), std::string::npos);
@@ -191,23 +191,23 @@ TEST_F(AutosaveTest, AKilledProcessIsRecovered) {
 TEST_F(AutosaveTest, AnUntitledSceneIsRecoveredUntitled) {
     const fs::path place = f.folder / "m 51 ä.toml";
     killed_process([&](const auto& ready) {
-        Document document = Document::untitled(test::edit_scene, place);
-        document.set(opacity, 0.25, 1.0);
+        Document edited = Document::untitled(test::edit_scene, place);
+        edited.set(opacity, 0.25, 1.0);
         Autosave autosave(folder);
-        ready(autosave.write(document));
+        ready(autosave.write(edited));
     });
     const std::vector<Recovery> found = recoveries(folder);
     ASSERT_EQ(found.size(), 1u);
     EXPECT_FALSE(found[0].titled);
     EXPECT_EQ(found[0].name(), "m 51 ä (never saved)");
-    Document document = recover(found[0].autosave);
-    EXPECT_EQ(document.name(), "Untitled");
-    EXPECT_EQ(document.scene().file, place);
-    EXPECT_TRUE(document.edited());
-    document.save_as(f.folder / "gerettet.toml");
-    EXPECT_EQ(load_scene(f.folder / "gerettet.toml"), document.scene());
-    EXPECT_EQ(document.scene().layers[1].render.opacity, 0.25f);
-    EXPECT_EQ(document.scene().layers[0].source.meshes[0].texture[0], f.folder / "Bilder/m 51 ä.png");
+    Document recovered = recover(found[0].autosave);
+    EXPECT_EQ(recovered.name(), "Untitled");
+    EXPECT_EQ(recovered.scene().file, place);
+    EXPECT_TRUE(recovered.edited());
+    recovered.save_as(f.folder / "gerettet.toml");
+    EXPECT_EQ(load_scene(f.folder / "gerettet.toml"), recovered.scene());
+    EXPECT_EQ(recovered.scene().layers[1].render.opacity, 0.25f);
+    EXPECT_EQ(recovered.scene().layers[0].source.meshes[0].texture[0], f.folder / "Bilder/m 51 ä.png");
 }
 
 TEST_F(AutosaveTest, TheOriginalMayBeGone) {

@@ -514,9 +514,9 @@ TEST_F(KeyframeHandles, StayOnTheirSideOfTheKeyframe) {
 
 TEST_F(KeyframeHandles, OfPositionsAreVectors) {
     set_handle(scene, position, 0.0, HandleSide::out, 4.0, {0.0, 3.0, 0.0});
-    const glm::dvec3 middle = *scene_at(scene, 6.0).camera.position;
-    EXPECT_NEAR(middle.y, 3.0 * 3.0 / 8.0, 1e-9);  // 3 u (1-u)^2 at the middle
-    EXPECT_NEAR(middle.x, 3.0, 1e-9);
+    const glm::dvec3 half_way = *scene_at(scene, 6.0).camera.position;
+    EXPECT_NEAR(half_way.y, 3.0 * 3.0 / 8.0, 1e-9);  // 3 u (1-u)^2 at the middle
+    EXPECT_NEAR(half_way.x, 3.0, 1e-9);
 }
 
 TEST_F(KeyframeHandles, StayWhereAValueIsChanged) {

@@ -175,8 +175,8 @@ constexpr double slab_half = 1.6, slab_spacing = 0.08, slab_distance = 0.4;
 constexpr float slab_alpha = 0.7f;
 const glm::vec3 slab_color{0.9f, 0.4f, 0.1f};
 
-SplatSet colored_slab(double spacing = slab_spacing) {
-    SplatSet set = test::slab(spacing, slab_half, slab_distance, slab_alpha);
+SplatSet colored_slab(double step = slab_spacing) {
+    SplatSet set = test::slab(step, slab_half, slab_distance, slab_alpha);
     for (glm::vec3& c : set.color) c = slab_color;
     for (const glm::vec3& p : set.position)
         set.uv.emplace_back(0.5 + double(p.x) / (2.0 * slab_half), 0.5 + double(p.z) / (2.0 * slab_half));
@@ -213,12 +213,12 @@ double screened_at(const ShadedSplats& shaded, double px, double pz, int channel
 }
 
 // Its mean over the slab but for its margins.
-double screened_front(const ShadedSplats& shaded, int channel, int places = 800) {
+double screened_front(const ShadedSplats& shaded, int channel, int tried = 800) {
     double sum = 0.0;
-    for (int place = 0; place < places; ++place)
+    for (int place = 0; place < tried; ++place)
         sum += screened_at(shaded, (slab_half - 0.5) * (2.0 * double(test::uniform(place, 50)) - 1.0),
                            (slab_half - 0.5) * (2.0 * double(test::uniform(place, 51)) - 1.0), channel);
-    return sum / places;
+    return sum / tried;
 }
 
 TEST(PictureMatch, ScreenShowsThePicturesLight) {

@@ -324,18 +324,18 @@ INSTANTIATE_TEST_SUITE_P(All, SphereEllipseLight, ::testing::ValuesIn(sphere_cas
 
 // Anywhere, of any size and direction, also around poles and rims.
 TEST(SphereEllipseNightly, LightIsRightOfManyAtRandom) {
-    const auto drawn = [](std::uint32_t n, std::uint32_t purpose) { return double(Random{29}(n, purpose)); };
+    const auto share = [](std::uint32_t n, std::uint32_t purpose) { return double(Random{29}(n, purpose)); };
     for (const Projection projection : projections) {
         const Camera camera = camera_of(projection);
         const std::vector<double> angles = solid_angles(camera);
         RenderCache tables;
         double worst = 0.0;
         for (std::uint32_t n = 0; n < 1500; ++n) {
-            const double larger = 40.0 * std::exp(-5.0 * drawn(n, 1));
-            SphereEllipse e{larger, larger * std::exp(-5.0 * drawn(n, 2)), 180.0 * drawn(n, 3),
-                            360.0 * drawn(n, 4) - 180.0, real::degrees(real::asin(2.0 * drawn(n, 5) - 1.0))};
-            if (n % 3 == 0) e.latitude = 90.0 - 8.0 * drawn(n, 5) * drawn(n, 5);
-            if (n % 3 == 1) e.degrees = 90.0 * std::floor(4.0 * drawn(n, 3));
+            const double larger = 40.0 * std::exp(-5.0 * share(n, 1));
+            SphereEllipse e{larger, larger * std::exp(-5.0 * share(n, 2)), 180.0 * share(n, 3),
+                            360.0 * share(n, 4) - 180.0, real::degrees(real::asin(2.0 * share(n, 5) - 1.0))};
+            if (n % 3 == 0) e.latitude = 90.0 - 8.0 * share(n, 5) * share(n, 5);
+            if (n % 3 == 1) e.degrees = 90.0 * std::floor(4.0 * share(n, 3));
             if (larger > 0.7 * camera.focal_px || !fits(camera, e)) continue;
             const Falloff falloff{all_shapes[n % 5], 0.5f, 4.5f};
             const double wanted = 0.5 * falloff_integral(falloff) * e.larger_px * e.smaller_px;

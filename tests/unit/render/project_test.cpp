@@ -257,12 +257,12 @@ ShadedSplats some_splats(int step) {
     return make_splats(all);
 }
 
-std::int64_t bytes_of(const ShadedSplats& splats, double each, int tile_px = 0, float max_px = 0.0f) {
+std::int64_t bytes_of(const ShadedSplats& splats, double each, int tile = 0, float max_px = 0.0f) {
     RenderLayer layer = layer_of("a", splats);
     layer.render.lod.max_px = max_px;
     RenderSettings settings = settings_of(640, 480);
     settings.splats_each = each;
-    settings.tile_px = tile_px;
+    settings.tile_px = tile;
     RenderCache cache;
     return scattered_bytes({&layer, 1}, pixel_camera(640, 480), settings, cache);
 }
