@@ -168,6 +168,7 @@ std::vector<std::string> telling_scenes() {
               "[camera]\nprojection = \"orthographic\"\nposition = [0, 0, 9]\n[[reference]]\nfile = "
               "\"b.png\"\n"),
         layer(mesh + "\nstructure = { kind = \"walls\" }", "", "blend = \"absorb\""),
+        layer(mesh + "\nstructure = { kind = \"axis\" }", "", ""),
         layer("meshes = [ { mesh = \"sheet\" }, { mesh = \"hourglass\" }, { mesh = \"shell\" }, { mesh = "
               "\"bubble\" },"
               "{ mesh = \"spheroid\", shells = 3 }, { mesh = \"ring\" },"
