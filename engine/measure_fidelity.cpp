@@ -138,7 +138,11 @@ std::int64_t fidelity_bytes(const FidelityReference& reference, const FidelitySe
     const std::int64_t blurs = 2 * picture.width * picture.height * picture.channels;
     const std::int64_t sides =
         4 * settings.width_px * settings.width_px * (side_aspect[1] + edge_aspect[1]) / side_aspect[0];
-    const std::int64_t floats = blurs + views(small) + sides + views(large);
+    // Two views, their means and what is made of one of them.
+    constexpr std::int64_t channels_of_mottle = 2 * 4 + 2 + 4;
+    const std::int64_t aside = reference.front_width_px(aside_width_px),
+                       tilted = channels_of_mottle * aside * reference.height_px(aside);
+    const std::int64_t floats = blurs + views(small) + sides + tilted + views(large);
     return floats * std::int64_t(sizeof(float)) + front_fidelity_bytes(large, reference.height_px(large));
 }
 
@@ -165,8 +169,9 @@ FidelityReport measure_fidelity(const Scene& now, const FidelityReference& refer
         return views.render(along_galaxy(reference.frame, reference.galaxy), view, settings.width_px,
                             settings.width_px * aspect[1] / aspect[0], step(name));
     };
+    const std::int64_t aside_px = reference.front_width_px(aside_width_px);
     const auto aside = [&](const FrontFrame& frame, JudgingView view, const char* name) {
-        return views.render(frame, view, aside_width_px, reference.height_px(aside_width_px), step(name));
+        return views.render(frame, view, aside_px, reference.height_px(aside_px), step(name));
     };
     report.mottle = mottle(aside(reference.frame, JudgingView::above, "front"),
                            aside(reference.frame, JudgingView::tilted, "from 45 degrees"));

@@ -133,9 +133,8 @@ glm::vec3 AxisDepths::tint(float x, float y, float z) const {
 AxisDepths make_axis_depths(AxisFit fit, const Image& light) {
     AxisDepths made;
     made.width = double(light.width);
-    const std::int64_t w = std::min(lines_across, light.width),
-                       h = std::max<std::int64_t>(1, light.height * w / light.width);
-    const Image shown = reduced_by_area(light, w, h);
+    const Image shown = reduced_to_width(light, lines_across);
+    const std::int64_t w = shown.width, h = shown.height;
     made.depths = make_image(w, h, AxisDepths::steps + 1);
     made.seen = make_image(w, h, 3);
     made.residue = make_image(w, h, 1);

@@ -20,9 +20,7 @@ constexpr double steepest_deg = 80.0;
 
 // The picture small, and above what its sky shines: the least twentieth of each channel.
 Image small_above_sky(const Image& picture) {
-    const std::int64_t width = std::min(fit_width, picture.width);
-    Image light =
-        reduced_by_area(picture, width, std::max<std::int64_t>(1, picture.height * width / picture.width));
+    Image light = reduced_to_width(picture, fit_width);
     for (int c = 0; c < light.channels; ++c) {
         const Image one = channel_of(light, c);
         const auto sky = float(percentile({one.pixels.begin(), one.pixels.end()}, 0.05));

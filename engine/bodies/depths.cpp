@@ -134,15 +134,14 @@ std::vector<BandSplats> splats_of_galaxy(const Band& band, double usual, const G
 std::vector<BandSplats> band_splats(const Band& band, bool coarsest, const Placement& placement) {
     const bool glow =
         placement.kind == StructureKind::walls && band.feature > widest_filament * placement.scale;
+    const bool about_axis = placement.kind == StructureKind::axis;
     const double widest =
-        std::max(widest_sigma_share * placement.height, glow ? widest_glow_share * placement.depth
-                                                        : placement.kind == StructureKind::axis
-                                                            ? widest_about_axis * placement.scale
-                                                            : 0.0);
+        std::max({widest_sigma_share * placement.height, glow ? widest_glow_share * placement.depth : 0.0,
+                  about_axis ? widest_about_axis * placement.scale : 0.0});
     const double natural = coarsest ? 4.0 * widest : band.feature / 4.0;
-    double usual =
+    const double usual =
+        (about_axis && band.index > last_fine_band ? more_about_axis : 1.0) *
         by_feature(splats_each, band.index == 0 ? 2.0 : std::max(4.0, band.feature / placement.scale));
-    if (placement.kind == StructureKind::axis && band.index > last_fine_band) usual *= more_about_axis;
     if (!placement.galaxies.empty()) return splats_of_galaxy(band, usual, placement.galaxies.front());
     return {splats_of_size(band, glow, std::min(natural, widest), usual)};
 }

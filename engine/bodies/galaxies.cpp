@@ -111,11 +111,7 @@ Image roughness_of(const Image& light, const GalaxyPlane& plane, const Image& to
     constexpr std::int64_t width = 960;  // px: INCLINED's pictures
     constexpr float smooth = 0.013f, rough = 0.06f;
     constexpr double about_px = 20.0;
-    const Image small =
-        light.width > width
-            ? reduced_by_area(light, width, std::max<std::int64_t>(1, light.height * width / light.width))
-            : copied(light);
-    const Image mean = gaussian_blur(differences(small, plane), about_px);
+    const Image mean = gaussian_blur(differences(reduced_to_width(light, width), plane), about_px);
     const Image local = made_by_pixel(mean, 1, [&](const float* m, float* to) {
         *to = std::clamp((m[0] / std::max(m[1], 1e-3f) - smooth) / (rough - smooth), 0.0f, 1.0f);
     });

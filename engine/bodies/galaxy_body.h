@@ -112,9 +112,8 @@ void gather_in_clouds(const GalaxyBody& body, DepthBlock& block);
 /// the others about the spheroid.
 float star_depth(const GalaxyBody& body, float x, float y, float u, float in_disk);
 
-/// Candidates of one part for every splat of a block, weighed by what is invented,
-/// `force` times; and the splats' heights, about which fine candidates are drawn. Of dust, what absorbs
-/// stands in front.
+/// Candidates of one part for every splat of a block, weighed by what is invented, `force` times; and the
+/// splats' heights, about which fine candidates are drawn. Of dust, what absorbs stands in front.
 void set_candidates(const GalaxyBody& body, GalaxyPart part, float force, DepthBlock& block,
                     DepthCandidates& candidates);
 

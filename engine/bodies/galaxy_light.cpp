@@ -42,11 +42,9 @@ Image medians_about(const Image& grey, std::int64_t reach_px) {
 }  // namespace
 
 Image light_to_fit(const Image& light) {
-    const std::int64_t width = std::min(fitted_width, light.width);
-    const std::int64_t height = std::max<std::int64_t>(1, light.height * width / light.width);
     const int green = std::min(1, light.channels - 1), blue = std::min(2, light.channels - 1);
     const Image grey = made_by_pixel(
-        reduced_by_area(light, width, height), 1,
+        reduced_to_width(light, fitted_width), 1,
         [&](const float* c, float* to) { *to = 0.6f * c[0] + 0.3f * c[green] + 0.1f * c[blue]; });
     const Image medians = medians_about(grey, 4), wide = gaussian_blur(grey, 6.0);
     const float core = 0.6f * std::ranges::max(wide.pixels);

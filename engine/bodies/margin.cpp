@@ -17,7 +17,8 @@ namespace astrosplat {
 namespace {
 
 // Found in films of W5, the Bubble, M42 and Sh2-106: no straight edge and no corner stands out.
-// Pixels along the longer side of the local brightness: fewer where details are added to it.
+// Pixels along the longer side of the local brightness; more where no details are added to it, by which
+// the rim of Comet ISON's picture goes on without a step.
 constexpr std::int64_t local_px = 48, local_px_of_smooth = 192;
 constexpr float brightest_detail = 1.6f;  // times the local brightness; what is brighter is a star
 constexpr float least_reach = 0.6f;       // of the margin, that what is lit goes on

@@ -216,14 +216,6 @@ Needles flat_needles(const Image& picture) {
 
 namespace {
 
-Image mean_of_channels(const Image& light, bool displayed) {
-    return made_by_pixel(light, 1, [&](const float* from, float* to) {
-        float sum = 0.0f;
-        for (int c = 0; c < 3; ++c) sum += displayed ? display_srgb(from[c]) : from[c];
-        *to = sum / 3.0f;
-    });
-}
-
 Image blurred_along_x(const Image& light, double sigma_px) {
     Image out = unfilled_image(light.width, light.height, 1);
     Image row = unfilled_image(light.width, 1, 1);
@@ -286,7 +278,10 @@ double roundness_of(const Image& above) {
 double grain_of(const Image& above) {
     constexpr double least_blur_px = 0.8, around_px = 8.0, detail_px = 4.0;
     constexpr float lit = 0.06f;  // of white, as displayed
-    const Image light = convolved_with_gaussian(mean_of_channels(above, true), least_blur_px),
+    const Image shown = made_by_pixel(above, 3, [](const float* from, float* to) {
+        for (int c = 0; c < 3; ++c) to[c] = display_srgb(from[c]);
+    });
+    const Image light = convolved_with_gaussian(mean_of_channels(shown), least_blur_px),
                 around = gaussian_blur(light, around_px), detail = gaussian_blur(light, detail_px);
     double along_x = 0.0, along_y = 0.0;
     for (std::int64_t y = 1; y + 1 < light.height; ++y)
@@ -302,7 +297,7 @@ double grain_of(const Image& above) {
 }  // namespace
 
 double mottle(const Image& front, const Image& tilted) {
-    const Image flat = mean_of_channels(front, false), aside = mean_of_channels(tilted, false);
+    const Image flat = mean_of_channels(front), aside = mean_of_channels(tilted);
     double most = 0.0;
     for (const double octave_px : {2.0, 4.0, 8.0, 16.0, 32.0}) {
         const double before = local_contrast(flat, octave_px);

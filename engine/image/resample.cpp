@@ -201,6 +201,11 @@ Image reduced_by_area(const Image& image, std::int64_t width, std::int64_t heigh
     return reduction.take();
 }
 
+Image reduced_to_width(const Image& image, std::int64_t most_px) {
+    const std::int64_t width = std::min(most_px, image.width);
+    return reduced_by_area(image, width, std::max<std::int64_t>(1, image.height * width / image.width));
+}
+
 Image enlarged(const Image& image, int times) {
     Image out = unfilled_image(image.width * times, image.height * times, image.channels);
     parallel_each(image.height, 16, [&](std::int64_t y) {

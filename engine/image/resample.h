@@ -38,6 +38,8 @@ ImageSize size_of_area(std::int64_t width, std::int64_t height, double area, dou
 /// time; the bits are the same.
 Image reduced_by_area(const Image& image, std::int64_t width, std::int64_t height);
 Image reduced_by_area(const ImageRows& rows, std::int64_t width, std::int64_t height);
+/// The image no wider than that, in its proportions.
+Image reduced_to_width(const Image& image, std::int64_t most_px);
 
 /// Each pixel becomes times x times. They rise and fall towards its neighbours, and their mean is what the
 /// pixel was: no light moves from one pixel into another, and nothing overshoots below 0. A value that is not

@@ -1,7 +1,7 @@
 // Pictures of a plane-like layer as seen from the front, and the cameras that judge it. In: the layer's
-// meshes. Out: the rectangle where the picture lies in the world; cameras that see it from the front, from 60
-// degrees and from its edge; the meshes drawn flat, without light or depth, as a front view of the layer's
-// splats is to look.
+// meshes. Out: the rectangle where the picture lies in the world; cameras that see it from the front, from 45
+// and 60 degrees and from its edge; the meshes drawn flat, without light or depth, as a front view of the
+// layer's splats is to look.
 #pragma once
 
 #include "camera/camera.h"
