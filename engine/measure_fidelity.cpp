@@ -177,7 +177,7 @@ FidelityReport measure_fidelity(const Scene& now, const FidelityReference& refer
                            aside(reference.frame, JudgingView::tilted, "from 45 degrees"));
     if (report.disk)
         report.above = disk_from_above(
-            aside(along_galaxy(reference.frame, reference.galaxy), JudgingView::above, "from above"));
+            aside(along_sight(reference.frame, reference.galaxy), JudgingView::above, "from above"));
     report.side_view = render(JudgingView::side, side_aspect, "from 60 degrees");
     report.needles = needles(report.side_view);
     report.flat_needles = flat_needles(report.front_reference);

@@ -135,6 +135,17 @@ FrontFrame along_galaxy(FrontFrame frame, const GalaxyParams& galaxy) {
     return frame;
 }
 
+FrontFrame along_sight(FrontFrame frame, const GalaxyParams& galaxy) {
+    frame = along_galaxy(frame, galaxy);
+    if (!galaxy.near_side) return frame;
+    const double c = real::cos(real::radians(*galaxy.near_side)),
+                 s = real::sin(real::radians(*galaxy.near_side));
+    const glm::dvec3 right = frame.right;
+    frame.right = s * right - c * frame.up;
+    frame.up = c * right + s * frame.up;
+    return frame;
+}
+
 CameraParams judging_camera(const FrontFrame& frame, JudgingView view, double aspect) {
     if (view == JudgingView::front && frame.camera) return params_of(*frame.camera);
     constexpr double distance = 2.0;  // widths

@@ -35,6 +35,10 @@ enum class JudgingView { front, above, tilted, side, edge };
 /// views are seen from. As it is where the scene does not say how the galaxy lies.
 FrontFrame along_galaxy(FrontFrame frame, const GalaxyParams& galaxy);
 
+/// That, turned further about its normal so that the line of sight that the picture was taken along is
+/// upright from above.
+FrontFrame along_sight(FrontFrame frame, const GalaxyParams& galaxy);
+
 /// Orthographic cameras, but for the front of a frame that has its own: `front` shows the frame's width
 /// exactly, and as much of its height as a picture of this aspect (width / height) shows; `above` sees the
 /// same with parallel rays, `tilted` from 45 degrees below; `side` stands 60 degrees away from the frame's

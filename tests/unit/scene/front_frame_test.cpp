@@ -106,6 +106,17 @@ TEST(FrontFrame, TurnsAlongAGalaxy) {
     EXPECT_LT(glm::length(along.center - glm::dvec3(2.5, 0.0, 0.0)), 1e-9);
 }
 
+// The line of sight is upright in the view, and what is nearer to the viewer is above.
+TEST(FrontFrame, TheLineOfSightIsUprightFromAbove) {
+    const FrontFrame frame;
+    for (const double near_side : {0.0, 58.0, 238.0}) {
+        const FrontFrame seen = along_sight(frame, {60.0, 0.0, glm::dvec2(0.5, 0.5), near_side, {}});
+        EXPECT_NEAR(glm::dot(seen.right, frame.toward), 0.0, 1e-12) << near_side;
+        EXPECT_NEAR(glm::dot(seen.up, frame.toward), std::sqrt(0.75), 1e-12) << near_side;
+        EXPECT_NEAR(glm::length(glm::cross(seen.right, seen.up) - seen.toward), 0.0, 1e-12) << near_side;
+    }
+}
+
 TEST(FrontFrame, AMeshWithoutAreaIsRefused) {
     const std::vector<TexturedMesh> line =
         moved(builtin("plane", 4, 4), [](const glm::vec3& p) { return glm::vec3(p.x, 0.0f, 0.0f); });
