@@ -2,12 +2,9 @@
 // only prints the plan. A frame that fails does not stop the others; an interrupt stops between two pixels.
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cstdint>
 #include <new>
 #include <nlohmann/json.hpp>
 #include <set>
-#include <string_view>
 
 #include "batch_plan.h"
 #include "command.h"
@@ -31,7 +28,7 @@ namespace {
 
 struct FrameFigures {
     std::int64_t frame = 0;
-    std::filesystem::path file;
+    fs::path file;
     double seconds = 0.0;         // look, render and write
     double write_seconds = 0.0;   // encoding, compressing, until it is on the disk
     double render_seconds = 0.0;  // from shaded splats to the finished float image in memory
@@ -41,7 +38,7 @@ struct FrameFigures {
 
 struct FailedFrame {
     std::int64_t frame = 0;
-    std::filesystem::path file;
+    fs::path file;
     std::string error;
 };
 
@@ -60,7 +57,7 @@ template <class T>
 std::string json_text(const T& value) {
     return Json(value).dump(-1, ' ', false, Json::error_handler_t::replace);
 }
-std::string json_text(const std::filesystem::path& file) { return json_text(file.string()); }
+std::string json_text(const fs::path& file) { return json_text(file.string()); }
 
 /// `names`: of the values, one after the other, with commas between them.
 template <class... Values>
@@ -100,7 +97,7 @@ std::string list_of(const std::vector<T>& items) {
 }
 
 /// Writes the figures whole or not at all. Throws OutputError.
-void write_stats(const std::filesystem::path& file, const RunFigures& figures) {
+void write_stats(const fs::path& file, const RunFigures& figures) {
     const std::string lists =
         fmt::format("\n  \"frames\": {},\n  \"failed\": {},\n  \"layers\": {},\n  ", list_of(figures.frames),
                     list_of(figures.failed), list_of(figures.layers));
@@ -161,9 +158,9 @@ void print_plan(const BatchPlan& plan) {
 
 /// Throws OutputError where a frame or the figures could not be written.
 void check_writable(const BatchPlan& plan, const CommandOptions& options) {
-    std::filesystem::path last;
+    fs::path last;
     for (const FramePlan& frame : plan.frames) {
-        const std::filesystem::path folder = folder_of(frame.file);
+        const fs::path folder = folder_of(frame.file);
         if (frame.render && folder != last) prove_writable(folder);
         if (frame.render) last = folder;
     }
@@ -306,11 +303,11 @@ void BatchRun::render_frames() {
 
 /// Frames that were written or found, and removed before the run's end.
 void BatchRun::find_lost_frames() {
-    std::set<std::filesystem::path> failed;
+    std::set<fs::path> failed;
     for (const FailedFrame& frame : figures_.failed) failed.insert(frame.file);
     for (const FramePlan& frame : plan_.frames) {
         std::error_code ignored;
-        if (!failed.count(frame.file) && !std::filesystem::exists(frame.file, ignored))
+        if (!failed.count(frame.file) && !fs::exists(frame.file, ignored))
             fail(frame, frame.file.string() + ": removed during the run");
     }
 }

@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "bodies/bodies.h"
 #include "core/error.h"
 #include "core/log.h"

@@ -2,11 +2,6 @@
 // every frame its file, its hash and whether it is rendered.
 #pragma once
 
-#include <cstdint>
-#include <filesystem>
-#include <string>
-#include <vector>
-
 #include "command.h"
 #include "core/atomic_file.h"
 #include "core/image.h"
@@ -19,7 +14,7 @@ namespace astrosplat {
 struct FramePlan {
     std::int64_t frame = 0;
     Eye eye = Eye::centre;
-    std::filesystem::path file;
+    fs::path file;
     std::string hash;                       // frame hash, hex
     bool render = true;                     // false: a whole frame of this hash is there already
     Existing existing = Existing::replace;  // keep: nothing was there, and what comes is not replaced

@@ -4,14 +4,7 @@
 #pragma once
 
 #include <CLI/App.hpp>
-#include <filesystem>
-#include <functional>
-#include <memory>
 #include <nlohmann/json_fwd.hpp>
-#include <optional>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include "core/atomic_file.h"
 #include "progress_report.h"
@@ -25,16 +18,16 @@ namespace astrosplat {
 /// Options as typed that several commands take; each command looks at those that it has, --batch at all
 /// but `json`.
 struct CommandOptions {
-    std::filesystem::path input;                  // a scene, or whatever the command is about
-    std::optional<std::filesystem::path> output;  // a file or a folder; of frames a pattern, relative to the
-                                                  // working directory, which replaces output.path
-    std::vector<std::string> assignments;         // --set KEY=VALUE
-    std::optional<std::string> frames;            // replaces output.frames
-    std::optional<std::string> resolution;        // "1920x1080" or "50%"
-    std::optional<std::string> layers;            // "A,B": only these
-    std::optional<std::string> region;            // "X,Y,W,H" from the top left, px
-    std::optional<std::string> memory_gib;        // limit of all that is taken
-    std::optional<std::filesystem::path> stats;
+    fs::path input;                         // a scene, or whatever the command is about
+    std::optional<fs::path> output;         // a file or a folder; of frames a pattern, relative to the
+                                            // working directory, which replaces output.path
+    std::vector<std::string> assignments;   // --set KEY=VALUE
+    std::optional<std::string> frames;      // replaces output.frames
+    std::optional<std::string> resolution;  // "1920x1080" or "50%"
+    std::optional<std::string> layers;      // "A,B": only these
+    std::optional<std::string> region;      // "X,Y,W,H" from the top left, px
+    std::optional<std::string> memory_gib;  // limit of all that is taken
+    std::optional<fs::path> stats;
     SetCache cache;
     ProgressMode progress = ProgressMode::automatic;
     bool resume = false, overwrite = false, dry_run = false, json = false;
@@ -58,13 +51,13 @@ const LayerParams& layer_named(const Scene& scene, const std::string& name);
 // Where results go: asked before any work is done, so that hours are not spent on a frame nobody can write.
 
 /// Creates `folder` where it is missing and tries a temporary file in it. Throws OutputError.
-void prove_writable(const std::filesystem::path& folder);
+void prove_writable(const fs::path& folder);
 
 /// Folder of a file as an absolute path.
-std::filesystem::path folder_of(const std::filesystem::path& file);
+fs::path folder_of(const fs::path& file);
 
 /// Throws InputError when something lies at `file`, unless `overwrite`.
-void refuse_to_overwrite(const std::filesystem::path& file, bool overwrite);
+void refuse_to_overwrite(const fs::path& file, bool overwrite);
 
 /// For files that appear while we work.
 inline Existing existing_of(const CommandOptions& options) {

@@ -4,9 +4,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <string_view>
-
 #include "bodies/bodies.h"
 #include "camera/camera.h"
 #include "command.h"
@@ -68,7 +65,7 @@ LayerNeed need_of_columns(const SourceParams& source, const std::vector<Textured
 
 /// Of a file that cannot be read nothing: the reader will say why.
 LayerNeed need_of_file(const LayerParams& layer) try {
-    const std::filesystem::path& path = layer.source.file;
+    const fs::path& path = layer.source.file;
     LayerNeed need;
     const std::vector<std::string> attributes = splat_attributes(path);
     const auto has = [&](const char* name) {
@@ -83,7 +80,7 @@ LayerNeed need_of_file(const LayerParams& layer) try {
         need.may_stream =
             !is_mixed_in_display_space(layer.render) && why_not_streamed(file, look_of(layer)).empty();
     } else if (format == "gltf") {
-        const auto bytes = static_cast<std::int64_t>(std::filesystem::file_size(path));
+        const auto bytes = static_cast<std::int64_t>(fs::file_size(path));
         need.splats = bytes / (capture_row_bytes + (has("harmonics") ? harmonics_row_bytes : 0));
     } else {
         need.splats = splat_count(path);
@@ -102,7 +99,7 @@ LayerNeed need_of_source(const SetCache& cache, const LayerParams& layer) {
     if (source.kind == SourceKind::stars) {
         if (!source.stars.along.empty()) return {.splats = source.count};
         std::error_code ignored;
-        const auto size = std::filesystem::file_size(source.stars.catalogue, ignored);
+        const auto size = fs::file_size(source.stars.catalogue, ignored);
         return {.splats = ignored ? 0 : static_cast<std::int64_t>(size) / catalogue_bytes_per_star};
     }
     const bool bodies = source.structure.kind != StructureKind::columns;
@@ -167,10 +164,10 @@ SkyBytes sky_bytes(const EnvironmentParams& sky) try {
         const std::int64_t texels = 6 * sky.tiling.face_px * sky.tiling.face_px;
         return {36 * texels, held * texels};  // of three floats: as made or read, and with borders
     }
-    std::vector<std::filesystem::path> files = sky.cube;
+    std::vector<fs::path> files = sky.cube;
     if (!sky.image.empty()) files = {sky.image};
     SkyBytes bytes;
-    for (const std::filesystem::path& file : files) {
+    for (const fs::path& file : files) {
         const ImageRows rows = open_picture_rows(file).rows;
         const std::int64_t texels = rows.width * rows.height;
         bytes.making =

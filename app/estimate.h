@@ -2,11 +2,6 @@
 // of its splats. In: a plan. Out: seconds, bytes of memory and bytes of files.
 #pragma once
 
-#include <cstdint>
-#include <optional>
-#include <string>
-#include <vector>
-
 #include "batch_plan.h"
 #include "pipeline.h"
 
@@ -51,7 +46,7 @@ class SampledRun {
     }
     RenderSettings settings(const FrameScene& frame) const;
     double seconds_of(Pipeline& pipeline, const FrameScene& frame, RenderedFrame& rendered) const;
-    std::optional<std::int64_t> bytes_of(const std::filesystem::path& name, const FrameScene& frame,
+    std::optional<std::int64_t> bytes_of(const fs::path& name, const FrameScene& frame,
                                          const RenderedFrame& rendered) const;
 
     const BatchPlan& plan_;

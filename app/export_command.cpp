@@ -3,11 +3,7 @@
 // line about the file goes to stdout.
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
 #include <glm/common.hpp>
-#include <limits>
-#include <string_view>
 
 #include "batch_plan.h"
 #include "camera/camera.h"
@@ -250,7 +246,7 @@ struct ExportOptions {
 };
 
 /// One of the table of formats: "ply", "gltf", "usda" or "openvdb".
-std::string_view format_of_output(const std::filesystem::path& file) {
+std::string_view format_of_output(const fs::path& file) {
     if (const FileFormat* const format = format_by_name(file, FileUse::exported)) return format->id;
     bad_input(file.string(), "", "a name ending in " + alternatives(endings_of(FileUse::exported)),
               "'" + file.extension().string() + "'");
@@ -285,7 +281,7 @@ std::int64_t count_of(const ExportOptions& options) {
 }
 
 /// 0: none was asked for.
-double voxel_size_of(const ExportOptions& options, const std::filesystem::path& output) {
+double voxel_size_of(const ExportOptions& options, const fs::path& output) {
     using Limits = std::numeric_limits<double>;
     if (!options.voxel_size) return 0.0;
     const double size = option_number("--voxel-size", *options.voxel_size, "a number above 0, in scene units",
@@ -353,7 +349,7 @@ Baked bake(const std::vector<RenderLayer>& layers, const Camera& camera, double 
     bad_input(scene.file.string(), "", "splats that are visible at this frame", "none");
 }
 
-void report(const std::filesystem::path& file, const Baked& baked) {
+void report(const fs::path& file, const Baked& baked) {
     const BakeCounts& n = baked.counts;
     std::string line =
         fmt::format("{}: {}; {:.2f} % of the light lost, {} above 1", printable(file.string()),

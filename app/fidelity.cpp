@@ -3,12 +3,8 @@
 // cells, power by scale and views from the side; or JSON.
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
-#include <cstdint>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <span>
 
 #include "batch_plan.h"
 #include "command.h"
@@ -442,10 +438,10 @@ std::string fidelity_page(const FidelityReport& report, const std::string& scene
 }
 
 struct FidelityOptions {
-    std::optional<std::filesystem::path> reference;  // in place of the layer's own picture
+    std::optional<fs::path> reference;  // in place of the layer's own picture
 };
 
-bool ends_in_html(const std::filesystem::path& file) {
+bool ends_in_html(const fs::path& file) {
     const std::string ending = lower_case(file.extension().string());
     if (ending == ".html" || ending == ".htm") return true;
     if (ending != ".json")

@@ -2,8 +2,6 @@
 // meaning, from the one description in the engine; of one scene also what they are there.
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <array>
 #include <glm/vec3.hpp>
 #include <nlohmann/json.hpp>
 #include <variant>
@@ -260,8 +258,8 @@ Report to_report(const ParameterSpec& spec, const char* value_name, const Value&
 }
 
 /// Keys as --set takes them, with their values; also of a scene on its way to becoming one.
-std::vector<ParameterRow> rows_of(const std::filesystem::path& name) {
-    const std::filesystem::path file = find_by_name("scenes", name);
+std::vector<ParameterRow> rows_of(const fs::path& name) {
+    const fs::path file = find_by_name("scenes", name);
     Scene scene = parse_unchecked(read_file(file), file);
     std::vector<ParameterRow> rows;
     for (const Parameter& parameter : describe(scene).parameters)

@@ -4,7 +4,6 @@
 
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
-#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <new>
@@ -162,7 +161,7 @@ void apply_common(const Invocation& call) {
 
 SetCache cache_of(const Invocation& call) {
     if (call.no_cache) return {};
-    return {call.cache.empty() ? default_cache_folder() : std::filesystem::path(call.cache)};
+    return {call.cache.empty() ? default_cache_folder() : fs::path(call.cache)};
 }
 
 int run(Invocation& call) {

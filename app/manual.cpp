@@ -3,13 +3,10 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
-#include <array>
 #include <cctype>
 #include <map>
 #include <regex>
 #include <sstream>
-#include <string_view>
 
 #include "command.h"
 #include "core/error.h"

@@ -1,7 +1,6 @@
 // new: a first scene around a picture, of bodies in depth or of columns on a shape.
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "command.h"

@@ -4,11 +4,8 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <algorithm>
-#include <array>
 #include <cstdio>
 #include <nlohmann/json.hpp>
-#include <utility>
 
 #include "core/log.h"
 #include "core/text.h"
@@ -133,7 +130,7 @@ Progress ProgressReport::begin(const std::string& label, std::optional<std::int6
                     &interrupted()};
 }
 
-void ProgressReport::saved(const std::filesystem::path& file, double seconds) {
+void ProgressReport::saved(const fs::path& file, double seconds) {
     const auto held = printer_.lock();
     label_.clear();
     if (style_ == Style::none) return;

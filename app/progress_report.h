@@ -6,10 +6,6 @@
 
 #include <atomic>
 #include <chrono>
-#include <cstdint>
-#include <filesystem>
-#include <optional>
-#include <string>
 
 #include "core/progress.h"
 #include "core/worker.h"
@@ -37,7 +33,7 @@ class ProgressReport {
     /// Frame `number`, the index-th (from 1) of `count`. The time left covers all of them.
     Progress begin_frame(std::int64_t number, std::int64_t index, std::int64_t count);
     /// "saved FILE 1.82s"
-    void saved(const std::filesystem::path& file, double seconds);
+    void saved(const fs::path& file, double seconds);
 
   private:
     enum class Style { bar, plain, json, none };

@@ -1,10 +1,5 @@
 #include "estimate.h"
 
-#include <algorithm>
-#include <filesystem>
-#include <limits>
-#include <utility>
-
 #include "core/error.h"
 #include "core/file.h"
 #include "core/progress.h"

@@ -2,9 +2,6 @@
 // then the tasks that a farm has of them.
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <array>
-#include <cstdint>
 #include <map>
 #include <nlohmann/json.hpp>
 

@@ -2,9 +2,6 @@
 // compared with their files.
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <array>
-#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "batch_plan.h"

@@ -4,14 +4,9 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
-#include <functional>
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
-#include <optional>
 #include <set>
-#include <span>
 
 #include "camera/keyframe.h"
 #include "core/real.h"

@@ -4,8 +4,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
 #include <system_error>
 
 #include "core/error.h"
@@ -262,7 +260,7 @@ namespace {
 void add_inputs(const SourceParams& source, std::vector<std::string>& words) {
     if (source.kind != SourceKind::mesh || source.meshes.empty() || source.meshes[0].texture.empty())
         throw InputError("source.meshes: expected a picture to prepare, found none");
-    const std::vector<std::filesystem::path>& files = source.meshes[0].texture;
+    const std::vector<fs::path>& files = source.meshes[0].texture;
     if (files.size() == 1) return words.push_back(files[0].string());
     constexpr const char* filters[] = {"--r", "--g", "--b"};
     for (std::size_t i = 0; i < 3; ++i) words.insert(words.end(), {filters[i], files[i].string()});
@@ -270,7 +268,7 @@ void add_inputs(const SourceParams& source, std::vector<std::string>& words) {
 
 }  // namespace
 
-std::vector<std::string> prepare_command(const SourceParams& source, const std::filesystem::path& folder) {
+std::vector<std::string> prepare_command(const SourceParams& source, const fs::path& folder) {
     std::vector<std::string> words{"prepare"};
     add_inputs(source, words);
     words.insert(words.end(), {"-o", folder.string()});

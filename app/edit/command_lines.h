@@ -3,13 +3,6 @@
 // Out: words, or the reason why there are none.
 #pragma once
 
-#include <cstdint>
-#include <filesystem>
-#include <optional>
-#include <string>
-#include <string_view>
-#include <vector>
-
 #include "camera/camera.h"
 #include "core/image.h"
 #include "edit/document.h"
@@ -29,7 +22,7 @@ struct RenderTask {
     RenderKind kind = RenderKind::range;
     std::string frames;                  // as --frames has them: "1-240", "12"
     std::int64_t width = 0, height = 0;  // px
-    std::filesystem::path folder;        // absolute
+    fs::path folder;                     // absolute
     std::string name;                    // of the file or files in it: "galaxy.####.exr", "galaxy.mp4"
     ExistingFrames existing = ExistingFrames::resume;
     bool by_slurm = false;    // on the machines of a farm; movies never are
@@ -42,7 +35,7 @@ struct RenderTask {
 RenderTask make_render_task(const Document& document, RenderKind kind, double frame);
 
 /// Of the files: a whole path, with the pattern's `#`.
-std::filesystem::path render_target(const RenderTask& task);
+fs::path render_target(const RenderTask& task);
 
 /// Why it cannot be rendered by this camera, one line; empty: it can.
 std::string render_problem(const RenderTask& task, const CameraParams& camera);
@@ -56,9 +49,9 @@ std::string with_ending(const std::string& name, const std::string& ending);
 std::string render_title(const RenderTask& task);
 
 /// Of the frames that are rendered: the target, or a movie's in its folder.
-std::filesystem::path render_files(const RenderTask& task);
+fs::path render_files(const RenderTask& task);
 /// Where a movie's frames wait until it is written: beside it, so that what was cancelled can go on.
-std::filesystem::path movie_folder(const std::filesystem::path& movie);
+fs::path movie_folder(const fs::path& movie);
 
 /// Words that decide frames and their files, as --batch and `status` have them.
 std::vector<std::string> frame_arguments(const RenderTask& task);
@@ -75,7 +68,7 @@ std::vector<std::string> submit_arguments(const RenderTask& task);
 
 /// ffmpeg's command, which writes a movie of the frames in its folder. Sides of odd size get a black line
 /// more, as H.264 wants it.
-std::vector<std::string> movie_command(const std::filesystem::path& movie, double fps);
+std::vector<std::string> movie_command(const fs::path& movie, double fps);
 
 struct BatchCommandOptions {
     std::optional<double> frame;         // empty: the frames of [output]
@@ -107,6 +100,6 @@ std::string with_backslashes(const std::string& text, std::string_view special);
 std::string shell_word(const std::string& text);
 
 /// "prepare" and what follows it. Throws InputError where the source has no picture of its own.
-std::vector<std::string> prepare_command(const SourceParams& source, const std::filesystem::path& folder);
+std::vector<std::string> prepare_command(const SourceParams& source, const fs::path& folder);
 
 }  // namespace astrosplat

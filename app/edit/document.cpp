@@ -2,11 +2,8 @@
 // files date and size are looked at first, then the bytes.
 #include "edit/document.h"
 
-#include <algorithm>
 #include <atomic>
-#include <cassert>
 #include <deque>
-#include <utility>
 
 #include "core/atomic_file.h"
 #include "core/error.h"

@@ -4,15 +4,7 @@
 // those that its scene reads: whether they were changed.
 #pragma once
 
-#include <cstdint>
-#include <filesystem>
-#include <functional>
 #include <map>
-#include <memory>
-#include <span>
-#include <string>
-#include <string_view>
-#include <vector>
 
 #include "core/file.h"
 #include "scene/load.h"
@@ -27,7 +19,7 @@ class DiskFile {
   public:
     DiskFile() = default;
     /// `content` is what the file holds.
-    DiskFile(const std::filesystem::path& file, std::string_view content);
+    DiskFile(const fs::path& file, std::string_view content);
 
     /// Its bytes differ from those last seen. A file that is gone or unreadable has not changed.
     bool changed();
@@ -35,8 +27,8 @@ class DiskFile {
     void accept();
 
   private:
-    std::filesystem::path file_;  // empty: there is none
-    FileStamp checked_;           // at the last look
+    fs::path file_;      // empty: there is none
+    FileStamp checked_;  // at the last look
     std::string hash_;
     bool changed_ = false;  // what that look found
 };
@@ -46,11 +38,11 @@ class WatchedFiles {
     /// A second has passed since it was last due: it is time to look; `now` in seconds.
     bool due(double now);
     /// Watches these from now on; what is known of those watched already stays.
-    void watch(const std::vector<std::filesystem::path>& files);
+    void watch(const std::vector<fs::path>& files);
     /// Files whose date or size differ from those when they were first watched or last returned, or that have
     /// appeared, and that lie there as they did at the call before. A file that is gone is waited for: many
     /// programs write a file by replacing it.
-    std::vector<std::filesystem::path> changed();
+    std::vector<fs::path> changed();
     /// Differs whenever changed() gave some: what is kept of them is to be read again.
     std::uint64_t changes() const { return changes_; }
 
@@ -59,7 +51,7 @@ class WatchedFiles {
         FileStamp known, seen;  // as returned last; at the last call
     };
 
-    std::map<std::filesystem::path, Entry> files_;
+    std::map<fs::path, Entry> files_;
     double checked_at_s_ = 0.0;
     std::uint64_t changes_ = 0;
 };
@@ -73,15 +65,15 @@ class Document {
     /// Opens a scene file. Throws InputError. What `assignments` (--set) change is an edit like any other:
     /// the document begins as edited(), and saving writes it. Their keys are remembered (set_by_command_line)
     /// until they are saved.
-    static Document open(const std::filesystem::path& file, std::span<const Assignment> assignments = {});
+    static Document open(const fs::path& file, std::span<const Assignment> assignments = {});
     /// A scene without a file: `toml` as if it were at `place`, whose folder resolves its paths. Saving asks
     /// for a file; until the first edit there is nothing to save. Throws InputError.
-    static Document untitled(const std::string& toml, const std::filesystem::path& place,
+    static Document untitled(const std::string& toml, const fs::path& place,
                              std::span<const Assignment> assignments = {});
     /// The content of an autosave, `toml` at `place`, as edits of `file`: edited(), and save() writes there.
     /// Not `titled`: an untitled scene that was at `file`. Throws InputError.
-    static Document recovered(const std::string& toml, const std::filesystem::path& place,
-                              const std::filesystem::path& file, bool titled);
+    static Document recovered(const std::string& toml, const fs::path& place, const fs::path& file,
+                              bool titled);
 
     Document(Document&&) noexcept;
     Document& operator=(Document&&) noexcept;
@@ -91,7 +83,7 @@ class Document {
     /// Differs after every edit, undo, redo and load.
     std::uint64_t revision() const;
     /// Empty when untitled.
-    const std::filesystem::path& file() const;
+    const fs::path& file() const;
     std::string name() const;  // "whirlpool.toml", "Untitled"
     bool edited() const;       // differs from what lies on disk; untitled: from what it began as
     /// The text on disk (untitled: the one it began with), as far as this document knows.
@@ -133,9 +125,9 @@ class Document {
     void save();
     /// Writes to `file`, which the document then is; frames go on going where they went. Throws as save()
     /// does; the document is then as before.
-    void save_as(const std::filesystem::path& file);
+    void save_as(const fs::path& file);
     /// The text that save_as(file) would write.
-    std::string text_for(const std::filesystem::path& file) const;
+    std::string text_for(const fs::path& file) const;
 
     /// The file was changed by another program since it was read or saved (asked of the disk now).
     bool changed_on_disk() const;

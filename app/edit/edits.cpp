@@ -2,13 +2,9 @@
 // frame; a parameter without a track has no keyframes.
 #include "edit/edits.h"
 
-#include <algorithm>
-#include <cmath>
-#include <cstdint>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 #include <set>
-#include <utility>
 
 #include "scene/animate.h"
 #include "scene/camera_file.h"

@@ -7,9 +7,6 @@
 
 #include <fmt/format.h>
 
-#include <string>
-#include <vector>
-
 #include "camera/keyframe.h"
 #include "core/error.h"
 #include "scene/parameter.h"

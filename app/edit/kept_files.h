@@ -6,11 +6,6 @@
 #pragma once
 
 #include <chrono>
-#include <cstdint>
-#include <filesystem>
-#include <memory>
-#include <string>
-#include <vector>
 
 #include "core/atomic_file.h"
 #include "edit/document.h"
@@ -20,7 +15,7 @@
 namespace astrosplat {
 
 /// state_folder()/autosave; empty without a home.
-std::filesystem::path autosave_folder();
+fs::path autosave_folder();
 
 /// As the settings say; $ASTROSPLAT_AUTOSAVE_SECONDS, 1 to 3600, where it says otherwise (for tests).
 std::chrono::seconds autosave_interval(const Settings& settings = {});
@@ -29,8 +24,7 @@ std::chrono::seconds autosave_interval(const Settings& settings = {});
 class Autosave {
   public:
     using Clock = std::chrono::steady_clock;
-    explicit Autosave(std::filesystem::path folder = autosave_folder(),
-                      Clock::duration every = autosave_interval());
+    explicit Autosave(fs::path folder = autosave_folder(), Clock::duration every = autosave_interval());
     /// Removes the file: the window was closed in peace. While an exception ends the program it stays.
     ~Autosave();
     Autosave(const Autosave&) = delete;
@@ -43,10 +37,10 @@ class Autosave {
     bool write(const Document& document);
     void remove();
     /// Empty while there is none.
-    const std::filesystem::path& file() const { return file_; }
+    const fs::path& file() const { return file_; }
 
   private:
-    std::filesystem::path folder_, file_;
+    fs::path folder_, file_;
     Clock::duration every_;
     std::unique_ptr<FileLock> lock_;  // says to others that this process lives
     std::uint64_t written_ = 0;       // revision in the file
@@ -56,8 +50,8 @@ class Autosave {
 
 /// An autosave whose process is gone.
 struct Recovery {
-    std::filesystem::path autosave;
-    std::filesystem::path original;  // the scene's file, or where an untitled one was
+    fs::path autosave;
+    fs::path original;  // the scene's file, or where an untitled one was
     bool titled = true;
     std::string time;  // UTC, "2026-05-01 12:30:00"
 
@@ -65,11 +59,11 @@ struct Recovery {
 };
 
 /// Newest first. Never throws: a folder that cannot be read holds none.
-std::vector<Recovery> recoveries(const std::filesystem::path& folder = autosave_folder());
+std::vector<Recovery> recoveries(const fs::path& folder = autosave_folder());
 /// The document as it was; it is edited(), saving writes the original. The autosave stays until
 /// discard_recovery(): write a new one (Autosave::write) first. Throws InputError.
-Document recover(const std::filesystem::path& autosave);
-void discard_recovery(const std::filesystem::path& autosave);
+Document recover(const fs::path& autosave);
+void discard_recovery(const fs::path& autosave);
 
 /// Data of a snapshot besides its scene.
 struct SnapshotFacts {
@@ -83,7 +77,7 @@ struct SnapshotFacts {
 /// Everything as it was when it was taken.
 struct StoredLook : SnapshotFacts {
     std::shared_ptr<const Scene> scene;
-    std::filesystem::path file{};  // empty: not kept
+    fs::path file{};  // empty: not kept
 };
 
 StoredLook store_look(const SnapshotFacts& facts, const Document& document);
@@ -97,22 +91,21 @@ Scene with_look_of(const Scene& scene, const Scene& stored);
 void restore_look(Document& document, const StoredLook& stored);
 
 /// "galaxy.snapshots" beside galaxy.toml.
-std::filesystem::path snapshot_folder(const std::filesystem::path& scene_file);
+fs::path snapshot_folder(const fs::path& scene_file);
 /// The image beside a snapshot's file.
-std::filesystem::path snapshot_image(const std::filesystem::path& snapshot);
+fs::path snapshot_image(const fs::path& snapshot);
 
 /// Oldest first; none where there is no folder. Each one that cannot be read is left out, and a line about it
 /// added to `problems`.
-std::vector<StoredLook> read_snapshots(const std::filesystem::path& folder,
-                                       std::vector<std::string>& problems);
+std::vector<StoredLook> read_snapshots(const fs::path& folder, std::vector<std::string>& problems);
 
 /// Writes the scene with all its values, presets dissolved, and `png`, under the next free number; creates
 /// the folder. Returns the file. Throws OutputError.
-std::filesystem::path write_snapshot(const std::filesystem::path& folder, const SnapshotFacts& facts,
-                                     const Scene& scene, const std::string& png);
+fs::path write_snapshot(const fs::path& folder, const SnapshotFacts& facts, const Scene& scene,
+                        const std::string& png);
 /// Another name; all else stays. Throws InputError, OutputError.
-void rename_snapshot(const std::filesystem::path& snapshot, const std::string& name);
+void rename_snapshot(const fs::path& snapshot, const std::string& name);
 /// Both files. Throws OutputError.
-void remove_snapshot(const std::filesystem::path& snapshot);
+void remove_snapshot(const fs::path& snapshot);
 
 }  // namespace astrosplat

@@ -2,10 +2,6 @@
 // scenes for a file that is dropped on the window or named on the command line, and for a built-in shape.
 #pragma once
 
-#include <array>
-#include <filesystem>
-#include <string>
-
 #include "core/file_format.h"
 #include "scene/scene.h"
 
@@ -17,7 +13,7 @@ const LayerParams* find_layer(const Scene& scene, const std::string& name);
 std::string free_layer_name(const Scene& scene, const std::string& wanted);
 /// A layer for a picture (on the built-in plane), a mesh (with its own texture) or a splat file, at the end
 /// of the list. Throws InputError for another kind of file. Returns its index.
-std::size_t add_layer(Scene& scene, const std::filesystem::path& file);
+std::size_t add_layer(Scene& scene, const fs::path& file);
 /// The same of one of shape_names, in neutral grey.
 std::size_t add_shape(Scene& scene, const std::string& shape);
 std::size_t duplicate_layer(Scene& scene, std::size_t index);
@@ -27,20 +23,20 @@ void move_layer(Scene& scene, std::size_t from, std::size_t to);
 void rename_layer(Scene& scene, std::size_t index, const std::string& name);
 
 /// Look and render of a preset file (see save_preset_text) put on a layer. Throws InputError.
-void apply_preset(LayerParams& layer, const std::filesystem::path& preset);
+void apply_preset(LayerParams& layer, const fs::path& preset);
 
 bool is_visible(const Scene& scene, std::size_t index, double frame);
 
 /// By content or ending (core/file_format.h); a .toml is a look when it has a [look] or [render] and no
 /// layers, else a scene. Unreadable files are what their ending says.
-FileKind kind_of_file(const std::filesystem::path& file);
+FileKind kind_of_file(const fs::path& file);
 
 /// The text of a scene file `place` around a picture (on the built-in plane), an OBJ (with its own pictures,
 /// else with the picture of the same name beside it or the only one in its folder, else in neutral grey;
 /// projected along its thinnest axis where it has no texture coordinates) or a splat file (radii of half the
 /// mean spacing where it has no radii). Reads the mesh, and splat files without radii, as a whole. Throws
 /// InputError for other files, looks among them.
-std::string scene_text_for(const std::filesystem::path& file, const std::filesystem::path& place);
+std::string scene_text_for(const fs::path& file, const fs::path& place);
 
 /// Built-in shapes that need no picture of their own.
 inline constexpr std::array shape_names{"plane", "disk",   "sphere",    "spheroid",

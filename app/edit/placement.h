@@ -4,13 +4,9 @@
 // view: which one lies under the mouse, and the parameter that dragging it changes. Draws nothing.
 #pragma once
 
-#include <array>
 #include <glm/mat3x3.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
-#include <optional>
-#include <string>
-#include <vector>
 
 #include "camera/camera.h"
 #include "core/bounds.h"

@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 
@@ -174,11 +173,11 @@ constexpr SettingRow rows[] = {
 std::span<const SettingRow> setting_rows() { return rows; }
 
 std::string problem_of_cache_folder(const std::string& folder) {
-    const std::filesystem::path path = folder;
+    const fs::path path = folder;
     std::error_code ignored;
     if (folder.empty()) return "";
     if (!path.is_absolute()) return "expected an absolute path, found '" + folder + "'";
-    if (std::filesystem::exists(path, ignored) && !std::filesystem::is_directory(path, ignored))
+    if (fs::exists(path, ignored) && !fs::is_directory(path, ignored))
         return "expected a folder, found the file '" + folder + "'";
     return "";
 }

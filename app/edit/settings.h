@@ -3,10 +3,6 @@
 // a frame, but for a limit of memory, which acts as a smaller machine does.
 #pragma once
 
-#include <span>
-#include <string>
-#include <vector>
-
 #include "sets/kept.h"
 
 namespace astrosplat {

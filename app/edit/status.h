@@ -2,16 +2,9 @@
 // every frame, only read by the widgets.
 #pragma once
 
-#include <array>
-#include <cstdint>
-#include <filesystem>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <map>
-#include <memory>
-#include <optional>
-#include <string>
-#include <vector>
 
 #include "camera/camera.h"
 #include "core/bounds.h"
@@ -21,8 +14,8 @@ namespace astrosplat {
 
 /// A picture file as a folder lists it: what its thumbnail is kept under.
 struct ListedPicture {
-    std::filesystem::path file;
-    std::filesystem::file_time_type changed{};
+    fs::path file;
+    fs::file_time_type changed{};
     std::uintmax_t bytes = 0;
     auto operator<=>(const ListedPicture&) const = default;
 };
@@ -130,12 +123,12 @@ struct QueuedJob {
     enum class State { waiting, running, submitted, done, failed, cancelled };
     std::uint64_t number = 0;  // its name among all of this session
     State state = State::waiting;
-    std::string title;             // "galaxy.toml: Frames 1-240, 1920x1080"
-    std::filesystem::path target;  // a file, a pattern of files or a folder
-    std::string text;              // what it said last: "frame 12 (3/10)", or why it failed
-    float progress = 0.0f;         // 0..1
+    std::string title;      // "galaxy.toml: Frames 1-240, 1920x1080"
+    fs::path target;        // a file, a pattern of files or a folder
+    std::string text;       // what it said last: "frame 12 (3/10)", or why it failed
+    float progress = 0.0f;  // 0..1
     std::optional<double> seconds_left;
-    std::vector<std::filesystem::path> files;  // frames that are finished
+    std::vector<fs::path> files;  // frames that are finished
 };
 
 /// The finished frame of a job that is looked at.
@@ -153,7 +146,7 @@ struct ListedThumbnail {
 
 /// An autosave that may be wanted.
 struct RecoveryOffer {
-    std::filesystem::path autosave;
+    fs::path autosave;
     std::string scene;  // "whirlpool.toml", "Untitled"
     std::string time;   // "2026-05-01 12:30:00 UTC"
 };
@@ -186,7 +179,7 @@ struct Status {
     std::vector<Message> log;
     std::int64_t memory_bytes = 0;
     int threads = 1;
-    std::vector<std::filesystem::path> recent;
+    std::vector<fs::path> recent;
     bool changed_on_disk = false;
     std::vector<RecoveryOffer> recoveries;                // of scenes that were not closed
     std::map<ListedPicture, ListedThumbnail> thumbnails;  // of the files listed that are looked at so far

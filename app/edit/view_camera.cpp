@@ -1,7 +1,5 @@
 #include "edit/view_camera.h"
 
-#include <algorithm>
-#include <cmath>
 #include <glm/geometric.hpp>
 
 #include "camera/projection.h"

@@ -3,11 +3,8 @@
 // what is seen, and whole moves, as rows of the scene's tracks.
 #pragma once
 
-#include <array>
-#include <cstddef>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
-#include <optional>
 
 #include "camera/camera.h"
 #include "core/bounds.h"

@@ -4,13 +4,9 @@
 // window asks first.
 #pragma once
 
-#include <filesystem>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
-#include <optional>
 #include <set>
-#include <string>
-#include <vector>
 
 #include "camera/camera.h"
 #include "edit/command_lines.h"
@@ -60,7 +56,7 @@ struct PanelSizes {
     float panel_width = 360.0f, timeline_height = 148.0f;  // px at scale 1
     bool timeline_open = true;
     Settings settings;
-    std::vector<std::filesystem::path> recent_folders;  // that files were chosen in, newest first
+    std::vector<fs::path> recent_folders;  // that files were chosen in, newest first
     bool operator==(const PanelSizes&) const = default;
 };
 
@@ -192,7 +188,7 @@ struct Command {
         keep_settings
     };
     Kind kind;
-    std::filesystem::path path;
+    fs::path path;
     std::string text;
     std::size_t index = 0;
 };

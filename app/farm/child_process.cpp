@@ -9,12 +9,9 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <array>
 #include <cerrno>
 #include <cstdlib>
-#include <string_view>
 #include <system_error>
-#include <utility>
 
 #include "core/error.h"
 #include "core/text.h"
@@ -22,7 +19,6 @@
 extern char** environ;
 
 namespace astrosplat {
-namespace fs = std::filesystem;
 namespace {
 
 /// A pipe whose ends are closed with it.

@@ -4,10 +4,7 @@
 
 #include <sys/types.h>
 
-#include <filesystem>
-#include <optional>
-#include <string>
-#include <vector>
+#include "core/standard.h"
 
 namespace astrosplat {
 
@@ -26,8 +23,7 @@ struct ToolResult {
 
 /// Runs words[0], found on the PATH, in `folder` (empty: where we are) and waits for its end. Empty where
 /// there is no such program, or it cannot be started.
-std::optional<ToolResult> run_tool(const std::vector<std::string>& words,
-                                   const std::filesystem::path& folder = {});
+std::optional<ToolResult> run_tool(const std::vector<std::string>& words, const fs::path& folder = {});
 
 /// The failure as one line: the first one that the tool wrote, or its exit code.
 std::string failure_of(const ToolResult& result);

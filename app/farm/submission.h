@@ -3,16 +3,14 @@
 // for each task.
 #pragma once
 
-#include <cstdint>
-#include <filesystem>
 #include <map>
-#include <string>
-#include <vector>
+
+#include "core/standard.h"
 
 namespace astrosplat {
 
 struct Submission {
-    std::filesystem::path folder;      // its own
+    fs::path folder;                   // its own
     std::string name;                  // of the jobs; the first one's ends in -sets
     std::string output;                // the pattern of its frames
     std::vector<std::string> options;  // what else decides the frames: words of the command line
@@ -21,7 +19,7 @@ struct Submission {
 };
 
 /// Where submissions of this pattern lie: below the last folder of it that all frames share.
-std::filesystem::path submissions_folder(const std::string& output);
+fs::path submissions_folder(const std::string& output);
 
 /// The pattern as records hold it.
 std::string comparable_output(const std::string& output);

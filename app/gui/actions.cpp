@@ -3,9 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
-
 #include "edit/edits.h"
 #include "edit/layer_steps.h"
 #include "edit/layers.h"

@@ -4,12 +4,7 @@
 // message gets the room that is left.
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <array>
-#include <cmath>
 #include <iterator>
-#include <string_view>
-#include <vector>
 
 #include "gui/parts.h"
 

@@ -4,9 +4,6 @@
 #include <imgui.h>
 #include <imgui_stdlib.h>
 
-#include <algorithm>
-#include <cmath>
-
 #include "gui/parts.h"
 
 namespace astrosplat {

@@ -6,11 +6,6 @@
 #include <fmt/format.h>
 #include <imgui_stdlib.h>
 
-#include <algorithm>
-#include <array>
-#include <string_view>
-#include <vector>
-
 #include "edit/view_camera.h"
 #include "gui/parts.h"
 

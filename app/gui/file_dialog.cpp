@@ -6,7 +6,6 @@
 #include <imgui_stdlib.h>
 #include <sys/stat.h>
 
-#include <algorithm>
 #include <cstdlib>
 #include <ctime>
 

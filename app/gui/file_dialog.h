@@ -6,15 +6,8 @@
 
 #include <atomic>
 #include <chrono>
-#include <filesystem>
-#include <functional>
 #include <future>
-#include <memory>
-#include <optional>
-#include <string>
 #include <thread>
-#include <utility>
-#include <vector>
 
 #include "edit/document.h"
 #include "edit/status.h"
@@ -31,7 +24,7 @@ struct FileEntry {
     std::string name;
     bool folder = false;
     std::uintmax_t bytes = 0;
-    std::filesystem::file_time_type changed{};
+    fs::file_time_type changed{};
 };
 
 enum class FileOrder { name, changed, size };
@@ -39,8 +32,7 @@ enum class FileOrder { name, changed, size };
 /// Folders first, then files, each by name without regard to case; hidden ones left out. `extensions`
 /// (".toml", lower case) limit the files; empty: all. An unreadable folder is empty; the rest is missing once
 /// `cancelled`.
-std::vector<FileEntry> list_folder(const std::filesystem::path& folder,
-                                   const std::vector<std::string>& extensions,
+std::vector<FileEntry> list_folder(const fs::path& folder, const std::vector<std::string>& extensions,
                                    const std::atomic<bool>* cancelled = nullptr);
 
 /// Folders first; each by `order`, then by name without regard to case, numbers in names as numbers. What is
@@ -55,34 +47,34 @@ std::optional<std::size_t> entry_beside(const std::vector<FileEntry>& entries, c
                                         int step);
 
 /// "2026-03-01 18:30", on this machine's clock.
-std::string time_text(std::filesystem::file_time_type time);
+std::string time_text(fs::file_time_type time);
 
 /// `typed` as a path: "~/x" in the home folder, relative ones in `folder`.
-std::filesystem::path typed_path(const std::string& typed, const std::filesystem::path& folder);
+fs::path typed_path(const std::string& typed, const fs::path& folder);
 
 /// The target of a path.
 struct TypedFile {
-    std::filesystem::path file;
+    fs::path file;
     bool is_folder = false;
     bool exists = false;      // a file
     bool has_folder = false;  // that it lies in, or would
 };
 /// `ending` (".toml"; may be empty) is added where `typed` has none and is no folder.
-TypedFile look_at(const std::filesystem::path& typed, const std::string& ending);
+TypedFile look_at(const fs::path& typed, const std::string& ending);
 
 /// `typed` lengthened as far as the files there leave no choice; a folder that is the only choice gets its
 /// "/".
-std::string complete_path(const std::string& typed, const std::filesystem::path& folder);
+std::string complete_path(const std::string& typed, const fs::path& folder);
 
 /// $HOME, or the root.
-std::filesystem::path home_folder();
+fs::path home_folder();
 
 struct FolderContents {
-    std::filesystem::path folder;  // without symbolic links, as far as it exists
+    fs::path folder;  // without symbolic links, as far as it exists
     std::vector<FileEntry> entries;
 };
 /// Of `otherwise` where there is no such folder. `extensions` and `cancelled` as list_folder has them.
-FolderContents read_folder(const std::filesystem::path& folder, const std::filesystem::path& otherwise,
+FolderContents read_folder(const fs::path& folder, const fs::path& otherwise,
                            const std::vector<std::string>& extensions, const std::atomic<bool>& cancelled);
 
 /// A question to a disk. In: a function that asks. Out: its answer, when that is known. Each has a thread,
@@ -133,9 +125,9 @@ struct FileQuery {
     bool saving = false;                  // the file need not exist, and is asked for again where it does
     std::string kind;                     // "Scenes", of the filter
     std::vector<std::string> extensions;  // ".toml", lower case; empty: any
-    std::filesystem::path folder;         // to begin in
+    fs::path folder;                      // to begin in
     std::string name;                     // suggested, when saving
-    std::filesystem::path otherwise{};    // to begin in where there is no such folder; empty: home
+    fs::path otherwise{};                 // to begin in where there is no such folder; empty: home
 };
 
 /// The request where `kind` needs a path; nothing where it needs none.
@@ -174,15 +166,15 @@ class FileDialog {
 
     struct Answer {
         bool done = false;  // the dialog has closed
-        std::optional<std::filesystem::path> file;
+        std::optional<fs::path> file;
     };
     /// Draws it while it is open.
     Answer draw(GuiFrame& frame);
 
   private:
     /// `otherwise`: where there is no such folder.
-    void go_to(const std::filesystem::path& folder, const std::filesystem::path& otherwise);
-    void go_to(const std::filesystem::path& folder) { go_to(folder, folder); }
+    void go_to(const fs::path& folder, const fs::path& otherwise);
+    void go_to(const fs::path& folder) { go_to(folder, folder); }
     void retype(const std::string& text) { retyped_ = typed_ = text; }
     void forget_questions();
     bool keys_wait() const;
@@ -191,18 +183,18 @@ class FileDialog {
     void scroll_to_typed();
     static int on_key(ImGuiInputTextCallbackData* data);
     std::optional<std::string> text_for(const ImGuiInputTextCallbackData& data);
-    void list_entries(const std::filesystem::path& otherwise);
+    void list_entries(const fs::path& otherwise);
     void take_entries();
     FileClick draw_entry(GuiFrame& frame, const FileEntry& entry);
     bool draw_entries(GuiFrame& frame);
     Answer draw_bottom(GuiFrame& frame, bool chosen);
     void look();
-    std::optional<std::filesystem::path> accept(const TypedFile& typed);
+    std::optional<fs::path> accept(const TypedFile& typed);
 
     FileQuery query_;
     bool open_ = false, all_files_ = false, focus_path_ = false, awaits_typing_ = false;
     bool replaces_ = false;  // the file exists and the person was told
-    std::filesystem::path folder_;
+    fs::path folder_;
     DiskQuestion<FolderContents> contents_;
     DiskQuestion<std::string> completion_;  // of:
     std::string completed_;

@@ -1,10 +1,6 @@
 // Titles, kinds and folders of the file dialogs; their rows and the columns above them.
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
-#include <string_view>
-
 #include "core/file_format.h"
 #include "gui/file_dialog.h"
 #include "gui/widgets.h"

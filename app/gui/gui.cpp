@@ -3,10 +3,6 @@
 
 #include <unistd.h>
 
-#include <algorithm>
-#include <cmath>
-#include <optional>
-
 #include "gui/file_dialog.h"
 #include "gui/panel/context.h"
 #include "gui/parts.h"

@@ -2,9 +2,6 @@
 // Out: edits of the document and the view state, and commands for the viewer. No OpenGL.
 #pragma once
 
-#include <memory>
-#include <vector>
-
 #include "edit/document.h"
 #include "edit/status.h"
 #include "edit/view_state.h"

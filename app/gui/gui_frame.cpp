@@ -3,8 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
-
 #include "core/error.h"
 #include "core/log.h"
 
@@ -13,7 +11,7 @@ namespace astrosplat {
 void request(GuiFrame& frame, Command::Kind kind, std::size_t index) {
     frame.requested.push_back({kind, {}, {}, index});
 }
-void request_path(GuiFrame& frame, Command::Kind kind, const std::filesystem::path& path) {
+void request_path(GuiFrame& frame, Command::Kind kind, const fs::path& path) {
     frame.requested.push_back({kind, path, {}, 0});
 }
 void request_text(GuiFrame& frame, Command::Kind kind, const std::string& text, std::size_t index) {

@@ -2,14 +2,9 @@
 // edit without letting an error out, say where a control lies and how many splats there are.
 #pragma once
 
-#include <algorithm>
-#include <cstdint>
-#include <functional>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <initializer_list>
-#include <string>
-#include <vector>
 
 #include "edit/document.h"
 #include "edit/status.h"
@@ -58,7 +53,7 @@ struct GuiFrame {
 };
 
 void request(GuiFrame& frame, Command::Kind kind, std::size_t index = 0);
-void request_path(GuiFrame& frame, Command::Kind kind, const std::filesystem::path& path);
+void request_path(GuiFrame& frame, Command::Kind kind, const fs::path& path);
 void request_text(GuiFrame& frame, Command::Kind kind, const std::string& text, std::size_t index = 0);
 
 /// Runs an edit; bad input becomes a line of the message bar and the scene stays as it was.

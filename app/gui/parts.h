@@ -3,10 +3,7 @@
 // the next. Then the frame of every dialog, and the table of all that menus and shortcuts do.
 #pragma once
 
-#include <cstdint>
 #include <initializer_list>
-#include <span>
-#include <string>
 
 #include "gui/gui_frame.h"
 #include "gui/widgets.h"

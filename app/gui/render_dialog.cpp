@@ -4,9 +4,6 @@
 #include <fmt/format.h>
 #include <imgui_stdlib.h>
 
-#include <algorithm>
-#include <cmath>
-
 #include "core/error.h"
 #include "scene/frames.h"
 
@@ -112,7 +109,7 @@ void name_row(GuiFrame& frame) {
     label("Name");
     text_field(frame, "name", render.name, ImGui::GetContentRegionAvail().x - px(92) - px(row_gap));
     ImGui::SameLine(0, px(row_gap));
-    const std::string ending = std::filesystem::path(render.name).extension().string();
+    const std::string ending = fs::path(render.name).extension().string();
     ImGui::SetNextItemWidth(px(92));
     const ImVec2 corner = ImGui::GetCursorScreenPos();
     const bool open = ImGui::BeginCombo("##format", ending.c_str(), ImGuiComboFlags_NoArrowButton);

@@ -4,9 +4,6 @@
 #include <fmt/format.h>
 #include <imgui_stdlib.h>
 
-#include <algorithm>
-#include <array>
-#include <cmath>
 #include <glm/geometric.hpp>
 
 #include "edit/placement.h"

@@ -2,10 +2,7 @@
 // the scene's tracks. Out: the frame looked at, and edits of the tracks.
 #pragma once
 
-#include <cstdint>
 #include <map>
-#include <string>
-#include <vector>
 
 #include "edit/edits.h"
 #include "gui/gui_frame.h"

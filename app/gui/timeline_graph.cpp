@@ -1,11 +1,6 @@
 // The graph: curves over the frames, keyframes and handles to drag, channels to hide.
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
-#include <functional>
-#include <limits>
-
 #include "edit/edits.h"
 #include "gui/timeline.h"
 #include "gui/widgets.h"

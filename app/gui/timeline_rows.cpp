@@ -1,12 +1,7 @@
 // The rows of keyframes, their menu and their drags.
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <array>
 #include <cctype>
-#include <cmath>
-#include <functional>
-#include <optional>
 
 #include "edit/edits.h"
 #include "gui/timeline.h"

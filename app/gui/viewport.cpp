@@ -1,8 +1,6 @@
 // Draws the frame into the viewport and turns the mouse over it into drags and clicks.
 #include "gui/viewport.h"
 
-#include <algorithm>
-#include <cmath>
 #include <glm/geometric.hpp>
 
 #include "gui/viewport_overlay.h"

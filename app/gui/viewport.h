@@ -4,8 +4,6 @@
 #pragma once
 
 #include <glm/vec3.hpp>
-#include <optional>
-#include <vector>
 
 #include "edit/edits.h"
 #include "edit/placement.h"

@@ -1,10 +1,7 @@
 // What the mouse drags in the view besides the camera: the reference picture, handles, points of the path.
 #include <fmt/format.h>
 
-#include <array>
-#include <cmath>
 #include <glm/geometric.hpp>
-#include <utility>
 
 #include "camera/keyframe.h"
 #include "edit/placement.h"

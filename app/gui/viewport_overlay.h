@@ -6,9 +6,6 @@
 
 #include <imgui.h>
 
-#include <cstdint>
-#include <string>
-
 #include "gui/gui_frame.h"
 
 namespace astrosplat {

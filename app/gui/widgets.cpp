@@ -3,15 +3,9 @@
 // out, the rest for the viewport.
 #include "gui/widgets.h"
 
-#include <algorithm>
-#include <array>
-#include <cmath>
 #include <cstdlib>
-#include <filesystem>
 #include <iterator>
 #include <map>
-#include <optional>
-#include <vector>
 
 namespace astrosplat {
 

@@ -6,7 +6,6 @@
 #include <imgui.h>
 
 #include <initializer_list>
-#include <string>
 
 #include "edit/view_state.h"
 #include "scene/reference_place.h"

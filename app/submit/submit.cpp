@@ -1,11 +1,9 @@
 // A plan of the frames, chunks of those to be rendered, two scripts, two calls of sbatch.
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cctype>
 #include <iterator>
 #include <set>
-#include <string_view>
 #include <system_error>
 
 #include "batch_plan.h"

@@ -2,16 +2,9 @@
 // (LatestWork), or results that are kept until they are looked at (ReadAhead).
 #pragma once
 
-#include <algorithm>
 #include <atomic>
-#include <cstdint>
 #include <exception>
-#include <functional>
 #include <map>
-#include <memory>
-#include <optional>
-#include <utility>
-#include <vector>
 
 #include "core/error.h"
 #include "core/progress.h"

@@ -1,12 +1,6 @@
 #include "viewer/comparison.h"
 
-#include <algorithm>
-#include <array>
-#include <cmath>
 #include <iterator>
-#include <limits>
-#include <string_view>
-#include <utility>
 
 #include "core/color.h"
 #include "core/error.h"
@@ -136,7 +130,7 @@ ReferencePicture::Found ReferencePicture::read(const Request& request, const Pro
     return {displayed(std::move(image), false), {}};
 }
 
-void ReferencePicture::want(const std::filesystem::path& file) {
+void ReferencePicture::want(const fs::path& file) {
     request_.file = file;
     std::shared_ptr<const Found> found;
     if (!file.empty()) {
@@ -314,7 +308,7 @@ Image thumbnail_of(const std::vector<unsigned char>& rgba, int width, int height
 
 void Comparison::find_reference(const Scene& scene, const ViewState& view, Status& status) {
     const auto index = astrosplat::find_reference(scene, reference_view(view.view), view.frame);
-    reference_.want(index ? scene.references[*index].file : std::filesystem::path());
+    reference_.want(index ? scene.references[*index].file : fs::path());
     status.reference.reset();
     if (!index) return;
     status.reference.emplace();

@@ -4,14 +4,6 @@
 // looks to keep; files. Out: images for the display, cards and measures for the widgets, a placement.
 #pragma once
 
-#include <cstdint>
-#include <filesystem>
-#include <functional>
-#include <memory>
-#include <optional>
-#include <string>
-#include <vector>
-
 #include "core/image.h"
 #include "edit/kept_files.h"
 #include "edit/status.h"
@@ -58,7 +50,7 @@ FrontCheck::Work front_check(std::int64_t width_px = 1280, const SetCache& cache
 
 /// A picture to be prepared.
 struct PrepareRequest {
-    std::vector<std::filesystem::path> files;
+    std::vector<fs::path> files;
     TextureSettings texture;
     std::uint64_t changes = 0;  // another number: files were changed
     bool operator==(const PrepareRequest&) const = default;
@@ -69,7 +61,7 @@ std::optional<PrepareRequest> prepare_request(const LayerParams& layer, std::uin
 
 struct PreparedView {
     Image before, after;  // display values, RGBA, opaque, of one size
-    std::vector<std::filesystem::path> files;
+    std::vector<fs::path> files;
     std::int64_t stars = 0;  // removed from the small picture
     std::string error;       // one line: it cannot be prepared
 };
@@ -84,10 +76,10 @@ PreparePreview::Work prepare_preview(std::int64_t most_px = 800);
 class ReferencePicture {
   public:
     /// Shows this file, none where it is empty; call it every frame.
-    void want(const std::filesystem::path& file);
+    void want(const fs::path& file);
     /// The file was changed: it is read again.
     void forget() { ++request_.reading; }
-    const std::filesystem::path& file() const { return request_.file; }
+    const fs::path& file() const { return request_.file; }
 
     bool working() const { return !request_.file.empty() && work_.working(); }
     /// Null while there is none.
@@ -100,7 +92,7 @@ class ReferencePicture {
 
   private:
     struct Request {
-        std::filesystem::path file;
+        fs::path file;
         std::uint64_t reading = 0;
         bool operator==(const Request&) const = default;
     };
@@ -158,9 +150,9 @@ class SnapshotList {
   public:
     /// Those kept beside this scene in place of all there are; none of a scene without a file. What cannot be
     /// read becomes a line of `problems`.
-    void open(const std::filesystem::path& scene_file, std::vector<std::string>& problems);
+    void open(const fs::path& scene_file, std::vector<std::string>& problems);
     /// The scene lies there from now on, and so do its snapshots. Throws OutputError; they stay in the list.
-    void move_to(const std::filesystem::path& scene_file);
+    void move_to(const fs::path& scene_file);
 
     /// Adds a look with its image, RGBA of display values, top row first. Throws OutputError where it
     /// cannot be kept; it stays in the list.
@@ -196,7 +188,7 @@ class SnapshotList {
 
     std::vector<StoredView> snapshots_;
     std::size_t b_ = no_b;
-    std::filesystem::path folder_;  // empty: the scene has no file yet
+    fs::path folder_;  // empty: the scene has no file yet
 };
 
 /// An 8-bit image (RGBA, top row first) as a float one of at most `most` px width, by averaging boxes.

@@ -2,10 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <regex>
-#include <utility>
 
 #include "core/error.h"
 #include "core/text.h"

@@ -1,7 +1,5 @@
 #include "viewer/files.h"
 
-#include <algorithm>
-#include <cmath>
 #include <glm/gtc/packing.hpp>
 #include <sstream>
 #include <tuple>

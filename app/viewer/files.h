@@ -3,15 +3,8 @@
 // views share, the configuration of OpenColorIO, and what becomes of files that change.
 #pragma once
 
-#include <cstdint>
 #include <exception>
-#include <filesystem>
 #include <map>
-#include <memory>
-#include <optional>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include "core/file.h"
 #include "core/image.h"
@@ -42,8 +35,7 @@ Image to_image(const PackedImage& packed);
 
 /// The longer side is at most `most_px`. FITS is stretched as it is where nothing is set, linear light gets
 /// the screen's curve: codes. Throws InputError, Cancelled.
-PackedImage thumbnail_of_file(const std::filesystem::path& file, std::int64_t most_px,
-                              const Progress& progress = {});
+PackedImage thumbnail_of_file(const fs::path& file, std::int64_t most_px, const Progress& progress = {});
 
 /// Thumbnails of files as a folder lists them.
 class Thumbnails : public ReadAhead<ListedPicture, PackedImage> {
@@ -61,9 +53,9 @@ class RenderedFrames : public ReadAhead<ListedPicture, PackedImage> {
 
     /// These files are read, the first one first, unless they are there as they now lie on the disk. Returns
     /// at once.
-    void want(const std::vector<std::filesystem::path>& files);
+    void want(const std::vector<fs::path>& files);
     /// Null while it is not read as it now lies there.
-    std::shared_ptr<const PackedImage> found(const std::filesystem::path& file) const;
+    std::shared_ptr<const PackedImage> found(const fs::path& file) const;
 };
 
 struct FinishedView {
@@ -73,7 +65,7 @@ struct FinishedView {
 
 /// How files of scene light are seen; others are as they look.
 struct FinishedRequest {
-    std::filesystem::path file;
+    fs::path file;
     OutputParams::View view = OutputParams::View::srgb;  // never automatic
     std::shared_ptr<const DisplayTransform> ocio;        // in place of `view`; null: none
     double exposure = 0.0;                               // stops
@@ -90,14 +82,14 @@ FinishedFrames::Work finished_frames(std::int64_t most_px = 720);
 class PictureFiles {
   public:
     /// Of load_map(). Throws InputError.
-    const Image& map(const std::filesystem::path& file, Derived derive);
+    const Image& map(const fs::path& file, Derived derive);
     /// With gain and rotation of `params`; null where there is none to be seen, and while it is being loaded.
     /// Throws InputError where it cannot be.
     std::shared_ptr<const Environment> environment(const EnvironmentParams& params);
     /// The environment asked for last is on its way.
     bool loading() const;
     /// Reads these again: maps when next asked for, environments at once; the old ones are seen until then.
-    void forget(const std::vector<std::filesystem::path>& files);
+    void forget(const std::vector<fs::path>& files);
 
   private:
     /// Of what pictures_of() gives.
@@ -115,7 +107,7 @@ class PictureFiles {
     Worker::Task next_sky();
     void load(const EnvironmentParams& params);
 
-    std::map<std::pair<std::filesystem::path, Derived>, std::unique_ptr<Image>> maps_;  // null: to be read
+    std::map<std::pair<fs::path, Derived>, std::unique_ptr<Image>> maps_;  // null: to be read
     std::vector<std::unique_ptr<Image>> old_maps_;  // so that new ones do not get their addresses
     /// The comparison may have another one; with the worker's lock.
     std::map<EnvironmentParams, Sky, ByPictures> skies_;
@@ -138,7 +130,7 @@ class ColorManagement {
   private:
     struct Asked {
         OcioParams params;
-        std::filesystem::path file;
+        fs::path file;
         FileStamp stamp;  // of the file
         bool operator==(const Asked&) const = default;
     };
@@ -151,11 +143,9 @@ class ColorManagement {
 
 /// Files to be watched: those that the scene names, those that were found in there, and a picture to compare
 /// with (may be empty). The scene's own file is the document's.
-std::vector<std::filesystem::path> files_in_use(const Scene& scene, const SetLoader& loader,
-                                                const std::filesystem::path& reference);
+std::vector<fs::path> files_in_use(const Scene& scene, const SetLoader& loader, const fs::path& reference);
 
 /// Outdates the layers that are made of these files, so that they are loaded again.
-void outdate_layers_of(const std::vector<std::filesystem::path>& files, const Scene& scene,
-                       SetLoader& loader);
+void outdate_layers_of(const std::vector<fs::path>& files, const Scene& scene, SetLoader& loader);
 
 }  // namespace astrosplat

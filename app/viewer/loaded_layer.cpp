@@ -2,15 +2,8 @@
 // is looked at besides.
 #include "viewer/loaded_layer.h"
 
-#include <algorithm>
-#include <array>
-#include <bit>
-#include <cmath>
 #include <cstring>
-#include <optional>
 #include <ranges>
-#include <span>
-#include <string_view>
 
 #include "core/atomic_file.h"
 #include "core/error.h"

@@ -4,15 +4,9 @@
 #pragma once
 
 #include <atomic>
-#include <cstdint>
-#include <filesystem>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
-#include <memory>
 #include <mutex>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include "core/progress.h"
 #include "edit/status.h"
@@ -88,9 +82,9 @@ struct LoadedLayer {
     glm::dvec2 radius{0.0};     // smallest and largest, scene units: what look.radius 0, 0 means; 0: unknown
     AutomaticValues automatic;  // come with the histograms
     SourceParams source;
-    std::string name;                          // which the seed may depend on
-    std::vector<std::filesystem::path> files;  // it was made of; come with the histograms
-    bool outdated = false;                     // one of them was changed since
+    std::string name;             // which the seed may depend on
+    std::vector<fs::path> files;  // it was made of; come with the histograms
+    bool outdated = false;        // one of them was changed since
 };
 
 /// A set with its tree, as a sample of so many splats.
@@ -127,8 +121,8 @@ LayerHistograms histograms(const SplatSet& set, const SourceParams& source);
 
 struct KeptTree {
     std::shared_ptr<const MergeTree> tree;
-    std::filesystem::path file;  // where it is or belongs; empty: no cache
-    bool cached = false;         // read from there
+    fs::path file;        // where it is or belongs; empty: no cache
+    bool cached = false;  // read from there
 };
 
 /// The set's tree, from the cache or built. Throws as build_merge_tree does.

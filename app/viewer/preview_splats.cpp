@@ -1,11 +1,7 @@
 // The quickest of a few frames counts: what disturbs one (a cut, another program) only makes it slower.
 #include "viewer/preview_splats.h"
 
-#include <algorithm>
-#include <cmath>
-#include <functional>
 #include <iterator>
-#include <utility>
 
 #include "core/progress.h"
 #include "look/apply.h"

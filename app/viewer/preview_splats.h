@@ -6,13 +6,6 @@
 // frame comes, images of the same view with more of them.
 #pragma once
 
-#include <cstdint>
-#include <memory>
-#include <optional>
-#include <span>
-#include <string>
-#include <vector>
-
 #include "gl/preview_layer.h"
 #include "merge/cut.h"
 #include "render/render.h"

@@ -2,10 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <regex>
 #include <system_error>
-#include <utility>
 
 #include "core/atomic_file.h"
 #include "core/error.h"

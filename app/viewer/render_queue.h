@@ -6,13 +6,6 @@
 // stood then. Out: each job's progress and its result.
 #pragma once
 
-#include <cstdint>
-#include <filesystem>
-#include <memory>
-#include <optional>
-#include <string>
-#include <vector>
-
 #include "edit/command_lines.h"
 #include "edit/document.h"
 #include "edit/settings.h"
@@ -66,7 +59,7 @@ class FarmJob {
     /// At the last look a task waited or ran.
     bool is_active() const { return report_.active; }
     /// Of frames that are there.
-    const std::vector<std::filesystem::path>& files() const { return files_; }
+    const std::vector<fs::path>& files() const { return files_; }
 
   private:
     enum class Task { submit, watch, cancel };
@@ -84,7 +77,7 @@ class FarmJob {
     std::string output_, text_ = "Submitting";
     std::vector<std::int64_t> jobs_;  // its own in Slurm's queue; none: others had taken all frames
     FarmReport report_;
-    std::vector<std::filesystem::path> files_;
+    std::vector<fs::path> files_;
     double began_s_ = 0.0, next_s_ = 0.0;
     int idle_reports_ = 0;  // that found frames missing and nothing in the queue
     bool cancelled_ = false;
@@ -99,7 +92,7 @@ struct ProcessStep {
 struct JobPlan {
     std::vector<ProcessStep> steps;  // one after the other
     std::int64_t frames = 0;         // that are saved; 0: none
-    std::filesystem::path folder;    // its own, removed at the end; empty: it needs none
+    fs::path folder;                 // its own, removed at the end; empty: it needs none
     std::string scene_text;          // which is written there as scene.toml
 };
 
@@ -123,7 +116,7 @@ class RenderJob {
     std::string text() const;                     // "frame 12 (3/10)", or the last line of a job that failed
     float progress() const { return progress_; }  // 0..1
     /// Frames it has saved, in the order in which they came.
-    const std::vector<std::filesystem::path>& files() const { return saved_; }
+    const std::vector<fs::path>& files() const { return saved_; }
 
   private:
     void begin_step();
@@ -137,7 +130,7 @@ class RenderJob {
     std::optional<ChildProcess> process_;
     std::string partial_, last_line_;
     float progress_ = 0.0f;
-    std::vector<std::filesystem::path> saved_;
+    std::vector<fs::path> saved_;
 };
 
 class RenderQueue {
@@ -151,7 +144,7 @@ class RenderQueue {
     /// copy of the scene beside its frames. Throws InputError where the task cannot be rendered, OutputError.
     void add(const RenderTask& task, const Document& document);
     /// Writes a layer's prepared picture, as the command `prepare` does. Throws InputError.
-    void add_preparation(const SourceParams& source, const std::filesystem::path& folder);
+    void add_preparation(const SourceParams& source, const fs::path& folder);
 
     /// Earlier submissions of the document's frames to a farm come into the list, once poll() has heard of
     /// it. In place of another document's.
@@ -184,11 +177,11 @@ class RenderQueue {
         std::string answer;
     };
 
-    Job& push(std::string title, std::filesystem::path target);
+    Job& push(std::string title, fs::path target);
     void begin_next(double now);
     static std::optional<Message> take_end(Job& job, QueuedJob::State end);
     void add_to_farm(const RenderTask& task, const Document& document);
-    Job& add_farm_job(FarmCommands commands, const std::string& title, std::filesystem::path target);
+    Job& add_farm_job(FarmCommands commands, const std::string& title, fs::path target);
     void take_earlier();
     void add_earlier(const SubmittedFrames& submitted, const std::string& output);
     static std::optional<Message> poll_farm(Job& job, double now);

@@ -5,9 +5,7 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
-#include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <cstdio>
 #include <mutex>
 #include <thread>
@@ -105,7 +103,7 @@ class Loop {
     void frame() {
         if (interrupted_) interrupt(session_);
         if (window_.close_requested()) gui_.ask_to_quit();
-        const std::vector<std::filesystem::path> dropped = window_.take_dropped();
+        const std::vector<fs::path> dropped = window_.take_dropped();
         if (!dropped.empty()) drop(session_, dropped);
         const double now = seconds_now();
         advance(session_, now);

@@ -1,7 +1,5 @@
 #include "viewer/session.h"
 
-#include <algorithm>
-#include <cmath>
 #include <new>
 
 #include "camera_files/camera_track.h"

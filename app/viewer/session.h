@@ -4,18 +4,10 @@
 // widgets. Needs a current OpenGL context.
 #pragma once
 
-#include <cstdint>
-#include <filesystem>
 #include <glm/vec2.hpp>
 #include <map>
-#include <memory>
-#include <optional>
 #include <set>
-#include <span>
-#include <string>
 #include <tuple>
-#include <utility>
-#include <vector>
 
 #include "edit/document.h"
 #include "edit/kept_files.h"
@@ -73,9 +65,9 @@ struct Session {
     WatchedFiles disk;
     RenderQueue jobs;
     /// Revision and file of the document, and the task, that the command in the status is of.
-    std::optional<std::tuple<std::uint64_t, std::filesystem::path, RenderTask>> command_source;
+    std::optional<std::tuple<std::uint64_t, fs::path, RenderTask>> command_source;
     FinishedFrames finished{finished_frames()};
-    std::pair<std::filesystem::path, FrameHeader> finished_header;  // of the file looked at
+    std::pair<fs::path, FrameHeader> finished_header;  // of the file looked at
     UploadedImage<FinishedView> finished_image;
     RenderedFrames rendered;
     UploadedImage<PackedImage> rendered_image;
@@ -85,10 +77,10 @@ struct Session {
     Autosave autosave{autosave_folder(), autosave_interval(preferences.settings)};
 
     bool quitting = false, fresh_demo = false;
-    bool viewport_is_frame = false;                   // for a screenshot without panels
-    std::int64_t fixed_splats = 0;                    // of the preview; 0: by the frame rate
-    std::optional<std::filesystem::path> screenshot;  // asked for: the caller reads the window and saves it
-    std::optional<std::string> clipboard;             // text for it
+    bool viewport_is_frame = false;        // for a screenshot without panels
+    std::int64_t fixed_splats = 0;         // of the preview; 0: by the frame rate
+    std::optional<fs::path> screenshot;    // asked for: the caller reads the window and saves it
+    std::optional<std::string> clipboard;  // text for it
     MessageAge message_age;
     double memory_counted_at = -1e9;    // s
     std::set<std::string> said_errors;  // of the frame and the layers, that still hold
@@ -111,7 +103,7 @@ void navigate(Session& session, const ViewportInput& input, double now);
 /// Carries them out and empties the list; errors become the message line.
 void carry_out(Session& session, Commands& commands);
 /// Files dropped on the window.
-void drop(Session& session, const std::vector<std::filesystem::path>& files);
+void drop(Session& session, const std::vector<fs::path>& files);
 
 /// Of a session in which nothing goes on: it looks at the disk and saves by itself.
 constexpr double idle_due_s = 1.0;
@@ -126,12 +118,12 @@ std::string title(const Session& session);
 /// For the message line and the log.
 void say(Status& status, const std::string& text, bool error = false);
 /// A scene, or anything that becomes one. Throws InputError.
-void open_file(Session& session, const std::filesystem::path& file);
+void open_file(Session& session, const fs::path& file);
 
 /// For screenshots: the preview draws a fixed number of splats instead of one that holds a frame rate; and
 /// where the panels are left out, the whole viewport is the frame, whatever the output's aspect.
 void prepare_screenshot(Session& session, bool with_panels);
-void save_screenshot(Session& session, const std::filesystem::path& file, int width, int height,
+void save_screenshot(Session& session, const fs::path& file, int width, int height,
                      const std::vector<unsigned char>& rgba);
 
 /// For SIGTERM: writes an autosave, which stays, and throws Cancelled.
@@ -148,7 +140,7 @@ Document demo_document(std::span<const Assignment> assignments = {});
 /// Offers to choose a picture for a layer whose mesh has none; takes an older offer back.
 void offer_picture(Session& session, std::size_t layer);
 /// The first of File > Open recent.
-void note_recent(Session& session, const std::filesystem::path& file);
+void note_recent(Session& session, const fs::path& file);
 /// Fills Status::recoveries.
 void find_recoveries(Status& status);
 /// Says in the message line why the frame or a layer failed; `said`: what was said of those that still do.

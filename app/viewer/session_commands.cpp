@@ -1,7 +1,4 @@
 // Commands of menus and shortcuts to a session: a table from commands to functions.
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
 #include <iterator>
 
 #include "core/atomic_file.h"
@@ -63,7 +60,7 @@ void recover_autosave(State& s, const Command& c) {
 
 void new_scene(State& s, const Command& c) {
     const std::string text = c.text.empty() ? empty_scene_text() : shape_scene_text(c.text);
-    take_document(s, Document::untitled(text, std::filesystem::absolute("untitled.toml")));
+    take_document(s, Document::untitled(text, fs::absolute("untitled.toml")));
     offer_picture(s, 0);
 }
 
@@ -81,7 +78,7 @@ void choose_picture(State& s, const Command& c) {
     const LayerParams* layer = layer_at(s, c.index);
     if (!layer || layer->source.meshes.empty()) return;
     const std::string key = layer_key(layer->name) / "source.meshes.0.texture";
-    s.document.set(key, std::filesystem::absolute(c.path).string(), s.view.frame);
+    s.document.set(key, fs::absolute(c.path).string(), s.view.frame);
     s.view.grey_layer.clear();
 }
 
@@ -90,7 +87,7 @@ void set_reference(State& s, const Command& c) {
     s.document.edit("Reference " + c.path.filename().string(), [&](Scene& scene) {
         const auto index = find_reference(scene, reference_view(s.view.view), s.view.frame);
         if (!index) scene.references.emplace_back();
-        (index ? scene.references[*index] : scene.references.back()).file = std::filesystem::absolute(c.path);
+        (index ? scene.references[*index] : scene.references.back()).file = fs::absolute(c.path);
     });
     show_reference(s.view);
 }
@@ -103,7 +100,7 @@ std::string frames_in_words(const Track& track) {
 
 void import_camera(State& s, const Command& c) {
     s.document.edit("Import camera " + c.path.filename().string(),
-                    [&](Scene& scene) { scene.camera.file = std::filesystem::absolute(c.path); });
+                    [&](Scene& scene) { scene.camera.file = fs::absolute(c.path); });
     const std::vector<Track>& tracks = s.document.scene().imported.camera->tracks;
     if (!tracks.empty())
         say(s.status, "Camera of " + c.path.filename().string() + ": " + frames_in_words(tracks.front()));

@@ -3,9 +3,6 @@
 // background thread and uploaded once.
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
-
 #include "core/error.h"
 #include "edit/command_lines.h"
 #include "frame/output_pattern.h"

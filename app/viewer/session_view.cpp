@@ -2,8 +2,6 @@
 // viewport, with lines of the camera over them; and the widgets get the state of both.
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
 #include <glm/gtc/type_precision.hpp>
 
 #include "core/error.h"

@@ -3,7 +3,6 @@
 // says next: the list is used under the lock, the work is done without it.
 #include "viewer/set_loader.h"
 
-#include <algorithm>
 #include <exception>
 #include <new>
 

@@ -8,16 +8,9 @@
 #pragma once
 
 #include <atomic>
-#include <cstdint>
-#include <functional>
 #include <list>
 #include <map>
-#include <memory>
 #include <mutex>
-#include <optional>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include "core/worker.h"
 #include "edit/document.h"

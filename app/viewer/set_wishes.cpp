@@ -2,8 +2,6 @@
 
 #include <time.h>
 
-#include <algorithm>
-#include <cmath>
 #include <tuple>
 
 #include "core/parallel.h"

@@ -4,15 +4,11 @@
 // a lower one would hold up the pool's threads at the end of every loop on a busy machine.
 #include "viewer/view_frame.h"
 
-#include <algorithm>
 #include <atomic>
-#include <cassert>
-#include <cmath>
 #include <cstring>
 #include <mutex>
 #include <new>
 #include <stdexcept>
-#include <utility>
 
 #include "core/error.h"
 #include "core/progress.h"

@@ -4,13 +4,6 @@
 // `--batch` at that size.
 #pragma once
 
-#include <cstdint>
-#include <limits>
-#include <memory>
-#include <optional>
-#include <string>
-#include <vector>
-
 #include "core/image.h"
 #include "edit/status.h"
 #include "edit/view_state.h"

@@ -1,9 +1,6 @@
 #include "viewer/view_motion.h"
 
-#include <algorithm>
-#include <cmath>
 #include <glm/geometric.hpp>
-#include <utility>
 
 #include "camera/projection.h"
 #include "core/error.h"

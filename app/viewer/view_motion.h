@@ -6,7 +6,6 @@
 #include <deque>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
-#include <vector>
 
 #include "edit/document.h"
 #include "edit/view_state.h"

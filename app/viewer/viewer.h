@@ -3,10 +3,6 @@
 #pragma once
 
 #include <atomic>
-#include <filesystem>
-#include <optional>
-#include <string>
-#include <vector>
 
 #include "edit/settings.h"
 #include "scene/load.h"
@@ -16,7 +12,7 @@ namespace astrosplat {
 
 /// The options of a session at its start, in a window or without one.
 struct ViewerOptions {
-    std::filesystem::path input;          // scene, picture, mesh or splat file; empty: the demo
+    fs::path input;                       // scene, picture, mesh or splat file; empty: the demo
     std::vector<Assignment> assignments;  // --set
     SetCache cache;
     std::string program;                              // this very program's file, which does the jobs
@@ -26,7 +22,7 @@ struct ViewerOptions {
 
 struct ScreenshotOptions {
     ViewerOptions scene;
-    std::filesystem::path output;      // .png, or .exr without `ui`
+    fs::path output;                   // .png, or .exr without `ui`
     std::optional<std::string> size;   // "960x540" px: of the frame, with `ui` of the window
     std::optional<std::string> frame;  // default: the first
     bool ui = false;                   // with the panels

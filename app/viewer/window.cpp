@@ -6,12 +6,9 @@
 #include <glad/gl.h>
 #include <imgui.h>
 
-#include <algorithm>
-#include <cmath>
 #include <glm/vec2.hpp>
 #include <initializer_list>
 #include <iterator>
-#include <utility>
 
 #include "core/hash.h"
 #include "gui/gui.h"
@@ -318,7 +315,7 @@ bool Window::close_requested() {
     return asked;
 }
 
-std::vector<std::filesystem::path> Window::take_dropped() { return std::exchange(dropped_, {}); }
+std::vector<fs::path> Window::take_dropped() { return std::exchange(dropped_, {}); }
 
 void Window::set_title(const std::string& title) { glfwSetWindowTitle(window_, title.c_str()); }
 

@@ -3,12 +3,9 @@
 // given out in portions that one frame of widgets can take.
 #pragma once
 
-#include <cstdint>
 #include <deque>
-#include <filesystem>
-#include <string>
-#include <vector>
 
+#include "core/standard.h"
 #include "gl/objects.h"
 
 struct GLFWwindow;
@@ -71,7 +68,7 @@ class Window {
     bool end_frame(std::uint64_t frames);
 
     bool close_requested();  // and forgets it
-    std::vector<std::filesystem::path> take_dropped();
+    std::vector<fs::path> take_dropped();
     void set_title(const std::string& title);
     /// Px at scale 1, for the preferences.
     void size(int& width, int& height) const;
@@ -106,7 +103,7 @@ class Window {
     int frames_opening_ = 0;
     double widget_time_s_ = 0.0, frame_began_s_ = 0.0, frame_took_s_ = 0.0;
     GlInfo gl_;
-    std::vector<std::filesystem::path> dropped_;
+    std::vector<fs::path> dropped_;
 };
 
 /// Needs a current OpenGL context, and to be the only user of Dear ImGui.

@@ -1,8 +1,6 @@
 // Reading through the description, writing through the document.
 #include "gui/panel/context.h"
 
-#include <algorithm>
-
 #include "edit/edits.h"
 #include "look/prepare.h"
 #include "look/shared_look.h"

@@ -6,17 +6,10 @@
 
 #include <imgui.h>
 
-#include <filesystem>
-#include <functional>
 #include <glm/vec4.hpp>
 #include <map>
-#include <memory>
-#include <optional>
 #include <set>
-#include <string>
 #include <unordered_map>
-#include <utility>
-#include <vector>
 
 #include "gui/gui_frame.h"
 #include "scene/describe.h"
@@ -152,7 +145,7 @@ class Panel {
     /// The parameter that a file was asked for since the last call.
     std::optional<ParameterKey> take_request() { return std::exchange(memory_.request, std::nullopt); }
     /// The dialog's answer: an edit of the document.
-    void answer(const ParameterKey& key, const std::filesystem::path& file, const GuiFrame& frame);
+    void answer(const ParameterKey& key, const fs::path& file, const GuiFrame& frame);
 
     /// Unfolds every section, as a person could one by one.
     void open_all() { memory_.all_open = true; }

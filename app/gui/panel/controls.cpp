@@ -4,10 +4,6 @@
 #include <imgui_internal.h>
 #include <imgui_stdlib.h>
 
-#include <algorithm>
-#include <cmath>
-#include <filesystem>
-
 #include "edit/command_lines.h"
 #include "edit/edits.h"
 #include "gui/panel/parts.h"
@@ -285,7 +281,7 @@ std::size_t places(const std::string& number) {
 }
 
 std::string file_name(const std::string& text) {
-    const std::filesystem::path path(text);
+    const fs::path path(text);
     return path.has_filename() ? path.filename().string() : text;
 }
 

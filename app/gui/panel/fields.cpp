@@ -1,6 +1,5 @@
 // A parameter's row: its value, one function per kind, and what is around it: label with tick, diamond,
 // tooltip, menu, message.
-#include <cmath>
 
 #include "core/color.h"
 #include "edit/edits.h"

@@ -6,7 +6,6 @@
 #include <imgui_internal.h>
 #include <imgui_stdlib.h>
 
-#include <algorithm>
 #include <set>
 
 #include "core/color.h"

@@ -1,5 +1,4 @@
 // The panel as a whole: the layers with the tabs of the selected one, or the tabs of the scene.
-#include <algorithm>
 
 #include "gui/panel/parts.h"
 
@@ -139,7 +138,7 @@ void Panel::draw(const GuiFrame& frame) {
     panel::draw_all(context);
 }
 
-void Panel::answer(const ParameterKey& key, const std::filesystem::path& file, const GuiFrame& frame) {
+void Panel::answer(const ParameterKey& key, const fs::path& file, const GuiFrame& frame) {
     panel::describe_current(memory_, frame.document, frame.view.frame);
     panel::Context context{frame, memory_};
     panel::set_value(context, key, file.string());

@@ -4,13 +4,7 @@
 // heads, notes, buttons; and values in words, which do not depend on the locale.
 #pragma once
 
-#include <cstdint>
-#include <functional>
 #include <initializer_list>
-#include <optional>
-#include <span>
-#include <string>
-#include <vector>
 
 #include "gui/panel/context.h"
 #include "gui/widgets.h"

@@ -2,8 +2,6 @@
 // person drags live in the document; the panel remembers only which one is selected.
 #include "gui/panel/parts.h"
 
-#include <algorithm>
-
 #include "edit/edits.h"
 #include "look/shared_uniforms.h"
 #include "scene/describer.h"

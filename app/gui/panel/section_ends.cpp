@@ -1,7 +1,5 @@
 // What single sections have besides the rows of parameters: the names of colour management, the two images
 // of a preparation, handles in the view, references, a look as a whole.
-#include <algorithm>
-#include <cmath>
 
 #include "core/text.h"
 #include "gui/panel/parts.h"

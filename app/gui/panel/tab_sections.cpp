@@ -1,7 +1,5 @@
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "core/file_format.h"
 #include "core/text.h"
 #include "edit/edits.h"
@@ -127,7 +125,7 @@ std::string place_state(const Context& context) {
 std::string environment_state(const Context& context) {
     const EnvironmentParams& environment = context.scene().environment;
     if (environment.image.empty() && environment.cube.empty() && environment.tile.empty()) return "none";
-    const std::filesystem::path& file = environment.tile.empty() ? environment.image : environment.tile;
+    const fs::path& file = environment.tile.empty() ? environment.image : environment.tile;
     return environment.visible ? file.filename().string() : "hidden";
 }
 
