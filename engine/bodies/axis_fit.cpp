@@ -419,7 +419,7 @@ void set_rings(const Image& light, const LikelyAxis& best, AxisFit& fit) {
 }  // namespace
 
 bool is_about_axis(const AxisFit& fit) {
-    constexpr double least_explained = 0.6, least_alike = 0.5;
+    constexpr double least_explained = 0.6, least_alike = 0.5;  // tests/numbers redoes them
     return fit.explained >= least_explained && fit.alike >= least_alike;
 }
 

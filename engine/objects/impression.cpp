@@ -390,8 +390,8 @@ std::string why_of(const Weights& likeliest, const Weights& next, const Measures
     return fmt::format("{}, and {}", first, say(other->second));
 }
 
-// Comets, and stars alone: smooth light that gathers, with no like on its other side. No picture that
-// the model was made of has it, but for the comet itself.
+// Comets, and stars alone: smooth light that gathers, with no like on its other side. No picture that the
+// model was made of has it, but for the comet itself; tests/numbers redoes it on painted ones.
 bool is_thin(const Impression& s) {
     return s.small < 0.035 && s.detail < 0.06 && s.sides > 0.2 && s.peak > 1.2;
 }

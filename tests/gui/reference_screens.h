@@ -3,8 +3,6 @@
 // neither the rasteriser of fonts nor a rendered picture shows in them.
 #pragma once
 
-#include <string>
-
 #include "gui/software_draw.h"
 
 namespace astrosplat {

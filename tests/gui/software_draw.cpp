@@ -1,9 +1,6 @@
 // Triangles with interpolated colour and texture, "over" in 8 bits.
 #include "gui/software_draw.h"
 
-#include <algorithm>
-#include <array>
-#include <cmath>
 #include <fstream>
 
 namespace astrosplat {

@@ -7,7 +7,6 @@
 #include <sys/wait.h>
 
 #include <iostream>
-#include <utility>
 
 #include "mutant.h"
 #include "support/test.h"

@@ -12,9 +12,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <chrono>
-#include <optional>
 #include <stdexcept>
 
 namespace astrosplat::test {
