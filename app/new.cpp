@@ -107,7 +107,9 @@ std::string columns_text(const fs::path& picture, const fs::path& place, const N
         throw InputError("--object: expected a scene of bodies, found --shape or --as plane");
     if (!options.shape.empty() && !options.as.empty() && options.as != "plane")
         throw InputError(fmt::format("--shape: expected no other kind of scene, found --as {}", options.as));
-    return new_scene_text(picture, options.shape.empty() ? "plane" : options.shape, place);
+    const std::string shape = options.shape.empty() ? "plane" : options.shape;
+    const bool as_large = shape == "plane" || shape == "relief";  // as the picture in both directions
+    return new_scene_text(picture, shape, place, as_large ? scale_text_of(picture) : "");
 }
 
 int run_new(const CommandOptions& options, const NewOptions& own) {

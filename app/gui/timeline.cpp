@@ -290,11 +290,21 @@ void select_keyframe(TimelineState& t, const KeyframePlace& place) {
 }
 
 std::string distance_text(const Scene& scene, double frame, const Bounds& box) {
+    constexpr double step = 0.25;  // frames
     if (scene.light_years_per_unit == 0.0) return "";
-    const auto camera = try_free_camera(scene_at(scene, frame).camera, box, aspect_of(scene.output));
+    const auto camera_at = [&](double at) {
+        return try_free_camera(scene_at(scene, at).camera, box, aspect_of(scene.output));
+    };
+    const auto before = camera_at(frame - step), camera = camera_at(frame), after = camera_at(frame + step);
     if (!camera) return "";
     const double distance = glm::distance(camera->position, camera->pivot);
-    return "target at " + length_text(distance, scene.light_years_per_unit);
+    std::string text = "target at " + length_text(distance, scene.light_years_per_unit);
+    double way = 0.0;  // the longer one: at a path's ends the camera stands still on one side
+    for (const auto& other : {before, after})
+        if (other) way = std::max(way, glm::distance(camera->position, other->position));
+    if (way == 0.0) return text;
+    const double speed = way / step * scene.output.fps * scene.light_years_per_unit;
+    return text + "; " + light_years_text(speed) + "/s";
 }
 
 double zoom_of(float wheel) { return wheel > 0 ? 1.0 / 1.25 : 1.25; }

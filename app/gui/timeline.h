@@ -84,9 +84,9 @@ struct TimelineState {
 
 void draw_timeline(TimelineState& t, GuiFrame& frame, const Rect& area);
 
-/// How far the scene's camera is from what it looks at: "target at 14.2 scene units, 35.8 kly"; nothing where
-/// the scene does not know how long a unit is. `box`: of the visible layers, which a camera without a
-/// position frames.
+/// How far the scene's camera is from what it looks at, and where it moves how fast: "target at 14.2 scene
+/// units, 35.8 kly; 2.5 kly/s"; nothing where the scene does not know how long a unit is. `box`: of the
+/// visible layers, which a camera without a position frames.
 std::string distance_text(const Scene& scene, double frame, const Bounds& box);
 
 /// Of a move of the mouse's wheel: below 1 where less is to be shown.

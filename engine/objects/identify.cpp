@@ -217,13 +217,18 @@ std::vector<SkyObject> objects_of_category(std::string_view category) {
     return known ? known->objects : SkyObjects{};
 }
 
+Identification said_of(const ObjectClues& clues) {
+    Identification found;
+    found.metadata = clues.metadata;
+    found.known = known_object(clues);
+    found.distance_ly = clues.metadata.distance_ly;
+    if (!found.distance_ly && found.known) found.distance_ly = found.known->distance_ly;
+    return found;
+}
+
 Identification identify(const ObjectClues& clues, const Image& light, std::optional<SkyObject> as) {
     const ObjectMetadata& metadata = clues.metadata;
-    Identification found;
-    found.metadata = metadata;
-    found.known = known_object(clues);
-    found.distance_ly = metadata.distance_ly;
-    if (!found.distance_ly && found.known) found.distance_ly = found.known->distance_ly;
+    Identification found = said_of(clues);
     const Impression impression = impression_of(light);
     found.middle = impression.middle;
     if (as) {

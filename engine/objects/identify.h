@@ -43,6 +43,9 @@ struct Identification {
     std::optional<double> distance_ly;               // by metadata, else by the catalogue
 };
 
+/// What is known of the object before its light is looked at: metadata, known, distance_ly.
+Identification said_of(const ObjectClues& clues);
+
 /// Puts what is said and what is seen together: AVM's categories, the catalogue's entry of a name in the
 /// metadata or the file's name, words of the title and file's name, and the light are taken for independent
 /// witnesses, each with the share of pictures of which it is right (Bayes' rule, no kind likelier than

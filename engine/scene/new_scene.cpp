@@ -43,7 +43,7 @@ exposure   = 0.0                  # stops; acts in .png and .tif, exr holds scen
 
 [camera]                          # without a position it frames everything, from 35 degrees above
 fov = 40.0                        # degrees, vertical
-
+{scale}
 [[layer]]
 name = {name}
 
@@ -73,6 +73,17 @@ opacity = 1.0                     # of the whole layer
 # "camera.position" = {{ keys = [[1, [0, 12, 12]], [240, [0, 2, 6]]], interpolation = "smooth" }}
 )";
 
+constexpr double longest_side = 10.0;  // scene units, of the built-in plane
+
+// How long a scene unit is, where the picture's pixels have a length; 0: none.
+std::string scale_text(double light_years_per_px, double width_px, double height_px) {
+    if (light_years_per_px == 0.0) return "";
+    return fmt::format(
+        "\n[scene]\nlight_years_per_unit = {:.6g}   # the picture is {} wide, by its scale on the sky\n",
+        light_years_per_px * std::max(width_px, height_px) / longest_side,
+        light_years_text(light_years_per_px * width_px));
+}
+
 /// The path of a picture as a scene in `file` writes it.
 std::string picture_path(const fs::path& image, const fs::path& file) {
     const fs::path folder = fs::absolute(file).lexically_normal().parent_path();
@@ -83,13 +94,21 @@ std::string picture_path(const fs::path& image, const fs::path& file) {
 
 }  // namespace
 
-std::string new_scene_text(const fs::path& image, const std::string& shape, const fs::path& file) {
+std::string scale_text_of(const fs::path& image) {
+    const ImageRows rows = open_picture_rows(image).rows;
+    const auto width = double(rows.width), height = double(rows.height);
+    return scale_text(light_years_per_px(said_of(clues_of(image)), width, height).value_or(0.0), width,
+                      height);
+}
+
+std::string new_scene_text(const fs::path& image, const std::string& shape, const fs::path& file,
+                           const std::string& scale) {
     if (std::ranges::find(shapes, shape) == shapes.end())
         throw InputError(fmt::format("--shape: expected plane, relief, disk or sphere, found '{}'{}", shape,
                                      did_you_mean(shape, shapes)));
     const std::string name = layer_name_of(image.stem().string(), "picture");
     return fmt::format(scene_format, fmt::arg("title", name), fmt::arg("name", to_toml(name)),
-                       fmt::arg("path", to_toml("frames/" + name + ".####.exr")),
+                       fmt::arg("path", to_toml("frames/" + name + ".####.exr")), fmt::arg("scale", scale),
                        fmt::arg("shape", to_toml(shape)),
                        fmt::arg("picture", to_toml(picture_path(image, file))),
                        fmt::arg("relief", shape == "relief" ? ", relief = 0.15" : ""),
@@ -111,7 +130,6 @@ std::string layer_name_of(const std::string& text, const char* otherwise) {
 
 namespace {
 
-constexpr double longest_side = 10.0;  // scene units, of the built-in plane
 constexpr std::int64_t longest_px = 1920;
 constexpr double field_of_view = 40.0;  // degrees
 // Of what is as deep as it is wide: from near by its front would be large and its back small.
@@ -440,16 +458,6 @@ std::string stars_text(const PictureScene& scene, const std::string& picture, do
         fmt::arg("psf", fmt::format("{:.2f}", std::max(least_px, scene.star_px * frame_px_per_px))));
 }
 
-// How long a scene unit is, where the picture's pixels have a length.
-std::string scale_text(const PictureScene& scene) {
-    if (scene.light_years_per_px == 0.0) return "";
-    const auto longest = double(std::max(scene.width_px, scene.height_px));
-    const double width = scene.light_years_per_px * double(scene.width_px);
-    return fmt::format(
-        "\n[scene]\nlight_years_per_unit = {:.6g}   # the picture is {} wide, by its scale on the sky\n",
-        scene.light_years_per_px * longest / longest_side, light_years_text(width));
-}
-
 // Of the picture's width: room for a galaxy to end round, and for a cloud to fray. An object alone on a
 // dark sky needs it where but an arm leaves the picture, or that would be cut off straight. One of many
 // pixels fades within its own edges: a margin would need too much memory.
@@ -542,7 +550,9 @@ std::string picture_scene_text(const PictureScene& scene, const fs::path& file) 
                                : "\"1\"                  # such as \"1-240\" or \"1-100,120,200-300x2\""),
         fmt::arg("path", to_toml("frames/" + name + ".####.exr")),
         fmt::arg("distance", fmt::format("{:.6g}", distance)), fmt::arg("fov", fmt::format("{:.1f}", fov)),
-        fmt::arg("scale", scale_text(scene)), fmt::arg("picture", to_toml(picture_path(scene.image, file))),
+        fmt::arg("scale",
+                 scale_text(scene.light_years_per_px, double(scene.width_px), double(scene.height_px))),
+        fmt::arg("picture", to_toml(picture_path(scene.image, file))),
         fmt::arg("kind", to_toml(std::string(name_of(scene.structure)))),
         fmt::arg("galaxies", galaxies_text(scene)),
         fmt::arg("because",

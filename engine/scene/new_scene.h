@@ -13,8 +13,13 @@
 namespace astrosplat {
 
 /// The commented text of a scene file `file` that shows `image` on a built-in shape: plane, relief, disk or
-/// sphere. Throws InputError for another shape.
-std::string new_scene_text(const fs::path& image, const std::string& shape, const fs::path& file);
+/// sphere; `scale`: of scale_text_of(). Throws InputError for another shape.
+std::string new_scene_text(const fs::path& image, const std::string& shape, const fs::path& file,
+                           const std::string& scale = "");
+
+/// The lines that say how long a scene unit is where `image` is 10 units along its longer side; empty where
+/// its file does not tell. Throws InputError where it cannot be read.
+std::string scale_text_of(const fs::path& image);
 
 /// Letters, digits and _ of a file's or person's name, beginning with a letter; `otherwise` where none is
 /// left.

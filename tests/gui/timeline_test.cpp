@@ -3,6 +3,7 @@
 #include "edit/edits.h"
 #include "gui/test_window.h"
 #include "gui/widgets.h"
+#include "scene/load.h"
 #include "support/test.h"
 
 namespace astrosplat {
@@ -16,6 +17,15 @@ TEST_F(TimelineTest, TheTargetsDistanceIsSaidWhereAUnitHasALength) {
     EXPECT_EQ(distance_text(scene, 1.0, {}), "");
     scene.light_years_per_unit = 2000.0;
     EXPECT_EQ(distance_text(scene, 1.0, {}), "target at 5 scene units, 10 kly");
+    scene.animation.push_back(
+        parse_scene("astrosplat = 1\n[animation]\n\"camera.position\" = { keys = [[1, [0, 3, 4]], [25, [12, "
+                    "3, 4]]], interpolation = \"linear\" }\n",
+                    "/s.toml")
+            .animation.at(0));
+    EXPECT_HAS(distance_text(scene, 13.0, {}), " units, 15.6 kly; 24 kly/s") << "12 units a second";
+    EXPECT_HAS(distance_text(scene, 1.0, {}), "; 24 kly/s") << "it has begun to move";
+    EXPECT_EQ(distance_text(scene, 40.0, {}).find("/s"), std::string::npos) << "it has come to rest";
+    scene.animation.clear();
     scene.camera.target = *scene.camera.position;
     EXPECT_EQ(distance_text(scene, 1.0, {}), "") << "no camera stands in its own target";
     const auto header = [&] {

@@ -336,6 +336,8 @@ TEST(NewScene, LoadsForEveryShapeAndOddNames) {
     }
     EXPECT_EQ(parse(new_scene_text("51.png", "plane", "a.toml")).layers[0].name, "picture");
     EXPECT_THROW(new_scene_text("a.png", "cube", "a.toml"), InputError);
+    const std::string scale = "\n[scene]\nlight_years_per_unit = 3.5\n";
+    EXPECT_EQ(parse(new_scene_text("a.png", "plane", "a.toml", scale)).light_years_per_unit, 3.5);
 }
 
 }  // namespace
