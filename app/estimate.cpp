@@ -119,7 +119,10 @@ LayerNeed need_of_source(const SetCache& cache, const LayerParams& layer) {
 /// sampled: nullptr, of layers that are not.
 LayerNeed need_of(const BatchPlan& plan, const LayerParams& layer, const SampledRun::Layer* sampled) {
     const bool is_kept = sampled && !sampled->is_made && layer.source.kind == SourceKind::mesh;
-    LayerNeed need = is_kept ? LayerNeed{} : need_of_source(plan.cache, layer);
+    const bool planned = sampled && sampled->making_bytes > 0;  // its pictures need not be read again
+    LayerNeed need = is_kept   ? LayerNeed{}
+                     : planned ? LayerNeed{.making = sampled->making_bytes}
+                               : need_of_source(plan.cache, layer);
     need.params = &layer;
     if (sampled) need.splats = sampled->splats;
     need.splats = std::min(need.splats, most_splats);

@@ -25,9 +25,10 @@ class SampledRun {
 
     struct Layer {
         std::string name;
-        std::int64_t splats = 0;  // of the whole set, about
-        bool is_made = false;     // was not there
-        bool has_radius = false;  // of every splat
+        std::int64_t splats = 0;        // of the whole set, about
+        bool is_made = false;           // was not there
+        bool has_radius = false;        // of every splat
+        std::int64_t making_bytes = 0;  // of bodies that are not there
     };
     /// Null: it was not sampled.
     const Layer* find(const std::string& name) const;

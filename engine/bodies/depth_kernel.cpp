@@ -220,7 +220,81 @@ ASTROSPLAT_DEPTH_LOOP add_spread(float spread, DepthBlock& block) {
     }
 }
 
+// One Gaussian's light in the columns of a block's splats, and the share of all that is before its own.
+struct LineShare {
+    Lane share, begin;
+};
+
+ASTROSPLAT_DEPTH_LOOP add_light(const LineGaussian& g, const LinePlaces& places, int count,
+                                float* HWY_RESTRICT light, float* HWY_RESTRICT sum) {
+    for (int i = 0; i < count; ++i) {
+        const float u = places.u[i], v = places.v[i];
+        light[i] = g.light * as_exp(-u * u * g.u2 - v * v * g.v2);
+        sum[i] = sum[i] + light[i];
+    }
+}
+
+// `begin`: of the shares so far. The last Gaussian has what is left.
+ASTROSPLAT_DEPTH_LOOP add_share(float deviation, bool last, const float* HWY_RESTRICT sum,
+                                float* HWY_RESTRICT begin, LineShare& line, DepthBlock& block) {
+    for (int i = 0; i < block.count; ++i) {
+        const float share = last ? max(1.0f - begin[i], 1e-6f) : line.share[i] / max(sum[i], 1e-30f);
+        line.begin[i] = begin[i];
+        line.share[i] = share;
+        block.height[i] = block.height[i] + share * deviation;
+        begin[i] = begin[i] + share;
+    }
+}
+
+ASTROSPLAT_DEPTH_LOOP shares_before(const DepthBlock& block, int candidate, float* HWY_RESTRICT before) {
+    for (int i = 0; i < block.count; ++i) {
+        const float place = block.even[i] * float(coarse_candidates), within = place - floor(place);
+        before[i] = (float(candidate) + within) / float(coarse_candidates);
+    }
+}
+
+// A number of 0..1 spread as a logistic of that deviation, no farther out than 2.1 scale heights.
+float spread_of(float u) {
+    const float inside = 0.015f + 0.97f * clamp(u, 0.0f, 1.0f);
+    return as_log(inside / (1.0f - inside)) / logistic_deviation;
+}
+
+// Of the candidates that are not before the Gaussian's own share: those of later ones are set again.
+ASTROSPLAT_DEPTH_LOOP find_within(const LineGaussian& g, const LineShare& line, const LinePlaces& places,
+                                  const float* HWY_RESTRICT before, int count, float* HWY_RESTRICT within,
+                                  float* HWY_RESTRICT middle, float* HWY_RESTRICT deviation) {
+    for (int i = 0; i < count; ++i) {
+        const bool reached = before[i] >= line.begin[i];
+        within[i] = reached ? (before[i] - line.begin[i]) / line.share[i] : within[i];
+        middle[i] = reached ? places.v[i] * g.slope : middle[i];
+        deviation[i] = reached ? g.deviation : deviation[i];
+    }
+}
+
+ASTROSPLAT_DEPTH_LOOP spread_about(const float* HWY_RESTRICT within, const float* HWY_RESTRICT middle,
+                                   const float* HWY_RESTRICT deviation, int count, float* HWY_RESTRICT z) {
+    for (int i = 0; i < count; ++i) z[i] = middle[i] + deviation[i] * spread_of(within[i]);
+}
+
 }  // namespace
+
+void spread_candidates_target(std::span<const LineGaussian> gaussians, const LinePlaces& places,
+                              DepthBlock& block, DepthCandidates& candidates) {
+    std::vector<LineShare> lines(gaussians.size());
+    Lane sum, begin, before, within, middle, deviation;
+    for (float* const values : {sum, begin, block.height, within, middle, deviation})
+        clear(values, block.count);
+    for (std::size_t n = 0; n < lines.size(); ++n)
+        add_light(gaussians[n], places, block.count, lines[n].share, sum);
+    for (std::size_t n = 0; n < lines.size(); ++n)
+        add_share(gaussians[n].deviation, n + 1 == lines.size(), sum, begin, lines[n], block);
+    for (int candidate = 0; candidate < coarse_candidates; ++candidate) {
+        shares_before(block, candidate, before);
+        for (std::size_t n = 0; n < lines.size(); ++n)
+            find_within(gaussians[n], lines[n], places, before, block.count, within, middle, deviation);
+        spread_about(within, middle, deviation, block.count, candidates.z[candidate]);
+    }
+}
 
 template <class Places>
 void draw_twice(const NoiseStack& noise, DepthBlock& block, Places places) {
@@ -269,6 +343,7 @@ HWY_EXPORT(disk_depths_target);
 HWY_EXPORT(line_depths_target);
 HWY_EXPORT(noise_sum_target);
 HWY_EXPORT(sheet_depths_target);
+HWY_EXPORT(spread_candidates_target);
 
 void disk_depths(const NoiseStack& noise, DepthBlock& block) {
     HWY_DYNAMIC_DISPATCH(disk_depths_target)(noise, block);
@@ -284,6 +359,11 @@ void noise_sum(const NoiseStack& noise, DepthBlock& block) {
 
 void sheet_depths(const NoiseStack& noise, float spread, DepthBlock& block) {
     HWY_DYNAMIC_DISPATCH(sheet_depths_target)(noise, spread, block);
+}
+
+void spread_candidates(std::span<const LineGaussian> gaussians, const LinePlaces& places, DepthBlock& block,
+                       DepthCandidates& candidates) {
+    HWY_DYNAMIC_DISPATCH(spread_candidates_target)(gaussians, places, block, candidates);
 }
 
 }  // namespace astrosplat

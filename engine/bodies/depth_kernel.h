@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 
 namespace astrosplat {
 
@@ -33,6 +34,25 @@ struct DepthCandidates {
     float z[count][DepthBlock::size];
     float weight[count][DepthBlock::size];  // logarithm
 };
+
+/// Deviation of ln(u / (1 - u)) of an even u.
+inline constexpr float logistic_deviation = 1.8138f;
+
+/// A Gaussian of a galaxy as lines of sight meet it: light exp(-u^2 u2 - v^2 v2) `light` at (u, v), about
+/// the depth v * slope with a standard deviation; texels.
+struct LineGaussian {
+    float light, u2, v2, slope, deviation;
+};
+
+/// Where lines of sight meet a galaxy: along its major axis and across it, texels.
+struct LinePlaces {
+    float u[DepthBlock::size], v[DepthBlock::size];
+};
+
+/// Candidates' z of even shares of what the Gaussians, at least one, shine at each splat's place: where all
+/// are as likely, `even` is the share before its very depth. Sets the heights: the mean deviation.
+void spread_candidates(std::span<const LineGaussian> gaussians, const LinePlaces& places, DepthBlock& block,
+                       DepthCandidates& candidates);
 
 /// z drawn from the candidates, each as likely as exp(weight + sum of gain N(x, y, z)), by the
 /// first three octaves; then from eight places about the one chosen, H_k apart at most, by the others.

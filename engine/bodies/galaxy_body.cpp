@@ -3,6 +3,7 @@
 #include "core/real.h"
 #include "core/shared_maths.h"
 #include "image/channels.h"
+#include "source/source.h"
 
 namespace astrosplat {
 namespace {
@@ -25,10 +26,9 @@ constexpr double least_dust = 1.2;  // texels
 constexpr double flattest_spheroid = 0.35;
 constexpr double widest = 0.42;  // of the picture's width: a Gaussian
 constexpr double seen_from_edge_deg = 75.0;
-constexpr double hidden_from_deg = 66.0, hidden_to_deg = 80.0;
-constexpr double plane_reach = 3.0;            // radii
-constexpr std::int64_t plane_px = 256;         // a side
-constexpr float logistic_deviation = 1.8138f;  // of ln(u / (1 - u))
+constexpr double hidden_to_deg = 80.0;
+constexpr double plane_reach = 3.0;     // radii
+constexpr std::int64_t plane_px = 256;  // a side
 
 // A Gaussian in space: its width along the plane and its thickness across it.
 struct SpaceGaussian {
@@ -304,34 +304,6 @@ float star_depth(const GalaxyBody& body, float x, float y, float u, float in_dis
 
 namespace {
 
-// Candidates of even shares of each splat's light: Gaussian by Gaussian those that fall into its share. Where
-// all are as likely, a splat's even number is the share before its very depth.
-void spread_candidates(const GalaxyBody& body, GalaxyPart part, DepthBlock& block,
-                       DepthCandidates& candidates) {
-    constexpr int count = DepthCandidates::count;
-    const std::vector<LineGaussian>& gaussians = part_of(body, part);
-    for (int i = 0; i < block.count; ++i) {
-        const glm::vec2 uv = along_and_across(body, block.x[i], block.y[i]);
-        const float all = std::max(sum_there(gaussians, uv), 1e-30f);
-        const float place = block.even[i] * float(count), within = place - std::floor(place);
-        float begin = 0.0f, deviations = 0.0f;
-        int next = 0;
-        for (const LineGaussian& g : gaussians) {
-            const bool last = &g == &gaussians.back();
-            const float share = last ? std::max(1.0f - begin, 1e-6f) : light_there(g, uv) / all;
-            const float end = last ? 2.0f : begin + share;
-            deviations += share * g.deviation;
-            for (; next < count; ++next) {
-                const float u = (float(next) + within) / float(count);
-                if (u >= end) break;
-                candidates.z[next][i] = uv.y * g.slope + g.deviation * spread_of((u - begin) / share);
-            }
-            begin = end;
-        }
-        block.height[i] = deviations;
-    }
-}
-
 float invented_at(const GalaxyBody& body, const glm::vec3& p) {
     const float to_px = float(plane_px) / (float(2.0 * plane_reach) * body.radius);
     const auto px = [&](float at) {
@@ -357,7 +329,12 @@ float dust_weight(const GalaxyBody& body, const glm::vec3& p, float z) {
 
 void set_candidates(const GalaxyBody& body, GalaxyPart part, float force, DepthBlock& block,
                     DepthCandidates& candidates) {
-    spread_candidates(body, part, block, candidates);
+    LinePlaces places;
+    for (int i = 0; i < block.count; ++i) {
+        const glm::vec2 uv = along_and_across(body, block.x[i], block.y[i]);
+        places.u[i] = uv.x, places.v[i] = uv.y;
+    }
+    spread_candidates(part_of(body, part), places, block, candidates);
     for (int i = 0; i < block.count; ++i)
         block.clumping[i] =
             part == GalaxyPart::dust ? 1.0f : body.value_at(body.roughness, block.x[i], block.y[i]);

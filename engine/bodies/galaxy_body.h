@@ -23,12 +23,6 @@ namespace astrosplat {
 enum class GalaxyPart { disk, fine, dust, spheroid };
 inline constexpr int galaxy_parts = 4;
 
-/// A Gaussian of the galaxy as lines of sight meet it: light exp(-u^2 u2 - v^2 v2) `light` at (u, v), about
-/// the depth v * slope with a standard deviation; texels.
-struct LineGaussian {
-    float light, u2, v2, slope, deviation;
-};
-
 /// Clouds that light above the smooth galaxy gathers in where its disk is seen from the edge, each at one
 /// depth: or every bright place would be a spoke along its line of sight (INCLINED 3). A lattice about the
 /// galaxy's centre, along its axes.

@@ -52,6 +52,7 @@ SetSample sample_bodies(const SetCache& cache, const SourceParams& source, const
                     layer_name);
     const std::int64_t splats = expected_splats(plan.meshes, plan.structure);
     const std::int64_t texels = largest_picture(plan.meshes);
+    const std::int64_t making_bytes = bodies_memory_bytes(plan.meshes, splats);
     const double reading = seconds_since(start);
     reduce_to(plan.meshes, rows_of(texels), layer_name);
     const double smaller = double(texels) / double(std::max<std::int64_t>(1, largest_picture(plan.meshes)));
@@ -60,6 +61,7 @@ SetSample sample_bodies(const SetCache& cache, const SourceParams& source, const
     sample.set = make_bodies(std::move(plan.meshes), plan.structure, resolved_seed(source.seed, layer_name),
                              layer_name, progress);
     sample.making_seconds = reading + smaller * seconds_since(making);
+    sample.making_bytes = making_bytes;
     sample.splats = source.splats > 0 ? std::min(splats, source.splats) : splats;
     const auto narrower = float(1.0 / std::sqrt(smaller));
     for (float& radius : sample.set.radius) radius *= narrower;

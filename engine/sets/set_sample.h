@@ -12,8 +12,9 @@ namespace astrosplat {
 
 struct SetSample {
     SplatSet set;
-    std::int64_t splats = 0;      // of the whole set, about
-    double making_seconds = 0.0;  // of the whole set, about; 0: it is there
+    std::int64_t splats = 0;        // of the whole set, about
+    double making_seconds = 0.0;    // of the whole set, about; 0: it is there
+    std::int64_t making_bytes = 0;  // at most while bodies are made of their pictures; 0: none are
     /// How many splats a row stands for, at least 1; 0: there are none.
     double each() const { return set.size() > 0 ? double(splats) / double(set.size()) : 0.0; }
 };

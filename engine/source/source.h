@@ -202,6 +202,9 @@ constexpr auto names_of(StructureKind) {
     return names_up_to<StructureKind::axis>("columns", "disk", "sheet", "walls", "axis");
 }
 
+/// Inclination from which a picture cannot tell all of a disk's plane, degrees.
+inline constexpr double hidden_from_deg = 66.0;
+
 /// How a galaxy lies in its picture; empty: found when its set is made.
 struct GalaxyParams {
     std::optional<double> inclination = 0.0;  // degrees, 0 face-on .. 90 edge-on
