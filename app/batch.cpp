@@ -228,6 +228,7 @@ FrameMetadata BatchRun::metadata(const FramePlan& frame, const FrameScene& now,
     metadata.hashed_text = hasher_.canonical_text(now);
     metadata.provenance = scene.provenance;
     if (metadata.provenance.credit.empty()) metadata.provenance.credit = pipeline_->input_credit();
+    metadata.origin = pipeline_->input_origin();
     if (!scene.layers.empty())
         metadata.seed = resolved_seed(scene.layers.front().source.seed, scene.layers.front().name);
     const Camera camera = pipeline_->camera(now, settings);

@@ -205,13 +205,14 @@ void report(const WriteTarget& target, const VoxelGrid& grid, const BakeCounts& 
     fmt::print("{}\n", line);
 }
 
-/// The metadata of a volume's file; `input_credit`: of the scene's files, where it gives none.
-VolumeWords words_about(const FrameScene& frame, const std::string& input_credit) {
+/// The metadata of a volume's file, with the credit of the scene's files, where it gives none.
+VolumeWords words_about(const FrameScene& frame, const Pipeline& pipeline) {
     const ProvenanceParams& from = frame.scene.provenance;
     VolumeWords words = {{"creator", std::string("astrosplat ") + ASTROSPLAT_VERSION},
                          {"title", from.title},
-                         {"credit", from.credit.empty() ? input_credit : from.credit},
+                         {"credit", from.credit.empty() ? pipeline.input_credit() : from.credit},
                          {"type", from.type},
+                         {"origin", pipeline.input_origin()},
                          {"frame", fmt::format("{}", frame.number)},
                          {"exposure_stops", fmt::format("{}", render_settings(frame.scene.output).exposure)},
                          {"density", "extinction per scene unit"},
@@ -386,7 +387,7 @@ int run_export(const CommandOptions& options, const ExportOptions& own) {
     const Progress baking = progress.begin_step("baking");
     if (count > 0) merge_splats(layers, reduced, camera, count, baking);
     if (is_volume(format)) {
-        const VolumeExport volume{gain, voxel_size, words_about(now, pipeline.input_credit()), target};
+        const VolumeExport volume{gain, voxel_size, words_about(now, pipeline), target};
         if (!export_volume(layers, camera, volume, baking)) refuse_nothing(scene);
         return exit_done;
     }

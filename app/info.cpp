@@ -17,6 +17,7 @@
 #include "scene/frames.h"
 #include "source/fits.h"
 #include "source/mesh.h"
+#include "source/origin.h"
 #include "splat_files/splat_file.h"
 #include "stars/catalogue.h"
 
@@ -54,6 +55,7 @@ Report describe_splats(const fs::path& file) {
     report["max_distance"] = set.max_distance;
     report["spacing"] = to_report(set.spacing);
     if (!set.credit.empty()) report["credit"] = set.credit;
+    if (!set.origin.empty()) report["origin"] = set.origin;
     return report;
 }
 
@@ -107,7 +109,7 @@ Report describe_image(const fs::path& file) {
     Report channels = Report::array(), metadata = Report::object();
     for (const auto& [name, type] : info.channels) channels.push_back(name + " " + type);
     for (const auto& [name, value] : info.metadata)
-        metadata[name] = is_packed(name) ? key_count(value) : value;
+        metadata[name] = is_packed(name) ? key_count(value) : trim(value);  // long texts are padded
     Report report = {{"kind", "image"},
                      {"format", info.file_format},
                      {"width", info.width},
@@ -175,6 +177,7 @@ Report describe_layer(const LayerParams& layer) {
         meshes.push_back({{"mesh", input.mesh.string()}, {"texture", textures}});
     }
     if (!meshes.empty()) report["meshes"] = meshes;
+    if (const std::string origin = origin_of(layer.source); !origin.empty()) report["origin"] = origin;
     return report;
 }
 

@@ -1,5 +1,7 @@
 #include "pipeline.h"
 
+#include <fmt/format.h>
+
 #include <glm/matrix.hpp>
 
 #include "camera/camera.h"
@@ -8,6 +10,7 @@
 #include "look/apply.h"
 #include "scene/animate.h"
 #include "scene/layer_setup.h"
+#include "source/origin.h"
 #include "source/texture.h"
 #include "streamed/streamed_set.h"
 
@@ -369,6 +372,19 @@ std::string Pipeline::input_credit() const {
     for (const LayerState& layer : state_->layers)
         if (layer.set || layer.streamed) credits.push_back(facts_of(layer).credit);
     return joined_once(credits);
+}
+
+std::string Pipeline::input_origin() const {
+    std::string text;
+    for (std::size_t i = 0; i < state_->layers.size(); ++i) {
+        const LayerState& layer = state_->layers[i];
+        if (!layer.set && !layer.streamed) continue;
+        const LayerParams& params = state_->scene.layers[i];
+        const std::string& stored = facts_of(layer).origin;
+        const std::string origin = stored.empty() ? origin_of(params.source) : stored;
+        if (!origin.empty()) text += fmt::format("{}{}: {}", text.empty() ? "" : " | ", params.name, origin);
+    }
+    return text;
 }
 
 }  // namespace astrosplat

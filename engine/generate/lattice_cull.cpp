@@ -10,6 +10,7 @@
 
 #include "core/parallel.h"
 #include "core/text.h"
+#include "source/origin.h"
 #include "source/texture.h"
 
 namespace astrosplat {
@@ -129,6 +130,7 @@ void describe_pictures(std::span<const TexturedMesh> meshes, SplatSetFacts& fact
         }
     }
     facts.credit = joined_once(credits);
+    facts.origin = columns_origin;
 }
 
 std::optional<glm::vec2> uv_of(const SurfaceTriangle& triangle, const glm::dvec2& barycentric,

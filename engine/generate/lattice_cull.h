@@ -33,7 +33,7 @@ struct SurfaceTriangle {
 /// result points into `meshes`.
 Buffer<SurfaceTriangle> surface_triangles(std::span<const TexturedMesh> meshes, const glm::dvec3& spacing);
 
-/// Facts about a set as a whole that follow from its pictures: SplatSetFacts::divided and credit.
+/// Facts about a set as a whole that follow from its pictures: SplatSetFacts::divided, credit and origin.
 void describe_pictures(std::span<const TexturedMesh> meshes, SplatSetFacts& facts);
 
 /// (u,v) of a position whose closest point is there: that point's, or, where a camera took the picture, the

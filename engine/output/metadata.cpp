@@ -139,6 +139,7 @@ MetadataEntries metadata_entries(const FrameMetadata& metadata) {
     add("astrosplat/title", metadata.provenance.title);
     add("astrosplat/credit", metadata.provenance.credit);
     add("astrosplat/type", metadata.provenance.type);
+    add("astrosplat/origin", metadata.origin);
     return entries;
 }
 

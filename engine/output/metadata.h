@@ -14,7 +14,7 @@ namespace astrosplat {
 using MetadataEntries = std::vector<std::pair<std::string, std::string>>;
 
 /// "astrosplat/version", "/frameHash", "/pixelHash", "/seed", "/frame", "/fps" and, where not empty,
-/// "/hashed" (deflate_text), "/title", "/credit", "/type".
+/// "/hashed" (deflate_text), "/title", "/credit", "/type", "/origin".
 MetadataEntries metadata_entries(const FrameMetadata& metadata);
 
 /// The entries as lines "name=value" (line breaks in values become spaces): TIFF's ImageDescription.

@@ -20,6 +20,7 @@ struct FrameMetadata {
     std::string hashed_text;  // what frame_hash was made of (frame_hash.h)
     std::uint32_t seed = 0;
     ProvenanceParams provenance;
+    std::string origin;  // what of its layers is measured and what is invented
     std::optional<ExrMatrices> matrices;
 };
 

@@ -129,6 +129,7 @@ void add_colors(SplatSet colors, SplatSet& set) {
     set.alpha = std::move(colors.alpha);
     set.divided = colors.divided;
     set.credit = std::move(colors.credit);
+    set.origin = std::move(colors.origin);
     set.recipe.clear();
 }
 

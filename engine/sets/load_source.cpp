@@ -8,10 +8,12 @@
 #include "bodies/margin.h"
 #include "bodies/placement.h"
 #include "bodies/uv_surface.h"
+#include "core/color.h"
 #include "core/error.h"
 #include "core/log.h"
 #include "core/memory.h"
 #include "core/parallel.h"
+#include "source/origin.h"
 #include "splat_files/splat_file.h"
 
 namespace astrosplat {
@@ -55,6 +57,25 @@ void uv_of_pictures(std::span<const glm::dvec2> times, SplatSet& set) {
     });
 }
 
+// Of a set whose places are those in the pictures.
+ShareBeyond share_beyond(const SplatSet& set) {
+    ShareBeyond beyond;
+    double splats = 0.0, light = 0.0;
+    for (std::size_t i = 0; i < set.uv.size(); ++i) {
+        const glm::vec2 uv = set.uv[i];
+        const bool outside = !(std::min(uv.x, uv.y) >= 0.0f && std::max(uv.x, uv.y) <= 1.0f);
+        const glm::vec3& color = set.color[i];  // below 0 where it absorbs
+        const double shines = double(set.alpha[i]) *
+                              std::max(0.0, double(luminance(color.r, color.g, color.b))) *
+                              double(set.radius[i]) * double(set.radius[i]);
+        splats += 1.0, light += shines;
+        if (outside) beyond.splats += 1.0, beyond.light += shines;
+    }
+    beyond.splats /= std::max(1.0, splats);
+    beyond.light /= std::max(1e-30, light);
+    return beyond;
+}
+
 SplatSet generate_bodies(const SourceParams& source, const std::string& layer_name, const Progress& progress,
                          KeptWatcher* watcher, const PictureMaker& prepared) {
     std::vector<TexturedMesh> meshes = load_meshes(source, layer_name, progress, prepared);
@@ -63,6 +84,7 @@ SplatSet generate_bodies(const SourceParams& source, const std::string& layer_na
     SplatSet set = make_bodies(std::move(plan.meshes), plan.structure, resolved_seed(source.seed, layer_name),
                                layer_name, progress, source.splats);
     uv_of_pictures(plan.times, set);
+    set.origin = origin_of(source, share_beyond(set));
     set.of_this_machine = !plan.fits_memory;
     return set;
 }

@@ -92,7 +92,7 @@ Header read_header(const Checker& checker, std::string_view bytes) {
     std::memcpy(&header, bytes.data(), sizeof header);
     if (header.version != version)
         checker.fail("header", fmt::format("version {}", version), std::to_string(header.version));
-    if (header.flags >= display_harmonics * 2 || (header.flags & only_geometry && header.flags & only_colors))
+    if (header.flags >= has_origin * 2 || (header.flags & only_geometry && header.flags & only_colors))
         checker.fail("header", "known flags", fmt::format("{:#x}", header.flags));
     const std::uint32_t gaussians = header.flags & (has_scale | has_rotation | has_radius);
     if (gaussians & (has_scale | has_rotation) && gaussians != (has_scale | has_rotation | has_radius))
@@ -118,10 +118,20 @@ std::string& append_bytes(const T& value, std::string& bytes) {
     return bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
 }
 
+/// Takes what is behind the last zero of a header's text.
+std::string cut_off(const Checker& checker, const char* what, std::string& text) {
+    const std::size_t end = text.rfind('\0');
+    if (end == std::string::npos)
+        checker.fail("header", fmt::format("a zero between credit and {}", what), "none");
+    std::string behind = text.substr(end + 1);
+    text.resize(end);
+    return behind;
+}
+
 }  // namespace
 
 Layout read_layout(const Checker& checker, std::string_view bytes) {
-    Layout layout{read_header(checker, bytes), {}, {}, {}, {}};
+    Layout layout{read_header(checker, bytes), {}, {}, {}, {}, {}};
     const Header& header = layout.header;
     const std::size_t per_splat = row_bytes(header.flags), begin = data_offset(header.credit_bytes);
     const std::size_t blocks = block_count(header.splats, header.block);
@@ -135,12 +145,8 @@ Layout read_layout(const Checker& checker, std::string_view bytes) {
     checker.checksum("table", bytes.substr(begin + data, table));
     check_values(checker, header);
     layout.credit = bytes.substr(sizeof(Header), header.credit_bytes);
-    if (header.flags & has_recipe) {
-        const std::size_t end = layout.credit.rfind('\0');
-        if (end == std::string::npos) checker.fail("header", "a zero between credit and recipe", "none");
-        layout.recipe = layout.credit.substr(end + 1);
-        layout.credit.resize(end);
-    }
+    if (header.flags & has_recipe) layout.recipe = cut_off(checker, "recipe", layout.credit);
+    if (header.flags & has_origin) layout.origin = cut_off(checker, "origin", layout.credit);
     layout.blocks = bytes.substr(begin, data);
     layout.table.resize(blocks);
     if (table > 0) std::memcpy(layout.table.data(), bytes.data() + begin + data, table);
@@ -166,6 +172,7 @@ SplatSetFacts facts_of(const Layout& layout) {
     facts.test_positions = header.test_positions;
     facts.zero_alpha = header.zero_alpha;
     facts.credit = layout.credit;
+    facts.origin = layout.origin;
     facts.recipe = layout.recipe;
     return facts;
 }
@@ -180,8 +187,8 @@ Block block_at(const Layout& layout, std::size_t number) {
 std::uint32_t flags_of(const SplatSetFacts& facts, const SplatColumns& held, RowOrder order,
                        NativePart part) {
     std::uint32_t flags =
-        (facts.recipe.empty() ? 0u : has_recipe) | (facts.generated ? generated : 0u) |
-        (facts.divided ? divided : 0u) | (facts.absorbs ? absorbs : 0u) |
+        (facts.recipe.empty() ? 0u : has_recipe) | (facts.origin.empty() ? 0u : has_origin) |
+        (facts.generated ? generated : 0u) | (facts.divided ? divided : 0u) | (facts.absorbs ? absorbs : 0u) |
         (facts.display_harmonics ? display_harmonics : 0u) | (order == RowOrder::id ? by_id : 0u) |
         (part == NativePart::geometry ? only_geometry : 0u) | (part == NativePart::colors ? only_colors : 0u);
     for_each_column([&](auto, SplatColumn column) {
@@ -192,7 +199,10 @@ std::uint32_t flags_of(const SplatSetFacts& facts, const SplatColumns& held, Row
 }
 
 std::string text_of(const SplatSetFacts& facts) {
-    return facts.recipe.empty() ? facts.credit : facts.credit + '\0' + facts.recipe;
+    std::string text = facts.credit;
+    for (const std::string* behind : {&facts.origin, &facts.recipe})
+        if (!behind->empty()) text += '\0' + *behind;
+    return text;
 }
 
 std::string header_bytes(const SplatSetFacts& facts, std::uint32_t flags, std::int64_t splats) {

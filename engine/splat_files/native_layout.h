@@ -30,7 +30,8 @@ enum Flag : std::uint32_t {
     has_scale = 4096,
     has_rotation = 8192,
     has_harmonics = 16384,
-    display_harmonics = 32768
+    display_harmonics = 32768,
+    has_origin = 65536
 };
 
 struct Header {
@@ -63,7 +64,7 @@ bool has(std::uint32_t flags, SplatColumn column);
 SplatColumns columns_of(std::uint32_t flags);
 std::size_t row_bytes(std::uint32_t flags);
 
-/// Where the blocks begin, behind header, credit, padding and checksum.
+/// Where the blocks begin, behind header, credit (with origin and recipe), padding and checksum.
 std::size_t data_offset(std::size_t credit_bytes);
 std::size_t block_count(std::uint64_t splats, std::uint32_t block);
 /// Bounds and checksum of a packed block, whose first array is the positions where there are any.
@@ -75,7 +76,7 @@ void add_to_box(std::span<const glm::vec3> positions, BlockEntry& entry);
 /// A file whose lengths are known to be right.
 struct Layout {
     Header header;
-    std::string credit, recipe;
+    std::string credit, origin, recipe;
     std::string_view blocks;
     std::vector<BlockEntry> table;
 };

@@ -236,10 +236,13 @@ char* put_row(char* out, const SplatSet& set, bool wide_ids, std::int64_t i) {
 
 std::string header_text(const SplatSet& set, bool wide_ids) {
     std::string text = "ply\nformat binary_little_endian 1.0\n";
-    std::string credit = set.credit;
-    std::ranges::replace_if(
-        credit, [](char c) { return c == '\n' || c == '\r'; }, ' ');
-    if (!credit.empty()) text += "comment credit: " + credit + "\n";
+    const auto comment = [&](const char* name, std::string words) {
+        std::ranges::replace_if(
+            words, [](char c) { return c == '\n' || c == '\r'; }, ' ');
+        if (!words.empty()) text += fmt::format("comment {}: {}\n", name, words);
+    };
+    comment("credit", set.credit);
+    comment("origin", set.origin);
     text += fmt::format("element vertex {}\n", set.size());
     for (const char* name : {"x", "y", "z", "red", "green", "blue", "alpha", "distance"})
         text += fmt::format("property float {}\n", name);
@@ -263,6 +266,7 @@ SplatSet read_ply_bytes(const fs::path& file, std::string_view bytes, const Prog
     const bool gaussians = table.has(SplatColumn::scale);
     SplatSet set = finish_table(table, file);
     set.credit = header.credit;
+    set.origin = header.origin;
     return gaussians ? finish_gaussians(std::move(set), {.trained = true, .display = true}, file)
                      : std::move(set);
 }

@@ -108,8 +108,9 @@ bool read_line(HeaderReader& reader, PlyHeader& header) {
     const auto words = words_of(line);
     if (words.empty()) return true;
     if (words[0] == "end_header") return false;
-    constexpr std::string_view credit = "comment credit: ";
-    if (line.substr(0, credit.size()) == credit) header.credit = trim(line.substr(credit.size()));
+    constexpr std::string_view credit = "comment credit: ", origin = "comment origin: ";
+    if (line.starts_with(credit)) header.credit = trim(line.substr(credit.size()));
+    if (line.starts_with(origin)) header.origin = trim(line.substr(origin.size()));
     if (words[0] == "comment" || words[0] == "obj_info") return true;
     if (words[0] == "element") {
         header.elements.push_back(read_element(reader, words, line));

@@ -18,7 +18,7 @@ struct PlyElement {
 struct PlyHeader {
     PlyFormat format = PlyFormat::ascii;
     std::vector<PlyElement> elements;
-    std::string credit;          // of "comment credit: ..."
+    std::string credit, origin;  // of "comment credit: ..." and "comment origin: ..."
     std::string_view data;       // behind end_header
     std::int64_t data_line = 0;  // the file's line where data begins
 };

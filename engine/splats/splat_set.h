@@ -40,8 +40,9 @@ struct SplatSetFacts {
     bool display_harmonics = false;  // harmonics give display values (sRGB); else linear light
     StarPixels star_pixels;          // of stars: over which pixels; else without a meaning
     std::string credit;              // from the inputs' metadata
-    bool of_this_machine = false;    // pictures were reduced for want of free memory: not to be kept
-    std::string recipe;              // of an entry of the cache: what made it (sets/recipe.h)
+    std::string origin;            // what is measured and what is invented (source/origin.h); empty: unknown
+    bool of_this_machine = false;  // pictures were reduced for want of free memory: not to be kept
+    std::string recipe;            // of an entry of the cache: what made it (sets/recipe.h)
 
     bool is_on_lattice() const { return spacing.x > 0.0; }
 };

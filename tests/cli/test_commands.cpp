@@ -189,9 +189,40 @@ TEST_F(Commands, NewSaysHowLargeTheSkyIsAndWritesTheScale) {
     EXPECT_NEAR(said["width_ly"].get<double>(), width, 1e-9);
     EXPECT_NEAR(said["north_angle"].get<double>(), -30.0, 1e-9);
     EXPECT_NEAR(info("a.toml").at("light_years_per_unit").get<double>(), 0.1 * width, 1e-6);
+    for (const char* shape : {"plane", "relief", "disk", "sphere"}) {
+        ASSERT_EQ(run({"new", "a.ppm", "-o", "c.toml", "--overwrite", "--shape", shape}).code, 0);
+        const nlohmann::json columns = info("c.toml");
+        const bool as_large = shape[0] == 'p' || shape[0] == 'r';
+        ASSERT_EQ(columns.contains("light_years_per_unit"), as_large) << shape;
+        if (!as_large) continue;
+        EXPECT_NEAR(columns["light_years_per_unit"].get<double>(), 0.1 * width, 1e-6);
+    }
     write_text(folder / "b.ppm", small_picture());
     ASSERT_EQ(run({"new", "b.ppm"}).code, 0);
     EXPECT_FALSE(info("b.toml").contains("light_years_per_unit"));
+}
+
+// In a scene, in its frames, and in a set that is made, converted and read again.
+TEST_F(Commands, WhatIsInventedIsSaid) {
+    write_text(folder / "gas.ppm", small_picture());
+    expect_success(run({"new", "gas.ppm", "--as", "remnant"}));
+    const std::string
+        begins =
+            "measured: light and colours, as the picture's camera sees them; modelled: depths, by two walls",
+        margin = "layer.gas.source.structure.margin=0.2";
+    EXPECT_EQ(info("gas.toml").at("layers")[0].at("origin").get<std::string>().rfind(begins, 0), 0u);
+    expect_success(run({"generate", "gas.toml", "--layer", "gas", "-o", "gas.splats", "--set", margin}));
+    const std::string origin = info("gas.splats").at("origin");
+    EXPECT_EQ(origin.rfind(begins, 0), 0u);
+    EXPECT_HAS(origin, " % of the light)");
+    expect_success(run({"convert", "gas.splats", "gas.ply"}));
+    EXPECT_EQ(info("gas.ply").at("origin"), origin);
+    expect_success(
+        run({"--batch", "gas.toml", "-f", "1", "-o", "gas.exr", "--resolution", "64x48", "--set", margin}));
+    EXPECT_EQ(info("gas.exr").at("metadata").at("astrosplat/origin"), "gas: " + origin);
+    expect_success(batch({"-f", "1", "-o", "splats.exr"}));
+    EXPECT_FALSE(info("splats.exr").at("metadata").contains("astrosplat/origin"))
+        << "of files that do not say";
 }
 
 TEST_F(Commands, GenerateWritesALayer) {

@@ -299,6 +299,7 @@ TEST_F(WriteTest, ExrHeaderHoldsProvenanceAndGeometryButNoClock) {
     CameraParams camera;
     camera.position = glm::dvec3(1, 2, 3);
     metadata_.matrices = exr_matrices(make_camera(camera, 5, 3, {}), 5, 3);
+    metadata_.origin = "gas: measured: light";
     const fs::path file = write("a.exr", {}, soft_frame(5, 3));
     OIIO::ImageSpec spec = read_raw(file).spec;
     EXPECT_EQ(spec.get_string_attribute("astrosplat/version").substr(0, 2), "0.");
@@ -309,6 +310,7 @@ TEST_F(WriteTest, ExrHeaderHoldsProvenanceAndGeometryButNoClock) {
     EXPECT_EQ(spec.get_string_attribute("astrosplat/title"), "Orion from the side");
     EXPECT_EQ(spec.get_string_attribute("astrosplat/credit"), "NASA/ESA");
     EXPECT_EQ(spec.get_string_attribute("astrosplat/type"), "Artwork");
+    EXPECT_EQ(spec.get_string_attribute("astrosplat/origin"), "gas: measured: light");
     const OIIO::ParamValue* fps = spec.find_attribute("framesPerSecond", OIIO::TypeRational);
     ASSERT_TRUE(fps);
     EXPECT_EQ(fps->get<int>(0), 24000);

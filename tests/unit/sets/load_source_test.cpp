@@ -166,6 +166,9 @@ TEST_F(LoadSourceTest, BodiesOfAMarginLieBeyondThePictureAndTheOthersWhereTheyWe
         ASSERT_NEAR(set.position[i].z, (0.5f - set.uv[i].y) * 10.0f * 80.0f / 120.0f, 1e-4f) << i;
         if (set.uv[i].x < 0.0f || set.uv[i].x > 1.0f || set.uv[i].y < 0.0f || set.uv[i].y > 1.0f) ++outside;
     }
+    const std::string share =
+        fmt::format("{:.0f} % of the splats", 100.0 * double(outside) / double(set.size()));
+    EXPECT_HAS(set.origin, "beyond the frame (" + share);
     EXPECT_GT(outside, set.size() / 50);
     EXPECT_LT(outside, set.size() / 2);
     EXPECT_NEAR(bounds(set).extent().x, 12.0, 0.5);

@@ -58,13 +58,15 @@ TEST_F(Native, EverythingSurvives) {
     expect_same_set(got, set);
 }
 
-TEST_F(Native, ARecipeSurvivesBesideTheCredit) {
+TEST_F(Native, RecipeAndOriginSurviveBesideTheCredit) {
     SplatSet set = full_set(10);
-    for (const char* credit : {"", "ESA"}) {
-        set.credit = credit, set.recipe = "set 1\nseed 3\n";
+    for (int texts = 0; texts < 8; ++texts) {
+        set.credit = texts & 1 ? "ESA" : "", set.recipe = texts & 2 ? "set 1\nseed 3\n" : "";
+        set.origin = texts & 4 ? "measured: light" : "";
         write_native(path("a.splats"), set, {}, RowOrder::id);
         const SplatSet got = read_native(path("a.splats"));
-        EXPECT_EQ(got.credit, credit);
+        EXPECT_EQ(got.credit, set.credit);
+        EXPECT_EQ(got.origin, set.origin);
         EXPECT_EQ(got.recipe, set.recipe);
         EXPECT_EQ(std::int64_t(fs::file_size(path("a.splats"))), native_file_bytes(set));
     }
@@ -265,7 +267,7 @@ TEST_F(Native, Messages) {
     EXPECT_EQ(error("ply" + whole.substr(3)),
               "a.splats: expected an astrosplat .splats file, found another format");
     EXPECT_EQ(error(forged(whole, 8, 2u)), "a.splats:header: expected version 1, found 2");
-    EXPECT_EQ(error(forged(whole, 12, 0x10000u)), "a.splats:header: expected known flags, found 0x10000");
+    EXPECT_EQ(error(forged(whole, 12, 0x20000u)), "a.splats:header: expected known flags, found 0x20000");
     EXPECT_EQ(error(forged(whole, 12, 0x1000u)),
               "a.splats:header: expected scale, rotation and radius together, found 0x1000");
     EXPECT_EQ(error(forged(whole, 12, 0xc00u)), "a.splats:header: expected known flags, found 0xc00");
@@ -273,6 +275,8 @@ TEST_F(Native, Messages) {
     std::memcpy(&flags, &whole[12], sizeof flags);
     EXPECT_EQ(error(forged(whole, 12, flags | 0x80u)),
               "a.splats:header: expected a zero between credit and recipe, found none");
+    EXPECT_EQ(error(forged(whole, 12, flags | 0x10000u)),
+              "a.splats:header: expected a zero between credit and origin, found none");
     EXPECT_EQ(error(forged(whole, 24, 0u)),
               "a.splats:header: expected blocks of at least one splat, found 0");
     for (const std::uint64_t count :

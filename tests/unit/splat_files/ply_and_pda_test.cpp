@@ -56,11 +56,12 @@ TEST_F(Ply, WritesAHeaderOthersRead) {
     set.id[0] = 5;
     set.normal.clear();
     set.credit = "ESA\nHubble";
+    set.origin = "measured: light";
     write_ply(path("a.ply"), set);
     const std::string bytes = bytes_of(path("a.ply"));
     const std::string expected =
-        "ply\nformat binary_little_endian 1.0\ncomment credit: ESA Hubble\nelement vertex 1\nproperty float "
-        "x\n"
+        "ply\nformat binary_little_endian 1.0\ncomment credit: ESA Hubble\ncomment origin: measured: light\n"
+        "element vertex 1\nproperty float x\n"
         "property float y\nproperty float z\nproperty float red\nproperty float green\nproperty float blue\n"
         "property float alpha\nproperty float distance\nproperty float radius\nproperty float s\nproperty "
         "float t\n"
@@ -68,6 +69,7 @@ TEST_F(Ply, WritesAHeaderOthersRead) {
     EXPECT_EQ(bytes.substr(0, expected.size()), expected);
     EXPECT_EQ(bytes.size(), expected.size() + 13 * 4);
     EXPECT_EQ(read_ply(path("a.ply")).credit, "ESA Hubble");
+    EXPECT_EQ(read_ply(path("a.ply")).origin, "measured: light");
 }
 
 TEST_F(Ply, EveryBitSurvives) {
