@@ -4,8 +4,6 @@
 #pragma once
 
 #include <numbers>
-#include <optional>
-#include <string>
 
 #include "core/image.h"
 

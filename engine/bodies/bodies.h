@@ -4,11 +4,6 @@
 // is; before that, how many splats and bytes they will be, and pictures made smaller or larger to suit.
 #pragma once
 
-#include <cstdint>
-#include <span>
-#include <string>
-#include <vector>
-
 #include "core/progress.h"
 #include "source/source.h"
 #include "source/textured_mesh.h"
@@ -75,8 +70,5 @@ void reduce_pictures(std::vector<TexturedMesh>& meshes, const StructureParams& p
                      const BodiesLimit& limit, const std::string& layer_name);
 
 inline std::int64_t texels_of(const Texture& texture) { return texture.image.width * texture.image.height; }
-
-/// The picture at `area` of its texels, but no less than so many px a side.
-Image at_area(const Image& image, double area, double smallest_px);
 
 }  // namespace astrosplat

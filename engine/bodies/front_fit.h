@@ -4,8 +4,6 @@
 // small part of what compositing them costs.
 #pragma once
 
-#include <vector>
-
 #include "bodies/picture_splats.h"
 #include "core/image.h"
 #include "core/progress.h"

@@ -2,9 +2,6 @@
 // the scene says of its structure. Out: bodies, with what the picture tells of each place.
 #pragma once
 
-#include <cstdint>
-#include <vector>
-
 #include "bodies/galaxy_body.h"
 #include "core/image.h"
 #include "source/source.h"

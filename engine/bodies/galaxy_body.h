@@ -5,12 +5,8 @@
 // plane, which goes through the galaxy's centre.
 #pragma once
 
-#include <array>
-#include <cstdint>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
-#include <optional>
-#include <vector>
 
 #include "bodies/depth_kernel.h"
 #include "bodies/galaxy_light.h"

@@ -3,8 +3,6 @@
 #pragma once
 
 #include <glm/vec2.hpp>
-#include <string>
-#include <vector>
 
 #include "bodies/galaxy_light.h"
 #include "core/image.h"

@@ -2,10 +2,7 @@
 // the dust before it (INCLINED 1, 2). In: linear light. Out: Gaussians, and the ring of dust of a lane.
 #pragma once
 
-#include <cstdint>
 #include <glm/vec2.hpp>
-#include <optional>
-#include <vector>
 
 #include "bodies/gaussian_sum.h"
 #include "core/image.h"

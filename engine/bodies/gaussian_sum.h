@@ -3,9 +3,6 @@
 // 0, and the light of the sum.
 #pragma once
 
-#include <span>
-#include <vector>
-
 #include "core/image.h"
 
 namespace astrosplat {

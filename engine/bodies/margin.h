@@ -4,8 +4,6 @@
 #pragma once
 
 #include <glm/vec2.hpp>
-#include <string>
-#include <vector>
 
 #include "source/source.h"
 #include "source/textured_mesh.h"

@@ -4,6 +4,7 @@
 #include "core/real.h"
 #include "image/blur.h"
 #include "image/channels.h"
+#include "image/resample.h"
 
 namespace astrosplat {
 namespace {
@@ -99,6 +100,11 @@ Image take_band(Image& light, double blur, bool fill_holes) {
 }
 
 }  // namespace
+
+Image at_area(const Image& image, double area, double smallest_px) {
+    const ImageSize size = size_of_area(image.width, image.height, area, smallest_px);
+    return reduced_by_area(image, size.width, size.height);
+}
 
 std::vector<Band> make_bands(std::int64_t width_px) {
     std::vector<Band> bands;

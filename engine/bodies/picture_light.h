@@ -3,9 +3,6 @@
 // band, each non-negative and as round as its scale, together the picture.
 #pragma once
 
-#include <functional>
-#include <vector>
-
 #include "core/image.h"
 #include "source/texture.h"
 
@@ -19,6 +16,9 @@ struct PictureLight {
 
 /// `border`: share of the width over which light and alpha fade to 0 towards the picture's edges, 0..0.5.
 PictureLight picture_light(const Texture& texture, double border);
+
+/// The picture at `area` of its texels, but no less than so many px a side.
+Image at_area(const Image& image, double area, double smallest_px);
 
 struct Band {
     int index = 0;         // 0: the finest

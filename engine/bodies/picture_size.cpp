@@ -153,11 +153,6 @@ std::vector<PictureOnMesh> pictures_of(std::span<const TexturedMesh> meshes) {
     return pictures;
 }
 
-Image at_area(const Image& image, double area, double smallest_px) {
-    const ImageSize size = size_of_area(image.width, image.height, area, smallest_px);
-    return reduced_by_area(image, size.width, size.height);
-}
-
 std::int64_t expected_splats(std::span<const TexturedMesh> meshes, const StructureParams& params) {
     double sum = 0.0;
     for (const PictureOnMesh& mesh : pictures_of(meshes)) sum += expected_splats(mesh.texture(), params);

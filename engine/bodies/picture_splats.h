@@ -4,12 +4,6 @@
 // through first, so that every splat is made where it stays.
 #pragma once
 
-#include <algorithm>
-#include <array>
-#include <cstdint>
-#include <span>
-#include <vector>
-
 #include "bodies/depth_kernel.h"
 #include "bodies/picture_light.h"
 #include "bodies/placement.h"

@@ -2,7 +2,6 @@
 
 #include <glm/vec2.hpp>
 
-#include "bodies/bodies.h"
 #include "bodies/galaxies.h"
 #include "bodies/margin.h"
 #include "core/parallel.h"

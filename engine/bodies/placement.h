@@ -2,14 +2,9 @@
 // scene says of its structure. Out: depths of splats, in texels towards the viewer.
 #pragma once
 
-#include <cstdint>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <initializer_list>
-#include <optional>
-#include <span>
-#include <utility>
-#include <vector>
 
 #include "bodies/axis_depths.h"
 #include "bodies/depth_kernel.h"

@@ -4,11 +4,8 @@
 // stars of which hardly any light would pass are moved before what hides them.
 #pragma once
 
-#include <cstdint>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
-#include <span>
-#include <vector>
 
 #include "camera/camera.h"
 #include "core/progress.h"

@@ -3,10 +3,7 @@
 // that no one Gaussian shows them: each becomes several.
 #pragma once
 
-#include <cstddef>
-#include <cstdint>
 #include <glm/vec3.hpp>
-#include <vector>
 
 #include "core/image.h"
 #include "source/source.h"

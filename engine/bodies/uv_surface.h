@@ -2,11 +2,8 @@
 // picture, where it is in the scene, which way is up and how large a texel is there.
 #pragma once
 
-#include <cstdint>
-#include <functional>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
-#include <vector>
 
 #include "camera/camera.h"
 #include "source/textured_mesh.h"

@@ -2,11 +2,6 @@
 // among the assets. In: a name, or any text that may hold one. Out: the object.
 #pragma once
 
-#include <optional>
-#include <string>
-#include <string_view>
-#include <vector>
-
 #include "core/text.h"
 
 namespace astrosplat {

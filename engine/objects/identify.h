@@ -2,12 +2,7 @@
 // may be of each kind of object, and because of what.
 #pragma once
 
-#include <filesystem>
 #include <glm/vec2.hpp>
-#include <optional>
-#include <string>
-#include <string_view>
-#include <vector>
 
 #include "core/image.h"
 #include "objects/catalogue.h"
@@ -26,7 +21,7 @@ struct ObjectClues {
 
 /// Of a picture's file: its metadata, as XMP or FITS has them, and its name. Throws InputError where it
 /// cannot be read.
-ObjectClues clues_of(const std::filesystem::path& picture);
+ObjectClues clues_of(const fs::path& picture);
 
 struct ObjectGuess {
     SkyObject object = SkyObject::nebula;

@@ -3,9 +3,7 @@
 // what they are like.
 #pragma once
 
-#include <array>
 #include <glm/vec2.hpp>
-#include <string>
 
 #include "core/image.h"
 #include "core/text.h"
