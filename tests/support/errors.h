@@ -1,5 +1,9 @@
-// Error messages as values, and texts that have a part, for tests that compare them.
+// Error messages as values, texts that have a part, and places that are near, for tests that compare them.
 #pragma once
+
+#include <gtest/gtest.h>
+
+#include <glm/geometric.hpp>
 
 #include "core/error.h"
 
@@ -18,6 +22,14 @@ std::string message_of(const Call& call) {
 
 inline bool has_part(const std::string& text, const std::string& part) {
     return text.find(part) != std::string::npos;
+}
+
+/// Of points or directions: how far they are apart.
+template <class Vector>
+void expect_near(const Vector& got, const Vector& expected, double tolerance = 1e-12) {
+    testing::Message found;
+    for (int i = 0; i < got.length(); ++i) found << got[i] << ' ';
+    EXPECT_LT(glm::distance(got, expected), tolerance) << found;
 }
 
 }  // namespace astrosplat

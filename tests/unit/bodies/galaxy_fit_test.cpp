@@ -55,19 +55,6 @@ TEST(GalaxyFit, PartsTheBulgeFromTheDisk) {
     EXPECT_GT(fit_of({80.0, 20.0, true, 8.0, 0.0}).bulge, 0.15);
 }
 
-TEST(GalaxyFit, IsTheSameWithAnyNumberOfThreads) {
-    const Image light = painted::tilted_galaxy(240, 150, {70.0, 33.0});
-    set_thread_count(1);
-    const GalaxyFit one = fit_galaxies(light, Galaxies::one).front();
-    set_thread_count(3);
-    const GalaxyFit three = fit_galaxies(light, Galaxies::one).front();
-    set_thread_count(0);
-    EXPECT_EQ(one.plane.inclination_deg, three.plane.inclination_deg);
-    EXPECT_EQ(one.plane.angle, three.plane.angle);
-    EXPECT_EQ(one.misfit, three.misfit);
-    EXPECT_EQ(one.bulge, three.bulge);
-}
-
 TEST(GalaxyFit, OfNoLightIsNothing) {
     const GalaxyFit fit = fit_galaxies(make_image(64, 40, 3), Galaxies::one).front();
     EXPECT_TRUE(std::isfinite(fit.plane.inclination_deg) && std::isfinite(fit.misfit));

@@ -12,11 +12,6 @@ namespace {
 
 constexpr double small = 1e-9;
 
-void expect_near(const glm::dvec3& a, const glm::dvec3& b) {
-    EXPECT_LT(glm::length(a - b), small)
-        << a.x << " " << a.y << " " << a.z << " / " << b.x << " " << b.y << " " << b.z;
-}
-
 double difference(const glm::dmat3& a, const glm::dmat3& b) {
     double most = 0.0;
     for (int i = 0; i < 3; ++i) most = std::max(most, glm::length(a[i] - b[i]));

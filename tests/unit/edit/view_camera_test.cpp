@@ -24,15 +24,6 @@ glm::dvec2 project(const FreeCamera& camera, const glm::dvec3& point) {
     return project(camera_params(camera), point);
 }
 
-void expect_near(const glm::dvec2& a, const glm::dvec2& b, double tolerance) {
-    EXPECT_NEAR(a.x, b.x, tolerance);
-    EXPECT_NEAR(a.y, b.y, tolerance);
-}
-void expect_near(const glm::dvec3& a, const glm::dvec3& b, double tolerance) {
-    EXPECT_LT(glm::length(a - b), tolerance)
-        << a.x << " " << a.y << " " << a.z << " / " << b.x << " " << b.y << " " << b.z;
-}
-
 double distance(const FreeCamera& camera) { return glm::length(camera.position - camera.pivot); }
 
 /// Upright, from below, from exactly above, tilted up vector, orthographic.

@@ -3,6 +3,7 @@
 // a file of errors to show it does so in its own tests.
 #include "bodies/bodies.h"
 #include "bodies/front_fit.h"
+#include "bodies/galaxy_fit.h"
 #include "bodies/margin.h"
 #include "bodies/picture_light.h"
 #include "bodies/stars.h"
@@ -137,6 +138,12 @@ Bits margins() {
     return Bits() << meshes[0].textures[0].image;
 }
 
+Bits galaxy_fit() {
+    const Image light = painted::tilted_galaxy(120, 75, {70.0, 33.0});
+    const GalaxyFit fit = fit_galaxies(light, Galaxies::one).front();
+    return Bits() << fit.plane.inclination_deg << fit.plane.angle << fit.misfit << fit.bulge;
+}
+
 Bits fidelity() {
     const FrontFidelity f = front_fidelity(gaussian_blur(galaxy(), 1.0), galaxy());
     Bits bits;
@@ -218,6 +225,7 @@ const std::map<std::string, std::function<Bits()>> functions = {
     {"split_bands", bands},
     {"flat_light", flat_light},
     {"add_margins", margins},
+    {"fit_galaxies", galaxy_fit},
     {"bodies_of_a_disk", [] { return bodies_of(StructureKind::disk); }},
     {"bodies_of_a_sheet", [] { return bodies_of(StructureKind::sheet); }},
     {"bodies_of_walls", [] { return bodies_of(StructureKind::walls); }},

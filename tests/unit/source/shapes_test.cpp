@@ -291,10 +291,6 @@ glm::dvec2 uv_of(const Camera& camera, const glm::dvec3& point) {
     return place ? place->uv : glm::dvec2(-1.0);
 }
 
-void expect_near(const glm::dvec2& a, const glm::dvec2& b) {
-    EXPECT_LT(glm::distance(a, b), 1e-12) << a.x << " " << a.y;
-}
-
 TEST(PictureCamera, PlacesShrinkWithTheirDistance) {
     const Camera camera = picture_camera(wide(), 2.0);  // at the origin 40 wide and 20 high
     expect_near(uv_of(camera, {0, 0, 0}), {0.5, 0.5});

@@ -26,10 +26,6 @@ SplatSet set_of(std::vector<CatalogueStar> stars, const StarScale& scale = {}, S
     return star_set(catalogue, scale, counts);
 }
 
-void expect_near(const glm::dvec3& found, const glm::dvec3& expected, double tolerance) {
-    for (int i = 0; i < 3; ++i) EXPECT_NEAR(found[i], expected[i], tolerance) << "axis " << i;
-}
-
 TEST(StarSet, TheAxesAreThoseOfTheSky) {
     expect_near(star_direction(0, 0), {1, 0, 0}, 1e-15);
     expect_near(star_direction(90, 0), {0, 0, -1}, 1e-15);
