@@ -20,8 +20,8 @@ struct Sight {
     double u, v;          // across the axis and along it from its middle
     double cosine, sine;  // of the tilt
 
-    Sight(const AxisFit& fit, double x, double y)
-        : fit(fit),
+    Sight(const AxisFit& about, double x, double y)
+        : fit(about),
           cosine(real::cos(real::radians(fit.tilt_deg))),
           sine(real::sin(real::radians(fit.tilt_deg))) {
         const double c = real::cos(fit.angle), s = real::sin(fit.angle), dx = x - fit.x, dy = fit.y - y;

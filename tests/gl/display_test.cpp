@@ -154,20 +154,19 @@ TEST_F(DisplayPicture, LiesWhereItIsPutWithBackgroundAround) {
     settings.width = 40, settings.height = 20;
     settings.background[0] = 0.2f;
     const Shown shown = show(settings);
-    const auto expect = [&](int x, int y, int r, int g, int b) {
-        EXPECT_EQ(int(shown.at(x, y)[0]), r) << x << " " << y;
-        EXPECT_EQ(int(shown.at(x, y)[1]), g) << x << " " << y;
-        EXPECT_EQ(int(shown.at(x, y)[2]), b) << x << " " << y;
+    const auto expect = [&](int x, int y, const std::array<int, 3>& rgb) {
+        for (int k = 0; k < 3; ++k)
+            EXPECT_EQ(int(shown.at(x, y)[k]), rgb[k]) << x << " " << y << " channel " << k;
     };
-    expect(9, 25, 51, 0, 0);
-    expect(10, 19, 51, 0, 0);
-    expect(10, 20, 255, 0, 255);
-    expect(19, 29, 255, 0, 255);  // ten times as large, with hard edges
-    expect(20, 29, 255, 255, 255);
-    expect(10, 30, 255, 255, 255);
-    expect(49, 39, 255, 255, 255);
-    expect(50, 39, 51, 0, 0);
-    expect(49, 40, 51, 0, 0);
+    expect(9, 25, {51, 0, 0});
+    expect(10, 19, {51, 0, 0});
+    expect(10, 20, {255, 0, 255});
+    expect(19, 29, {255, 0, 255});  // ten times as large, with hard edges
+    expect(20, 29, {255, 255, 255});
+    expect(10, 30, {255, 255, 255});
+    expect(49, 39, {255, 255, 255});
+    expect(50, 39, {51, 0, 0});
+    expect(49, 40, {51, 0, 0});
 }
 
 TEST_F(DisplayPicture, LargerThanTheTargetItIsCut) {

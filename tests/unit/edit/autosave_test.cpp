@@ -212,15 +212,14 @@ TEST_F(AutosaveTest, AnUntitledSceneIsRecoveredUntitled) {
 
 TEST_F(AutosaveTest, TheOriginalMayBeGone) {
     killed_process([&](const auto& ready) {
-        Document document = Document::open(f.file);
         document.set(opacity, 0.25, 1.0);
         Autosave autosave(folder);
         ready(autosave.write(document));
     });
     fs::remove(f.file);
-    Document document = recover(recoveries(folder).at(0).autosave);
-    document.save();
-    EXPECT_EQ(load_scene(f.file), document.scene());
+    Document recovered = recover(recoveries(folder).at(0).autosave);
+    recovered.save();
+    EXPECT_EQ(load_scene(f.file), recovered.scene());
     EXPECT_NE(f.text().find("# by hand, keep this"), std::string::npos);
 }
 

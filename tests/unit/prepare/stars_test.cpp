@@ -111,7 +111,7 @@ const Crowd crowds[] = {
     // Brighter ones tell the profile, many of them near.
     {300, 600, gaussian, gaussian, 10.0, 10.0, 0.95, 0.12, 0.23},
     // As faint ones in a picture with other points, which are fewer, brighter and narrower.
-    {450, 600, gaussian, {1.6, 4}, 10.0, 15.0, 0.95, 0.12, 0.23},
+    {450, 600, gaussian, {1.6, 4}, 10.0, 15.0, 0.95, 0.25, 0.23},
     // As those before a galaxy that is resolved into points: these are narrower, brighter and more. Without
     // wings, the stars would have 16 % less light.
     {300, 900, moffat, {1.2, 0}, 16.0, 4.0, 0.98, 0.12, 0.2}};
@@ -305,6 +305,8 @@ struct InARealPicture {
     const char *name, *file;
     StarProfile profile;
 };
+
+void PrintTo(const InARealPicture& one, std::ostream* out) { *out << one.name; }
 
 class StarsNightly : public testing::TestWithParam<InARealPicture> {};
 
