@@ -252,10 +252,10 @@ std::vector<CameraKeyframe> flight(double distance, const PictureScene& scene, c
     return keyframes;
 }
 
+bool is_aslant(const GalaxyParams& galaxy) { return galaxy.inclination.value_or(0.0) >= deep_from_deg; }
+
 bool is_deep(const PictureScene& scene) {
-    return scene.axis || std::ranges::any_of(scene.galaxies, [](const GalaxyParams& g) {
-               return g.inclination.value_or(0.0) >= deep_from_deg;
-           });
+    return scene.axis || std::ranges::any_of(scene.galaxies, is_aslant);
 }
 
 glm::dvec3 turned(const glm::dvec3& v, const glm::dvec3& about, double angle) {  // Rodrigues' formula
@@ -287,7 +287,8 @@ OwnAxis own_axis(const PictureScene& scene, double height) {
                 0.0};
     }
     constexpr double away = 0.78, stops_above = 0.9, stops_at_edge = 0.3;
-    const GalaxyParams& galaxy = scene.galaxies.front();
+    const auto lies_aslant = std::ranges::find_if(scene.galaxies, is_aslant);
+    const GalaxyParams& galaxy = lies_aslant == scene.galaxies.end() ? scene.galaxies.front() : *lies_aslant;
     const double i = real::radians(*galaxy.inclination), dim = real::sin(i);
     return {i,
             real::radians(*galaxy.near_side),
@@ -490,6 +491,11 @@ void find_galaxies(const Image& light, const Identification& found, PictureScene
         scene.lies_by = "a spheroid: no disk, as flat in depth as it is seen";
     } else if (fits.size() > 1) {
         scene.lies_by = fmt::format("{} galaxies, by their light", fits.size());
+        for (std::size_t k = 0; k < fits.size(); ++k) {
+            if (!is_unsure(fits[k])) continue;
+            scene.galaxies[k].inclination = 0.0;
+            scene.lies_by += fmt::format("; how number {} lies is unsure: in the picture's plane", k + 1);
+        }
     } else if (found.known && found.known->inclination_deg) {
         galaxy.inclination = *found.known->inclination_deg;
         scene.lies_by = fmt::format("{} in the table: {:.0f} degrees; {}", found.known->names.front(),

@@ -5,6 +5,7 @@
 #include "scene/load.h"
 #include "scene/save.h"
 #include "source/textured_mesh.h"
+#include "support/pixmap.h"
 #include "support/test.h"
 
 namespace astrosplat {
@@ -86,6 +87,27 @@ TEST(PictureScene, AForeignTableBesideAPictureIsLeftAlone) {
     const fs::path own = folder.file("stars.csv", star_table(std::vector{star}, 2, 1));
     EXPECT_EQ(picture_scene(picture, {}, choice).stars, own);
     EXPECT_NEAR(picture_scene(picture, {}, choice).star_px, star.sigma_px(), 1e-3);
+}
+
+// One long and smooth; one of squares, as no galaxy is.
+TEST(PictureScene, EachOfSeveralGalaxiesLiesAsSureAsItIs) {
+    const TempFolder folder;
+    const auto light = [](int x, int y, int) {
+        const double u = (x - 60.0) / 20.0, v = (y - 75.0) / 8.0;
+        const bool square =
+            x >= 150 && x < 206 && y >= 45 && y < 101 && ((x - 150) / 14 + (y - 45) / 14) % 2 == 0;
+        return square ? 200 : 12 + int(220.0 * std::exp(-std::sqrt(u * u + v * v)));
+    };
+    const fs::path picture = folder.file("pair.ppm", test::pixmap(240, 150, light));
+    Identification choice;
+    const PictureScene scene = picture_scene(picture, {SkyObject::galaxy}, choice);
+    ASSERT_EQ(scene.galaxies.size(), 2u);
+    const std::size_t smooth = scene.galaxies[0].center->x < 0.5 ? 0 : 1;
+    EXPECT_NEAR(*scene.galaxies[smooth].inclination, 67.0, 6.0);
+    EXPECT_EQ(*scene.galaxies[1 - smooth].inclination, 0.0);
+    EXPECT_EQ(scene.lies_by,
+              fmt::format("2 galaxies, by their light; how number {} lies is unsure: in the picture's plane",
+                          2 - smooth));
 }
 
 TEST(PictureScene, FilmsHoldThePictureAndThenFly) {
