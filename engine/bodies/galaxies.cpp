@@ -134,6 +134,7 @@ double rough_share(const Image& light, const Image& roughness) {
 void set_fields(const Image& to_fit, double texels, double offset, GalaxyBody& body) {
     constexpr float lit_light = 0.03f;                  // at which all points are the galaxy's
     constexpr float expected = 1.2f;                    // of the smooth galaxy's light, that is not above it
+    constexpr float most_in_clouds = 0.5f;              // the rest keeps the disk whole: INCLINED 9
     constexpr float dark_sky = 0.02f, sky_fade = 1.5f;  // INCLINED 2: where all is halo
     const Image soft = gaussian_blur(to_fit, 6.0 * double(to_fit.width) / 960.0),
                 wide = gaussian_blur(to_fit, 12.0 * double(to_fit.width) / 960.0);
@@ -146,7 +147,7 @@ void set_fields(const Image& to_fit, double texels, double offset, GalaxyBody& b
         const float sum = light.disk + light.spheroid, f = light.spheroid / std::max(sum, 1e-12f);
         const float sky = body.hidden * std::clamp(sky_fade - *wide.at(x, y) / dark_sky, 0.0f, 1.0f);
         *body.spheroid.at(x, y) = f + sky * (1.0f - f);
-        *body.excess.at(x, y) = *body.roughness.at(x, y) * (1.0f - f) *
+        *body.excess.at(x, y) = most_in_clouds * *body.roughness.at(x, y) * (1.0f - f) *
                                 std::clamp(1.0f - expected * sum / (*soft.at(x, y) + 0.01f), 0.0f, 1.0f);
         *body.lit.at(x, y) = std::clamp(*wide.at(x, y) / lit_light, 0.0f, 1.0f);
     });
@@ -158,6 +159,12 @@ void set_fields(const Image& to_fit, double texels, double offset, GalaxyBody& b
 
 std::vector<GalaxyPlane> galaxy_planes(const Image& light, const StructureParams& params) {
     return galaxies_in(light, params).planes;
+}
+
+OwnLight first_galaxy(const Image& light, const StructureParams& params) {
+    PictureGalaxies galaxies = galaxies_in(light, params);
+    const bool alone = galaxies.planes.size() == 1;
+    return {galaxies.planes.front(), alone ? Image() : std::move(galaxies.shares.front())};
 }
 
 std::vector<GalaxyBody> galaxies_of(const Image& light, const StructureParams& params, double thicker,

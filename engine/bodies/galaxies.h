@@ -13,6 +13,13 @@ namespace astrosplat {
 /// that is a guess.
 std::vector<GalaxyPlane> galaxy_planes(const Image& light, const StructureParams& params);
 
+/// The first of them, and the share of the light at each place that is its own; empty where it is alone.
+struct OwnLight {
+    GalaxyPlane plane;
+    Image share;
+};
+OwnLight first_galaxy(const Image& light, const StructureParams& params);
+
 /// Their bodies, in texels of the picture with a margin of so many around `width` texels, which `light`
 /// shows, perhaps smaller. `thicker`: than they are by themselves.
 std::vector<GalaxyBody> galaxies_of(const Image& light, const StructureParams& params, double thicker,

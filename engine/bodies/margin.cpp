@@ -135,6 +135,7 @@ void continue_texel(const Surroundings& around, const Image& image, std::int64_t
 // A galaxy beyond the frame is the galaxy itself, turned in its disk's plane (INCLINED 5).
 struct TurnedGalaxy {
     GalaxyBody body;          // in the picture's texels
+    Image share;              // of the light that is its own; empty: all
     float outline_px = 0.0f;  // radius in its plane beyond which there is nothing
 };
 
@@ -144,7 +145,9 @@ TurnedGalaxy turned_galaxy(const Image& picture, const StructureParams& structur
         for (int c = 0; c < 3; ++c) to[c] = from[c] > 0.0f && std::isfinite(from[c]) ? from[c] : 0.0f;
     });
     TurnedGalaxy turned;
-    turned.body = make_galaxy_body({}, galaxy_planes(light, structure).front(), {}, double(picture.width));
+    OwnLight own = first_galaxy(light, structure);
+    turned.body = make_galaxy_body({}, own.plane, {}, double(picture.width));
+    turned.share = std::move(own.share);
     for (const float x : {0.0f, float(picture.width)})
         for (const float y : {0.0f, float(picture.height)})
             turned.outline_px =
@@ -189,14 +192,19 @@ void turn_texel(const TurnedGalaxy& turned, const Surroundings& around, const Im
         const glm::vec2 from = turned_place(body, px, eighths);
         if (!(from.x >= 0.0f && from.y >= 0.0f && from.x < size.x && from.y < size.y)) continue;
         const float* const there = image.at(std::int64_t(from.x), std::int64_t(from.y));
+        const float to_share = float(turned.share.width) / size.x;
+        const float own = turned.share.pixels.empty()
+                              ? 1.0f
+                              : bilinear(turned.share, 0, from.x * to_share, from.y * to_share);
         const glm::vec3 near = light_at(from), at_rim = light_at(rim),
                         rim_there = light_at(turned_place(body, rim, eighths));
         for (int k = 0; k < 3; ++k) {
             const float times =
                 std::clamp(at_rim[k] / std::max(rim_there[k], 1e-6f), 1.0f / most_times, most_times);
-            to[k] = fade * std::lerp(times, 1.0f, away) * std::min(there[k], brightest_detail * near[k]);
+            to[k] =
+                own * fade * std::lerp(times, 1.0f, away) * std::min(there[k], brightest_detail * near[k]);
         }
-        to[3] = fade;
+        to[3] = own * fade;
         return;
     }
 }

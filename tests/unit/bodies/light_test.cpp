@@ -373,6 +373,31 @@ TEST(Margin, AGalaxyGoesOnAsItIsOnItsOtherSide) {
     }
 }
 
+// Half a turn would bring the blue companion of the red galaxy beyond the lower edge.
+TEST(Margin, AGalaxyGoesOnWithoutItsCompanion) {
+    Image light = make_image(picture_width, picture_height, 3);
+    const auto add_disk = [&](double cx, double cy, double size, int channel) {
+        for_each_pixel(light, [&](std::int64_t x, std::int64_t y) {
+            const double r = std::hypot(double(x) + 0.5 - cx, double(y) + 0.5 - cy);
+            light.at(x, y)[channel] += float(0.8 * std::exp(-r / size));
+        });
+    };
+    add_disk(100.0, 80.0, 16.0, 0);
+    add_disk(100.0, 35.0, 5.0, 2);
+    std::vector<TexturedMesh> meshes{lit_plane(light)};
+    StructureParams params = with_margin(0.1, StructureKind::disk);
+    params.galaxies = {{0.0, 0.0, glm::dvec2(0.5, 1.0 / 3.0), 90.0, {}},
+                       {0.0, 0.0, glm::dvec2(0.5, 17.0 / 24.0), 90.0, {}}};
+    add_margins(meshes, params, "a");
+    const Image& image = meshes[0].textures[0].image;
+    glm::dvec3 below(0.0);
+    for (std::int64_t y = picture_height + margin_px; y < image.height; ++y)
+        for (std::int64_t x = 100; x < 140; ++x)
+            for (int c = 0; c < 3; ++c) below[c] += double(image.at(x, y)[c]);
+    EXPECT_GT(below.x, 5.0);
+    EXPECT_LT(below.z, 0.1 * below.x);
+}
+
 // Of a cloud, which does not grow dim outward, a dim rim would else end straight, and so would corners.
 TEST(Margin, CloudsGoOnAllAroundAndHaveRoundCorners) {
     Image light = make_image(picture_width, picture_height, 3, 0.01f);
