@@ -14,6 +14,7 @@
 #include "core/parallel.h"
 #include "core/progress.h"
 #include "core/text.h"
+#include "device.h"
 #include "estimate.h"
 #include "exit.h"
 #include "generate/generate.h"
@@ -34,6 +35,7 @@ struct FrameFigures {
     double render_seconds = 0.0;  // from shaded splats to the finished float image in memory
     std::int64_t splats_in = 0, splats_drawn = 0;
     std::string sha256;  // of the float pixels' bytes
+    std::string device;  // that drew it
 };
 
 struct FailedFrame {
@@ -72,9 +74,11 @@ std::string object_text(std::string_view names, const Values&... values) {
 }
 
 std::string object_of(const FrameFigures& f) {
-    return object_text("frame file seconds render_seconds write_seconds splats_in splats_drawn sha256",
-                       f.frame, f.file, f.seconds, f.render_seconds, f.write_seconds, f.splats_in,
-                       f.splats_drawn, f.sha256);
+    return object_text(
+        "frame file seconds render_seconds write_seconds splats_in splats_drawn sha256 "
+        "device",
+        f.frame, f.file, f.seconds, f.render_seconds, f.write_seconds, f.splats_in, f.splats_drawn, f.sha256,
+        f.device);
 }
 
 std::string object_of(const LayerStatistics& layer) {
@@ -170,8 +174,8 @@ void check_writable(const BatchPlan& plan, const CommandOptions& options) {
 /// One run over the frames of a plan.
 class BatchRun {
   public:
-    BatchRun(const BatchPlan& plan, ProgressMode progress)
-        : plan_(plan), hasher_(plan.hasher), report_(progress) {}
+    BatchRun(const BatchPlan& plan, const CommandOptions& options)
+        : plan_(plan), options_(options), hasher_(plan.hasher), report_(options.progress) {}
 
     void prepare();
     void render_frames();
@@ -187,7 +191,9 @@ class BatchRun {
     RenderSettings settings(const OutputParams& output) const;
 
     const BatchPlan& plan_;
+    const CommandOptions& options_;
     FrameHasher hasher_;
+    std::unique_ptr<FrameDevice> device_;
     ProgressReport report_;
     std::unique_ptr<Pipeline> pipeline_;
     std::int64_t renderer_bytes_ = 0;  // limit; 0: none
@@ -198,6 +204,7 @@ class BatchRun {
 void BatchRun::prepare() {
     const JobEstimate job = estimate(plan_);
     renderer_bytes_ = job.renderer_bytes;
+    device_ = std::make_unique<FrameDevice>(options_);
     const auto frames = count_to_render(plan_);
     log_info(fmt::format("{} of {}x{} px, about {}, about {} of memory", counted(frames, "frame"),
                          plan_.scene.output.width, plan_.scene.output.height,
@@ -214,6 +221,7 @@ RenderSettings BatchRun::settings(const OutputParams& output) const {
     RenderSettings settings = render_settings(output);
     settings.region = plan_.region;
     settings.memory_limit_bytes = renderer_bytes_;
+    settings.device = device_->get();
     return settings;
 }
 
@@ -244,6 +252,7 @@ FrameFigures BatchRun::render_frame(const FramePlan& frame, const Progress& prog
     const RenderSettings settings = this->settings(now.scene.output);
     if (frame.existing == Existing::keep) refuse_existing(frame.file);
     const RenderedFrame rendered = pipeline_->frame(now, settings, progress);
+    device_->check(rendered.statistics);
     FrameMetadata metadata = this->metadata(frame, now, settings);
     metadata.pixel_hash = pixel_hash(rendered.beauty);
     progress.check();
@@ -260,8 +269,10 @@ FrameFigures BatchRun::render_frame(const FramePlan& frame, const Progress& prog
     figures.splats_in = rendered.statistics.splats_in;
     figures.splats_drawn = rendered.statistics.splats_drawn;
     figures.sha256 = metadata.pixel_hash;
-    log_detail(fmt::format("frame {}: {} drawn, mean overlap {:.2f}", frame.frame,
-                           human_count(figures.splats_drawn, "splat"), rendered.statistics.mean_overlap));
+    figures.device = rendered.statistics.device.empty() ? "cpu" : rendered.statistics.device;
+    log_detail(fmt::format("frame {}: {} drawn by {}, mean overlap {:.2f}", frame.frame,
+                           human_count(figures.splats_drawn, "splat"), figures.device,
+                           rendered.statistics.mean_overlap));
     return figures;
 }
 
@@ -352,7 +363,7 @@ int run_batch(const CommandOptions& options) {
     std::vector<FailedFrame> failed;
     bool kept = true;
     {
-        BatchRun run(plan, options.progress);
+        BatchRun run(plan, options);
         const auto keep_figures = [&] { kept = keep_stats(options, run); };
         try {
             if (count_to_render(plan) > 0) {

@@ -15,6 +15,9 @@
 
 namespace astrosplat {
 
+/// --device: what draws frames.
+enum class DeviceChoice { automatic, cpu, gpu };
+
 /// Options as typed that several commands take; each command looks at those that it has, --batch at all
 /// but `json`.
 struct CommandOptions {
@@ -30,6 +33,7 @@ struct CommandOptions {
     std::optional<fs::path> stats;
     SetCache cache;
     ProgressMode progress = ProgressMode::automatic;
+    DeviceChoice device = DeviceChoice::automatic;
     bool resume = false, overwrite = false, dry_run = false, json = false;
     bool sets_only = false;  // generates and keeps the sets, and renders nothing
 };
@@ -111,6 +115,7 @@ CLI::Option* add_output(CLI::App& app, CommandOptions& options, const std::strin
 void add_assignments(CLI::App& app, CommandOptions& options);  // --set
 void add_progress(CLI::App& app, CommandOptions& options);
 void add_json(CLI::App& app, CommandOptions& options);
+void add_device_option(CLI::App& app, CommandOptions& options);  // --device
 /// Options that every command takes.
 void add_common(CLI::App& app, Invocation& call);
 /// The options that choose frames and their content.
@@ -144,6 +149,7 @@ void add_compare(CLI::App& app, Invocation& call);     // the difference of two 
 void add_parameters(CLI::App& app, Invocation& call);  // every key of scene files, or those of one scene
 void add_fidelity(CLI::App& app, Invocation& call);    // the likeness of a scene to its picture
 void add_verify(CLI::App& app, Invocation& call);      // frames rendered again, compared with their files
+void add_device(CLI::App& app, Invocation& call);      // what draws frames on this machine
 void add_manual(CLI::App& app, Invocation& call);
 void add_completion(CLI::App& app, Invocation& call);
 

@@ -44,6 +44,7 @@ void add_batch(CLI::App& app, Invocation& call) {
     app.add_flag("--dry-run", batch.dry_run, "Tells frames, time, memory and bytes, and does nothing");
     app.add_flag("--sets-only", batch.sets_only, "Generates the sets into the cache, renders nothing");
     add_value(app, "--stats", batch.stats, "FILE.json", "Writes figures as JSON");
+    add_device_option(app, batch);
     add_progress(app, batch);
 }
 
@@ -201,7 +202,7 @@ void add_everything(CLI::App& app, Invocation& call) {
     add_screenshot(app, call);
     for (const auto add :
          {add_new, add_prepare, add_generate, add_convert, add_export, add_camera, add_status, add_info,
-          add_compare, add_parameters, add_fidelity, add_verify, add_manual, add_completion})
+          add_compare, add_parameters, add_fidelity, add_verify, add_device, add_manual, add_completion})
         add(app, call);
 }
 

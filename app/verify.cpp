@@ -10,6 +10,7 @@
 #include "core/file.h"
 #include "core/log.h"
 #include "core/text.h"
+#include "device.h"
 #include "estimate.h"
 #include "exit.h"
 #include "output/compare.h"
@@ -158,7 +159,10 @@ class Verification {
         RenderSettings settings = render_settings(output);
         settings.region = plan.region;
         settings.memory_limit_bytes = job_->renderer_bytes;
+        if (!device_) device_ = std::make_unique<FrameDevice>(options_);
+        settings.device = device_->get();
         const RenderedFrame rendered = pipeline.frame(now, settings, progress);
+        device_->check(rendered.statistics);
         progress.check();
         write_frame(
             {copy, output, settings.width, settings.height, settings.region, pipeline.layer_names(now)},
@@ -169,6 +173,7 @@ class Verification {
     const CommandOptions& options_;
     std::int64_t count_;
     ProgressReport report_;
+    std::unique_ptr<FrameDevice> device_;
     TemporaryFolder folder_;
     std::unique_ptr<VerifyJob> job_;
 };
@@ -298,6 +303,7 @@ void add_verify(CLI::App& app, Invocation& call) {
     add_value(command, "--layers", call.options.layers, "A,B", "Where --batch had it too");
     add_value(command, "--memory", call.options.memory_gib, "GiB", "Where --batch had it too");
     add_json(command, call.options);
+    add_device_option(command, call.options);
     add_progress(command, call.options);
 }
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <atomic>
 #include <glm/matrix.hpp>
 
 #include "camera/camera.h"
@@ -190,6 +191,8 @@ struct Pipeline::State {
         if (layer.set && holds_gaussians(*layer.set)) add_shapes(*layer.set, layer.shaded);
         layer.shaded.encoded = false;
         if (shading.encoded) encode_colors(layer.shaded);
+        static std::atomic<std::uint64_t> stamps = 0;
+        layer.shaded.stamp = ++stamps;
         layer.shaded_with = shading;
         statistics[index].drawn = layer.streamed ? layer.streamed->splats() : layer.shaded.size();
         statistics[index].look_seconds += counts.seconds;

@@ -8,8 +8,10 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cctype>
 #include <cstring>
 #include <regex>
+#include <set>
 #include <sstream>
 
 #include "core/log.h"
@@ -272,7 +274,7 @@ namespace {
 
 /// A stage's text and where its files begin. (Drivers do not agree on what "#line" with a number means.)
 struct StageText {
-    std::string text = "#version 410 core\n";
+    std::string text = "#version 410 core\nfloat as_div(float a, float b) { return a / b; }\n";
     std::vector<FileStart> files;
 };
 
@@ -288,6 +290,7 @@ void set_constant(std::string& text, const std::string& name, int value) {
 StageText stage_text(const ProgramSource& source, const std::vector<std::string>& files,
                      const std::string& head) {
     StageText stage;
+    if (!source.compute.empty()) stage.text = "#version 450 core\n";
     for (const std::string& define : source.defines) stage.text += "#define " + define + "\n";
     if (!head.empty()) stage.text += head + "\n";
     for (const std::string& file : files) {
@@ -296,6 +299,7 @@ StageText stage_text(const ProgramSource& source, const std::vector<std::string>
         stage.text += shader_text(file) + "\n";
     }
     for (const auto& [name, value] : source.constants) set_constant(stage.text, name, value);
+    if (!source.compute.empty()) stage.text = made_precise(stage.text);
     return stage;
 }
 
@@ -363,9 +367,63 @@ std::vector<std::string> after_projections(const std::vector<std::string>& more)
     return files;
 }
 
+namespace {
+
+/// Splits GLSL into words, single signs, and the blanks, comments and lines of the preprocessor between them.
+std::vector<std::string> glsl_tokens(const std::string& text) {
+    static const std::regex token(R"(//[^\n]*|#[^\n]*|\w[\w.]*|\s+|[^\w\s])");
+    return {std::sregex_token_iterator(text.begin(), text.end(), token), {}};
+}
+
+bool is_between(const std::string& token) {
+    return token.starts_with("//") || token.starts_with('#') ||
+           std::isspace(static_cast<unsigned char>(token[0]));
+}
+
+}  // namespace
+
+std::string made_precise(const std::string& text) {
+    std::set<std::string> floats = {"float", "double", "vec2", "vec3", "vec4", "Float", "Real", "Vec3"};
+    std::string result, last = ";", first,
+                        name;  // tokens before this one: last, and first of the declaration
+    int braces = 0;
+    bool function = false, returns = false;
+    for (const std::string& token : glsl_tokens(text)) {
+        if (is_between(token)) {
+            result += token;
+            continue;
+        }
+        const bool begins = last == ";" || last == "{" || last == "}";
+        if (braces == 0 && begins) first = token;
+        if (last == "struct") floats.insert(token);
+        if (token == "{" && braces++ == 0) function = first != "struct" && first != "layout";
+        const bool is_float = floats.contains(braces > 0 ? token : first);
+        if (function && braces > 0 && begins && is_float)
+            result += "precise ";
+        else if (braces == 0 && (token == "inout" || token == "out"))
+            result += "precise ";
+        if (function && token == "return" && floats.contains(first)) {
+            result += "{ precise " + first + " result_ =";
+            returns = true;
+        } else if (token == ";" && returns) {
+            result += "; return result_; }";
+            returns = false;
+        } else {
+            result += token;
+        }
+        if (token == "}" && --braces == 0) function = false;
+        last = token;
+    }
+    return result;
+}
+
+std::string compute_text(const ProgramSource& source) { return stage_text(source, source.compute, {}).text; }
+
 GlProgram::GlProgram(const ProgramSource& source) {
-    const Stage vertex(GL_VERTEX_SHADER, source, source.vertex);
     program_ = glCreateProgram();
+    const bool computes = !source.compute.empty();
+    const Stage vertex(computes ? GL_COMPUTE_SHADER : GL_VERTEX_SHADER, source,
+                       computes ? source.compute : source.vertex);
     glAttachShader(program_, vertex.shader);
     if (!source.fragment.empty()) {
         const Stage fragment(GL_FRAGMENT_SHADER, source, source.fragment, source.fragment_head);
@@ -382,7 +440,8 @@ GlProgram::GlProgram(const ProgramSource& source) {
     if (!linked) {
         const std::string log = log_of(program_, glGetProgramiv, glGetProgramInfoLog);
         glDeleteProgram(program_);
-        throw std::runtime_error("OpenGL does not link the shaders of " + source.vertex.back() + ": " + log);
+        throw std::runtime_error("OpenGL does not link the shaders of " +
+                                 (computes ? source.compute : source.vertex).back() + ": " + log);
     }
     glUseProgram(program_);
     for (const auto& [sampler, unit] : source.samplers) glUniform1i(uniform(sampler.c_str()), unit);

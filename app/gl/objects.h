@@ -187,7 +187,17 @@ struct ProgramSource {
     std::string fragment_head = {};  // GLSL before the files of the fragment stage, from elsewhere
     std::vector<std::pair<std::string, int>> samplers = {};  // and the texture unit that each reads
     std::string block = {};                                  // of uniforms, read from binding point 0
+    /// In place of the other stages: "#version 450 core", made_precise().
+    std::vector<std::string> compute = {};
 };
+
+/// GLSL whose arithmetic no compiler contracts, reorders or approximates: all local floats, results and
+/// parameters that come out are `precise`. Lines stay lines. In functions' bodies declarations begin
+/// statements, and what a buffer gets is computed into a local first.
+std::string made_precise(const std::string& text);
+
+/// A compute program's text, as the driver gets it.
+std::string compute_text(const ProgramSource& source);
 
 /// The files of projection.glsl and what it needs, followed by `more`.
 std::vector<std::string> after_projections(const std::vector<std::string>& more);

@@ -28,6 +28,7 @@ namespace {
 double sqrt(double x) { return std::sqrt(x); }
 double abs(double x) { return std::fabs(x); }
 double floor(double x) { return std::floor(x); }
+double as_div(double a, double b) { return a / b; }
 double min(double a, double b) { return b < a ? b : a; }
 double max(double a, double b) { return a < b ? b : a; }
 double mix(double a, double b, bool take_b) { return take_b ? b : a; }

@@ -58,6 +58,7 @@ struct Lanes {
     HWY_INLINE friend Lanes operator-(Lanes a, Lanes b) { return hn::Sub(a.v, b.v); }
     HWY_INLINE friend Lanes operator*(Lanes a, Lanes b) { return hn::Mul(a.v, b.v); }
     HWY_INLINE friend Lanes operator/(Lanes a, Lanes b) { return hn::Div(a.v, b.v); }
+    HWY_INLINE friend Lanes as_div(Lanes a, Lanes b) { return hn::Div(a.v, b.v); }
     HWY_INLINE friend LaneBools<D> operator<(Lanes a, Lanes b) { return hn::Lt(a.v, b.v); }
     HWY_INLINE friend LaneBools<D> operator<=(Lanes a, Lanes b) { return hn::Le(a.v, b.v); }
     HWY_INLINE friend LaneBools<D> operator>(Lanes a, Lanes b) { return hn::Gt(a.v, b.v); }

@@ -8,6 +8,9 @@
 #include <fmt/format.h>
 #include <hwy/targets.h>
 #include <sched.h>
+#if defined(__SSE2__)
+#include <xmmintrin.h>
+#endif
 
 #include <atomic>
 #include <condition_variable>
@@ -27,13 +30,39 @@ namespace {
 
 using Body = std::function<void(std::int64_t, std::int64_t, int)>;
 
+/// How this thread computes with floats: x86's MXCSR, Arm's FPCR.
+std::uint64_t float_control() {
+#if defined(__SSE2__)
+    return _mm_getcsr();
+#elif defined(__aarch64__)
+    std::uint64_t control;
+    asm volatile("mrs %0, fpcr" : "=r"(control));
+    return control;
+#else
+    return 0;
+#endif
+}
+void set_float_control([[maybe_unused]] std::uint64_t control) {
+#if defined(__SSE2__)
+    _mm_setcsr(unsigned(control));
+#elif defined(__aarch64__)
+    asm volatile("msr fpcr, %0" : : "r"(control));
+#endif
+}
+#if defined(__SSE2__)
+constexpr std::uint64_t zero_denormals = 0x8040;  // flush to zero, denormals are zeros
+#else
+constexpr std::uint64_t zero_denormals = 1u << 24;  // FZ
+#endif
+
 struct Job {
     std::int64_t count;
     std::int64_t chunk;
     const Body& body;
-    std::atomic<std::int64_t> next{0};  // first item not handed out
-    int helpers = 0;                    // pool threads inside; guarded by the pool's mutex
-    std::exception_ptr error{};         // guarded by the pool's mutex
+    std::uint64_t control = float_control();  // its caller's
+    std::atomic<std::int64_t> next{0};        // first item not handed out
+    int helpers = 0;                          // pool threads inside; guarded by the pool's mutex
+    std::exception_ptr error{};               // guarded by the pool's mutex
 
     bool exhausted() const { return next.load(std::memory_order_relaxed) >= count; }
 };
@@ -117,6 +146,8 @@ class Pool {
     }
 
     void work(Job& job, int worker) {
+        const std::uint64_t control = float_control();
+        set_float_control(job.control);
         current_worker = worker;
         try {
             for (;;) {
@@ -130,6 +161,7 @@ class Pool {
             if (!job.error) job.error = std::current_exception();
         }
         current_worker = -1;
+        set_float_control(control);
     }
 
     std::mutex mutex_;
@@ -211,6 +243,11 @@ void enable(std::int64_t bits) {
 }  // namespace
 
 int available_threads() { return std::max(1, quota_of_groups(std::max(1, affinity_threads()))); }
+
+DenormalsAreZero::DenormalsAreZero() : before_(float_control()) {
+    set_float_control(before_ | zero_denormals);
+}
+DenormalsAreZero::~DenormalsAreZero() { set_float_control(before_); }
 
 void set_thread_count(int threads) { pool().resize(std::max(0, threads)); }
 

@@ -38,6 +38,19 @@ void parallel_each(Index count, std::int64_t chunk, const Body& body) {
 void parallel_parts(std::size_t count, const Progress& progress,
                     const std::function<void(std::size_t part)>& body);
 
+/// While it lives, numbers too small to be normal count as 0 in this thread and in the loops it calls, as
+/// they do on graphics cards: what is drawn there has the same bits.
+class DenormalsAreZero {
+  public:
+    DenormalsAreZero();
+    ~DenormalsAreZero();
+    DenormalsAreZero(const DenormalsAreZero&) = delete;
+    DenormalsAreZero& operator=(const DenormalsAreZero&) = delete;
+
+  private:
+    std::uint64_t before_;
+};
+
 /// "best" (what the processor offers), or one of vector_targets(). Throws InputError for another name or one
 /// this processor lacks. Not while a loop runs.
 void set_vector_target(const std::string& name);

@@ -34,6 +34,8 @@ inline int floatBitsToInt(float f) {
     std::memcpy(&bits, &f, sizeof bits);
     return bits;
 }
+/// Division has a name, for drivers whose own has other bits.
+inline float as_div(float a, float b) { return a / b; }
 inline float floor(float x) { return std::floor(x); }
 inline float sqrt(float x) { return std::sqrt(x); }
 inline float abs(float x) { return std::fabs(x); }

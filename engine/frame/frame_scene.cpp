@@ -80,6 +80,8 @@ void add_rendering(RenderedFrame& sum, RenderedFrame&& rendering, std::span<cons
     statistics.splats_drawn += rendering.statistics.splats_drawn;
     statistics.mean_overlap += rendering.statistics.mean_overlap;
     statistics.seconds += rendering.statistics.seconds;
+    if (rendering.statistics.device.empty()) statistics.device.clear();
+    statistics.not_on_device = rendering.statistics.not_on_device;
 }
 
 void divide_sum(RenderedFrame& sum, int n, std::size_t layer_count) {

@@ -86,6 +86,8 @@ struct StarPsf {
 
 // ---- a frame
 
+class RenderDevice;
+
 /// One layer as the renderer sees it.
 struct RenderLayer {
     std::string name;
@@ -134,6 +136,7 @@ struct RenderSettings {
     /// For previews: the whole frame's backdrop (draw_backdrop()), which stands for the environment; null:
     /// none.
     const Image* backdrop = nullptr;
+    RenderDevice* device = nullptr;  // draws what it can (device.h); changes no bit
 };
 
 struct RenderStatistics {
@@ -141,6 +144,8 @@ struct RenderStatistics {
     std::int64_t splats_drawn = 0;  // instances that touch the region, children included
     double mean_overlap = 0.0;      // footprints per covered pixel
     double seconds = 0.0;           // from shaded splats to the finished image
+    std::string device;             // that drew it; empty: the processor did,
+    std::string not_on_device;      // and why, where it was asked for a device
 };
 
 struct RenderedFrame {

@@ -7,6 +7,7 @@
 #include "core/error.h"
 #include "core/memory.h"
 #include "core/parallel.h"
+#include "render/device.h"
 #include "render/frame_job.h"
 #include "render/scatter.h"
 #include "render/screen_splat.h"
@@ -284,6 +285,21 @@ std::vector<RenderLayer> as_drawn(std::span<const RenderLayer> layers) {
     return drawn;
 }
 
+/// Projects, scatters and folds the frame, band after band.
+void render_bands(const FrameJob& job, RenderCache::State& state, RenderedFrame& frame) {
+    const std::int64_t limit = job.settings.memory_limit_bytes;
+    const Bands bands = make_bands(job);
+    std::int64_t bytes = bands.records * std::int64_t(sizeof(ScreenSplat));
+    if (limit > 0) bytes = std::min(bytes, limit);
+    if (bytes > state.store.bytes()) claim_memory(bytes - state.store.bytes(), "projected splats");
+    double done = 0.0;
+    for (const TileGrid& band : bands.grids) {
+        BandRun(job, band, bands.records, done, state, frame).run();
+        done += double(band.height) / double(job.region.height);
+    }
+    if (limit > 0) state.store.shrink(limit);
+}
+
 }  // namespace
 
 std::int64_t scattered_bytes(std::span<const RenderLayer> layers, const Camera& camera,
@@ -303,6 +319,7 @@ RenderedFrame render(std::span<const RenderLayer> layers, const Camera& camera,
     assert(asked.tile_px == 0 ||
            (asked.tile_px >= 16 && asked.tile_px <= TilePlanes::widest_px && asked.tile_px % 8 == 0));
     const auto start = Clock::now();
+    const DenormalsAreZero as_on_cards;
     for (const RenderLayer& layer : layers)
         if (layer.splats && layer.splats->size() > 0xffffffffLL)
             throw InputError("layer " + layer.name + ": " + human_count(double(layer.splats->size())) +
@@ -315,17 +332,8 @@ RenderedFrame render(std::span<const RenderLayer> layers, const Camera& camera,
         settings.memory_limit_bytes = free_bytes(layers, settings, state);
     FrameJob job{drawn, camera, environment, settings, progress, tile_done, {}, {}, {}, {}, {}, {}};
     prepare(job, state);
-    const Bands bands = make_bands(job);
-    std::int64_t bytes = bands.records * std::int64_t(sizeof(ScreenSplat));
-    if (settings.memory_limit_bytes > 0) bytes = std::min(bytes, settings.memory_limit_bytes);
-    if (bytes > state.store.bytes()) claim_memory(bytes - state.store.bytes(), "projected splats");
     RenderedFrame frame = make_frame(layers, settings, job.region);
-    double done = 0.0;
-    for (const TileGrid& band : bands.grids) {
-        BandRun(job, band, bands.records, done, state, frame).run();
-        done += double(band.height) / double(job.region.height);
-    }
-    if (settings.memory_limit_bytes > 0) state.store.shrink(settings.memory_limit_bytes);
+    if (!settings.device || !draw_on_device(job, state, frame)) render_bands(job, state, frame);
     const double covered = double(covered_pixels(frame.beauty));
     frame.statistics.mean_overlap = covered > 0.0 ? frame.statistics.mean_overlap / covered : 0.0;
     frame.statistics.seconds = seconds_since(start);

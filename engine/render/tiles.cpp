@@ -3,6 +3,7 @@
 #include <numeric>
 
 #include "core/parallel.h"
+#include "render/device.h"
 
 namespace astrosplat {
 namespace {
@@ -98,6 +99,75 @@ void render_tile(const FrameJob& job, const TileBins& bins, std::int64_t tile, T
         fold_runs(job, bins, g, worker, worker.planes);
         return &worker.planes;
     });
+}
+
+namespace {
+
+/// A group's planes over a tile's region, out of those over the whole.
+void copy_planes(const FrameJob& job, const GroupPlanes& group, TilePlanes& planes) {
+    const auto copy = [&](const Image& from, std::initializer_list<Buffer<float>*> to) {
+        if (from.pixels.empty()) return;  // as reset
+        for (int y = 0; y < planes.height; ++y) {
+            const float* row = from.at(planes.x0 - job.region.x, planes.y0 - job.region.y + y);
+            for (int x = 0; x < planes.width; ++x)
+                for (std::size_t k = 0; Buffer<float> * plane : to)
+                    (*plane)[planes.at(x, y)] = row[4 * x + int(k++)];
+        }
+    };
+    auto& t = planes.transmittance;
+    copy(group.light, {&planes.color[0], &planes.color[1], &planes.color[2], &planes.alpha});
+    copy(group.through, {&t[0], &t[1], &t[2], &t[3]});
+    if (job.fold.aovs)
+        copy(group.more, {&planes.held, &planes.depth_sum, &planes.uncovered, &planes.count});
+    else
+        copy(group.more, {&planes.held});
+    for (std::size_t l = 0; l < group.layer_light.size(); ++l) {
+        Buffer<float>* light = &planes.layer_light[4 * l];
+        copy(group.layer_light[l], {light, light + 1, light + 2, light + 3});
+    }
+}
+
+}  // namespace
+
+bool draw_on_device(const FrameJob& job, RenderCache::State& cache, RenderedFrame& frame) {
+    RenderDevice& device = *job.settings.device;
+    frame.statistics.not_on_device = device.cannot(job);
+    if (!frame.statistics.not_on_device.empty()) return false;
+    make_footprints(job, {0, 0.0, 0.0f, std::numeric_limits<float>::max()}, cache);
+    const bool alone = stands_alone(job) && !job.settings.backdrop && !job.tile_done;
+    std::vector<GroupPlanes> groups;
+    for (std::size_t g = 0; g < job.groups.size(); ++g) {
+        std::optional<GroupPlanes> planes = device.draw(job, g, alone);
+        job.progress.at(0.9 * double(g + 1) / double(job.groups.size()));
+        if (!planes) {
+            frame.statistics.not_on_device = "the card ran out of memory or was lost";
+            return false;
+        }
+        groups.push_back(std::move(*planes));
+    }
+    frame.statistics.device = device.name();
+    for (const GroupPlanes& planes : groups) {
+        frame.statistics.splats_drawn += planes.splats;
+        frame.statistics.mean_overlap += planes.footprint_px;
+    }
+    if (alone) {
+        frame.beauty = std::move(groups[0].light);
+        return true;
+    }
+    const TileGrid grid{job.region.x, job.region.y, job.region.width, job.region.height, 64};
+    const std::vector<std::int64_t> order = tile_order(job, grid);
+    std::vector<TileWorker> workers = make_tile_workers(job);
+    parallel_for(grid.tiles(), [&](std::int64_t i, int worker) {
+        job.progress.check();
+        TileWorker& own = workers[worker];
+        const Region region = tile_region(grid, order[i]);
+        resolve_tile(job, region, own, frame, [&](std::size_t g) -> const TilePlanes* {
+            reset(job, region, g, own.planes);
+            copy_planes(job, groups[g], own.planes);
+            return &own.planes;
+        });
+    });
+    return true;
 }
 
 void CarriedTiles::fold_slab(const TileBins& bins, std::int64_t tile, TileWorker& worker) {

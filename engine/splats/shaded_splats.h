@@ -19,6 +19,9 @@ struct ShadedSplats {
     Buffer<std::uint64_t> id;
     /// Empty: all are balls. Else of each splat: what the ball becomes, around its centre, layer space.
     Buffer<glm::mat3> stretch;
+    /// Another number whenever the arrays change, of all splats there are: who keeps a copy knows by it. 0:
+    /// nobody counts.
+    std::uint64_t stamp = 0;
     bool encoded = false;  // colours are display values (sRGB), composited as such: of isolated layers only
 
     std::int64_t size() const { return std::int64_t(position.size()); }

@@ -6,9 +6,9 @@ Float angle_of(Float y, Float x) {
     Float wide = abs(x), high = abs(y);
     Float larger = max(max(wide, high), 1e-37f), smaller = min(wide, high);
     // Tangents beyond pi / 8 are measured from pi / 4.
-    Float t = smaller / larger;
+    Float t = as_div(smaller, larger);
     Bool far = t > 0.41421356f;
-    t = mix(t, (smaller - larger) / (smaller + larger), far);
+    t = mix(t, as_div(smaller - larger, smaller + larger), far);
     Float z = t * t;
     Float angle = (((8.05374449538e-2f * z - 1.38776856032e-1f) * z + 1.99777106478e-1f) * z - 3.33329491539e-1f) * z * t + t;
     angle = mix(angle, angle + 0.785398163f, far);

@@ -27,7 +27,7 @@ float as_acos_deg(float c) {
 float hybrid_amount(float cosine, float from_deg, float to_deg) {
     float theta = as_acos_deg(min(cosine, 1.0f));
     float span = to_deg - from_deg;
-    float t = span > 0.0f ? clamp((theta - from_deg) / span, 0.0f, 1.0f) : (theta >= to_deg ? 1.0f : 0.0f);
+    float t = span > 0.0f ? clamp(as_div(theta - from_deg, span), 0.0f, 1.0f) : (theta >= to_deg ? 1.0f : 0.0f);
     return t * t * (3.0f - 2.0f * t);
 }
 

@@ -67,7 +67,7 @@ Float pixel_ripple(Float s10, Float s11, Float s20, Float cx, Float cy) {
 }
 
 Float shrink_of_radius(Float radius_px) {
-    Float ratio = radius_px / SMALLEST_RADIUS_PX;
+    Float ratio = as_div(radius_px, SMALLEST_RADIUS_PX);
     return mix(1.0f, ratio * ratio, radius_px < SMALLEST_RADIUS_PX);
 }
 
@@ -79,6 +79,6 @@ struct FootprintGains {
 };
 FootprintGains footprint_gains(bool flat_core, Bool tabulated, Float shrink, Float wanted, Float found,
                                Float edge_found) {
-    if (flat_core) return FootprintGains(shrink, mix(0.0f, (wanted - found) / edge_found, tabulated));
-    return FootprintGains(mix(shrink, shrink * (wanted / found), tabulated), 0.0f);
+    if (flat_core) return FootprintGains(shrink, mix(0.0f, as_div(wanted - found, edge_found), tabulated));
+    return FootprintGains(mix(shrink, shrink * as_div(wanted, found), tabulated), 0.0f);
 }

@@ -5,7 +5,7 @@ Instance orthographic_instance(Lens lens, Vec3 p) {
 }
 
 Vec3 orthographic_point(Lens lens, Float x_px, Float y_px, Float depth) {
-    return Vec3((x_px - lens.center_x_px) / lens.focal_px, (lens.center_y_px - y_px) / lens.focal_px, -depth);
+    return Vec3(as_div(x_px - lens.center_x_px, lens.focal_px), as_div(lens.center_y_px - y_px, lens.focal_px), -depth);
 }
 
 // Not from the eye, but from the plane through it.

@@ -2,12 +2,12 @@
 
 Instance perspective_instance(Lens lens, Vec3 p) {
     Float depth = -p.z;
-    Float px_per_unit = lens.focal_px / depth;
+    Float px_per_unit = as_div(lens.focal_px, depth);
     return Instance(lens.center_x_px + p.x * px_per_unit, lens.center_y_px - p.y * px_per_unit, px_per_unit, depth);
 }
 
 Vec3 perspective_ray(Lens lens, Float x_px, Float y_px) {
-    return Vec3((x_px - lens.center_x_px) / lens.focal_px, (lens.center_y_px - y_px) / lens.focal_px, -1.0f);
+    return Vec3(as_div(x_px - lens.center_x_px, lens.focal_px), as_div(lens.center_y_px - y_px, lens.focal_px), -1.0f);
 }
 
 Vec3 perspective_point(Lens lens, Float x_px, Float y_px, Float depth) {
@@ -16,16 +16,16 @@ Vec3 perspective_point(Lens lens, Float x_px, Float y_px, Float depth) {
 }
 
 Float perspective_axis_depth(Lens lens, Float x_px, Float y_px, Float depth) {
-    Float x = (x_px - lens.center_x_px) / lens.focal_px;
-    Float y = (y_px - lens.center_y_px) / lens.focal_px;
-    return sqrt(depth / (1.0f + x * x + y * y));
+    Float x = as_div(x_px - lens.center_x_px, lens.focal_px);
+    Float y = as_div(y_px - lens.center_y_px, lens.focal_px);
+    return sqrt(as_div(depth, 1.0f + x * x + y * y));
 }
 
-Real perspective_spread(Lens lens) { return 1.0f / lens.focal_px; }
+Real perspective_spread(Lens lens) { return as_div(1.0f, lens.focal_px); }
 
 // Nearer than z a splat may be too wide; from its distance on, one that reaches the frame lies beyond z.
 Real perspective_small_from(Lens lens, Real radius, Real radius_px, Real frame_px) {
-    Real z = radius * lens.focal_px / radius_px;
-    Real aside = radius + z * frame_px / lens.focal_px;
+    Real z = as_div(radius * lens.focal_px, radius_px);
+    Real aside = radius + as_div(z * frame_px, lens.focal_px);
     return sqrt(aside * aside + z * z);
 }

@@ -48,7 +48,7 @@ Bool shows(Lens lens, Float x_px, Float y_px) {
 // middle of the frame.
 Float frame_reach_px(Lens lens, Float x_px, Float y_px, Float reach_px) {
     if (!is_onto_sphere(lens)) return reach_px;
-    Float half_chord = min(0.5f * reach_px / lens.focal_px, 1.0f);
+    Float half_chord = min(as_div(0.5f * reach_px, lens.focal_px), 1.0f);
     Float angle = 2.0f * angle_of(half_chord, sqrt(max(1.0f - half_chord * half_chord, 0.0f)));
     // A px more, for places are rounded.
     if (is_panorama(lens)) return panorama_reach_px(lens, y_px, angle) + 1.0f;
@@ -61,7 +61,7 @@ Vec3 point_at_depth(Lens lens, Float x_px, Float y_px, Float depth) {
     if (is_onto_sphere(lens)) {
         if (lens.parallax != 0.0f) x_px = x_px - panorama_parallax(lens, depth) * lens.focal_px;
         Vec3 ray = ray_through(lens, x_px, y_px);
-        Float scale = depth / sqrt(dot(ray, ray));
+        Float scale = as_div(depth, sqrt(dot(ray, ray)));
         return Vec3(ray.x * scale, ray.y * scale, ray.z * scale);
     }
     return perspective_point(lens, x_px, y_px, depth);
@@ -81,7 +81,7 @@ Float axis_depth(Lens lens, Float x_px, Float y_px, Float depth) {
 // frame_px: no less than the frame's diagonal with the footprint's margin.
 Real small_from(Lens lens, Real radius, Real radius_px, Real frame_px) {
     if (lens.projection == PROJECTION_ORTHOGRAPHIC) return orthographic_small_from(lens, radius, radius_px);
-    if (is_onto_sphere(lens)) return radius * lens.focal_px / radius_px;
+    if (is_onto_sphere(lens)) return as_div(radius * lens.focal_px, radius_px);
     return perspective_small_from(lens, radius, radius_px, frame_px);
 }
 
@@ -97,7 +97,7 @@ Float sort_depth(Lens lens, Vec3 p) {
 // |cos| of the angle between a layer's axis and the ray to p.
 Float axis_cosine(Lens lens, Vec3 axis, Vec3 p) {
     if (has_parallel_rays(lens)) return abs(axis.z);
-    return abs(dot(axis, p)) / sqrt(dot(p, p));
+    return as_div(abs(dot(axis, p)), sqrt(dot(p, p)));
 }
 
 // To the raster that footprints are normalised for.
@@ -116,14 +116,14 @@ Bool is_in_range(Lens lens, Float depth) {
 
 // Rises from 0 at the near plane to 1 where the splat is a radius (or near_fade) behind it.
 Float near_fade(Lens lens, Float depth, Float radius) {
-    Float t = min(1.0f, (depth - lens.near) / max(lens.near_fade, radius));
+    Float t = min(1.0f, as_div(depth - lens.near, max(lens.near_fade, radius)));
     return t * t * (3.0f - 2.0f * t);
 }
 
 // p, or where it would be were it no nearer than near.
 Vec3 beyond_near(Lens lens, Vec3 p) {
     if (is_onto_sphere(lens)) {
-        Float scale = max(lens.near / max(sqrt(dot(p, p)), 1e-18f), 1.0f);
+        Float scale = max(as_div(lens.near, max(sqrt(dot(p, p)), 1e-18f)), 1.0f);
         return Vec3(p.x * scale, p.y * scale, p.z * scale);
     }
     return Vec3(p.x, p.y, min(p.z, -lens.near));
@@ -134,7 +134,7 @@ Float reach_px(Lens lens, Vec3 p, Float reach, Float margin_px) {
     Instance at = instance_of(lens, p);
     if (is_onto_sphere(lens)) {
         // The chord of the angle whose sine is reach / distance.
-        Float sine = min(reach * at.px_per_unit / lens.focal_px, 1.0f);
+        Float sine = min(as_div(reach * at.px_per_unit, lens.focal_px), 1.0f);
         Float chord = sqrt(max(2.0f - 2.0f * sqrt(max(1.0f - sine * sine, 0.0f)), 0.0f));
         if (lens.parallax != 0.0f)
             chord = chord + abs(panorama_parallax(lens, max(sqrt(dot(p, p)) - reach, Float(lens.near))));
@@ -147,7 +147,8 @@ Float reach_px(Lens lens, Vec3 p, Float reach, Float margin_px) {
 
 // Whether a square around a splat touches a rectangle from (x0, y0) to (x1, y1).
 Bool touches_rect(Float x_px, Float y_px, Float reach_px, float x0, float y0, float x1, float y1) {
-    return x_px + reach_px > x0 && x_px - reach_px < x1 && y_px + reach_px > y0 && y_px - reach_px < y1;
+    Float right = x_px + reach_px, left = x_px - reach_px, bottom = y_px + reach_px, top = y_px - reach_px;
+    return right > x0 && left < x1 && bottom > y0 && top < y1;
 }
 
 // The same for all places at which the frame shows it.

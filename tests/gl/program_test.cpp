@@ -61,7 +61,7 @@ class ReferenceCompiler : public ::testing::Test {
     }
     bool takes(const char* stage, const std::vector<std::string>& defines,
                const std::vector<std::string>& files) {
-        std::string text = "#version 410 core\n";
+        std::string text = "#version 410 core\nfloat as_div(float a, float b) { return a / b; }\n";
         for (const std::string& define : defines) text += "#define " + define + "\n";
         for (const std::string& file : files) text += shader_text(file);
         return runs("glslangValidator '" + folder_.file(std::string("shader.") + stage, text).string() + "'");

@@ -1,0 +1,37 @@
+// --device: what draws frames, the processor or a graphics card that has its bits.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "command.h"
+#include "render/frame.h"
+
+namespace astrosplat {
+
+/// Throws where the text is none.
+DeviceChoice parse_device(const std::string& text);
+
+/// Draws the frames of one command, on the thread that made it.
+class FrameDevice {
+  public:
+    /// Automatic takes a graphics card that is there and exact, and says why not in the log's details. Throws
+    /// InputError where a card is asked for and there is none.
+    explicit FrameDevice(const CommandOptions& options);
+    ~FrameDevice();
+
+    RenderDevice* get() const;  // null: the processor draws
+    /// "the processor" or the card's name.
+    std::string name() const;
+    /// After a frame: a log line, the first time, where the processor had to draw it. Throws InputError where
+    /// only a card may.
+    void check(const RenderStatistics& statistics);
+
+  private:
+    DeviceChoice choice_;
+    struct State;
+    std::unique_ptr<State> state_;
+    std::string said_;
+};
+
+}  // namespace astrosplat

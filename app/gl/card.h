@@ -1,0 +1,139 @@
+// The renderer on a graphics card: compute shaders that give the bits of engine/render's fold. Splats stay in
+// the card's memory between frames; each frame they are projected, put in order of depth, entered into tiles
+// of 16 x 16 px and folded there. Which pass does what: shaders/card_*.glsl. Slabs of depth, each at most
+// some 256 MB of records, because random reads over more than the card's address translation reaches are
+// a hundred times slower (an H100 beyond 512 MB).
+#pragma once
+
+#include <array>
+#include <map>
+
+#include "gl/objects.h"
+#include "render/device.h"
+#include "render/frame_job.h"
+
+namespace astrosplat {
+
+/// Memory on the card; grows, and keeps nothing when it does.
+class CardBuffer {
+  public:
+    /// At least so many bytes. False where the card has not so much.
+    bool reserve(std::int64_t bytes, GLbitfield flags = GL_DYNAMIC_STORAGE_BIT);
+    /// Reserves, and copies there.
+    bool fill(const void* data, std::int64_t bytes);
+    void bind(GLuint at) const { glBindBufferBase(GL_SHADER_STORAGE_BUFFER, at, buffer_.name()); }
+    GLuint name() const { return buffer_.name(); }
+    std::int64_t bytes() const { return bytes_; }
+
+  private:
+    GlBuffer buffer_;
+    std::int64_t bytes_ = 0;
+};
+
+/// Sets uniforms of a program by name.
+struct Uniforms {
+    GLuint program;
+    void operator()(const char* name, int v) const { glProgramUniform1i(program, at(name), v); }
+    void operator()(const char* name, GLuint v) const { glProgramUniform1ui(program, at(name), v); }
+    void operator()(const char* name, float v) const { glProgramUniform1f(program, at(name), v); }
+    GLint at(const char* name) const { return glGetUniformLocation(program, name); }
+};
+
+class Card final : public RenderDevice {
+  public:
+    /// Of the current context, which has to be current in all calls. `native_division`: the driver's own
+    /// division and square root have IEEE 754's bits. Throws NoContext where it cannot compute.
+    explicit Card(const GlInfo& info, bool native_division);
+
+    std::string name() const override { return info_.renderer; }
+    std::string cannot(const FrameJob& job) const override;
+    std::optional<GroupPlanes> draw(const FrameJob& job, std::size_t group, bool alone) override;
+
+    /// Slabs of depth from now on, which change no pixel; 0: as many as suit the memory.
+    void set_slabs(int slabs) { slabs_ = slabs; }
+    /// Bytes of all buffers.
+    std::int64_t bytes() const;
+
+  private:
+    struct Layer {  // of the group
+        std::size_t number;
+        std::array<CardBuffer, 4>* splats;
+        GLuint first_group;  // of 256 splats
+    };
+    struct Group {
+        std::vector<Layer> layers;
+        std::vector<const FootprintTable*> tables;
+        FoldKind kind;
+        bool alone, any, screen;  // any: records for any mix; screen: plain records of screens
+        std::int64_t splats, pixels;
+        GLuint splat_groups, slabs;
+        int columns, rows;  // tiles
+    };
+    struct Counts {
+        GLuint visible, entries, entries_wanted, entries_room, area_low, area_high, lowest, highest;
+    };
+
+    Group plan(const FrameJob& job, std::size_t group, bool alone);
+    std::array<CardBuffer, 4>* keep(const ShadedSplats& splats);
+    bool upload_tables(const FrameJob& job, const Group& group);
+    bool reserve(const FrameJob& job, const Group& group);
+    Counts run(const FrameJob& job, const Group& group);
+    void project(const FrameJob& job, const Group& group, int pass);
+    void project_layer(const FrameJob& job, const Group& group, const Layer& layer, int pass, GLuint every);
+    void plan_pass(const Group& group, int pass);
+    void scan(const CardBuffer& numbers, GLuint fixed_count, int of, int total, int slot);
+    void sort(int in, int out, int of, int passes);
+    void list_entries(const Group& group);
+    void fold(const FrameJob& job, const Group& group);
+    bool read(const CardBuffer& from, std::int64_t first_pixel, Image& to);
+
+    const GlProgram& program(const std::string& file, const std::string& defines);
+    void dispatch(const GlProgram& program, std::int64_t groups);
+    void indirect(const GlProgram& program, int slot);
+
+    GlInfo info_;
+    bool native_division_;
+    int slabs_ = 0;
+    std::int64_t most_bytes_ = 0;  // of a buffer
+    double entries_each_ = 2.5;    // of a record, as of the frames so far
+    std::uint64_t frames_ = 0;
+    std::map<std::string, std::unique_ptr<GlProgram>> programs_;
+    struct Kept {
+        std::array<CardBuffer, 4> arrays;  // positions, radii, alphas, colours
+        std::uint64_t frame = 0;           // that used it last
+    };
+    std::map<std::pair<std::uint64_t, const ShadedSplats*>, Kept> kept_;  // by stamp; without one, by place
+    CardBuffer counts_, arguments_, begins_, records_, tags_, rects_, sums_, digits_, ranges_, light_,
+        through_, more_, layer_light_, layers_, nodes_, moments_, cosines_, staging_;
+    std::array<CardBuffer, 3> keys_, values_;  // 0, 1: entries, and back and forth with 2: records
+};
+
+/// One of its programs; defines with commas between them.
+ProgramSource card_source(const std::string& file, const std::string& defines, bool native_division);
+
+/// Whether the current context's card has the processor's bits: every operation that decides a pixel on 10^5
+/// inputs, with the driver's own division and square root first, then two small scenes.
+struct CardProbe {
+    bool native_division = false;
+    std::string fault;  // the first that differs; empty: none
+    double seconds = 0.0;
+};
+CardProbe probe_card(const GlInfo& info);
+
+/// A card with a context of its own, on this machine and current on this thread, that draws exactly.
+class OwnCard {
+  public:
+    /// `kept`: a file that remembers what the probe found of this card, driver and program; empty: none.
+    /// `software`: also the processor's own OpenGL. Throws NoContext with the reason why there is none.
+    OwnCard(const fs::path& kept, bool software);
+    Card& card() { return *card_; }
+    const GlInfo& info() const { return context_.info(); }
+    const CardProbe& probe() const { return probe_; }
+
+  private:
+    OffscreenContext context_;
+    CardProbe probe_;
+    std::unique_ptr<Card> card_;
+};
+
+}  // namespace astrosplat

@@ -1,0 +1,39 @@
+// What else can draw: a graphics card, as the renderer sees it. It projects and folds a blend group with the
+// bits of project() and fold(); what lies behind and between the groups stays the processor's. app/gl has
+// one.
+#pragma once
+
+#include "core/image.h"
+#include "render/render.h"
+
+namespace astrosplat {
+
+struct FrameJob;
+
+/// A blend group over the region, as TilePlanes holds it of a tile. Four channels each, rows from the top.
+struct GroupPlanes {
+    Image light;                     // r, g, b, alpha
+    Image through;                   // transmittance r, g, b, alpha; empty where `alone` was asked for
+    Image more;                      // held, depth sum, uncovered, count; the same
+    std::vector<Image> layer_light;  // with RenderSettings::aov_layers, of all layers
+    std::int64_t splats = 0;         // that touch the region
+    double footprint_px = 0.0;       // sum of their footprints' areas, square px; to a thirtieth each
+};
+
+class RenderDevice {
+  public:
+    virtual ~RenderDevice() = default;
+    /// "NVIDIA H100"
+    virtual std::string name() const = 0;
+    /// Why the processor has to draw this frame, in some words; empty: the card can. The job is prepared.
+    virtual std::string cannot(const FrameJob& job) const = 0;
+    /// Draws a group of a job that it can; `alone`: its light, alpha within 0 and 1, is the frame. Null where
+    /// the card has not the memory or is lost, or finds that it cannot. Throws Cancelled.
+    virtual std::optional<GroupPlanes> draw(const FrameJob& job, std::size_t group, bool alone) = 0;
+};
+
+/// Draws the frame on its settings' device. False where the processor has to, with the reason in the frame's
+/// statistics; the frame is then as it was.
+bool draw_on_device(const FrameJob& job, RenderCache::State& cache, RenderedFrame& frame);
+
+}  // namespace astrosplat
