@@ -45,6 +45,9 @@ shared float hides[BATCH];  // of alpha; < 0: brighter than white
 const int PLAIN = 0, PROPORTIONAL = 1, CLAMPED = 2, ABSORBING = 3;
 shared vec4 occlusion[BATCH];  // r, g, b, alpha
 shared vec4 profile[BATCH];    // lo, edge gain, amplitude, depth
+#ifdef SHAPED
+shared vec3 stretch[BATCH];    // what offsets are mapped by: xx, xy, yy
+#endif
 shared uint facts[BATCH];      // layer, hiding << 16, holdout << 18, linear << 19
 #endif
 
@@ -83,7 +86,11 @@ void prepare(uint place, uint at, ivec2 corner, uint aside) {
         uvec2 tag = tag_of[at];
         color[place] = vec4(b.rgb, c.w);
         node_of[place] = int(tag.x & 0xffffu);
-        profile[place] = vec4(c.xyz, record[4u * at + 3u].x);
+        vec4 d = record[4u * at + 3u];
+        profile[place] = vec4(c.xyz, d.x);
+#ifdef SHAPED
+        stretch[place] = d.yzw;
+#endif
         prepare_hiding(place, b.rgb, tag);
 #else
         NodePlace between = node_of_radius(a.z);
@@ -124,6 +131,12 @@ bool is_open(Pixel p) {
 // The splat's weight at the pixel over its amplitude.
 float weight_at(uint i, float x, float y) {
     float dx = x - disc[i].x, dy = y - disc[i].y;
+#ifdef SHAPED
+    vec3 by = stretch[i];
+    float along = by.x * dx + by.y * dy;
+    dy = by.y * dx + by.z * dy;
+    dx = along;
+#endif
     float u = dx * dx + dy * dy;
 #ifdef ANY
     if ((facts[i] & 1u << 19) != 0u) u = sqrt(u);

@@ -20,8 +20,9 @@ void main() {
 #elif OPERATION == 4
     result = as_log(abs(a));
 #elif OPERATION == 5
-    double place = double(a) * double(b) + double(c) * 1.1lf;
-    result = float(place + 0.3lf);
+    double sum = double(a) * double(b) + double(b) * double(c);
+    sum = (sum + double(a) * double(c)) + double(c);
+    result = float(sum);
 #elif OPERATION == 6
     float near_whole = (c - 0.5f) + 12582912.0f;
     result = (c - (near_whole - 12582912.0f)) * floor(c * 256.0f + 0.5f);

@@ -1,12 +1,28 @@
 // A layer's splats onto the frame, and those that touch the region into records: slab by slab of depth from near to far, in a
 // slab in the order of the splats. PASS 0: between which depths a sample lies; 1: how many of it each bin of depth has; 2:
-// how many splats each group of 256 leaves in each slab; 3: the records. As engine/render/project_vector.cpp and
-// fold_prepare-inl.h. Needs projection.glsl, blend.glsl and footprint.glsl. ANY: records with what any mix of layers asks for.
+// how many splats each group of 256 leaves in each slab; 3: the records; 4: which splats are left to the processor, because
+// level of detail divides them or they are stars that stay points. As engine/render/project_vector.cpp and
+// fold_prepare-inl.h. Needs projection.glsl, blend.glsl and footprint.glsl. ANY: records with what any mix of layers asks
+// for. GIVEN: splats that the processor has projected.
 layout(local_size_x = 256) in;
+#ifdef GIVEN
+layout(std430, binding = 1) readonly buffer Splats { uint given[]; };  // ScreenSplat of engine/render/screen_splat.h
+layout(std430, binding = 2) readonly buffer Shapes { vec4 shapes[]; };  // of those that are not round: three each
+uniform uint first_given;
+uniform bool in_order;  // ties are in order already
+#else
 layout(std430, binding = 1) readonly buffer Positions { float position[]; };  // layer space
 layout(std430, binding = 2) readonly buffer Radii { float radius_of[]; };
 layout(std430, binding = 3) readonly buffer Alphas { float alpha_of[]; };
 layout(std430, binding = 4) readonly buffer Colors { float color_of[]; };
+layout(std430, binding = 14) readonly buffer Stars { uint star_bits[]; };
+uniform float lod_limit_px;  // > 0: wider splats are divided
+uniform float child_reach;
+uniform bool leaves_stars;
+#if PASS == 4
+layout(std430, binding = 15) buffer Rest { uint rest_count, rest[]; };
+#endif
+#endif
 layout(std430, binding = 5) buffer Begins { uint begin[]; };  // [slab][group of all layers]: counts, in the end begins
 layout(std430, binding = 6) writeonly buffer Records { vec4 record[]; };
 layout(std430, binding = 7) writeonly buffer Keys { uint key_of[]; };
@@ -15,6 +31,8 @@ layout(std430, binding = 9) writeonly buffer Rects { uvec2 rect_of[]; };
 layout(std430, binding = 10) readonly buffer Moments { vec4 moments[]; };  // three a node
 layout(std430, binding = 11) readonly buffer Cosines { float cosines[256]; };
 layout(std430, binding = 12) writeonly buffer Tags { uvec2 tag_of[]; };  // layer and node; bits of hybrid's h
+layout(std430, binding = 13) writeonly buffer Ranks { uint rank_of[]; };   // the place in (layer, splat)
+uniform uint first_rank;
 uniform uint count, first_group, all_groups, every, slabs;
 uniform dvec4 camera_row[3];  // camera from layer, and the layer's origin
 uniform Lens lens;
@@ -39,8 +57,35 @@ struct Splat {
     bool shows;
     uint key;  // of depth
     float x_px, y_px, radius_px, opacity;
-    vec3 place;  // camera space
+    vec3 color;
+    uint h_bits;  // of hybrid
+    uint rank;
+    int shape;  // < 0: it is round
 };
+
+#ifdef GIVEN
+Splat splat_at(uint i) {
+    uint at = 10u * (first_given + i), radius_bits = given[at + 2u];
+    int shape = radius_bits > 0x80000000u ? int(radius_bits - 0x80000001u) : -1;
+    float radius_px = shape < 0 ? uintBitsToFloat(radius_bits) : shapes[3 * shape + 2].w;
+    vec3 color = vec3(uintBitsToFloat(given[at + 4u]), uintBitsToFloat(given[at + 5u]), uintBitsToFloat(given[at + 6u]));
+    return Splat(true, given[at + 7u], uintBitsToFloat(given[at]), uintBitsToFloat(given[at + 1u]), radius_px,
+                 uintBitsToFloat(given[at + 3u]), color, given[at + 9u] >> 16, first_rank + (in_order ? i : given[at + 8u]), shape);
+}
+#else
+bool is_large(vec3 place, float radius) {
+    float wide_px = 2.0f * radius * instance_of(lens, beyond_near(lens, place)).px_per_unit;
+    return lod_limit_px > 0.0f && wide_px > lod_limit_px;
+}
+
+// Of large ones: neither it nor its children may show.
+bool is_out_of_sight(vec3 place, Instance at, float radius) {
+    float wide = radius * child_reach, px = reach_px(lens, place, wide, margin_px);
+    float back = at.depth + wide, front = at.depth - wide;
+    return back < lens.near || (front > lens.near && !touches_rect(at.x_px, at.y_px, px, region.x, region.y, region.z, region.w));
+}
+
+bool is_left_star(uint i) { return leaves_stars && (star_bits[i >> 5] >> (i & 31u) & 1u) != 0u; }
 
 Splat splat_at(uint i) {
     dvec3 p = dvec3(position[3u * i], position[3u * i + 1u], position[3u * i + 2u]);
@@ -53,9 +98,14 @@ Splat splat_at(uint i) {
     float shown = alpha * opacity * near_fade(lens, at.depth, radius);
     bool shows = is_in_range(lens, at.depth) && alpha > 0.0f && shown > 0.0f &&
                  touches_rect(x_px, y_px, support_px, region.x, region.y, region.z, region.w);
-    float depth = sort_depth(lens, place);
-    return Splat(shows, floatBitsToUint(depth), x_px, y_px, radius_px, shown, place);
+    shows = shows && !is_large(place, radius) && !is_left_star(i);
+    float depth = sort_depth(lens, place), h = 0.0f;
+    if (is_hybrid) h = hybrid_amount(axis_cosine(lens, axis, place), hybrid_from_deg, hybrid_to_deg);
+    float of_65535 = h * 65535.0f + 0.5f;
+    vec3 color = vec3(color_of[3u * i], color_of[3u * i + 1u], color_of[3u * i + 2u]);
+    return Splat(shows, floatBitsToUint(depth), x_px, y_px, radius_px, shown, color, uint(of_65535), first_rank + i, -1);
 }
+#endif
 
 uint bin_of(uint key) {
     uint wide = counts.highest - counts.lowest;
@@ -105,24 +155,33 @@ uvec2 rect_at(float x_px, float y_px, float support_px) {
     return uvec2(lo.x | lo.y << 16, hi.x | hi.y << 16);
 }
 
-void write_record(uint at, uint i, Splat splat) {
+void write_record(uint at, Splat splat) {
     float x_px = splat.x_px, y_px = splat.y_px, radius_px = splat.radius_px;
     Profile profile = profile_at(radius_px, x_px, y_px);
-    float weighted = splat.opacity * profile.amplitude;
     float support_px = max(radius_px, SMALLEST_RADIUS_PX) * reach + margin_px;
+    vec3 stretch = vec3(1.0f, 0.0f, 1.0f);  // symmetric: xx, xy, yy
+#ifdef GIVEN
+    if (splat.shape >= 0) {
+        vec4 a = shapes[3 * splat.shape], b = shapes[3 * splat.shape + 1], c = shapes[3 * splat.shape + 2];
+        profile = Profile(int(table) * NODE_COUNT + int(c.y), a.w, a.x, c.x, a.y, a.z);
+        stretch = b.xyz;
+        support_px = c.z;
+    }
+#endif
+    float weighted = splat.opacity * profile.amplitude;
 #ifdef ANY
     record[4u * at] = vec4(x_px, y_px, support_px, weighted);
-    record[4u * at + 1u] = vec4(color_of[3u * i], color_of[3u * i + 1u], color_of[3u * i + 2u], profile.scale);
+    record[4u * at + 1u] = vec4(splat.color, profile.scale);
     record[4u * at + 2u] = vec4(profile.lo, profile.edge_gain, profile.amplitude, profile.share);
     float axis_depth_here = axis_depth(lens, x_px, y_px, uintBitsToFloat(splat.key));
-    record[4u * at + 3u] = vec4(axis_depth_here, 0.0f, 0.0f, 0.0f);
-    float h = 0.0f;
-    if (is_hybrid) h = hybrid_amount(axis_cosine(lens, axis, splat.place), hybrid_from_deg, hybrid_to_deg);
-    float of_65535 = h * 65535.0f + 0.5f;
-    tag_of[at] = uvec2(layer << 16 | uint(profile.node), uint(of_65535));
+    record[4u * at + 3u] = vec4(axis_depth_here, stretch);
+    tag_of[at] = uvec2(layer << 16 | uint(profile.node), splat.h_bits);
 #else
     record[2u * at] = vec4(x_px, y_px, radius_px, weighted);
-    record[2u * at + 1u] = vec4(color_of[3u * i], color_of[3u * i + 1u], color_of[3u * i + 2u], profile.scale);
+    record[2u * at + 1u] = vec4(splat.color, profile.scale);
+#endif
+#ifdef RANKS
+    rank_of[at] = splat.rank;
 #endif
     key_of[at] = splat.key;
     record_at[at] = at;
@@ -136,6 +195,17 @@ shared uint least, most;
 shared uint bins[1024];
 #endif
 
+#if PASS == 4
+void main() {
+    uint i = group_number() * GROUP + gl_LocalInvocationIndex;
+    if (i >= count) return;
+    dvec3 p = dvec3(position[3u * i], position[3u * i + 1u], position[3u * i + 2u]);
+    vec3 place = vec3(camera_coordinate(camera_row[0], p), camera_coordinate(camera_row[1], p), camera_coordinate(camera_row[2], p));
+    float radius = radius_of[i] * radius_scale;
+    bool left = is_left_star(i) || (is_large(place, radius) && !is_out_of_sight(place, instance_of(lens, place), radius));
+    if (left) rest[atomicAdd(rest_count, 1u)] = i;
+}
+#else
 void main() {
     uint t = gl_LocalInvocationIndex, group = group_number() * every, i = group * GROUP + t;
     words[t] = 0u;
@@ -191,6 +261,7 @@ void main() {
     uint at = begin[slab * all_groups + first_group + group];
     for (uint w = 0u; w < (t >> 5); ++w) at += uint(bitCount(words[slab * 8u + w]));
     at += uint(bitCount(words[slab * 8u + (t >> 5)] & ((1u << (t & 31u)) - 1u)));
-    write_record(at, i, splat);
+    write_record(at, splat);
 #endif
 }
+#endif

@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "core/parallel.h"
+#include "render/shape.h"
 #include "splats/splat_set.h"
 
 namespace astrosplat {
@@ -13,6 +14,7 @@ namespace {
 
 constexpr GLuint most_slabs = 32, group_size = 256, sorted = 4096, scanned = 2048;
 constexpr int tile_px = 16;
+constexpr std::int64_t counts_bytes = (8 + 1024 + 33) * 4;
 // Slabs from so many splats on, of so many each: 256 MB of records of 32 bytes.
 constexpr std::int64_t slabs_from = 12'000'000, splats_of_slab = 8'000'000;
 constexpr std::uint64_t frames_kept = 64;  // splats that so many draws did not ask for give their memory back
@@ -59,6 +61,9 @@ void set_camera(const Uniforms& set, const LayerProjection& layer) {
     glProgramUniform4dv(set.program, set.at("camera_row"), 3, rows);
 }
 
+/// Whether the processor projects all of the layer's splats.
+bool is_given(const RenderLayer& layer) { return layer.stars || !layer.splats->stretch.empty(); }
+
 bool is_screen(const FoldLayer& layer) {
     return layer.blend == Blend::screen && !layer.holdout && !layer.absorbs;
 }
@@ -99,25 +104,27 @@ Card::Card(const GlInfo& info, bool native_division) : info_(info), native_divis
 
 std::string Card::cannot(const FrameJob& job) const {
     if (shared::is_onto_sphere(job.fold.lens)) return "projections onto the sphere";
-    std::int64_t splats = 0;
-    for (std::size_t l = 0; l < job.layers.size(); ++l) {
-        const RenderLayer& layer = job.layers[l];
-        if (layer.blocks) return "layers that are read block by block";
-        if (layer.stars) return "stars";
-        if (!layer.splats->stretch.empty()) return "splats that are not round";
-        if (job.projections[l].lod) return "level of detail";
-        if (job.projections[l].star_distance > 0.0f) return "stars that stay points";
-        splats = std::max(splats, layer.size());
+    if (job.region.width > 65536 || job.region.height > 65536) return "frames as large as this";
+    for (std::size_t g = 0; g < job.groups.size(); ++g) {
+        const Group group = plan(job, g, false);
+        std::int64_t splats = 0;
+        for (const std::size_t l : job.groups[g].layers) {
+            if (job.layers[l].blocks) return "layers that are read block by block";
+            splats += job.layers[l].size();
+        }
+        if ((group.any ? 64 : 32) * splats > most_bytes_) return "as many splats as these";
     }
-    // Records of 64 bytes are what takes most a splat.
-    if (64 * splats > most_bytes_) return "so many splats";
-    if (job.region.width > 65536 || job.region.height > 65536) return "so large a frame";
     return {};
 }
 
-Card::Group Card::plan(const FrameJob& job, std::size_t number, bool alone) {
+Card::Group Card::plan(const FrameJob& job, std::size_t number, bool alone) const {
     const BlendGroup& blend = job.groups[number];
-    Group group{{}, {}, blend.kind, alone, false, false, 0, job.region.width * job.region.height, 0, 1, 0, 0};
+    Group group{};
+    group.kind = blend.kind;
+    group.alone = alone;
+    group.pixels = job.region.width * job.region.height;
+    group.columns = static_cast<int>(groups_for(job.region.width, tile_px));
+    group.rows = static_cast<int>(groups_for(job.region.height, tile_px));
     bool flat = false, screen = blend.kind == FoldKind::general;
     for (const std::size_t l : blend.layers) {
         const FoldLayer& layer = job.fold_layers[l];
@@ -125,39 +132,163 @@ Card::Group Card::plan(const FrameJob& job, std::size_t number, bool alone) {
             group.tables.push_back(layer.footprints);
         flat = flat || layer.footprints->flat_core;
         screen = screen && is_screen(layer);
-        const std::int64_t splats = job.layers[l].size();
-        group.layers.push_back({l, nullptr, group.splat_groups});
-        group.splats += splats;
-        group.splat_groups += static_cast<GLuint>(groups_for(splats, group_size));
+        group.shaped = group.shaped || is_given(job.layers[l]);
     }
-    group.any =
-        flat || job.fold.aovs || group.tables.size() > 1 || (blend.kind == FoldKind::general && !screen);
+    const bool general = blend.kind == FoldKind::general && !screen;
+    group.any = flat || general || group.shaped || job.fold.aovs || group.tables.size() > 1;
     group.screen = screen && !group.any;
-    const std::int64_t slabs = slabs_ > 0                  ? slabs_
-                               : group.splats < slabs_from ? 1
-                                                           : groups_for(group.splats, splats_of_slab);
-    group.slabs = static_cast<GLuint>(std::min<std::int64_t>(slabs, most_slabs));
-    group.columns = static_cast<int>(groups_for(job.region.width, tile_px));
-    group.rows = static_cast<int>(groups_for(job.region.height, tile_px));
     return group;
 }
 
-std::array<CardBuffer, 4>* Card::keep(const ShadedSplats& splats) {
+void Card::cut_depth(Group& group) const {
+    const std::int64_t slabs = slabs_ > 0                 ? slabs_
+                               : group.count < slabs_from ? 1
+                                                          : groups_for(group.count, splats_of_slab);
+    group.slabs = static_cast<GLuint>(std::min<std::int64_t>(slabs, most_slabs));
+}
+
+const Card::Kept* Card::keep(const ShadedSplats& splats, bool with_stars) {
     std::erase_if(kept_, [&](const auto& kept) { return kept.second.frame + frames_kept < frames_; });
     // Without a stamp nobody knows whether they are the same.
     const std::pair key{splats.stamp, splats.stamp != 0 ? nullptr : &splats};
     Kept& kept = kept_[key];
+    auto& [positions, radii, alphas, colors, stars] = kept.arrays;
     const bool there = splats.stamp != 0 && kept.frame != 0;
     kept.frame = frames_;
-    if (there) return &kept.arrays;
     const std::int64_t n = splats.size();
-    const bool fits = kept.arrays[0].fill(splats.position.data(), 12 * n) &&
-                      kept.arrays[1].fill(splats.radius.data(), 4 * n) &&
-                      kept.arrays[2].fill(splats.alpha.data(), 4 * n) &&
-                      kept.arrays[3].fill(splats.color.data(), 12 * n);
-    if (fits) return &kept.arrays;
+    bool fits =
+        there || (positions.fill(splats.position.data(), 12 * n) && radii.fill(splats.radius.data(), 4 * n) &&
+                  alphas.fill(splats.alpha.data(), 4 * n) && colors.fill(splats.color.data(), 12 * n));
+    if (fits && with_stars && !(there && stars.bytes() > 0)) {
+        std::vector<std::uint32_t> bits(static_cast<std::size_t>(n) / 32 + 1);
+        for (std::size_t i = 0; i < splats.id.size(); ++i)
+            bits[i / 32] |= std::uint32_t{is_star(splats.id[i])} << i % 32;
+        fits = stars.fill(bits.data(), 4 * std::ssize(bits));
+    }
+    if (fits) return &kept;
     kept_.erase(key);
     return nullptr;
+}
+
+/// Those splats of a layer that level of detail divides or that are stars which stay points, ascending.
+std::optional<std::vector<std::int64_t>> Card::rest_of(const FrameJob& job, const Group& group,
+                                                       const Splats& splats) {
+    const GLuint none = 0;
+    if (!counts_.reserve(counts_bytes) || !rest_.reserve(4 * (splats.count + 1))) return {};
+    glNamedBufferSubData(rest_.name(), 0, 4, &none);
+    counts_.bind(0);
+    rest_.bind(15);
+    project_some(job, group, splats, 4, 1);
+    GLuint count = 0;
+    glGetNamedBufferSubData(rest_.name(), 0, 4, &count);
+    std::vector<GLuint> found(count);
+    if (count > 0) glGetNamedBufferSubData(rest_.name(), 4, 4 * static_cast<GLsizeiptr>(count), found.data());
+    std::ranges::sort(found);
+    return std::vector<std::int64_t>(found.begin(), found.end());
+}
+
+namespace {
+
+/// What the processor has projected of some of a layer's splats, in their order.
+struct GivenPart {
+    Buffer<ScreenSplat> splats;
+    Buffer<Shape> shapes;
+};
+
+/// Splats of one star or Gaussian, in the order of ties.
+void order_ties(Buffer<ScreenSplat>& splats) {
+    for (std::size_t i = 0, end; i < splats.size(); i = end) {
+        for (end = i + 1; end < splats.size() && splats[end].index == splats[i].index;) ++end;
+        if (end - i > 1)
+            std::sort(splats.begin() + std::ptrdiff_t(i), splats.begin() + std::ptrdiff_t(end),
+                      [](const ScreenSplat& a, const ScreenSplat& b) { return in_front_of(a, b); });
+    }
+}
+
+/// A footprint that is not round, as card_project.glsl reads it.
+void add_shape(const FootprintTable& table, const Shape& shape, const ScreenSplat& splat,
+               std::vector<float>& to) {
+    const ShapedFootprint found = shaped_footprint_at(table, shape, splat.x_px, splat.y_px);
+    const Footprint& f = found.round;
+    const Ellipse e = ellipse_of(shape);
+    const float support_px =
+        shape_support_px(shape, {table.reach, 4.0f * table.pixel_filter_px, table.variance});
+    to.insert(to.end(),
+              {f.lo, f.edge_gain, f.amplitude, f.t, found.xx, found.xy, found.yy, 0.0f, f.scale,
+               float(f.node_a - table.nodes.data()), support_px, float(std::sqrt(e.larger * e.smaller))});
+}
+
+}  // namespace
+
+/// Projects splats by the processor: `rows` of a layer, or all of them.
+bool Card::give(const FrameJob& job, Group& group, std::size_t number,
+                const std::vector<std::int64_t>* rows) {
+    constexpr std::int64_t chunk = 1024;
+    const LayerProjection& layer = job.projections[number];
+    const FootprintTable& table = *job.fold_layers[number].footprints;
+    const Region& r = job.region;
+    const ScreenRect rect{float(r.x), float(r.y), float(r.x + r.width), float(r.y + r.height)};
+    const std::int64_t count = rows ? std::ssize(*rows) : job.layers[number].size();
+    std::vector<GivenPart> parts(static_cast<std::size_t>(groups_for(count, chunk)));
+    parallel_chunks(count, chunk, [&](std::int64_t begin, std::int64_t end, int) {
+        job.progress.check();
+        auto& [splats, shapes] = parts[begin / chunk];
+        if (rows) return project_rows(layer, std::span(*rows).subspan(begin, end - begin), rect, splats);
+        astrosplat::project(layer, begin, end, rect, splats, shapes);
+        order_ties(splats);
+    });
+    const std::int64_t first = std::ssize(given_);
+    for (GivenPart& part : parts) {
+        for (ScreenSplat& splat : part.splats) {
+            if (part.shapes.empty() || is_round(splat)) continue;
+            const Shape shape = part.shapes[shape_number(splat)];
+            set_shape_number(splat, static_cast<std::uint32_t>(shapes_.size() / 12));
+            add_shape(table, shape, splat, shapes_);
+        }
+        const std::size_t at = given_.size();
+        given_.resize(at + part.splats.size());
+        std::copy(part.splats.begin(), part.splats.end(), given_.begin() + std::ptrdiff_t(at));
+        part = {};
+    }
+    const std::int64_t splats = std::ssize(given_) - first, limit = job.settings.memory_limit_bytes;
+    if (limit > 0 && std::ssize(given_) * std::int64_t(sizeof(ScreenSplat)) > limit) return false;
+    if (splats > 0) group.splats.push_back({number, nullptr, splats, first, 0, 0});
+    return true;
+}
+
+/// All splats of the group, layer by layer: what the card projects, and what the processor has to.
+bool Card::gather(const FrameJob& job, std::size_t number, Group& group) {
+    given_.clear();
+    shapes_.clear();
+    std::int64_t rank = 0;
+    for (const std::size_t l : job.groups[number].layers) {
+        const RenderLayer& layer = job.layers[l];
+        const LayerProjection& projection = job.projections[l];
+        const std::size_t first = group.splats.size();
+        if (is_given(layer)) {
+            if (!give(job, group, l, nullptr)) return false;
+        } else if (layer.size() > 0) {
+            const bool stars = projection.star_distance > 0.0f;
+            const Kept* const kept = keep(*layer.splats, stars);
+            if (!kept) return false;
+            group.splats.push_back({l, kept, layer.size(), 0, 0, 0});
+            const auto rest = stars || projection.lod ? rest_of(job, group, group.splats.back())
+                                                      : std::vector<std::int64_t>();
+            if (!rest || !give(job, group, l, &*rest)) return false;
+            group.ranked = group.ranked || !rest->empty();
+        }
+        for (std::size_t i = first; i < group.splats.size(); ++i)
+            group.splats[i].first_rank = static_cast<GLuint>(rank);
+        rank += is_given(layer) && group.splats.size() > first ? group.splats[first].count : layer.size();
+    }
+    for (Splats& splats : group.splats) {
+        splats.first_group = group.splat_groups;
+        group.count += splats.count;
+        group.splat_groups += static_cast<GLuint>(groups_for(splats.count, group_size));
+    }
+    cut_depth(group);
+    return given_splats_.fill(given_.data(), std::ssize(given_) * std::int64_t(sizeof(ScreenSplat))) &&
+           given_shapes_.fill(shapes_.data(), 4 * std::ssize(shapes_));
 }
 
 bool Card::upload_tables(const FrameJob& job, const Group& group) {
@@ -178,25 +309,27 @@ bool Card::upload_tables(const FrameJob& job, const Group& group) {
 }
 
 bool Card::reserve(const FrameJob& job, const Group& group) {
-    const std::int64_t n = std::max<std::int64_t>(group.splats, 1),
+    const std::int64_t n = std::max<std::int64_t>(group.count, 1),
                        tiles = std::int64_t(group.columns) * group.rows;
     const std::int64_t entries = std::max(n, std::int64_t(double(n) * entries_each_)) + sorted;
     const std::int64_t record_bytes = group.any ? 64 : 32;
     if (record_bytes * n > most_bytes_ || 4 * entries > most_bytes_) return false;
-    for (int i = 0; i < 3; ++i)
-        if (!keys_[i].reserve(4 * (i < 2 ? entries : n)) || !values_[i].reserve(4 * (i < 2 ? entries : n)))
+    for (int i = 0; i < (group.ranked ? 4 : 3); ++i)
+        if (const std::int64_t bytes = 4 * (i < 2 ? entries : n);
+            !keys_[i].reserve(bytes) || !values_[i].reserve(bytes))
             return false;
     const std::int64_t begins = group.splat_groups * std::int64_t(group.slabs) + 1;
     const std::int64_t digits = 256 * (groups_for(keys_[0].bytes() / 4, sorted) + 1);
     const auto all = [](std::initializer_list<std::pair<CardBuffer*, std::int64_t>> wanted) {
         return std::ranges::all_of(wanted, [](const auto& want) { return want.first->reserve(want.second); });
     };
-    if (!all({{&counts_, (8 + 1024 + 33) * 4},
+    if (!all({{&counts_, counts_bytes},
               {&arguments_, 3 * 4 * 8},
               {&begins_, 4 * std::max(begins, groups_for(n, group_size) + 1)},
               {&records_, record_bytes * n},
               {&tags_, group.any ? 8 * n : 16},
               {&rects_, 8 * n},
+              {&ranks_, group.ranked ? 4 * n : 16},
               {&digits_, 4 * digits},
               {&sums_, 4 * (std::max(digits, begins) / scanned + 64)},
               {&ranges_, 4 * tiles * (group.slabs + 1)},
@@ -289,16 +422,19 @@ void Card::sort(int in, int out, int of, int passes) {
     }
 }
 
-void Card::project_layer(const FrameJob& job, const Group& group, const Layer& layer, int pass,
-                         GLuint every) {
-    const LayerProjection& projection = job.projections[layer.number];
-    const FootprintTable& table = *job.fold_layers[layer.number].footprints;
+void Card::project_some(const FrameJob& job, const Group& group, const Splats& splats, int pass,
+                        GLuint every) {
+    const LayerProjection& projection = job.projections[splats.layer];
+    const FootprintTable& table = *job.fold_layers[splats.layer].footprints;
     const GlProgram& p =
-        program("card_project.glsl", fmt::format("PASS {}{}", pass, group.any ? ",ANY" : ""));
+        program("card_project.glsl", fmt::format("PASS {}{}{}{}", pass, group.any ? ",ANY" : "",
+                                                 group.ranked ? ",RANKS" : "", splats.kept ? "" : ",GIVEN"));
     const Uniforms set{p.name()};
-    const std::int64_t count = job.layers[layer.number].size();
-    set("count", static_cast<GLuint>(count));
-    set("first_group", layer.first_group);
+    set("count", static_cast<GLuint>(splats.count));
+    set("first_given", static_cast<GLuint>(splats.first_given));
+    set("in_order", int(is_given(job.layers[splats.layer])));
+    set("first_group", splats.first_group);
+    set("first_rank", splats.first_rank);
     set("all_groups", group.splat_groups);
     set("every", every);
     set("slabs", group.slabs);
@@ -306,6 +442,9 @@ void Card::project_layer(const FrameJob& job, const Group& group, const Layer& l
     set_lens(set, projection.lens);
     set("opacity", projection.opacity);
     set("radius_scale", projection.radius_scale);
+    set("lod_limit_px", projection.lod ? projection.lod_limit_px : 0.0f);
+    set("child_reach", child_reach);
+    set("leaves_stars", int(projection.star_distance > 0.0f));
     const Region& r = job.region;
     glProgramUniform4f(p.name(), set.at("region"), float(r.x), float(r.y), float(r.x + r.width),
                        float(r.y + r.height));
@@ -316,27 +455,53 @@ void Card::project_layer(const FrameJob& job, const Group& group, const Layer& l
     set("integral", table.integral);
     set("linear_in_distance", int(table.linear_in_distance));
     set("flat_core", int(table.flat_core));
-    set("layer", static_cast<GLuint>(layer.number));
+    set("layer", static_cast<GLuint>(splats.layer));
     set("table", static_cast<GLuint>(std::ranges::find(group.tables, &table) - group.tables.begin()));
     set("is_hybrid", int(projection.render.blend == Blend::hybrid));
-    glProgramUniform3f(p.name(), set.at("axis"), projection.axis_in_camera.x, projection.axis_in_camera.y,
-                       projection.axis_in_camera.z);
+    const glm::vec3& axis = projection.axis_in_camera;
+    glProgramUniform3f(p.name(), set.at("axis"), axis.x, axis.y, axis.z);
     set("hybrid_from_deg", projection.render.hybrid_from_deg);
     set("hybrid_to_deg", projection.render.hybrid_to_deg);
-    const auto& splats = *layer.splats;
-    bind({&splats[0], &splats[1], &splats[2], &splats[3], &begins_, &records_, &keys_[2], &values_[2],
-          &rects_, &moments_, &cosines_, &tags_});
-    dispatch(p, groups_for(groups_for(count, group_size), every));
+    if (splats.kept) {
+        const auto& a = splats.kept->arrays;
+        bind({&a[0], &a[1], &a[2], &a[3], &begins_, &records_, &keys_[2], &values_[2], &rects_, &moments_,
+              &cosines_, &tags_, &ranks_, &a[4]});
+    } else {
+        bind({&given_splats_, &given_shapes_, &counts_, &counts_, &begins_, &records_, &keys_[2], &values_[2],
+              &rects_, &moments_, &cosines_, &tags_, &ranks_});
+    }
+    dispatch(p, groups_for(groups_for(splats.count, group_size), every));
 }
 
 void Card::project(const FrameJob& job, const Group& group, int pass) {
     // A sample of some million splats tells where to cut depth.
     const GLuint every = pass < 2 ? std::max(1u, group.splat_groups / 4096u) : 1u;
-    for (const Layer& layer : group.layers)
-        if (job.layers[layer.number].size() > 0) project_layer(job, group, layer, pass, every);
+    for (const Splats& splats : group.splats) project_some(job, group, splats, pass, every);
 }
 
-void Card::list_entries(const Group& group) {
+/// By depth, ties as the processor has them; the pair of keys and values that holds the order.
+int Card::put_in_order(const Group& group) {
+    if (!group.ranked) {  // records are in the order of ties
+        sort(2, 1, 1, 4);
+        return 2;
+    }
+    const auto pass = [&](int number, const CardBuffer& keys, const CardBuffer& values) {
+        const GlProgram& p = program("card_ties.glsl", fmt::format("PASS {}", number));
+        Uniforms{p.name()}("vectors", group.any ? 4u : 2u);
+        bind({&keys, &values, &ranks_, &keys_[3], &records_});
+        indirect(p, 2);
+    };
+    pass(0, keys_[2], values_[2]);
+    glCopyNamedBufferSubData(values_[2].name(), values_[3].name(), 0, 0, values_[3].bytes());
+    barrier();
+    sort(3, 1, 1, 4);
+    pass(1, keys_[2], values_[3]);
+    sort(3, 1, 1, 4);
+    pass(2, keys_[3], values_[3]);
+    return 3;
+}
+
+void Card::list_entries(const Group& group, int order) {
     const auto pass = [&](int number) -> const GlProgram& {
         const GlProgram& p = program("card_entries.glsl", fmt::format("PASS {}", number));
         const Uniforms set{p.name()};
@@ -345,24 +510,26 @@ void Card::list_entries(const Group& group) {
         set("slabs", group.slabs);
         return p;
     };
-    const auto bind_records = [&] { bind({&values_[2], &rects_, &begins_, &keys_[0], &values_[0]}); };
+    const auto bind_records = [&] { bind({&values_[order], &rects_, &begins_, &keys_[0], &values_[0]}); };
     bind_records();
     indirect(pass(0), 2);
     scan(begins_, 0, 3, 2, 3);
     plan_pass(group, 3);
     bind_records();
     indirect(pass(1), 2);
+    mark("sort by tile");
     const int bits = std::bit_width(static_cast<unsigned>(group.columns * group.rows - 1));
     sort(0, 1, 2, bits > 16 ? 4 : 2);
+    mark("ranges");
     bind({&keys_[0], &ranges_, &values_[0]});
     dispatch(pass(2), groups_for(std::int64_t(group.slabs + 1) * group.columns * group.rows, group_size));
     indirect(pass(3), 6);
 }
 
 void Card::fold(const FrameJob& job, const Group& group) {
-    const GlProgram& p = program(
-        "card_fold.glsl",
-        fmt::format("KIND {}{}{}", int(group.kind), group.any ? ",ANY" : "", group.screen ? ",SCREEN" : ""));
+    const GlProgram& p =
+        program("card_fold.glsl", fmt::format("KIND {}{}{}{}", int(group.kind), group.any ? ",ANY" : "",
+                                              group.screen ? ",SCREEN" : "", group.shaped ? ",SHAPED" : ""));
     const Uniforms set{p.name()};
     const Region& r = job.region;
     const FootprintTable& table = *group.tables[0];
@@ -387,9 +554,29 @@ void Card::fold(const FrameJob& job, const Group& group) {
     }
 }
 
+void Card::mark(const char* pass) {
+    if (marked_ == marks_.size()) marks_.emplace_back();
+    marks_[marked_].first = pass;
+    glQueryCounter(marks_[marked_++].second.get(), GL_TIMESTAMP);
+}
+
+std::vector<Card::PassTime> Card::pass_times() const {
+    std::vector<PassTime> times;
+    GLuint64 before = 0;
+    for (std::size_t i = 0; i < marked_; ++i) {
+        GLuint64 now = 0;
+        glGetQueryObjectui64v(marks_[i].second.name(), GL_QUERY_RESULT, &now);
+        if (i > 0) times.push_back({marks_[i - 1].first, 1e-6 * double(now - before)});
+        before = now;
+    }
+    return times;
+}
+
 Card::Counts Card::run(const FrameJob& job, const Group& group) {
+    marked_ = 0;
     counts_.bind(0);
     glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, arguments_.name());
+    mark("count");
     plan_pass(group, 0);
     const auto room = static_cast<GLuint>(keys_[0].bytes() / 4);
     glNamedBufferSubData(counts_.name(), offsetof(Counts, entries_room), 4, &room);
@@ -402,10 +589,15 @@ Card::Counts Card::run(const FrameJob& job, const Group& group) {
     scan(begins_, group.slabs * group.splat_groups, 0, 1, 0);
     plan_pass(group, 2);
     plan_pass(group, 3);
+    mark("project");
     project(job, group, 3);
-    sort(2, 1, 1, 4);
-    list_entries(group);
+    mark("sort by depth");
+    const int order = put_in_order(group);
+    mark("entries");
+    list_entries(group, order);
+    mark("fold");
     fold(job, group);
+    mark("");
     Counts counts{};
     glGetNamedBufferSubData(counts_.name(), 0, sizeof counts, &counts);
     return counts;
@@ -428,12 +620,7 @@ bool Card::read(const CardBuffer& from, std::int64_t first_pixel, Image& to) {
 std::optional<GroupPlanes> Card::draw(const FrameJob& job, std::size_t number, bool alone) {
     ++frames_;
     Group group = plan(job, number, alone);
-    for (Layer& layer : group.layers) {
-        job.progress.check();
-        layer.splats = keep(*job.layers[layer.number].splats);
-        if (!layer.splats) return {};
-    }
-    if (!upload_tables(job, group)) return {};
+    if (!upload_tables(job, group) || !gather(job, number, group)) return {};
     Counts counts{};
     do {
         job.progress.check();
@@ -441,7 +628,8 @@ std::optional<GroupPlanes> Card::draw(const FrameJob& job, std::size_t number, b
         counts = run(job, group);
         constexpr double spare = 1.05;
         if (counts.visible > 0)
-            entries_each_ = std::max(entries_each_, spare * counts.entries_wanted / double(group.splats));
+            entries_each_ = std::max(entries_each_, spare * counts.entries_wanted /
+                                                        double(std::max<std::int64_t>(group.count, 1)));
     } while (counts.entries_wanted > counts.entries);
     GroupPlanes planes;
     planes.splats = counts.visible;
@@ -466,10 +654,11 @@ std::optional<GroupPlanes> Card::draw(const FrameJob& job, std::size_t number, b
 std::int64_t Card::bytes() const {
     std::int64_t sum = 0;
     for (const CardBuffer* buffer :
-         {&counts_, &arguments_, &begins_, &records_, &tags_, &rects_, &sums_, &digits_, &ranges_, &light_,
-          &through_, &more_, &layer_light_, &layers_, &nodes_, &moments_, &cosines_, &staging_})
+         {&counts_,  &arguments_, &begins_,  &records_, &tags_,         &rects_,       &sums_,  &digits_,
+          &ranges_,  &light_,     &through_, &more_,    &layer_light_,  &layers_,      &nodes_, &moments_,
+          &cosines_, &staging_,   &ranks_,   &rest_,    &given_splats_, &given_shapes_})
         sum += buffer->bytes();
-    for (int i = 0; i < 3; ++i) sum += keys_[i].bytes() + values_[i].bytes();
+    for (int i = 0; i < 4; ++i) sum += keys_[i].bytes() + values_[i].bytes();
     for (const auto& [key, kept] : kept_)
         for (const CardBuffer& array : kept.arrays) sum += array.bytes();
     return sum;

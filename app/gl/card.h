@@ -51,21 +51,33 @@ class Card final : public RenderDevice {
 
     /// Slabs of depth from now on, which change no pixel; 0: as many as suit the memory.
     void set_slabs(int slabs) { slabs_ = slabs; }
+    /// Milliseconds on the card of the last group drawn, pass by pass.
+    struct PassTime {
+        const char* name;
+        double milliseconds;
+    };
+    std::vector<PassTime> pass_times() const;
     /// Bytes of all buffers.
     std::int64_t bytes() const;
 
   private:
-    struct Layer {  // of the group
-        std::size_t number;
-        std::array<CardBuffer, 4>* splats;
-        GLuint first_group;  // of 256 splats
+    struct Kept {
+        std::array<CardBuffer, 5> arrays;  // positions, radii, alphas, colours; which are stars, a bit each
+        std::uint64_t frame = 0;           // that used it last
+    };
+    struct Splats {  // some of a layer's
+        std::size_t layer;
+        const Kept* kept;  // that the card projects; null: the processor has, from `first_given` on
+        std::int64_t count, first_given;
+        GLuint first_group, first_rank;  // groups are of 256 splats
     };
     struct Group {
-        std::vector<Layer> layers;
+        std::vector<Splats> splats;
         std::vector<const FootprintTable*> tables;
         FoldKind kind;
-        bool alone, any, screen;  // any: records for any mix; screen: plain records of screens
-        std::int64_t splats, pixels;
+        bool alone, any, screen;     // any: records for any mix; screen: plain records of screens
+        bool shaped, ranked;         // some are not round; some layers are projected here and there
+        std::int64_t count, pixels;  // of splats
         GLuint splat_groups, slabs;
         int columns, rows;  // tiles
     };
@@ -73,20 +85,27 @@ class Card final : public RenderDevice {
         GLuint visible, entries, entries_wanted, entries_room, area_low, area_high, lowest, highest;
     };
 
-    Group plan(const FrameJob& job, std::size_t group, bool alone);
-    std::array<CardBuffer, 4>* keep(const ShadedSplats& splats);
+    Group plan(const FrameJob& job, std::size_t group, bool alone) const;
+    void cut_depth(Group& group) const;
+    bool gather(const FrameJob& job, std::size_t number, Group& group);
+    bool give(const FrameJob& job, Group& group, std::size_t layer, const std::vector<std::int64_t>* rows);
+    std::optional<std::vector<std::int64_t>> rest_of(const FrameJob& job, const Group& group,
+                                                     const Splats& splats);
+    const Kept* keep(const ShadedSplats& splats, bool with_stars);
     bool upload_tables(const FrameJob& job, const Group& group);
     bool reserve(const FrameJob& job, const Group& group);
     Counts run(const FrameJob& job, const Group& group);
     void project(const FrameJob& job, const Group& group, int pass);
-    void project_layer(const FrameJob& job, const Group& group, const Layer& layer, int pass, GLuint every);
+    void project_some(const FrameJob& job, const Group& group, const Splats& splats, int pass, GLuint every);
     void plan_pass(const Group& group, int pass);
     void scan(const CardBuffer& numbers, GLuint fixed_count, int of, int total, int slot);
     void sort(int in, int out, int of, int passes);
-    void list_entries(const Group& group);
+    int put_in_order(const Group& group);
+    void list_entries(const Group& group, int order);
     void fold(const FrameJob& job, const Group& group);
     bool read(const CardBuffer& from, std::int64_t first_pixel, Image& to);
 
+    void mark(const char* pass);
     const GlProgram& program(const std::string& file, const std::string& defines);
     void dispatch(const GlProgram& program, std::int64_t groups);
     void indirect(const GlProgram& program, int slot);
@@ -98,14 +117,16 @@ class Card final : public RenderDevice {
     double entries_each_ = 2.5;    // of a record, as of the frames so far
     std::uint64_t frames_ = 0;
     std::map<std::string, std::unique_ptr<GlProgram>> programs_;
-    struct Kept {
-        std::array<CardBuffer, 4> arrays;  // positions, radii, alphas, colours
-        std::uint64_t frame = 0;           // that used it last
-    };
+    using Query = GlObject<&glGenQueries, &glDeleteQueries>;
+    std::vector<std::pair<const char*, Query>> marks_;  // where passes begin; the last ends
+    std::size_t marked_ = 0;
     std::map<std::pair<std::uint64_t, const ShadedSplats*>, Kept> kept_;  // by stamp; without one, by place
     CardBuffer counts_, arguments_, begins_, records_, tags_, rects_, sums_, digits_, ranges_, light_,
-        through_, more_, layer_light_, layers_, nodes_, moments_, cosines_, staging_;
-    std::array<CardBuffer, 3> keys_, values_;  // 0, 1: entries, and back and forth with 2: records
+        through_, more_, layer_light_, ranks_, rest_, given_splats_, given_shapes_, layers_, nodes_, moments_,
+        cosines_, staging_;
+    std::array<CardBuffer, 4> keys_, values_;  // 0, 1: entries, and back and forth with 2, 3: records
+    Buffer<ScreenSplat> given_;                // that the processor has projected
+    std::vector<float> shapes_;                // twelve numbers a shape
 };
 
 /// One of its programs; defines with commas between them.

@@ -38,6 +38,13 @@ inline void set_shape_number(ScreenSplat& splat, std::uint32_t number) {
     splat.radius_px = std::bit_cast<float>(0x80000001u + number);
 }
 
+/// Orders as floats are ordered, by their bits: numbers of shapes are denormal, and count as 0 while frames
+/// are rendered.
+inline std::int32_t order_of(float x) {
+    const auto bits = std::bit_cast<std::uint32_t>(x);
+    return std::int32_t(bits > 0x80000000u ? 0x80000000u - bits : bits);
+}
+
 /// Total order of DESIGN 7, near to far: by distance; ties by (layer, id) ascending, those between children
 /// of one splat by their place on the frame. (Splats that are not round have no children.)
 inline bool in_front_of(const ScreenSplat& a, const ScreenSplat& b) {
@@ -46,7 +53,7 @@ inline bool in_front_of(const ScreenSplat& a, const ScreenSplat& b) {
     if (a.index != b.index) return a.index < b.index;
     if (a.x_px != b.x_px) return a.x_px < b.x_px;
     if (a.y_px != b.y_px) return a.y_px < b.y_px;
-    return a.radius_px < b.radius_px;
+    return order_of(a.radius_px) < order_of(b.radius_px);
 }
 
 /// Ids of splats that come by the block, as far as ties in depth may ask for them: a record has no room for

@@ -5,6 +5,7 @@
 
 #include "core/parallel.h"
 #include "gl/gl_fixture.h"
+#include "splats/splat_set.h"
 #include "support/bits.h"
 #include "support/temp_folder.h"
 #include "support/test.h"
@@ -78,6 +79,31 @@ TEST_F(Cards, RandomScenesWithAllImages) {
         scene.settings.aov_layers = seed % 4 == 0;
         expect_same_frame(card(), scene.layers, scene.camera, scene.settings, fmt::format("seed {}", seed));
     }
+}
+
+TEST_F(Cards, SplatsThatTheProcessorProjects) {
+    ShadedSplats splats = cloud(500, 8), others = cloud(900, 9, 0.4f), stars = cloud(200, 10);
+    for (std::size_t i = 0; i < splats.id.size(); i += 7) splats.id[i] |= star_band << 48;
+    for (glm::vec3& color : stars.color) color *= 40.0f;
+    for (std::size_t i = 0; i < others.id.size(); ++i)
+        others.stretch.push_back(
+            {glm::vec3(2.0f, 0.3f, 0.0f), glm::vec3(0.0f, 0.7f, 0.1f), glm::vec3(0.2f, 0.0f, 1.0f)});
+    for (const Blend blend : {Blend::over, Blend::add, Blend::screen, Blend::hybrid}) {
+        RenderLayer layers[] = {layer_of("divided", splats, blend, Falloff::Shape::gaussian),
+                                layer_of("stretched", others, Blend::over, Falloff::Shape::gaussian),
+                                layer_of("stars", stars, Blend::add)};
+        layers[0].render.lod = {20.0f, 64, 0.7f, 6.0f};
+        layers[2].stars = StarPsf{1.0f, 0.2f, 3.0f, 2.5f, 0.1f};
+        for (const std::size_t count : {1, 2, 3}) {
+            card().set_slabs(count == 3 ? 7 : 1);
+            RenderSettings settings = settings_of(211, 133);
+            settings.aov_depth = count == 2;
+            if (count == 3 || blend == Blend::over)
+                expect_same_frame(card(), {layers, count}, cloud_camera(211, 133), settings,
+                                  fmt::format("blend {}, {} layers", int(blend), count));
+        }
+    }
+    card().set_slabs(0);
 }
 
 TEST_F(Cards, SlabsAndRegionsChangeNoBit) {
