@@ -8,15 +8,13 @@
 
 #include "core/atomic_file.h"
 #include "progress_report.h"
+#include "render/device.h"
 #include "scene/load.h"
 #include "scene/scene.h"
 #include "sets/kept.h"
 #include "viewer/viewer.h"
 
 namespace astrosplat {
-
-/// --device: what draws frames.
-enum class DeviceChoice { automatic, cpu, gpu };
 
 /// Options as typed that several commands take; each command looks at those that it has, --batch at all
 /// but `json`.

@@ -18,28 +18,6 @@
 
 namespace astrosplat {
 
-namespace {
-
-#ifdef ASTROSPLAT_WINDOW
-
-fs::path probe_file(const SetCache& cache) {
-    return cache.folder.empty() ? fs::path() : cache.folder / "card.txt";
-}
-
-/// Without one of these a driver could only draw by the processor: nothing is loaded to find that out.
-bool has_card() {
-    std::error_code ignored;
-    for (const char* device : {"/dev/nvidiactl", "/dev/nvidia0", "/dev/dxg"})
-        if (fs::exists(device, ignored)) return true;
-    for (const auto& entry : fs::directory_iterator("/dev/dri", ignored))
-        if (entry.path().filename().string().starts_with("renderD")) return true;
-    return false;
-}
-
-#endif
-
-}  // namespace
-
 DeviceChoice parse_device(const std::string& text) {
     if (text == "auto") return DeviceChoice::automatic;
     if (text == "cpu") return DeviceChoice::cpu;
@@ -50,27 +28,18 @@ DeviceChoice parse_device(const std::string& text) {
 #ifdef ASTROSPLAT_WINDOW
 
 struct FrameDevice::State {
-    OwnCard card;
-    State(const fs::path& kept, bool software) : card(kept, software) {}
+    std::unique_ptr<OwnCard> card;
 };
 
 FrameDevice::FrameDevice(const CommandOptions& options) : choice_(options.device) {
-    const bool asked = choice_ == DeviceChoice::gpu;
-    if (choice_ == DeviceChoice::cpu) return;
-    if (!asked && !has_card()) {
-        log_detail("drawn by the processor: there is no graphics card");
-        return;
-    }
     try {
-        state_ = std::make_unique<State>(probe_file(options.cache), asked);
-        log_detail("drawn by " + name());
+        state_ = std::make_unique<State>(State{open_card({choice_, options.cache.folder})});
     } catch (const std::runtime_error& error) {
-        if (asked) throw InputError(std::string("--device gpu: ") + error.what());
-        log_detail(std::string("drawn by the processor: ") + error.what());
+        throw InputError(std::string("--device gpu: ") + error.what());
     }
 }
 
-RenderDevice* FrameDevice::get() const { return state_ ? &state_->card.card() : nullptr; }
+RenderDevice* FrameDevice::get() const { return state_->card ? &state_->card->card() : nullptr; }
 
 #else
 

@@ -129,8 +129,13 @@ void refuse_without_screenshot(const ScreenshotOptions& shot) {
 int run_window(Invocation& call) {
     CommandOptions& options = call.options;
     if (!options.input.empty()) options.input = find_by_name("scenes", options.input);
-    const ViewerOptions viewer{options.input, assignments_of(options), options.cache,
-                               own_program(), !call.threads.empty(),   !call.cache.empty() || call.no_cache};
+    const ViewerOptions viewer{options.input,
+                               assignments_of(options),
+                               options.cache,
+                               options.device,
+                               own_program(),
+                               !call.threads.empty(),
+                               !call.cache.empty() || call.no_cache};
     ScreenshotOptions& shot = call.screenshot;
     if (shot.output.empty()) {
         refuse_without_screenshot(shot);

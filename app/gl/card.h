@@ -141,10 +141,16 @@ struct CardProbe {
 };
 CardProbe probe_card(const GlInfo& info);
 
+/// A card that is asked for.
+struct CardChoice {
+    DeviceChoice device = DeviceChoice::automatic;
+    fs::path kept = {};  // as OwnCard takes it
+};
+
 /// A card with a context of its own, on this machine and current on this thread, that draws exactly.
 class OwnCard {
   public:
-    /// `kept`: a file that remembers what the probe found of this card, driver and program; empty: none.
+    /// `kept`: a folder that remembers what the probe found of this card, driver and program; empty: none.
     /// `software`: also the processor's own OpenGL. Throws NoContext with the reason why there is none.
     OwnCard(const fs::path& kept, bool software);
     Card& card() { return *card_; }
@@ -156,5 +162,10 @@ class OwnCard {
     CardProbe probe_;
     std::unique_ptr<Card> card_;
 };
+
+/// The card that the choice leads to; null: the processor draws, which the log's details say with the reason.
+/// Of a driver that draws by the processor only where a card is asked for. Throws NoContext where that cannot
+/// be had.
+std::unique_ptr<OwnCard> open_card(const CardChoice& choice);
 
 }  // namespace astrosplat

@@ -55,7 +55,8 @@ float expected(int operation, const ProbeInput& in) {
         case 4:
             return shared::as_log(std::fabs(a));
         case 5:
-            return float(((double(a) * double(b) + double(b) * double(c)) + double(a) * double(c)) + double(c));
+            return float(((double(a) * double(b) + double(b) * double(c)) + double(a) * double(c)) +
+                         double(c));
         case 6: {
             const float near_whole = (c - 0.5f) + 12582912.0f;
             return (c - (near_whole - 12582912.0f)) * std::floor(c * 256.0f + 0.5f);
@@ -147,7 +148,20 @@ std::string identity(const GlInfo& info) {
     std::size_t texts = 0;
     for (const char* file : {"card_exact.glsl", "card_project.glsl", "card_fold.glsl", "maths.glsl"})
         texts = texts * 31 + std::hash<std::string>()(shader_text(file));
-    return fmt::format("{} | {} | {:x}", info.renderer, version ? version : "", texts);
+    constexpr int probe_version = 1;  // raised when other things are asked
+    return fmt::format("{} | {} | {:x} | {}", info.renderer, version ? version : "", texts, probe_version);
+}
+
+fs::path probe_file(const fs::path& kept) { return kept.empty() ? kept : kept / "card.txt"; }
+
+/// Without one of these a driver could only draw by the processor: nothing is loaded to find that out.
+bool has_card() {
+    std::error_code ignored;
+    for (const char* device : {"/dev/nvidiactl", "/dev/nvidia0", "/dev/dxg"})
+        if (fs::exists(device, ignored)) return true;
+    for (const auto& entry : fs::directory_iterator("/dev/dri", ignored))
+        if (entry.path().filename().string().starts_with("renderD")) return true;
+    return false;
 }
 
 std::optional<CardProbe> remembered(const fs::path& kept, const std::string& identity) try {
@@ -196,12 +210,28 @@ OwnCard::OwnCard(const fs::path& kept, bool software) {
     const GlInfo& info = context_.info();
     if (info.software && !software) throw NoContext("no graphics card: " + info.renderer + " would draw");
     const std::string who = identity(info);
-    const std::optional<CardProbe> known = remembered(kept, who);
+    const fs::path file = probe_file(kept);
+    const std::optional<CardProbe> known = remembered(file, who);
     probe_ = known ? *known : probe_card(info);
-    if (!known) remember(kept, who, probe_);
+    if (!known) remember(file, who, probe_);
     if (!probe_.fault.empty())
         throw NoContext(info.renderer + " does not compute as the processor does: " + probe_.fault);
     card_ = std::make_unique<Card>(info, probe_.native_division);
+}
+
+std::unique_ptr<OwnCard> open_card(const CardChoice& choice) {
+    const bool asked = choice.device == DeviceChoice::gpu;
+    if (choice.device == DeviceChoice::cpu) return nullptr;
+    try {
+        if (!asked && !has_card()) throw NoContext("there is no graphics card");
+        auto card = std::make_unique<OwnCard>(choice.kept, asked);
+        log_detail("frames are drawn by " + card->card().name());
+        return card;
+    } catch (const std::runtime_error& error) {
+        if (asked) throw;
+        log_detail(std::string("frames are drawn by the processor: ") + error.what());
+        return nullptr;
+    }
 }
 
 }  // namespace astrosplat

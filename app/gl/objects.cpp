@@ -154,7 +154,8 @@ struct OffscreenContext::State {
 };
 
 OffscreenContext::OffscreenContext() : state_(std::make_unique<State>()) {
-    const DenormalsAreZero as_on_cards;  // where the processor draws, its driver's threads begin like this one
+    const DenormalsAreZero
+        as_on_cards;  // where the processor draws, its driver's threads begin like this one
     for (int attempt = 0; attempt < attempts; ++attempt) {
         if (state_->open(attempt)) {
             state_->info = load_gl(reinterpret_cast<GlLoader>(&eglGetProcAddress));

@@ -196,7 +196,7 @@ Image thumbnail_of(const std::vector<unsigned char>& rgba, int width, int height
 
 class Comparison {
   public:
-    explicit Comparison(std::shared_ptr<PictureFiles> files) : b_(std::move(files)) {}
+    Comparison(std::shared_ptr<PictureFiles> files, const CardChoice& card) : b_(std::move(files), card) {}
 
     /// Chooses the reference of the view, reads its picture in the background, and says in `status` which it
     /// is. Call it every frame.

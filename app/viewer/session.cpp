@@ -130,6 +130,8 @@ Session::Session(const ViewerOptions& options, const GlInfo& gl_info)
       document(options.input.empty() ? demo_document(options.assignments)
                                      : document_for(options.input, options.assignments)),
       sets(options.cache, sample_limit),
+      view_frame(files, {options.device, options.cache.folder}),
+      comparison(files, {options.device, options.cache.folder}),
       front(front_check(1280, options.cache)),
       jobs(options.cache, options.program, options.limits),
       fresh_demo(options.input.empty()) {

@@ -48,9 +48,9 @@ struct Session {
 
     SetWishes sets;
     std::shared_ptr<PictureFiles> files = std::make_shared<PictureFiles>();
-    ViewFrame view_frame{files};  // A
+    ViewFrame view_frame;  // A
     SnapshotList snapshots;
-    Comparison comparison{files};
+    Comparison comparison;
     DifferenceMeter difference;
     ReferenceAlignment alignment;
     FrontCheck front;

@@ -37,7 +37,8 @@ struct FinalFrame::Run {
     std::vector<Region> fresh;  // px of the canvas
 };
 
-FinalFrame::Outcome FinalFrame::render(Pipeline& pipeline, Run& run, Progress progress) {
+FinalFrame::Outcome FinalFrame::render(Pipeline& pipeline, RenderDevice* device, Run& run,
+                                       Progress progress) {
     const auto start = Clock::now();
     const FinalRequest& request = run.request;
     const Region region = request.part();
@@ -51,6 +52,7 @@ FinalFrame::Outcome FinalFrame::render(Pipeline& pipeline, Run& run, Progress pr
     settings.aov_depth = request.depth;
     settings.memory_limit_bytes = RenderSettings::what_is_free;
     settings.aov_coverage = settings.aov_count = settings.aov_layers = false;
+    settings.device = device;
     progress.report = [&run](double fraction) { run.progress = static_cast<float>(fraction); };
     const TileDone tile_done = [&run, region](const Region& tile, const RenderedFrame& frame) {
         const Region here{tile.x - region.x, tile.y - region.y, tile.width, tile.height};
@@ -63,12 +65,14 @@ FinalFrame::Outcome FinalFrame::render(Pipeline& pipeline, Run& run, Progress pr
     return {State::done, {}, seconds_since(start), std::move(frame)};
 }
 
-FinalFrame::Work::Work FinalFrame::renderer() {
-    return [pipeline = std::make_shared<Pipeline>(), files = std::uint64_t{0}](
-               const std::shared_ptr<Run>& run, const Progress& progress) mutable {
+FinalFrame::Work::Work FinalFrame::renderer(const CardChoice& choice) {
+    return [pipeline = std::make_shared<Pipeline>(), files = std::uint64_t{0}, choice, opened = false,
+            card = std::shared_ptr<OwnCard>()](const std::shared_ptr<Run>& run,
+                                               const Progress& progress) mutable {
+        if (!std::exchange(opened, true)) card = open_card(choice);  // of this thread
         if (std::exchange(files, run->request.files) != files) pipeline = std::make_shared<Pipeline>();
         try {
-            return render(*pipeline, *run, progress);
+            return render(*pipeline, card ? &card->card() : nullptr, *run, progress);
         } catch (const std::bad_alloc&) {
             throw std::runtime_error("not enough memory for the final frame");
         }
@@ -129,6 +133,7 @@ bool ask_the_same(const ViewRequest& a, const ViewRequest& b) {
 }
 
 constexpr double rest_s = 0.15;       // without a touch, before the final frame begins
+constexpr double quick_s = 0.04;      // a card's final frame in this time takes the place of previews
 constexpr double step_rest_s = 0.06;  // and before the first finer preview does
 
 double milliseconds_since(Clock::time_point start) { return 1e3 * seconds_since(start); }
@@ -147,8 +152,9 @@ constexpr bool ViewFrame::may_follow(Stage now, Stage next) {
         case Stage::failed:
             return true;
         case Stage::finer:
-        case Stage::refining:
             return now == Stage::preview;
+        case Stage::refining:
+            return now == Stage::preview || now == Stage::final;
         case Stage::final:
             return now == Stage::refining;
         case Stage::empty:
@@ -295,6 +301,7 @@ void ViewFrame::draw_preview(double now) {
         canvas_texture_.upload(*drawn_);
         texture_ = canvas_texture_.handle();
     }
+    behind_ = false;
     draw_s_ = seconds_since(start);
     pace_.drew(milliseconds_since(start));
     note_time(milliseconds_since(start), target_ms, whole_sets);
@@ -360,13 +367,33 @@ void ViewFrame::begin_final() {
         const std::shared_ptr<const LoadedLayer>& loaded = request_->layers[i];
         wanted.sets.push_back(loaded && request_->scene.layers[i].visible ? loaded->set : nullptr);
     }
-    canvas_ = drawn_ ? *drawn_ : gl_->read();  // which the tiles replace
-    if (!drawn_) canvas_texture_.upload(canvas_);
+    if (stage_ != Stage::final) {
+        canvas_ = drawn_ ? *drawn_ : gl_->read();  // which the tiles replace
+        if (!drawn_) canvas_texture_.upload(canvas_);
+    }
     texture_ = canvas_texture_.handle();
     splats_.rest();
     final_.start(std::move(wanted));
     enter(Stage::refining);
     status_.progress = 0.0f;
+}
+
+/// A frame of a card in place of the preview, over the last one. False: something is missing for that.
+bool ViewFrame::follow(double now) {
+    const auto& loaded = request_->layers;
+    const bool whole = std::ranges::all_of(loaded, [](const auto& layer) { return !layer || layer->set; });
+    if (stage_ != Stage::final || !quick_ || !whole || files_->loading()) return false;
+    if (canvas_.width != request_->part().width || canvas_.height != request_->part().height) return false;
+    try {
+        environment_ = files_->environment(request_->scene.environment);
+    } catch (const InputError&) {  // which the preview says
+        return false;
+    }
+    begin_final();
+    status_.state = ViewFrameState::final;
+    followed_at_ = now;
+    behind_ = true;
+    return true;
 }
 
 void ViewFrame::take_final(double now) {
@@ -382,6 +409,7 @@ void ViewFrame::take_final(double now) {
     if (outcome.state == FinalFrame::State::done) {
         enter(Stage::final);
         final_s_ = outcome.seconds;
+        quick_ = !outcome.frame->statistics.device.empty() && outcome.seconds < quick_s;
         refine(now);  // for when the hand moves again
     }
     if (outcome.state == FinalFrame::State::failed) enter(Stage::failed);
@@ -413,12 +441,17 @@ void ViewFrame::show(const ViewRequest& request, const PreviewChoice& choice, bo
     const bool touched = !request_ || !ask_the_same(*request_, request) || choice_.opengl != choice.opengl ||
                          choice_.share != choice.share;
     const bool changed = touched || !have_same_sets(*request_, request) || environment_arrived();
+    // What the card has nearly finished is not thrown away for the next frame, or none would be seen.
+    const bool hurries = changed && behind_ && now - followed_at_ < 2.0 * quick_s;
+    if (hurries && stage_ == Stage::refining) take_final(now);
+    if (hurries && stage_ == Stage::refining) return;
     const bool refined = request_ && refine(now);
     const bool fuller = !changed && stage_ <= Stage::finer && (refined || previews_arrived(request));
     if (changed || fuller || (gl_ && gl_->sorting())) {
         if (touched) touched_at_ = now;
         request_ = request;
         choice_ = choice;
+        if (settle && changed && follow(now)) return;
         return start_over(now);
     }
     if (stage_ == Stage::preview || stage_ == Stage::finer) return come_closer(settle, now, hurry);
@@ -454,6 +487,10 @@ std::vector<float> ViewFrame::layer_light(std::int64_t x, std::int64_t y) {
     std::vector<float> light(request_ ? request_->layers.size() : 0);
     if (!request_ || stage_ == Stage::failed) return light;
     const PreviewView view = preview_view();
+    if (std::exchange(behind_, false)) {
+        layers_ = preview_layers();
+        if (!draws_whole_sets()) cut(layers_, view);
+    }
     std::vector<PreviewLayer> layers = layers_;
     if (draws_whole_sets()) cut(layers, view);
     const Region part = request_->part();

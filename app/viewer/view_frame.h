@@ -7,6 +7,7 @@
 #include "core/image.h"
 #include "edit/status.h"
 #include "edit/view_state.h"
+#include "gl/card.h"
 #include "gl/objects.h"
 #include "gl/preview.h"
 #include "render/render.h"
@@ -40,6 +41,9 @@ struct FinalRequest : FrameRequest {
 
 class FinalFrame {
   public:
+    /// `card`: what draws, opened with the first frame.
+    explicit FinalFrame(const CardChoice& card = {}) : work_(renderer(card)) {}
+
     /// Cancels what is under way and begins again. Returns at once.
     void start(FinalRequest request);
     /// Cancels and returns at once: state() is idle from then on, and the thread stops within 50 ms of work.
@@ -64,11 +68,11 @@ class FinalFrame {
   private:
     struct Run;
     using Work = LatestWork<std::shared_ptr<Run>, Outcome>;
-    static Outcome render(Pipeline& pipeline, Run& run, Progress progress);
-    static Work::Work renderer();
+    static Outcome render(Pipeline& pipeline, RenderDevice* device, Run& run, Progress progress);
+    static Work::Work renderer(const CardChoice& card);
 
     std::shared_ptr<Run> run_;  // the latest; null before the first and after cancel()
-    Work work_{renderer()};
+    Work work_;
 };
 
 /// A frame to be shown: the scene as it stands, with the view's camera; layers that are not to be seen are
@@ -93,10 +97,12 @@ struct PreviewChoice {
 
 class ViewFrame {
   public:
-    explicit ViewFrame(std::shared_ptr<PictureFiles> files) : files_(std::move(files)) {}
+    explicit ViewFrame(std::shared_ptr<PictureFiles> files, const CardChoice& card = {})
+        : files_(std::move(files)), final_(card) {}
 
     /// Shows `request`: draws a preview where it differs from the last one, else goes on towards the final
-    /// frame once nothing has been touched for 0.15 s (`settle`; `hurry`: at once). `now` in seconds.
+    /// frame once nothing has been touched for 0.15 s (`settle`; `hurry`: at once). Where the last final
+    /// frame came quickly, from a card, the next one takes the preview's place. `now` in seconds.
     void show(const ViewRequest& request, const PreviewChoice& choice, bool settle, double now,
               bool hurry = false);
     unsigned texture() const { return texture_; }
@@ -154,6 +160,7 @@ class ViewFrame {
     void begin_step(std::int64_t splats);
     bool take_step();
     void begin_final();
+    bool follow(double now);
     void take_final(double now);
     void start_over(double now);
     void come_closer(bool settle, double now, bool hurry);
@@ -174,6 +181,9 @@ class ViewFrame {
     int step_ = 0;                // of finer previews, the last one begun
     double draw_s_ = 0.0;         // the last preview or step took so long
     double final_s_ = -1.0;       // the last final frame; below 0: there was none
+    bool quick_ = false;          // that was a card's, in no more time than a preview
+    bool behind_ = false;         // what the preview drew is older than what is shown
+    double followed_at_ = 0.0;    // when the last frame began that took a preview's place
     Image finer_image_;
     double touched_at_ = 0.0;
     ImageTexture canvas_texture_;

@@ -15,6 +15,7 @@ struct ViewerOptions {
     fs::path input;                       // scene, picture, mesh or splat file; empty: the demo
     std::vector<Assignment> assignments;  // --set
     SetCache cache;
+    DeviceChoice device = DeviceChoice::automatic;    // that draws final frames
     std::string program;                              // this very program's file, which does the jobs
     bool threads_given = false, cache_given = false;  // by the command line, which wins over the settings
     MachineLimits limits = {};                        // of jobs; run_viewer() takes them from the settings

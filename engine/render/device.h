@@ -10,6 +10,9 @@ namespace astrosplat {
 
 struct FrameJob;
 
+/// What is asked to draw: a card where there is one that has the processor's bits, or one of the two.
+enum class DeviceChoice { automatic, cpu, gpu };
+
 /// A blend group over the region, as TilePlanes holds it of a tile. Four channels each, rows from the top.
 struct GroupPlanes {
     Image light;                     // r, g, b, alpha

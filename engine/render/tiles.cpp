@@ -134,7 +134,7 @@ bool draw_on_device(const FrameJob& job, RenderCache::State& cache, RenderedFram
     frame.statistics.not_on_device = device.cannot(job);
     if (!frame.statistics.not_on_device.empty()) return false;
     make_footprints(job, {0, 0.0, 0.0f, std::numeric_limits<float>::max()}, cache);
-    const bool alone = stands_alone(job) && !job.settings.backdrop && !job.tile_done;
+    const bool alone = stands_alone(job) && !job.settings.backdrop;
     std::vector<GroupPlanes> groups;
     for (std::size_t g = 0; g < job.groups.size(); ++g) {
         std::optional<GroupPlanes> planes = device.draw(job, g, alone);
@@ -152,6 +152,7 @@ bool draw_on_device(const FrameJob& job, RenderCache::State& cache, RenderedFram
     }
     if (alone) {
         frame.beauty = std::move(groups[0].light);
+        if (job.tile_done) job.tile_done(job.region, frame);
         return true;
     }
     const TileGrid grid{job.region.x, job.region.y, job.region.width, job.region.height, 64};
