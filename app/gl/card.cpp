@@ -363,7 +363,10 @@ ProgramSource card_source(const std::string& file, const std::string& defines, b
 
 const GlProgram& Card::program(const std::string& file, const std::string& defines) {
     std::unique_ptr<GlProgram>& program = programs_[file + " " + defines];
-    if (!program) program = std::make_unique<GlProgram>(card_source(file, defines, native_division_));
+    if (program) return *program;
+    ProgramSource source = card_source(file, defines, native_division_);
+    source.edit = edit_;
+    program = std::make_unique<GlProgram>(source);
     return *program;
 }
 

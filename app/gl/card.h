@@ -51,6 +51,8 @@ class Card final : public RenderDevice {
 
     /// Slabs of depth from now on, which change no pixel; 0: as many as suit the memory.
     void set_slabs(int slabs) { slabs_ = slabs; }
+    /// For tests: changes the texts of its programs, before the first frame.
+    void set_edit(std::function<void(std::string& text)> edit) { edit_ = std::move(edit); }
     /// Milliseconds on the card of the last group drawn, pass by pass.
     struct PassTime {
         const char* name;
@@ -113,6 +115,7 @@ class Card final : public RenderDevice {
     GlInfo info_;
     bool native_division_;
     int slabs_ = 0;
+    std::function<void(std::string& text)> edit_;
     std::int64_t most_bytes_ = 0;  // of a buffer
     double entries_each_ = 2.5;    // of a record, as of the frames so far
     std::uint64_t frames_ = 0;

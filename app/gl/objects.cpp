@@ -303,6 +303,7 @@ StageText stage_text(const ProgramSource& source, const std::vector<std::string>
     }
     for (const auto& [name, value] : source.constants) set_constant(stage.text, name, value);
     if (!source.compute.empty()) stage.text = made_precise(stage.text);
+    if (source.edit) source.edit(stage.text);
     return stage;
 }
 

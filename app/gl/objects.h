@@ -189,6 +189,7 @@ struct ProgramSource {
     std::string block = {};                                  // of uniforms, read from binding point 0
     /// In place of the other stages: "#version 450 core", made_precise().
     std::vector<std::string> compute = {};
+    std::function<void(std::string& text)> edit = {};  // of the whole text: for tests, which plant faults
 };
 
 /// GLSL whose arithmetic no compiler contracts, reorders or approximates: all local floats, results and

@@ -76,6 +76,27 @@ TEST_F(SameBits, AnyInstructionSet) {
     EXPECT_GE(tried.size(), 2u) << "SSE2 and SSE4 at least, on any processor of the last fifteen years";
 }
 
+// Without a card Mesa's llvmpipe stands for one, which only --device gpu chooses.
+TEST_F(SameBits, AnyDevice) {
+    const RunResult device = expect_success(run({"device", "--device", "gpu", "--json", "--no-cache"}));
+    const nlohmann::json found = nlohmann::json::parse(device.out);
+    if (found.contains("problem")) GTEST_SKIP() << found.at("problem");
+    EXPECT_EQ(found.at("same_bits"), true);
+    const Words expected = hashes({"--device", "cpu"});
+    EXPECT_EQ(json("stats.json").at("frames").at(0).at("device"), "cpu");
+    EXPECT_EQ(hashes({"--device", "gpu"}), expected);
+    EXPECT_EQ(json("stats.json").at("frames").at(0).at("device"), found.at("draws"));
+    EXPECT_EQ(hashes({"--device", "gpu", "--region", "11,7,60,41"}),
+              hashes({"--device", "cpu", "--region", "11,7,60,41"}));
+    for (const char* key : {"camera.shutter=180", "camera.f_number=2.8", "camera.projection=orthographic",
+                            "layer.nebula.render.isolate=true"})
+        EXPECT_EQ(hashes({"--device", "gpu", "--set", key}), hashes({"--device", "cpu", "--set", key}))
+            << key;
+    expect_one_line(batch({"--device", "gpu", "--set", "camera.projection=fisheye"}), 2,
+                    "projections onto the sphere");
+    expect_one_line(batch({"--device", "tpu"}), 2, "--device: expected gpu, cpu or auto");
+}
+
 TEST_F(SameBits, TheInstructionSetInUseIsNamed) {
     const std::string said = batch({"-f", "1", "-v"}, {.environment = {"ASTROSPLAT_VECTOR_TARGET=sse2"}}).err;
     EXPECT_HAS(said, "vector target sse2\n");

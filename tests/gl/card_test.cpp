@@ -2,6 +2,8 @@
 #include "gl/card.h"
 
 #include <glm/matrix.hpp>
+#include <regex>
+#include <set>
 
 #include "core/parallel.h"
 #include "gl/gl_fixture.h"
@@ -136,6 +138,102 @@ TEST_F(Cards, WhatACardDoesNotDrawTheProcessorDoes) {
     EXPECT_EQ(frame.statistics.not_on_device, "projections onto the sphere");
     settings.device = nullptr;
     expect_same(frame.beauty, render({&layer, 1}, camera, nullptr, settings).beauty, "sphere");
+}
+
+TEST_F(Cards, DenormalLightIsNone) {
+    ShadedSplats splats = cloud(2000, 6);
+    for (float& alpha : splats.alpha) alpha *= 1e-38f;
+    const RenderLayer layer = layer_of("layer", splats, Blend::over, Falloff::Shape::gaussian);
+    expect_same_frame(card(), {&layer, 1}, cloud_camera(160, 90), settings_of(160, 90), "alpha 1e-38");
+}
+
+/// The picture by a card whose programs have other text.
+Image faulty_picture(const std::string& from, const std::string& to) {
+    const GlInfo& info = shared_context().context->info();
+    Card card(info, info.software);
+    int found = 0;
+    card.set_edit([&](std::string& text) {
+        for (std::size_t at = text.find(from); at != std::string::npos;
+             at = text.find(from, at + to.size())) {
+            text.replace(at, from.size(), to);
+            ++found;
+        }
+    });
+    card.set_slabs(7);
+    ShadedSplats splats = cloud(3000, 7, 0.5f);
+    for (std::size_t i = 1; i < splats.id.size(); i += 2) splats.position[i] = splats.position[i - 1];
+    RenderLayer layer = layer_of("layer", splats, Blend::over, Falloff::Shape::gaussian);
+    RenderSettings settings = settings_of(120, 70);
+    settings.device = &card;
+    const RenderedFrame frame = render({&layer, 1}, cloud_camera(120, 70), nullptr, settings);
+    EXPECT_GT(found, 0) << from;
+    EXPECT_EQ(frame.statistics.not_on_device, "");
+    return frame.beauty;
+}
+
+TEST_F(Cards, AFaultInAnyPassShows) {
+    const Image right = faulty_picture("uint lower = same", "uint lower = same");
+    const std::pair<const char*, const char*> faults[] = {
+        {"uint lower = same & ((1u << lane) - 1u);",
+         "uint lower = same & ~((2u << lane) - 1u);"},  // order of equals
+        {"(slabs + 1u) + slab], end = range[tile * (slabs + 1u) + slab + 1u];",
+         "(slabs + 1u) + 6u - slab], end = range[tile * (slabs + 1u) + 7u - slab];"},  // slabs turned
+        {"floor(px * 256.0f + 0.5f)", "floor(px * 256.0f)"},
+        {"p.through >= stop", "p.through >= 0.5f"},
+        {"group_begin[group] + e;", "group_begin[group] + e + 1u;"}};
+    for (const auto& [from, to] : faults) EXPECT_NE(faulty_picture(from, to).pixels, right.pixels) << from;
+}
+
+/// Of a compute program, by the reference compiler: operations on floats, and those that a compiler may
+/// contract.
+struct Operations {
+    int divisions = 0, loose = 0;
+};
+Operations operations_of(const std::string& text) {
+    const TempFolder folder;
+    const std::string listing = folder.path() / "listing.txt",
+                      file = folder.file("program.comp", text).string();
+    const std::string command =
+        "glslangValidator -G --aml -H -o /dev/null '" + file + "' > '" + listing + "' 2>&1";
+    EXPECT_EQ(std::system(command.c_str()), 0) << bytes_of(listing);
+    std::istringstream lines(bytes_of(listing));
+    const std::regex fixed(R"(Decorate (\d+)(\(\S*\))? NoContraction)"),
+        operation(R"((\d+)(\(\S*\))?:.*\b(FAdd|FSub|FMul|FDiv|Dot|VectorTimesScalar)\b.*)");
+    std::set<std::string> exact;
+    Operations found;
+    std::smatch parts;
+    for (std::string line; std::getline(lines, line);) {
+        if (std::regex_search(line, parts, fixed)) exact.insert(parts[1]);
+        if (!std::regex_search(line, parts, operation)) continue;
+        found.divisions += parts[3] == "FDiv";
+        found.loose += !exact.contains(parts[1]);
+    }
+    return found;
+}
+
+TEST(CardPrograms, NothingMayBeContractedAndDivisionHasAName) {
+    if (std::system("glslangValidator --version > /dev/null 2>&1") != 0)
+        GTEST_SKIP() << "glslangValidator is not installed (glslang-tools)";
+    const std::pair<const char*, const char*> programs[] = {{"card_project.glsl", "PASS 2"},
+                                                            {"card_project.glsl", "PASS 3"},
+                                                            {"card_project.glsl", "PASS 4"},
+                                                            {"card_project.glsl", "PASS 3,ANY,RANKS"},
+                                                            {"card_project.glsl", "PASS 3,ANY,GIVEN"},
+                                                            {"card_fold.glsl", "KIND 0"},
+                                                            {"card_fold.glsl", "KIND 1"},
+                                                            {"card_fold.glsl", "KIND 2,SCREEN"},
+                                                            {"card_fold.glsl", "KIND 2,ANY,SHAPED"},
+                                                            {"card_fold.glsl", "KIND 3,ANY"}};
+    for (const auto& [file, defines] : programs) {
+        ProgramSource source = card_source(file, defines, false);
+        const Operations found = operations_of(compute_text(source));
+        EXPECT_EQ(found.loose, 0) << file << " " << defines;
+        EXPECT_LE(found.divisions, 2) << file << " " << defines << ": those of as_div";
+        source.edit = [](std::string& text) {
+            for (std::size_t at; (at = text.find("precise ")) != std::string::npos;) text.erase(at, 8);
+        };
+        EXPECT_GT(operations_of(compute_text(source)).loose, 0) << "the test can fail";
+    }
 }
 
 TEST(MadePrecise, LocalsResultsAndWhatComesOut) {

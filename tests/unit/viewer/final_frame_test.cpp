@@ -78,6 +78,23 @@ TEST_F(FinalFrameTest, SettlesToThePipelinesPixels) {
     EXPECT_TRUE(picture.take_tiles(tiles).empty());
 }
 
+TEST_F(FinalFrameTest, ACardDrawsTheSamePixels) {
+    FinalFrame picture({DeviceChoice::gpu, {}});
+    picture.start(request(0));
+    wait(picture);
+    const FinalFrame::Outcome first = picture.outcome();
+    if (first.state == State::failed) GTEST_SKIP() << first.error;
+    EXPECT_NE(first.frame->statistics.device, "") << first.frame->statistics.not_on_device;
+    for (const std::uint32_t which : {0, 3, 5}) {
+        FinalRequest wanted = request(which);
+        if (which == 5) wanted.region = {37, 20, 90, 51};
+        finish(picture, wanted);
+        Image tiles;
+        picture.take_tiles(tiles);
+        EXPECT_EQ(pixel_hash(tiles), hash_of(wanted)) << which;
+    }
+}
+
 TEST_F(FinalFrameTest, DepthComesWithTheSamePixels) {
     FinalRequest wanted = request(0);
     wanted.depth = true;
