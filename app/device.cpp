@@ -61,11 +61,10 @@ std::string FrameDevice::name() const { return get() ? get()->name() : "the proc
 void FrameDevice::check(const RenderStatistics& statistics) {
     const std::string& why = statistics.not_on_device;
     if (why.empty() || why == said_) return;
+    const std::string what = fmt::format("{}: {}", name(), why);
     if (choice_ == DeviceChoice::gpu)
-        throw InputError(
-            fmt::format("--device gpu: {} draws no {} yet; --device auto leaves such frames to the processor",
-                        name(), why));
-    log_info(fmt::format("drawn by the processor: {} draws no {} yet", name(), why));
+        throw InputError("--device gpu: " + what + "; --device auto leaves such frames to the processor");
+    log_info("drawn by the processor, for " + what);
     said_ = why;
 }
 

@@ -71,27 +71,41 @@ void prepare_hiding(uint place, vec3 c, uvec2 tag) {
 }
 #endif
 
-// Reads a splat, and finds the parts that it may touch: `aside` of eight threads does every eighth of them.
-void prepare(uint place, uint at, ivec2 corner, uint aside) {
+// A record; it is read a batch ahead.
+struct Record {
+    vec4 a, b;
 #ifdef ANY
-    vec4 a = record[4u * at], b = record[4u * at + 1u], c = record[4u * at + 2u];
+    vec4 c, d;
+    uvec2 tag;
+#endif
+};
+Record read_record(uint at) {
+#ifdef ANY
+    return Record(record[4u * at], record[4u * at + 1u], record[4u * at + 2u], record[4u * at + 3u], tag_of[at]);
+#else
+    return Record(record[2u * at], record[2u * at + 1u]);
+#endif
+}
+
+// Takes a splat up, and finds the parts that it may touch: `aside` of eight threads does every eighth of them.
+void prepare(uint place, Record from, ivec2 corner, uint aside) {
+    vec4 a = from.a, b = from.b;
+#ifdef ANY
+    vec4 c = from.c;
     float support_px = a.z;
 #else
-    vec4 a = record[2u * at], b = record[2u * at + 1u];
     float support_px = max(a.z, SMALLEST_RADIUS_PX) * reach + margin_px;
 #endif
     if (aside == 0u) {
         disc[place] = vec4(a.xy, b.w, a.w);
 #ifdef ANY
-        uvec2 tag = tag_of[at];
         color[place] = vec4(b.rgb, c.w);
-        node_of[place] = int(tag.x & 0xffffu);
-        vec4 d = record[4u * at + 3u];
-        profile[place] = vec4(c.xyz, d.x);
+        node_of[place] = int(from.tag.x & 0xffffu);
+        profile[place] = vec4(c.xyz, from.d.x);
 #ifdef SHAPED
-        stretch[place] = d.yzw;
+        stretch[place] = from.d.yzw;
 #endif
-        prepare_hiding(place, b.rgb, tag);
+        prepare_hiding(place, b.rgb, from.tag);
 #else
         NodePlace between = node_of_radius(a.z);
         color[place] = vec4(b.rgb, between.share);
@@ -312,13 +326,16 @@ void main() {
     barrier();
     if (open_parts == 0u) end = first;
     uint mine = t / 8u, aside = t % 8u;  // the splat of a batch that this thread helps to prepare
+    Record next;
+    if (first + mine < end) next = read_record(entry[first + mine]);
     for (uint base = first; base < end; base += BATCH) {
         uint n = min(end - base, BATCH);
         if (t < PARTS) touching[t] = 0u;
         bool folds = (open_parts >> part & 1u) != 0u;
         barrier();
         if (t == 0u) open_parts = 0u;
-        if (mine < n) prepare(mine, entry[base + mine], corner, aside);
+        if (mine < n) prepare(mine, next, corner, aside);
+        if (base + BATCH + mine < end) next = read_record(entry[base + BATCH + mine]);
         barrier();
         for (uint k = t; k < n * 16u; k += GROUP) {
             uint i = k / 16u, a = uint(node_of[i]), segment = k % 16u;

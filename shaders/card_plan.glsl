@@ -18,8 +18,8 @@ void main() {
 #if PASS == 0
     if (t == 0u) {
         counts.visible = counts.entries = counts.entries_wanted = counts.area_low = counts.area_high = 0u;
-        counts.lowest = 0xffffffffu;
-        counts.highest = 0u;
+        counts.lowest = counts.first_key = 0xffffffffu;
+        counts.highest = counts.last_key = 0u;
     }
     for (uint k = t; k < 1024u; k += GROUP) counts.bins[k] = 0u;
 #elif PASS == 1

@@ -189,7 +189,7 @@ void write_record(uint at, Splat splat) {
 }
 
 shared uint words[GROUP];  // by slab: which of the group's splats it has
-#if PASS == 0
+#if PASS == 0 || PASS == 2
 shared uint least, most;
 #elif PASS == 1
 shared uint bins[1024];
@@ -209,7 +209,7 @@ void main() {
 void main() {
     uint t = gl_LocalInvocationIndex, group = group_number() * every, i = group * GROUP + t;
     words[t] = 0u;
-#if PASS == 0
+#if PASS == 0 || PASS == 2
     if (t == 0u) {
         least = 0xffffffffu;
         most = 0u;
@@ -223,12 +223,14 @@ void main() {
     splat.key = 0u;
     if (i < count) splat = splat_at(i);
     barrier();
-#if PASS == 0
+#if PASS == 0 || PASS == 2
     if (splat.shows) {
         atomicMin(least, splat.key);
         atomicMax(most, splat.key);
     }
     barrier();
+#endif
+#if PASS == 0
     if (t != 0u || most < least) return;
     atomicMin(counts.lowest, least);
     atomicMax(counts.highest, most);
@@ -251,7 +253,9 @@ void main() {
         for (uint w = 0u; w < 8u; ++w) sum += uint(bitCount(words[t * 8u + w]));
         begin[t * all_groups + first_group + group] = sum;
     }
-    if (t == 0u) {
+    if (t == 0u && most >= least) {
+        atomicMin(counts.first_key, least);
+        atomicMax(counts.last_key, most);
         uint sum = group_sums[255], before = atomicAdd(counts.area_low, sum);
         if (before + sum < before) atomicAdd(counts.area_high, 1u);
     }

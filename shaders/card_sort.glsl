@@ -8,13 +8,14 @@ layout(std430, binding = 3) writeonly buffer KeysOut { uint key_out[]; };
 layout(std430, binding = 4) writeonly buffer ValuesOut { uint value_out[]; };
 layout(std430, binding = 5) buffer Digits { uint digit_begin[]; };  // [digit][group]
 uniform int shift;
+uniform uint base;  // the least key: where all are near each other, few passes tell them apart
 uniform int of;  // 1: records, 2: entries
 
 const uint ROUNDS = SORTED / GROUP;  // keys of a thread
 const uint WARPS = 8u;               // of 32 threads, each with keys of its own, one after the other
 shared uint tally[WARPS * 256u];
 
-uint digit_of(uint key) { return key >> shift & 255u; }
+uint digit_of(uint key) { return (key - base) >> shift & 255u; }
 
 #if PASS == 0
 void main() {
@@ -52,7 +53,7 @@ void main() {
     uint first = group * SORTED + warp * 512u + lane;
     for (uint k = 0u; k < ROUNDS; ++k) {
         uint i = first + k * 32u;
-        keys[k] = i < n ? key_in[i] : 0xffffffffu;
+        keys[k] = i < n ? key_in[i] : base - 1u;  // the last of all
     }
     for (uint k = 0u; k < ROUNDS; ++k) {
         // Two sets of masks in turn: one is cleared while the other is used.

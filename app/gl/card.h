@@ -84,7 +84,8 @@ class Card final : public RenderDevice {
         int columns, rows;  // tiles
     };
     struct Counts {
-        GLuint visible, entries, entries_wanted, entries_room, area_low, area_high, lowest, highest;
+        GLuint visible, entries, entries_wanted, entries_room, area_low, area_high, lowest, highest,
+            first_key, last_key;
     };
 
     Group plan(const FrameJob& job, std::size_t group, bool alone) const;
@@ -93,6 +94,7 @@ class Card final : public RenderDevice {
     bool give(const FrameJob& job, Group& group, std::size_t layer, const std::vector<std::int64_t>* rows);
     std::optional<std::vector<std::int64_t>> rest_of(const FrameJob& job, const Group& group,
                                                      const Splats& splats);
+    bool send(const void* data, std::int64_t bytes, CardBuffer& to);
     const Kept* keep(const ShadedSplats& splats, bool with_stars);
     bool upload_tables(const FrameJob& job, const Group& group);
     bool reserve(const FrameJob& job, const Group& group);
@@ -101,10 +103,10 @@ class Card final : public RenderDevice {
     void project_some(const FrameJob& job, const Group& group, const Splats& splats, int pass, GLuint every);
     void plan_pass(const Group& group, int pass);
     void scan(const CardBuffer& numbers, GLuint fixed_count, int of, int total, int slot);
-    void sort(int in, int out, int of, int passes);
+    int sort(int in, int out, int of, GLuint first_key, GLuint last_key);
     int put_in_order(const Group& group);
-    void list_entries(const Group& group, int order);
-    void fold(const FrameJob& job, const Group& group);
+    int list_entries(const Group& group, int order);
+    void fold(const FrameJob& job, const Group& group, int by_tile);
     bool read(const CardBuffer& from, std::int64_t first_pixel, Image& to);
 
     void mark(const char* pass);
@@ -126,7 +128,8 @@ class Card final : public RenderDevice {
     std::map<std::pair<std::uint64_t, const ShadedSplats*>, Kept> kept_;  // by stamp; without one, by place
     CardBuffer counts_, arguments_, begins_, records_, tags_, rects_, sums_, digits_, ranges_, light_,
         through_, more_, layer_light_, ranks_, rest_, given_splats_, given_shapes_, layers_, nodes_, moments_,
-        cosines_, staging_;
+        cosines_, staging_, sending_;
+    std::byte* sent_ = nullptr;                // where `sending_` is mapped
     std::array<CardBuffer, 4> keys_, values_;  // 0, 1: entries, and back and forth with 2, 3: records
     Buffer<ScreenSplat> given_;                // that the processor has projected
     std::vector<float> shapes_;                // twelve numbers a shape

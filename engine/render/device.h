@@ -28,7 +28,7 @@ class RenderDevice {
     virtual ~RenderDevice() = default;
     /// "NVIDIA H100"
     virtual std::string name() const = 0;
-    /// Why the processor has to draw this frame, in some words; empty: the card can. The job is prepared.
+    /// Why the processor has to draw this frame, "it ..."; empty: the card can. The job is prepared.
     virtual std::string cannot(const FrameJob& job) const = 0;
     /// Draws a group of a job that it can; `alone`: its light, alpha within 0 and 1, is the frame. Null where
     /// the card has not the memory or is lost, or finds that it cannot. Throws Cancelled.

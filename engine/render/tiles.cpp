@@ -140,7 +140,7 @@ bool draw_on_device(const FrameJob& job, RenderCache::State& cache, RenderedFram
         std::optional<GroupPlanes> planes = device.draw(job, g, alone);
         job.progress.at(0.9 * double(g + 1) / double(job.groups.size()));
         if (!planes) {
-            frame.statistics.not_on_device = "the card ran out of memory or was lost";
+            frame.statistics.not_on_device = "it ran out of memory or was lost";
             return false;
         }
         groups.push_back(std::move(*planes));

@@ -93,7 +93,7 @@ TEST_F(SameBits, AnyDevice) {
         EXPECT_EQ(hashes({"--device", "gpu", "--set", key}), hashes({"--device", "cpu", "--set", key}))
             << key;
     expect_one_line(batch({"--device", "gpu", "--set", "camera.projection=fisheye"}), 2,
-                    "projections onto the sphere");
+                    "it draws no projections onto the sphere");
     expect_one_line(batch({"--device", "tpu"}), 2, "--device: expected gpu, cpu or auto");
 }
 

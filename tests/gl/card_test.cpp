@@ -135,7 +135,7 @@ TEST_F(Cards, WhatACardDoesNotDrawTheProcessorDoes) {
     settings.device = &card();
     const RenderedFrame frame = render({&layer, 1}, camera, nullptr, settings);
     EXPECT_EQ(frame.statistics.device, "");
-    EXPECT_EQ(frame.statistics.not_on_device, "projections onto the sphere");
+    EXPECT_EQ(frame.statistics.not_on_device, "it draws no projections onto the sphere");
     settings.device = nullptr;
     expect_same(frame.beauty, render({&layer, 1}, camera, nullptr, settings).beauty, "sphere");
 }
