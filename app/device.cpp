@@ -105,6 +105,7 @@ double frame_seconds(const ShadedSplats& splats, RenderDevice* device, RenderedF
     for (int i = 0; i < 3; ++i) {
         frame = render({&layer, 1}, camera, nullptr, settings, {}, &cache);
         best = std::min(best, frame.statistics.seconds);
+        if (best > 1.0) break;  // by a driver that draws by the processor
     }
     return best;
 }

@@ -1,6 +1,6 @@
 // The fold, as engine/render/fold_blend-inl.h: a tile of 16 x 16 px a group, a pixel a thread, its splats of one slab from near to
 // far, going on from where the slab before left the pixels. 32 splats at a time are read and their cubics interpolated;
-// then parts of 4 x 4 px fold those that touch them. KIND is the number of the FoldKind; ANY: records of any mix of layers; SCREEN: all are screens, records are plain. Needs maths.glsl and blend.glsl.
+// then parts of 4 x 4 px fold those that touch them. KIND is the number of the FoldKind; ANY: records of any mix of layers; SCREEN: all are screens, records are plain. LINEAR: plain, profiles over the distance. Needs maths.glsl and blend.glsl.
 layout(local_size_x = 256) in;
 layout(std430, binding = 1) readonly buffer Records { vec4 record[]; };
 layout(std430, binding = 2) readonly buffer Entries { uint entry[]; };
@@ -25,7 +25,6 @@ layout(std430, binding = 10) buffer LayerLight { vec4 layer_light[]; };  // [lay
 uniform bool keeps_layers, aovs;
 #else
 uniform float reach, margin_px;
-uniform bool linear_in_distance;
 #endif
 
 const uint BATCH = 32u, PARTS = 16u;
@@ -158,7 +157,9 @@ float weight_at(uint i, float x, float y) {
     u = u * disc[i].z;
     u = max(u, 0.0f);
 #else
-    if (linear_in_distance) u = sqrt(u);
+#ifdef LINEAR
+    u = sqrt(u);
+#endif
     u = u * disc[i].z;
 #endif
     float segment = (u - 0.5f) + TO_WHOLE;

@@ -575,9 +575,10 @@ int Card::list_entries(const Group& group, int order) {
 }
 
 void Card::fold(const FrameJob& job, const Group& group, int by_tile) {
-    const GlProgram& p =
-        program("card_fold.glsl", fmt::format("KIND {}{}{}{}", int(group.kind), group.any ? ",ANY" : "",
-                                              group.screen ? ",SCREEN" : "", group.shaped ? ",SHAPED" : ""));
+    const GlProgram& p = program(
+        "card_fold.glsl", fmt::format("KIND {}{}{}{}{}", int(group.kind), group.any ? ",ANY" : "",
+                                      group.screen ? ",SCREEN" : "", group.shaped ? ",SHAPED" : "",
+                                      !group.any && group.tables[0]->linear_in_distance ? ",LINEAR" : ""));
     const Uniforms set{p.name()};
     const Region& r = job.region;
     const FootprintTable& table = *group.tables[0];
@@ -591,7 +592,6 @@ void Card::fold(const FrameJob& job, const Group& group, int by_tile) {
     set("aovs", int(job.fold.aovs));
     set("reach", table.reach);
     set("margin_px", 4.0f * table.pixel_filter_px);
-    set("linear_in_distance", int(table.linear_in_distance));
     bind({&records_, &values_[by_tile], &ranges_, &nodes_, &light_, &through_, &more_, &tags_, &layers_,
           &layer_light_});
     for (GLuint slab = 0; slab < group.slabs; ++slab) {
@@ -683,7 +683,7 @@ std::optional<GroupPlanes> Card::draw(const FrameJob& job, std::size_t number, b
     planes.splats = counts.visible;
     planes.footprint_px = (4294967296.0 * counts.area_high + counts.area_low) / 16.0;
     const auto read_image = [&](const CardBuffer& from, std::int64_t first_pixel, Image& to) {
-        to = make_image(job.region.width, job.region.height, 4);
+        to = unfilled_image(job.region.width, job.region.height, 4);
         return read(from, first_pixel, to);
     };
     bool is_whole = read_image(light_, 0, planes.light);

@@ -35,8 +35,16 @@ class RenderDevice {
     virtual std::optional<GroupPlanes> draw(const FrameJob& job, std::size_t group, bool alone) = 0;
 };
 
-/// Draws the frame on its settings' device. False where the processor has to, with the reason in the frame's
-/// statistics; the frame is then as it was.
-bool draw_on_device(const FrameJob& job, RenderCache::State& cache, RenderedFrame& frame);
+/// The groups of a frame as its settings' device has drawn them; where `alone` the light of the first is the
+/// frame.
+struct DrawnGroups {
+    std::vector<GroupPlanes> planes;
+    bool alone = false;
+};
+/// None where the processor has to draw, with the reason in `statistics`.
+std::optional<DrawnGroups> draw_on_device(const FrameJob& job, RenderCache::State& cache,
+                                          RenderStatistics& statistics);
+/// Composites them into the frame, whose beauty is empty where they stand alone.
+void resolve_drawn(const FrameJob& job, DrawnGroups groups, RenderedFrame& frame);
 
 }  // namespace astrosplat

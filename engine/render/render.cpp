@@ -233,11 +233,12 @@ std::int64_t free_bytes(std::span<const RenderLayer> layers, const RenderSetting
     return std::max(least, room - room / 32 + state.store.bytes());
 }
 
+/// `beauty`: false where it comes from elsewhere.
 RenderedFrame make_frame(std::span<const RenderLayer> layers, const RenderSettings& settings,
-                         const Region& region) {
+                         const Region& region, bool beauty) {
     claim_memory(image_bytes(layers, settings, region.width, region.height), "the frame");
     RenderedFrame frame;
-    frame.beauty = make_image(region.width, region.height, 4);
+    if (beauty) frame.beauty = make_image(region.width, region.height, 4);
     if (settings.aov_depth) frame.depth = make_image(region.width, region.height, 1);
     if (settings.opacity) frame.opacity = make_image(region.width, region.height, 1);
     if (settings.aov_coverage) frame.coverage = make_image(region.width, region.height, 1);
@@ -245,7 +246,6 @@ RenderedFrame make_frame(std::span<const RenderLayer> layers, const RenderSettin
     if (settings.aov_layers)
         for (std::size_t i = 0; i < layers.size(); ++i)
             frame.layers.push_back(make_image(region.width, region.height, 4));
-    for (const RenderLayer& layer : layers) frame.statistics.splats_in += layer.size();
     return frame;
 }
 
@@ -300,6 +300,21 @@ void render_bands(const FrameJob& job, RenderCache::State& state, RenderedFrame&
     if (limit > 0) state.store.shrink(limit);
 }
 
+/// By the settings' device, where it can, else by the processor.
+RenderedFrame draw_frame(const FrameJob& job, RenderCache::State& state) {
+    RenderStatistics statistics;
+    std::optional<DrawnGroups> groups;
+    if (job.settings.device) groups = draw_on_device(job, state, statistics);
+    RenderedFrame frame = make_frame(job.layers, job.settings, job.region, !(groups && groups->alone));
+    frame.statistics = statistics;
+    for (const RenderLayer& layer : job.layers) frame.statistics.splats_in += layer.size();
+    if (groups)
+        resolve_drawn(job, std::move(*groups), frame);
+    else
+        render_bands(job, state, frame);
+    return frame;
+}
+
 }  // namespace
 
 std::int64_t scattered_bytes(std::span<const RenderLayer> layers, const Camera& camera,
@@ -332,8 +347,7 @@ RenderedFrame render(std::span<const RenderLayer> layers, const Camera& camera,
         settings.memory_limit_bytes = free_bytes(layers, settings, state);
     FrameJob job{drawn, camera, environment, settings, progress, tile_done, {}, {}, {}, {}, {}, {}};
     prepare(job, state);
-    RenderedFrame frame = make_frame(layers, settings, job.region);
-    if (!settings.device || !draw_on_device(job, state, frame)) render_bands(job, state, frame);
+    RenderedFrame frame = draw_frame(job, state);
     const double covered = double(covered_pixels(frame.beauty));
     frame.statistics.mean_overlap = covered > 0.0 ? frame.statistics.mean_overlap / covered : 0.0;
     frame.statistics.seconds = seconds_since(start);

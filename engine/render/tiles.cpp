@@ -2,6 +2,7 @@
 
 #include <numeric>
 
+#include "core/memory.h"
 #include "core/parallel.h"
 #include "render/device.h"
 
@@ -129,31 +130,37 @@ void copy_planes(const FrameJob& job, const GroupPlanes& group, TilePlanes& plan
 
 }  // namespace
 
-bool draw_on_device(const FrameJob& job, RenderCache::State& cache, RenderedFrame& frame) {
+std::optional<DrawnGroups> draw_on_device(const FrameJob& job, RenderCache::State& cache,
+                                          RenderStatistics& statistics) {
     RenderDevice& device = *job.settings.device;
-    frame.statistics.not_on_device = device.cannot(job);
-    if (!frame.statistics.not_on_device.empty()) return false;
+    statistics.not_on_device = device.cannot(job);
+    if (!statistics.not_on_device.empty()) return {};
     make_footprints(job, {0, 0.0, 0.0f, std::numeric_limits<float>::max()}, cache);
-    const bool alone = stands_alone(job) && !job.settings.backdrop;
-    std::vector<GroupPlanes> groups;
+    DrawnGroups drawn{{}, stands_alone(job) && !job.settings.backdrop};
+    if (!drawn.alone)  // the frame itself is told with its images
+        claim_memory(job.region.width * job.region.height * 3 * 16 * std::ssize(job.groups),
+                     "what a card draws");
     for (std::size_t g = 0; g < job.groups.size(); ++g) {
-        std::optional<GroupPlanes> planes = device.draw(job, g, alone);
+        std::optional<GroupPlanes> planes = device.draw(job, g, drawn.alone);
         job.progress.at(0.9 * double(g + 1) / double(job.groups.size()));
         if (!planes) {
-            frame.statistics.not_on_device = "it ran out of memory or was lost";
-            return false;
+            statistics = {};
+            statistics.not_on_device = "it ran out of memory or was lost";
+            return {};
         }
-        groups.push_back(std::move(*planes));
+        statistics.splats_drawn += planes->splats;
+        statistics.mean_overlap += planes->footprint_px;
+        drawn.planes.push_back(std::move(*planes));
     }
-    frame.statistics.device = device.name();
-    for (const GroupPlanes& planes : groups) {
-        frame.statistics.splats_drawn += planes.splats;
-        frame.statistics.mean_overlap += planes.footprint_px;
-    }
-    if (alone) {
-        frame.beauty = std::move(groups[0].light);
+    statistics.device = device.name();
+    return drawn;
+}
+
+void resolve_drawn(const FrameJob& job, DrawnGroups drawn, RenderedFrame& frame) {
+    if (drawn.alone) {
+        frame.beauty = std::move(drawn.planes[0].light);
         if (job.tile_done) job.tile_done(job.region, frame);
-        return true;
+        return;
     }
     const TileGrid grid{job.region.x, job.region.y, job.region.width, job.region.height, 64};
     const std::vector<std::int64_t> order = tile_order(job, grid);
@@ -164,11 +171,10 @@ bool draw_on_device(const FrameJob& job, RenderCache::State& cache, RenderedFram
         const Region region = tile_region(grid, order[i]);
         resolve_tile(job, region, own, frame, [&](std::size_t g) -> const TilePlanes* {
             reset(job, region, g, own.planes);
-            copy_planes(job, groups[g], own.planes);
+            copy_planes(job, drawn.planes[g], own.planes);
             return &own.planes;
         });
     });
-    return true;
 }
 
 void CarriedTiles::fold_slab(const TileBins& bins, std::int64_t tile, TileWorker& worker) {

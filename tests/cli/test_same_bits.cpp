@@ -90,9 +90,10 @@ TEST_F(SameBits, AnyDevice) {
               hashes({"--device", "cpu", "--region", "11,7,60,41"}));
     for (const char* key : {"camera.shutter=180", "camera.f_number=2.8", "camera.projection=orthographic",
                             "layer.nebula.render.isolate=true"})
-        EXPECT_EQ(hashes({"--device", "gpu", "--set", key}), hashes({"--device", "cpu", "--set", key}))
+        EXPECT_EQ(hashes({"--device", "gpu", "-f", "1", "--set", key}),
+                  hashes({"--device", "cpu", "-f", "1", "--set", key}))
             << key;
-    expect_one_line(batch({"--device", "gpu", "--set", "camera.projection=fisheye"}), 2,
+    expect_one_line(batch({"--device", "gpu", "--overwrite", "-q", "--set", "camera.projection=fisheye"}), 2,
                     "it draws no projections onto the sphere");
     expect_one_line(batch({"--device", "tpu"}), 2, "--device: expected gpu, cpu or auto");
 }
