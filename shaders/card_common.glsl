@@ -7,6 +7,7 @@ layout(std430, binding = 0) buffer Counts {
     uint area_low, area_high;  // sum of footprints, sixteenths of a square px
     uint lowest, highest;      // keys of depth, of a sample of the splats
     uint first_key, last_key;  // of all records
+    uint entries_low, entries_high;  // all that are wanted
     uint bins[1024];           // how many of the sample each has, and in the end to which slab it belongs
     uint slab_begin[33];       // records
 } counts;

@@ -30,7 +30,11 @@ void main() {
     scan_group(own);
     uint all = group_sums[255];
 #if PASS == 0
-    if (t == 255u) group_begin[group] = all;
+    if (t == 255u) {
+        group_begin[group] = all;
+        uint before = atomicAdd(counts.entries_low, all);
+        if (before + all < before) atomicAdd(counts.entries_high, 1u);
+    }
 #else
     for (uint e = t; e < all; e += GROUP) {
         uint lo = 0u, hi = 255u;  // the record whose entry it is: the first whose sum is beyond

@@ -17,6 +17,7 @@ void main() {
     uint t = gl_LocalInvocationIndex;
 #if PASS == 0
     if (t == 0u) {
+        counts.entries_low = counts.entries_high = 0u;
         counts.visible = counts.entries = counts.entries_wanted = counts.area_low = counts.area_high = 0u;
         counts.lowest = counts.first_key = 0xffffffffu;
         counts.highest = counts.last_key = 0u;

@@ -16,7 +16,9 @@ namespace {
 
 constexpr GLuint most_slabs = 32, group_size = 256, sorted = 4096, scanned = 2048;
 constexpr int tile_px = 16;
-constexpr std::int64_t counts_bytes = (10 + 1024 + 33) * 4;
+constexpr std::int64_t most_px = 32768;  // of a side: 256 splats over all tiles still have countable entries
+constexpr std::size_t most_falloffs = 100;  // whose nodes have numbers of 16 bits
+constexpr std::int64_t counts_bytes = (12 + 1024 + 33) * 4;
 // Slabs from so many splats on, of so many each: 256 MB of records of 32 bytes.
 constexpr std::int64_t slabs_from = 12'000'000, splats_of_slab = 8'000'000;
 constexpr std::uint64_t frames_kept = 64;  // splats that so many draws did not ask for give their memory back
@@ -139,9 +141,11 @@ Card::Card(const GlInfo& info, bool native_division) : info_(info), native_divis
 
 std::string Card::cannot(const FrameJob& job) const {
     if (shared::is_onto_sphere(job.fold.lens)) return "it draws no projections onto the sphere";
-    if (job.region.width > 65536 || job.region.height > 65536) return "it draws no frames as large as this";
+    if (job.region.width > most_px || job.region.height > most_px)
+        return "it draws no frames as large as this";
     for (std::size_t g = 0; g < job.groups.size(); ++g) {
         const Group group = plan(job, g, false);
+        if (group.tables.size() > most_falloffs) return "it draws no mix of so many falloffs";
         std::int64_t splats = 0;
         for (const std::size_t l : job.groups[g].layers) {
             if (job.layers[l].blocks) return "it draws no layers that are read block by block";
@@ -349,10 +353,10 @@ bool Card::upload_tables(const FrameJob& job, const Group& group) {
            cosines_.fill(pixel_cosines.data(), sizeof pixel_cosines);
 }
 
-bool Card::reserve(const FrameJob& job, const Group& group) {
+bool Card::reserve(const FrameJob& job, const Group& group, std::int64_t entries) {
     const std::int64_t n = std::max<std::int64_t>(group.count, 1),
                        tiles = std::int64_t(group.columns) * group.rows;
-    const std::int64_t entries = std::max(n, std::int64_t(double(n) * entries_each_)) + sorted;
+    entries = std::max(n, entries) + sorted;
     const std::int64_t record_bytes = group.any ? 64 : 32;
     if (record_bytes * n > most_bytes_ || 4 * entries > most_bytes_) return false;
     for (int i = 0; i < (group.ranked ? 4 : 3); ++i)
@@ -669,16 +673,17 @@ std::optional<GroupPlanes> Card::draw(const FrameJob& job, std::size_t number, b
     ++frames_;
     Group group = plan(job, number, alone);
     if (!upload_tables(job, group) || !gather(job, number, group)) return {};
+    constexpr double spare = 1.05, most_each = 16.0;  // the last group's may have been few and wide
+    auto entries = std::int64_t(double(group.count) * std::min(entries_each_, most_each));
     Counts counts{};
     do {
         job.progress.check();
-        if (!reserve(job, group)) return {};
+        if (!reserve(job, group, entries)) return {};
         counts = run(job, group);
-        constexpr double spare = 1.05;
-        if (counts.visible > 0)
-            entries_each_ = std::max(entries_each_, spare * counts.entries_wanted /
-                                                        double(std::max<std::int64_t>(group.count, 1)));
+        if (counts.entries_high > 0) return {};
+        entries = std::int64_t(spare * counts.entries_wanted);
     } while (counts.entries_wanted > counts.entries);
+    entries_each_ = std::max(2.5, double(entries) / double(std::max<std::int64_t>(group.count, 1)));
     GroupPlanes planes;
     planes.splats = counts.visible;
     planes.footprint_px = (4294967296.0 * counts.area_high + counts.area_low) / 16.0;

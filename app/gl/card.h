@@ -85,7 +85,7 @@ class Card final : public RenderDevice {
     };
     struct Counts {
         GLuint visible, entries, entries_wanted, entries_room, area_low, area_high, lowest, highest,
-            first_key, last_key;
+            first_key, last_key, entries_low, entries_high;
     };
 
     Group plan(const FrameJob& job, std::size_t group, bool alone) const;
@@ -97,7 +97,7 @@ class Card final : public RenderDevice {
     bool send(const void* data, std::int64_t bytes, CardBuffer& to);
     const Kept* keep(const ShadedSplats& splats, bool with_stars);
     bool upload_tables(const FrameJob& job, const Group& group);
-    bool reserve(const FrameJob& job, const Group& group);
+    bool reserve(const FrameJob& job, const Group& group, std::int64_t entries);
     Counts run(const FrameJob& job, const Group& group);
     void project(const FrameJob& job, const Group& group, int pass);
     void project_some(const FrameJob& job, const Group& group, const Splats& splats, int pass, GLuint every);
@@ -119,7 +119,7 @@ class Card final : public RenderDevice {
     int slabs_ = 0;
     std::function<void(std::string& text)> edit_;
     std::int64_t most_bytes_ = 0;  // of a buffer
-    double entries_each_ = 2.5;    // of a record, as of the frames so far
+    double entries_each_ = 2.5;    // of a splat, in the last group
     std::uint64_t frames_ = 0;
     std::map<std::string, std::unique_ptr<GlProgram>> programs_;
     using Query = GlObject<&glGenQueries, &glDeleteQueries>;

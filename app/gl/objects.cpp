@@ -154,8 +154,8 @@ struct OffscreenContext::State {
 };
 
 OffscreenContext::OffscreenContext() : state_(std::make_unique<State>()) {
-    const DenormalsAreZero
-        as_on_cards;  // where the processor draws, its driver's threads begin like this one
+    // Where OpenGL is drawn by the processor, its driver's threads begin like this one.
+    const DenormalsAreZero as_on_cards;
     for (int attempt = 0; attempt < attempts; ++attempt) {
         if (state_->open(attempt)) {
             state_->info = load_gl(reinterpret_cast<GlLoader>(&eglGetProcAddress));
@@ -388,8 +388,7 @@ bool is_between(const std::string& token) {
 
 std::string made_precise(const std::string& text) {
     std::set<std::string> floats = {"float", "double", "vec2", "vec3", "vec4", "Float", "Real", "Vec3"};
-    std::string result, last = ";", first,
-                        name;  // tokens before this one: last, and first of the declaration
+    std::string result, last = ";", first;  // the token before, and the first of the declaration
     int braces = 0;
     bool function = false, returns = false;
     for (const std::string& token : glsl_tokens(text)) {

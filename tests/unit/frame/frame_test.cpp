@@ -21,7 +21,7 @@ RenderedFrame rendering(float light, float opacity, float depth, std::size_t lay
     frame.depth = make_image(1, 1, 1, depth);
     frame.opacity = make_image(1, 1, 1, opacity);
     frame.layers.assign(layers, make_image(1, 1, 4, light));
-    frame.statistics = {100, 10, 2.0, 0.5};
+    frame.statistics = {100, 10, 2.0, 0.5, {}, {}};
     return frame;
 }
 
