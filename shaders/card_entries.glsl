@@ -5,7 +5,8 @@ uniform int tile_columns;
 uniform uint tile_count, slabs;
 #if PASS < 2
 layout(std430, binding = 1) readonly buffer Order { uint record_at[]; };  // by depth
-layout(std430, binding = 2) readonly buffer Rects { uvec2 rect_of[]; };   // first column | row << 16, last column | row << 16
+// Of a record: its first column | row << 16, and its last.
+layout(std430, binding = 2) readonly buffer Rects { uvec2 rect_of[]; };
 layout(std430, binding = 3) buffer Begins { uint group_begin[]; };
 layout(std430, binding = 4) writeonly buffer EntryTiles { uint entry_tile[]; };
 layout(std430, binding = 5) writeonly buffer EntryRecords { uint entry_record[]; };

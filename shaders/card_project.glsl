@@ -1,9 +1,9 @@
-// A layer's splats onto the frame, and those that touch the region into records: slab by slab of depth from near to far, in a
-// slab in the order of the splats. PASS 0: between which depths a sample lies; 1: how many of it each bin of depth has; 2:
+// A layer's splats onto the frame, and those that touch the region into records: slab by slab of depth from near to far, in
+// a slab in the order of the splats. PASS 0: between which depths a sample lies; 1: how many of it each bin of depth has; 2:
 // how many splats each group of 256 leaves in each slab; 3: the records; 4: which splats are left to the processor, because
 // level of detail divides them or they are stars that stay points. As engine/render/project_vector.cpp and
 // fold_prepare-inl.h. Needs projection.glsl, blend.glsl and footprint.glsl. ANY: records with what any mix of layers asks
-// for. GIVEN: splats that the processor has projected.
+// for. GIVEN: splats that the processor has projected. RANKS: places in the order of ties are kept.
 layout(local_size_x = 256) in;
 #ifdef GIVEN
 layout(std430, binding = 1) readonly buffer Splats { uint given[]; };  // ScreenSplat of engine/render/screen_splat.h
@@ -53,6 +53,11 @@ float camera_coordinate(dvec4 row, dvec3 p) {
     return float(sum);
 }
 
+vec3 camera_place(dvec3 p) {
+    return vec3(camera_coordinate(camera_row[0], p), camera_coordinate(camera_row[1], p),
+                camera_coordinate(camera_row[2], p));
+}
+
 struct Splat {
     bool shows;
     uint key;  // of depth
@@ -69,8 +74,9 @@ Splat splat_at(uint i) {
     int shape = radius_bits > 0x80000000u ? int(radius_bits - 0x80000001u) : -1;
     float radius_px = shape < 0 ? uintBitsToFloat(radius_bits) : shapes[3 * shape + 2].w;
     vec3 color = vec3(uintBitsToFloat(given[at + 4u]), uintBitsToFloat(given[at + 5u]), uintBitsToFloat(given[at + 6u]));
+    uint rank = first_rank + (in_order ? i : given[at + 8u]);
     return Splat(true, given[at + 7u], uintBitsToFloat(given[at]), uintBitsToFloat(given[at + 1u]), radius_px,
-                 uintBitsToFloat(given[at + 3u]), color, given[at + 9u] >> 16, first_rank + (in_order ? i : given[at + 8u]), shape);
+                 uintBitsToFloat(given[at + 3u]), color, given[at + 9u] >> 16, rank, shape);
 }
 #else
 bool is_large(vec3 place, float radius) {
@@ -82,14 +88,16 @@ bool is_large(vec3 place, float radius) {
 bool is_out_of_sight(vec3 place, Instance at, float radius) {
     float wide = radius * child_reach, px = reach_px(lens, place, wide, margin_px);
     float back = at.depth + wide, front = at.depth - wide;
-    return back < lens.near || (front > lens.near && !touches_rect(at.x_px, at.y_px, px, region.x, region.y, region.z, region.w));
+    bool before = front > lens.near;
+    return back < lens.near ||
+           (before && !touches_rect(at.x_px, at.y_px, px, region.x, region.y, region.z, region.w));
 }
 
 bool is_left_star(uint i) { return leaves_stars && (star_bits[i >> 5] >> (i & 31u) & 1u) != 0u; }
 
 Splat splat_at(uint i) {
     dvec3 p = dvec3(position[3u * i], position[3u * i + 1u], position[3u * i + 2u]);
-    vec3 place = vec3(camera_coordinate(camera_row[0], p), camera_coordinate(camera_row[1], p), camera_coordinate(camera_row[2], p));
+    vec3 place = camera_place(p);
     float alpha = alpha_of[i], radius = radius_of[i] * radius_scale;
     Instance at = instance_of(lens, place);
     float radius_px = radius * at.px_per_unit;
@@ -126,23 +134,28 @@ struct Profile {
 };
 Profile profile_at(float radius_px, float x_px, float y_px) {
     NodePlace place = node_of_radius(radius_px);
-    int a = 3 * (int(table) * NODE_COUNT + place.first), b = 3 * (int(table) * NODE_COUNT + min(place.first + 1, NODE_COUNT - 1));
+    int first_node = int(table) * NODE_COUNT, node = first_node + place.first;
+    int a = 3 * node, b = 3 * (first_node + min(place.first + 1, NODE_COUNT - 1));
     float tabulated_px = max(radius_px, SMALLEST_RADIUS_PX);
     ProfileRange range = profile_range(core, reach, margin_px, tabulated_px);
     float cx = pixel_cosine(x_px), cy = pixel_cosine(y_px);
     vec4 plain = moments[a] + (moments[b] - moments[a]) * place.share;
     vec4 first = vec4(0.0f);
     if (linear_in_distance) first = moments[a + 2] + (moments[b + 2] - moments[a + 2]) * place.share;
-    float found = profile_mass(linear_in_distance, range, plain.x, first.x) * (1.0f + pixel_ripple(plain.y, plain.z, plain.w, cx, cy));
+    float mass = profile_mass(linear_in_distance, range, plain.x, first.x);
+    float found = mass * (1.0f + pixel_ripple(plain.y, plain.z, plain.w, cx, cy));
     float edge_found = 1.0f;
     if (flat_core) {
         vec4 edge = moments[a + 1] + (moments[b + 1] - moments[a + 1]) * place.share;
-        edge_found = edge_mass(linear_in_distance, range, edge.x, first.y) * (1.0f + pixel_ripple(edge.y, edge.z, edge.w, cx, cy));
+        float of_edge = edge_mass(linear_in_distance, range, edge.x, first.y);
+        edge_found = of_edge * (1.0f + pixel_ripple(edge.y, edge.z, edge.w, cx, cy));
     }
     float wanted = integral * tabulated_px * tabulated_px;
-    FootprintGains gains = footprint_gains(flat_core, is_tabulated(place), shrink_of_radius(radius_px), wanted, found, edge_found);
+    FootprintGains gains =
+        footprint_gains(flat_core, is_tabulated(place), shrink_of_radius(radius_px), wanted, found, edge_found);
     float scale = as_div(16.0f, profile_width(linear_in_distance, range));
-    return Profile(int(table) * NODE_COUNT + place.first, place.share, profile_begin(linear_in_distance, range), scale, gains.edge_gain, gains.amplitude);
+    float lo = profile_begin(linear_in_distance, range);
+    return Profile(node, place.share, lo, scale, gains.edge_gain, gains.amplitude);
 }
 
 // Columns and rows of tiles that a splat may touch; rounding must not lose one.
@@ -200,10 +213,10 @@ void main() {
     uint i = group_number() * GROUP + gl_LocalInvocationIndex;
     if (i >= count) return;
     dvec3 p = dvec3(position[3u * i], position[3u * i + 1u], position[3u * i + 2u]);
-    vec3 place = vec3(camera_coordinate(camera_row[0], p), camera_coordinate(camera_row[1], p), camera_coordinate(camera_row[2], p));
+    vec3 place = camera_place(p);
     float radius = radius_of[i] * radius_scale;
-    bool left = is_left_star(i) || (is_large(place, radius) && !is_out_of_sight(place, instance_of(lens, place), radius));
-    if (left) rest[atomicAdd(rest_count, 1u)] = i;
+    bool large = is_large(place, radius) && !is_out_of_sight(place, instance_of(lens, place), radius);
+    if (large || is_left_star(i)) rest[atomicAdd(rest_count, 1u)] = i;
 }
 #else
 void main() {

@@ -1,6 +1,6 @@
 // A pass of a stable sort by eight bits of the keys. No group waits for another: PASS 0 counts the digits of each group's
-// keys, which are then added up digit by digit (card_scan.glsl), and PASS 1 moves keys and values to their places. Barriers of the whole
-// group cost less than ballots and barriers of subgroups (measured on an H100: 1.6 and 2 times).
+// keys, which are then added up digit by digit (card_scan.glsl), and PASS 1 moves keys and values to their places. Barriers
+// of the whole group cost less than ballots and barriers of subgroups (measured on an H100: 1.6 and 2 times).
 layout(local_size_x = 256) in;
 layout(std430, binding = 1) readonly buffer KeysIn { uint key_in[]; };
 layout(std430, binding = 2) readonly buffer ValuesIn { uint value_in[]; };

@@ -1,6 +1,6 @@
-// Splats at equal depths. PASS 0: their ranks, which are sorted by first where the processor has projected some of a layer's
-// splats and the card the others; 1: their keys of depth, in the order of ranks; 2: children of one splat at one depth, in the order
-// of engine/render/screen_splat.h.
+// Splats at equal depths. PASS 0: their ranks, which are sorted by first where the processor has projected some of a
+// layer's splats and the card the others; 1: their keys of depth, in the order of ranks; 2: children of one splat at one
+// depth, in the order of engine/render/screen_splat.h.
 layout(local_size_x = 256) in;
 layout(std430, binding = 1) buffer Keys { uint key_of[]; };
 layout(std430, binding = 2) buffer Order { uint record_at[]; };

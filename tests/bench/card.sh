@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Everything that a machine with a graphics card has to show, in ten minutes at most: what draws, frames that have to have the
-# processor's bits, times pass by pass, a flight rendered by both, and two programs on the card at once.
+# Everything that a machine with a graphics card has to show, in ten minutes at most: what draws, frames that have to have
+# the processor's bits, times pass by pass, a flight rendered by both, and two programs on the card at once.
 # Usage: card.sh FOLDER_OF_THE_PROGRAMS (astrosplat, test_gl, card_bench) [SCENE] [FRAMES]
 set -uo pipefail
 
