@@ -136,7 +136,7 @@ LayerNeed need_of(const BatchPlan& plan, const LayerParams& layer, const Sampled
     return need;
 }
 
-constexpr std::int64_t program_bytes = 43'000'000;  // with its libraries, before any scene
+constexpr std::int64_t program_bytes = 44'000'000;  // with its libraries, before any scene
 constexpr std::int64_t picture_bytes = 92'000'000;  // libraries that read pictures
 constexpr std::int64_t drawing_bytes = 10'000'000;  // what rendering and writing any frame adds
 constexpr std::int64_t worker_bytes = 800'000;      // a thread that renders, beside what folding takes
