@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <chrono>
 #include <nlohmann/json.hpp>
 
 #include "core/error.h"
@@ -32,6 +31,10 @@ struct FrameDevice::State {
 };
 
 FrameDevice::FrameDevice(const CommandOptions& options) : choice_(options.device) {
+    if (options.memory_gib && choice_ == DeviceChoice::automatic) {
+        log_detail("frames are drawn by the processor: what a card's driver takes, --memory cannot bound");
+        choice_ = DeviceChoice::cpu;
+    }
     try {
         state_ = std::make_unique<State>(State{open_card({choice_, options.cache.folder})});
     } catch (const std::runtime_error& error) {

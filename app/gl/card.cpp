@@ -6,6 +6,7 @@
 
 #include <sstream>
 
+#include "core/log.h"
 #include "core/parallel.h"
 #include "render/shape.h"
 #include "splats/splat_set.h"
@@ -67,6 +68,11 @@ void set_camera(const Uniforms& set, const LayerProjection& layer) {
 
 /// Whether the processor projects all of the layer's splats.
 bool is_given(const RenderLayer& layer) { return layer.stars || !layer.splats->stretch.empty(); }
+
+/// The driver does not take one of our programs.
+struct CardFailed : std::runtime_error {
+    using std::runtime_error::runtime_error;
+};
 
 bool is_screen(const FoldLayer& layer) {
     return layer.blend == Blend::screen && !layer.holdout && !layer.absorbs;
@@ -232,7 +238,7 @@ namespace {
 /// What the processor has projected of some of a layer's splats, in their order.
 struct GivenPart {
     Buffer<ScreenSplat> splats;
-    Buffer<Shape> shapes;
+    std::vector<float> shapes;  // twelve numbers each, of those that are not round
 };
 
 /// Splats of one star or Gaussian, in the order of ties.
@@ -272,27 +278,34 @@ bool Card::give(const FrameJob& job, Group& group, std::size_t number,
     std::vector<GivenPart> parts(static_cast<std::size_t>(groups_for(count, chunk)));
     parallel_chunks(count, chunk, [&](std::int64_t begin, std::int64_t end, int) {
         job.progress.check();
-        auto& [splats, shapes] = parts[begin / chunk];
+        auto& [splats, numbers] = parts[begin / chunk];
         if (rows) return project_rows(layer, std::span(*rows).subspan(begin, end - begin), rect, splats);
+        Buffer<Shape> shapes;
         astrosplat::project(layer, begin, end, rect, splats, shapes);
         order_ties(splats);
+        for (ScreenSplat& splat : splats)
+            if (!is_round(splat)) {
+                const Shape shape = shapes[shape_number(splat)];
+                set_shape_number(splat, static_cast<std::uint32_t>(numbers.size() / 12));
+                add_shape(table, shape, splat, numbers);
+            }
     });
     const std::int64_t first = std::ssize(given_);
-    std::vector<std::int64_t> begins;
-    std::int64_t end = first;
-    for (GivenPart& part : parts) {
-        begins.push_back(std::exchange(end, end + std::ssize(part.splats)));
-        for (ScreenSplat& splat : part.splats) {
-            if (part.shapes.empty()) break;
-            if (is_round(splat)) continue;
-            const Shape shape = part.shapes[shape_number(splat)];
-            set_shape_number(splat, static_cast<std::uint32_t>(shapes_.size() / 12));
-            add_shape(table, shape, splat, shapes_);
-        }
+    std::vector<std::pair<std::int64_t, std::int64_t>> begins;  // of a part's splats and shapes
+    std::int64_t end = first, shapes = std::ssize(shapes_);
+    for (const GivenPart& part : parts) {
+        begins.emplace_back(end, shapes);
+        end += std::ssize(part.splats);
+        shapes += std::ssize(part.shapes);
     }
     given_.resize(static_cast<std::size_t>(end));
+    shapes_.resize(static_cast<std::size_t>(shapes));
     parallel_each(std::ssize(parts), 1, [&](std::int64_t i) {
-        std::copy(parts[i].splats.begin(), parts[i].splats.end(), given_.begin() + begins[i]);
+        const auto before = static_cast<std::uint32_t>(begins[i].second / 12);
+        for (ScreenSplat& splat : parts[i].splats)
+            if (!is_round(splat)) set_shape_number(splat, before + shape_number(splat));
+        std::ranges::copy(parts[i].splats, given_.begin() + begins[i].first);
+        std::ranges::copy(parts[i].shapes, shapes_.begin() + begins[i].second);
         parts[i] = {};
     });
     const std::int64_t splats = std::ssize(given_) - first, limit = job.settings.memory_limit_bytes;
@@ -333,7 +346,7 @@ bool Card::gather(const FrameJob& job, std::size_t number, Group& group) {
     }
     cut_depth(group);
     return send(given_.data(), std::ssize(given_) * std::int64_t(sizeof(ScreenSplat)), given_splats_) &&
-           given_shapes_.fill(shapes_.data(), 4 * std::ssize(shapes_));
+           send(shapes_.data(), 4 * std::ssize(shapes_), given_shapes_);
 }
 
 bool Card::upload_tables(const FrameJob& job, const Group& group) {
@@ -411,7 +424,11 @@ const GlProgram& Card::program(const std::string& file, const std::string& defin
     if (program) return *program;
     ProgramSource source = card_source(file, defines, native_division_);
     source.edit = edit_;
-    program = std::make_unique<GlProgram>(source);
+    try {
+        program = std::make_unique<GlProgram>(source);
+    } catch (const std::runtime_error& error) {
+        throw CardFailed(error.what());
+    }
     return *program;
 }
 
@@ -669,7 +686,7 @@ bool Card::read(const CardBuffer& from, std::int64_t first_pixel, Image& to) {
     return glUnmapNamedBuffer(staging_.name());
 }
 
-std::optional<GroupPlanes> Card::draw(const FrameJob& job, std::size_t number, bool alone) {
+std::optional<GroupPlanes> Card::draw(const FrameJob& job, std::size_t number, bool alone) try {
     ++frames_;
     Group group = plan(job, number, alone);
     if (!upload_tables(job, group) || !gather(job, number, group)) return {};
@@ -702,6 +719,9 @@ std::optional<GroupPlanes> Card::draw(const FrameJob& job, std::size_t number, b
                                               planes.layer_light.emplace_back());
     if (!is_whole || glGetError() != GL_NO_ERROR) return {};
     return planes;
+} catch (const CardFailed& failed) {
+    log_warning(failed.what());
+    return {};
 }
 
 std::int64_t Card::bytes() const {

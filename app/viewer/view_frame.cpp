@@ -133,7 +133,6 @@ bool ask_the_same(const ViewRequest& a, const ViewRequest& b) {
 }
 
 constexpr double rest_s = 0.15;       // without a touch, before the final frame begins
-constexpr double quick_s = 0.04;      // a card's final frame in this time takes the place of previews
 constexpr double step_rest_s = 0.06;  // and before the first finer preview does
 
 double milliseconds_since(Clock::time_point start) { return 1e3 * seconds_since(start); }
@@ -409,7 +408,7 @@ void ViewFrame::take_final(double now) {
     if (outcome.state == FinalFrame::State::done) {
         enter(Stage::final);
         final_s_ = outcome.seconds;
-        quick_ = !outcome.frame->statistics.device.empty() && outcome.seconds < quick_s;
+        quick_ = !outcome.frame->statistics.device.empty() && outcome.seconds < choice_.quick_s;
         refine(now);  // for when the hand moves again
     }
     if (outcome.state == FinalFrame::State::failed) enter(Stage::failed);
@@ -442,7 +441,7 @@ void ViewFrame::show(const ViewRequest& request, const PreviewChoice& choice, bo
                          choice_.share != choice.share;
     const bool changed = touched || !have_same_sets(*request_, request) || environment_arrived();
     // What the card has nearly finished is not thrown away for the next frame, or none would be seen.
-    const bool hurries = changed && behind_ && now - followed_at_ < 2.0 * quick_s;
+    const bool hurries = changed && behind_ && now - followed_at_ < 2.0 * choice.quick_s;
     if (hurries && stage_ == Stage::refining) take_final(now);
     if (hurries && stage_ == Stage::refining) return;
     const bool refined = request_ && refine(now);

@@ -93,6 +93,7 @@ struct PreviewChoice {
     std::int64_t splats = 0;  // with share 0: this many in all, whatever the frame rate; 0: by it
     bool refined = true;      // cuts of whole sets, once there is time to make them; else of samples
     double target_ms = 25.0;  // of one preview
+    double quick_s = 0.04;    // a card's final frame within this takes the place of previews
 };
 
 class ViewFrame {

@@ -81,7 +81,8 @@ void add_rendering(RenderedFrame& sum, RenderedFrame&& rendering, std::span<cons
     statistics.mean_overlap += rendering.statistics.mean_overlap;
     statistics.seconds += rendering.statistics.seconds;
     if (rendering.statistics.device.empty()) statistics.device.clear();
-    statistics.not_on_device = rendering.statistics.not_on_device;
+    if (!rendering.statistics.not_on_device.empty())
+        statistics.not_on_device = rendering.statistics.not_on_device;
 }
 
 void divide_sum(RenderedFrame& sum, int n, std::size_t layer_count) {

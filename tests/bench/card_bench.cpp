@@ -12,8 +12,6 @@
 namespace astrosplat {
 namespace {
 
-using bench::random;
-
 struct Case {
     const char* name;
     std::int64_t count;
@@ -23,32 +21,6 @@ struct Case {
     float share = 1.0f;  // of the frame's sides, in which nine of ten lie
 };
 
-/// As render_bench's.
-ShadedSplats spread(const Case& c) {
-    ShadedSplats set;
-    const auto n = std::size_t(c.count);
-    set.position.resize(n);
-    set.color.resize(n);
-    set.alpha.resize(n);
-    set.radius.resize(n);
-    set.id.resize(n);
-    parallel_chunks(c.count, 1 << 16, [&](std::int64_t begin, std::int64_t end, int) {
-        for (std::int64_t i = begin; i < end; ++i) {
-            const auto k = std::uint32_t(i);
-            const float z = 10.0f + 10.0f * random(k, 3), part = k % 10 != 0 ? c.share : 1.0f;
-            set.position[i] = {(random(k, 1) - 0.5f) * 1.92f * z * part,
-                               (random(k, 2) - 0.5f) * 1.08f * z * part, -z};
-            set.radius[i] = 0.5f * c.diameter_px * z * 0.001f * 1920.0f / float(c.width);
-            set.alpha[i] = c.alpha * (0.5f + random(k, 4));
-            set.color[i] = {random(k, 5), random(k, 6), random(k, 7)};
-            set.id[i] = std::uint64_t(i);
-        }
-    });
-    static std::uint64_t stamps = 1'000'000;
-    set.stamp = ++stamps;
-    return set;
-}
-
 template <class T>
 T median(std::vector<T> values) {
     std::ranges::sort(values);
@@ -56,7 +28,9 @@ T median(std::vector<T> values) {
 }
 
 void measure(const Case& c, Card& card, bool compares, const std::vector<int>& slabs) {
-    const ShadedSplats set = spread(c);
+    ShadedSplats set = bench::spread(c.count, c.diameter_px * 1920.0f / float(c.width), c.alpha, c.share);
+    static std::uint64_t stamps = 1'000'000;
+    set.stamp = ++stamps;
     RenderLayer layer;
     layer.name = "bench";
     layer.splats = &set;

@@ -69,6 +69,27 @@ SplatSet random_set(std::int64_t count) {
     return set;
 }
 
+ShadedSplats spread(std::int64_t count, float diameter_px, float alpha, float share) {
+    ShadedSplats set;
+    const auto n = std::size_t(count);
+    set.position.resize(n);
+    set.color.resize(n);
+    set.alpha.resize(n);
+    set.radius.resize(n);
+    set.id.resize(n);
+    parallel_each(n, 1 << 16, [&](std::size_t i) {
+        const auto k = std::uint32_t(i);
+        const float z = 10.0f + 10.0f * random(k, 3), part = k % 10 != 0 ? share : 1.0f;
+        set.position[i] = {(random(k, 1) - 0.5f) * 1.92f * z * part, (random(k, 2) - 0.5f) * 1.08f * z * part,
+                           -z};
+        set.radius[i] = 0.5f * diameter_px * z * 0.001f;
+        set.alpha[i] = alpha * (0.5f + random(k, 4));
+        set.color[i] = {random(k, 5), random(k, 6), random(k, 7)};
+        set.id[i] = i;
+    });
+    return set;
+}
+
 Image picture(std::int64_t size) {
     Image image = make_image(size, size, 4);
     parallel_for(size, [&](std::int64_t y, int) {

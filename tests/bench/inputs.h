@@ -5,6 +5,7 @@
 #include "core/image.h"
 #include "generate/lattice.h"
 #include "source/textured_mesh.h"
+#include "splats/shaded_splats.h"
 #include "splats/splat_set.h"
 
 namespace astrosplat::bench {
@@ -14,6 +15,10 @@ float random(std::uint32_t n, std::uint32_t purpose);
 
 /// A set as generation leaves it: positions in a box of side 10, ids ascending, all arrays but radius.
 SplatSet random_set(std::int64_t count);
+
+/// Splats after a look, spread evenly over a 1080p picture at depths 10..20, `diameter_px` across; with a
+/// `share` of the picture's sides nine of ten lie in the middle of it.
+ShadedSplats spread(std::int64_t count, float diameter_px, float alpha, float share = 1.0f);
 
 /// Smooth colours with alpha 1 in one half and falling alpha in the other; RGBA, linear, premultiplied.
 Image picture(std::int64_t size);

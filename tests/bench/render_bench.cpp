@@ -14,30 +14,7 @@
 namespace astrosplat {
 namespace {
 
-using bench::random;
-
-/// Splats spread evenly over a 1080p picture at depths 10..20, `diameter_px` across.
-ShadedSplats spread(std::int64_t count, float diameter_px, float alpha) {
-    ShadedSplats set;
-    const auto n = std::size_t(count);
-    set.position.resize(n);
-    set.color.resize(n);
-    set.alpha.resize(n);
-    set.radius.resize(n);
-    set.id.resize(n);
-    parallel_chunks(count, 1 << 16, [&](std::int64_t begin, std::int64_t end, int) {
-        for (std::int64_t i = begin; i < end; ++i) {
-            const auto k = std::uint32_t(i);
-            const float z = 10.0f + 10.0f * random(k, 3);
-            set.position[i] = {(random(k, 1) - 0.5f) * 1.92f * z, (random(k, 2) - 0.5f) * 1.08f * z, -z};
-            set.radius[i] = 0.5f * diameter_px * z * 0.001f;
-            set.alpha[i] = alpha * (0.5f + random(k, 4));
-            set.color[i] = {random(k, 5), random(k, 6), random(k, 7)};
-            set.id[i] = std::uint64_t(i);
-        }
-    });
-    return set;
-}
+using bench::spread;
 
 void frame(benchmark::State& state, std::int64_t count, float diameter_px, float alpha, Blend blend) {
     const ShadedSplats set = spread(count, diameter_px, alpha);

@@ -3,6 +3,7 @@
 
 #include "core/memory.h"
 #include "edit/view_camera.h"
+#include "gl/gl_fixture.h"
 #include "output/write.h"
 #include "pipeline.h"
 #include "sets/load_source.h"
@@ -93,6 +94,60 @@ TEST_F(FinalFrameTest, ACardDrawsTheSamePixels) {
         picture.take_tiles(tiles);
         EXPECT_EQ(pixel_hash(tiles), hash_of(wanted)) << which;
     }
+}
+
+/// On a card that counts as quick however slow this machine is.
+class Followed : public FinalFrameTest {
+  protected:
+    void SetUp() override {
+        if (!test::shared_context().context) GTEST_SKIP() << test::shared_context().reason;
+        choice.quick_s = 1e6;
+    }
+
+    ViewRequest view(std::uint32_t which) const {
+        const FinalRequest frame = request(which);
+        ViewRequest wanted;
+        static_cast<FrameRequest&>(wanted) = frame;
+        for (std::size_t i = 0; i < sets.size(); ++i) {
+            const LayerParams& params = small.scene.layers[i];
+            wanted.layers.push_back(std::make_shared<const LoadedLayer>(
+                whole_layer(sets[i], params.source, params.name, sets[i]->size())));
+            wanted.box.add(bounds(*sets[i]));
+        }
+        return wanted;
+    }
+
+    void show(const ViewRequest& wanted) { shown.show(wanted, choice, true, now); }
+    void settle(const ViewRequest& wanted) {
+        now += 1.0;
+        do {
+            show(wanted);
+            now += 0.01;
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        } while (!shown.final_frame());
+    }
+
+    PreviewChoice choice;
+    double now = 0.0;  // s
+    ViewFrame shown{std::make_shared<PictureFiles>(), {DeviceChoice::gpu, {}}};
+};
+
+TEST_F(Followed, AMovedCameraShowsFinalFramesAlone) {
+    const ViewRequest first = view(0), second = view(4), third = view(8);
+    settle(first);
+    if (shown.final_frame()->statistics.device.empty()) GTEST_SKIP() << "no card";
+    EXPECT_EQ(pixel_hash(shown.read()), hash_of(request(0)));
+    show(second);
+    EXPECT_EQ(shown.status().state, ViewFrameState::final);
+    EXPECT_FALSE(shown.final_frame()) << "it is on its way";
+    show(third);  // while that is on its way: it is not thrown away
+    settle(third);
+    EXPECT_EQ(shown.status().state, ViewFrameState::final);
+    EXPECT_EQ(pixel_hash(shown.read()), hash_of(request(8)));
+    choice.quick_s = 0.0;  // what comes next is too slow for it
+    settle(second);
+    show(first);
+    EXPECT_EQ(shown.status().state, ViewFrameState::preview);
 }
 
 TEST_F(FinalFrameTest, DepthComesWithTheSamePixels) {
