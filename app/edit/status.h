@@ -57,6 +57,7 @@ struct ViewFrameStatus {
     bool round_splats = false;          // the preview shows Gaussians as round splats
     float progress = 0.0f;              // refining
     double seconds = 0.0;               // final: how long it took
+    std::string device;                 // and what drew it; empty: the processor
     std::string error;
     int width = 0, height = 0;  // px of the whole frame, also where a part of it is shown
 };

@@ -408,6 +408,7 @@ void ViewFrame::take_final(double now) {
     if (outcome.state == FinalFrame::State::done) {
         enter(Stage::final);
         final_s_ = outcome.seconds;
+        status_.device = outcome.frame->statistics.device;
         quick_ = !outcome.frame->statistics.device.empty() && outcome.seconds < choice_.quick_s;
         refine(now);  // for when the hand moves again
     }

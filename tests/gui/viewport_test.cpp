@@ -245,6 +245,12 @@ TEST_F(ViewportTest, TheBadgeSaysHowFinalItIs) {
     status.view_frame.state = ViewFrameState::final;
     status.view_frame.seconds = 1.8;
     EXPECT_EQ(badge_text(document.scene(), status).text, "Final 1.8 s");
+    status.view_frame.seconds = 0.0234;
+    status.view_frame.device = "a card";
+    EXPECT_EQ(badge_text(document.scene(), status).text, "Final 23 ms");
+    EXPECT_HAS(badge_text(document.scene(), status).beside, ", a card");
+    status.view_frame.seconds = 1.8;
+    status.view_frame.device.clear();
     status.layers[1].stale = true;
     EXPECT_EQ(badge_text(document.scene(), status).text, "Not final: stars needs to be generated again");
     status.layers[0].error = "dust.obj: no such file";
