@@ -116,9 +116,10 @@ BadgeText badge_text(const Scene& scene, const Status& status) {
                 return {why, total, color::error};
             if (shown.total == 0)
                 return {"Empty", scene.layers.empty() ? "no layer yet" : "no splats to show", color::dim};
-            return {shown.seconds < 0.1 ? fmt::format("Final {:.0f} ms", 1e3 * shown.seconds)
-                                        : fmt::format("Final {:.1f} s", shown.seconds),
-                    shown.device.empty() ? total : total + ", " + shown.device, color::good};
+            if (!shown.device.empty())
+                return {fmt::format("Final {:.0f} ms", 1e3 * shown.seconds), total + ", " + shown.device,
+                        color::good};
+            return {fmt::format("Final {:.1f} s", shown.seconds), total, color::good};
         case ViewFrameState::failed:
             return {"Cannot render: " + shown.error, "", color::error};
         case ViewFrameState::preview:
