@@ -40,19 +40,18 @@ std::size_t block_count(std::uint64_t splats, std::uint32_t block) {
 BlockEntry describe_block(std::uint32_t flags, std::string_view bytes, std::size_t rows) {
     if (!has(flags, SplatColumn::position)) return {glm::vec3(0.0f), glm::vec3(0.0f), xxh64(bytes)};
     BlockEntry entry{glm::vec3(FLT_MAX), glm::vec3(-FLT_MAX), xxh64(bytes)};
-    for (std::size_t i = 0; i < rows; ++i) {
-        glm::vec3 p;
-        std::memcpy(&p, bytes.data() + i * sizeof p, sizeof p);
-        add_to_box({&p, 1}, entry);
-    }
+    add_to_box({reinterpret_cast<const glm::vec3*>(bytes.data()), rows}, entry);
     return entry;
 }
 
 void add_to_box(std::span<const glm::vec3> positions, BlockEntry& entry) {
+    glm::vec3 lo = entry.lo, hi = entry.hi;  // not in memory, which the positions might lie in
     for (const glm::vec3& p : positions) {
-        entry.lo = glm::min(entry.lo, p);
-        entry.hi = glm::max(entry.hi, p);
+        lo = glm::min(lo, p);
+        hi = glm::max(hi, p);
     }
+    entry.lo = lo;
+    entry.hi = hi;
 }
 
 void Checker::fail(std::string_view place, const std::string& expected, const std::string& found) const {
