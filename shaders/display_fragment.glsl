@@ -20,6 +20,7 @@ uniform float difference_gain;
 #endif
 uniform vec4 place;  // upper left corner of the image in px from the target's lower left; 1 / size
 uniform float gain;  // 2^exposure
+uniform float codes;  // the target's largest of a channel; 0: it holds numbers
 
 layout(location = 0) out vec4 shown;
 
@@ -87,6 +88,7 @@ void main() {
 #ifdef MASKED
     shown = vec4(color, compared);
 #else
-    shown = vec4(color, 1.0);
+    // A card's own rounding may be .6 of a code off.
+    shown = vec4(codes > 0.0 ? floor(clamp(color, 0.0, 1.0) * codes + 0.5) / codes : color, 1.0);
 #endif
 }

@@ -220,8 +220,9 @@ struct Display::State {
     DisplayPrograms programs;
     WholeTarget triangle;
     GlTarget target;
-    GlTarget values;        // of what is compared, as floats
-    int drawn_height = 0;   // of the target that is drawn into
+    GlTarget values;  // of what is compared, as floats
+    int drawn_height = 0;
+    float codes = 0.0f;     // the largest of a channel of the target that is drawn into; 0: it holds numbers
     DisplaySettings drawn;  // what the target holds, when version is above 0
     std::uint64_t version = 0;
 
@@ -232,6 +233,7 @@ struct Display::State {
 
     void begin_drawing(GlTarget& into) {
         drawn_height = into.height();
+        codes = &into == &target ? 255.0f : 0.0f;
         into.bind();
         glDisable(GL_BLEND);
         glDisable(GL_DITHER);
@@ -268,6 +270,7 @@ struct Display::State {
         const GlProgram& p = programs.use(variant, s.ocio);
         glUniform4f(p.uniform("place"), s.x, static_cast<float>(drawn_height) - s.y, 1.0f / s.width,
                     1.0f / s.height);
+        glUniform1f(p.uniform("codes"), codes);
         glUniform1f(p.uniform("gain"), float(real::pow(2.0, double(s.exposure))));
         if (variant.mix != Mix::alone) set_b(p, s);
         triangle.draw();
