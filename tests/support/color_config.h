@@ -51,10 +51,10 @@ colorspaces:
 inline fs::path write_color_config(const fs::path& folder) {
     std::ofstream(folder / "colors.ocio") << color_config_text;
     std::ofstream table(folder / "negative.cube");
-    table << "LUT_3D_SIZE 2\n";
-    for (int b = 1; b >= 0; --b)
-        for (int g = 1; g >= 0; --g)
-            for (int r = 1; r >= 0; --r) table << r << " " << g << " " << b << "\n";
+    table << "LUT_3D_SIZE 33\n";
+    for (int b = 32; b >= 0; --b)
+        for (int g = 32; g >= 0; --g)
+            for (int r = 32; r >= 0; --r) table << r / 32.0 << " " << g / 32.0 << " " << b / 32.0 << "\n";
     return folder / "colors.ocio";
 }
 
