@@ -184,11 +184,10 @@ void draw_card(GuiFrame& frame, std::size_t index) {
     const bool hovered = ImGui::IsItemHovered(), is_b = frame.status.b_snapshot == static_cast<int>(index);
     tooltip("Click: compare as B. Right click: show, restore, rename, delete");
     ImGui::SetItemAllowOverlap();
-    ImDrawList* list = ImGui::GetWindowDrawList();
     const Rect area(corner, {px(thumbnail_width), px(thumbnail_height)});
     image_box(area, snapshot.thumbnail, snapshot.aspect, 3);
     const ImVec2 end = area.end();
-    if (is_b || hovered) list->AddRect(corner, end, is_b ? color::accent : color::dim, px(3), 0, px(1.5f));
+    if (is_b || hovered) outline_rect(area, is_b ? color::accent : color::dim, px(3), px(1.5f));
     ImGui::PushFont(small_font());
     const bool is_renamed = frame.view.renamed_snapshot == static_cast<int>(index);
     const std::string name = (is_b ? "B  " : "") + snapshot.name;
@@ -209,7 +208,7 @@ void draw_take_button(GuiFrame& frame) {
                     "Keep the look and the view as they are now"))
         request(frame, Command::Kind::take_snapshot);
     note_item(frame, "take snapshot");
-    ImGui::GetWindowDrawList()->AddRect(corner, {corner.x + size.x, corner.y + size.y}, color::hover, px(3));
+    outline_rect({corner, size}, color::hover, px(3));
 }
 
 }  // namespace

@@ -243,13 +243,12 @@ void draw_ruler(TimelineState& t, GuiFrame& frame, const Rect& area) {
     ImGui::PushFont(small_font());
     const double step = ruler_step(t.scale, px(56)), small = ruler_step(t.scale, px(8));
     for (double f = std::ceil(t.scale.first / small) * small; f <= t.scale.last; f += small) {
-        const float x = std::floor(t.scale.x_of(f)) + 0.5f;
-        draw_line({x, area.end().y - px(4)}, {x, area.end().y}, color::hover);
+        line_down(t.scale.x_of(f), area.end().y - px(4), area.end().y, color::hover);
     }
     for (double f = std::ceil(t.scale.first / step) * step; f <= t.scale.last; f += step) {
-        const float x = std::floor(t.scale.x_of(f)) + 0.5f;
+        const float x = std::floor(t.scale.x_of(f));
         const std::string text = fmt::format("{:.0f}", f);
-        draw_line({x, area.end().y - px(7)}, {x, area.end().y}, color::dim);
+        line_down(x, area.end().y - px(7), area.end().y, color::dim);
         draw_text({x - std::floor(ImGui::CalcTextSize(text.c_str()).x * 0.5f), area.y + px(1)}, color::dim,
                   text);
     }
@@ -258,14 +257,14 @@ void draw_ruler(TimelineState& t, GuiFrame& frame, const Rect& area) {
 }
 
 void draw_playhead(const TimelineState& t, const GuiFrame& frame, const Rect& ruler) {
-    const float x = std::floor(t.scale.x_of(frame.view.frame)) + 0.5f;
+    const float x = std::floor(t.scale.x_of(frame.view.frame));
     if (x < t.scale.x0 - px(timeline_margin) || x > t.scale.x1 + px(timeline_margin)) return;
     ImGui::PushFont(small_font());
     const std::string text = fmt::format("{:g}", std::round(frame.view.frame * 100.0) / 100.0);
     const ImVec2 size = ImGui::CalcTextSize(text.c_str());
     const float half = std::floor(size.x * 0.5f + px(6));
-    fill_rect({x - half, ruler.y + px(1)}, {x + half, ruler.end().y - px(2)}, color::accent, px(3));
-    draw_text({std::floor(x - size.x * 0.5f), ruler.y + px(2)}, IM_COL32(0x10, 0x14, 0x1A, 255), text);
+    fill_rect({x - half, ruler.y + px(1)}, {x + half + 1.0f, ruler.end().y - px(2)}, color::accent, px(3));
+    draw_text({std::floor(x + 0.5f - size.x * 0.5f), ruler.y + px(2)}, IM_COL32(0x10, 0x14, 0x1A, 255), text);
     ImGui::PopFont();
 }
 

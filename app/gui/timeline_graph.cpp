@@ -132,8 +132,7 @@ void draw_handles(TimelineState& t, GuiFrame& frame, const Track& track, const R
                                 y_of(t, keyframe.value[c] + h.value[c], area)};
                 const bool near = hovered && is_near(at);
                 draw_line(from, at, color::with_opacity(color::text, 0.55f), px(1));
-                fill_rect({at.x - px(3), at.y - px(3)}, {at.x + px(3), at.y + px(3)},
-                          near ? color::attention : color::text);
+                fill_square(at, px(3), near ? color::attention : color::text);
                 note_item(frame,
                           fmt::format("handle {} {:g} {} {}", track.key, keyframe.frame, c,
                                       side == HandleSide::in ? "in" : "out"),
@@ -224,10 +223,10 @@ void draw_graph(TimelineState& t, GuiFrame& frame, const Rect& area) {
     fill_rect(area, color::window);
     ImGui::PushFont(small_font());
     for (const double value : {t.graph.low, 0.5 * (t.graph.low + t.graph.high), t.graph.high}) {
-        const float y = std::floor(y_of(t, value, area)) + 0.5f;
+        const float y = y_of(t, value, area);
         const std::string text = axis_text(value, t.graph.high - t.graph.low);
         const ImVec2 size = ImGui::CalcTextSize(text.c_str());
-        draw_line({area.x, y}, {area.end().x, y}, color::with_opacity(color::field, 0.8f));
+        line_across(area.x, area.end().x, y, color::with_opacity(color::field, 0.8f));
         draw_text({area.x - px(8) - size.x, std::floor(y - size.y * 0.5f)}, color::dim, text);
     }
     ImGui::PopFont();
@@ -318,9 +317,7 @@ void draw_channels(GuiFrame& frame, const Track& track, const ParameterSpec& spe
                         y + std::floor(0.5f * (height - size.y))};
         const ImU32 shade = channel_color(c, count);
         draw_text(at, hidden ? color::with_opacity(shade, 0.35f) : shade, name);
-        if (hidden)
-            draw_line({at.x - px(2), at.y + 0.5f * size.y}, {at.x + size.x + px(2), at.y + 0.5f * size.y},
-                      color::dim);
+        if (hidden) line_across(at.x - px(2), at.x + size.x + px(2), at.y + 0.5f * size.y, color::dim);
     }
 }
 

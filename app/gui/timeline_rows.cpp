@@ -133,7 +133,7 @@ void draw_keyframe_mark(ImVec2 at, Interpolation interpolation, bool selected) {
                 list->AddTriangleFilled({at.x - side * 0.2f, at.y}, {at.x + side * size, at.y - size},
                                         {at.x + side * size, at.y + size}, c);
         else if (interpolation == Interpolation::step)
-            fill_rect({at.x - size * 0.8f, at.y - size * 0.8f}, {at.x + size * 0.8f, at.y + size * 0.8f}, c);
+            fill_square(at, size * 0.8f, c);
         else
             list->AddQuadFilled({at.x, at.y - size * 1.1f}, {at.x + size * 1.1f, at.y},
                                 {at.x, at.y + size * 1.1f}, {at.x - size * 1.1f, at.y}, c);
@@ -214,9 +214,8 @@ void select_in_box(TimelineState& t, const Scene& scene, float rows_y) {
             if (x >= low.x && x <= high.x) t.selected.push_back({scene.animation[row].key, keyframe.frame});
         }
     }
-    ImDrawList* list = ImGui::GetWindowDrawList();
     fill_rect(low, high, color::with_opacity(color::accent, 0.12f));
-    list->AddRect(low, high, color::with_opacity(color::accent, 0.6f));
+    outline_rect({low, {high.x - low.x, high.y - low.y}}, color::with_opacity(color::accent, 0.6f));
 }
 
 /// "dust: Power", "Camera: Position".
@@ -257,9 +256,8 @@ void draw_name(TimelineState& t, GuiFrame& frame, const Track& track, float x, f
 void draw_keyframes(TimelineState& t, GuiFrame& frame, const Track& track, float y) {
     const float middle = std::floor(y + px(track_height) * 0.5f) + 0.5f;
     if (track.keyframes.size() > 1)
-        draw_line({t.scale.x_of(track.keyframes.front().frame), middle},
-                  {t.scale.x_of(track.keyframes.back().frame), middle},
-                  color::with_opacity(color::attention, 0.35f), px(2));
+        line_across(t.scale.x_of(track.keyframes.front().frame), t.scale.x_of(track.keyframes.back().frame),
+                    middle, color::with_opacity(color::attention, 0.35f), px(2));
     for (const auto& keyframe : track.keyframes) {
         const ImVec2 at{t.scale.x_of(keyframe.frame), middle};
         draw_keyframe_mark(at, keyframe.interpolation, is_selected(t, {track.key, keyframe.frame}));
@@ -303,9 +301,9 @@ void handle_rows_mouse(TimelineState& t, GuiFrame& frame, const Rect& area) {
 }
 
 void draw_playhead_line(const TimelineState& t, const GuiFrame& frame, const Rect& area) {
-    const float x = std::floor(t.scale.x_of(frame.view.frame)) + 0.5f;
+    const float x = t.scale.x_of(frame.view.frame);
     if (x >= t.scale.x0 - px(timeline_margin) && x <= t.scale.x1 + px(timeline_margin))
-        draw_line({x, area.y}, {x, area.end().y}, color::accent);
+        line_down(x, area.y, area.end().y, color::accent);
 }
 
 }  // namespace
@@ -340,9 +338,8 @@ void draw_rows(TimelineState& t, GuiFrame& frame, const Rect& area) {
     for (const Track& track : tracks) {
         draw_name(t, frame, track, origin.x, y, px(track_name_width));
         if (!frame.view.graph_open) {
-            draw_line({origin.x, y + px(track_height) - 0.5f},
-                      {origin.x + area.width, y + px(track_height) - 0.5f},
-                      color::with_opacity(color::line, 0.6f));
+            line_across(origin.x, origin.x + area.width, y + px(track_height) - 0.5f,
+                        color::with_opacity(color::line, 0.6f));
             ImGui::PushClipRect({origin.x + names, area.y}, area.end(), true);
             draw_keyframes(t, frame, track, y);
             ImGui::PopClipRect();

@@ -74,10 +74,8 @@ void draw_placing(const GuiFrame& frame, const FrameOnScreen& frame_px) {
     ImDrawList* list = ImGui::GetWindowDrawList();
     for (const glm::dvec2& c : corners) list->PathLineTo({static_cast<float>(c.x), static_cast<float>(c.y)});
     list->PathStroke(color::attention, ImDrawFlags_Closed, px(1.5f));
-    for (const glm::dvec2& c : corners) {
-        const auto x = static_cast<float>(c.x), y = static_cast<float>(c.y), half = px(corner_half);
-        fill_rect({x - half, y - half}, {x + half, y + half}, color::attention);
-    }
+    for (const glm::dvec2& c : corners)
+        fill_square({float(c.x), float(c.y)}, px(corner_half), color::attention);
 }
 
 namespace {
@@ -100,7 +98,7 @@ Scene scene_now(const GuiFrame& frame) { return scene_at(frame.document.scene(),
 
 /// The parts of a line that are seen, with a small square at the far end where that is grabbed.
 void draw_handle(const Camera& camera, const Rect& area, const std::vector<glm::dvec3>& line, ImU32 ink,
-                 bool square) {
+                 bool has_square) {
     ImDrawList* list = ImGui::GetWindowDrawList();
     ImVec2 end{};
     for (const auto& part : project_line(camera, line))
@@ -108,8 +106,7 @@ void draw_handle(const Camera& camera, const Rect& area, const std::vector<glm::
             for (const glm::vec2& p : part) list->PathLineTo(end = {area.x + p.x, area.y + p.y});
             list->PathStroke(own, ImDrawFlags_None, width);
         }
-    const float half = px(4);
-    if (square) fill_rect({end.x - half, end.y - half}, {end.x + half, end.y + half}, ink);
+    if (has_square) fill_square(end, px(4), ink);
 }
 
 void draw_crop(const GuiFrame& frame, const Rect& area, const Scene& now) {
@@ -294,10 +291,9 @@ void PathPoints::draw(GuiFrame& frame, const Rect& area) const {
             continue;
         }
         const bool now = place.grip.frame == frame.view.frame;
-        const float half = px(lit ? 6 : 4.5f), edge = half + px(1);
-        fill_rect({at.x - edge, at.y - edge}, {at.x + edge, at.y + edge}, color::line);
-        fill_rect({at.x - half, at.y - half}, {at.x + half, at.y + half},
-                  now || lit ? color::text : color::attention);
+        const float half = px(lit ? 6 : 4.5f);
+        fill_square(at, half + px(1), color::line);
+        fill_square(at, half, now || lit ? color::text : color::attention);
     }
     if (under && !ImGui::IsAnyItemActive() && !under->grip.side)
         tooltip(fmt::format("Frame {:g}. Drag moves it in the plane of the view, Shift along its axis",

@@ -91,7 +91,7 @@ void draw_gate(const GuiFrame& frame, const Rect& area, const Rect& frame_area) 
     const ImU32 grey = color::with_opacity(color::dim, 0.7f);
     if (view.gate) {
         dim_outside(area, gate);
-        list->AddRect(gate.corner(), gate.end(), grey);
+        outline_rect(gate, grey);
     }
     const CameraParams camera = scene_at(frame.document.scene(), view.frame).camera;
     const bool dome = camera.projection == Projection::fisheye;
@@ -108,7 +108,7 @@ void draw_gate(const GuiFrame& frame, const Rect& area, const Rect& frame_area) 
         if (dome)
             circle(share, ink);
         else
-            list->AddRect(safe.corner(), safe.end(), ink);
+            outline_rect(safe, ink);
     }
 }
 
@@ -122,10 +122,10 @@ void draw_overlay_lines(const GuiFrame& frame, const Rect& area) {
 
 void draw_wipe(const GuiFrame& frame, const Rect& area, const Rect& frame_area) {
     if (frame.view.compare != CompareMode::wipe) return;
-    const float x = std::round(frame_area.x + frame_area.width * frame.view.wipe) + 0.5f;
-    draw_line({x, area.y}, {x, area.end().y}, color::with_opacity(color::text, 0.8f));
+    const float x = std::round(frame_area.x + frame_area.width * frame.view.wipe);
+    line_down(x, area.y, area.end().y, color::with_opacity(color::text, 0.8f));
     const ImVec2 grip{x, area.y + area.height * 0.5f};
-    fill_rect({grip.x - px(3), grip.y - px(18)}, {grip.x + px(3), grip.y + px(18)}, color::text, px(3));
+    fill_rect({x - px(3), grip.y - px(18)}, {x + px(3) + 1.0f, grip.y + px(18)}, color::text, px(3));
     ImGui::PushFont(small_font());
     const std::string b = name_of_other(frame);
     const float y = area.y + px(inset);
@@ -173,8 +173,8 @@ void draw_scale_bar(const GuiFrame& frame, const Rect& area, const Rect& frame_a
     const float right = std::floor(room.end().x - px(inset)), y = std::floor(room.end().y - px(above_badge));
     const float left = right - float(bar.length_px);
     for (const auto& [ink, width] : {std::pair(IM_COL32_BLACK, 4.0f), std::pair(color::text, 2.0f)}) {
-        draw_line({left, y}, {right, y}, ink, px(width));
-        for (const float x : {left, right}) draw_line({x, y - px(tick)}, {x, y + px(tick)}, ink, px(width));
+        line_across(left, right, y, ink, px(width));
+        for (const float x : {left, right}) line_down(x, y - px(tick), y + px(tick), ink, px(width));
     }
     ImGui::PushFont(small_font());
     const ImVec2 size = ImGui::CalcTextSize(bar.text.c_str());

@@ -210,7 +210,8 @@ float segmented_width(std::initializer_list<Segment> segments) {
 }
 
 void push_field_height(float height) {
-    ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2(px(8), (height - ImGui::GetFontSize()) * 0.5f));
+    ImGui::PushStyleVar(ImGuiStyleVar_FramePadding,
+                        ImVec2(px(8), std::floor((height - ImGui::GetFontSize()) * 0.5f)));
 }
 
 bool any_popup() {
@@ -221,11 +222,51 @@ void close_on_escape() {
     if (key_pressed(key_code::escape)) ImGui::CloseCurrentPopup();
 }
 
+namespace {
+
+float whole(float length) { return std::max(1.0f, std::round(length)); }
+
+/// The first of `width` pixels around the one that `at` lies in.
+float first_pixel(float at, float width) { return std::floor(at - 0.5f * (width - 1.0f)); }
+
+/// The border between two pixels that is nearest; of two the right or lower one.
+ImVec2 border(ImVec2 p) { return {std::floor(p.x + 0.5f), std::floor(p.y + 0.5f)}; }
+
+void strip_across(ImDrawList* list, float x0, float x1, float y, ImU32 ink, float width) {
+    const float w = whole(width), top = first_pixel(y, w);
+    list->AddRectFilled({border({x0, 0}).x, top}, {border({x1, 0}).x, top + w}, ink);
+}
+
+void strip_down(ImDrawList* list, float x, float y0, float y1, ImU32 ink, float width) {
+    const float w = whole(width), left = first_pixel(x, w);
+    list->AddRectFilled({left, border({0, y0}).y}, {left + w, border({0, y1}).y}, ink);
+}
+
+}  // namespace
+
 void fill_rect(ImVec2 low, ImVec2 high, ImU32 ink, float radius) {
-    ImGui::GetWindowDrawList()->AddRectFilled(low, high, ink, radius);
+    ImGui::GetWindowDrawList()->AddRectFilled(border(low), border(high), ink, radius);
 }
 void fill_rect(const Rect& area, ImU32 ink, float radius) {
     fill_rect(area.corner(), area.end(), ink, radius);
+}
+void fill_square(ImVec2 middle, float half, ImU32 ink) {
+    const float side = 2.0f * std::round(half) + 1.0f;
+    const ImVec2 corner{first_pixel(middle.x, side), first_pixel(middle.y, side)};
+    fill_rect(corner, {corner.x + side, corner.y + side}, ink);
+}
+void outline_rect(const Rect& area, ImU32 ink, float radius, float width) {
+    ImDrawList* const list = ImGui::GetWindowDrawList();
+    const float w = whole(width), half = 0.5f * w;
+    const ImVec2 low = border(area.corner()), high = border(area.end());
+    list->PathRect({low.x + half, low.y + half}, {high.x - half, high.y - half}, radius);
+    list->PathStroke(ink, ImDrawFlags_Closed, w);
+}
+void line_across(float x0, float x1, float y, ImU32 ink, float width) {
+    strip_across(ImGui::GetWindowDrawList(), x0, x1, y, ink, width);
+}
+void line_down(float x, float y0, float y1, ImU32 ink, float width) {
+    strip_down(ImGui::GetWindowDrawList(), x, y0, y1, ink, width);
 }
 void draw_line(ImVec2 from, ImVec2 to, ImU32 ink, float width) {
     ImGui::GetWindowDrawList()->AddLine(from, to, ink, width);
@@ -243,15 +284,14 @@ void row_text(const std::string& text, float row_height, ImU32 text_color) {
 }
 
 void progress_bar(ImVec2 corner, float width, float share) {
-    ImDrawList* const list = ImGui::GetWindowDrawList();
     const float done = corner.x + width * std::clamp(share, 0.0f, 1.0f), bottom = corner.y + px(4);
-    list->AddRectFilled(corner, {corner.x + width, bottom}, color::field, px(2));
-    list->AddRectFilled(corner, {done, bottom}, color::accent, px(2));
+    fill_rect(corner, {corner.x + width, bottom}, color::field, px(2));
+    fill_rect(corner, {done, bottom}, color::accent, px(2));
 }
 
 void image_box(const Rect& area, ImTextureID texture, float aspect, float radius) {
     ImDrawList* const list = ImGui::GetWindowDrawList();
-    list->AddRectFilled(area.corner(), area.end(), IM_COL32_BLACK, px(radius));
+    fill_rect(area, IM_COL32_BLACK, px(radius));
     if (!texture || aspect <= 0) return;
     const float w = std::max(px(1), std::min(area.width, area.height * aspect));
     const float h = std::max(px(1), std::min(area.height, area.width / aspect));
@@ -296,21 +336,36 @@ namespace {
 // Icon coordinates run from -1 to 1, x right, y down.
 struct Pen {
     ImDrawList* list;
-    ImVec2 center;
+    ImVec2 center;  // the middle of a pixel
     float half;
     ImU32 color;
     float width;
 
     ImVec2 at(float x, float y) const { return {center.x + x * half, center.y + y * half}; }
-    void line(float x0, float y0, float x1, float y1) const {
-        list->AddLine(at(x0, y0), at(x1, y1), color, width);
+    /// The middle of the pixel there: corners of strokes whose sides lie along an axis.
+    ImVec2 pixel(float x, float y) const {
+        const ImVec2 p = at(x, y);
+        return {std::floor(p.x) + 0.5f, std::floor(p.y) + 0.5f};
     }
-    void triangle(float x0, float y0, float x1, float y1, float x2, float y2) const {
-        list->AddTriangleFilled(at(x0, y0), at(x1, y1), at(x2, y2), color);
+    void line(float x0, float y0, float x1, float y1) const {
+        list->PathLineTo(at(x0, y0));
+        list->PathLineTo(at(x1, y1));
+        list->PathStroke(color, ImDrawFlags_None, width);
+    }
+    void across(float x0, float x1, float y) const {
+        strip_across(list, pixel(x0, y).x - 0.5f, pixel(x1, y).x + 0.5f, pixel(x0, y).y, color, width);
+    }
+    void down(float x, float y0, float y1) const {
+        strip_down(list, pixel(x, y0).x, pixel(x, y0).y - 0.5f, pixel(x, y1).y + 0.5f, color, width);
     }
     void path(std::initializer_list<ImVec2> points, bool closed) const {
         for (const ImVec2& p : points) list->PathLineTo(at(p.x, p.y));
         list->PathStroke(color, closed ? ImDrawFlags_Closed : ImDrawFlags_None, width);
+    }
+    /// A closed path with sides along an axis.
+    void shape(std::initializer_list<ImVec2> points) const {
+        for (const ImVec2& p : points) list->PathLineTo(pixel(p.x, p.y));
+        list->PathStroke(color, ImDrawFlags_Closed, whole(width));
     }
     void circle(float radius) const { list->AddCircle(center, radius * half, color, 0, width); }
     void arc(ImVec2 from, ImVec2 control, ImVec2 to) const {
@@ -321,7 +376,10 @@ struct Pen {
 };
 
 void eye(const Pen& pen) {
-    for (const float lid : {-1.15f, 1.15f}) pen.arc({-1, 0}, {0, lid}, {1, 0});
+    pen.list->PathLineTo(pen.at(-1.0f, 0.0f));
+    pen.list->PathBezierQuadraticCurveTo(pen.at(0.0f, -1.15f), pen.at(1.0f, 0.0f));
+    pen.list->PathBezierQuadraticCurveTo(pen.at(0.0f, 1.15f), pen.at(-0.99f, 0.0f));
+    pen.list->PathStroke(pen.color, ImDrawFlags_Closed, pen.width);
     pen.list->AddCircleFilled(pen.center, 0.3f * pen.half, pen.color);
 }
 void eye_closed(const Pen& pen) { pen.arc({-1, -0.1f}, {0, 0.95f}, {1, -0.1f}); }
@@ -330,21 +388,24 @@ void diamond(const Pen& pen) {
                             pen.color);
 }
 void diamond_empty(const Pen& pen) { pen.path({{0, -0.75f}, {0.75f, 0}, {0, 0.75f}, {-0.75f, 0}}, true); }
-void play(const Pen& pen) { pen.triangle(-0.6f, -0.85f, 0.85f, 0.0f, -0.6f, 0.85f); }
+void play(const Pen& pen) {
+    const ImVec2 top = border(pen.at(-0.6f, -0.85f));
+    pen.list->AddTriangleFilled(top, pen.at(0.85f, 0.0f), {top.x, pen.at(0.0f, 0.85f).y}, pen.color);
+}
 void pause(const Pen& pen) {
-    pen.list->AddRectFilled(pen.at(-0.7f, -0.8f), pen.at(-0.2f, 0.8f), pen.color);
-    pen.list->AddRectFilled(pen.at(0.2f, -0.8f), pen.at(0.7f, 0.8f), pen.color);
+    for (const float left : {-0.7f, 0.2f})
+        pen.list->AddRectFilled(border(pen.at(left, -0.8f)), border(pen.at(left + 0.5f, 0.8f)), pen.color);
 }
 void chevron_right(const Pen& pen) { pen.path({{-0.3f, -0.65f}, {0.4f, 0}, {-0.3f, 0.65f}}, false); }
 void chevron_down(const Pen& pen) { pen.path({{-0.65f, -0.3f}, {0, 0.4f}, {0.65f, -0.3f}}, false); }
 void chevron_up(const Pen& pen) { pen.path({{-0.65f, 0.3f}, {0, -0.4f}, {0.65f, 0.3f}}, false); }
 void plus(const Pen& pen) {
-    pen.line(-0.8f, 0, 0.8f, 0);
-    pen.line(0, -0.8f, 0, 0.8f);
+    pen.across(-0.8f, 0.8f, 0);
+    pen.down(0, -0.8f, 0.8f);
 }
 void cross(const Pen& pen) {
-    pen.line(-0.6f, -0.6f, 0.6f, 0.6f);
-    pen.line(-0.6f, 0.6f, 0.6f, -0.6f);
+    pen.line(-0.58f, -0.58f, 0.58f, 0.58f);
+    pen.line(-0.58f, 0.58f, 0.58f, -0.58f);
 }
 void ring(const Pen& pen) { pen.circle(0.7f); }
 void ring_cut(const Pen& pen) {
@@ -358,17 +419,16 @@ void curve(const Pen& pen) {
     pen.list->PathStroke(pen.color, ImDrawFlags_None, pen.width);
 }
 void warning(const Pen& pen) {
-    pen.path({{0, -0.8f}, {0.9f, 0.75f}, {-0.9f, 0.75f}}, true);
-    pen.line(0, -0.25f, 0, 0.25f);
-    pen.line(0, 0.45f, 0, 0.55f);
+    pen.shape({{0, -0.8f}, {0.9f, 0.75f}, {-0.9f, 0.75f}});
+    pen.down(0, -0.25f, 0.2f);
+    pen.down(0, 0.5f, 0.5f);
 }
 void folder(const Pen& pen) {
-    pen.path(
-        {{-0.85f, -0.6f}, {-0.25f, -0.6f}, {0, -0.35f}, {0.85f, -0.35f}, {0.85f, 0.65f}, {-0.85f, 0.65f}},
-        true);
+    pen.shape(
+        {{-0.85f, -0.6f}, {-0.25f, -0.6f}, {0, -0.35f}, {0.85f, -0.35f}, {0.85f, 0.65f}, {-0.85f, 0.65f}});
 }
 void file(const Pen& pen) {
-    pen.path({{-0.6f, -0.85f}, {0.2f, -0.85f}, {0.6f, -0.4f}, {0.6f, 0.85f}, {-0.6f, 0.85f}}, true);
+    pen.shape({{-0.6f, -0.85f}, {0.2f, -0.85f}, {0.6f, -0.4f}, {0.6f, 0.85f}, {-0.6f, 0.85f}});
 }
 void dots(const Pen& pen) {
     for (const float x : {-0.7f, 0.0f, 0.7f})
@@ -390,10 +450,9 @@ void draw_icon(ImDrawList* list, Icon icon, ImVec2 center, float size, ImU32 col
 }
 
 void draw_bracket(ImDrawList* list, float x, float y0, float y1, ImU32 color) {
-    const float tip = x + px(4.0f);
-    for (const ImVec2 corner : {ImVec2(tip, y0), ImVec2(x, y0), ImVec2(x, y1), ImVec2(tip, y1)})
-        list->PathLineTo(corner);
-    list->PathStroke(color, ImDrawFlags_None, px(1.0f));
+    const float width = whole(px(1.0f)), tip = x + px(4.0f);
+    strip_down(list, x, first_pixel(y0, width) + width, first_pixel(y1, width), color, width);
+    for (const float y : {y0, y1}) strip_across(list, x, tip, y, color, width);
 }
 
 bool icon_button(const char* id, Icon icon, ImVec2 size, float icon_px, ImU32 color, const char* says) {
@@ -401,7 +460,7 @@ bool icon_button(const char* id, Icon icon, ImVec2 size, float icon_px, ImU32 co
     const bool clicked = ImGui::InvisibleButton(id, size);
     ImDrawList* list = ImGui::GetWindowDrawList();
     if (ImGui::IsItemHovered())
-        list->AddRectFilled(corner, {corner.x + size.x, corner.y + size.y}, color::hover, px(3.0f));
+        fill_rect(corner, {corner.x + size.x, corner.y + size.y}, color::hover, px(3.0f));
     tooltip(says);
     draw_icon(list, icon, {corner.x + size.x * 0.5f, corner.y + size.y * 0.5f}, icon_px, color);
     return clicked;

@@ -110,9 +110,19 @@ bool any_popup();
 /// forbid).
 void close_on_escape();
 
-// Drawn into the current window, px.
+// Drawn into the current window, px. What lies along an axis covers whole pixels at every scale: so it is
+// sharp, and the same whatever rounds edges that lie in the middle of a pixel. Lines are at least a pixel
+// wide.
 void fill_rect(ImVec2 low, ImVec2 high, ImU32 ink, float radius = 0.0f);
 void fill_rect(const Rect& area, ImU32 ink, float radius = 0.0f);
+/// Around the pixel of `middle`, `half` px and half a pixel to either side.
+void fill_square(ImVec2 middle, float half, ImU32 ink);
+/// A line along the inside of the border.
+void outline_rect(const Rect& area, ImU32 ink, float radius = 0.0f, float width = 1.0f);
+/// From x0 to x1 over the pixels that `y` lies in, or from y0 to y1 over those of `x`.
+void line_across(float x0, float x1, float y, ImU32 ink, float width = 1.0f);
+void line_down(float x, float y0, float y1, ImU32 ink, float width = 1.0f);
+/// In any other direction.
 void draw_line(ImVec2 from, ImVec2 to, ImU32 ink, float width = 1.0f);
 void draw_text(ImVec2 at, ImU32 ink, const std::string& text);
 

@@ -1,4 +1,4 @@
-// Frames of ImGui without a window; the font atlas is built but drawn by nobody.
+// Frames of ImGui without a window.
 #include "gui/panel_driver.h"
 
 #include <imgui_internal.h>
@@ -21,9 +21,6 @@ ImGuiContext* make_context(glm::vec2 size) {
     io.LogFilename = nullptr;
     set_key_map();
     apply_theme(1.0f);
-    unsigned char* pixels = nullptr;
-    int width = 0, height = 0;
-    io.Fonts->GetTexDataAsRGBA32(&pixels, &width, &height);
     io.MousePos = {-1000.0f, -1000.0f};
     return context;
 }
@@ -33,8 +30,10 @@ ImGuiContext* make_context(glm::vec2 size) {
 PanelDriver::PanelDriver(const std::string& toml, float width_px, float height_px)
     : document(Document::untitled(toml, "/nowhere/scene.toml")),
       size_(width_px, height_px),
-      context_(make_context(size_)) {
+      context_(make_context(size_)),
+      font_(font_picture()) {
     ImGuiIO& io = ImGui::GetIO();
+    io.Fonts->SetTexID(&font_);
     io.ClipboardUserData = &clipboard;
     io.SetClipboardTextFn = [](void* own, const char* text) { *static_cast<std::string*>(own) = text; };
     io.GetClipboardTextFn = [](void* own) { return static_cast<std::string*>(own)->c_str(); };

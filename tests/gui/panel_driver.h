@@ -5,6 +5,7 @@
 #include <imgui.h>
 
 #include "gui/panel/context.h"
+#include "gui/software_draw.h"
 
 namespace astrosplat {
 
@@ -59,6 +60,7 @@ class PanelDriver {
     std::vector<DrawnItem> drawn_;
     glm::vec2 size_;
     ImGuiContext* context_;
+    Picture8 font_;
 };
 
 }  // namespace astrosplat

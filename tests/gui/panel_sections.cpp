@@ -149,10 +149,7 @@ TEST_F(PanelPreparation, LooksLikeItsReference) {
     driver.show(PanelTab::source);
     driver.frames(3);
     const glm::vec4 place = area();
-    Picture8 picture(360, 2400);
-    software_draw(*ImGui::GetDrawData(), picture, Style::schematic);
-    expect_like_reference("panel_preparation",
-                          cropped(picture, 0, int(place.y) - 330, 360, int(place.w) + 420));
+    expect_like_reference("panel_preparation", Part{0, int(place.y) - 330, 360, int(place.w) + 420});
 }
 
 TEST(PanelPreparationOfSplats, IsNotThere) {

@@ -39,31 +39,59 @@ int difference(const Rgba8& a, const Rgba8& b) {
     return std::max({std::abs(a.r - b.r), std::abs(a.g - b.g), std::abs(a.b - b.b)});
 }
 
+/// How two pictures of one size differ.
+struct Differences {
+    Picture8 seen;  // four times as bright
+    int bad = 0, most = 0, first = -1;
+    bool few() const { return bad <= most_bad && most <= most_difference; }
+};
+
+Differences differences(const Picture8& a, const Picture8& b) {
+    Differences found{Picture8(a.width, a.height)};
+    for (std::size_t i = 0; i < a.pixels.size(); ++i) {
+        const int d = difference(a.pixels[i], b.pixels[i]);
+        const auto shown = std::uint8_t(std::min(255, 4 * d));
+        found.seen.pixels[i] = {shown, shown, shown, 255};
+        found.most = std::max(found.most, d);
+        if (d > bad_difference && found.bad++ == 0) found.first = int(i);
+    }
+    return found;
+}
+
+Picture8 draw(float tremble_px) {
+    const ImDrawData& data = *ImGui::GetDrawData();
+    Picture8 picture(int(data.DisplaySize.x), int(data.DisplaySize.y));
+    software_draw(data, picture, Style::schematic, tremble_px);
+    return picture;
+}
+
+void expect_few(const Differences& found, const std::string& name, const std::string& what,
+                const Picture8& drawn) {
+    if (found.few()) return;
+    const auto output = fs::path(ASTROSPLAT_BINARY_DIR) / "test-output" / "gui-references";
+    write_png(output / (name + ".png"), drawn);
+    write_png(output / (name + ".difference.png"), found.seen);
+    ADD_FAILURE() << name << what << ": " << found.bad << " pixels differ, by up to " << found.most
+                  << " of 255, the first at x " << found.first % drawn.width << ", y "
+                  << found.first / drawn.width << "; see " << output;
+}
+
 }  // namespace
 
-void expect_like_reference(const std::string& name, const Picture8& drawn) {
+void expect_like_reference(const std::string& name, std::optional<Part> part) {
+    constexpr float other_processor_px = 1.0f / 512;
     const auto output = fs::path(ASTROSPLAT_BINARY_DIR) / "test-output" / "gui-references";
     const auto file = fs::path(ASTROSPLAT_SOURCE_DIR) / "tests/gui/references" / (name + ".png");
+    const Picture8 whole = draw(0.0f), drawn = part ? cropped(whole, *part) : whole;
+    const Picture8 elsewhere = draw(other_processor_px);
+    expect_few(differences(whole, elsewhere), name + ".elsewhere", " on another processor", elsewhere);
+    for (const std::string& line : unsnapped_lines(*ImGui::GetDrawData()))
+        ADD_FAILURE() << name << ": a line between pixels: " << line;
     const std::optional<Picture8> wanted = read_reference(file);
-    if (!wanted || wanted->width != drawn.width || wanted->height != drawn.height) {
-        write_png(output / (name + ".png"), drawn);
-        ADD_FAILURE() << file << " is missing or of another size; see " << output / (name + ".png");
-        return;
-    }
-    Picture8 differences(drawn.width, drawn.height);
-    int bad = 0, most = 0, first = -1;
-    for (std::size_t i = 0; i < drawn.pixels.size(); ++i) {
-        const int d = difference(drawn.pixels[i], wanted->pixels[i]);
-        const auto shown = std::uint8_t(std::min(255, 4 * d));
-        differences.pixels[i] = {shown, shown, shown, 255};
-        most = std::max(most, d);
-        if (d > bad_difference && bad++ == 0) first = int(i);
-    }
-    if (bad <= most_bad && most <= most_difference) return;
+    if (wanted && wanted->width == drawn.width && wanted->height == drawn.height)
+        return expect_few(differences(drawn, *wanted), name, "", drawn);
     write_png(output / (name + ".png"), drawn);
-    write_png(output / (name + ".difference.png"), differences);
-    ADD_FAILURE() << name << ": " << bad << " pixels differ, by up to " << most << " of 255, the first at x "
-                  << first % drawn.width << ", y " << first / drawn.width << "; see " << output;
+    ADD_FAILURE() << file << " is missing or of another size; see " << output / (name + ".png");
 }
 
 }  // namespace astrosplat

@@ -8,16 +8,6 @@
 namespace astrosplat {
 namespace {
 
-Picture8 font_picture() {
-    unsigned char* pixels = nullptr;
-    int width = 0, height = 0;
-    ImGui::GetIO().Fonts->GetTexDataAsRGBA32(&pixels, &width, &height);
-    Picture8 picture(width, height);
-    for (std::size_t i = 0; i < picture.pixels.size(); ++i)
-        picture.pixels[i] = {pixels[4 * i], pixels[4 * i + 1], pixels[4 * i + 2], pixels[4 * i + 3]};
-    return picture;
-}
-
 // Something like a galaxy, so that pictures of the window can be judged.
 Picture8 galaxy_picture(int width, int height) {
     Picture8 picture(width, height);

@@ -31,7 +31,7 @@ TEST_F(TimelineTest, TheTargetsDistanceIsSaidWhereAUnitHasALength) {
     const auto header = [&] {
         window.frame(2);
         const Rect area = make_layout(window.view, 1600.0f, 900.0f, 1.0f).timeline;
-        return cropped(window.picture(Style::schematic), int(area.x), int(area.y), int(area.width), 36)
+        return cropped(window.picture(Style::schematic), {int(area.x), int(area.y), int(area.width), 36})
             .pixels;
     };
     const auto plain = header();
@@ -147,7 +147,7 @@ TEST(TimelineOfAnother, EveryInterpolationHasAMarkOfItsOwn) {
         });
         window.frame(2);
         const Picture8 mark =
-            cropped(window.picture(Style::schematic), int(place.x) - 4, int(place.y) - 4, 9, 9);
+            cropped(window.picture(Style::schematic), {int(place.x) - 4, int(place.y) - 4, 9, 9});
         for (const auto& other : marks) EXPECT_FALSE(mark.pixels == other) << interpolation;
         marks.push_back(mark.pixels);
     }
@@ -326,7 +326,7 @@ TEST_F(GraphTest, TheMenuTicksWhatIsSet) {
         open_menu();
         window.hover({-100, -100});
         const glm::vec2 at = window.at(std::string("keyframe menu/") + item);
-        const Picture8 seen = cropped(window.picture(Style::schematic), int(at.x), int(at.y) - 8, 170, 16);
+        const Picture8 seen = cropped(window.picture(Style::schematic), {int(at.x), int(at.y) - 8, 170, 16});
         window.tap(key_code::escape);
         return seen.pixels;
     };

@@ -335,7 +335,7 @@ TEST(MessageBar, AnErrorStaysUntilItIsClicked) {
     const Rect bar = make_layout(window.view, 1600.0f, 900.0f, 1.0f).status;
     const auto seen = [&] {
         window.hover({-100.0f, -100.0f});
-        return cropped(window.picture(Style::schematic), 0, int(bar.y), 800, int(bar.height)).pixels;
+        return cropped(window.picture(Style::schematic), {0, int(bar.y), 800, int(bar.height)}).pixels;
     };
     window.status.message = {};
     const auto empty = seen();

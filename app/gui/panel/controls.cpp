@@ -23,7 +23,7 @@ BoxEvent type_value(Context& context, const char* id, const Rect& area) {
     touch.seen = true;
     ImGui::SetCursorScreenPos(area.corner());
     ImGui::SetNextItemWidth(area.width);
-    const float padding = (area.height - ImGui::GetFontSize()) * 0.5f;
+    const float padding = std::floor((area.height - ImGui::GetFontSize()) * 0.5f);
     ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2(px(7), padding));
     ImGui::PushID(id);
     if (touch.entry_frames == 0) ImGui::SetKeyboardFocusHere();
@@ -66,12 +66,12 @@ void draw_box(const Rect& area, const BoxContent& content, bool hovered, bool ac
     const float radius = px(3);
     fill_rect(area, hovered || active ? color::hover : color::field, radius);
     if (content.fill > 0.0f) {
-        const float width = std::max(area.width * std::min(content.fill, 1.0f), radius);
+        const float width = std::max(std::round(area.width * std::min(content.fill, 1.0f)), radius);
         list->AddRectFilled(
             area.corner(), {area.x + width, area.end().y}, color::fill, radius,
             content.fill < 0.99f ? ImDrawFlags_RoundCornersLeft : ImDrawFlags_RoundCornersAll);
     }
-    if (active) list->AddRect(area.corner(), area.end(), color::accent, radius);
+    if (active) outline_rect(area, color::accent, radius);
     const float padding = padding_of(area);
     const float needed = ImGui::CalcTextSize(content.shown.c_str()).x + 2.0f * padding;
     const float unit = unit_text(area, content.unit, needed);
@@ -119,7 +119,7 @@ void head_text(const Rect& area, float left, const char* title, const std::strin
 void edge_line(float y) {
     const ImVec2 corner = ImGui::GetWindowPos(), size = ImGui::GetWindowSize();
     ImGui::PushClipRect(corner, {corner.x + size.x, corner.y + size.y}, false);
-    draw_line({corner.x, y}, {corner.x + size.x, y}, color::line);
+    line_across(corner.x, corner.x + size.x, y, color::line);
     ImGui::PopClipRect();
 }
 

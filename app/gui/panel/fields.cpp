@@ -25,7 +25,8 @@ void boolean_field(Context& context, const Row& row) {
     fill_rect(box, back, px(3));
     if (*on) {
         const ImVec2 m = box.middle();
-        const ImVec2 points[3] = {{m.x - px(4), m.y}, {m.x - px(1), m.y + px(3)}, {m.x + px(4), m.y - px(3)}};
+        const ImVec2 points[3] = {
+            {m.x - px(3.8f), m.y + px(0.1f)}, {m.x - px(1), m.y + px(3)}, {m.x + px(3.8f), m.y - px(2.8f)}};
         list->AddPolyline(points, 3, color::window, ImDrawFlags_None, px(1.8f));
     }
     if (clicked) set_value(context, row.key(), !*on);
@@ -114,7 +115,7 @@ double highest(const ParameterSpec& spec) {
     return spec.max - (spec.max - spec.slider_max) * 0.01 - 1e-3;
 }
 
-float filled(const ParameterSpec& spec, double value) {
+float share_of_slider(const ParameterSpec& spec, double value) {
     double lo = spec.slider_min, hi = spec.slider_max;
     if (!(hi > lo) || lo < 0.0) return -1.0f;
     if (spec.scale == Scale::logarithmic && lo > 0.0) {
@@ -134,7 +135,7 @@ BoxContent number_content(const ParameterSpec& spec, double value) {
     content.step = drag_step(spec, value);
     content.min = spec.min;
     content.max = highest(spec);
-    content.fill = filled(spec, value);
+    content.fill = share_of_slider(spec, value);
     return content;
 }
 
@@ -147,7 +148,7 @@ void follow_data(const Context& context, const ParameterSpec& spec, BoxContent& 
     of_data.slider_min = histograms->values.lo;
     of_data.slider_max = histograms->values.hi;
     content.step = drag_step(of_data, content.value);
-    content.fill = static_cast<float>(filled(of_data, content.value));
+    content.fill = share_of_slider(of_data, content.value);
 }
 
 /// What a box was dragged or typed to; none: it stays. Typed texts are read as `spec` has them.
@@ -201,9 +202,9 @@ void number_field(Context& context, const Row& row) {
 }
 
 Rect part(const Rect& area, int index, int count) {
-    const float gap = px(3);
-    const float width = (area.width - gap * static_cast<float>(count - 1)) / static_cast<float>(count);
-    return {{area.x + (width + gap) * static_cast<float>(index), area.y}, {width, area.height}};
+    const float gap = px(3), n = float(count), width = (area.width - gap * (n - 1.0f)) / n;
+    const auto left = [&](int i) { return std::round((width + gap) * float(i)); };
+    return {{area.x + left(index), area.y}, {left(index + 1) - left(index) - gap, area.height}};
 }
 
 void component_field(Context& context, const Row& row, const Rect& area, std::size_t index) {

@@ -159,7 +159,7 @@ void reorder(Context& context, const std::vector<Rect>& rows) {
     const int to = row_under(rows, ImGui::GetIO().MousePos.y);
     const auto place = static_cast<std::size_t>(to);
     const float y = to > memory.dragged_layer ? rows[place].end().y : rows[place].y;
-    draw_line({rows[place].x + px(margin), y}, {rows[place].end().x - px(margin), y}, color::accent, px(2));
+    line_across(rows[place].x + px(margin), rows[place].end().x - px(margin), y, color::accent, px(2));
     if (ImGui::IsMouseDown(ImGuiMouseButton_Left)) return;
     const auto from = static_cast<std::size_t>(memory.dragged_layer);
     memory.dragged_layer = -1;
@@ -245,7 +245,7 @@ void draw_merge_bracket(const Context& context, const std::vector<Rect>& rows) {
     const float x = rows.front().x + px(6);
     const ImU32 ink = color::with_opacity(color::dim, 0.7f);
     draw_bracket(list, x, ticks.front(), ticks.back(), ink);
-    for (const float y : ticks) draw_line({x, y}, {x + px(4), y}, ink, px(1));
+    for (const float y : ticks) line_across(x, x + px(4), y, ink, px(1));
     const Rect zone{{x - px(6), ticks.front()}, {px(12), ticks.back() - ticks.front()}};
     if (ImGui::IsWindowHovered() && ImGui::IsMouseHoveringRect(zone.corner(), zone.end()))
         ImGui::SetTooltip("Merged by depth: the order of these does not matter");

@@ -38,7 +38,7 @@ void head(Context& context) {
 void tab_row(ViewState& view) {
     const ImVec2 corner = ImGui::GetCursorScreenPos();
     const float width = ImGui::GetContentRegionAvail().x, height = px(32);
-    draw_line(corner, {corner.x + width, corner.y}, color::line);
+    line_across(corner.x, corner.x + width, corner.y, color::line);
     const float padding = px(12);
     float x = corner.x;
     PanelTab chosen = view.tab;

@@ -42,8 +42,8 @@ bool handle(Context& context, const Rect& area, const Values& values, const char
     if (near) ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
     ImDrawList* list = ImGui::GetWindowDrawList();
     const ImU32 ink = near ? color::accent : color::text;
-    draw_line({x, area.y}, {x, area.end().y}, ink, px(1.5f));
-    const float foot = area.end().y;
+    line_down(x, area.y, area.end().y, ink, px(1));
+    const float foot = std::floor(area.end().y);
     list->AddTriangleFilled({x, foot - px(8)}, {x + px(5), foot}, {x - px(5), foot}, ink);
     if (!active || ImGui::GetIO().MouseDelta.x == 0.0f) return false;
     const double range = values.hi - values.lo;
@@ -181,7 +181,7 @@ void draw_hybrid(Context& context, const ParameterSpec&) {
     const LayerRender& render = context.layer().render;
     const Rect area = begin_plot(72.0f);
     const float radius = area.height - px(16);
-    const ImVec2 origin{area.middle().x - radius * 0.5f, area.end().y - px(8)};
+    const ImVec2 origin{std::floor(area.middle().x - radius * 0.5f), std::floor(area.end().y - px(8))};
     const double from = std::clamp(double(render.hybrid_from_deg), 0.0, 90.0);
     const double to = std::clamp(double(render.hybrid_to_deg), from, 90.0);
     sector(origin, radius, 0.0, from, color::with_opacity(color::dim, 0.35f));
@@ -191,8 +191,7 @@ void draw_hybrid(Context& context, const ParameterSpec&) {
         sector(origin, radius, a, b, color::with_opacity(color::accent, 0.1f + 0.5f * float(i) / steps));
     }
     sector(origin, radius, to, 90.0, color::with_opacity(color::accent, 0.65f));
-    draw_line({origin.x - radius, origin.y + px(3)}, {origin.x + radius, origin.y + px(3)}, color::text,
-              px(2));
+    line_across(origin.x - radius, origin.x + radius, origin.y + px(3), color::text, px(2));
     captions("over seen face-on", "screen seen edge-on");
 }
 

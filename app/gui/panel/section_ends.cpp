@@ -59,7 +59,7 @@ void draw_both(Context& context, const PrepareStatus& status) {
     fill_rect(area, IM_COL32_BLACK);
     if (status.before) list->AddImage(status.before, area.corner(), {x, area.end().y}, {0, 0}, {share, 1});
     if (status.after) list->AddImage(status.after, {x, area.y}, area.end(), {share, 0}, {1, 1});
-    draw_line({x, area.y}, {x, area.end().y}, color::text, px(1));
+    line_down(x, area.y, area.end().y, color::text, px(1));
     captions("before", "after");
 }
 
