@@ -224,13 +224,13 @@ double parse_frame(const std::string& text) {
 
 void write_exr(const ScreenshotOptions& options, glm::ivec2 size, Session& session) {
     RenderedFrame preview;
-    OutputParams output = session.document.scene().output;
-    if (!options.settled) {
-        preview.beauty = session.view_frame.read();
-        output.aovs.clear();
-    }
     const auto final = options.settled ? session.view_frame.final_frame() : nullptr;
+    if (!final) preview.beauty = session.view_frame.read();
     const RenderedFrame& frame = final ? *final : preview;
+    OutputParams output = session.document.scene().output;
+    std::erase_if(output.aovs, [&](const std::string& aov) {  // the window's frames have no other
+        return aov != "depth" || frame.depth.pixels.empty();
+    });
     output.path = options.output.string();
     output.depth = OutputParams::Depth::float32;
     output.compression = OutputParams::Compression::automatic;

@@ -364,7 +364,9 @@ void ViewFrame::begin_final() {
     FinalRequest wanted{*request_, {}, environment_, !request_->scene.output.aovs.empty()};
     for (std::size_t i = 0; i < request_->layers.size(); ++i) {
         const std::shared_ptr<const LoadedLayer>& loaded = request_->layers[i];
-        wanted.sets.push_back(loaded && request_->scene.layers[i].visible ? loaded->set : nullptr);
+        const bool drawn =
+            ever_visible(request_->scene, request_->scene.layers[i]);  // while the shutter is open
+        wanted.sets.push_back(loaded && drawn ? loaded->set : nullptr);
     }
     if (stage_ != Stage::final) {
         canvas_ = drawn_ ? *drawn_ : gl_->read();  // which the tiles replace

@@ -113,15 +113,18 @@ std::string mesh_text(const char* shape, const char* picture, const char* more) 
                        path_text(picture), more);
 }
 
+std::string bodies_text(std::uint32_t kind) {
+    const char* const structures[] = {"sheet\"", "walls\"", "disk\"", "axis\", tilt = 20.0"};
+    return mesh_text("plane", kind % 2 ? "shell.ppm" : "small.ppm",
+                     fmt::format("count = 300\nstructure = {{ kind = \"{} }}", structures[kind]).c_str());
+}
+
 std::string source_text(const Crossing& c, const CrossingLayer& layer) {
     switch (layer.source) {
         case Source::mesh:
             return mesh_text("sphere", "picture.ppm", "count = 300");
         case Source::bodies:
-            return &layer == &c.layers.front()
-                       ? mesh_text("plane", "small.ppm", "count = 300\nstructure = { kind = \"sheet\" }")
-                       : mesh_text("plane", "shell.ppm",
-                                   "count = 300\nstructure = { kind = \"axis\", tilt = 20.0 }");
+            return bodies_text(c.seed % 2 + (&layer == &c.layers.front() ? 0 : 2));
         case Source::table:
             return "kind = \"splats\"\nfile = " + path_text("table.pda") + "\n";
         case Source::native:

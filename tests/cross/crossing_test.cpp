@@ -13,6 +13,7 @@
 #include "scene/animate.h"
 #include "scene/describe.h"
 #include "scene/load.h"
+#include "source/texture.h"
 #include "support/printing.h"
 #include "support/random_values.h"
 #include "support/run_program.h"
@@ -254,6 +255,18 @@ TEST_P(Crossings, AnotherPixelHasAnotherHash) {
     Scene dimmer = scene;
     dimmer.environment.gain *= 0.5f;
     expect_true_of(dimmer, "environment.gain");
+    for (std::size_t i = 0; i < scene.animation.size(); ++i) {  // later by less than the shutter is open
+        Scene changed = scene;
+        changed.animation[i].keyframes.back().frame += 0.1;
+        expect_true_of(changed, "the last key of " + scene.animation[i].key.text());
+    }
+    if (crossing.path == CameraPath::csv_file) {
+        std::string table = camera_table(crossing);
+        table.replace(table.rfind(",1.0,"), 5, ",1.2,");  // another place, after the frame
+        std::ofstream(folder / "other.csv", std::ios::binary) << table;
+        const std::vector<Assignment> other = {{"camera.file", to_toml((folder / "other.csv").string())}};
+        expect_true_of(load_scene(folder / "scene.toml", other), "another end of the camera's file");
+    }
     Numbers numbers(crossing.seed + 7);
     const std::vector<ParameterSpec> specs = tried_specs(scene, "");
     for (int i = 0; i < 12; ++i) {
@@ -293,18 +306,26 @@ bool is_of_blur(const std::string& key) {
     return key == "camera.shutter" || key == "camera.f_number" || key == "output.samples";
 }
 
+/// The same for the command line; none where nothing is set or a rule between parameters forbids it.
+std::optional<Assignment> chosen_assignment(const Crossing& c, const fs::path& file, const Scene& scene) {
+    if (c.assigned == Assigned::nothing) return {};
+    const Chosen chosen = choose(c, scene_at(scene, double(crossing_frame)));
+    const Assignment assignment = {chosen.spec.key, to_toml(chosen.value)};
+    try {
+        load_scene(file, std::vector{assignment});
+    } catch (const InputError&) {
+        return {};
+    }
+    return assignment;
+}
+
 TEST_P(Crossings, WhatIsSetIsWhatIsRendered) {
-    if (crossing.assigned == Assigned::nothing) return;
+    const auto assignment = chosen_assignment(crossing, folder / "scene.toml", scene);
+    if (!assignment) return;
     const Chosen chosen = choose(crossing, scene_at(scene, frame()));
     const ParameterKey& key = chosen.spec.key;
     SCOPED_TRACE("--set " + key.text() + "=" + to_toml(chosen.value));
-    const std::vector<Assignment> assignments = {{key, to_toml(chosen.value)}};
-    Scene given;
-    try {
-        given = load_scene(folder / "scene.toml", assignments);
-    } catch (const InputError&) {
-        return;  // a rule between parameters
-    }
+    Scene given = load_scene(folder / "scene.toml", std::vector{*assignment});
     Scene expected = scene_at(scene, frame());
     set_value(expected, key, chosen.value);
     // What would replace it goes: --set wins over that, too.
@@ -524,12 +545,40 @@ TEST_P(ProgramCrossings, BatchVerifyAndTheWindowMakeTheSameFiles) {
 TEST_P(ProgramCrossings, OutputOfTheCommandLineLiesInTheWorkingDirectory) {
     const fs::path elsewhere = outside / ("b " + folder_name(crossing));
     fs::create_directories(elsewhere);
-    expect_success(run({"--batch", (folder / "scene.toml").string(), "-f", std::to_string(crossing_frame),
-                        "-o", "out.exr", "--set", "output.depth=half"},
-                       elsewhere));
+    std::vector<Assignment> assignments = {{"output.depth", "\"half\""}};
+    if (const auto chosen = chosen_assignment(crossing, folder / "scene.toml", scene))
+        assignments.push_back(*chosen);
+    const Scene given = load_scene(folder / "scene.toml", assignments);
+    std::vector<std::string> words = {
+        "--batch", (folder / "scene.toml").string(), "-f", std::to_string(crossing_frame), "-o", "out.exr"};
+    for (const auto& [key, value] : assignments)
+        words.insert(words.end(), {"--set", key.text() + "=" + value});
+    SCOPED_TRACE(words.back());
+    const RunResult batch = run(words, elsewhere);
+    std::string refusal;
+    Image expected;
+    try {
+        expected = shot_of(given, frame(), given.camera.eye).frame.beauty;
+    } catch (const InputError& error) {
+        refusal = error.what();
+    }
+    EXPECT_EQ(batch.code, refusal.empty() ? 0 : 2) << batch.err << refusal;
+    if (!refusal.empty()) return;
     EXPECT_EQ(files_below(elsewhere), std::set<std::string>{"out.exr"});
-    EXPECT_EQ(read_frame_header(elsewhere / "out.exr").pixel_hash,
-              pixel_hash(shot_of(scene, frame(), scene.camera.eye).frame.beauty));
+    EXPECT_EQ(read_frame_header(elsewhere / "out.exr").pixel_hash, pixel_hash(expected));
+}
+
+/// What the window's session makes of a scene, with its requests and its final frames.
+class WindowCrossings : public ProgramCrossings {};
+
+TEST_P(WindowCrossings, TheSettledWindowShowsThePixelsOfBatch) {
+    const fs::path picture = outside / "settled.exr";
+    expect_success(run(
+        {(folder / "scene.toml").string(), "--screenshot", picture.string(), "--settled", "--size",
+         fmt::format("{}x{}", crossing_width, crossing_height), "--frame", std::to_string(crossing_frame)},
+        "/"));
+    const Image expected = shot_of(scene, frame(), scene.camera.eye, Extra::of_scene).frame.beauty;
+    EXPECT_EQ(difference(load_linear_image(picture), expected, 0.0), "");
 }
 
 TEST_P(ProgramCrossings, AMovieIsMadeOfTheFramesThatBatchMakes) {
@@ -558,20 +607,34 @@ TEST_P(ProgramCrossings, AMovieIsMadeOfTheFramesThatBatchMakes) {
         << probed.err;
 }
 
-/// Pairs of the factors that names and files depend on.
-std::vector<std::uint32_t> seeds_of_names() {
+/// Few seeds in which every choice of the one factors meets every choice of the others.
+std::vector<std::uint32_t> seeds_where(const std::vector<std::string>& ones,
+                                       const std::vector<std::string>& others) {
     std::vector<FeaturePair> wanted;
     const auto starts = [](int feature, const std::vector<std::string>& factors) {
         const std::string& name = feature_names()[std::size_t(feature)];
         return std::ranges::any_of(factors, [&](const std::string& f) { return name.starts_with(f + " "); });
     };
     for (const FeaturePair& pair : possible_pairs())
-        if (starts(pair.first, {"folder", "token", "seen"}) && starts(pair.second, {"token_in_folder"}))
-            wanted.push_back(pair);
+        if (starts(pair.first, ones) && starts(pair.second, others)) wanted.push_back(pair);
     return covering_seeds(wanted, pool);
 }
 
+/// What names and files depend on.
+std::vector<std::uint32_t> seeds_of_names() {
+    return seeds_where({"folder", "token", "seen"}, {"token_in_folder"});
+}
+/// What a frame of the window could forget.
+std::vector<std::uint32_t> seeds_of_views() {
+    const std::vector<std::string> factors = {"blur",    "layer_switched", "sky_switched", "moved",
+                                              "path",    "projection",     "channels",     "sky",
+                                              "sky_near"};
+    return seeds_where(factors, factors);
+}
+
 INSTANTIATE_TEST_SUITE_P(Runs, ProgramCrossings, testing::ValuesIn(seeds_or_one(seeds_of_names)), seed_name);
+INSTANTIATE_TEST_SUITE_P(Views, WindowCrossings, testing::ValuesIn(seeds_or_one(seeds_of_views)), seed_name);
+INSTANTIATE_TEST_SUITE_P(NightlyViews, WindowCrossings, testing::Range(pool, pool + 60u), seed_name);
 INSTANTIATE_TEST_SUITE_P(NightlyRuns, ProgramCrossings, testing::Range(pool, pool + 60u), seed_name);
 
 }  // namespace
