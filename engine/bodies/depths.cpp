@@ -243,28 +243,38 @@ float share_in_front(float noise) {
 // -1..1 of any value.
 float between(float value) { return 2.0f / (1.0f + as_exp(-2.0f * value)) - 1.0f; }
 
-// Light that rings explain is where they are. What they do not, and details finer than they are, lies before
-// or behind the middle of their light, where a sheet bends through it.
+// The share of a body's light of such features that is details, which rings do not have.
+double share_of_details(double feature) {
+    constexpr double finest = 14.0, widest = 120.0;  // texels at a width of 1920: all is; nothing is
+    return std::clamp(real::log(widest / feature) / real::log(widest / finest), 0.0, 1.0);
+}
+
+// Light that rings explain is spread over them. What they do not, and details, gathers along its line in
+// clouds that all bands share: spread, it would be a streak, and on a sheet the sheet would be seen, as a
+// crack where the rings' light leaps from wall to wall.
 void place_about_axis(const Placement& placement, const BandSplats& splats, PlacedBlock& block) {
-    constexpr float detail = 0.6f, behind = 0.32f, before = 0.68f, bends = 0.12f;  // shares of the light
-    constexpr double finest_ring = 14.0;  // texels at a width of 1920
+    constexpr double longest_wave = 330.0;  // texels at a width of 1920
+    constexpr double force = 10.0;          // gain for what is no ring's at all,
+    constexpr float of_details = 0.1f;      // and for details of what is, of it
+    constexpr float outermost = 0.06f;      // share of the line's light beyond which nothing gathers
+    constexpr auto places = float(DepthCandidates::count);
     const AxisDepths& axis = *placement.axis;
-    const float least = double(splats.feature) < finest_ring * placement.scale ? detail : 0.0f;
-    DepthBlock side = block, bend = block;
-    noise_sum(waves(placement, 4, {{330.0, 1.0}, {120.0, 0.6}}), side);
-    noise_sum(waves(placement, 5, {{520.0, 1.0}, {210.0, 0.4}}), bend);
+    const auto details = float(share_of_details(double(splats.feature) / placement.scale));
+    DepthCandidates candidates{};
     for (int i = 0; i < block.count; ++i) {
-        const float x = block.x[i], y = block.y[i];
-        std::uint32_t random = as_mix(block.random[i] ^ 0x3c6ef372u);
-        float share = block.even[i], spread = 0.0f;
-        if (as_uniform(random) < std::max(least, axis.residue_at(x, y))) {
-            random = as_mix(random);
-            share = (as_uniform(random) < share_in_front(side.z[i]) ? before : behind) +
-                    bends * between(bend.z[i]);
-            spread = logistic(as_uniform(as_mix(random)), splats.spread);
-        }
-        block.z[i] = axis.depth(x, y, share) + spread;
+        const float x = block.x[i], y = block.y[i], residue = axis.residue_at(x, y);
+        const bool gathers = as_uniform(as_mix(block.random[i] ^ 0x3c6ef372u)) < std::max(details, residue);
+        const float strong = std::min(1.0f, 4.0f * residue * residue);
+        block.clumping[i] = gathers ? std::lerp(of_details, 1.0f, strong) : 0.0f;
+        const float place = block.even[i] * places, within = place - std::floor(place),
+                    first = gathers ? outermost : 0.0f;
+        for (int k = 0; k < DepthCandidates::count; ++k)
+            candidates.z[k][i] =
+                axis.depth(x, y, std::lerp(first, 1.0f - first, (float(k) + within) / places));
     }
+    line_depths(stack(placement, longest_wave * placement.scale, splats.feature, force * placement.clumps,
+                      steady_ratio),
+                candidates, block);
 }
 
 }  // namespace
@@ -345,7 +355,9 @@ void follow_knots(const Placement& placement, const BandSplats& splats, PlacedBl
         if (owner < 0) continue;
         const Knot& knot = knot_of(placement, owner);
         const std::uint32_t random = as_mix(block.random[i] ^ 0x2c1b3c6du);
-        const float follows = share_in_knots(placement, splats, knot) * (walls ? knot.ballness : 1.0f);
+        const bool of_star = placement.axis && owner < placement.star_knots;
+        const float follows =
+            of_star ? 1.0f : share_in_knots(placement, splats, knot) * (walls ? knot.ballness : 1.0f);
         if (as_uniform(random) >= follows * placement.knots.weight[at]) continue;
         block.knot[i] = owner;
         block.z[i] = placement.knot_z[owner] +

@@ -212,7 +212,7 @@ void add_stars(std::span<const Star> stars, std::size_t first_number, const Plac
 void add_picture_stars(const PictureStars& stars, const Placement& placement, const Opacity& opacity,
                        PictureSplats& out) {
     constexpr float about_one_size = 1.4f;  // widest over narrowest: each more takes the front's fit longer
-    const std::span<const Star> all(stars.all);
+    const std::span<const Star> all(stars.all.data(), stars.taken);
     for (std::size_t begin = 0, end = 0; begin < all.size(); begin = end) {
         const bool ordinary = begin < stars.ordinary;
         const float widest = ordinary ? about_one_size * all[begin].sigma : all[begin].sigma;

@@ -173,7 +173,7 @@ Placement make_placement(const Image& light, const StructureParams& params, doub
                                          light.width - 2 * margin_px, margin_px, seed);
     } else {
         placement.thickness = thickness_field(shown, placement.height);
-        stars = {};
+        if (!axis) stars = {};
     }
     if (params.kind == StructureKind::walls) {
         placement.relief = shell_field(shown, placement.depth, steepest_wall);
@@ -185,7 +185,9 @@ Placement make_placement(const Image& light, const StructureParams& params, doub
         if (galaxy.hidden > 0.0f) set_cloud_depths(placement, galaxy);
     if (axis) placement.depth = axis->fit.reach * double(light.width);
     placement.axis = std::move(axis);
-    placement.knots = find_knots(brightest, around_stars(stars));
+    const std::vector<Knot> around = around_stars(stars);
+    placement.star_knots = std::int32_t(around.size());
+    placement.knots = find_knots(brightest, around);
     set_knot_depths(placement, stars);
     return placement;
 }

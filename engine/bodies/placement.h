@@ -56,6 +56,7 @@ struct Placement {
     FilledLight filled;  // of what has walls; empty: none
     std::optional<AxisDepths> axis;  // of a body of revolution
     Knots knots;                     // each at one depth; first those around stars, by their bodies
+    std::int32_t star_knots = 0;     // how many of them are around stars
     std::vector<float> knot_z;       // theirs, texels
 
     /// Values of the fields at a place of the picture.

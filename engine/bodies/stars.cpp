@@ -209,6 +209,10 @@ PictureStars take_picture_stars(Image& light, const StructureParams& params, boo
     std::vector<Star> bright;
     const bool disk = params.kind == StructureKind::disk;
     if (disk) bright = take_bright_stars(light);
+    if (params.kind == StructureKind::axis) {
+        Image without = copied(light);
+        bright = take_bright_stars(without);
+    }
     const float least_left = disk ? least_left_in_dust : 0.0f;  // without dust a hole is nearer the front
     stars.all = take_stars(light, least_left, enlarged ? StarsTaken::explained : StarsTaken::round);
     std::ranges::stable_sort(stars.all, {}, &Star::sigma);
@@ -220,6 +224,7 @@ PictureStars take_picture_stars(Image& light, const StructureParams& params, boo
     }
     std::ranges::stable_sort(bright, {}, &Star::sigma);
     stars.all.insert(stars.all.end(), bright.begin(), bright.end());
+    stars.taken = disk ? stars.all.size() : stars.ordinary;
     return stars;
 }
 

@@ -39,12 +39,14 @@ std::vector<Star> take_bright_stars(Image& light);
 struct PictureStars {
     std::vector<Star> all;     // ordinary ones, each a Gaussian; then those of bright ones; each by sigma
     std::size_t ordinary = 0;  // of `all`
+    std::size_t taken = 0;     // of `all`; the light of others is left, and they tell where
     std::int64_t count = 0;    // of stars, ordinary and bright
 };
 
-/// Takes the stars out of `light`, where `params` say so. Bright ones of disks only: other kinds have no one
-/// depth for what such a star leaves around itself. Where the picture was `enlarged`, a star is some texels
-/// with flat light between them; only what a Gaussian explains is one then.
+/// Takes the stars out of `light`, where `params` say so. Bright ones of disks only; about an axis they are
+/// found and left, and for other kinds not looked for, as there is no one depth for what such a star leaves
+/// around itself. Where the picture was `enlarged`, a star is some texels with flat light between them; only
+/// what a Gaussian explains is one then.
 PictureStars take_picture_stars(Image& light, const StructureParams& params, bool enlarged = false);
 
 }  // namespace astrosplat

@@ -3,6 +3,8 @@
 #include "bodies/axis_fit.h"
 
 #include "bodies/axis_depths.h"
+#include "bodies_support.h"
+#include "image/blur.h"
 #include "support/painted_bodies.h"
 #include "support/test.h"
 
@@ -158,6 +160,74 @@ TEST(AxisDepths, GrowAndKeepTheColourOfTheirLine) {
     EXPECT_GT(wall.x / wall.z, 3.0f * core.x / core.z);
     EXPECT_NEAR(depths.depth(x, y, 0.5f), 0.0f, 0.02f * body_width);
     EXPECT_LT(depths.residue_at(x, y), 0.1f);
+}
+
+/// Two lobes, 960 px wide, whose walls in front and behind are not as bright; and a bright star on them.
+constexpr float star_x = 620.0f, star_y = 250.0f;
+Image lobes_and_star() {
+    Image light = seen({lobes(0.26), 112.0, 40.0}, 0.0);
+    light = times(std::move(light), 0.5f / brightest(light));
+    for (int i = 2; i <= 4; i *= 2) light = doubled(light, i * body_width, i * body_height);
+    painted::add_point(light, double(star_x), double(star_y), 3.0, 0.9, 0.9, 0.9);
+    return light;
+}
+
+Placement placed_about_axis(Image light) {
+    const StructureParams params = of_kind(StructureKind::axis);
+    const PictureStars stars = take_picture_stars(light, params);
+    AxisDepths depths = make_axis_depths(fit_axis(light), light);
+    return make_placement(light, params, 96.0, true, 1, stars.all, std::move(depths));
+}
+
+BandSplats of_band(int index, float feature) {
+    BandSplats splats;
+    splats.index = index;
+    splats.feature = feature;
+    splats.sigma = 0.25f * feature;
+    return splats;
+}
+
+// Its light is in bands as all light is; each by itself along the line it would be a streak.
+TEST(PlacedAboutAxis, BrightStarsAreAtOneDepth) {
+    const Placement placement = placed_about_axis(lobes_and_star());
+    for (int index = 0; index < 4; ++index) {
+        PlacedBlock block = splats_about({star_x, star_y}, {6.0f, 6.0f}, std::uint32_t(index));
+        place(placement, of_band(index, float(2 << index)), block);
+        const auto [least, most] = std::minmax_element(block.z, block.z + block.count);
+        EXPECT_LT(*most - *least, 40.0f) << index;
+    }
+}
+
+float line_light(const Placement& placement, float x, float y) {
+    const Image& seen = placement.axis->seen;
+    const float share = float(seen.width) / float(placement.picture_width);
+    return bilinear(seen, 0, x * share, y * share);
+}
+
+// The most light of an 8 px cell, seen from the right.
+double most_aside(const Placement& placement, const BandSplats* details) {
+    constexpr int cells = 256;
+    std::vector<double> seen(cells * cells, 0.0);
+    for (std::uint32_t number = 0; number < 1500; ++number) {
+        PlacedBlock block = splats_about({480.0f, 300.0f}, {800.0f, 560.0f}, number);
+        if (details) place_freely(placement, *details, block);
+        for (int i = 0; i < block.count; ++i) {
+            const float z =
+                details ? block.z[i] : placement.axis->depth(block.x[i], block.y[i], block.even[i]);
+            const auto row = std::int64_t(block.y[i] / 8.0f), column = std::int64_t(z / 8.0f) + cells / 2;
+            if (column >= 0 && column < cells)
+                seen[std::size_t(row * cells + column)] +=
+                    double(line_light(placement, block.x[i], block.y[i]));
+        }
+    }
+    return *std::ranges::max_element(seen);
+}
+
+// A thin sheet of details is seen wherever one looks along it, most of all where it leaps from wall to wall.
+TEST(PlacedAboutAxis, DetailsAreNoCracks) {
+    const Placement placement = placed_about_axis(lobes_and_star());
+    const BandSplats details = of_band(1, 4.0f);
+    EXPECT_LT(most_aside(placement, &details), 2.0 * most_aside(placement, nullptr));
 }
 
 }  // namespace
