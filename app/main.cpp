@@ -63,7 +63,6 @@ void add_screenshot(CLI::App& app, Invocation& call) {
     add_value(app, "--frame", shot.frame, "N", "With --screenshot: the frame (default: the first)");
     app.add_flag("--ui", shot.ui, "With --screenshot: the whole window with its panels");
     app.add_flag("--settled", shot.settled, "With --screenshot: the final frame, not the preview");
-    app.add_flag("--opengl", shot.opengl, "With --screenshot: a preview drawn by OpenGL on any machine");
 }
 
 // --version
@@ -120,7 +119,6 @@ void refuse_without_screenshot(const ScreenshotOptions& shot) {
                          : shot.frame   ? "--frame"
                          : shot.ui      ? "--ui"
                          : shot.settled ? "--settled"
-                         : shot.opengl  ? "--opengl"
                                         : nullptr;
     if (option) bad_input(option, "", "--screenshot OUT.png beside it", "none");
 }

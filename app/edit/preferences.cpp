@@ -145,7 +145,7 @@ constexpr SettingChoice caches[] = {{0, "Auto"},    {5, "5 GiB"},     {20, "20 G
                                     {50, "50 GiB"}, {100, "100 GiB"}, {500, "500 GiB"}};
 constexpr SettingChoice autosaves[] = {{15, "15 s"}, {30, "30 s"}, {60, "1 min"}, {300, "5 min"}};
 constexpr SettingChoice settles[] = {{1, "Goes on to the final frame"}, {0, "Stays a preview"}};
-constexpr SettingChoice engines[] = {{0, "Auto"}, {1, "OpenGL"}, {2, "Processor"}};
+constexpr SettingChoice engines[] = {{0, "Auto"}, {1, "Card"}, {2, "Processor"}};
 
 constexpr SettingRow rows[] = {
     {"interface_percent", "Interface", "Size of text and controls; Auto: as the screen asks",

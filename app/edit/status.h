@@ -186,7 +186,7 @@ struct Status {
     std::map<ListedPicture, ListedThumbnail> thumbnails;  // of the files listed that are looked at so far
     bool has_ffmpeg = false;
     bool has_slurm = false;
-    std::string engine;  // "OpenGL 4.5, llvmpipe" or "processor"
+    std::string engine;  // "NVIDIA H100" or "processor"
 
     double played_fps = 0.0;     // frames a second that playing reaches; 0: not playing
     std::string rendered_frame;  // name of the file shown in place of the preview; empty: none

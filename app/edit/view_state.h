@@ -36,7 +36,7 @@ enum class PanelTab { source, look, mixing, camera, environment, output };
 /// Of the selected layer; the others are the scene's.
 inline bool is_of_layer(PanelTab tab) { return tab <= PanelTab::mixing; }
 enum class PlayMode { loop, ping_pong, once };
-enum class PreviewEngine { automatic, opengl, processor };
+enum class PreviewEngine { automatic, card, processor };
 
 enum class HandleTool { none, move, rotate, scale };
 enum class HandleTarget { layer, crop, camera_target };  // the selected layer's placement, one of its crops

@@ -146,17 +146,21 @@ struct CardProbe {
     double seconds = 0.0;
 };
 CardProbe probe_card(const GlInfo& info);
+/// The same, asked once: of this program's run, and of those that share `kept`, a folder that remembers what
+/// was found of this card, driver and program; empty: none does. Throws NoContext where it cannot compute.
+CardProbe known_probe(const GlInfo& info, const fs::path& kept);
+/// The current context's card. Throws NoContext where the probe found a fault.
+std::unique_ptr<Card> exact_card(const GlInfo& info, const CardProbe& probe);
 
 /// A card that is asked for.
 struct CardChoice {
     DeviceChoice device = DeviceChoice::automatic;
-    fs::path kept = {};  // as OwnCard takes it
+    fs::path kept = {};  // as known_probe() takes it
 };
 
 /// A card with a context of its own, on this machine and current on this thread, that draws exactly.
 class OwnCard {
   public:
-    /// `kept`: a folder that remembers what the probe found of this card, driver and program; empty: none.
     /// `software`: also the processor's own OpenGL. Throws NoContext with the reason why there is none.
     OwnCard(const fs::path& kept, bool software);
     Card& card() { return *card_; }

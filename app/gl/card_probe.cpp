@@ -206,17 +206,31 @@ CardProbe probe_card(const GlInfo& info) {
     return probe;
 }
 
+CardProbe known_probe(const GlInfo& info, const fs::path& kept) {
+    static std::mutex mutex;
+    static std::map<std::string, CardProbe> of_this_run;
+    static_cast<void>(Card(info, true));  // throws where it cannot compute
+    const std::string who = identity(info);
+    const fs::path file = probe_file(kept);
+    const std::lock_guard lock(mutex);
+    if (const auto found = of_this_run.find(who); found != of_this_run.end()) return found->second;
+    const std::optional<CardProbe> known = remembered(file, who);
+    const CardProbe probe = known ? *known : probe_card(info);
+    if (!known) remember(file, who, probe);
+    return of_this_run[who] = probe;
+}
+
+std::unique_ptr<Card> exact_card(const GlInfo& info, const CardProbe& probe) {
+    if (!probe.fault.empty())
+        throw NoContext(info.renderer + " does not compute as the processor does: " + probe.fault);
+    return std::make_unique<Card>(info, probe.native_division);
+}
+
 OwnCard::OwnCard(const fs::path& kept, bool software) {
     const GlInfo& info = context_.info();
     if (info.software && !software) throw NoContext("no graphics card: " + info.renderer + " would draw");
-    const std::string who = identity(info);
-    const fs::path file = probe_file(kept);
-    const std::optional<CardProbe> known = remembered(file, who);
-    probe_ = known ? *known : probe_card(info);
-    if (!known) remember(file, who, probe_);
-    if (!probe_.fault.empty())
-        throw NoContext(info.renderer + " does not compute as the processor does: " + probe_.fault);
-    card_ = std::make_unique<Card>(info, probe_.native_division);
+    probe_ = known_probe(info, kept);
+    card_ = exact_card(info, probe_);
 }
 
 std::unique_ptr<OwnCard> open_card(const CardChoice& choice) {

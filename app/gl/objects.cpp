@@ -10,6 +10,8 @@
 #include <cassert>
 #include <cctype>
 #include <cstring>
+#include <map>
+#include <mutex>
 #include <regex>
 #include <set>
 #include <sstream>
@@ -52,6 +54,30 @@ EGLDisplay hardware_display() {
     return EGL_NO_DISPLAY;
 }
 
+/// Contexts share a display, which ends with the last of them.
+class SharedDisplays {
+  public:
+    bool begin(EGLDisplay display) {
+        const std::lock_guard lock(mutex_);
+        if (display == EGL_NO_DISPLAY || !eglInitialize(display, nullptr, nullptr)) return false;
+        ++users_[display];
+        return true;
+    }
+    void end(EGLDisplay display) {
+        const std::lock_guard lock(mutex_);
+        if (--users_[display] == 0) eglTerminate(display);
+    }
+
+  private:
+    std::mutex mutex_;
+    std::map<EGLDisplay, int> users_;
+};
+
+SharedDisplays& shared_displays() {
+    static SharedDisplays displays;
+    return displays;
+}
+
 constexpr int attempts = 3;
 
 /// The display to try in this attempt, initialised; EGL_NO_DISPLAY where there is none.
@@ -62,8 +88,7 @@ EGLDisplay open_display(int attempt) {
     if (attempt == 1 && lists(client, "EGL_MESA_platform_surfaceless"))
         display = platform_display(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY);
     if (attempt == 2) display = eglGetDisplay(EGL_DEFAULT_DISPLAY);
-    if (display == EGL_NO_DISPLAY || !eglInitialize(display, nullptr, nullptr)) return EGL_NO_DISPLAY;
-    return display;
+    return shared_displays().begin(display) ? display : EGL_NO_DISPLAY;
 }
 
 EGLConfig pbuffer_config(EGLDisplay display) {
@@ -75,22 +100,28 @@ EGLConfig pbuffer_config(EGLDisplay display) {
     return config;
 }
 
+/// Of a context that a reset of the card ends, rather than the process; some drivers do not make such ones.
 EGLContext create_context(EGLDisplay display, EGLConfig config) {
-    for (const auto& version : {std::pair{4, 5}, std::pair{4, 3}, std::pair{oldest_major, oldest_minor}}) {
-        const EGLint attributes[] = {EGL_CONTEXT_MAJOR_VERSION,
-                                     version.first,
-                                     EGL_CONTEXT_MINOR_VERSION,
-                                     version.second,
-                                     EGL_CONTEXT_OPENGL_PROFILE_MASK,
-                                     EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
+    for (const auto& [major, minor] :
+         {std::pair{4, 5}, std::pair{4, 3}, std::pair{oldest_major, oldest_minor}})
+        for (const bool tells_of_resets : {true, false}) {
+            const EGLint end = tells_of_resets ? EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY : EGL_NONE;
+            const EGLint attributes[] = {EGL_CONTEXT_MAJOR_VERSION,
+                                         major,
+                                         EGL_CONTEXT_MINOR_VERSION,
+                                         minor,
+                                         EGL_CONTEXT_OPENGL_PROFILE_MASK,
+                                         EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
 #ifndef NDEBUG
-                                     EGL_CONTEXT_OPENGL_DEBUG,
-                                     EGL_TRUE,
+                                         EGL_CONTEXT_OPENGL_DEBUG,
+                                         EGL_TRUE,
 #endif
-                                     EGL_NONE};
-        const EGLContext context = eglCreateContext(display, config, EGL_NO_CONTEXT, attributes);
-        if (context != EGL_NO_CONTEXT) return context;
-    }
+                                         end,
+                                         EGL_LOSE_CONTEXT_ON_RESET,
+                                         EGL_NONE};
+            const EGLContext context = eglCreateContext(display, config, EGL_NO_CONTEXT, attributes);
+            if (context != EGL_NO_CONTEXT) return context;
+        }
     return EGL_NO_CONTEXT;
 }
 
@@ -127,7 +158,7 @@ struct OffscreenContext::State {
         eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
         if (surface != EGL_NO_SURFACE) eglDestroySurface(display, surface);
         if (context != EGL_NO_CONTEXT) eglDestroyContext(display, context);
-        eglTerminate(display);
+        shared_displays().end(display);
         display = EGL_NO_DISPLAY;
         context = EGL_NO_CONTEXT;
         surface = EGL_NO_SURFACE;
@@ -281,15 +312,6 @@ struct StageText {
     std::vector<FileStart> files;
 };
 
-/// The text with another value for a constant it defines; unchanged where it does not.
-void set_constant(std::string& text, const std::string& name, int value) {
-    const std::string head = "const int " + name + " = ";
-    const std::size_t at = text.find(head);
-    if (at == std::string::npos) return;
-    const std::size_t end = text.find(';', at);
-    text.replace(at + head.size(), end - at - head.size(), std::to_string(value));
-}
-
 StageText stage_text(const ProgramSource& source, const std::vector<std::string>& files,
                      const std::string& head) {
     StageText stage;
@@ -301,7 +323,6 @@ StageText stage_text(const ProgramSource& source, const std::vector<std::string>
         stage.files.push_back({file, static_cast<int>(lines) + 1});
         stage.text += shader_text(file) + "\n";
     }
-    for (const auto& [name, value] : source.constants) set_constant(stage.text, name, value);
     if (!source.compute.empty()) stage.text = made_precise(stage.text);
     if (source.edit) source.edit(stage.text);
     return stage;
@@ -432,11 +453,6 @@ GlProgram::GlProgram(const ProgramSource& source) {
         const Stage fragment(GL_FRAGMENT_SHADER, source, source.fragment, source.fragment_head);
         glAttachShader(program_, fragment.shader);  // stays until the program goes
     }
-    std::vector<const char*> captured;
-    for (const std::string& name : source.feedback) captured.push_back(name.c_str());
-    if (!captured.empty())
-        glTransformFeedbackVaryings(program_, static_cast<GLsizei>(captured.size()), captured.data(),
-                                    GL_SEPARATE_ATTRIBS);
     glLinkProgram(program_);
     GLint linked = GL_FALSE;
     glGetProgramiv(program_, GL_LINK_STATUS, &linked);
@@ -448,8 +464,6 @@ GlProgram::GlProgram(const ProgramSource& source) {
     }
     glUseProgram(program_);
     for (const auto& [sampler, unit] : source.samplers) glUniform1i(uniform(sampler.c_str()), unit);
-    const GLuint block = glGetUniformBlockIndex(program_, source.block.c_str());
-    if (block != GL_INVALID_INDEX) glUniformBlockBinding(program_, block, 0);
 }
 
 GlProgram::~GlProgram() { glDeleteProgram(program_); }

@@ -178,15 +178,11 @@ std::string shader_text(const std::string& name);
 
 /// The parts of a program. Each stage is "#version 410 core", the defines and its files one after the other.
 struct ProgramSource {
-    std::vector<std::string> defines = {};   // "QUADS" or "KIND 2"
+    std::vector<std::string> defines = {};   // "DITHER" or "KIND 2"
     std::vector<std::string> vertex = {};    // names for shader_text()
     std::vector<std::string> fragment = {};  // empty: no fragment stage
-    std::vector<std::string> feedback = {};  // vertex outputs to capture, each into its own buffer
-    /// Values instead of those in the texts, for lines "const int NAME = 8;".
-    std::vector<std::pair<std::string, int>> constants = {};
-    std::string fragment_head = {};  // GLSL before the files of the fragment stage, from elsewhere
+    std::string fragment_head = {};          // GLSL before the files of the fragment stage, from elsewhere
     std::vector<std::pair<std::string, int>> samplers = {};  // and the texture unit that each reads
-    std::string block = {};                                  // of uniforms, read from binding point 0
     /// In place of the other stages: "#version 450 core", made_precise().
     std::vector<std::string> compute = {};
     std::function<void(std::string& text)> edit = {};  // of the whole text: for tests, which plant faults

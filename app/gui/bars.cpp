@@ -432,7 +432,7 @@ void preview_control(GuiFrame& frame) {
 }
 
 void engine_control(GuiFrame& frame) {
-    combo(frame, "engine", frame.view.engine, {"Engine auto", "OpenGL", "Processor"}, 96,
+    combo(frame, "engine", frame.view.engine, {"Engine auto", "Card", "Processor"}, 96,
           "What draws the preview. Now: " + frame.status.engine);
 }
 

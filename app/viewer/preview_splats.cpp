@@ -4,8 +4,6 @@
 #include <iterator>
 
 #include "core/progress.h"
-#include "look/apply.h"
-#include "render/environment.h"
 
 namespace astrosplat {
 
@@ -42,14 +40,15 @@ bool hides(const RenderLayer& layer) {
 
 }  // namespace
 
-const Image& CpuPreview::draw(const std::vector<PreviewLayer>& layers, const PreviewView& view,
-                              const Progress& progress) {
+const Image& DrawnPreview::draw(const std::vector<PreviewLayer>& layers, const PreviewView& view,
+                                const Progress& progress) {
     RenderSettings settings = settings_of(view);
     if (view.environment && !view.environment->faces->empty()) {
         draw_backdrop(*view.environment, view.camera, static_cast<int>(view.width),
                       static_cast<int>(view.height), backdrop_);
         settings.backdrop = &backdrop_;
     }
+    settings.device = view.device;
     frame_ = render(drawn_layers(layers), view.camera, nullptr, settings, progress, &cache_).beauty;
     return frame_;
 }
@@ -135,7 +134,7 @@ std::vector<SharedSplats> cut_layers(std::vector<PreviewLayer>& layers, std::spa
     return splats;
 }
 
-FinerFound draw_finer(const FinerRequest& request, CpuPreview& preview, const Progress& progress) {
+FinerFound draw_finer(const FinerRequest& request, DrawnPreview& preview, const Progress& progress) {
     const auto start = Clock::now();
     std::vector<PreviewLayer> layers(request.layers.size());
     for (std::size_t i = 0; i < layers.size(); ++i) layers[i].layer = request.layers[i];
@@ -196,9 +195,10 @@ std::int64_t splats_of_step(int step, std::int64_t total, std::int64_t shown, do
 }
 
 FinerPreview::Work finer_preview() {
-    return [preview = std::make_shared<CpuPreview>()](const FinerRequest& request, const Progress& progress) {
-        return draw_finer(request, *preview, progress);
-    };
+    return
+        [preview = std::make_shared<DrawnPreview>()](const FinerRequest& request, const Progress& progress) {
+            return draw_finer(request, *preview, progress);
+        };
 }
 
 PreviewSplats::PreviewSplats() : work_(make_sums) {}

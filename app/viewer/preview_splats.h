@@ -1,4 +1,4 @@
-// The splats that a preview draws, and the frame made of them by the engine's own compositor. How many: in
+// The splats that a preview draws, and the frame made of them by the engine's renderer. How many: in
 // motion a budget that follows the measured time of a frame, at rest a few steps of more; plain numbers in
 // and out, no clock. Which of each layer: a cut through its tree (merge/README.md), of the whole set where
 // its sums are there, else of a sample, whose sums take no time. In: layers, a camera and a number of splats.
@@ -6,20 +6,75 @@
 // frame comes, images of the same view with more of them.
 #pragma once
 
-#include "gl/preview_layer.h"
+#include "camera/camera.h"
+#include "look/apply.h"
 #include "merge/cut.h"
+#include "render/environment.h"
 #include "render/render.h"
+#include "splats/splat_set.h"
 #include "viewer/background_work.h"
 #include "viewer/loaded_layer.h"
 
 namespace astrosplat {
 
-/// For machines whose OpenGL is drawn by the processor anyway, where it is the faster of the two. The same
-/// splats as GlPreview draws.
-class CpuPreview {
+/// One layer of the preview. Where `layer.splats` is given, these are drawn (merge/cut.h); else all of `set`,
+/// under its look.
+struct PreviewLayer {
+    RenderLayer layer;
+    std::shared_ptr<const SplatSet> set;
+    Look look;
+    LookInputs inputs;
+};
+
+/// Splats of a layer that are drawn, before its look drops any.
+inline std::int64_t shown_count(const PreviewLayer& layer) {
+    if (layer.layer.splats) return layer.layer.splats->size();
+    return layer.set ? layer.set->size() : 0;
+}
+
+/// A number that differs, most likely, from that of another image at the same address.
+inline float content_probe(const Image& image) {
+    constexpr std::size_t looks = 97;  // at pixels, about
+    auto sum = static_cast<float>(image.width);
+    const std::size_t step = std::max<std::size_t>(1, image.pixels.size() / looks);
+    for (std::size_t i = 0; i < image.pixels.size(); i += step) sum = 0.75f * sum + image.pixels[i];
+    return sum;
+}
+
+/// All that a layer's splats are shaded with, beside its set: while it stays equal, they stay.
+struct Shading {
+    Look look;
+    LookInputs inputs;
+    float map_probe = 0.0f;  // tells another map at the address of an old one
+    bool operator==(const Shading&) const = default;
+};
+inline Shading shading_of(const PreviewLayer& layer) {
+    const Image* map = layer.inputs.thickness_map;
+    return {layer.look, layer.inputs, map ? content_probe(*map) : 0.0f};
+}
+
+/// A frame as previews draw it.
+struct PreviewView {
+    Camera camera;
+    const Environment* environment = nullptr;
+    std::int64_t width = 0, height = 0;  // px
+    float pixel_filter = 0.5f;           // px
+    RenderDevice* device = nullptr;      // that draws; null: the processor
+};
+
+/// For the renderer's projections.
+inline RenderSettings settings_of(const PreviewView& view) {
+    RenderSettings settings;
+    settings.width = view.width;
+    settings.height = view.height;
+    settings.pixel_filter = view.pixel_filter;
+    return settings;
+}
+
+class DrawnPreview {
   public:
-    /// Renders the layers' splats into an image that stays valid until the next call. Splats are not split up
-    /// by level of detail. Throws Cancelled.
+    /// Renders the layers' splats into an image that stays valid until the next call, by the view's device or
+    /// the processor: the same bits. Splats are not split up by level of detail. Throws Cancelled.
     const Image& draw(const std::vector<PreviewLayer>& layers, const PreviewView& view,
                       const Progress& progress = {});
 

@@ -225,7 +225,7 @@ double parse_frame(const std::string& text) {
 void write_exr(const ScreenshotOptions& options, glm::ivec2 size, Session& session) {
     RenderedFrame preview;
     const auto final = options.settled ? session.view_frame.final_frame() : nullptr;
-    if (!final) preview.beauty = session.view_frame.read();
+    if (!final) preview.beauty = *session.view_frame.pixels();
     const RenderedFrame& frame = final ? *final : preview;
     OutputParams output = session.document.scene().output;
     std::erase_if(output.aovs, [&](const std::string& aov) {  // the window's frames have no other
@@ -289,7 +289,6 @@ void take(const ScreenshotOptions& options, const GlInfo& gl) {
     session.view.settle = options.settled;
     session.view.hint_open = false;
     prepare_screenshot(session, options.ui);
-    if (options.opengl) session.view.engine = PreviewEngine::opengl;
     options.ui ? take_window(options, size, session) : take_viewport(options, size, exr, session);
 }
 

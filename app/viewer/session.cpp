@@ -126,12 +126,13 @@ double due_of_view(const Session& session, double now) {
 
 Session::Session(const ViewerOptions& options, const GlInfo& gl_info)
     : gl(gl_info),
+      card_choice{options.device, options.cache.folder},
       preferences(load_preferences()),
       document(options.input.empty() ? demo_document(options.assignments)
                                      : document_for(options.input, options.assignments)),
       sets(options.cache, sample_limit),
-      view_frame(files, {options.device, options.cache.folder}),
-      comparison(files, {options.device, options.cache.folder}),
+      view_frame(files, card_choice),
+      comparison(files, card_choice),
       front(front_check(1280, options.cache)),
       jobs(options.cache, options.program, options.limits),
       fresh_demo(options.input.empty()) {

@@ -41,6 +41,7 @@ struct Session {
     Session(const ViewerOptions& options, const GlInfo& gl_info);
 
     GlInfo gl;
+    CardChoice card_choice;
     Preferences preferences;
     Document document;
     ViewState view;
@@ -57,6 +58,8 @@ struct Session {
     UploadedImage<FrontFound> front_difference;
     PreparePreview preparation{prepare_preview()};
     UploadedImage<PreparedView> preparation_before, preparation_after;
+    std::unique_ptr<Card> card;  // of the window's own context, that draws previews
+    bool card_asked = false;     // there is one, or there will be none
     Display display;
     ColorManagement color;
     CameraOverlay overlay;

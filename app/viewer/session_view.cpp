@@ -5,6 +5,7 @@
 #include <glm/gtc/type_precision.hpp>
 
 #include "core/error.h"
+#include "core/log.h"
 #include "core/parallel.h"
 #include "edit/placement.h"
 #include "edit/view_camera.h"
@@ -24,12 +25,26 @@ Scene evaluated(const Scene& scene, const ViewState& view) {
     return now;
 }
 
-/// The preview is drawn by OpenGL rather than by the processor.
-bool draws_by_opengl(const Session& session) {
-    // Vertex shaders draw no discs of the sphere.
-    if (is_onto_sphere(session.request.scene.camera.projection)) return false;
-    return session.view.engine == PreviewEngine::opengl ||
-           (session.view.engine == PreviewEngine::automatic && !session.gl.software);
+/// Whether a preview by the card is asked for, whatever draws for it.
+bool asks_for_card(const Session& session) {
+    return session.view.engine == PreviewEngine::card || (session.view.engine == PreviewEngine::automatic &&
+                                                          session.card_choice.device == DeviceChoice::gpu);
+}
+
+/// The card that draws previews; null: the processor does. Unless it is asked for, one that has drawn a final
+/// frame: its probe and the compiling of its programs then hold up nobody.
+RenderDevice* preview_card(Session& session) {
+    if (session.card_choice.device == DeviceChoice::cpu || session.view.engine == PreviewEngine::processor)
+        return nullptr;
+    const GlInfo& gl = session.gl;
+    const std::string& drew = session.view_frame.status().device;
+    const bool asked = asks_for_card(session), known = !gl.software && !drew.empty() && drew == gl.renderer;
+    if ((asked || known) && !std::exchange(session.card_asked, true)) try {
+            session.card = exact_card(gl, known_probe(gl, session.card_choice.kept));
+        } catch (const std::runtime_error& error) {
+            log_detail(std::string("previews are drawn by the processor: ") + error.what());
+        }
+    return asked || !gl.software ? session.card.get() : nullptr;
 }
 
 /// Whether the frame sees what is animated move: through the scene's camera, with an open shutter. Layers
@@ -120,10 +135,9 @@ Rect crop_to_viewport(ViewRequest& request, const Rect& whole, glm::ivec2 viewpo
             scale * static_cast<float>(part.width), scale * static_cast<float>(part.height)};
 }
 
-PreviewChoice preview_choice(const Session& session) {
+PreviewChoice preview_choice(Session& session) {
     PreviewChoice choice;
-    choice.opengl = draws_by_opengl(session);
-    choice.whole_sets = !session.gl.software;
+    choice.device = preview_card(session);
     choice.share = session.view.preview_share;
     choice.splats = session.fixed_splats;
     return choice;
@@ -295,10 +309,8 @@ void fill_status(Session& session) {
     const ViewFrameStatus* refining = session.comparison.refining();
     session.status.view_frame = refining ? *refining : session.view_frame.status();
     session.status.threads = thread_count();
-    const GlInfo& gl = session.gl;
-    session.status.engine = draws_by_opengl(session)
-                                ? fmt::format("OpenGL {}.{}, {}", gl.major, gl.minor, gl.renderer)
-                                : "processor";
+    const RenderDevice* const card = preview_card(session);
+    session.status.engine = card ? card->name() : "processor";
     session.snapshots.fill(session.status);
     session.status.blink_shows_other =
         session.view.compare == CompareMode::blink && session.comparison.blink_shows_other();

@@ -205,23 +205,6 @@ std::int64_t ViewFrame::splats_wanted() const {
     return choice_.splats > 0 ? choice_.splats : budget_.splats;
 }
 
-/// Stars, and what is mixed in display values, are drawn by the engine's own compositor alone.
-bool ViewFrame::draws_by_opengl() const {
-    const auto engine_draws = [](const LayerParams& layer) {
-        return layer.visible &&
-               (layer.source.kind == SourceKind::stars || is_mixed_in_display_space(layer.render));
-    };
-    return choice_.opengl && std::ranges::none_of(request_->scene.layers, engine_draws);
-}
-
-bool ViewFrame::draws_whole_sets() const {
-    const auto is_whole = [](const std::shared_ptr<const LoadedLayer>& layer) {
-        return !layer || layer->set;
-    };
-    return draws_by_opengl() && choice_.whole_sets && choice_.share == 0.0f && status_.total < too_many_ &&
-           std::ranges::all_of(request_->layers, is_whole);
-}
-
 /// Gives the layers their splats, and notes how many their looks keep.
 void ViewFrame::cut(std::vector<PreviewLayer>& layers, const PreviewView& view) {
     std::vector<std::shared_ptr<const LoadedLayer>> loaded;
@@ -231,14 +214,6 @@ void ViewFrame::cut(std::vector<PreviewLayer>& layers, const PreviewView& view) 
     const std::vector<double> kept = splats_.kept();
     for (std::size_t n = 0; n < places_.size(); ++n)
         kept_[places_[n]] = std::llround(kept[n] * static_cast<double>(loaded[n]->splats));
-}
-
-/// Sets that cannot be drawn whole in time are cut from then on.
-void ViewFrame::note_time(double milliseconds, double target_ms, bool whole_sets) {
-    constexpr int patience = 8;  // frames
-    if (!whole_sets) return budget_.measured(milliseconds, target_ms, status_.shown);
-    slow_frames_ = milliseconds > 2.0 * target_ms ? slow_frames_ + 1 : 0;
-    if (slow_frames_ == patience) too_many_ = status_.total;
 }
 
 /// The environment of the frame that is shown has been loaded since, or could not be: the preview says why.
@@ -262,7 +237,7 @@ bool ViewFrame::previews_arrived(const ViewRequest& now) const {
 
 /// Sums of whole sets, while nothing more urgent needs the processor.
 bool ViewFrame::refine(double now) {
-    return choice_.refined && stage_ != Stage::refining && !draws_whole_sets() && splats_.refine(now);
+    return choice_.refined && stage_ != Stage::refining && splats_.refine(now);
 }
 
 /// The part of the frame that is seen, as a frame of its own.
@@ -276,6 +251,7 @@ PreviewView ViewFrame::preview_view() const {
     view.width = part.width;
     view.height = part.height;
     view.pixel_filter = static_cast<float>(request_->scene.output.pixel_filter);
+    view.device = choice_.device;
     return view;
 }
 
@@ -284,26 +260,19 @@ void ViewFrame::draw_preview(double now) {
     const double target_ms = pace_.target_ms(now, choice_.target_ms);
     ++version_;
     layers_ = preview_layers();
-    const bool whole_sets = draws_whole_sets();
     environment_ = files_->environment(request_->scene.environment);
     const PreviewView view = preview_view();
-    if (!whole_sets) cut(layers_, view);
+    cut(layers_, view);
     status_.shown = 0;
     for (std::size_t n = 0; n < layers_.size(); ++n)
         status_.shown += shown_[places_[n]] = shown_count(layers_[n]);
-    if (draws_by_opengl()) {
-        if (!gl_) gl_ = std::make_unique<GlPreview>();
-        texture_ = gl_->draw(layers_, view);
-        drawn_ = nullptr;
-    } else {
-        drawn_ = &cpu_.draw(layers_, view);
-        canvas_texture_.upload(*drawn_);
-        texture_ = canvas_texture_.handle();
-    }
+    drawn_ = &preview_.draw(layers_, view);
+    canvas_texture_.upload(*drawn_);
+    texture_ = canvas_texture_.handle();
     behind_ = false;
     draw_s_ = seconds_since(start);
     pace_.drew(milliseconds_since(start));
-    note_time(milliseconds_since(start), target_ms, whole_sets);
+    budget_.measured(milliseconds_since(start), target_ms, status_.shown);
     enter(Stage::preview);
     status_.width = request_->width;
     status_.height = request_->height;
@@ -312,7 +281,7 @@ void ViewFrame::draw_preview(double now) {
 
 /// Steps of finer previews come before the final frame, where that takes its time.
 bool ViewFrame::takes_steps(bool hurry) const {
-    return !hurry && splats_.whole() && !draws_by_opengl() && choice_.share == 0.0f &&
+    return !hurry && splats_.whole() && !choice_.device && choice_.share == 0.0f &&
            step_ < plan_steps(final_s_).count;
 }
 
@@ -368,10 +337,7 @@ void ViewFrame::begin_final() {
             ever_visible(request_->scene, request_->scene.layers[i]);  // while the shutter is open
         wanted.sets.push_back(loaded && drawn ? loaded->set : nullptr);
     }
-    if (stage_ != Stage::final) {
-        canvas_ = drawn_ ? *drawn_ : gl_->read();  // which the tiles replace
-        if (!drawn_) canvas_texture_.upload(canvas_);
-    }
+    if (stage_ != Stage::final) canvas_ = *drawn_;  // which the tiles replace
     texture_ = canvas_texture_.handle();
     splats_.rest();
     final_.start(std::move(wanted));
@@ -440,7 +406,7 @@ void ViewFrame::come_closer(bool settle, double now, bool hurry) {
 
 void ViewFrame::show(const ViewRequest& request, const PreviewChoice& choice, bool settle, double now,
                      bool hurry) {
-    const bool touched = !request_ || !ask_the_same(*request_, request) || choice_.opengl != choice.opengl ||
+    const bool touched = !request_ || !ask_the_same(*request_, request) || choice_.device != choice.device ||
                          choice_.share != choice.share;
     const bool changed = touched || !have_same_sets(*request_, request) || environment_arrived();
     // What the card has nearly finished is not thrown away for the next frame, or none would be seen.
@@ -449,7 +415,7 @@ void ViewFrame::show(const ViewRequest& request, const PreviewChoice& choice, bo
     if (hurries && stage_ == Stage::refining) return;
     const bool refined = request_ && refine(now);
     const bool fuller = !changed && stage_ <= Stage::finer && (refined || previews_arrived(request));
-    if (changed || fuller || (gl_ && gl_->sorting())) {
+    if (changed || fuller) {
         if (touched) touched_at_ = now;
         request_ = request;
         choice_ = choice;
@@ -465,11 +431,6 @@ const Image* ViewFrame::pixels() const {
     return drawn_;
 }
 
-Image ViewFrame::read() const {
-    const Image* image = pixels();
-    return image ? *image : gl_->read();
-}
-
 double ViewFrame::due(double now) const {
     constexpr double soon_s = 0.02;  // steps end by themselves
     if (stage_ == Stage::finer || takes_steps(false)) return soon_s;
@@ -481,8 +442,7 @@ bool ViewFrame::final_is_next(double now) const {
 }
 
 bool ViewFrame::exact() const {
-    const bool lacks_sums = choice_.refined && !draws_whole_sets() && splats_.lacks_sums();
-    return request_ && !files_->loading() && !(gl_ && gl_->sorting()) && !lacks_sums;
+    return request_ && !files_->loading() && !(choice_.refined && splats_.lacks_sums());
 }
 
 std::vector<float> ViewFrame::layer_light(std::int64_t x, std::int64_t y) {
@@ -491,12 +451,10 @@ std::vector<float> ViewFrame::layer_light(std::int64_t x, std::int64_t y) {
     const PreviewView view = preview_view();
     if (std::exchange(behind_, false)) {
         layers_ = preview_layers();
-        if (!draws_whole_sets()) cut(layers_, view);
+        cut(layers_, view);
     }
-    std::vector<PreviewLayer> layers = layers_;
-    if (draws_whole_sets()) cut(layers, view);
     const Region part = request_->part();
-    const std::vector<float> drawn = light_of_layers(layers, view, x - part.x, y - part.y);
+    const std::vector<float> drawn = light_of_layers(layers_, view, x - part.x, y - part.y);
     for (std::size_t n = 0; n < drawn.size(); ++n) light[places_[n]] = drawn[n];
     return light;
 }

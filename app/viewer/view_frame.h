@@ -9,7 +9,6 @@
 #include "edit/view_state.h"
 #include "gl/card.h"
 #include "gl/objects.h"
-#include "gl/preview.h"
 #include "render/render.h"
 #include "scene/scene.h"
 #include "splats/splat_set.h"
@@ -87,13 +86,12 @@ Camera camera_of(const ViewRequest& request);
 
 /// How previews are drawn.
 struct PreviewChoice {
-    bool opengl = false;
-    bool whole_sets = false;  // by OpenGL, where it is quick enough: every splat, without a cut
-    float share = 0.0f;       // of all splats; 1: every one; 0: sized by the frame rate
-    std::int64_t splats = 0;  // with share 0: this many in all, whatever the frame rate; 0: by it
-    bool refined = true;      // cuts of whole sets, once there is time to make them; else of samples
-    double target_ms = 25.0;  // of one preview
-    double quick_s = 0.04;    // a card's final frame within this takes the place of previews
+    RenderDevice* device = nullptr;  // that draws; null: the processor
+    float share = 0.0f;              // of all splats; 1: every one; 0: sized by the frame rate
+    std::int64_t splats = 0;         // with share 0: this many in all, whatever the frame rate; 0: by it
+    bool refined = true;             // cuts of whole sets, once there is time to make them; else of samples
+    double target_ms = 25.0;         // of one preview
+    double quick_s = 0.04;           // a card's final frame within this takes the place of previews
 };
 
 class ViewFrame {
@@ -122,10 +120,8 @@ class ViewFrame {
     bool final_is_next(double now) const;
     /// Seconds until the final frame may begin.
     double due(double now) const;
-    /// Linear RGBA as shown, region-sized; null while only the GPU has it.
+    /// Linear RGBA as shown, region-sized; null before anything is.
     const Image* pixels() const;
-    /// The same, read back from the GPU where need be.
-    Image read() const;
     /// Light of every layer of the scene at a pixel of the whole frame, by the splats of the preview
     /// (preview_splats.h).
     std::vector<float> layer_light(std::int64_t x, std::int64_t y);
@@ -148,10 +144,7 @@ class ViewFrame {
     std::vector<PreviewLayer> preview_layers();
     PreviewView preview_view() const;
     std::int64_t splats_wanted() const;
-    bool draws_by_opengl() const;
-    bool draws_whole_sets() const;
     void cut(std::vector<PreviewLayer>& layers, const PreviewView& view);
-    void note_time(double milliseconds, double target_ms, bool whole_sets);
     bool refine(double now);
     bool environment_arrived();
     bool previews_arrived(const ViewRequest& now) const;
@@ -172,8 +165,7 @@ class ViewFrame {
     std::shared_ptr<const Environment> environment_;  // of the last preview
     PreviewChoice choice_;
     PreviewSplats splats_;
-    CpuPreview cpu_;
-    std::unique_ptr<GlPreview> gl_;  // made when first wanted
+    DrawnPreview preview_;
     PreviewBudget budget_;
     FramePace pace_;
     FinalFrame final_;
@@ -188,16 +180,14 @@ class ViewFrame {
     Image finer_image_;
     double touched_at_ = 0.0;
     ImageTexture canvas_texture_;
-    const Image* drawn_ = nullptr;  // the processor's preview; null while the GPU's is shown
+    const Image* drawn_ = nullptr;  // the preview
     Image canvas_;                  // preview and tiles of the final frame, once that has begun
     unsigned texture_ = 0;
     std::uint64_t version_ = 0;  // of its pixels
     ViewFrameStatus status_;
     std::vector<std::int64_t> shown_, kept_;
-    std::vector<PreviewLayer> layers_;                                  // that the last preview drew
-    std::vector<std::size_t> places_;                                   // of these in the scene
-    int slow_frames_ = 0;                                               // of whole sets, one after the other
-    std::int64_t too_many_ = std::numeric_limits<std::int64_t>::max();  // splats to be drawn whole
+    std::vector<PreviewLayer> layers_;  // that the last preview drew
+    std::vector<std::size_t> places_;   // of these in the scene
 };
 
 }  // namespace astrosplat

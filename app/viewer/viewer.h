@@ -5,6 +5,7 @@
 #include <atomic>
 
 #include "edit/settings.h"
+#include "render/device.h"
 #include "scene/load.h"
 #include "sets/kept.h"
 
@@ -15,7 +16,7 @@ struct ViewerOptions {
     fs::path input;                       // scene, picture, mesh or splat file; empty: the demo
     std::vector<Assignment> assignments;  // --set
     SetCache cache;
-    DeviceChoice device = DeviceChoice::automatic;    // that draws final frames
+    DeviceChoice device = DeviceChoice::automatic;    // that draws frames
     std::string program;                              // this very program's file, which does the jobs
     bool threads_given = false, cache_given = false;  // by the command line, which wins over the settings
     MachineLimits limits = {};                        // of jobs; run_viewer() takes them from the settings
@@ -28,7 +29,6 @@ struct ScreenshotOptions {
     std::optional<std::string> frame;  // default: the first
     bool ui = false;                   // with the panels
     bool settled = false;              // the final frame
-    bool opengl = false;               // the preview drawn by OpenGL where the processor would be faster
 };
 
 /// Once `interrupted`, throws Cancelled; an autosave with what was not saved stays.

@@ -147,11 +147,14 @@ std::vector<InputEvent> InputQueue::take(Typing typing) {
 Window::Window(int width, int height, const std::string& title) {
     if (!glfwInit()) throw NoContext(glfw_reason("no display"));
     glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 4);
-    glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 1);
     glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
     glfwWindowHint(GLFW_OPENGL_FORWARD_COMPAT, GLFW_TRUE);
     const glm::ivec2 size = on_monitor({width, height}), least = on_monitor(smallest_px);
-    window_ = glfwCreateWindow(size.x, size.y, title.c_str(), nullptr, nullptr);
+    for (const int minor :
+         {5, 1}) {  // the first also draws previews; some drivers give no more than is asked
+        glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, minor);
+        if (!window_) window_ = glfwCreateWindow(size.x, size.y, title.c_str(), nullptr, nullptr);
+    }
     if (!window_) {
         const std::string reason = glfw_reason("no OpenGL 4.1");
         glfwTerminate();

@@ -39,12 +39,6 @@ class Worker {
         std::unique_lock held(mutex_);
         rest_.wait(held, condition);
     }
-    /// The same for a while. False: it did not come true.
-    template <class Condition>
-    bool wait_for(std::chrono::microseconds at_most, Condition condition) {
-        std::unique_lock held(mutex_);
-        return rest_.wait_for(held, at_most, condition);
-    }
 
   private:
     void run();

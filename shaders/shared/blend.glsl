@@ -44,6 +44,3 @@ bool blend_absorbs(int blend, float c) { return blend == BLEND_ABSORB || c < 0.0
 
 // The exponent of one channel of a splat that absorbs; `exponent` is its layer's.
 float blend_exponent(int blend, float c, float exponent) { return blend == BLEND_ABSORB ? exponent : -c; }
-
-// 1 - B of a splat that absorbs, s in [0, 1].
-float blend_absorbed(float s, float exponent) { return 1.0f - as_pow(1.0f - s, exponent); }

@@ -7,8 +7,3 @@ Instance orthographic_instance(Lens lens, Vec3 p) {
 Vec3 orthographic_point(Lens lens, Float x_px, Float y_px, Float depth) {
     return Vec3(as_div(x_px - lens.center_x_px, lens.focal_px), as_div(lens.center_y_px - y_px, lens.focal_px), -depth);
 }
-
-// Not from the eye, but from the plane through it.
-Real orthographic_small_from(Lens lens, Real radius, Real radius_px) {
-    return radius * lens.focal_px < radius_px ? -1.0f : 1e30f;
-}

@@ -22,10 +22,3 @@ Float perspective_axis_depth(Lens lens, Float x_px, Float y_px, Float depth) {
 }
 
 Real perspective_spread(Lens lens) { return as_div(1.0f, lens.focal_px); }
-
-// Nearer than z a splat may be too wide; from its distance on, one that reaches the frame lies beyond z.
-Real perspective_small_from(Lens lens, Real radius, Real radius_px, Real frame_px) {
-    Real z = as_div(radius * lens.focal_px, radius_px);
-    Real aside = radius + as_div(z * frame_px, lens.focal_px);
-    return sqrt(aside * aside + z * z);
-}

@@ -77,18 +77,9 @@ Float axis_depth(Lens lens, Float x_px, Float y_px, Float depth) {
     return perspective_axis_depth(lens, x_px, y_px, depth);
 }
 
-// Distance as sort_depth measures it beyond which no ball of `radius` that touches the frame is wider than radius_px;
-// frame_px: no less than the frame's diagonal with the footprint's margin.
-Real small_from(Lens lens, Real radius, Real radius_px, Real frame_px) {
-    if (lens.projection == PROJECTION_ORTHOGRAPHIC) return orthographic_small_from(lens, radius, radius_px);
-    if (is_onto_sphere(lens)) return as_div(radius * lens.focal_px, radius_px);
-    return perspective_small_from(lens, radius, radius_px, frame_px);
-}
-
 // The same for all of them.
 
 // Sorts as the distance from the eye (parallel rays: from the plane through it) does.
-Float sort_depth_of(Lens lens, Float distance) { return has_parallel_rays(lens) ? distance : distance * distance; }
 Float sort_depth(Lens lens, Vec3 p) {
     if (has_parallel_rays(lens)) return -p.z;
     return dot(p, p);

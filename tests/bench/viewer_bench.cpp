@@ -1,7 +1,6 @@
 // Waiting times at the window: frames while orbiting, a slider, the timeline, the final frame,
-// the start. In: a scene (default: the demo) whose sets are in the cache, or with --opengl a number of
-// synthetic splats and a size. Out: Markdown; wall time beside processor time, because only the latter means
-// anything on a busy machine.
+// the start. In: a scene (default: the demo) whose sets are in the cache. Out: Markdown; wall time beside
+// processor time, because only the latter means anything on a busy machine.
 #include <fmt/format.h>
 #include <glad/gl.h>
 #include <sys/resource.h>
@@ -11,15 +10,12 @@
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
-#include <numbers>
 #include <thread>
 
 #include "core/color.h"
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "core/progress.h"
-#include "core/shared_maths.h"
-#include "gl/preview.h"
 #include "scene/scene.h"
 #include "source/write_image.h"
 #include "support/preview_views.h"
@@ -395,104 +391,26 @@ void measure_truths(const ViewerOptions& options, const GlInfo& gl, std::int64_t
     }
 }
 
-float random(std::uint32_t n, std::uint32_t purpose) {
-    return shared::as_uniform(shared::as_hash(1u, n, 0u, purpose));
-}
-
-/// A disk of splats, two or three pixels across where the whole disk is in the picture.
-std::shared_ptr<const SplatSet> disk(std::int64_t count, float radius) {
-    auto set = std::make_shared<SplatSet>();
-    const auto n = std::size_t(count);
-    set->position.resize(n);
-    set->color.resize(n);
-    set->alpha.resize(n);
-    set->distance.resize(n);
-    set->id.resize(n);
-    set->radius.resize(n);
-    parallel_chunks(count, 1 << 16, [&](std::int64_t begin, std::int64_t end, int) {
-        for (auto i = std::size_t(begin); i < std::size_t(end); ++i) {
-            const auto k = std::uint32_t(i);
-            set->position[i] = {10.0f * random(k, 1) - 5.0f, random(k, 2) - 0.5f,
-                                10.0f * random(k, 3) - 5.0f};
-            set->color[i] = {random(k, 4), random(k, 5), random(k, 6)};
-            set->alpha[i] = 0.02f + 0.1f * random(k, 7);
-            set->distance[i] = 0.0f;
-            set->id[i] = i;
-            set->radius[i] = radius;
-        }
-    });
-    return set;
-}
-
-Camera camera_at(double turn, int width, int height) {
-    CameraParams params;
-    const double angle = 2.0 * std::numbers::pi * turn;
-    params.position = glm::dvec3(10.0 * std::sin(angle), 5.0, 10.0 * std::cos(angle));
-    params.target = glm::dvec3(0.0);
-    return make_camera(params, width, height, {});
-}
-
-void measure_blend(GlPreview& preview, const std::shared_ptr<const SplatSet>& set, Blend blend, int width,
-                   int height, const std::string& what, const std::string& target) {
-    PreviewLayer layer;
-    layer.layer.name = "disk";
-    layer.layer.render.blend = blend;
-    layer.set = set;
-    Times times;
-    for (int i = 0; i < warm_frames + orbit_frames; ++i) {
-        if (i == warm_frames) times = {};
-        times.measure([&] {
-            preview.draw({layer}, {camera_at(0.002 * i, width, height), nullptr, width, height});
-            glFinish();
-        });
-    }
-    print_rate(what, target, times, "");
-}
-
-void measure_opengl(std::int64_t count, int width, int height) {
-    GlPreview preview;
-    const float px = 12.0f / float(height);  // scene units a pixel covers, about
-    const std::shared_ptr<const SplatSet> set = disk(count, 1.2f * px);
-    const std::string what = fmt::format("OpenGL, {} thousand splats, {}x{}, ", count / 1000, width, height);
-    measure_blend(preview, set, Blend::add, width, height, what + "add", ">= 60 frames/s on a GPU");
-    measure_blend(preview, set, Blend::screen, width, height, what + "screen", ">= 60 frames/s on a GPU");
-    measure_blend(preview, set, Blend::over, width, height, what + "over, sorted beside the frame",
-                  ">= 30 frames/s on a GPU");
-}
-
 int run(int argc, char** argv) {
     const double started = seconds_now(), processor_started = processor_seconds();
     ViewerOptions options;
     Parts wanted;
-    bool opengl = false;
-    std::int64_t splats = 44'000'000, shown = 0;
-    std::string pictures, size = "3840x2160", cache = default_cache_folder().string();
+    std::int64_t shown = 0;
+    std::string pictures, cache = default_cache_folder().string();
     CLI::App app("Measures the viewer: the table of issue 4.");
     app.add_option("scene", options.input, "default: the demo");
     app.add_option("--cache", cache, "folder of generated sets");
     app.add_option("--only", wanted.names, "some of: start orbit slider scrub settle window idle truth");
     app.add_option("--pictures", pictures, "folder for the frames of truth");
     app.add_option("--shown", shown, "of the previews of truth; default: those that hold 24 frames a second");
-    app.add_flag("--opengl", opengl, "only OpenGL's preview, of synthetic splats");
-    app.add_option("--splats", splats, "with --opengl");
-    app.add_option("--size", size, "with --opengl: px");
     CLI11_PARSE(app, argc, argv);
     options.cache.folder = cache;
-    int width = 0, height = 0;
-    if (std::sscanf(size.c_str(), "%dx%d", &width, &height) != 2 || splats < 1) {
-        fmt::print(stderr, "--size: expected a size such as 3840x2160, found '{}'\n", size);
-        return 2;
-    }
     const TempFolder home;  // no preferences or autosaves of whoever measures
     setenv("XDG_CONFIG_HOME", home.path().c_str(), 1);
     setenv("XDG_STATE_HOME", home.path().c_str(), 1);
     const OffscreenContext context;
     fmt::print("{}, {} threads\n\n", context.info().renderer, thread_count());
     print_head();
-    if (opengl) {
-        measure_opengl(splats, width, height);
-        return 0;
-    }
     measure_session(options, context.info(), wanted, started, processor_started);
     if (wanted("truth")) measure_truths(options, context.info(), shown, pictures);
     return 0;

@@ -108,6 +108,19 @@ TEST_F(Cards, SplatsThatTheProcessorProjects) {
     card().set_slabs(0);
 }
 
+TEST_F(Cards, OverAnImage) {
+    const ShadedSplats splats = cloud(3000, 11);
+    Image sky = make_image(211, 133, 4, 1.0f);
+    for (std::size_t i = 0; i < sky.pixels.size(); ++i) sky.pixels[i] = float(i * 37 % 101) / 100.0f;
+    for (const Blend blend : {Blend::over, Blend::screen, Blend::absorb}) {
+        const RenderLayer layer = layer_of("layer", splats, blend);
+        RenderSettings settings = settings_of(211, 133);
+        settings.backdrop = &sky;
+        expect_same_frame(card(), {&layer, 1}, cloud_camera(211, 133), settings,
+                          fmt::format("blend {}", int(blend)));
+    }
+}
+
 TEST_F(Cards, SlabsAndRegionsChangeNoBit) {
     const ShadedSplats splats = cloud(6000, 3, 0.5f), others = cloud(2000, 4);
     const RenderLayer layers[] = {layer_of("a", splats, Blend::over, Falloff::Shape::gaussian),

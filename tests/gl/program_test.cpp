@@ -1,7 +1,6 @@
 // Shader programs, for Mesa and for the reference compiler.
 #include "gl/gl_fixture.h"
 #include "gl/objects.h"
-#include "gl/passes.h"
 #include "support/test.h"
 
 namespace astrosplat {
@@ -69,25 +68,14 @@ class ReferenceCompiler : public ::testing::Test {
     TempFolder folder_;
 };
 
-TEST_F(ReferenceCompiler, TakesTheSplats) {
-    for (const char* kind : {"KIND 0", "KIND 1", "KIND 2", "KIND 3"}) {
-        EXPECT_TRUE(takes("vert", {kind}, splat_vertex_files)) << kind;
-        EXPECT_TRUE(takes("vert", {kind, "QUADS"}, splat_vertex_files)) << kind;
-        EXPECT_TRUE(takes("frag", {kind}, {"maths.glsl", "blend.glsl", "splat_fragment.glsl"})) << kind;
-    }
-    EXPECT_FALSE(takes("frag", {}, {"splat_fragment.glsl"}));  // the test can fail
-}
-
 TEST_F(ReferenceCompiler, TakesTheLook) {
-    EXPECT_TRUE(
-        takes("vert", {}, {"maths.glsl", "noise.glsl", "look_uniforms.glsl", "look.glsl", "look_pass.glsl"}));
+    EXPECT_TRUE(takes("vert", {},
+                      {"maths.glsl", "noise.glsl", "look_uniforms.glsl", "look.glsl", "screen_vertex.glsl"}));
+    EXPECT_FALSE(takes("vert", {}, {"look.glsl", "screen_vertex.glsl"}));  // the test can fail
 }
 
 TEST_F(ReferenceCompiler, TakesThePassesOverThePicture) {
     EXPECT_TRUE(takes("vert", {}, {"screen_vertex.glsl"}));
-    EXPECT_TRUE(takes("frag", {}, environment_fragment_files));
-    EXPECT_TRUE(takes("frag", {"BLEND 0"}, {"composite_fragment.glsl"}));
-    EXPECT_TRUE(takes("frag", {"BLEND 2"}, {"composite_fragment.glsl"}));
     EXPECT_TRUE(takes("frag", {"VIEW 2", "TAPS_A 1", "DITHER"}, {"display_fragment.glsl"}));
     EXPECT_TRUE(takes("frag", {"VIEW 1", "TAPS_A 2", "VIEW_B 3", "TAPS_B 1", "DIFFERENCE"},
                       {"display_fragment.glsl"}));

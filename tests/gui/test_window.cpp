@@ -218,7 +218,7 @@ Status example_status() {
     status.log = {{"Read 3 layers", false}};
     status.memory_bytes = 3200000000;
     status.threads = 2;
-    status.engine = "OpenGL 4.5, llvmpipe";
+    status.engine = "NVIDIA H100";
     status.has_ffmpeg = true;
     status.recent = {"/scenes/m51.toml", "/scenes/nebula.toml"};
     return status;

@@ -121,15 +121,15 @@ ViewTruth measure_truth(const NamedView& view, std::int64_t shown, const SetCach
     session.view.settle = false;
     session.document.edit("No sky", [](Scene& scene) { scene.environment.image.clear(); });
     draw_until(session, [&] { return preview_exact(session); });
-    const Image preview = session.view_frame.read();
+    const Image preview = *session.view_frame.pixels();
     const ViewFrameStatus status = session.view_frame.status();
     session.view.settle = true;
     draw_until(session, [&] { return settled(session); });
-    ViewTruth truth = compare_frames(preview, session.view_frame.read(), view.is_edge);
+    ViewTruth truth = compare_frames(preview, *session.view_frame.pixels(), view.is_edge);
     truth.shown = status.shown;
     truth.splats = status.total;
     truth.preview = preview;
-    truth.final = session.view_frame.read();
+    truth.final = *session.view_frame.pixels();
     return truth;
 }
 

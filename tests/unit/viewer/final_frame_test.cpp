@@ -136,18 +136,37 @@ TEST_F(Followed, AMovedCameraShowsFinalFramesAlone) {
     const ViewRequest first = view(0), second = view(4), third = view(8);
     settle(first);
     if (shown.final_frame()->statistics.device.empty()) GTEST_SKIP() << "no card";
-    EXPECT_EQ(pixel_hash(shown.read()), hash_of(request(0)));
+    EXPECT_EQ(pixel_hash(*shown.pixels()), hash_of(request(0)));
     show(second);
     EXPECT_EQ(shown.status().state, ViewFrameState::final);
     EXPECT_FALSE(shown.final_frame()) << "it is on its way";
     show(third);  // while that is on its way: it is not thrown away
     settle(third);
     EXPECT_EQ(shown.status().state, ViewFrameState::final);
-    EXPECT_EQ(pixel_hash(shown.read()), hash_of(request(8)));
+    EXPECT_EQ(pixel_hash(*shown.pixels()), hash_of(request(8)));
     choice.quick_s = 0.0;  // what comes next is too slow for it
     settle(second);
     show(first);
     EXPECT_EQ(shown.status().state, ViewFrameState::preview);
+}
+
+/// Whatever was drawn before: camera, look and size change from one to the next.
+TEST_F(Followed, ACardsPreviewsAreThoseOfTheProcessor) {
+    const GlInfo& info = test::shared_context().context->info();
+    Card card(info, info.software);
+    ViewFrame processors(std::make_shared<PictureFiles>());
+    choice.splats = 20'000;
+    choice.refined = false;
+    PreviewChoice by_card = choice;
+    by_card.device = &card;
+    for (const std::uint32_t which : {0, 1, 2, 6, 4}) {
+        shown.show(view(which), by_card, false, now);
+        processors.show(view(which), choice, false, now);
+        ASSERT_EQ(shown.status().state, ViewFrameState::preview);
+        EXPECT_EQ(pixel_hash(*shown.pixels()), pixel_hash(*processors.pixels())) << which;
+        EXPECT_GT(shown.status().shown, 1000);
+        EXPECT_FALSE(card.pass_times().empty()) << "it has drawn";
+    }
 }
 
 TEST_F(FinalFrameTest, DepthComesWithTheSamePixels) {

@@ -45,7 +45,7 @@ class PreviewSplatsTest : public testing::Test {
     Image draw(PreviewSplats& splats) const {
         std::vector<PreviewLayer> seen = layers;
         splats.cut(seen, loaded, view(), budget, least_px);
-        CpuPreview preview;
+        DrawnPreview preview;
         return preview.draw(seen, view());
     }
     std::string hash(PreviewSplats& splats) const { return pixel_hash(draw(splats)); }

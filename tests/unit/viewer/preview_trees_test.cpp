@@ -301,7 +301,7 @@ class Gallery {
     MergeSource source_{set_, std::make_shared<const MergeTree>(build_merge_tree(*set_)), 1.0f};
     MergedSplats merged_;
     std::optional<Blend> blend_;
-    CpuPreview preview_;
+    DrawnPreview preview_;
 };
 
 void expect_light_of_the_whole(Gallery& gallery, const View& view) {

@@ -88,7 +88,6 @@ TEST_F(Start, AMovingHandDoesNotHoldUpTheTrees) {
 
 // They would take half of the processor from it.
 TEST_F(Start, SumsForTheNextMoveGiveWayToTheFinalFrame) {
-    session.gl.software = true;
     session.view.settle = false;
     for (; !session.sets.loaded(session.document) || !preview_exact(session); now += 0.02) draw();
     session.document.edit("Harder", [](Scene& scene) { scene.layers[0].look.alpha.power = 0.7f; });
@@ -123,14 +122,13 @@ TEST_F(Start, MemoryIsCountedEveryFiveSeconds) {
 class FinerPreviewSession : public DiskSession {
   protected:
     FinerPreviewSession() : DiskSession(400'000, {640, 360}) {
-        session.gl.software = true;
         session.fixed_splats = 3000;
         session.view.settle = false;
     }
 
     std::int64_t shown() const { return session.view_frame.status().shown; }
     double distance_to(const Image& other) const {
-        const Image image = session.view_frame.read();
+        const Image image = *session.view_frame.pixels();
         double sum = 0.0;
         for (std::size_t i = 0; i < image.pixels.size(); ++i)
             sum += std::fabs(double(image.pixels[i]) - double(other.pixels[i]));
@@ -143,7 +141,7 @@ TEST_F(FinerPreviewSession, EveryStepIsCloserToTheFinalFrame) {
     session.document.edit("Wider", [](Scene& scene) { scene.camera.fov = 50.0; });  // the last change
     do draw();
     while (!session.sets.loaded(session.document) || !preview_exact(session));
-    std::vector<Image> seen{session.view_frame.read()};
+    std::vector<Image> seen{*session.view_frame.pixels()};
     std::vector<std::int64_t> counts{shown()};
     session.view.settle = true;
     draw();
@@ -154,7 +152,7 @@ TEST_F(FinerPreviewSession, EveryStepIsCloserToTheFinalFrame) {
         ASSERT_EQ(session.view_frame.status().state, ViewFrameState::preview);
         if (shown() == counts.back()) continue;
         counts.push_back(shown());
-        seen.push_back(session.view_frame.read());
+        seen.push_back(*session.view_frame.pixels());
     }
     EXPECT_GT(counts[1], 3 * counts[0]);
     EXPECT_GT(counts[2], 3 * counts[1]);
@@ -162,6 +160,30 @@ TEST_F(FinerPreviewSession, EveryStepIsCloserToTheFinalFrame) {
     EXPECT_LT(distance_to(seen[1]), 0.8 * distance_to(seen[0]));
     EXPECT_LT(distance_to(seen[2]), distance_to(seen[1]));
     EXPECT_GE(next_due(session, now), 0.1) << "nothing is left to be done";
+}
+
+/// Which the window's own context is: no other card's probe says anything about it.
+TEST_F(FinerPreviewSession, APreviewIsDrawnByTheCardThatIsAskedFor) {
+    session.gl = shared_context().context->info();
+    session.card_choice.device = DeviceChoice::automatic;
+    const auto picture = [&](PreviewEngine engine) {
+        session.view.engine = engine;
+        draw();
+        fill_status(session);
+        return *session.view_frame.pixels();
+    };
+    for (; !session.sets.loaded(session.document) || !preview_exact(session); now += 0.02) draw();
+    const Image processor = picture(PreviewEngine::processor);
+    EXPECT_EQ(session.status.engine, "processor");
+    const Image card = picture(PreviewEngine::card);
+    if (session.status.engine == "processor") GTEST_SKIP() << "no card";
+    EXPECT_EQ(session.status.engine, session.gl.renderer);
+    EXPECT_EQ(card.pixels, processor.pixels);
+    picture(PreviewEngine::automatic);
+    EXPECT_EQ(session.status.engine == "processor", session.gl.software) << "none has drawn a final frame";
+    session.card_choice.device = DeviceChoice::cpu;
+    picture(PreviewEngine::card);
+    EXPECT_EQ(session.status.engine, "processor");
 }
 
 TEST(Messages, AFailedPictureAndLayerAreSaidOnce) {
