@@ -65,14 +65,26 @@ FinalFrame::Outcome FinalFrame::render(Pipeline& pipeline, RenderDevice* device,
     return {State::done, {}, seconds_since(start), std::move(frame)};
 }
 
+namespace {
+
+/// The card of this thread, opened with its first frame. It goes with the thread, on which alone its context
+/// can be current.
+RenderDevice* card_of_thread(const CardChoice& choice) {
+    thread_local bool opened = false;
+    thread_local std::unique_ptr<OwnCard> card;
+    if (!std::exchange(opened, true)) card = open_card(choice);
+    return card ? &card->card() : nullptr;
+}
+
+}  // namespace
+
 FinalFrame::Work::Work FinalFrame::renderer(const CardChoice& choice) {
-    return [pipeline = std::make_shared<Pipeline>(), files = std::uint64_t{0}, choice, opened = false,
-            card = std::shared_ptr<OwnCard>()](const std::shared_ptr<Run>& run,
-                                               const Progress& progress) mutable {
-        if (!std::exchange(opened, true)) card = open_card(choice);  // of this thread
+    return [pipeline = std::make_shared<Pipeline>(), files = std::uint64_t{0}, choice](
+               const std::shared_ptr<Run>& run, const Progress& progress) mutable {
+        RenderDevice* const card = card_of_thread(choice);
         if (std::exchange(files, run->request.files) != files) pipeline = std::make_shared<Pipeline>();
         try {
-            return render(*pipeline, card ? &card->card() : nullptr, *run, progress);
+            return render(*pipeline, card, *run, progress);
         } catch (const std::bad_alloc&) {
             throw std::runtime_error("not enough memory for the final frame");
         }
