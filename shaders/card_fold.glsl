@@ -10,7 +10,8 @@ layout(std430, binding = 3) readonly buffer Ranges { uint range[]; };
 layout(std430, binding = 4) readonly buffer Nodes { vec4 node[]; };  // [node][segment]: by powers
 layout(std430, binding = 5) buffer Light { vec4 light_of[]; };      // r, g, b, alpha
 layout(std430, binding = 6) buffer Through { vec4 through_of[]; };  // transmittances
-uniform uint slab, slabs;
+uniform uint slab, slabs;        // of those whose entries are there
+uniform bool begins, ends;       // it is the first of all, the last
 uniform ivec2 corner_px, size_px;  // of the region
 uniform int tile_columns;
 uniform float stop;
@@ -285,7 +286,7 @@ void fold_splat(inout Pixel p, uint i, float x, float y, uint pixel) {
 
 Pixel load_pixel(uint at) {
     Pixel p = Pixel(0.0f, 0.0f, 0.0f, 0.0f, 1.0f, 1.0f, 1.0f, 1.0f, 0.0f, 0.0f, 1.0f, 0.0f);
-    if (slab == 0u) return p;
+    if (begins) return p;
     vec4 light = light_of[at], through = through_of[at];
     p.r = light.r, p.g = light.g, p.b = light.b, p.alpha = light.a;
     p.through_r = through.r, p.through_g = through.g, p.through_b = through.b, p.through = through.a;
@@ -297,26 +298,25 @@ Pixel load_pixel(uint at) {
 }
 
 void store_pixel(uint at, Pixel p) {
-    bool last = slab + 1u == slabs;
-    if (last && !is_open(p)) {  // closed
+    if (ends && !is_open(p)) {  // closed
         p.alpha = 1.0f - p.held;
         p.through_r = p.through_g = p.through_b = p.through = 0.0f;
     }
-    if (last && alone) p.alpha = min(max(p.alpha, 0.0f), 1.0f);
+    if (ends && alone) p.alpha = min(max(p.alpha, 0.0f), 1.0f);
     light_of[at] = vec4(p.r, p.g, p.b, p.alpha);
 #if KIND == 0
     p.through_r = p.through_g = p.through_b = p.through;
 #endif
-    if (!last || !alone) through_of[at] = vec4(p.through_r, p.through_g, p.through_b, p.through);
+    if (!ends || !alone) through_of[at] = vec4(p.through_r, p.through_g, p.through_b, p.through);
 #ifdef ANY
-    if (!last || !alone) more_of[at] = vec4(p.held, p.depth_sum, p.uncovered, p.count);
+    if (!ends || !alone) more_of[at] = vec4(p.held, p.depth_sum, p.uncovered, p.count);
 #endif
 }
 
 void main() {
     uint t = gl_LocalInvocationIndex, tile = group_number(), part = t / 16u;
     uint first = range[tile * (slabs + 1u) + slab], end = range[tile * (slabs + 1u) + slab + 1u];
-    if (slab > 0u && slab + 1u < slabs && first == end) return;
+    if (!begins && !ends && first == end) return;
     ivec2 within = ivec2(int(tile) % tile_columns, int(tile) / tile_columns) * 16, corner = corner_px + within;
     within += ivec2(part % 4u, part / 4u) * 4 + ivec2(t % 4u, t % 16u / 4u);
     bool inside = within.x < size_px.x && within.y < size_px.y;

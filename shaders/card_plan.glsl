@@ -1,10 +1,11 @@
 // One group of threads, between the passes over splats. PASS 0: nothing is counted yet. 1: the slab of each bin of depth, so
 // that slabs hold about as many of the sample's splats; which slab a splat is in changes no pixel. 2: where slabs begin.
-// 3: how many groups the passes over records and entries need.
+// 3: how many groups the passes over records and entries need. Records are those of all slabs or of the `only` one.
 layout(local_size_x = 256) in;
 layout(std430, binding = 1) readonly buffer Begins { uint begin[]; };  // [slab][group of splats]
 layout(std430, binding = 2) writeonly buffer Arguments { uint arguments[]; };
-uniform uint slabs, splat_groups;
+uniform uint slabs, splat_groups, only;
+const uint ALL_SLABS = 0xffffffffu;
 
 void put(uint slot, uint groups) {
     uint wide = min(max(int(groups), 1), 32768);
@@ -37,6 +38,7 @@ void main() {
     if (t <= slabs) counts.slab_begin[t] = t < slabs ? begin[t * splat_groups] : counts.visible;
 #else
     if (t != 0u) return;
+    if (only != ALL_SLABS) counts.visible = counts.slab_begin[only + 1u] - counts.slab_begin[only];
     put(0u, groups_for(counts.visible, SORTED));
     put(1u, groups_for(groups_for(counts.visible, SORTED) * 256u, SCANNED));
     put(2u, groups_for(counts.visible, GROUP));

@@ -1,6 +1,6 @@
 // A layer's splats onto the frame, and those that touch the region into records: slab by slab of depth from near to far, in
 // a slab in the order of the splats. PASS 0: between which depths a sample lies; 1: how many of it each bin of depth has; 2:
-// how many splats each group of 256 leaves in each slab; 3: the records; 4: which splats are left to the processor, because
+// how many splats each group of 256 leaves in each slab; 3: the records, of all slabs or of the `only` one; 4: which splats are left to the processor, because
 // level of detail divides them or they are stars that stay points. As engine/render/project_vector.cpp and
 // fold_prepare-inl.h. Needs projection.glsl, blend.glsl and footprint.glsl. ANY: records with what any mix of layers asks
 // for. GIVEN: splats that the processor has projected. RANKS: places in the order of ties are kept.
@@ -33,7 +33,8 @@ layout(std430, binding = 11) readonly buffer Cosines { float cosines[256]; };
 layout(std430, binding = 12) writeonly buffer Tags { uvec2 tag_of[]; };  // layer and node; bits of hybrid's h
 layout(std430, binding = 13) writeonly buffer Ranks { uint rank_of[]; };   // the place in (layer, splat)
 uniform uint first_rank;
-uniform uint count, first_group, all_groups, every, slabs;
+uniform uint count, first_group, all_groups, every, slabs, only;
+const uint ALL_SLABS = 0xffffffffu;
 uniform dvec4 camera_row[3];  // camera from layer, and the layer's origin
 uniform Lens lens;
 uniform float opacity, radius_scale;  // of the layer
@@ -274,8 +275,9 @@ void main() {
     }
 #elif PASS == 3
     barrier();
-    if (!splat.shows) return;
+    if (!splat.shows || (only != ALL_SLABS && slab != only)) return;
     uint at = begin[slab * all_groups + first_group + group];
+    if (only != ALL_SLABS) at -= counts.slab_begin[only];
     for (uint w = 0u; w < (t >> 5); ++w) at += uint(bitCount(words[slab * 8u + w]));
     at += uint(bitCount(words[slab * 8u + (t >> 5)] & ((1u << (t & 31u)) - 1u)));
     write_record(at, splat);

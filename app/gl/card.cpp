@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "core/log.h"
+#include "core/memory.h"
 #include "core/parallel.h"
 #include "render/shape.h"
 #include "splats/splat_set.h"
@@ -15,15 +16,17 @@ namespace astrosplat {
 
 namespace {
 
-constexpr GLuint most_slabs = 32, group_size = 256, sorted = 4096, scanned = 2048;
+constexpr GLuint group_size = 256, sorted = 4096, scanned = 2048;
 constexpr int tile_px = 16;
 constexpr std::int64_t most_px = 32768;  // of a side: 256 splats over all tiles still have countable entries
 constexpr std::size_t most_falloffs = 100;  // whose nodes have numbers of 16 bits
-constexpr std::int64_t counts_bytes = (12 + 1024 + 33) * 4;
 // Slabs from so many splats on, of so many each: 256 MB of records of 32 bytes.
 constexpr std::int64_t slabs_from = 12'000'000, splats_of_slab = 8'000'000;
 constexpr std::uint64_t frames_kept = 64;  // splats that so many draws did not ask for give their memory back
 constexpr int segments = FootprintNode::segments;
+constexpr double spare = 1.05, most_each = 16.0;  // entries of a splat: the last group's may have been wide
+// What is tried, one after the other, until the memory suffices.
+constexpr Card::Share shares[] = {{}, {true, 8}, {true, 32}, {false, 0, 4}, {true, 32, 4}, {true, 32, 16}};
 
 void barrier() {
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
@@ -42,6 +45,21 @@ void lay_out(const FootprintTable& table, std::vector<float>& nodes, std::vector
             for (const auto& power : node.cubic) nodes.push_back(power[s]);
         moments.insert(moments.end(), &node.moments.mean, &node.moments.mean + 12);
     }
+}
+
+/// What tells how many KiB of the card's memory are free, by extensions of NVIDIA's and AMD's drivers; 0:
+/// none.
+GLenum free_memory_query() {
+    constexpr std::pair<const char*, GLenum> queries[] = {{"GL_NVX_gpu_memory_info", 0x9049},
+                                                          {"GL_ATI_meminfo", 0x87FC}};
+    GLint count = 0;
+    glGetIntegerv(GL_NUM_EXTENSIONS, &count);
+    for (GLint i = 0; i < count; ++i)
+        for (const auto& [name, query] : queries) {
+            const auto* has = reinterpret_cast<const char*>(glGetStringi(GL_EXTENSIONS, GLuint(i)));
+            if (has && std::strcmp(has, name) == 0) return query;
+        }
+    return 0;
 }
 
 void set_lens(const Uniforms& set, const Lens& lens) {
@@ -84,8 +102,7 @@ bool CardBuffer::reserve(std::int64_t bytes, GLbitfield flags) {
     if (bytes <= bytes_) return true;
     buffer_.reset();
     bytes_ = 0;
-    while (glGetError() != GL_NO_ERROR) {
-    }
+    for (int i = 0; i < 16 && glGetError() != GL_NO_ERROR;) ++i;  // a lost context has no end of them
     GLuint name = 0;
     glBindBuffer(GL_COPY_WRITE_BUFFER, name = buffer_.get());
     glBufferStorage(GL_COPY_WRITE_BUFFER, static_cast<GLsizeiptr>(bytes), nullptr, flags);
@@ -143,33 +160,34 @@ Card::Card(const GlInfo& info, bool native_division) : info_(info), native_divis
     GLint64 bytes = 0;
     glGetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &bytes);
     most_bytes_ = std::min<std::int64_t>(bytes, 0x7fffffff);
+    free_memory_ = free_memory_query();
 }
 
 std::string Card::cannot(const FrameJob& job) const {
+    if (lost_) return "it was lost";
     if (shared::is_onto_sphere(job.fold.lens)) return "it draws no projections onto the sphere";
     if (job.region.width > most_px || job.region.height > most_px)
         return "it draws no frames as large as this";
     for (std::size_t g = 0; g < job.groups.size(); ++g) {
-        const Group group = plan(job, g, false);
-        if (group.tables.size() > most_falloffs) return "it draws no mix of so many falloffs";
-        std::int64_t splats = 0;
+        if (plan(job, g, false, job.region).tables.size() > most_falloffs)
+            return "it draws no mix of so many falloffs";
         for (const std::size_t l : job.groups[g].layers) {
             if (job.layers[l].blocks) return "it draws no layers that are read block by block";
-            splats += job.layers[l].size();
+            if (12 * job.layers[l].size() > most_bytes_) return "it has no buffers for so many splats";
         }
-        if ((group.any ? 64 : 32) * splats > most_bytes_) return "it has no buffers for so many splats";
     }
     return {};
 }
 
-Card::Group Card::plan(const FrameJob& job, std::size_t number, bool alone) const {
+Card::Group Card::plan(const FrameJob& job, std::size_t number, bool alone, const Region& region) const {
     const BlendGroup& blend = job.groups[number];
     Group group{};
     group.kind = blend.kind;
     group.alone = alone;
-    group.pixels = job.region.width * job.region.height;
-    group.columns = static_cast<int>(groups_for(job.region.width, tile_px));
-    group.rows = static_cast<int>(groups_for(job.region.height, tile_px));
+    group.region = region;
+    group.pixels = region.width * region.height;
+    group.columns = static_cast<int>(groups_for(region.width, tile_px));
+    group.rows = static_cast<int>(groups_for(region.height, tile_px));
     bool flat = false, screen = blend.kind == FoldKind::general;
     for (const std::size_t l : blend.layers) {
         const FoldLayer& layer = job.fold_layers[l];
@@ -185,11 +203,10 @@ Card::Group Card::plan(const FrameJob& job, std::size_t number, bool alone) cons
     return group;
 }
 
-void Card::cut_depth(Group& group) const {
-    const std::int64_t slabs = slabs_ > 0                 ? slabs_
-                               : group.count < slabs_from ? 1
-                                                          : groups_for(group.count, splats_of_slab);
-    group.slabs = static_cast<GLuint>(std::min<std::int64_t>(slabs, most_slabs));
+GLuint Card::slabs_for(std::int64_t splats, const Share& share) const {
+    std::int64_t slabs = std::max<std::int64_t>(slabs_, share.slabs);
+    if (slabs == 0) slabs = splats < slabs_from ? 1 : groups_for(splats, splats_of_slab);
+    return static_cast<GLuint>(std::min<std::int64_t>(slabs, most_slabs));
 }
 
 const Card::Kept* Card::keep(const ShadedSplats& splats, bool with_stars) {
@@ -201,10 +218,19 @@ const Card::Kept* Card::keep(const ShadedSplats& splats, bool with_stars) {
     const bool there = splats.stamp != 0 && kept.frame != 0;
     kept.frame = frames_;
     const std::int64_t n = splats.size();
+    std::int64_t own = 0;
+    for (const CardBuffer& array : kept.arrays) own += array.bytes();
+    const auto has_room = [&] {
+        return there || bytes() + std::max<std::int64_t>(0, 32 * n - own) <= room();
+    };
+    if (!has_room()) {  // what is not needed yet, or was for other frames, gives way
+        std::erase_if(kept_, [&](const auto& other) { return other.second.frame < frames_; });
+        for (CardBuffer* const buffer : working()) buffer->release();
+    }
     bool fits =
-        there ||
-        (send(splats.position.data(), 12 * n, positions) && send(splats.radius.data(), 4 * n, radii) &&
-         send(splats.alpha.data(), 4 * n, alphas) && send(splats.color.data(), 12 * n, colors));
+        there || (has_room() && send(splats.position.data(), 12 * n, positions) &&
+                  send(splats.radius.data(), 4 * n, radii) && send(splats.alpha.data(), 4 * n, alphas) &&
+                  send(splats.color.data(), 12 * n, colors));
     if (fits && with_stars && !(there && stars.bytes() > 0)) {
         std::vector<std::uint32_t> bits(static_cast<std::size_t>(n) / 32 + 1);
         for (std::size_t i = 0; i < splats.id.size(); ++i)
@@ -220,7 +246,7 @@ const Card::Kept* Card::keep(const ShadedSplats& splats, bool with_stars) {
 std::optional<std::vector<std::int64_t>> Card::rest_of(const FrameJob& job, const Group& group,
                                                        const Splats& splats) {
     const GLuint none = 0;
-    if (!counts_.reserve(counts_bytes) || !rest_.reserve(4 * (splats.count + 1))) return {};
+    if (!counts_.reserve(sizeof(Counts)) || !rest_.reserve(4 * (splats.count + 1))) return {};
     glNamedBufferSubData(rest_.name(), 0, 4, &none);
     counts_.bind(0);
     rest_.bind(15);
@@ -272,7 +298,7 @@ bool Card::give(const FrameJob& job, Group& group, std::size_t number,
     constexpr std::int64_t chunk = 1024;
     const LayerProjection& layer = job.projections[number];
     const FootprintTable& table = *job.fold_layers[number].footprints;
-    const Region& r = job.region;
+    const Region& r = group.region;
     const ScreenRect rect{float(r.x), float(r.y), float(r.x + r.width), float(r.y + r.height)};
     const std::int64_t count = rows ? std::ssize(*rows) : job.layers[number].size();
     std::vector<GivenPart> parts(static_cast<std::size_t>(groups_for(count, chunk)));
@@ -344,7 +370,6 @@ bool Card::gather(const FrameJob& job, std::size_t number, Group& group) {
         group.count += splats.count;
         group.splat_groups += static_cast<GLuint>(groups_for(splats.count, group_size));
     }
-    cut_depth(group);
     return send(given_.data(), std::ssize(given_) * std::int64_t(sizeof(ScreenSplat)), given_splats_) &&
            send(shapes_.data(), 4 * std::ssize(shapes_), given_shapes_);
 }
@@ -366,40 +391,69 @@ bool Card::upload_tables(const FrameJob& job, const Group& group) {
            cosines_.fill(pixel_cosines.data(), sizeof pixel_cosines);
 }
 
-bool Card::reserve(const FrameJob& job, const Group& group, std::int64_t entries) {
-    const std::int64_t n = std::max<std::int64_t>(group.count, 1),
-                       tiles = std::int64_t(group.columns) * group.rows;
+/// Bytes that all buffers may take.
+std::int64_t Card::room() {
+    if (room_ > 0) return room_;
+    if (free_memory_ == 0) return std::numeric_limits<std::int64_t>::max();
+    GLint kib[4] = {};
+    glGetIntegerv(free_memory_, kib);
+    return bytes() + (std::int64_t{kib[0]} << 10);
+}
+
+/// The buffers that each group fills anew.
+std::vector<CardBuffer*> Card::working() {
+    std::vector<CardBuffer*> buffers = {&counts_, &arguments_, &begins_,  &entry_begins_, &records_,
+                                        &tags_,   &rects_,     &ranks_,   &digits_,       &sums_,
+                                        &ranges_, &light_,     &through_, &more_,         &layer_light_};
+    for (auto* list : {&keys_, &values_})
+        for (CardBuffer& buffer : *list) buffers.push_back(&buffer);
+    return buffers;
+}
+
+/// Memory for so many records and entries at a time. False where there is not so much.
+bool Card::reserve(const FrameJob& job, const Group& group, std::int64_t records, std::int64_t entries) {
+    const std::int64_t n = std::max<std::int64_t>(records, 1),
+                       tiles = std::int64_t(group.columns) * group.rows, record_bytes = group.any ? 64 : 32;
     entries = std::max(n, entries) + sorted;
-    const std::int64_t record_bytes = group.any ? 64 : 32;
-    if (record_bytes * n > most_bytes_ || 4 * entries > most_bytes_) return false;
+    const std::int64_t begins = group.splat_groups * std::int64_t(group.slabs) + 1,
+                       blocks = groups_for(std::max(entries, keys_[0].bytes() / 4), sorted) + 1;
+    const bool carries = !group.alone || group.slabs > 1;  // what is not light
+    std::vector<std::pair<CardBuffer*, std::int64_t>> wanted = {
+        {&counts_, sizeof(Counts)},
+        {&arguments_, 3 * 4 * 8},
+        {&begins_, 4 * begins},
+        {&entry_begins_, 4 * (groups_for(n, group_size) + 1)},
+        {&records_, record_bytes * n},
+        {&tags_, group.any ? 8 * n : 16},
+        {&rects_, 8 * n},
+        {&ranks_, group.ranked ? 4 * n : 16},
+        {&digits_, 4 * 256 * blocks},
+        {&sums_, 4 * (std::max(256 * blocks, begins) / scanned + 64)},
+        {&ranges_, 4 * tiles * (group.slabs + 1)},
+        {&light_, 16 * group.pixels},
+        {&through_, carries ? 16 * group.pixels : 16},
+        {&more_, carries && group.any ? 16 * group.pixels : 16},
+        {&layer_light_, job.settings.aov_layers ? 16 * group.pixels * std::ssize(job.layers) : 16}};
     for (int i = 0; i < (group.ranked ? 4 : 3); ++i)
-        if (const std::int64_t bytes = 4 * (i < 2 ? entries : n);
-            !keys_[i].reserve(bytes) || !values_[i].reserve(bytes))
-            return false;
-    const std::int64_t begins = group.splat_groups * std::int64_t(group.slabs) + 1;
-    const std::int64_t digits = 256 * (groups_for(keys_[0].bytes() / 4, sorted) + 1);
-    const auto all = [](std::initializer_list<std::pair<CardBuffer*, std::int64_t>> wanted) {
-        return std::ranges::all_of(wanted, [](const auto& want) { return want.first->reserve(want.second); });
-    };
-    if (!all({{&counts_, counts_bytes},
-              {&arguments_, 3 * 4 * 8},
-              {&begins_, 4 * std::max(begins, groups_for(n, group_size) + 1)},
-              {&records_, record_bytes * n},
-              {&tags_, group.any ? 8 * n : 16},
-              {&rects_, 8 * n},
-              {&ranks_, group.ranked ? 4 * n : 16},
-              {&digits_, 4 * digits},
-              {&sums_, 4 * (std::max(digits, begins) / scanned + 64)},
-              {&ranges_, 4 * tiles * (group.slabs + 1)},
-              {&light_, 16 * group.pixels},
-              {&through_, 16 * group.pixels},
-              {&more_, group.any ? 16 * group.pixels : 16}}))
-        return false;
-    if (!job.settings.aov_layers) return layer_light_.reserve(16);
-    const std::int64_t bytes = 16 * group.pixels * std::ssize(job.layers);
-    if (bytes > most_bytes_ || !layer_light_.reserve(bytes)) return false;
-    glClearNamedBufferData(layer_light_.name(), GL_R32F, GL_RED, GL_FLOAT, nullptr);
-    return true;
+        for (CardBuffer* buffer : {&keys_[i], &values_[i]})
+            wanted.emplace_back(buffer, 4 * (i < 2 ? entries : n));
+    std::int64_t sum = bytes();
+    for (const auto& [buffer, size] : wanted) {
+        if (size > most_bytes_) return false;
+        sum += std::max<std::int64_t>(0, size - buffer->bytes());
+    }
+    if (sum > bytes() && sum > room()) return false;
+    if (sum > 2 * told_bytes_)
+        log_detail(fmt::format("{} takes {} of the card's memory", human_count(group.count, "splat"),
+                               human_bytes(double(sum))));
+    told_bytes_ = std::max(told_bytes_, sum);
+    return std::ranges::all_of(wanted, [](const auto& want) { return want.first->reserve(want.second); });
+}
+
+/// What the group's planes begin with, where the fold adds to what is there.
+void Card::clear_layers(const FrameJob& job) {
+    if (job.settings.aov_layers)
+        glClearNamedBufferData(layer_light_.name(), GL_R32F, GL_RED, GL_FLOAT, nullptr);
 }
 
 ProgramSource card_source(const std::string& file, const std::string& defines, bool native_division) {
@@ -450,6 +504,7 @@ void Card::plan_pass(const Group& group, int pass) {
     const Uniforms set{p.name()};
     set("slabs", group.slabs);
     set("splat_groups", group.splat_groups);
+    set("only", group.only);
     bind({&begins_, &arguments_});
     dispatch(p, 1);
 }
@@ -505,6 +560,7 @@ void Card::project_some(const FrameJob& job, const Group& group, const Splats& s
     set("all_groups", group.splat_groups);
     set("every", every);
     set("slabs", group.slabs);
+    set("only", group.only);
     set_camera(set, projection);
     set_lens(set, projection.lens);
     set("opacity", projection.opacity);
@@ -512,7 +568,7 @@ void Card::project_some(const FrameJob& job, const Group& group, const Splats& s
     set("lod_limit_px", projection.lod ? projection.lod_limit_px : 0.0f);
     set("child_reach", child_reach);
     set("leaves_stars", int(projection.star_distance > 0.0f));
-    const Region& r = job.region;
+    const Region& r = group.region;
     glProgramUniform4f(p.name(), set.at("region"), float(r.x), float(r.y), float(r.x + r.width),
                        float(r.y + r.height));
     glProgramUniform2i(p.name(), set.at("tiles"), group.columns, group.rows);
@@ -548,8 +604,7 @@ void Card::project(const FrameJob& job, const Group& group, int pass) {
 
 /// By depth, ties as the processor has them; the pair of keys and values that holds the order.
 int Card::put_in_order(const Group& group) {
-    Counts counts{};
-    glGetNamedBufferSubData(counts_.name(), 0, sizeof counts, &counts);
+    const Counts counts = read_counts();
     const auto by_depth = [&](int in) { return sort(in, 1, 1, counts.first_key, counts.last_key); };
     if (!group.ranked) return by_depth(2);  // records are in the order of ties
     const auto pass = [&](int number, const CardBuffer& keys, const CardBuffer& values) {
@@ -576,13 +631,15 @@ int Card::list_entries(const Group& group, int order) {
         const Uniforms set{p.name()};
         set("tile_columns", group.columns);
         set("tile_count", static_cast<GLuint>(group.columns * group.rows));
-        set("slabs", group.slabs);
+        set("slabs", group.listed());
         return p;
     };
-    const auto bind_records = [&] { bind({&values_[order], &rects_, &begins_, &keys_[0], &values_[0]}); };
+    const auto bind_records = [&] {
+        bind({&values_[order], &rects_, &entry_begins_, &keys_[0], &values_[0]});
+    };
     bind_records();
     indirect(pass(0), 2);
-    scan(begins_, 0, 3, 2, 3);
+    scan(entry_begins_, 0, 3, 2, 3);
     plan_pass(group, 3);
     bind_records();
     indirect(pass(1), 2);
@@ -590,7 +647,7 @@ int Card::list_entries(const Group& group, int order) {
     const int by_tile = sort(0, 1, 2, 0, static_cast<GLuint>(group.columns * group.rows - 1));
     mark("ranges");
     bind({&keys_[by_tile], &ranges_, &values_[by_tile]});
-    dispatch(pass(2), groups_for(std::int64_t(group.slabs + 1) * group.columns * group.rows, group_size));
+    dispatch(pass(2), groups_for(std::int64_t(group.listed() + 1) * group.columns * group.rows, group_size));
     indirect(pass(3), 6);
     return by_tile;
 }
@@ -601,9 +658,10 @@ void Card::fold(const FrameJob& job, const Group& group, int by_tile) {
                                       group.screen ? ",SCREEN" : "", group.shaped ? ",SHAPED" : "",
                                       !group.any && group.tables[0]->linear_in_distance ? ",LINEAR" : ""));
     const Uniforms set{p.name()};
-    const Region& r = job.region;
+    const Region& r = group.region;
     const FootprintTable& table = *group.tables[0];
-    set("slabs", group.slabs);
+    const GLuint first = group.only == all_slabs ? 0 : group.only;
+    set("slabs", group.listed());
     glProgramUniform2i(p.name(), set.at("corner_px"), int(r.x), int(r.y));
     glProgramUniform2i(p.name(), set.at("size_px"), int(r.width), int(r.height));
     set("tile_columns", group.columns);
@@ -615,8 +673,10 @@ void Card::fold(const FrameJob& job, const Group& group, int by_tile) {
     set("margin_px", 4.0f * table.pixel_filter_px);
     bind({&records_, &values_[by_tile], &ranges_, &nodes_, &light_, &through_, &more_, &tags_, &layers_,
           &layer_light_});
-    for (GLuint slab = 0; slab < group.slabs; ++slab) {
+    for (GLuint slab = 0; slab < group.listed(); ++slab) {
         set("slab", slab);
+        set("begins", int(first + slab == 0));
+        set("ends", int(first + slab + 1 == group.slabs));
         p.use();
         glDispatchCompute(static_cast<GLuint>(group.columns), static_cast<GLuint>(group.rows), 1);
         barrier();
@@ -635,20 +695,28 @@ std::vector<Card::PassTime> Card::pass_times() const {
     for (std::size_t i = 0; i < marked_; ++i) {
         GLuint64 now = 0;
         glGetQueryObjectui64v(marks_[i].second.name(), GL_QUERY_RESULT, &now);
-        if (i > 0) times.push_back({marks_[i - 1].first, 1e-6 * double(now - before)});
+        if (i > 0) {  // of slab after slab
+            const char* const pass = marks_[i - 1].first;
+            auto at = std::ranges::find(times, pass, &PassTime::name);
+            if (at == times.end()) at = times.insert(at, {pass, 0.0});
+            at->milliseconds += 1e-6 * double(now - before);
+        }
         before = now;
     }
     return times;
 }
 
-Card::Counts Card::run(const FrameJob& job, const Group& group) {
-    marked_ = 0;
+Card::Counts Card::read_counts() const {
+    Counts counts{};
+    glGetNamedBufferSubData(counts_.name(), 0, sizeof counts, &counts);
+    return counts;
+}
+
+/// How many splats show, slab by slab.
+void Card::count(const FrameJob& job, const Group& group) {
     counts_.bind(0);
     glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, arguments_.name());
-    mark("count");
     plan_pass(group, 0);
-    const auto room = static_cast<GLuint>(keys_[0].bytes() / 4);
-    glNamedBufferSubData(counts_.name(), offsetof(Counts, entries_room), 4, &room);
     if (group.slabs > 1) {
         project(job, group, 0);
         project(job, group, 1);
@@ -657,81 +725,178 @@ Card::Counts Card::run(const FrameJob& job, const Group& group) {
     project(job, group, 2);
     scan(begins_, group.slabs * group.splat_groups, 0, 1, 0);
     plan_pass(group, 2);
+}
+
+/// Records and entries of all slabs or of one, after they were counted; the pair that holds the entries.
+int Card::list_slabs(const FrameJob& job, const Group& group) {
+    const auto room = static_cast<GLuint>(keys_[0].bytes() / 4);
+    const GLuint none[2] = {};
+    glNamedBufferSubData(counts_.name(), offsetof(Counts, entries_room), 4, &room);
+    glNamedBufferSubData(counts_.name(), offsetof(Counts, entries_low), sizeof none, none);
     plan_pass(group, 3);
     mark("project");
     project(job, group, 3);
     mark("sort by depth");
     const int order = put_in_order(group);
     mark("entries");
-    const int by_tile = list_entries(group, order);
-    mark("fold");
-    fold(job, group, by_tile);
-    mark("");
-    Counts counts{};
-    glGetNamedBufferSubData(counts_.name(), 0, sizeof counts, &counts);
-    return counts;
+    return list_entries(group, order);
 }
 
-bool Card::read(const CardBuffer& from, std::int64_t first_pixel, Image& to) {
-    const std::int64_t bytes = 16 * to.width * to.height;
+/// All slabs at once. The last group's splats may have been few and wide: entries are counted, and listed
+/// again where there was no room for all.
+bool Card::fold_together(const FrameJob& job, const Group& group) {
+    auto entries = std::int64_t(double(group.count) * std::min(entries_each_, most_each));
+    for (;;) {
+        job.progress.check();
+        if (!reserve(job, group, group.count, entries)) return false;
+        clear_layers(job);
+        marked_ = 0;
+        mark("count");
+        count(job, group);
+        const int by_tile = list_slabs(job, group);
+        mark("fold");
+        fold(job, group, by_tile);
+        mark("");
+        const Counts counts = read_counts();
+        if (counts.entries_high > 0) return false;
+        entries = std::int64_t(spare * counts.entries_wanted);
+        entries_each_ = std::max(2.5, double(entries) / double(std::max<std::int64_t>(group.count, 1)));
+        if (counts.entries_wanted <= counts.entries) return true;
+    }
+}
+
+/// One slab after the other, in memory for the fullest. What they have drawn stays.
+bool Card::fold_apart(const FrameJob& job, Group& group) {
+    if (!reserve(job, group, 1, 1)) return false;
+    clear_layers(job);
+    marked_ = 0;
+    mark("count");
+    count(job, group);
+    const Counts all = read_counts();
+    const auto size_of = [&](GLuint slab) { return all.slab_begin[slab + 1] - all.slab_begin[slab]; };
+    GLuint fullest = 1;
+    for (GLuint slab = 0; slab < group.slabs; ++slab) fullest = std::max(fullest, size_of(slab));
+    auto entries = std::int64_t(double(fullest) * std::min(entries_each_, most_each));
+    for (group.only = 0; group.only < group.slabs;) {
+        job.progress.check();
+        if (!reserve(job, group, fullest, entries)) return false;
+        const int by_tile = list_slabs(job, group);
+        const Counts counts = read_counts();
+        if (counts.entries_high > 0) return false;
+        entries = std::max(entries, std::int64_t(spare * counts.entries_wanted));
+        if (counts.entries_wanted > counts.entries) continue;
+        mark("fold");
+        fold(job, group, by_tile);
+        ++group.only;
+    }
+    mark("");
+    glNamedBufferSubData(counts_.name(), 0, sizeof all, &all);  // of all slabs
+    return true;
+}
+
+/// The group's region into its rows of the planes.
+bool Card::read_planes(const FrameJob& job, const Group& group, GroupPlanes& planes) {
+    const auto rows = [&](const CardBuffer& from, std::int64_t first_pixel, Image& to) {
+        return read(from, first_pixel, group, job, to);
+    };
+    bool is_whole = rows(light_, 0, planes.light);
+    if (!group.alone) is_whole = is_whole && rows(through_, 0, planes.through);
+    if (!group.alone && group.any) is_whole = is_whole && rows(more_, 0, planes.more);
+    for (std::size_t l = 0; l < planes.layer_light.size(); ++l)
+        is_whole = is_whole && rows(layer_light_, std::int64_t(l) * group.pixels, planes.layer_light[l]);
+    return is_whole;
+}
+
+bool Card::read(const CardBuffer& from, std::int64_t first_pixel, const Group& group, const FrameJob& job,
+                Image& to) {
+    const std::int64_t bytes = 16 * group.pixels;
     if (!staging_.reserve(bytes, GL_MAP_READ_BIT | GL_CLIENT_STORAGE_BIT)) return false;
     glCopyNamedBufferSubData(from.name(), staging_.name(), 16 * first_pixel, 0, bytes);
     const auto* data =
         static_cast<const float*>(glMapNamedBufferRange(staging_.name(), 0, bytes, GL_MAP_READ_BIT));
     if (!data) return false;
     constexpr std::int64_t chunk = 1 << 18;
+    float* const rows = to.at(0, group.region.y - job.region.y);
     parallel_chunks(bytes / 4, chunk, [&](std::int64_t begin, std::int64_t end, int) {
-        std::copy(data + begin, data + end, to.pixels.data() + begin);
+        std::copy(data + begin, data + end, rows + begin);
     });
     return glUnmapNamedBuffer(staging_.name());
 }
 
-std::optional<GroupPlanes> Card::draw(const FrameJob& job, std::size_t number, bool alone) try {
-    ++frames_;
-    Group group = plan(job, number, alone);
-    if (!upload_tables(job, group) || !gather(job, number, group)) return {};
-    constexpr double spare = 1.05, most_each = 16.0;  // the last group's may have been few and wide
-    auto entries = std::int64_t(double(group.count) * std::min(entries_each_, most_each));
-    Counts counts{};
-    do {
-        job.progress.check();
-        if (!reserve(job, group, entries)) return {};
-        counts = run(job, group);
-        if (counts.entries_high > 0) return {};
-        entries = std::int64_t(spare * counts.entries_wanted);
-    } while (counts.entries_wanted > counts.entries);
-    entries_each_ = std::max(2.5, double(entries) / double(std::max<std::int64_t>(group.count, 1)));
-    GroupPlanes planes;
+bool Card::draw_band(const FrameJob& job, Group& group, const Share& share, GroupPlanes& planes) {
+    group.slabs = slabs_for(group.count, share);
+    group.only = all_slabs;
+    if (!(share.apart ? fold_apart(job, group) : fold_together(job, group))) return false;
+    if (share.bands == 1) note_counts(planes);
+    return read_planes(job, group, planes) && glGetError() == GL_NO_ERROR;
+}
+
+void Card::note_counts(GroupPlanes& planes) const {
+    const Counts counts = read_counts();
     planes.splats = counts.visible;
     planes.footprint_px = (4294967296.0 * counts.area_high + counts.area_low) / 16.0;
-    const auto read_image = [&](const CardBuffer& from, std::int64_t first_pixel, Image& to) {
-        to = unfilled_image(job.region.width, job.region.height, 4);
-        return read(from, first_pixel, to);
-    };
-    bool is_whole = read_image(light_, 0, planes.light);
-    if (!alone) {
-        is_whole = is_whole && read_image(through_, 0, planes.through);
-        if (group.any) is_whole = is_whole && read_image(more_, 0, planes.more);
+}
+
+/// The frame in bands, each a region of its own. `whole`: all of it, of which no more than counts fits.
+bool Card::draw_bands(const FrameJob& job, std::size_t number, Group& whole, const Share& share,
+                      GroupPlanes& planes) {
+    whole.slabs = 1;
+    whole.only = all_slabs;
+    const std::int64_t begins = whole.splat_groups + 1;
+    if (!counts_.reserve(sizeof(Counts)) || !arguments_.reserve(3 * 4 * 8) || !begins_.reserve(4 * begins) ||
+        !sums_.reserve(4 * (begins / scanned + 64)))
+        return false;
+    count(job, whole);
+    note_counts(planes);
+    const Region& all = job.region;
+    const std::int64_t rows = groups_for(all.height, share.bands);
+    for (std::int64_t y = 0; y < all.height; y += rows) {
+        const Region band{all.x, all.y + y, all.width, std::min(rows, all.height - y)};
+        Group group = plan(job, number, whole.alone, band);
+        if (!gather(job, number, group) || !draw_band(job, group, share, planes)) return false;
     }
+    return true;
+}
+
+/// Room for what is read back.
+GroupPlanes Card::new_planes(const FrameJob& job, const Group& group) {
+    GroupPlanes planes;
+    const auto plane = [&] { return unfilled_image(job.region.width, job.region.height, 4); };
+    planes.light = plane();
+    if (!group.alone) planes.through = plane();
+    if (!group.alone && group.any) planes.more = plane();
     if (job.settings.aov_layers)
-        for (std::size_t l = 0; l < job.layers.size(); ++l)
-            is_whole = is_whole && read_image(layer_light_, std::int64_t(l) * group.pixels,
-                                              planes.layer_light.emplace_back());
-    if (!is_whole || glGetError() != GL_NO_ERROR) return {};
+        for (std::size_t l = 0; l < job.layers.size(); ++l) planes.layer_light.push_back(plane());
     return planes;
+}
+
+std::optional<GroupPlanes> Card::draw(const FrameJob& job, std::size_t number, bool alone) try {
+    ++frames_;
+    Group group = plan(job, number, alone, job.region);
+    if (!upload_tables(job, group) || !gather(job, number, group)) return {};
+    GroupPlanes planes = new_planes(job, group);
+    const bool as_before = group.count >= short_of_.splats && group.pixels >= short_of_.pixels;
+    for (std::size_t at = as_before ? short_of_.share : 0; at < std::size(shares); ++at) {
+        share_ = shares[at];
+        const bool drawn = share_.bands == 1 ? draw_band(job, group, share_, planes)
+                                             : draw_bands(job, number, group, share_, planes);
+        if (drawn && at > 0) short_of_ = {group.count, group.pixels, at};
+        if (drawn) return planes;
+        for (CardBuffer* const buffer : working()) buffer->release();
+    }
+    lost_ = glGetGraphicsResetStatus() != GL_NO_ERROR;
+    return {};
 } catch (const CardFailed& failed) {
     log_warning(failed.what());
     return {};
 }
 
-std::int64_t Card::bytes() const {
+std::int64_t Card::bytes() {
     std::int64_t sum = 0;
+    for (const CardBuffer* const buffer : working()) sum += buffer->bytes();
     for (const CardBuffer* buffer :
-         {&counts_,  &arguments_, &begins_,  &records_, &tags_,         &rects_,        &sums_,   &digits_,
-          &ranges_,  &light_,     &through_, &more_,    &layer_light_,  &layers_,       &nodes_,  &moments_,
-          &cosines_, &staging_,   &ranks_,   &rest_,    &given_splats_, &given_shapes_, &sending_})
+         {&layers_, &nodes_, &moments_, &cosines_, &rest_, &given_splats_, &given_shapes_})
         sum += buffer->bytes();
-    for (int i = 0; i < 4; ++i) sum += keys_[i].bytes() + values_[i].bytes();
     for (const auto& [key, kept] : kept_)
         for (const CardBuffer& array : kept.arrays) sum += array.bytes();
     return sum;

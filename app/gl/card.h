@@ -2,7 +2,8 @@
 // the card's memory between frames; each frame they are projected, put in order of depth, entered into tiles
 // of 16 x 16 px and folded there. Which pass does what: shaders/card_*.glsl. Slabs of depth, each at most
 // some 256 MB of records, because random reads over more than the card's address translation reaches are
-// a hundred times slower (an H100 beyond 512 MB).
+// a hundred times slower (an H100 beyond 512 MB). Where the memory is short, slabs come one after the other
+// and share their buffers, then bands of the frame.
 #pragma once
 
 #include <array>
@@ -21,6 +22,7 @@ class CardBuffer {
     bool reserve(std::int64_t bytes, GLbitfield flags = GL_DYNAMIC_STORAGE_BIT);
     /// Reserves, and copies there.
     bool fill(const void* data, std::int64_t bytes);
+    void release() { *this = {}; }
     void bind(GLuint at) const { glBindBufferBase(GL_SHADER_STORAGE_BUFFER, at, buffer_.name()); }
     GLuint name() const { return buffer_.name(); }
     std::int64_t bytes() const { return bytes_; }
@@ -51,6 +53,16 @@ class Card final : public RenderDevice {
 
     /// Slabs of depth from now on, which change no pixel; 0: as many as suit the memory.
     void set_slabs(int slabs) { slabs_ = slabs; }
+    /// Bytes that its buffers may take in all; 0: what the driver says is free.
+    void set_room(std::int64_t bytes) { room_ = bytes; }
+    /// How much of a frame is in its memory at a time.
+    struct Share {
+        bool apart = false;      // slabs one after the other
+        GLuint slabs = 0;        // 0: as many as suit the memory
+        std::int64_t bands = 1;  // of the frame
+    };
+    /// Of the last group drawn.
+    const Share& share() const { return share_; }
     /// For tests: changes the texts of its programs, before the first frame.
     void set_edit(std::function<void(std::string& text)> edit) { edit_ = std::move(edit); }
     /// Milliseconds on the card of the last group drawn, pass by pass.
@@ -59,8 +71,8 @@ class Card final : public RenderDevice {
         double milliseconds;
     };
     std::vector<PassTime> pass_times() const;
-    /// Bytes of all buffers.
-    std::int64_t bytes() const;
+    /// Bytes of all buffers in the card's own memory.
+    std::int64_t bytes();
 
   private:
     struct Kept {
@@ -73,7 +85,9 @@ class Card final : public RenderDevice {
         std::int64_t count, first_given;
         GLuint first_group, first_rank;  // groups are of 256 splats
     };
+    static constexpr GLuint all_slabs = 0xffffffffu;
     struct Group {
+        Region region;  // of the frame
         std::vector<Splats> splats;
         std::vector<const FootprintTable*> tables;
         FoldKind kind;
@@ -81,15 +95,18 @@ class Card final : public RenderDevice {
         bool shaped, ranked;         // some are not round; some layers are projected here and there
         std::int64_t count, pixels;  // of splats
         GLuint splat_groups, slabs;
+        GLuint only = all_slabs;  // slab whose records and entries there are
+        GLuint listed() const { return only == all_slabs ? slabs : 1; }
         int columns, rows;  // tiles
     };
+    static constexpr GLuint most_slabs = 32;
     struct Counts {
         GLuint visible, entries, entries_wanted, entries_room, area_low, area_high, lowest, highest,
-            first_key, last_key, entries_low, entries_high;
+            first_key, last_key, entries_low, entries_high, bins[1024], slab_begin[most_slabs + 1];
     };
 
-    Group plan(const FrameJob& job, std::size_t group, bool alone) const;
-    void cut_depth(Group& group) const;
+    Group plan(const FrameJob& job, std::size_t group, bool alone, const Region& region) const;
+    GLuint slabs_for(std::int64_t splats, const Share& share) const;
     bool gather(const FrameJob& job, std::size_t number, Group& group);
     bool give(const FrameJob& job, Group& group, std::size_t layer, const std::vector<std::int64_t>* rows);
     std::optional<std::vector<std::int64_t>> rest_of(const FrameJob& job, const Group& group,
@@ -97,8 +114,21 @@ class Card final : public RenderDevice {
     bool send(const void* data, std::int64_t bytes, CardBuffer& to);
     const Kept* keep(const ShadedSplats& splats, bool with_stars);
     bool upload_tables(const FrameJob& job, const Group& group);
-    bool reserve(const FrameJob& job, const Group& group, std::int64_t entries);
-    Counts run(const FrameJob& job, const Group& group);
+    std::int64_t room();
+    void clear_layers(const FrameJob& job);
+    std::vector<CardBuffer*> working();
+    bool reserve(const FrameJob& job, const Group& group, std::int64_t records, std::int64_t entries);
+    bool draw_band(const FrameJob& job, Group& group, const Share& share, GroupPlanes& planes);
+    bool draw_bands(const FrameJob& job, std::size_t number, Group& whole, const Share& share,
+                    GroupPlanes& planes);
+    static GroupPlanes new_planes(const FrameJob& job, const Group& group);
+    void note_counts(GroupPlanes& planes) const;
+    bool read_planes(const FrameJob& job, const Group& group, GroupPlanes& planes);
+    Counts read_counts() const;
+    void count(const FrameJob& job, const Group& group);
+    bool fold_together(const FrameJob& job, const Group& group);
+    bool fold_apart(const FrameJob& job, Group& group);
+    int list_slabs(const FrameJob& job, const Group& group);
     void project(const FrameJob& job, const Group& group, int pass);
     void project_some(const FrameJob& job, const Group& group, const Splats& splats, int pass, GLuint every);
     void plan_pass(const Group& group, int pass);
@@ -107,7 +137,8 @@ class Card final : public RenderDevice {
     int put_in_order(const Group& group);
     int list_entries(const Group& group, int order);
     void fold(const FrameJob& job, const Group& group, int by_tile);
-    bool read(const CardBuffer& from, std::int64_t first_pixel, Image& to);
+    bool read(const CardBuffer& from, std::int64_t first_pixel, const Group& group, const FrameJob& job,
+              Image& to);
 
     void mark(const char* pass);
     const GlProgram& program(const std::string& file, const std::string& defines);
@@ -117,6 +148,15 @@ class Card final : public RenderDevice {
     GlInfo info_;
     bool native_division_;
     int slabs_ = 0;
+    std::int64_t room_ = 0, told_bytes_ = 0;
+    GLenum free_memory_ = 0;  // what the driver is asked for it by; 0: it does not say
+    Share share_;
+    /// Of the last group for which the memory did not suffice at once, and how it was drawn.
+    struct {
+        std::int64_t splats = std::numeric_limits<std::int64_t>::max(), pixels = 0;
+        std::size_t share = 0;
+    } short_of_;
+    bool lost_ = false;
     std::function<void(std::string& text)> edit_;
     std::int64_t most_bytes_ = 0;  // of a buffer
     double entries_each_ = 2.5;    // of a splat, in the last group
@@ -126,9 +166,9 @@ class Card final : public RenderDevice {
     std::vector<std::pair<const char*, Query>> marks_;  // where passes begin; the last ends
     std::size_t marked_ = 0;
     std::map<std::pair<std::uint64_t, const ShadedSplats*>, Kept> kept_;  // by stamp; without one, by place
-    CardBuffer counts_, arguments_, begins_, records_, tags_, rects_, sums_, digits_, ranges_, light_,
-        through_, more_, layer_light_, ranks_, rest_, given_splats_, given_shapes_, layers_, nodes_, moments_,
-        cosines_, staging_, sending_;
+    CardBuffer counts_, arguments_, begins_, entry_begins_, records_, tags_, rects_, sums_, digits_, ranges_,
+        light_, through_, more_, layer_light_, ranks_, rest_, given_splats_, given_shapes_, layers_, nodes_,
+        moments_, cosines_, staging_, sending_;
     std::byte* sent_ = nullptr;                // where `sending_` is mapped
     std::array<CardBuffer, 4> keys_, values_;  // 0, 1: entries, and back and forth with 2, 3: records
     Buffer<ScreenSplat> given_;                // that the processor has projected

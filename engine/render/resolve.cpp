@@ -69,7 +69,7 @@ std::vector<BlendGroup> make_groups(std::span<const RenderLayer> layers, bool ao
                               render.blend,
                               render.holdout,
                               layers[i].absorbs,
-                              layers[i].splats && layers[i].splats->encoded});  // OpenGL keeps its splats
+                              layers[i].splats && layers[i].splats->encoded});
         } else {
             if (merged.layers.empty()) merged_place = groups.size();
             merged.layers.push_back(i);

@@ -1,7 +1,9 @@
 #include "render/frame_job.h"
 
+#include <new>
 #include <numeric>
 
+#include "core/error.h"
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "render/device.h"
@@ -128,32 +130,39 @@ void copy_planes(const FrameJob& job, const GroupPlanes& group, TilePlanes& plan
     }
 }
 
-}  // namespace
-
-std::optional<DrawnGroups> draw_on_device(const FrameJob& job, RenderCache::State& cache,
-                                          RenderStatistics& statistics) {
-    RenderDevice& device = *job.settings.device;
-    statistics.not_on_device = device.cannot(job);
-    if (!statistics.not_on_device.empty()) return {};
-    make_footprints(job, {0, 0.0, 0.0f, std::numeric_limits<float>::max()}, cache);
+/// None where the device has drawn less than all. Throws NotEnoughMemory, std::bad_alloc.
+std::optional<DrawnGroups> draw_groups(const FrameJob& job, RenderStatistics& statistics) {
     DrawnGroups drawn{{}, stands_alone(job) && !job.settings.backdrop};
     if (!drawn.alone)  // the frame itself is told with its images
         claim_memory(job.region.width * job.region.height * 3 * 16 * std::ssize(job.groups),
                      "what a card draws");
     for (std::size_t g = 0; g < job.groups.size(); ++g) {
-        std::optional<GroupPlanes> planes = device.draw(job, g, drawn.alone);
+        std::optional<GroupPlanes> planes = job.settings.device->draw(job, g, drawn.alone);
         job.progress.at(0.9 * double(g + 1) / double(job.groups.size()));
-        if (!planes) {
-            statistics = {};
-            statistics.not_on_device = "it ran out of memory or was lost";
-            return {};
-        }
+        if (!planes) return {};
         statistics.splats_drawn += planes->splats;
         statistics.mean_overlap += planes->footprint_px;
         drawn.planes.push_back(std::move(*planes));
     }
-    statistics.device = device.name();
+    statistics.device = job.settings.device->name();
     return drawn;
+}
+
+}  // namespace
+
+std::optional<DrawnGroups> draw_on_device(const FrameJob& job, RenderCache::State& cache,
+                                          RenderStatistics& statistics) {
+    statistics.not_on_device = job.settings.device->cannot(job);
+    if (!statistics.not_on_device.empty()) return {};
+    make_footprints(job, {0, 0.0, 0.0f, std::numeric_limits<float>::max()}, cache);
+    try {
+        if (std::optional<DrawnGroups> drawn = draw_groups(job, statistics)) return drawn;
+    } catch (const NotEnoughMemory&) {  // the processor does with less, in bands
+    } catch (const std::bad_alloc&) {
+    }
+    statistics = {};
+    statistics.not_on_device = "it ran out of memory or was lost";
+    return {};
 }
 
 void resolve_drawn(const FrameJob& job, DrawnGroups drawn, RenderedFrame& frame) {

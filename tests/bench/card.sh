@@ -30,6 +30,9 @@ echo "== bits"
 timeout 90 "$programs/test_gl" --gtest_brief=1
 echo "== times"
 timeout 200 "$programs/card_bench"
+echo "== little memory"
+timeout 60 "$programs/card_bench" --room=0.6 "10 M 5 px over 1080p"
+timeout 60 "$programs/card_bench" --room=2.2 "44 M 3 px screen 1080p"
 echo "== a flight"
 flight cpu cpu
 flight gpu gpu

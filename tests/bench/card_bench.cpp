@@ -70,7 +70,9 @@ void measure(const Case& c, Card& card, bool compares, const std::vector<int>& s
                    median(passes), median(whole));
         for (std::size_t p = 0; p < times.size(); ++p)
             fmt::print(" {} {:.2f} |", times[p].name, median(of_pass[p]));
-        fmt::print(" {:.2f} GB |\n", 1e-9 * double(card.bytes()));
+        fmt::print(" {:.2f} GB{}{} |\n", 1e-9 * double(card.bytes()),
+                   card.share().apart ? ", slab by slab" : "",
+                   card.share().bands > 1 ? fmt::format(", {} bands", card.share().bands) : "");
         std::fflush(stdout);
     }
     card.set_slabs(0);
@@ -105,6 +107,8 @@ int run(const std::vector<std::string>& words) {
                info.major, info.minor, probe.seconds, probe.native_division, probe.fault,
                seconds_since(start));
     const bool compares = std::ranges::find(words, "--times") == words.end();
+    for (const std::string& word : words)  // --room=1.5 GB of the card's memory
+        if (word.starts_with("--room=")) card.set_room(std::int64_t(1e9 * std::stod(word.substr(7))));
     for (const Case& c : cases) {
         const auto asked = [&](const std::string& word) {
             return std::string(c.name).find(word) != std::string::npos;

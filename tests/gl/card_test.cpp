@@ -9,6 +9,7 @@
 #include "gl/gl_fixture.h"
 #include "splats/splat_set.h"
 #include "support/bits.h"
+#include "support/quiet.h"
 #include "support/temp_folder.h"
 #include "support/test.h"
 #include "unit/render/random_scene.h"
@@ -137,6 +138,60 @@ TEST_F(Cards, SlabsAndRegionsChangeNoBit) {
         }
     }
     card().set_slabs(0);
+}
+
+/// Draws layers by a card with a part of the memory that they would take at once; how it did.
+Card::Share drawn_with(double share_of_memory, std::span<const RenderLayer> layers,
+                       const RenderSettings& settings) {
+    const Quiet quiet;
+    const GlInfo& info = shared_context().context->info();
+    const Camera camera = cloud_camera(double(settings.width), double(settings.height));
+    Card roomy(info, info.software), card(info, info.software);
+    expect_same_frame(roomy, layers, camera, settings, "all at once");
+    EXPECT_FALSE(roomy.share().apart);
+    EXPECT_EQ(roomy.share().bands, 1);
+    const auto room = std::int64_t(share_of_memory * double(roomy.bytes()));
+    card.set_room(room);
+    for (const char* what : {"first", "again"})
+        expect_same_frame(card, layers, camera, settings, fmt::format("{} of {}", what, share_of_memory));
+    EXPECT_LE(card.bytes(), room);
+    return card.share();
+}
+
+TEST_F(Cards, WhereMemoryIsShortSlabsComeOneByOne) {
+    const ShadedSplats splats = cloud(20'000, 12), others = cloud(2000, 13, 0.4f);
+    RenderLayer layers[] = {layer_of("a", splats, Blend::over, Falloff::Shape::gaussian),
+                            layer_of("b", others, Blend::hybrid, Falloff::Shape::linear)};
+    RenderSettings settings = settings_of(96, 54);
+    EXPECT_TRUE(drawn_with(0.5, {layers, 1}, settings).apart);
+    layers[1].render.lod = {20.0f, 64, 0.7f, 6.0f};
+    settings.aov_depth = settings.aov_layers = true;
+    EXPECT_TRUE(drawn_with(0.6, layers, settings).apart);
+}
+
+TEST_F(Cards, WhereMemoryIsShorterBandsDo) {
+    const ShadedSplats splats = cloud(600, 15);
+    const RenderLayer layer = layer_of("a", splats, Blend::screen, Falloff::Shape::gaussian);
+    RenderSettings settings = settings_of(400, 230);
+    EXPECT_GT(drawn_with(0.6, {&layer, 1}, settings).bands, 1);
+    settings.aov_layers = settings.aov_count = true;
+    settings.region = {31, 17, 311, 190};
+    EXPECT_GT(drawn_with(0.6, {&layer, 1}, settings).bands, 1);
+}
+
+TEST_F(Cards, WithoutMemoryTheProcessorDraws) {
+    const GlInfo& info = shared_context().context->info();
+    Card card(info, info.software);
+    card.set_room(1'000'000);
+    const ShadedSplats splats = cloud(30'000, 14);
+    const RenderLayer layer = layer_of("layer", splats);
+    RenderSettings settings = settings_of(64, 36);
+    settings.device = &card;
+    const RenderedFrame frame = render({&layer, 1}, cloud_camera(64, 36), nullptr, settings);
+    EXPECT_EQ(frame.statistics.device, "");
+    EXPECT_EQ(frame.statistics.not_on_device, "it ran out of memory or was lost");
+    settings.device = nullptr;
+    expect_same(frame.beauty, render({&layer, 1}, cloud_camera(64, 36), nullptr, settings).beauty, "frame");
 }
 
 TEST_F(Cards, WhatACardDoesNotDrawTheProcessorDoes) {
