@@ -270,6 +270,7 @@ FrameFigures BatchRun::render_frame(const FramePlan& frame, const Progress& prog
     figures.splats_drawn = rendered.statistics.splats_drawn;
     figures.sha256 = metadata.pixel_hash;
     figures.device = rendered.statistics.device.empty() ? "cpu" : rendered.statistics.device;
+    note_device(frame.file, figures.device);
     log_detail(fmt::format("frame {}: {} drawn by {}, mean overlap {:.2f}", frame.frame,
                            human_count(figures.splats_drawn, "splat"), figures.device,
                            rendered.statistics.mean_overlap));

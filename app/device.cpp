@@ -1,6 +1,7 @@
 #include "device.h"
 
 #include <fmt/format.h>
+#include <sys/xattr.h>
 
 #include <nlohmann/json.hpp>
 
@@ -69,6 +70,22 @@ void FrameDevice::check(const RenderStatistics& statistics) {
         throw InputError("--device gpu: " + what + "; --device auto leaves such frames to the processor");
     log_info("drawn by the processor, for " + what);
     said_ = why;
+}
+
+namespace {
+
+constexpr const char* device_attribute = "user.astrosplat.device";
+
+}  // namespace
+
+void note_device(const fs::path& frame, const std::string& device) {
+    static_cast<void>(setxattr(frame.c_str(), device_attribute, device.data(), device.size(), 0));
+}
+
+std::string noted_device(const fs::path& frame) {
+    char device[256];
+    const ssize_t size = getxattr(frame.c_str(), device_attribute, device, sizeof device);
+    return size > 0 ? std::string(device, std::size_t(size)) : std::string();
 }
 
 // device: what was found, and how fast it is.

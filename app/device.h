@@ -34,4 +34,10 @@ class FrameDevice {
     std::string said_;
 };
 
+/// Keeps with a frame what drew it, in an attribute of the file system's: the file's bytes are the same
+/// whichever did. Where there are no such attributes, nothing is kept.
+void note_device(const fs::path& frame, const std::string& device);
+/// Empty: not known.
+std::string noted_device(const fs::path& frame);
+
 }  // namespace astrosplat

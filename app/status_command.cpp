@@ -8,6 +8,7 @@
 #include "batch_plan.h"
 #include "command.h"
 #include "core/text.h"
+#include "device.h"
 #include "exit.h"
 #include "farm/submission.h"
 #include "scene/frames.h"
@@ -17,15 +18,26 @@ namespace {
 
 using Frames = std::vector<std::int64_t>;
 
-using FramesFound = std::map<Found, Frames>;  // of one eye; ascending
-using Sequence = std::map<Eye, FramesFound>;
+using FramesFound = std::map<Found, Frames>;  // ascending
+struct EyeFrames {
+    FramesFound found;
+    std::map<std::string, Frames> drawn_by;  // those done, by device, where that is known
+};
+using Sequence = std::map<Eye, EyeFrames>;
 
 constexpr std::array words = {std::pair(Found::same, "done"), std::pair(Found::nothing, "missing"),
                               std::pair(Found::damaged, "damaged"), std::pair(Found::other, "foreign")};
 
 Sequence look_at_frames(const BatchPlan& plan) {
     Sequence sequence;
-    for (const FramePlan& frame : plan.frames) sequence[frame.eye][found_at(frame)].push_back(frame.frame);
+    for (const FramePlan& frame : plan.frames) {
+        EyeFrames& eye = sequence[frame.eye];
+        const Found found = found_at(frame);
+        eye.found[found].push_back(frame.frame);
+        if (found != Found::same) continue;
+        if (const std::string device = noted_device(frame.file); !device.empty())
+            eye.drawn_by[device].push_back(frame.frame);
+    }
     return sequence;
 }
 
@@ -36,8 +48,10 @@ std::size_t count_of(const FramesFound& found) {
 }
 
 bool is_complete(const Sequence& sequence) {
-    return std::ranges::all_of(
-        sequence, [](const auto& eye) { return eye.second.size() == 1 && eye.second.contains(Found::same); });
+    return std::ranges::all_of(sequence, [](const auto& eye) {
+        const FramesFound& found = eye.second.found;
+        return found.size() == 1 && found.contains(Found::same);
+    });
 }
 
 /// Submissions to Slurm that have tasks in the queue, and the last one; and what all of them were made of.
@@ -100,7 +114,8 @@ Report to_report(const std::vector<SubmittedFrames>& submitted) {
 void print_for_people(const BatchPlan& plan, Sequence sequence) {
     fmt::print("scene {}\n", printable(plan.scene.file.string()));
     fmt::print("frames {}\n", printable(plan.scene.output.path));
-    for (auto& [eye, found] : sequence) {
+    for (auto& [eye, of_eye] : sequence) {
+        auto& [found, drawn_by] = of_eye;
         const std::string whose = sequence.size() > 1 ? fmt::format("{} ", name_of(eye)) : "";
         for (const auto& [what, word] : words) {
             const Frames& frames = found[what];
@@ -110,16 +125,20 @@ void print_for_people(const BatchPlan& plan, Sequence sequence) {
             if (!frames.empty()) fmt::print(": {}", frames_text(frames));
             fmt::print("\n");
         }
+        for (const auto& [device, frames] : drawn_by)
+            fmt::print("{}drawn by {}: {}\n", whose, printable(device), frames_text(frames));
     }
 }
 
 void print_as_json(const BatchPlan& plan, Sequence sequence) {
     const bool complete = is_complete(sequence);
     Report eyes = Report::array();
-    for (auto& [eye, found] : sequence) {
+    for (auto& [eye, of_eye] : sequence) {
+        auto& [found, drawn_by] = of_eye;
         Report one = {{"eye", name_of(eye)}, {"frames", count_of(found)}};
         for (const auto& [what, word] : words)
             one[word] = {{"count", found[what].size()}, {"frames", frames_text(found[what])}};
+        for (const auto& [device, frames] : drawn_by) one["drawn_by"][device] = frames_text(frames);
         eyes.push_back(one);
     }
     const Farm farm = ask_farm(plan);

@@ -1,7 +1,9 @@
 // Frames that are there: verify, --resume and status.
 #include <sys/stat.h>
+#include <sys/xattr.h>
 
 #include <cstring>
+#include <sstream>
 
 #include "scene_fixture.h"
 
@@ -342,11 +344,14 @@ class Status : public SceneTest {
         more.push_back("--json");
         return nlohmann::json::parse(status(more).out).at("eyes");
     }
-    /// Without its first two lines, which name scene and files.
+    /// Without those that name scene and files, and what has drawn them, which is this machine's.
     static std::string lines(const RunResult& result) {
-        std::size_t begin = 0;
-        for (int i = 0; i < 2; ++i) begin = result.out.find('\n', begin) + 1;
-        return result.out.substr(begin);
+        std::istringstream all(result.out);
+        std::string kept;
+        int number = 0;
+        for (std::string line; std::getline(all, line);)
+            if (++number > 2 && line.find("drawn by ") == std::string::npos) kept += line + "\n";
+        return kept;
     }
     /// Names, sizes, times of change and contents of all below the folder.
     std::string everything() const {
@@ -372,15 +377,36 @@ TEST_F(Status, NamesFramesDoneMissingDamagedAndForeign) {
     const RunResult result = status({"-f", "1-12"});
     EXPECT_EQ(result.code, 3);
     EXPECT_EQ(result.err, "");
-    EXPECT_EQ(result.out,
-              fmt::format("scene scene.toml\nframes {}/frames/shot.####.exr\ndone 4 of 12: 1,5,8,10\n"
-                          "missing 6: 2-4,7-11x2\ndamaged 1: 6\nforeign 1: 12\n",
-                          folder.string()));
+    EXPECT_EQ(result.out.substr(0, result.out.find("done ")),
+              fmt::format("scene scene.toml\nframes {}/frames/shot.####.exr\n", folder.string()));
+    EXPECT_EQ(lines(result), "done 4 of 12: 1,5,8,10\nmissing 6: 2-4,7-11x2\ndamaged 1: 6\nforeign 1: 12\n");
     EXPECT_EQ(everything(), before);
     // --resume does with the others as it says.
     expect_success(batch({"-q", "-f", "1-12", "--resume", "--overwrite"}));
     const RunResult all = expect_success(status({"-f", "1-12"}));
     EXPECT_EQ(lines(all), "done 12 of 12: 1-12\n");
+}
+
+/// Which is kept beside the file: its bytes are the same whatever drew it.
+TEST_F(Status, SaysWhatDrewEachFrame) {
+    expect_success(batch({"-q", "-f", "1-3", "--device", "cpu"}));
+    const fs::path second = folder / frame(2);
+    if (getxattr(second.c_str(), "user.astrosplat.device", nullptr, 0) <= 0)
+        GTEST_SKIP() << "the file system keeps no attributes";
+    const std::string by_cpu = text_of(second);
+    EXPECT_HAS(status({"-f", "1-3"}).out, "drawn by cpu: 1-3\n");
+    const nlohmann::json found =
+        nlohmann::json::parse(run({"device", "--device", "gpu", "--json", "--no-cache"}).out);
+    if (found.contains("problem")) GTEST_SKIP() << found.at("problem");
+    expect_success(batch({"-q", "-f", "2", "--overwrite", "--device", "gpu"}));
+    EXPECT_EQ(text_of(second) == by_cpu, true) << "byte for byte";
+    const std::string card = found.at("draws");
+    const std::string said = expect_success(status({"-f", "1-3"})).out;
+    EXPECT_HAS(said, "drawn by cpu: 1,3\n");
+    EXPECT_HAS(said, "drawn by " + card + ": 2\n");
+    EXPECT_EQ(eyes({"-f", "1-3"})[0].at("drawn_by"), (nlohmann::json{{"cpu", "1,3"}, {card, "2"}}));
+    fs::remove(second);
+    EXPECT_EQ(status({"-f", "1-3"}).out.find(card), std::string::npos);
 }
 
 TEST_F(Status, CreatesNoFolder) {
