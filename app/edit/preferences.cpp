@@ -146,6 +146,9 @@ constexpr SettingChoice caches[] = {{0, "Auto"},    {5, "5 GiB"},     {20, "20 G
 constexpr SettingChoice autosaves[] = {{15, "15 s"}, {30, "30 s"}, {60, "1 min"}, {300, "5 min"}};
 constexpr SettingChoice settles[] = {{1, "Goes on to the final frame"}, {0, "Stays a preview"}};
 constexpr SettingChoice engines[] = {{0, "Auto"}, {1, "Card"}, {2, "Processor"}};
+constexpr SettingChoice devices[] = {{int(DeviceChoice::automatic), "Auto"},
+                                     {int(DeviceChoice::gpu), "Card"},
+                                     {int(DeviceChoice::cpu), "Processor"}};
 
 constexpr SettingRow rows[] = {
     {"interface_percent", "Interface", "Size of text and controls; Auto: as the screen asks",
@@ -155,6 +158,10 @@ constexpr SettingRow rows[] = {
      &Settings::settles, settles},
     {"engine", "Preview by", "How views begin; the tools' Engine changes the one that is open",
      &Settings::engine, engines},
+    {"device", "Frames by",
+     "What draws final frames and those of jobs, from the next start: a graphics card that has the "
+     "processor's bits, or the processor; --device wins",
+     &Settings::device, devices},
     {"threads", "Threads", "Of the window and of each of its jobs, from the next start; --threads wins",
      &Settings::threads, threads},
     {"memory_gib", "Memory",
@@ -182,14 +189,18 @@ std::string problem_of_cache_folder(const std::string& folder) {
     return "";
 }
 
-MachineLimits limits_with(const Settings& settings, int threads_given) {
-    return {threads_given > 0 ? threads_given : settings.threads, settings.memory_gib};
+MachineLimits limits_with(const Settings& settings, int threads_given, DeviceChoice device_given) {
+    const bool asked = device_given != DeviceChoice::automatic;
+    return {threads_given > 0 ? threads_given : settings.threads, settings.memory_gib,
+            asked ? device_given : static_cast<DeviceChoice>(settings.device)};
 }
 
 std::vector<std::string> limit_arguments(const MachineLimits& limits) {
     std::vector<std::string> words;
     if (limits.threads > 0) words.push_back("--threads=" + std::to_string(limits.threads));
     if (limits.memory_gib > 0) words.push_back("--memory=" + std::to_string(limits.memory_gib));
+    if (limits.device != DeviceChoice::automatic)
+        words.push_back(limits.device == DeviceChoice::gpu ? "--device=gpu" : "--device=cpu");
     return words;
 }
 

@@ -3,6 +3,7 @@
 // a frame, but for a limit of memory, which acts as a smaller machine does.
 #pragma once
 
+#include "render/device.h"
 #include "sets/kept.h"
 
 namespace astrosplat {
@@ -16,14 +17,16 @@ struct Settings {
     int autosave_s = 60;            // from an edit to the copy that survives a crash
     int settles = 1;                // 0: views begin without going on to the final frame
     int engine = 0;                 // a PreviewEngine, with which views begin
+    int device = 0;                 // a DeviceChoice, of final frames and jobs
     std::string cache_folder = {};  // absolute; empty: as default_cache_folder() has it
     bool operator==(const Settings&) const = default;
 };
 
-/// Limits of the window and of each of its jobs on the machine.
+/// What the window and each of its jobs have of the machine.
 struct MachineLimits {
     int threads = 0;     // 0: the cores this process may use
     int memory_gib = 0;  // 0: what is free
+    DeviceChoice device = DeviceChoice::automatic;
     bool operator==(const MachineLimits&) const = default;
 };
 
@@ -46,8 +49,10 @@ std::span<const SettingRow> setting_rows();
 /// Why this cannot be the cache's folder: "expected an absolute path, found 'x'"; empty: it can.
 std::string problem_of_cache_folder(const std::string& folder);
 
-/// Those of the settings, but for --threads where the command line has it (0: it has not).
-MachineLimits limits_with(const Settings& settings, int threads_given);
+/// Those of the settings, but for --threads and --device where the command line has them (0, automatic: it
+/// has not).
+MachineLimits limits_with(const Settings& settings, int threads_given,
+                          DeviceChoice device_given = DeviceChoice::automatic);
 /// As words of a command: "--threads=4".
 std::vector<std::string> limit_arguments(const MachineLimits& limits);
 

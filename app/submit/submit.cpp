@@ -14,6 +14,7 @@
 #include "core/parallel.h"
 #include "core/text.h"
 #include "edit/command_lines.h"
+#include "edit/settings.h"
 #include "estimate.h"
 #include "exit.h"
 #include "farm/child_process.h"
@@ -297,6 +298,7 @@ Scripts make_scripts(const BatchPlan& plan, const SubmitOptions& options, const 
     Scripts scripts;
     scripts.sets = sets_script(job, batch.frames);
     if (batch.overwrite) job.program.push_back("--overwrite");
+    for (const std::string& word : limit_arguments({.device = batch.device})) job.program.push_back(word);
     scripts.frames = frames_script(job, submission.chunks);
     return scripts;
 }

@@ -168,6 +168,7 @@ void RenderQueue::add_to_farm(const RenderTask& task, const Document& document) 
     commands.submit = {program_, "--submit", "slurm", scene.string()};
     commands.status = {program_, "status", scene.string(), "--json"};
     append(commands.submit, submit_arguments(task));
+    append(commands.submit, limit_arguments({.device = limits_.device}));
     append(commands.status, frame_arguments(task));
     if (!cache_.folder.empty()) append(commands.submit, {"--cache", cache_.folder.string()});
     add_farm_job(std::move(commands), document.name() + ": " + render_title(task), render_target(task));

@@ -167,7 +167,8 @@ int run_viewer(const ViewerOptions& options, const std::atomic<bool>& interrupte
     const Preferences preferences = load_preferences();
     const Settings& settings = preferences.settings;
     ViewerOptions with_settings = options;
-    with_settings.limits = limits_with(settings, options.threads_given ? thread_count() : 0);
+    with_settings.limits = limits_with(settings, options.threads_given ? thread_count() : 0, options.device);
+    with_settings.device = with_settings.limits.device;
     if (with_settings.limits.threads > 0) set_thread_count(with_settings.limits.threads);
     with_settings.cache = cache_with(settings, options.cache, options.cache_given);
     limit_memory(std::int64_t{settings.memory_gib} << 30, "Edit > Settings > Memory");

@@ -260,6 +260,11 @@ TEST(RenderTask, AJobTakesNoMoreThanTheWindow) {
     words.insert(words.end(), {"--threads=4", "--memory=8"});
     EXPECT_EQ(batch_arguments(task, limits_with({.threads = 4, .memory_gib = 8}, 0)), words);
     EXPECT_EQ(batch_arguments(task, limits_with({.threads = 2, .memory_gib = 8}, 4)), words) << "--threads 4";
+    const Settings card{.threads = 4, .memory_gib = 8, .device = int(DeviceChoice::gpu)};
+    words.push_back("--device=gpu");
+    EXPECT_EQ(batch_arguments(task, limits_with(card, 0)), words);
+    words.back() = "--device=cpu";
+    EXPECT_EQ(batch_arguments(task, limits_with(card, 0, DeviceChoice::cpu)), words) << "--device cpu";
 }
 
 TEST(RenderTask, AMoviesFramesLieBesideIt) {

@@ -74,7 +74,7 @@ TEST_F(PreferencesTest, EverySettingHasItsDefaultAmongItsChoices) {
     for (const SettingRow& row : setting_rows())
         EXPECT_EQ(std::ranges::count(row.choices, Settings().*row.value, &SettingChoice::value), 1)
             << row.name;
-    EXPECT_EQ(setting_rows().size(), offsetof(Settings, cache_folder) / sizeof(int)) << "one row each";
+    EXPECT_EQ(setting_rows().size(), offsetof(Settings, device) / sizeof(int) + 1) << "one row each";
     EXPECT_EQ(autosave_interval({.autosave_s = 15}), std::chrono::seconds(15));
 }
 
