@@ -39,6 +39,9 @@ void visit_scene(auto& c, const auto& visit) {
     visit("deep", c.deep, {2, 1});
 }
 
+/// Drawn after all else, so that seeds keep their scenes.
+void visit_device(auto& c, const auto& visit) { visit("device", c.device, {1, 2, 1}); }
+
 void visit_layer(auto& layer, const auto& visit) {
     visit("source", layer.source, {});
     visit("blend", layer.blend, {});
@@ -291,6 +294,7 @@ struct AddChoices {
 std::vector<int> choices_of(const Crossing& c, int& first) {
     std::vector<int> choices;
     visit_scene(c, AddChoices{&choices, &first});
+    visit_device(c, AddChoices{&choices, &first});
     return choices;
 }
 
@@ -321,7 +325,8 @@ Crossing crossing_of(std::uint32_t seed) {
     visit_scene(c, Draw{&numbers});
     c.layers.resize(1 + numbers.below(most_drawn_layers));
     for (CrossingLayer& layer : c.layers) visit_layer(layer, Draw{&numbers});
-    Draw{&numbers}("scaled", c.scaled, {});  // after all else, so that seeds keep their scenes; in no pair
+    Draw{&numbers}("scaled", c.scaled, {});  // after all else, as the device; in no pair
+    visit_device(c, Draw{&numbers});
     settle(c);
     return c;
 }
@@ -399,6 +404,7 @@ const std::vector<std::string>& feature_names() {
         const Crossing scene;
         const CrossingLayer layer;
         visit_scene(scene, AddNames{&names});
+        visit_device(scene, AddNames{&names});
         visit_layer(layer, AddNames{&names});
         return names;
     }();

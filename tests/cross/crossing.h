@@ -56,6 +56,10 @@ constexpr auto names_of(Assigned) {
 enum class Target { best, least, between };
 constexpr auto names_of(Target) { return names_up_to<Target::between>("best", "least", "between"); }
 
+/// What draws: as --device has it.
+enum class Device { cpu, gpu, automatic };
+constexpr auto names_of(Device) { return names_up_to<Device::automatic>("cpu", "gpu", "auto"); }
+
 enum class Folder { plain, tokens, blanks, umlauts, percent };
 constexpr auto names_of(Folder) {
     return names_up_to<Folder::percent>("plain", "tokens", "blanks", "umlauts", "percent");
@@ -92,6 +96,7 @@ struct Crossing {
     Answer threads = Answer::no;   // several
     Answer small_tiles = Answer::no;
     Target target = Target::best;
+    Device device = Device::cpu;
     Folder folder = Folder::plain;
     Token token = Token::hashes;
     Answer token_in_folder = Answer::no;  // the places stand in a folder's name, not in the file's

@@ -185,6 +185,7 @@ TEST_P(Crossings, DepthIsTheMeanOfWhatIsSeenWithOrWithoutASky) {
 TEST_P(Crossings, AnyMachineAndTheWindowGiveTheSameBits) {
     const Shot plain = shot_of(scene, frame(), eye(), Extra::of_scene);
     const Shot other = shot_of(scene, frame(), eye(), Extra::of_scene, machine_of(crossing));
+    EXPECT_TRUE(other.frame.statistics.device.empty() || crossing.device != Device::cpu);
     EXPECT_EQ(other.layers, plain.layers);
     EXPECT_EQ(other.frame.beauty.pixels, plain.frame.beauty.pixels);
     EXPECT_EQ(other.frame.depth.pixels, plain.frame.depth.pixels);
@@ -479,6 +480,8 @@ class ProgramCrossings : public Crossings {
         const Machine machine = machine_of(crossing);
         words.insert(words.begin(), ASTROSPLAT_PROGRAM);
         words.insert(words.end(), {"--threads", std::to_string(machine.threads), "-q"});
+        if (words[1] == "--batch" || words[1] == "verify")
+            words.insert(words.end(), {"--device", device_word(crossing)});
         RunOptions options;
         options.folder = working_directory;
         options.environment = {"ASTROSPLAT_VECTOR_TARGET=" + machine.target,

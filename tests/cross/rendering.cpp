@@ -5,6 +5,7 @@
 #include "cross/inputs.h"
 #include "frame/frame_hash.h"
 #include "frame/output_pattern.h"
+#include "gl/card.h"
 #include "output/write.h"
 #include "pipeline.h"
 #include "scene/animate.h"
@@ -37,8 +38,24 @@ std::vector<std::string> native_layers(const Scene& scene) {
     return names;
 }
 
+/// The card that draws for it; null: the processor does.
+RenderDevice* card_for(Device device) {
+    const auto open = [](DeviceChoice choice) -> std::unique_ptr<OwnCard> {
+        try {
+            return open_card({choice});
+        } catch (const NoContext&) {
+            return nullptr;
+        }
+    };
+    if (device == Device::cpu) return nullptr;
+    static const bool found = open(DeviceChoice::automatic) != nullptr;
+    static const std::unique_ptr<OwnCard> asked = open(DeviceChoice::gpu);  // whose context stays current
+    return asked && (device == Device::gpu || found) ? &asked->card() : nullptr;
+}
+
 RenderSettings settings_of(const Scene& scene, Extra extra, const Machine& machine) {
     RenderSettings settings = render_settings(scene.output);
+    settings.device = card_for(machine.device);
     settings.tile_px = machine.tile_px;
     if (extra == Extra::all)
         settings.aov_depth = settings.aov_coverage = settings.aov_count = settings.aov_layers = true;
@@ -60,7 +77,13 @@ Machine machine_of(const Crossing& c) {
     if (c.target == Target::least) machine.target = targets.back();
     if (c.target == Target::between) machine.target = targets[targets.size() / 2];
     machine.streamed = c.streamed == Answer::yes;
+    machine.device = c.device;
     return machine;
+}
+
+std::string device_word(const Crossing& c) {
+    const bool draws = !is_onto_sphere(c.projection) && card_for(Device::gpu);
+    return std::string(name_of(c.device == Device::gpu && !draws ? Device::automatic : c.device));
 }
 
 Shot shot_of(const Scene& scene, double frame, Eye eye, Extra extra, const Machine& on) {

@@ -19,8 +19,13 @@ struct Machine {
     int threads = 2, tile_px = 0;
     std::string target = "best";
     bool streamed = false;  // layers of .splats files
+    Device device = Device::cpu;
 };
 Machine machine_of(const Crossing& crossing);
+
+/// What --device is told on that machine: where there is no OpenGL, or a card does not draw such scenes, not
+/// to insist on one.
+std::string device_word(const Crossing& crossing);
 
 struct Shot {
     RenderedFrame frame;
