@@ -169,12 +169,12 @@ std::string Card::cannot(const FrameJob& job) const {
     if (job.region.width > most_px || job.region.height > most_px)
         return "it draws no frames as large as this";
     for (std::size_t g = 0; g < job.groups.size(); ++g) {
-        if (plan(job, g, false, job.region).tables.size() > most_falloffs)
-            return "it draws no mix of so many falloffs";
         for (const std::size_t l : job.groups[g].layers) {
             if (job.layers[l].blocks) return "it draws no layers that are read block by block";
             if (12 * job.layers[l].size() > most_bytes_) return "it has no buffers for so many splats";
         }
+        if (plan(job, g, false, job.region).tables.size() > most_falloffs)
+            return "it draws no mix of so many falloffs";
     }
     return {};
 }
@@ -391,13 +391,16 @@ bool Card::upload_tables(const FrameJob& job, const Group& group) {
            cosines_.fill(pixel_cosines.data(), sizeof pixel_cosines);
 }
 
+std::int64_t Card::free_bytes() const {
+    GLint kib[4] = {};
+    if (free_memory_ != 0) glGetIntegerv(free_memory_, kib);
+    return std::int64_t{kib[0]} << 10;
+}
+
 /// Bytes that all buffers may take.
 std::int64_t Card::room() {
     if (room_ > 0) return room_;
-    if (free_memory_ == 0) return std::numeric_limits<std::int64_t>::max();
-    GLint kib[4] = {};
-    glGetIntegerv(free_memory_, kib);
-    return bytes() + (std::int64_t{kib[0]} << 10);
+    return free_memory_ != 0 ? bytes() + free_bytes() : std::numeric_limits<std::int64_t>::max();
 }
 
 /// The buffers that each group fills anew.
