@@ -140,13 +140,15 @@ int run_device(const CommandOptions& options) {
         report["problem"] = error.what();
     }
     report["draws"] = device ? device->name() : "the processor";
+    RenderDevice* const card = device ? device->get() : nullptr;
+    if (card && card->free_bytes() > 0) report["free_gib"] = std::ldexp(double(card->free_bytes()), -30);
     report["threads"] = thread_count();
     report["instructions"] = vector_target();
     const ShadedSplats splats = spread_splats(1'000'000);
     RenderedFrame here, there;
     report["processor_ms"] = 1e3 * frame_seconds(splats, nullptr, here);
-    if (device && device->get()) {
-        report["card_ms"] = 1e3 * frame_seconds(splats, device->get(), there);
+    if (card) {
+        report["card_ms"] = 1e3 * frame_seconds(splats, card, there);
         report["same_bits"] = there.beauty.pixels == here.beauty.pixels;
     }
     print_report(report, options.json);

@@ -48,6 +48,7 @@ class Card final : public RenderDevice {
     explicit Card(const GlInfo& info, bool native_division);
 
     std::string name() const override { return info_.renderer; }
+    std::int64_t free_bytes() const override;
     std::string cannot(const FrameJob& job) const override;
     std::optional<GroupPlanes> draw(const FrameJob& job, std::size_t group, bool alone) override;
 

@@ -28,6 +28,8 @@ class RenderDevice {
     virtual ~RenderDevice() = default;
     /// "NVIDIA H100"
     virtual std::string name() const = 0;
+    /// Bytes of its memory that nobody has taken; 0: its driver does not say.
+    virtual std::int64_t free_bytes() const { return 0; }
     /// Why the processor has to draw this frame, "it ..."; empty: the card can. The job is prepared.
     virtual std::string cannot(const FrameJob& job) const = 0;
     /// Draws a group of a job that it can; `alone`: its light, alpha within 0 and 1, is the frame. Null where
