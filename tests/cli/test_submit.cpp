@@ -123,10 +123,12 @@ TEST_F(Submit, FramesOfOtherSettingsAreReplacedOnlyWhenAsked) {
     expect_success(batch({"-q", "-f", "2"}));
     const Words other = {"--set", "layer.stars.render.opacity=0.5"};
     expect_nothing_submitted(submit(other), "shot.0002.exr: holds a frame of other settings");
-    expect_success(submit({other[0], other[1], "--overwrite"}));
+    expect_success(submit({other[0], other[1], "--overwrite", "--device", "cpu"}));
     EXPECT_EQ(chunks(script("frames.sh")), "1-3");
-    EXPECT_HAS(script("frames.sh"), " --overwrite ");
-    EXPECT_EQ(script("sets.sh").find("--overwrite"), std::string::npos);
+    for (const char* option : {" --overwrite ", " --device=cpu "}) {  // which set no set
+        EXPECT_HAS(script("frames.sh"), option);
+        EXPECT_EQ(script("sets.sh").find(option), std::string::npos);
+    }
 }
 
 /// Everything that a shell may stumble over, but for what has a meaning in a pattern of frames.
