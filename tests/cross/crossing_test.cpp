@@ -479,9 +479,8 @@ class ProgramCrossings : public Crossings {
     RunResult run(std::vector<std::string> words, const fs::path& working_directory) const {
         const Machine machine = machine_of(crossing);
         words.insert(words.begin(), ASTROSPLAT_PROGRAM);
-        words.insert(words.end(), {"--threads", std::to_string(machine.threads), "-q"});
-        if (words[1] == "--batch" || words[1] == "verify")
-            words.insert(words.end(), {"--device", device_word(crossing)});
+        words.insert(words.end(),
+                     {"--threads", std::to_string(machine.threads), "-q", "--device", device_word(crossing)});
         RunOptions options;
         options.folder = working_directory;
         options.environment = {"ASTROSPLAT_VECTOR_TARGET=" + machine.target,
