@@ -19,7 +19,8 @@ struct AxisFit {
     /// Tilts that show the picture about as well. Of an ellipsoid any does: tilt_deg is a choice then.
     double tilt_from_deg = 0.0, tilt_to_deg = 0.0;
     double explained = 0.0;  // share of the picture's light, above the sky's, that the rings are
-    /// How alike the picture is on both sides of the axis: 1 the same, 0 as any two of its places.
+    /// How alike the picture without its details is on both sides of the axis, the share of its structure
+    /// that symmetry explains: 1 the same, 0 as any two of its places.
     double alike = 0.0;
     double reach = 0.0;  // half of the grid's height along the axis, picture widths
     /// Light a picture width, RGB: from left to right heights -reach..reach along the axis, from the top

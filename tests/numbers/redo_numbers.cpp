@@ -150,11 +150,11 @@ void redo_axes() {
                lobes = of_each([](std::uint32_t i) { return fit_body(i, painted::lobes(0.26)); }),
                shells = of_each([](std::uint32_t i) { return fit_body(i, painted::shell(0.22, 0.15)); }),
                few = of_each([](auto i) { return fit_axis(painted::clouds(12, 4.0, 5.0, 10 * i)); }),
-               many = of_each([](auto i) { return fit_axis(painted::clouds(300, 3.0, 30.0, 10 * i)); });
+               bubbles = of_each([](auto i) { return fit_axis(painted::shell_among_clouds(10 * i)); });
     AxisFit body;
     body.alike = body.explained = 1.0;
     parts("axis_fit, least_alike", number_of(&AxisFit::alike, body, is_about_axis),
-          {"clouds that fill the frame", measured(many, &AxisFit::alike)},
+          {"bubbles among clouds", measured(bubbles, &AxisFit::alike)},
           {"lobes", measured(lobes, &AxisFit::alike)});
     parts("axis_fit, least_explained", number_of(&AxisFit::explained, body, is_about_axis),
           {"a dozen clouds", measured(few, &AxisFit::explained)},

@@ -99,4 +99,13 @@ inline Image clouds(std::uint32_t count, double least, double most, std::uint32_
     return picture;
 }
 
+/// A bubble in front of clouds that are no part of it.
+inline Image shell_among_clouds(std::uint32_t seed) {
+    Image picture = clouds(40, 8.0, 40.0, seed);
+    const Image bubble = seen({shell(0.13, 0.13), 30.0, 0.0}, 0.0);
+    const float share = 0.3f * std::ranges::max(picture.pixels) / std::ranges::max(bubble.pixels);
+    for (std::size_t i = 0; i < picture.pixels.size(); ++i) picture.pixels[i] += share * bubble.pixels[i];
+    return picture;
+}
+
 }  // namespace astrosplat::painted

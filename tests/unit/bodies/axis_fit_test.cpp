@@ -129,6 +129,10 @@ TEST(AxisFit, TakesNoCloudsForABody) {
         EXPECT_FALSE(is_about_axis(many)) << many.explained << ' ' << many.alike;
         EXPECT_GT(many.explained, 0.75);
         EXPECT_LT(many.alike, 0.4);
+        // Of a bubble most light is smooth, too, and smooth light is made of rings, but not its clouds.
+        const AxisFit bubble = fit_axis(painted::shell_among_clouds(seed));
+        EXPECT_FALSE(is_about_axis(bubble)) << bubble.explained << ' ' << bubble.alike;
+        EXPECT_GT(bubble.explained, 0.75);
     }
 }
 
