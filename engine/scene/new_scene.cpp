@@ -20,6 +20,7 @@
 #include "core/text.h"
 #include "objects/impression.h"
 #include "prepare/star_removal.h"
+#include "render/frame.h"
 #include "scene/parameter.h"
 #include "scene/parameter_key.h"
 #include "source/texture.h"
@@ -64,7 +65,7 @@ vertical = {{ shape = "linear" }}                  # how their opacity falls wit
 grade    = {{ gain = 1.0, tint = [1.0, 1.0, 1.0], saturation = 1.0, gamma = 1.0 }}
 
 [layer.render]
-falloff = "gaussian"              # profile of a splat: constant, linear, trapezoid, gaussian, exponential
+falloff = "gaussian"              # profile of a splat: {falloffs}
 blend   = "over"                  # over hides what lies behind; add, screen, lighten glow; hybrid: over face-on, screen edge-on
 opacity = 1.0                     # of the whole layer
 
@@ -113,7 +114,8 @@ std::string new_scene_text(const fs::path& image, const std::string& shape, cons
                        fmt::arg("picture", to_toml(picture_path(image, file))),
                        fmt::arg("relief", shape == "relief" ? ", relief = 0.15" : ""),
                        // Jitter moves along one axis: depth for a flat picture, a smear on a sphere's sides.
-                       fmt::arg("jitter", shape == "sphere" ? "0.0" : "0.1"));
+                       fmt::arg("jitter", shape == "sphere" ? "0.0" : "0.1"),
+                       fmt::arg("falloffs", fmt::join(names_of(Falloff::Shape{}), ", ")));
 }
 
 std::string layer_name_of(const std::string& text, const char* otherwise) {
@@ -219,9 +221,9 @@ struct CloseViews {
 };
 
 // Over a disk low along its plane, over a cloud higher, and around a shell, which is thick. A cloud goes on
-// to its picture's edges: the flight ends so near that they stay out of sight. The more aslant a
-// disk or a shell is seen the more of it shines in each pixel: the exposure goes down with the camera, or it
-// would burn out. A shell that is mostly dark would not.
+// to its picture's edges: the flight ends so near that they stay out of sight. The more oblique the view of a
+// disk or a shell, the more of it shines in each pixel: the exposure goes down with the camera, or it would
+// burn out. A shell that is mostly dark would not.
 CloseViews close_views(double distance, StructureKind kind, double mean_light) {
     constexpr double dark = 0.06, bright = 0.2;  // mean light of pictures
     if (kind == StructureKind::disk)
@@ -252,10 +254,10 @@ std::vector<CameraKeyframe> flight(double distance, const PictureScene& scene, c
     return keyframes;
 }
 
-bool is_aslant(const GalaxyParams& galaxy) { return galaxy.inclination.value_or(0.0) >= deep_from_deg; }
+bool is_tilted(const GalaxyParams& galaxy) { return galaxy.inclination.value_or(0.0) >= deep_from_deg; }
 
 bool is_deep(const PictureScene& scene) {
-    return scene.axis || std::ranges::any_of(scene.galaxies, is_aslant);
+    return scene.axis || std::ranges::any_of(scene.galaxies, is_tilted);
 }
 
 glm::dvec3 turned(const glm::dvec3& v, const glm::dvec3& about, double angle) {  // Rodrigues' formula
@@ -287,8 +289,8 @@ OwnAxis own_axis(const PictureScene& scene, double height) {
                 0.0};
     }
     constexpr double away = 0.78, stops_above = 0.9, stops_at_edge = 0.3;
-    const auto lies_aslant = std::ranges::find_if(scene.galaxies, is_aslant);
-    const GalaxyParams& galaxy = lies_aslant == scene.galaxies.end() ? scene.galaxies.front() : *lies_aslant;
+    const auto tilted = std::ranges::find_if(scene.galaxies, is_tilted);
+    const GalaxyParams& galaxy = tilted == scene.galaxies.end() ? scene.galaxies.front() : *tilted;
     const double i = real::radians(*galaxy.inclination), dim = real::sin(i);
     return {i,
             real::radians(*galaxy.near_side),
@@ -383,7 +385,7 @@ double split_above_px(StructureKind structure, double longest_over_height, std::
 }
 
 // Low powers of brightness and a dense disk: its dim parts are then not as bright as its middle from the
-// edge, and the middle does not burn out from aslant. A shell is thin: one looks through its front wall at
+// edge, and the middle does not burn out at an angle. A shell is thin: one looks through its front wall at
 // the back one.
 std::string_view opacity_of(StructureKind structure) {
     if (structure == StructureKind::walls) return "opacity = 0.4, density = 0.4";

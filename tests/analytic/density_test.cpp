@@ -1,6 +1,7 @@
 // Density, matching and distance: how many splats there are, and the light they keep.
 #include "analytic/support.h"
 #include "render/footprint.h"
+#include "support/all_values.h"
 #include "support/test.h"
 
 namespace astrosplat {
@@ -74,15 +75,15 @@ TEST(Density, KeepsTheShareOfItsCurve) {
         const LayerStatistics counts = statistics_of(test.look);
         const double share = kept_share(test.density), n = double(counts.kept);
         ASSERT_GT(n, 80000.0);
-        // Four standard deviations of a binomial; a jittered lattice fills the shells more evenly than
-        // chance.
+        // Four standard deviations of a binomial; a jittered lattice fills the shells more
+        // evenly than chance.
         EXPECT_NEAR(double(counts.drawn) / n, share, 4.0 * std::sqrt(share * (1.0 - share) / n) + 1e-12)
             << test.look;
     }
 }
 
-// The noise has mean 0, so culling by all of it keeps half; with 2500 cells in the sheet the mean is within
-// 0.02.
+// The noise has mean 0, so culling by all of it keeps half; with 2500 cells in the sheet the mean
+// is within 0.02.
 TEST(Density, CullingByNoiseKeepsHalf) {
     const LayerStatistics counts = statistics_of("noise = { frequency = 5.0, cull = 1.0 }");
     EXPECT_NEAR(double(counts.drawn) / double(counts.kept), 0.5, 0.02);
@@ -98,7 +99,7 @@ TEST(Density, AutomaticVoxelsKeepAboutCount) {
 // Vertical matching, from scene text to pixels: a plane whose picture has one alpha everywhere, seen from the
 // front, shows that alpha, whatever the splats' size and falloff and however they lie across the plane.
 
-constexpr const char* falloffs[] = {"constant", "linear", "trapezoid", "gaussian", "exponential"};
+constexpr auto falloffs = names_of(Falloff::Shape{});
 // Scene units; corners and centres of voxels of 0.074. Smaller splats of the sharpest falloff could not cover
 // 0.9 of the plane with an alpha of at most 1 each.
 constexpr double radii[] = {0.15, 0.2, 0.3};
@@ -109,7 +110,7 @@ constexpr Across acrosses[] = {
     {"constant", "none"}, {"gaussian", "none"}, {"constant", "linear"}, {"gaussian", "exponential"}};
 
 struct Setting {
-    const char* falloff;
+    std::string_view falloff;
     double radius;
     Across across;
     std::string name() const {
@@ -119,7 +120,7 @@ struct Setting {
 
 std::vector<Setting> all_settings() {
     std::vector<Setting> settings;
-    for (const char* falloff : falloffs)
+    for (const std::string_view falloff : falloffs)
         for (const double radius : radii)
             for (const Across& across : acrosses) settings.push_back({falloff, radius, across});
     return settings;
@@ -133,7 +134,7 @@ std::string animation(const std::vector<Setting>& settings) {
             keys += fmt::format("{}[{}, {}, \"step\"]", i ? ", " : "", i, value(settings[i]));
         return fmt::format("\"layer.sheet.{}\" = {{ keys = [{}] }}\n", key, keys);
     };
-    const auto quoted = [](const char* text) { return fmt::format("\"{}\"", text); };
+    const auto quoted = [](std::string_view text) { return fmt::format("\"{}\"", text); };
     return "[animation]\n" + track("render.falloff", [&](const Setting& s) { return quoted(s.falloff); }) +
            track("look.radius.min", [](const Setting& s) { return s.radius; }) +
            track("look.radius.max", [](const Setting& s) { return s.radius; }) +
@@ -197,22 +198,14 @@ INSTANTIATE_TEST_SUITE_P(Alphas, VerticalMatching, ::testing::Values(0.1, 0.3, 0
 // Near and far: splats keep their light at every distance, with and without level of detail, and nothing pops
 // when the camera flies through them.
 
-struct Shape {
-    const char* name;
-    Falloff falloff;
-};
-const Shape shapes[] = {{"constant", {Falloff::Shape::constant, 0.5f, 4.5f}},
-                        {"linear", {Falloff::Shape::linear, 0.5f, 4.5f}},
-                        {"trapezoid", {Falloff::Shape::trapezoid, 0.5f, 4.5f}},
-                        {"gaussian", {Falloff::Shape::gaussian, 0.5f, 4.5f}},
-                        {"exponential", {Falloff::Shape::exponential, 0.5f, 4.5f}}};
+constexpr auto shapes = test::all_values<Falloff::Shape>;
 
 double light(const Image& image, int channel) {
     return mean(image)[channel] * double(image.width * image.height);
 }
 
-/// One layer of a splat file under a perspective camera whose focal length is the picture's height (fov 2
-/// atan(1/2)).
+/// One layer of a splat file under a perspective camera whose focal length is the picture's height
+/// (fov 2 atan(1/2)).
 std::string file_scene(int width_px, int height_px, const std::string& render, const std::string& camera,
                        const std::string& animation = "") {
     return fmt::format(R"(astrosplat = 1
@@ -237,19 +230,20 @@ file = "splats.pda"
 TEST(Distance, EveryFalloffKeepsItsLight) {
     const TempFolder folder;
     folder.file("splats.pda", pda("0.013 0.021 0 0.5 0.25 1 0.5 0.75\n"));
-    for (const Shape& shape : shapes) {
+    for (const Falloff::Shape shape : shapes) {
         Pipeline pipeline(scene_of(
             folder,
-            file_scene(64, 64, fmt::format("falloff = \"{}\"", shape.name), "position = [0, 0, 4]",
+            file_scene(64, 64, fmt::format("falloff = \"{}\"", name_of(shape)), "position = [0, 0, 4]",
                        "[animation]\n\"camera.position\" = { keys = [[0, [0, 0, 4]], [1, [0, 0, 7.3]], "
                        "[2, [0, 0, 16.1]], [3, [0, 0, 31.7]], [4, [0, 0, 97]], [5, [0, 0, 403]], "
                        "[6, [0, 0, 2000]]], interpolation = \"step\" }")));
         const double distances[] = {4.0, 7.3, 16.1, 31.7, 97.0, 403.0, 2000.0};
         for (int frame = 0; frame < 7; ++frame) {
             const double radius_px = 0.75 * 64.0 / distances[frame];
-            const double expected = 0.5 * 0.25 * falloff_integral(shape.falloff) * radius_px * radius_px;
+            const double expected =
+                0.5 * 0.25 * falloff_integral({shape, 0.5f, 4.5f}) * radius_px * radius_px;
             EXPECT_NEAR(light(render_frame(pipeline, frame).beauty, 1) / expected, 1.0, 0.005)
-                << shape.name << " at " << distances[frame];
+                << name_of(shape) << " at " << distances[frame];
         }
     }
 }
@@ -263,19 +257,20 @@ TEST(Distance, LevelOfDetailKeepsTheLightInPerspective) {
         splats += fmt::format("{} {} {} 0.9 0.5 0.2 {} 3.5\n", 8.5 * (i % 15 - 7), 8.5 * (i / 15 - 3),
                               i * 37 % 5 - 2, i % 2 ? 0.3 : 0.48);
     folder.file("splats.pda", pda(splats));
-    for (const Shape& shape : shapes)
+    for (const Falloff::Shape shape : shapes)
         for (const char* blend : {"over", "add"}) {
             const auto render = [&](int max_px) {
-                const std::string keys = fmt::format(
-                    "falloff = \"{}\"\nblend = \"{}\"\nlod = {{ max_px = {} }}", shape.name, blend, max_px);
+                const std::string keys =
+                    fmt::format("falloff = \"{}\"\nblend = \"{}\"\nlod = {{ max_px = {} }}", name_of(shape),
+                                blend, max_px);
                 return render_text(
                     folder, file_scene(544, 256, keys, "position = [0, 0, 256]\nfocal_length = 67.764706"));
             };
             const RenderedFrame whole = render(0), split = render(42);
-            EXPECT_GT(split.statistics.splats_drawn, 50 * whole.statistics.splats_drawn) << shape.name;
+            EXPECT_GT(split.statistics.splats_drawn, 50 * whole.statistics.splats_drawn) << name_of(shape);
             for (int k = 0; k < 3; ++k)
                 EXPECT_NEAR(light(split.beauty, k) / light(whole.beauty, k), 1.0, 0.01)
-                    << shape.name << " " << blend << " channel " << k;
+                    << name_of(shape) << " " << blend << " channel " << k;
         }
 }
 
@@ -283,7 +278,7 @@ TEST(Distance, LevelOfDetailKeepsTheLightInPerspective) {
 TEST(Distance, SheetOfEnoughSplatsLooksTheSameFromAfar) {
     const TempFolder folder;
     write_float_tiff(folder / "sheet.tif", 2, 2, [](int, int) { return glm::vec4(0.9f, 0.5f, 0.2f, 0.8f); });
-    for (const Shape& shape : shapes) {
+    for (const Falloff::Shape shape : shapes) {
         Pipeline pipeline(scene_of(folder, fmt::format(R"(astrosplat = 1
 [output]
 resolution = [96, 96]
@@ -302,17 +297,17 @@ falloff = "{}"
 [animation]
 "camera.height" = {{ keys = [[0, 4.0], [1, 20.0], [2, 100.0]], interpolation = "step" }}
 )",
-                                                       shape.name)));
+                                                       name_of(shape))));
         // 4 x 4 px inside the sheet, which is 240, 48 and 9.6 px wide.
         const RenderedFrame close = render_frame(pipeline, 0), middle = render_frame(pipeline, 1),
                             afar = render_frame(pipeline, 2);
-        EXPECT_GT(close.statistics.mean_overlap, 4.0) << shape.name;
+        EXPECT_GT(close.statistics.mean_overlap, 4.0) << name_of(shape);
         const glm::dvec4 seen = mean(close.beauty);
         const glm::dvec4 from_middle = mean(middle.beauty, {40, 40, 16, 16}),
                          from_afar = mean(afar.beauty, {46, 46, 4, 4});
         for (int k = 0; k < 4; ++k) {
-            EXPECT_NEAR(from_middle[k] / seen[k], 1.0, 0.02) << shape.name << " channel " << k;
-            EXPECT_NEAR(from_afar[k] / seen[k], 1.0, 0.02) << shape.name << " channel " << k;
+            EXPECT_NEAR(from_middle[k] / seen[k], 1.0, 0.02) << name_of(shape) << " channel " << k;
+            EXPECT_NEAR(from_afar[k] / seen[k], 1.0, 0.02) << name_of(shape) << " channel " << k;
         }
     }
 }

@@ -5,6 +5,7 @@
 #include "render/lod.h"
 #include "render/render.h"
 #include "splats/splat_set.h"
+#include "support/all_values.h"
 #include "support/splats.h"
 #include "support/test.h"
 
@@ -309,8 +310,7 @@ TEST(Merge, OpacityOfTheLayerIsInTheSplats) {
 }
 
 TEST(Merge, TheDepthOfASplatAndItsAlphaAreInverse) {
-    for (const auto shape : {Falloff::Shape::constant, Falloff::Shape::linear, Falloff::Shape::trapezoid,
-                             Falloff::Shape::gaussian, Falloff::Shape::exponential}) {
+    for (const auto shape : test::all_values<Falloff::Shape>) {
         Falloff falloff;
         falloff.shape = shape;
         const DepthTable table(falloff);
@@ -535,8 +535,8 @@ struct Seen {
     std::size_t splats;
 };
 
-/// A block of 48 x 48 x `deep` splats through merged ones that stand for 64 each, from so far beside its
-/// front.
+/// A block of 48 x 48 x `deep` splats through merged ones that stand for 64 each, from so many degrees off
+/// its front.
 Seen seen_through_splats(bool lattice, int deep = 48, double degrees = 0.0) {
     constexpr int splats_a_side = 48, side = 256, first = 96, end = 160;  // px
     Cloud cloud;
@@ -562,7 +562,7 @@ Seen seen_through_splats(bool lattice, int deep = 48, double degrees = 0.0) {
     layer.splats = &cut;
     const Image image = render(std::span(&layer, 1), camera, nullptr, frame).beauty;
     double sum = 0.0, squares = 0.0, cover = 0.0;
-    const int rows = degrees > 0.0 ? (end - first) / 4 : (end - first) / 2;  // aslant it is lower
+    const int rows = degrees > 0.0 ? (end - first) / 4 : (end - first) / 2;  // at an angle it is lower
     for (int y = side / 2 - rows; y < side / 2 + rows; ++y)
         for (int x = first; x < end; ++x) {
             const double light = double(image.at(x, y)[0]);
@@ -583,7 +583,7 @@ TEST(MergedLattice, HasNoStripes) {
 }
 
 // Its cells look wider than high: each becomes several splats, which lie side by side and share its light.
-TEST(MergedLattice, HasNoStripesAslantEither) {
+TEST(MergedLattice, HasNoStripesAtAnAngleEither) {
     constexpr int deep = 8;
     for (const double degrees : {60.0, 72.0}) {
         const Seen seen = seen_through_splats(true, deep, degrees);

@@ -14,8 +14,8 @@ namespace astrosplat {
 namespace {
 
 // Splats that are not round, through the whole renderer: light at every size, place and orientation, the
-// profile against a convolution done by brute force, and the same bits for every tile size and number of
-// threads.
+// profile against a convolution done by brute force, and the same bits for every tile size and
+// number of threads.
 
 using namespace astrosplat::test;
 
@@ -148,7 +148,7 @@ TEST(Ellipse, IsTheConvolution) {
     }
 }
 
-TEST(Ellipse, ABallIsADiscAlsoBesideTheAxis) {
+TEST(Ellipse, ABallIsADiscAlsoOffTheAxis) {
     Camera camera;
     camera.focal_px = 60.0;
     camera.center_x_px = camera.center_y_px = 32.0;
@@ -212,8 +212,8 @@ INSTANTIATE_TEST_SUITE_P(SomeBlends, EllipseBits,
                                            std::pair{Blend::screen, Falloff::Shape::linear},
                                            std::pair{Blend::lighten, Falloff::Shape::trapezoid}));
 
-// The light of round splats beside black ones that are not, too faint to hide anything.
-TEST(Ellipse, RoundSplatsKeepTheirBitsBesideOthers) {
+// The light of round splats among black ones that are not, too faint to hide anything.
+TEST(Ellipse, RoundSplatsKeepTheirBitsAmongOthers) {
     for (const Falloff::Shape shape : all_shapes)
         for (const Blend blend : {Blend::over, Blend::add, Blend::screen}) {
             EllipseScene scene(blend, Falloff::Shape::gaussian);
@@ -337,7 +337,7 @@ TEST(SphereEllipseNightly, LightIsRightOfManyAtRandom) {
             if (n % 3 == 0) e.latitude = 90.0 - 8.0 * share(n, 5) * share(n, 5);
             if (n % 3 == 1) e.degrees = 90.0 * std::floor(4.0 * share(n, 3));
             if (larger > 0.7 * camera.focal_px || !fits(camera, e)) continue;
-            const Falloff falloff{all_shapes[n % 5], 0.5f, 4.5f};
+            const Falloff falloff{all_shapes[n % all_shapes.size()], 0.5f, 4.5f};
             const double wanted = 0.5 * falloff_integral(falloff) * e.larger_px * e.smaller_px;
             const double error =
                 light_on_sphere(ellipse_picture(camera, e, falloff, &tables), angles, 3) / wanted - 1.0;
@@ -461,7 +461,7 @@ TEST(SphereEllipse, OddOnesAreFinite) {
             }
 }
 
-// An eye beside the middle sees it elsewhere, but no other way.
+// An eye off the middle sees it elsewhere, but no other way.
 TEST(SphereEllipse, StereoPanoramasOnlyMoveIt) {
     const Falloff falloff{Falloff::Shape::gaussian, 0.5f, 4.5f};
     Camera camera = camera_of(Projection::equirectangular);
@@ -483,8 +483,8 @@ TEST(SphereEllipse, ANarrowFisheyeIsPerspective) {
     expect_narrow_fisheye_is_flat(stretch, 0.004);
 }
 
-// A projection without formulas of its own has these differences, so they must be right where there are
-// formulas.
+// A projection without formulas of its own has these differences, so they must be right where
+// there are formulas.
 TEST(SphereAxes, DifferencesAreTheFormulas) {
     for (const Projection projection : projections) {
         const Lens lens = make_lens(camera_of(projection));

@@ -29,9 +29,9 @@ struct CloudScene {
     explicit CloudScene(bool only_over = false) {
         const Blend blends[6] = {Blend::over,   Blend::add,     Blend::screen,
                                  Blend::hybrid, Blend::lighten, Blend::absorb};
-        for (int i = 0; i < 6; ++i) {
-            RenderLayer layer =
-                layer_of("layer", sets[i], only_over ? Blend::over : blends[i], all_shapes[i % 5]);
+        for (std::size_t i = 0; i < 6; ++i) {
+            RenderLayer layer = layer_of("layer", sets[i], only_over ? Blend::over : blends[i],
+                                         all_shapes[i % all_shapes.size()]);
             layer.axis = {0.3, 0.9, 0.1};
             layer.render.lod.max_px = i == 1 || i == 3 ? 40.0f : 0.0f;
             layer.render.lod.max_children = 256;
@@ -165,7 +165,7 @@ TEST(Reference, RandomScenesAreThoseOfTheTileRenderer) { expect_agreement(1, 12)
 TEST(Reference, MoreRandomScenesAreThoseOfTheTileRendererNightly) { expect_agreement(13, 120); }
 
 // Many splats that are not round, onto the sphere, all around the eye: the same bits for every tile size,
-// number of threads, region and instruction set, those of round splats beside them, and no seam.
+// number of threads, region and instruction set, those of round splats among them, and no seam.
 
 constexpr Random drawn{13};
 
@@ -223,7 +223,7 @@ TEST_P(SphereEllipsesBits, AreTheSameHoweverThePictureIsMade) {
 INSTANTIATE_TEST_SUITE_P(All, SphereEllipsesBits, ::testing::ValuesIn(projections));
 
 // Black ellipsoids, too faint to hide anything, change no bit of what is round.
-TEST(SphereEllipses, RoundSplatsKeepTheirBitsBesideOthers) {
+TEST(SphereEllipses, RoundSplatsKeepTheirBitsAmongOthers) {
     for (const Falloff::Shape shape : {Falloff::Shape::gaussian, Falloff::Shape::trapezoid}) {
         EllipsesAround scene(Blend::over, Falloff::Shape::gaussian);
         scene.layers[0].render.falloff.shape = shape;
@@ -322,7 +322,8 @@ struct Sky {
         sets.reserve(blends.size());
         for (std::size_t i = 0; i < blends.size(); ++i) {
             sets.push_back(cloud_around_origin(count, std::uint32_t(i + 1)));
-            RenderLayer layer = layer_of("layer", sets.back(), blends[i], all_shapes[1 + i % 4]);
+            RenderLayer layer =
+                layer_of("layer", sets.back(), blends[i], all_shapes[1 + i % (all_shapes.size() - 1)]);
             layer.axis = {0.3, 0.9, 0.1};
             layer.translate = {0.1 * double(i), 0.0, 0.0};
             layer.scale = 1.0 + 0.2 * double(i);

@@ -5,13 +5,12 @@
 
 #include "render/footprint.h"
 #include "render/render.h"
+#include "support/all_values.h"
 #include "support/test.h"
 
 namespace astrosplat::test {
 
-inline constexpr Falloff::Shape all_shapes[] = {Falloff::Shape::constant, Falloff::Shape::linear,
-                                                Falloff::Shape::trapezoid, Falloff::Shape::gaussian,
-                                                Falloff::Shape::exponential};
+inline constexpr auto all_shapes = all_values<Falloff::Shape>;
 
 struct OneSplat {
     glm::vec3 position{0.0f};

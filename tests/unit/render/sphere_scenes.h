@@ -7,8 +7,9 @@ namespace astrosplat::test {
 
 inline constexpr int wide_px = 512, high_px = 256;
 
-inline constexpr Projection projections[] = {Projection::fisheye, Projection::equirectangular,
-                                             Projection::cylindrical};
+/// Those onto the sphere.
+inline constexpr auto projections =
+    std::span(all_values<Projection>).subspan<std::size_t(Projection::fisheye)>();
 
 inline CameraParams params_of(Projection projection) {
     CameraParams params;
@@ -69,7 +70,7 @@ inline double light_on_sphere(const Image& picture, const std::vector<double>& a
     return sum;
 }
 
-/// What light is measured of.
+/// A case whose light is measured.
 struct SphereCase {
     Projection projection;
     Falloff::Shape shape;
