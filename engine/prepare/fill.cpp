@@ -1,7 +1,7 @@
 // Each hole is solved alone, in its box: averages of known pixels at half the size and so on down to one
 // pixel, then back up, each level starting from the coarser one and relaxed a few times. Texture is cloned
-// seamlessly: the difference of the two rims is solved for instead (Perez et al. 2003, "Poisson image
-// editing").
+// seamlessly: the difference of the two rims is solved for instead (Perez et al. 2003,
+// "Poisson image editing").
 #include "prepare/stages.h"
 
 #include "core/parallel.h"

@@ -10,7 +10,7 @@
 namespace astrosplat {
 namespace {
 
-constexpr int lobes = 3;
+constexpr int lobes = 3;  // of the Lanczos kernel, on either side
 
 double determinant(const TanGrid& grid) {
     return grid.deg_per_px[0] * grid.deg_per_px[3] - grid.deg_per_px[1] * grid.deg_per_px[2];
@@ -88,6 +88,7 @@ std::optional<glm::dvec2> place_of(const TanGrid& grid, const glm::dvec2& sky_de
 Image regridded(const Image& image, const TanGrid& own, const TanGrid& target, std::int64_t width,
                 std::int64_t height, PixelMask& outside) {
     const double texels = std::sqrt(std::fabs(determinant(target) / determinant(own)));
+    // Half a pixel of the target as sigma, less the half texel that the source has already.
     const Image source = texels > 1.0 ? gaussian_blur(image, 0.5 * std::sqrt(texels * texels - 1.0)) : image;
     Image out = make_image(width, height, image.channels);
     outside = make_mask(width, height);
@@ -105,6 +106,7 @@ Image regridded(const Image& image, const TanGrid& own, const TanGrid& target, s
 }
 
 void apply_lupton(Image& image, const LuptonSettings& settings) {
+    // A mean of a tenth of the stretch is shown as a tenth of white.
     const double tenth = 0.1 / real::asinh(0.1 * settings.q);
     change_pixels(image, [&](float* p) {
         std::array<double, 3> light;

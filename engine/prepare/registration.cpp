@@ -92,9 +92,10 @@ void transform_back(ComplexGrid& grid) {
 
 constexpr std::int64_t searched_px = 32, refined_px = 512;  // longest sides of the levels that are compared
 constexpr std::int64_t smallest_px = 8;                     // of the moving image's pyramid
-constexpr double noticeable = 0.002;  // likeness by which another place must be better than the first
-constexpr double least_likeness = 0.5, least_overlap = 1.0 / 3.0;
-constexpr float least_spread = 2e-3f;  // standard deviation of display values; below, an image is flat
+constexpr double noticeable = 0.002;         // likeness by which another place must be better than the first
+constexpr double least_likeness = 0.5;       // correlation, without which there is no answer
+constexpr double least_overlap = 1.0 / 3.0;  // of the smaller image
+constexpr float least_spread = 2e-3f;        // standard deviation of display values; below, an image is flat
 
 using Pyramid = std::vector<Image>;  // from large to small
 
@@ -248,6 +249,7 @@ Found best_shift(const FixedSpectra& fixed, const Pyramid& moving, ImageOnImage 
 
 std::vector<Found> searched(const Image& fixed, const Pyramid& moving, const ImageOnImage& start,
                             const Progress& progress) {
+    // Every 10 degrees, and from 1 / 2.2 to 2.2 times the scale of the start.
     constexpr int turns = 36, scales = 13;
     constexpr double scale_step = 1.14;
     const FixedSpectra spectra(fixed);
@@ -297,7 +299,8 @@ std::optional<ImageOnImage> stepped(const Image& fixed, const Laid& moving, Imag
     const double quarter = 0.25 * double(longest_side(fixed));
     for (std::size_t i = 0; i < 4; ++i) system.squares[i][i] += i < 2 ? shifts : shifts * quarter * quarter;
     const std::optional<Vector<unknowns>> solution = solved(system.squares, system.products);
-    if (!solution || !((*solution)[4] > 1e-3)) return std::nullopt;
+    constexpr double least_gain = 1e-3;  // below, or negative: not the same light
+    if (!solution || !((*solution)[4] > least_gain)) return std::nullopt;
     const auto change = [&](std::size_t i, double most) {
         return std::clamp((*solution)[i] / (*solution)[4], -most, most);
     };
@@ -311,7 +314,7 @@ std::optional<ImageOnImage> stepped(const Image& fixed, const Laid& moving, Imag
 /// From `place`, in px of `fixed`; the score is the likeness.
 Found refined(const Image& fixed, const Pyramid& moving, ImageOnImage place) {
     constexpr int steps = 15;
-    constexpr double still = 1e-4;  // px
+    constexpr double still = 1e-4, still_scale = 1e-5;  // px, share: what moves less has arrived
     Found best;
     for (int step = 0; step < steps; ++step) {
         const Laid now = laid(moving, place, fixed.width, fixed.height);
@@ -321,7 +324,7 @@ Found refined(const Image& fixed, const Pyramid& moving, ImageOnImage place) {
         const double moved =
             std::fabs(next->middle.x - place.middle.x) + std::fabs(next->middle.y - place.middle.y);
         place = *next;
-        if (moved < still && std::fabs(place.scale / best.place.scale - 1.0) < 1e-5) break;
+        if (moved < still && std::fabs(place.scale / best.place.scale - 1.0) < still_scale) break;
     }
     return best;
 }

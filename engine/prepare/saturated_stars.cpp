@@ -8,10 +8,12 @@
 namespace astrosplat {
 namespace {
 
-constexpr std::size_t fewest_pixels = 9;
-constexpr double widest_core_px = 60.0;
-constexpr double longest = 2.5;          // of a core's box, over its other side
-constexpr double fallen_share = 0.5;     // of the saturation, below which the light is beside a core
+constexpr std::size_t fewest_pixels = 9;  // of a core
+constexpr double widest_core_px = 60.0;   // its radius
+constexpr double longest = 2.5;           // of a core's box, over its other side
+constexpr double fallen_share = 0.5;      // of the light at a core's rim, below which it has fallen off
+constexpr double fallen_rays = 0.7;       // share of the rays on which it has to
+constexpr double narrowest_wings_px = 2.0, wings_radii = 1.5;  // width to begin with: at least, or core radii
 constexpr double misfit_share = 0.15;    // of the saturation, that the fit of the wings may leave
 constexpr double highest = 300.0;        // of a core, over the saturation
 constexpr double spike_strength = 4.0;   // of a ray, over the usual one
@@ -24,8 +26,15 @@ struct Away {
 };
 constexpr Away beside_core{2.0, 3.0}, far_from_core{4.0, 8.0}, spike_start{1.3, 2.0}, spike_length{2.0, 4.0};
 constexpr Away spike_end{farthest_spike, 15.0};
-constexpr int rays = 72;
-constexpr int narrow = 3;  // rays to either side that a spike stands out of
+constexpr int rays = 72;                // around a core, on which its surroundings are looked at
+constexpr int narrow = 3;               // rays to either side that a spike stands out of
+constexpr double opposite_share = 0.5;  // of what is asked of a ray, that the one opposite must have
+constexpr double least_spike_noise = 2.0,
+                 least_spike_share = 0.2;  // of noise, of its strength: it ends below
+constexpr int most_faint_px = 4;           // in a row, at which a spike ends
+constexpr double spike_side_px = 4.0;      // from its middle to what it stands out of on either side
+constexpr double first_strength_px = 2.0;  // from its start to where its strength is measured first
+constexpr double spike_half_px = 1.5, spike_widening = 0.03;  // half its width, and more a px of distance
 
 double brightness(const Image& image, double x, double y) {
     const auto i = std::clamp<std::int64_t>(std::int64_t(x), 0, image.width - 1);
@@ -70,12 +79,12 @@ bool falls_off(const Image& image, const PictureStar& star) {
     const std::vector<double> beside = ring(image, star.x, star.y, beside_core.from(star));
     const double far = percentile(ring(image, star.x, star.y, far_from_core.from(star)), 0.5);
     const double level = percentile(at, 0.5) - far;
-    return level > 0.0 && percentile(beside, 0.7) - far < fallen_share * level;
+    return level > 0.0 && percentile(beside, fallen_rays) - far < fallen_share * level;
 }
 
 // The shape whose wings fit best; false where none does.
 bool fit_wings(const Image& image, const PixelMask& saturated, PictureStar& star) {
-    const StarWidths widths{0, std::max(2.0, 1.5 * star.core_px), 1.0};
+    const StarWidths widths{0, std::max(narrowest_wings_px, wings_radii * star.core_px), 1.0};
     PictureStar best = star;
     double least = std::numeric_limits<double>::infinity();
     for (int shape = 0; shape < star_shapes; ++shape) {
@@ -118,12 +127,12 @@ void mark_spike(const Image& without, const PictureStar& star, int ray, double s
     const double angle = 2.0 * real::pi * ray / rays, c = real::cos(angle), s = real::sin(angle);
     int faint = 0;
     const double end = spike_end.from(star);
-    for (double radius = start; radius < end && faint < 4; radius += 1.0) {
-        const double x = star.x + radius * c, y = star.y + radius * s, side = 4.0;
-        const double beside = std::max(brightness(without, x - side * s, y + side * c),
-                                       brightness(without, x + side * s, y - side * c));
+    for (double radius = start; radius < end && faint < most_faint_px; radius += 1.0) {
+        const double x = star.x + radius * c, y = star.y + radius * s;
+        const double beside = std::max(brightness(without, x - spike_side_px * s, y + spike_side_px * c),
+                                       brightness(without, x + spike_side_px * s, y - spike_side_px * c));
         faint = brightness(without, x, y) - beside < least ? faint + 1 : 0;
-        mark_disc(mask, x, y, 1.5 + 0.03 * radius);
+        mark_disc(mask, x, y, spike_half_px + spike_widening * radius);
     }
 }
 
@@ -155,15 +164,17 @@ void mark_core_and_spikes(const Image& without, const PictureStar& star, PixelMa
     std::vector<double> strength(rays, 0.0);
     const double start = spike_start.from(star), length = spike_length.from(star);
     for (double step = 0.0; step < length; step += 1.0) {
-        const std::vector<double> out = excess(ring(without, star.x, star.y, start + 2.0 + step));
+        const std::vector<double> out =
+            excess(ring(without, star.x, star.y, start + first_strength_px + step));
         for (std::size_t i = 0; i < strength.size(); ++i) strength[i] += out[i] / length;
     }
     const double least = spike_strength * median_size(strength);
     for (int i = 0; i < rays; ++i) {
         const auto at = [&](int k) { return strength[(i + k + rays) % rays]; };
         const double opposite = std::max({at(rays / 2 - 1), at(rays / 2), at(rays / 2 + 1)});
-        if (at(0) > least && opposite > 0.5 * least)
-            mark_spike(without, star, i, start, std::max(2.0 * star.noise, 0.2 * at(0)), mask);
+        if (at(0) > least && opposite > opposite_share * least)
+            mark_spike(without, star, i, start,
+                       std::max(least_spike_noise * star.noise, least_spike_share * at(0)), mask);
     }
 }
 

@@ -1,5 +1,5 @@
 // Stages of a picture's preparation besides its stars: several filters as one picture, holes filled, the sky
-// taken off, everything beside the object cut away. In: pictures, and how the sky lies on them (a tangent
+// taken off, everything around the object cut away. In: pictures, and how the sky lies on them (a tangent
 // plane, FITS's TAN; Calabretta and Greisen 2002, A&A 395, 1077). Out: pictures; linear light in which bright
 // parts keep their colour (Lupton et al. 2004, PASP 116, 133); surfaces of second degree.
 #pragma once
@@ -44,7 +44,7 @@ void apply_lupton(Image& image, const LuptonSettings& settings);
 enum class FillKind { membrane, texture };
 
 /// Fills the masked pixels of every channel. membrane: the smooth surface through the hole's rim (Laplace's
-/// equation). texture: that surface plus what stands out of it in an equally large piece beside the hole, the
+/// equation). texture: that surface plus what stands out of it in an equally large piece near the hole, the
 /// one that fits the rim best; the membrane where there is no such piece. A picture that is one hole becomes
 /// 0. Time and memory grow with the holes' boxes. The same bits with any number of threads. Throws Cancelled.
 void fill(Image& image, const PixelMask& holes, FillKind kind, const Progress& progress = {});

@@ -71,9 +71,16 @@ constexpr double damping = 1e-3;          // of the diagonal
 constexpr double farthest_step_px = 0.5;  // in one step
 constexpr double most_widened = 0.3;      // of the width's logarithm, in one step
 constexpr std::size_t fewest_samples = 12;
-constexpr double farthest_move_px = 1.2;  // from where the star was seen
-constexpr double other_width = 3.0;       // times the spread: the field's width counts ever less beyond
-constexpr double faintest_share = 0.1;    // of the noise: add_star ends there
+constexpr double farthest_move_px = 1.2, move_of_core = 0.5;  // from where the star was seen; core radii more
+constexpr double widest_over_usual = 4.0;  // times the field's width and the core, beyond which a fit is none
+constexpr double fit_widths = 2.0, fit_more_px = 1.0, fit_least_px = 4.0,
+                 fit_most_px = 12.0;    // of its radius
+constexpr double fit_cores = 2.0;       // radii, that a saturated star's fit reaches out more, and is wider
+constexpr double reach_cores = 8.0;     // radii, that it is taken away out to beyond the widest reach
+constexpr double small_step = 1e-4;     // px and width's logarithm, that end a fit
+constexpr double no_fit = 1e30;         // squares left where nothing fits: finite, for two are subtracted
+constexpr double other_width = 3.0;     // times the spread: the field's width counts ever less beyond
+constexpr double faintest_share = 0.1;  // of the noise: add_star ends there
 
 // A usable pixel near a star: its place and the light of r, g, b.
 struct Sample {
@@ -94,7 +101,8 @@ std::vector<Sample> samples_near(const Image& image, const PixelMask& unusable, 
 }
 
 double fit_radius(const StarProfile& profile, double core) {
-    return std::clamp(2.0 * profile.fwhm_px + 1.0, 4.0, 12.0) + 2.0 * core;
+    return std::clamp(fit_widths * profile.fwhm_px + fit_more_px, fit_least_px, fit_most_px) +
+           fit_cores * core;
 }
 
 // The star's shape as the fit moves it, with the background under it.
@@ -144,7 +152,7 @@ bool take_step(Trial& trial, const Vector<7>& step) {
     trial.star.y += dy;
     trial.star.profile.fwhm_px = std::max(narrowest_fwhm_px, trial.star.profile.fwhm_px * real::exp(wider));
     for (std::size_t i = 0; i < 3; ++i) trial.plane[i] += step[4 + i];
-    return std::fabs(dx) + std::fabs(dy) + std::fabs(wider) < 1e-4;
+    return std::fabs(dx) + std::fabs(dy) + std::fabs(wider) < small_step;
 }
 
 // By height and plane: of a star whose place and width are known.
@@ -196,7 +204,7 @@ bool start_trial(Trial& trial, const std::vector<Sample>& samples) {
 
 double squares_left(const std::vector<Sample>& samples, const PictureStar& star) {
     Trial trial{star};
-    if (!start_trial(trial, samples)) return 1e30;
+    if (!start_trial(trial, samples)) return no_fit;
     double squares = 0.0;
     const double unit = unit_of(star.profile);
     for (const Sample& sample : samples) {
@@ -214,13 +222,13 @@ bool fit_star(const Image& image, const PixelMask& unusable, const StarWidths& w
     const double radius = fit_radius(star.profile, star.core_px);
     const std::vector<Sample> samples = samples_near(image, unusable, star.x, star.y, radius);
     if (samples.size() < fewest_samples || !start_trial(trial, samples)) return false;
-    const double widest = 4.0 * (widths.fwhm_px + 2.0 * star.core_px);
+    const double widest = widest_over_usual * (widths.fwhm_px + fit_cores * star.core_px);
     for (int step = 0; step < most_steps; ++step) {
         const auto found = next_step(trial, samples, widths, star.pixel_noise);
         if (!found) return false;
         const bool done = take_step(trial, *found);
         const double moved = std::hypot(trial.star.x - star.seen_x, trial.star.y - star.seen_y);
-        if (moved > farthest_move_px + 0.5 * star.core_px || trial.star.profile.fwhm_px > widest)
+        if (moved > farthest_move_px + move_of_core * star.core_px || trial.star.profile.fwhm_px > widest)
             return false;
         if (done) break;
     }
@@ -255,7 +263,7 @@ double reach_px(const PictureStar& star) {
     const double height = *std::max_element(star.amplitude.begin(), star.amplitude.end());
     if (!(height > 0.0)) return 0.0;
     const double reach = reach_of(star.profile, faintest_share * star.noise / height);
-    return std::min(reach, widest_reach_px + 8.0 * star.core_px);
+    return std::min(reach, widest_reach_px + reach_cores * star.core_px);
 }
 
 void add_star(Image& image, const PictureStar& star, float sign) {

@@ -15,8 +15,8 @@ struct StarProfile {
     int shape = 0;         // 0 .. star_shapes - 1
 };
 
-/// The scaled distance u that profiles are functions of is unit_of(profile) times the squared distance
-/// (px^2).
+/// The scaled distance u that profiles are functions of is unit_of(profile)
+/// times the squared distance (px^2).
 double unit_of(const StarProfile& profile);
 
 /// The profile and its derivative by u, at u >= 0.

@@ -20,7 +20,7 @@ namespace {
 constexpr std::int64_t tile_px = 64;     // more than twice the reach of a star
 constexpr double kernel_sigma_px = 1.2;  // of the kernel that finds candidates
 constexpr double telling = 8.0;          // signal to noise of stars that together tell the field's profile
-constexpr std::size_t most_telling = 1000;
+constexpr std::size_t fewest_telling = 8, most_telling = 1000;
 constexpr double wider = 1.5;  // times the field's width: stars from which on may have one of their own
 constexpr std::size_t fewest_wider = 200, most_telling_of_wider = 4000;
 constexpr double model_error = 0.03;           // of a star's height, by which no profile is to be trusted
@@ -112,8 +112,8 @@ std::vector<std::size_t> telling_stars(const Search& search, double least_fwhm_p
     return best;
 }
 
-// The residual of each profile for a star, in squares of what may be left: noise, and an error of the
-// profile.
+// The residual of each profile for a star, in squares of what may be left: noise,
+// and an error of the profile.
 std::vector<double> misfits_of(const Search& search, const PictureStar& star,
                                const std::vector<StarProfile>& profiles) {
     const double trust = model_error * star.signal_to_noise();
@@ -171,7 +171,7 @@ StarWidths widths_of(const Search& search, const std::vector<std::size_t>& stars
 // tell its shape, and with the points' it would lose its wings.
 void measure_profile(Search& search) {
     const std::vector<std::size_t> stars = telling_stars(search, 0.0, most_telling);
-    if (stars.size() < 8) return;
+    if (stars.size() < fewest_telling) return;
     search.widths = widths_of(search, stars);
     const std::vector<std::size_t> others =
         telling_stars(search, wider * search.widths.fwhm_px, most_telling_of_wider);
@@ -275,7 +275,7 @@ constexpr double trusted_height = 6.0;  // of a profile over a pixel's noise: ab
 constexpr double least_trusted = 1.0;   // and below, they are what the picture shows
 constexpr double too_dark = 2.0;        // times the noise: profiles were wider or higher than the star
 constexpr double too_bright = 4.0;      // or narrower, near the star's middle
-constexpr std::int64_t cell_px = 24;
+constexpr std::int64_t cell_px = 24;    // in which the level and noise of what surrounds a star are measured
 
 // A pixel that the star's profile did not leave as its surroundings are.
 bool stands_out(const Image& without, const Cells& cells, std::int64_t x, std::int64_t y, bool near) {

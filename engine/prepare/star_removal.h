@@ -48,7 +48,7 @@ struct StarRemoval {
 /// did not before. The same bits with any number of threads. Throws Cancelled.
 StarRemoval remove_stars(const Image& image, const StarSettings& settings, const Progress& progress = {});
 
-/// Bytes that it takes at its peak beside the picture.
+/// Bytes that it takes at its peak besides the picture.
 std::int64_t star_removal_bytes(const Image& image);
 
 /// The first line of every star_table(): tells it from a table of another program that has the same name.
