@@ -24,8 +24,8 @@
 
 namespace astrosplat {
 
-/// Of the sources, 12 hexadecimal digits, with "-dirty" where files had changed; "unknown" outside a
-/// repository.
+/// Of the sources, 12 hexadecimal digits, with "-dirty" where files had changed;
+/// "unknown" outside a repository.
 extern const char* const built_commit;  // of commit.cmake
 
 namespace {
@@ -65,7 +65,7 @@ void add_screenshot(CLI::App& app, Invocation& call) {
     app.add_flag("--settled", shot.settled, "With --screenshot: the final frame, not the preview");
 }
 
-// --version
+// The text of --version.
 
 #if defined(__clang__)
 constexpr const char* compiler = "Clang " __clang_version__;
@@ -90,13 +90,13 @@ std::string version_text() {
 // --batch --sets-only: generates the sets of the frames into the cache, one after the other, and renders
 // nothing. A farm does so once before its tasks begin.
 
-/// Reports on stderr; the exit code. Throws InputError (also where an option beside asks for frames or there
+/// Reports on stderr; the exit code. Throws InputError (also where another option asks for frames or there
 /// is no cache), OutputError (the cache cannot be written), Cancelled.
 int run_sets_only(const CommandOptions& options) {
     if (options.cache.folder.empty()) bad_input("--sets-only", "", "a cache that keeps them", "none");
     if (options.dry_run || options.stats)
-        bad_input("--sets-only", "",
-                  fmt::format("no {} beside it", options.dry_run ? "--dry-run" : "--stats"), "both");
+        bad_input("--sets-only", "", fmt::format("no {} with it", options.dry_run ? "--dry-run" : "--stats"),
+                  "both");
     const BatchPlan plan = plan_frames(options);
     defer_interrupts();
     prove_writable(options.cache.folder);
@@ -120,7 +120,7 @@ void refuse_without_screenshot(const ScreenshotOptions& shot) {
                          : shot.ui      ? "--ui"
                          : shot.settled ? "--settled"
                                         : nullptr;
-    if (option) bad_input(option, "", "--screenshot OUT.png beside it", "none");
+    if (option) bad_input(option, "", "--screenshot OUT.png with it", "none");
 }
 
 /// The window, or a screenshot of it.
@@ -180,10 +180,10 @@ int run(Invocation& call) {
     }
     const bool submits = !call.submit.system.empty();
     if (!submits && (call.submit.chunk || call.submit.partition))
-        bad_input(call.submit.chunk ? "--chunk" : "--partition", "", "--submit slurm beside it", "none");
+        bad_input(call.submit.chunk ? "--chunk" : "--partition", "", "--submit slurm with it", "none");
     if (!call.batch && !submits) return run_window(call);
     const char* mode = submits ? "--submit" : "--batch";
-    if (!call.screenshot.output.empty()) bad_input(mode, "", "no --screenshot beside it", "both");
+    if (!call.screenshot.output.empty()) bad_input(mode, "", "no --screenshot with it", "both");
     if (options.input.empty()) bad_input(mode, "", "a scene file", "none (see --help)");
     if (submits) return run_submit(call.submit, options);
     return options.sets_only ? run_sets_only(options) : run_batch(options);

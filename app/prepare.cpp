@@ -67,7 +67,7 @@ void require_effect(const Parameter& parameter, const Description& description) 
     if (has_effect(parameter.spec, find)) return;
     const Condition& condition = parameter.spec.conditions.front();
     const std::string value = condition.wanted ? " " + to_toml(condition.values.front()) : "";
-    bad_input(prepare_option(parameter.spec.key), "", prepare_option(condition.key) + value + " beside it",
+    bad_input(prepare_option(parameter.spec.key), "", prepare_option(condition.key) + value + " with it",
               "none");
 }
 
@@ -106,7 +106,7 @@ TextureSettings prepare_settings(const PrepareOptions& own, bool three_filters) 
     if (const std::optional<KeyProblem> problem = problem_of(settings.prepare))
         throw InputError(prepare_option(problem->key) + ": " + problem->message);
     if (own.settings.contains("stretch") && settings.prepare.lupton)
-        bad_input("--stretch", "", "--lupton false beside it", "none");
+        bad_input("--stretch", "", "--lupton false with it", "none");
     return settings;
 }
 
@@ -133,8 +133,7 @@ std::vector<fs::path> pictures_of(const fs::path& folder, const PrepareOptions& 
     return files;
 }
 
-/// What the first of the files says of its object, and of the sky what the file says on whose grid it was
-/// put.
+/// The first file's words on its object, and on the sky those of the file on whose grid it was put.
 std::string metadata_text(const fs::path& first, const PrepareParams& params, const std::string& credit) {
     ObjectMetadata said = clues_of(first).metadata;
     said.credit = credit;

@@ -194,10 +194,9 @@ constexpr const char *sets_name = "sets.sh", *frames_name = "frames.sh";
 
 void check_options(const SubmitOptions& options, const CommandOptions& batch) {
     if (options.system != "slurm") bad_input("--submit", "", "slurm", "'" + options.system + "'");
-    if (batch.stats)
-        bad_input("--stats", "", "no --submit beside it, whose tasks would all write it", "both");
+    if (batch.stats) bad_input("--stats", "", "no --submit with it, whose tasks would all write it", "both");
     if (batch.sets_only)
-        bad_input("--sets-only", "", "no --submit beside it, whose first job does that", "both");
+        bad_input("--sets-only", "", "no --submit with it, whose first job does that", "both");
     if (batch.cache.folder.empty())
         bad_input("--submit", "", "a cache, in which the tasks find their sets", "none");
     const auto is_plain = [](char c) {
@@ -255,8 +254,8 @@ std::string job_name(const fs::path& scene) {
     return name;
 }
 
-/// Takes away what waits or runs already. Throws InputError where that would make other frames of these
-/// names.
+/// Takes away what waits or runs already. Throws InputError where that would make other frames
+/// of these names.
 void leave_out_queued(const Submission& wanted, Frames& frames) {
     const std::vector<Submission> submissions = submissions_of(wanted.output);
     const QueueState queue = ask_queue(submissions);

@@ -75,7 +75,7 @@ class CsvReader {
         const Description description = describe(scene_);
         for (std::size_t i = 0; i < names.size(); ++i)
             if (i != frame_) add_column(description, names[i], i);
-        if (keys_.empty()) rows_.fail("at least one key beside 'frame'", "none");
+        if (keys_.empty()) rows_.fail("at least one key besides 'frame'", "none");
         for (const KeyColumns& key : keys_) check_complete(key);
     }
 

@@ -141,12 +141,12 @@ TEST_F(PrepareCommand, RefusesWhatItShould) {
     refused({"--ellipse", "1,2,3"}, "--ellipse: expected 4 numbers");
     refused({"--ellipse", "1,2,0,4"}, "--ellipse: expected half axes above 0, found 0 and 4");
     refused({"--ellipse", "1,2,3,4", "--feather", "2"}, "--feather: expected a number from 0 to 1, found 2");
-    refused({"--feather", "0.1"}, "--feather: expected --ellipse beside it, found none");
+    refused({"--feather", "0.1"}, "--feather: expected --ellipse with it, found none");
     refused({"--threshold", "3", "--stars", "keep"},
-            "--threshold: expected --stars \"remove\" beside it, found none");
+            "--threshold: expected --stars \"remove\" with it, found none");
     refused({"--alpha", "0.5,0.5"}, "--alpha: expected the lower end first, found 0.5 and 0.5");
     refused({"--lupton-q", "-1"}, "--lupton-q: expected a number from 1e-06 to 1000000, found -1");
-    refused({"--lupton-q", "1"}, "--lupton-q: expected --lupton true beside it, found none");
+    refused({"--lupton-q", "1"}, "--lupton-q: expected --lupton true with it, found none");
     refused({"--align", "stars.ppm"}, "stars.ppm: expected a FITS picture whose header tells the sky");
     write_text(folder / "small.ppm", "P6\n16 16\n255\n" + std::string(16 * 16 * 3, 'x'));
     for (const char* option : {"--mask", "--fill", "--split"})

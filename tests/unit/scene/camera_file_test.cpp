@@ -171,7 +171,7 @@ TEST_F(CameraFile, EachMessageNamesPlaceExpectationAndFinding) {
     };
     EXPECT_EQ(table(""), "t.csv:0: expected a header such as frame,camera.position.x, found an empty file");
     EXPECT_EQ(table("1,2,3\n"), "t.csv:1: expected a header with a column 'frame', found '1'");
-    EXPECT_EQ(table("frame\n1\n"), "t.csv:1: expected at least one key beside 'frame', found none");
+    EXPECT_EQ(table("frame\n1\n"), "t.csv:1: expected at least one key besides 'frame', found none");
     EXPECT_EQ(table("frame,camera.fov\n"), "t.csv:1: expected rows of numbers below the header, found none");
     EXPECT_EQ(table("frame,camera.fuv\n1,2\n"),
               "t.csv:1: unknown key 'camera.fuv'; did you mean 'camera.fov'?");
