@@ -103,7 +103,7 @@ Scene batch_scene(const CommandOptions& options) {
     return std::move(scene);
 }
 
-/// A missing input should be told before the first folder is made.
+/// A missing input is to be reported before the first folder is made.
 void check_inputs(Scene scene) {
     std::erase_if(scene.layers, [&](const LayerParams& layer) { return !ever_visible(scene, layer); });
     std::vector<fs::path> files = picture_files(scene);

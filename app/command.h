@@ -1,6 +1,6 @@
-// What the commands of the command line share: options as typed, their values, the places of results,
-// reports on stdout; and their description by CLI11, which also becomes words for the manual page and the
-// shells' completion. A command stands in a file of its own: its options with their help, and what it does.
+// Shared by the commands of the command line: options as typed, their values, the places of results, reports
+// on stdout; and their description by CLI11, which also becomes words for the manual page and the shells'
+// completion. A command stands in a file of its own: its options with their help, and what it does.
 #pragma once
 
 #include <CLI/App.hpp>
@@ -50,7 +50,8 @@ std::vector<std::string> split(const std::string& text, char separator);
 /// The layer that --layer names. Throws InputError, which lists those of the scene.
 const LayerParams& layer_named(const Scene& scene, const std::string& name);
 
-// Where results go: asked before any work is done, so that hours are not spent on a frame nobody can write.
+// Where results go: asked before any work is done, so that hours are not spent on a frame that cannot
+// be written.
 
 /// Creates `folder` where it is missing and tries a temporary file in it. Throws OutputError.
 void prove_writable(const fs::path& folder);
@@ -66,8 +67,8 @@ inline Existing existing_of(const CommandOptions& options) {
     return options.overwrite ? Existing::replace : Existing::keep;
 }
 
-/// The output, where it can be written; from now on interrupts are deferred (exit.h). Throws InputError,
-/// OutputError.
+/// The output, where it can be written; from now on interrupts are deferred (exit.h).
+/// Throws InputError, OutputError.
 WriteTarget claim_output(const CommandOptions& options);
 
 // Results on stdout: one ordered tree of names and values, printed as JSON or as indented lines for people.
@@ -79,7 +80,7 @@ Report number(double value);
 
 void print_report(const Report& report, bool json);
 
-/// --submit, beside the options of --batch.
+/// Options of --submit, besides those of --batch.
 struct SubmitOptions {
     std::string system;                    // "slurm"; empty: not asked for
     std::optional<std::string> chunk;      // frames of a task; default 10
@@ -105,7 +106,7 @@ CLI::Option* add_value(CLI::App& app, const std::string& names, Value& value, co
     return app.add_option_function<std::string>(names, set, help)->option_text(placeholder);
 }
 
-/// What the command is about, which has to be given.
+/// The file or folder that the command is about, which has to be given.
 void add_input(CLI::App& app, CommandOptions& options, const std::string& name, const std::string& help);
 /// -o, which has to be given, and --overwrite; returns the former.
 CLI::Option* add_output(CLI::App& app, CommandOptions& options, const std::string& placeholder,

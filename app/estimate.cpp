@@ -41,12 +41,12 @@ struct LayerNeed {
 };
 
 constexpr std::int64_t shaded_bytes = 40;
-// Of captures: a row of a file with normals; and beside what all have shape and radius, harmonics and colours
-// by direction.
+// Of captures: a row of a file with normals; and, on top of what all splats have, shape and radius, harmonics
+// and colours by direction.
 constexpr std::int64_t capture_row_bytes = 68, harmonics_row_bytes = 180;
 constexpr std::int64_t shape_bytes = 68, harmonics_bytes = 204;
-// A row of a .splats file beside its bytes, whose rows are put in order of id: 41, as VmHWM shows for a file
-// of 2.5 M splats, and a little for what follows at once.
+// A row of a .splats file on top of its bytes, whose rows are put in order of id: 41, as VmHWM shows for a
+// file of 2.5 M splats, and a little for what follows at once.
 constexpr std::int64_t sorting_bytes = 44;
 constexpr std::int64_t streamed_bytes_per_block = 128 * shaded_bytes + 256;  // sample, bounds
 constexpr std::int64_t catalogue_bytes_per_star = 100;                       // HYG; Hipparcos, compressed
@@ -139,12 +139,12 @@ LayerNeed need_of(const BatchPlan& plan, const LayerParams& layer, const Sampled
 constexpr std::int64_t program_bytes = 44'000'000;  // with its libraries, before any scene
 constexpr std::int64_t picture_bytes = 92'000'000;  // libraries that read pictures
 constexpr std::int64_t drawing_bytes = 10'000'000;  // what rendering and writing any frame adds
-constexpr std::int64_t worker_bytes = 800'000;      // a thread that renders, beside what folding takes
+constexpr std::int64_t worker_bytes = 800'000;      // a thread that renders, besides what folding takes
 constexpr std::int64_t block_bytes = 6'700'000;     // the same where sets come by the block
-// Of what is told: buffers grow by steps, malloc keeps holes, AOVs take more beside their planes. Without it
-// 30 runs took from 16 % less to 8 % more than was told: files and meshes in memory and on disk, one to three
-// layers, every AOV, blur, panoramas, split splats, each format, up to 4K.
-constexpr double told_margin = 1.1;
+// Over what is counted: buffers grow by steps, malloc keeps holes, AOVs take more than their planes. Without
+// it 30 runs took from 16 % less to 8 % more than estimated: files and meshes in memory and on disk, one to
+// three layers, every AOV, blur, panoramas, split splats, each format, up to 4K.
+constexpr double estimate_margin = 1.1;
 constexpr std::int64_t reserve_bytes = 8'000'000;   // for what an estimate is short of, where a limit is kept
 constexpr std::int64_t least_records = 24'000'000;  // bytes for projected splats that any frame is worth
 // A projected splat lies in so many tiles, where nothing is known of the splats' places; and its place in a
@@ -183,10 +183,10 @@ SkyBytes sky_bytes(const EnvironmentParams& sky) try {
 }
 
 // Of a file of EXR: rows that are stored together, and what OpenEXR takes for the planes of a layer (from
-// 640x360 to 3840x2160 px the peak rose by 9 to 13 MB a layer beside its floats).
+// 640x360 to 3840x2160 px the peak rose by 9 to 13 MB a layer besides its floats).
 constexpr std::int64_t stored_rows = 256, layer_plane_bytes = 11'000'000;
 
-/// What writing a frame takes. `layers` have planes of their own.
+/// Bytes of memory that writing a frame takes. `layers` have planes of their own.
 std::int64_t written_bytes(const OutputParams& output, std::int64_t width, std::int64_t height,
                            std::int64_t layers) {
     const FrameFormat format = resolve_format(output, output.path);
@@ -225,12 +225,12 @@ bool uses_pictures(const BatchPlan& plan, const std::vector<LayerNeed>& needs) {
            std::ranges::any_of(needs, &LayerNeed::reads_pictures);
 }
 
-/// All layers of a job, and what it takes beside them.
+/// All layers of a job, and what it takes besides them.
 struct JobNeed {
     std::vector<LayerNeed> layers;
     SkyBytes sky;
     std::int64_t program = 0;  // bytes from its start on
-    std::int64_t working = 0;  // the same and what rendering takes beside sets, sky and records
+    std::int64_t working = 0;  // the same and what rendering takes besides sets, sky and records
 };
 
 using Names = std::vector<std::string>;
@@ -274,7 +274,7 @@ Names layers_on_disk(const JobNeed& job, std::int64_t all_records, std::int64_t 
 
 bool is_split(const LayerParams& layer) { return layer.render.lod.max_px > 0.0; }
 
-/// Bytes of projected splats of a layer of which nobody knows where they lie.
+/// Bytes of projected splats of a layer whose places are not known yet.
 std::int64_t guessed_records(const OutputParams& output, const LayerNeed& need) {
     const double tiles = static_cast<double>(output.width * output.height) / 4096.0;
     const double folded = fold_bytes * std::min(1.0, 3.0 * thread_count() / std::max(1.0, tiles));
@@ -345,8 +345,8 @@ JobEstimate estimate(const BatchPlan& plan, SampledRun& sample) {
     const bool is_limited = plan.memory_limit_bytes > 0;
     const std::int64_t limit = is_limited ? plan.memory_limit_bytes : available_memory_bytes() / 10 * 9;
     job.streamed = layers_on_disk(need, records, limit);
-    job.bytes =
-        static_cast<std::int64_t>(told_margin * static_cast<double>(peak_bytes(need, job.streamed, records)));
+    job.bytes = static_cast<std::int64_t>(estimate_margin *
+                                          static_cast<double>(peak_bytes(need, job.streamed, records)));
     if (!is_limited && job.streamed.empty()) return job;
     const std::int64_t least = peak_bytes(need, job.streamed, std::min(records, least_records));
     if (is_limited && least > limit) refuse_limit(least, limit);

@@ -1,5 +1,5 @@
-// Memory, time and bytes that a batch run will take, before it takes them; told from a run over a hundredth
-// of its splats. In: a plan. Out: seconds, bytes of memory and bytes of files.
+// Memory, time and bytes that a batch run will take, before it takes them; estimated from a run over a
+// hundredth of its splats. In: a plan. Out: seconds, bytes of memory and bytes of files.
 #pragma once
 
 #include "batch_plan.h"
@@ -73,7 +73,7 @@ struct JobEstimate {
     std::optional<bool> sky_kept;  // of a scene whose sky is made of one picture: whether it is in the cache
     /// Layers of .splats files that stay on disk, because all in memory would be more than there may be.
     std::vector<std::string> streamed;
-    /// For splats of meshes of which nobody knows yet where they lie, or into how many they are split.
+    /// Because of meshes: where their splats lie is not known yet, or into how many they are split.
     bool guesses_much = false;
     std::int64_t renderer_bytes = 0;  // what is left for RenderSettings::memory_limit_bytes; 0: any number
 };

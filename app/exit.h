@@ -1,7 +1,7 @@
 // How the program ends: its exit codes; Ctrl-C and termination. Until something is written these end the
 // process at once; from then on they are a flag that long work looks at, so that it stops between two pixels
-// and leaves nothing half. And a limit on the size of files, which is to be an error of writing like a full
-// disk.
+// and leaves nothing half. And a limit on the size of files, which is to be an error of writing like
+// a full disk.
 #pragma once
 
 #include <atomic>

@@ -149,7 +149,7 @@ void add_camera(CLI::App& app, Invocation& call) {
 
 namespace {
 
-// Volumes.
+// Export of volumes.
 
 struct VolumeExport {
     double gain = 1.0;        // of light

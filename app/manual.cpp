@@ -62,7 +62,7 @@ std::vector<CommandWords> command_words(const CLI::App& app) {
     return commands;
 }
 
-// Completion.
+// Completion scripts for shells.
 
 /// Its value is a file or a folder.
 bool is_file(const OptionWords& option) {
@@ -287,8 +287,8 @@ end
     return text;
 }
 
-/// Keys that --set takes as they stand: those of layers need a layer's name, for which the scripts ask the
-/// program.
+/// Keys that --set takes as they stand: those of layers need a layer's name, for which the scripts
+/// ask the program.
 Words keys_to_set() {
     Words keys;
     for (const ParameterRow& row : parameter_rows())

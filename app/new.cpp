@@ -17,7 +17,7 @@ namespace astrosplat {
 namespace {
 
 struct NewOptions {
-    std::string as;      // an object of the sky, or plane; empty: told by the picture and its file
+    std::string as;      // an object of the sky, or plane; empty: found from the picture and its file
     std::string object;  // its name, "M 104"; may be empty
     std::string shape;   // of a scene of columns; empty: a scene of bodies
     bool film = false;

@@ -14,11 +14,11 @@
 namespace astrosplat {
 namespace {
 
-// JSON.
+// Lines of JSON, for --log-json.
 
 using Json = nlohmann::ordered_json;
 
-bool as_json = false;  // set once, before anything runs beside it
+bool as_json = false;  // set once, before any other thread runs
 
 // UTC, as RFC 3339 has it.
 std::string time_now() {

@@ -64,7 +64,7 @@ struct FidelitySettings {
 /// Bytes of images and measures at their peak, about: what comes on top of the splats.
 std::int64_t fidelity_bytes(const FidelityReference& reference, const FidelitySettings& settings = {});
 
-/// A front view beside what it is compared with, both as linear light on black.
+/// A front view and what it is compared with, both as linear light on black.
 struct FrontComparison {
     FrontFidelity fidelity;
     Image seen, picture;

@@ -67,7 +67,7 @@ class Pipeline {
     std::vector<std::string> layer_names(const FrameScene& frame) const;
     /// Credits of all pictures and splat files in use, each once, joined with "; ".
     std::string input_credit() const;
-    /// What of each layer in use is measured and what is invented, "NAME: ..." joined with " | ".
+    /// Which parts of each layer in use are measured and which invented, "NAME: ..." joined with " | ".
     std::string input_origin() const;
 
   private:

@@ -1,5 +1,5 @@
-// Edits become --set words by comparing parameter by parameter; loading the file with these words then proves
-// them.
+// Edits become --set words by comparing parameter by parameter; loading the file with these words
+// then proves them.
 #include "edit/command_lines.h"
 
 #include <fmt/format.h>

@@ -208,8 +208,8 @@ Numbers numbers_for(const Parameter& parameter, const Value& value) {
     });
 }
 
-/// A new track moves smoothly, as people expect of a camera or a slider; values that step have no way
-/// between.
+/// A new track moves smoothly, as people expect of a camera or a slider; values that step have
+/// no way between.
 Track new_track(const ParameterSpec& spec) {
     Track track;
     track.key = spec.key;

@@ -1,8 +1,8 @@
-// What edits of a scene are made of. Rules that every edit keeps: the scene can be saved and read again,
-// values that depend on the edited ones follow, and what a drag makes has no digits that nobody chose. Then
-// keyframes, and the handles of Bezier ones (camera/keyframe.h): frames are whole unless dragged otherwise;
-// a track that loses its last keyframe is removed and the parameter keeps the value it had there; without
-// such a track or keyframe nothing changes.
+// Building blocks of edits of a scene. Rules that every edit keeps: the scene can be saved and read again,
+// values that depend on the edited ones follow, and what a drag makes is rounded to digits that a person
+// would type. Then keyframes, and the handles of Bezier ones (camera/keyframe.h): frames are whole unless
+// dragged otherwise; a track that loses its last keyframe is removed and the parameter keeps the value it had
+// there; without such a track or keyframe nothing changes.
 #pragma once
 
 #include <fmt/format.h>
@@ -14,7 +14,7 @@
 
 namespace astrosplat {
 
-/// What `act` returns. A ValueError becomes an InputError, which names the parameter.
+/// Calls `act` and returns its result. A ValueError becomes an InputError, which names the parameter.
 template <class Act>
 auto naming(const ParameterKey& key, const Act& act) {
     try {
@@ -36,7 +36,7 @@ void apply_output_preset(Scene& scene);
 /// Makes the frame of a dome master square again where one side of it was changed, by that side.
 void keep_dome_square(Scene& scene, const Scene& before);
 
-/// Frames of ten seconds: how long a film is that nobody chose a length for.
+/// Frames of ten seconds: the length of a film that was given none.
 double film_frames(const OutputParams& output);
 
 /// A still's first keyframe at a later frame makes it a film of film_frames(), or up to that keyframe.

@@ -1,4 +1,4 @@
-// What is kept of a scene besides its file. Unsaved edits survive a crash: a copy of the scene in the
+// Files kept of a scene besides its own. Unsaved edits survive a crash: a copy of the scene in the
 // person's state folder, NAME-PID-HASH.toml, that any astrosplat can load, and the way back from it.
 // Snapshots are named looks to compare with and to go back to: each is a scene file in the folder
 // SCENE.snapshots with a small image beside it. The first line of both says what they are of. Files appear

@@ -17,8 +17,8 @@ struct Preferences : PanelSizes {
 fs::path preferences_file();
 
 /// Values that are missing, of another type or out of range have their defaults, recent files and
-/// folders that are gone are left out. A damaged file gives the defaults and one warning; a missing one is no
-/// news.
+/// folders that are gone are left out. A damaged file gives the defaults and one warning;
+/// a missing one is no news.
 Preferences load_preferences(const fs::path& file = preferences_file());
 /// Atomically. A file that cannot be written costs one warning.
 void save_preferences(const Preferences& preferences, const fs::path& file = preferences_file());

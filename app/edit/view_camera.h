@@ -22,8 +22,8 @@ CameraParams view_camera(const Scene& scene, const ViewState& view, const Bounds
 /// Width over height of the output's frames.
 double aspect_of(const OutputParams& output);
 
-/// The view in the window as a camera of the scene, with a place of its own. A view beside the camera is as
-/// high as the viewport, or as the output's shape within it where that is the lower of the two. Throws
+/// The view in the window as a camera of the scene, with a place of its own. A view other than the camera's
+/// is as high as the viewport, or as the output's shape within it where that is the lower of the two. Throws
 /// InputError where a camera without a position has nothing to frame yet.
 CameraParams seen_camera(const Scene& scene, const ViewState& view, const Status& status);
 
@@ -32,8 +32,8 @@ bool has_parallel_rays(const FreeCamera& camera);
 
 CameraParams camera_params(const FreeCamera& camera);
 /// The free camera that shows what `params` shows; its pivot is the target, or for a camera given by a
-/// rotation the point of its line of sight nearest to the box's middle. Throws InputError as make_camera
-/// does.
+/// rotation the point of its line of sight nearest to the box's middle.
+/// Throws InputError as make_camera does.
 FreeCamera free_camera(const CameraParams& params, const Bounds& box, double aspect);
 /// The same; none where it throws.
 std::optional<FreeCamera> try_free_camera(const CameraParams& params, const Bounds& box, double aspect);
@@ -75,8 +75,8 @@ FreeCamera zoom_to(const FreeCamera& camera, double steps, const glm::dvec2& px,
 FreeCamera look_around(FreeCamera camera, const glm::dvec2& delta_px, double viewport_height_px);
 /// Moves camera and pivot by scene units to the right, up and forward.
 FreeCamera fly(FreeCamera camera, const glm::dvec3& distance);
-/// Moves sideways until `point` is in the middle; it is the pivot then. A point behind the camera is not
-/// taken.
+/// Moves sideways until `point` is in the middle; it is the pivot then. A point behind the camera
+/// is not taken.
 FreeCamera with_pivot(FreeCamera camera, const glm::dvec3& point);
 
 /// Sets keyframes of position, target and whatever else of the camera is animated at `frame` to those of
@@ -84,8 +84,8 @@ FreeCamera with_pivot(FreeCamera camera, const glm::dvec3& point);
 /// other time at which they could be wrong.
 void set_camera_keyframe(Scene& scene, const CameraParams& camera, double frame);
 
-/// "Key camera here": sets those of seen_camera at the view's frame, rounded. Throws as that
-/// does.
+/// "Key camera here": sets those of seen_camera at the view's frame, rounded.
+/// Throws as that does.
 void set_keyframe_of_seen_camera(Scene& scene, const ViewState& view, const Status& status);
 
 inline constexpr std::array<const char*, 3> camera_move_names{"Orbit", "Fly in", "Face-on to edge-on"};

@@ -1,5 +1,5 @@
 // Other programs, started without a shell: tools of the system, such as sbatch, that run to their end, and
-// programs at work beside the window. In: words of a command. Out: exit code and output.
+// programs that work alongside the window. In: words of a command. Out: exit code and output.
 #pragma once
 
 #include <sys/types.h>

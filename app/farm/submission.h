@@ -38,12 +38,12 @@ struct SubmittedFrames {
     std::vector<std::string> options;
     std::string frames;  // as --frames reads them: "1-240"
 };
-/// In the order in which they were first submitted; submissions whose options or frames nobody knows any more
+/// In the order in which they were first submitted; submissions whose options or frames are no longer known
 /// are left out.
 std::vector<SubmittedFrames> submitted_frames(const std::vector<Submission>& submissions);
 
-/// States as squeue names them, "PENDING", "RUNNING", "FAILED"; Slurm forgets tasks some minutes after their
-/// end.
+/// States as squeue names them, "PENDING", "RUNNING", "FAILED"; Slurm forgets tasks some minutes
+/// after their end.
 struct SubmissionState {
     std::string sets;                           // empty: forgotten
     std::map<std::int64_t, std::string> tasks;  // by index of the chunk; those not forgotten

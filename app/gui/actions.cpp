@@ -142,7 +142,7 @@ void make_dome_master(F f) {
     f.view.safe_areas = true;  // a master has its zone to keep titles in
 }
 
-/// What is seen, as the panel's button does.
+/// Keys the camera that is seen, as the panel's button does.
 void set_camera_keyframe_here(F f) {
     edit(f, "Set camera keyframe",
          [&](Scene& scene) { set_keyframe_of_seen_camera(scene, f.view, f.status); });

@@ -60,7 +60,7 @@ std::string signed_percent(double share) {
     return fmt::format("{:+.1f} %", std::round(share * 1000.0) / 10.0 + 0.0);
 }
 
-/// What a badge stands on, at the bottom of the viewport.
+/// The plate under a badge, at the bottom of the viewport.
 Rect draw_plate(const Rect& viewport, float x, float width) {
     const Rect plate{x, viewport.end().y - px(badge_inset) - px(badge_height), width, px(badge_height)};
     fill_rect(plate, color::with_opacity(color::window, 0.86f), px(3));

@@ -279,7 +279,7 @@ bool FileDialog::keys_wait() const {
     return (completion_.is_open() || target_.is_open()) && seconds_now() - asked_at_ < patience_s;
 }
 
-// What comes in place of the path: Tab lengthens what is typed, Up and Down go through the list.
+// The text to replace the path with: Tab lengthens what is typed, Up and Down go through the list.
 std::optional<std::string> FileDialog::text_for(const ImGuiInputTextCallbackData& data) {
     const std::string typed(data.Buf, data.Buf + data.BufTextLen);
     if (data.EventFlag == ImGuiInputTextFlags_CallbackHistory) {

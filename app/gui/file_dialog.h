@@ -30,8 +30,8 @@ struct FileEntry {
 enum class FileOrder { name, changed, size };
 
 /// Folders first, then files, each by name without regard to case; hidden ones left out. `extensions`
-/// (".toml", lower case) limit the files; empty: all. An unreadable folder is empty; the rest is missing once
-/// `cancelled`.
+/// (".toml", lower case) limit the files; empty: all. An unreadable folder is empty;
+/// the rest is missing once `cancelled`.
 std::vector<FileEntry> list_folder(const fs::path& folder, const std::vector<std::string>& extensions,
                                    const std::atomic<bool>* cancelled = nullptr);
 
@@ -62,8 +62,8 @@ struct TypedFile {
 /// `ending` (".toml"; may be empty) is added where `typed` has none and is no folder.
 TypedFile look_at(const fs::path& typed, const std::string& ending);
 
-/// `typed` lengthened as far as the files there leave no choice; a folder that is the only choice gets its
-/// "/".
+/// `typed` lengthened as far as the files there leave no choice; a folder that is the only choice
+/// gets its "/".
 std::string complete_path(const std::string& typed, const fs::path& folder);
 
 /// $HOME, or the root.

@@ -22,8 +22,8 @@ struct ViewportInput {
     enum class Drag { none, orbit, pan, dolly, look, wipe, place, handle, path } drag = Drag::none;
     bool drag_begins = false, drag_ends = false;
     bool double_click = false;
-    /// The left button was pressed and let go in one place: `behind` with Ctrl, or in the place of the last
-    /// one.
+    /// The left button was pressed and let go in one place: `behind` with Ctrl, or in the place of
+    /// the last one.
     enum class Click { none, in_front, behind } click = Click::none;
     glm::dvec3 fly{0.0};  // -1..1 right, up, forward while looking around
     double speed = 1.0;   // of flying: Shift 10, Alt 0.1; 1 in other drags

@@ -113,7 +113,7 @@ void name_row(GuiFrame& frame) {
     ImGui::SetNextItemWidth(px(92));
     const ImVec2 corner = ImGui::GetCursorScreenPos();
     const bool open = ImGui::BeginCombo("##format", ending.c_str(), ImGuiComboFlags_NoArrowButton);
-    if (!open)  // beside the list, whose window it would be drawn in
+    if (!open)  // an open list would have it drawn into its own window
         draw_icon(ImGui::GetWindowDrawList(), Icon::chevron_down,
                   {corner.x + px(92 - 12), corner.y + ImGui::GetFrameHeight() * 0.5f}, px(9), color::dim);
     if (open) {

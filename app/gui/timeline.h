@@ -33,7 +33,7 @@ struct KeyframePlace {
     bool operator==(const KeyframePlace&) const = default;
 };
 
-/// What is kept between frames of the window: the frames shown, the selected keyframes, the drag at hand.
+/// State kept between frames of the window: the frames shown, the selected keyframes, the drag at hand.
 struct TimelineState {
     TimeScale scale;
     FrameRange fitted;                           // range the scale was fitted to

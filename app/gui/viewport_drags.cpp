@@ -1,4 +1,4 @@
-// What the mouse drags in the view besides the camera: the reference picture, handles, points of the path.
+// Drags of the mouse in the view, other than the camera: the reference picture, handles, points of the path.
 #include <fmt/format.h>
 
 #include <glm/geometric.hpp>
@@ -80,7 +80,7 @@ void draw_placing(const GuiFrame& frame, const FrameOnScreen& frame_px) {
 
 namespace {
 
-// Handles.
+// Handles of the selected thing.
 
 constexpr ImU32 shade = color::with_opacity(IM_COL32_BLACK, 0.55f);  // so that they are seen over white, too
 

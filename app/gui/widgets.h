@@ -106,13 +106,13 @@ void push_field_height(float height);
 /// A menu, a list or a dialog is open.
 bool any_popup();
 
-/// In an open menu: Escape closes it (ImGui does so only with keyboard navigation, which the arrow keys
-/// forbid).
+/// In an open menu: Escape closes it (ImGui does so only with keyboard navigation,
+/// which the arrow keys forbid).
 void close_on_escape();
 
 // Drawn into the current window, px. What lies along an axis covers whole pixels at every scale: so it is
-// sharp, and the same whatever rounds edges that lie in the middle of a pixel. Lines are at least a pixel
-// wide.
+// sharp, and the same whatever rounds edges that lie in the middle of a pixel. Lines are at least
+// a pixel wide.
 void fill_rect(ImVec2 low, ImVec2 high, ImU32 ink, float radius = 0.0f);
 void fill_rect(const Rect& area, ImU32 ink, float radius = 0.0f);
 /// Around the pixel of `middle`, `half` px and half a pixel to either side.

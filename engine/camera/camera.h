@@ -107,8 +107,8 @@ glm::dvec3 direction_to(const Camera& camera, const glm::dvec3& place);
 bool shows(const Camera& camera, double x_px, double y_px);
 /// Unit direction in world space through a point of the frame (px, y down), for environments.
 glm::dvec3 ray_direction(const Camera& camera, double x_px, double y_px);
-/// Angle between the rays of neighbouring pixels in the middle of the frame, radians; 0 where rays are
-/// parallel.
+/// Angle between the rays of neighbouring pixels in the middle of the frame, radians;
+/// 0 where rays are parallel.
 double pixel_spread(const Camera& camera);
 
 /// Position and target that frame a box from 35 degrees above +z with the given vertical field of view: its
@@ -152,8 +152,8 @@ struct CameraSample {
 /// the aperture, in an order that does not depend on the moments.
 CameraSample camera_sample(const CameraParams& params, int i, int n);
 /// The camera moved to a place of the aperture (unit disc) and shifted so that the plane of focus, which lies
-/// across the view axis, stays where it is on the frame. `params` are those that make_camera made `camera`
-/// of.
+/// across the view axis, stays where it is on the frame. `params` are those that make_camera
+/// made `camera` of.
 Camera through_lens(const Camera& camera, const CameraParams& params, const glm::dvec2& lens,
                     double width_px);
 

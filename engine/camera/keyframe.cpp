@@ -1,7 +1,7 @@
 // Interpolation of keyframes. A smooth position or rotation separates the way from the timing: the way is a
 // curve through the keyframes with a travelled parameter (knots, or degrees turned), the timing a monotone
-// cubic of that parameter over frames, so that speed is continuous at the keyframes and nothing runs
-// backwards.
+// cubic of that parameter over frames, so that speed is continuous at the keyframes and
+// nothing runs backwards.
 #include "camera/keyframe.h"
 
 #include <glm/geometric.hpp>
@@ -13,7 +13,7 @@ namespace astrosplat {
 namespace {
 
 // Tangent per frame of an automatic handle: that of the neighbours; for scalars limited to three times the
-// slopes beside it (Fritsch and Carlson, 1980), and 0 where the values turn.
+// slopes on either side (Fritsch and Carlson, 1980), and 0 where the values turn.
 glm::dvec3 automatic_tangent(std::span<const Keyframe<glm::dvec3>> keyframes, std::size_t i, Ends ends) {
     return tangent(
         keyframes, [&](std::size_t k) { return keyframes[k].value; }, i, ends);

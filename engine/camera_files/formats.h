@@ -1,8 +1,8 @@
 // Cameras of other programs, one reader (and the text of a file, where we write one) each. In and out:
 // CameraTrack. Readers throw InputError with the file and, where the format has lines, the line.
 //
-// A new format: its functions here and in a file of their own, a row in camera_track.cpp, and its ending in
-// core/file_format.cpp.
+// A new format: its functions here and in a file of their own, a row in camera_track.cpp,
+// and its ending in core/file_format.cpp.
 #pragma once
 
 #include "camera_files/camera_track.h"
@@ -55,8 +55,8 @@ CameraTrack read_openspace(const fs::path& file, const FrameRate& rate);
 /// transforms.json, the cameras of a capture as NeRF and its successors keep them: one sample for each of its
 /// frames, at frames 1, 2, ... in the file's order; z is up. Their transform_matrix is world from camera, its
 /// camera looks along -z. The field of view is that of fl_y and h, or fl_x and w, of the frame or of all;
-/// else camera_angle_y; else camera_angle_x, of square pictures unless w and h are told. Without any of these
-/// there is none.
+/// else camera_angle_y; else camera_angle_x, of square pictures unless w and h are given. Without any of
+/// these there is none.
 CameraTrack read_transforms_json(const fs::path& file, const FrameRate& rate);
 
 }  // namespace astrosplat

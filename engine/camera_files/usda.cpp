@@ -116,7 +116,7 @@ class CameraReader {
 // ---- writing
 
 constexpr double film_height = 24.0;  // mm
-constexpr double farthest = 1e9;      // what USD is told of a camera without a far plane
+constexpr double farthest = 1e9;      // what USD is given for a camera without a far plane
 
 std::string samples_of(const CameraTrack& track,
                        const std::function<std::string(const TrackSample&)>& value) {

@@ -1,6 +1,6 @@
 // Temporary name, lock, fsync, rename. The lock is the kernel's and ends with the process, so that a
-// temporary file without one belongs to nobody. The holder of a FileLock removes the file, so a lock counts
-// only when its file is still the one under that name.
+// temporary file without one is a leftover. The holder of a FileLock removes the file, so a lock counts only
+// when its file is still the one under that name.
 #include "core/atomic_file.h"
 
 #include <fcntl.h>
@@ -138,7 +138,7 @@ bool AtomicFile::create_temporary() {
     fs::path name = temporary_name(resolved_);
     const int descriptor = open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
     if (descriptor < 0) return false;
-    // Where the file system knows no locks nobody gets one, and nobody removes the file.
+    // Where the file system has no locks, no process gets one, and none removes the file.
     flock(descriptor, LOCK_EX | LOCK_NB);
     struct stat status {};
     if (fstat(descriptor, &status) == 0 && status.st_nlink > 0) {

@@ -113,7 +113,7 @@ class FileLock {
     enum class State {
         held,
         busy,     // another process has it
-        absent,   // there is no such file, and none was to be made: nobody has it
+        absent,   // there is no such file, and none was to be made: no process has it
         refused,  // the folder cannot be written, or the file system knows no locks
     };
     enum class Missing { create, leave };

@@ -22,8 +22,8 @@ std::size_t block_size(std::size_t bytes) {
     return (bytes + step - 1) / step * step;
 }
 
-// The system maps at 4 KiB steps: take one huge page too many and hand the ends back. Null when there is no
-// room.
+// The system maps at 4 KiB steps: take one huge page too many and hand the ends back.
+// Null when there is no room.
 void* map_block(std::size_t size) {
     const std::size_t taken = size + huge_page;
     void* start = mmap(nullptr, taken, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);

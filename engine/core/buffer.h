@@ -10,8 +10,8 @@
 
 namespace astrosplat {
 
-/// Raw memory, 64-byte aligned; 2 MiB aligned and advised for huge pages from 4 MiB on. Throws
-/// std::bad_alloc.
+/// Raw memory, 64-byte aligned; 2 MiB aligned and advised for huge pages from 4 MiB on.
+/// Throws std::bad_alloc.
 void* allocate_pages(std::size_t bytes);
 /// Blocks of 4 MiB and more stay mapped for the next of about their size. The system may take their pages in
 /// the meantime, and they count as available memory.

@@ -1,4 +1,4 @@
-// The sRGB curve, luminance, and the primaries that linear colour is told in. In and out: single channel
+// The sRGB curve, luminance, and the primaries of linear colour. In and out: single channel
 // values (the curve is odd-symmetric, so that values below 0 and above 1 survive a round trip);
 // chromaticities and the matrix from one set of primaries to another, the same bits everywhere.
 #pragma once

@@ -1,7 +1,7 @@
 // Files to read from, with the same one line for every reader when that cannot be. Only regular files: a pipe
 // or a device may never end. And folders: of a person's own files of the program, as the XDG base directory
-// specification has it; of the files that come with the program (demo scenes, looks, pictures); temporary
-// ones.
+// specification has it; of the files that come with the program (demo scenes, looks, pictures);
+// temporary ones.
 #pragma once
 
 #include "core/progress.h"
@@ -75,11 +75,11 @@ fs::path own_assets_folder(const std::string& name);
 /// beside it, in the person's own folder, or among the assets, whichever is there first; else `wanted`.
 fs::path find_by_name(const std::string& folder, const fs::path& wanted);
 
-/// Short names that are known in `folder` besides those beside a scene, sorted.
+/// Short names that are known in `folder` apart from those next to a scene, sorted.
 std::vector<std::string> names_in(const std::string& folder);
 
-/// Makes a folder where the system keeps temporary files; it stays. Throws OutputError when there can be
-/// none.
+/// Makes a folder where the system keeps temporary files; it stays. Throws OutputError when there
+/// can be none.
 fs::path make_temporary_folder();
 
 /// Such a folder, removed with all that is in it.

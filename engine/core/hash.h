@@ -28,7 +28,7 @@ class Sha256 {
 /// Hash of a file's bytes. Throws InputError when it cannot be read; Cancelled.
 std::string sha256_of_file(const fs::path& file, const Progress& progress = {});
 
-/// XXH64.
+/// XXH64 of all bytes, with seed 0.
 inline std::uint64_t xxh64(std::string_view bytes) { return XXH64(bytes.data(), bytes.size(), 0); }
 
 /// The same of bytes that come piece by piece.

@@ -33,7 +33,7 @@ void log_detail(const std::string& line);
 void log_warning(const std::string& line);
 void flush_warning_counts();
 
-/// While it lives, nothing that this thread says is heard or counted: it looks at files that nobody has asked
+/// While it lives, nothing that this thread says is heard or counted: it looks at files that were not asked
 /// for yet.
 class QuietLog {
   public:

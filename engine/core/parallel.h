@@ -1,7 +1,7 @@
-// What computes: one small thread pool with the loops that run on it, and the instruction set of the vector
-// kernels. Work is handed out dynamically, so results must not depend on which thread does what: every loop
-// body writes only what its own index names. Every instruction set gives the same bits; the switch exists to
-// prove that.
+// Threads and vectors: one small thread pool with the loops that run on it, and the instruction set of the
+// vector kernels. Work is handed out dynamically, so results must not depend on which thread does what: every
+// loop body writes only what its own index names. Every instruction set gives the same bits; the switch
+// exists to prove that.
 #pragma once
 
 #include "core/progress.h"

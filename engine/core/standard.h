@@ -1,4 +1,5 @@
-// What nearly every file takes from the standard library, and the short name of its paths and files.
+// The headers of the standard library that nearly every file needs, and the short name of its paths
+// and files.
 #pragma once
 
 #include <algorithm>

@@ -50,7 +50,7 @@ std::string base64(std::string_view bytes);
 /// The bytes of such a text, with or without the padding at its end; nothing where it is none.
 std::optional<std::string> bytes_of_base64(std::string_view text);
 
-// Enums carry their names: beside each enum whose values people write or read stands one function with the
+// Enums carry their names: next to each enum whose values people write or read stands one function with the
 // names in order, found by argument lookup (in a struct it is a friend):
 //
 //     enum class Shape { constant, linear };

@@ -1,6 +1,6 @@
-// One thread beside the caller's. In: a function that names the next piece of work. Out: the work done, one
-// piece after the other, in that thread. What the pieces read and write is the owner's, under the worker's
-// lock.
+// A thread alongside the caller's. In: a function that names the next piece of work. Out: the work done, one
+// piece after the other, in that thread. What the pieces read and write is the owner's,
+// under the worker's lock.
 #pragma once
 
 #include <chrono>

@@ -20,8 +20,8 @@ struct Background {
 /// Of values among which what stands out is rare; at least one. They are left in another order.
 Background background_of(std::vector<float>& values);
 
-/// Median over the square of `reach_px` about a pixel, as far as the image has it; one channel of values >=
-/// 0.
+/// Median over the square of `reach_px` about a pixel, as far as the image has it;
+/// one channel of values >= 0.
 float median_about(const Image& image, std::int64_t x, std::int64_t y);
 inline constexpr std::int64_t median_reach_px = 5;
 

@@ -14,8 +14,8 @@ namespace astrosplat {
 /// Which of neighbours of one height is the peak: the first by rows, or each of them.
 enum class EqualPeaks { first, all };
 
-/// Whether no pixel of the square of `reach_px` about this one, as far as the image has it, is higher. One
-/// channel.
+/// Whether no pixel of the square of `reach_px` about this one, as far as the image has it, is higher.
+/// One channel.
 bool is_peak(const Image& heights, std::int64_t x, std::int64_t y, std::int64_t reach_px,
              EqualPeaks equal = EqualPeaks::first);
 

@@ -18,8 +18,8 @@ Image display_mean(const Image& linear);
 /// One channel: the largest of the three displayed ones.
 Image display_max(const Image& linear);
 
-/// The three channels of linear light inside a margin of `margin_px` on every side (at most up to the
-/// middle).
+/// The three channels of linear light inside a margin of `margin_px` on every side (at most up
+/// to the middle).
 Image inner_colors(const Image& linear, std::int64_t margin_px);
 
 /// Difference of displayed values that is shown in full colour, of white.

@@ -1,6 +1,6 @@
 // A front view against the picture it is made of: how alike they look, whether there is as much light, in all
-// and place by place, and as much detail of every size. In: both as linear light on black, of one size. Out:
-// numbers.
+// and place by place, and as much detail of every size. In: both as linear light on black, of one size.
+// Out: numbers.
 #pragma once
 
 #include "core/image.h"
@@ -54,7 +54,7 @@ struct FrontFidelity {
 /// `border`: share of the width that is left out along every edge, 0 to below 1/2.
 FrontFidelity front_fidelity(const Image& rendered, const Image& reference, double border = 0.0);
 
-/// Bytes that it takes at its peak, about, beside the two images.
+/// Bytes that it takes at its peak, about, besides the two images.
 std::int64_t front_fidelity_bytes(std::int64_t width_px, std::int64_t height_px);
 
 }  // namespace astrosplat

@@ -25,8 +25,8 @@ struct Needles {
 };
 
 /// Points are peaks of the displayed brightest channel, blurs of 1 px minus 7 px, at least 1e-4, 12 px away
-/// from the edges. The width and length of each are moments of what stands out of its surroundings within 9
-/// px.
+/// from the edges. The width and length of each are moments of what stands out of its surroundings
+/// within 9 px.
 Needles needles(const Image& side_view);
 
 /// Structure that a view 45 degrees off has and the front has not: the largest ratio, over octaves of 2 to 32

@@ -14,7 +14,7 @@
 namespace astrosplat {
 namespace {
 
-// Reaches no pixel of any frame, or is told in other words.
+// Reaches no pixel of any frame, or enters the hash by its effect.
 bool is_elsewhere(const ParameterSpec& spec) {
     constexpr std::array<std::string_view, 6> keys = {"output.path",   "output.frames",      "output.fps",
                                                       "output.preset", "output.compression", "layer.preset"};

@@ -1,6 +1,6 @@
 // A frame as one value: the scene at every moment that its shutter sees, and the mean of its renderings.
-// Renderer, frame hash and writers all ask it, so that none of them knows more or less of the frame than the
-// others.
+// Renderer, frame hash and writers all ask it, so that none of them knows more or less of the frame
+// than the others.
 #pragma once
 
 #include "camera/camera.h"

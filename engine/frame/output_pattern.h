@@ -31,8 +31,8 @@ struct OutputPattern {
 };
 
 /// A pattern as written, relative to `base`. Folders at its beginning that exist are taken as they are,
-/// whatever their names: "C#1/shot.####.exr". Throws InputError where the rest has several places for the
-/// number.
+/// whatever their names: "C#1/shot.####.exr". Throws InputError where the rest has several places
+/// for the number.
 OutputPattern output_pattern(const fs::path& base, const std::string& text);
 
 /// The eyes that every frame is rendered for: both where the pattern has a place for them, else the camera's.

@@ -101,8 +101,8 @@ namespace {
 constexpr float dark = 1e-3f;       // a channel below says nothing about what a look does to it
 constexpr float most_apart = 4.0f;  // a channel's factor and that of all three
 
-/// A rule over all directions, exact up to degree 11: twice that of harmonics, and what a display's curve
-/// adds.
+/// A rule over all directions, exact up to degree 11: twice that of harmonics,
+/// and what a display's curve adds.
 struct Directions {
     struct One {
         std::array<float, Harmonics::count> functions;

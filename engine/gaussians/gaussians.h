@@ -79,7 +79,7 @@ struct SplatAppearance {
     glm::dvec3 light{0.0};  // linear, exposed
 };
 
-/// What each splat of a shaded layer shows, hides and shines.
+/// How much each splat of a shaded layer shows, hides and shines.
 class LayerAppearance {
   public:
     /// `gain` multiplies light. The layer and the camera must outlive this. Stars have no size in the scene:
@@ -111,7 +111,7 @@ class LayerAppearance {
 /// its alpha is what the splat hides under the layer's blend (add nothing, screen its colour, hybrid as seen
 /// from the camera), but never less than its light needs with colours of at most 1. Stars have no size in
 /// the scene: none may be given. Gaussians keep their shape, and their colour also beyond 1; it is the one
-/// seen from the camera, and the harmonics of their set are kept beside it, for finish_harmonics().
+/// seen from the camera, and the harmonics of their set are kept alongside, for finish_harmonics().
 void bake_layer(const RenderLayer& layer, const Camera& camera, double gain, Gaussians& out,
                 BakeCounts& counts);
 

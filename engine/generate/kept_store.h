@@ -1,6 +1,6 @@
 // Where threads put the splats they keep before anyone knows how many there will be, and how those are
-// appended to a set in ascending order of id. In: splats in runs of ascending ids. Out: the arrays of a
-// SplatSet.
+// appended to a set in ascending order of id. In: splats in runs of ascending ids.
+// Out: the arrays of a SplatSet.
 #pragma once
 
 #include "core/bounds.h"

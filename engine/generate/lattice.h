@@ -31,8 +31,8 @@ inline std::uint64_t centre_id(const Lattice& lattice, const glm::i64vec3& at) {
     return std::uint64_t(lattice.corners() + (at.z * lattice.n.y + at.y) * lattice.n.x + at.x);
 }
 
-/// Coordinate along one axis at `cells` voxels (whole for corners, half for centres) from the box's lower
-/// side.
+/// Coordinate along one axis at `cells` voxels (whole for corners, half for centres)
+/// from the box's lower side.
 inline double lattice_coordinate(const Lattice& lattice, int axis, double cells) {
     return lattice.box.lo[axis] +
            (lattice.box.hi[axis] - lattice.box.lo[axis]) * cells / double(lattice.n[axis]);

@@ -218,8 +218,8 @@ struct Worker {
     std::int64_t unseen = 0;  // positions that no picture shows, whatever it is
 };
 
-// All corners, then all centres, as their ids ask for; each time batch by batch, so that little is stored
-// twice.
+// All corners, then all centres, as their ids ask for; each time batch by batch,
+// so that little is stored twice.
 struct BlockRun {
     const TriangleTree& tree;
     const Buffer<SurfaceTriangle>& surface;

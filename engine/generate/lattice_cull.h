@@ -3,8 +3,8 @@
 // block's middle is too far away. A block's positions, corners or centres, stand in groups of eight
 // neighbours, 2 x 2 x 2, so that a vector holds one coordinate of a group. In: textured meshes and a lattice.
 // Out: one answer per position, to the bits that of closest_on_triangle tried on every triangle, and the
-// picture there; what is kept, batch by batch in order of id, for whole sets and for files written in parts
-// (generate.h).
+// picture there; what is kept, batch by batch in order of id, for whole sets and for files written
+// in parts (generate.h).
 #pragma once
 
 #include <glm/vec2.hpp>
@@ -119,8 +119,8 @@ class LatticeCull {
     std::vector<LatticeBlock> blocks(const CellRange& range, const Progress& progress) const;
 
     /// All corners of the blocks, then all centres, as their ids ask for; each time batch by batch. Returns
-    /// how many positions no picture shows, which are not kept. The same for any thread count. Throws
-    /// Cancelled.
+    /// how many positions no picture shows, which are not kept. The same for any thread count.
+    /// Throws Cancelled.
     std::int64_t run(const std::vector<LatticeBlock>& blocks, const Progress& progress, const TakeKept& take,
                      KeptWatcher* watcher = nullptr) const;
 

@@ -1,7 +1,7 @@
 // Closest points by Ericson's regions of a triangle; one without a usable inside counts as its three edges.
 // Bounds come from a triangle's smallest circle, its unit normal and its corners. Triangles are sorted so
-// that neighbours lie together, eight to a box, eight boxes to the next; a search takes the nearest boxes
-// first.
+// that neighbours lie together, eight to a box, eight boxes to the next; a search takes the
+// nearest boxes first.
 #include "generate/triangle_tree.h"
 
 #include <fmt/format.h>
@@ -22,8 +22,8 @@ ClosestPoint at(const glm::dvec3& ap, const TriangleShape& s, double v, double w
     return {squared(ap - s.ab * v - s.ac * w), 0, {v, w}};
 }
 
-// Parameter in [0, 1] of the closest point on the segment from the origin along `edge`; 0 for a segment of no
-// length.
+// Parameter in [0, 1] of the closest point on the segment from the origin along `edge`; 0 for a segment
+// of no length.
 double along(const glm::dvec3& p, const glm::dvec3& edge) {
     const double length_squared = squared(edge);
     return length_squared > 0.0 ? std::clamp(dot(p, edge) / length_squared, 0.0, 1.0) : 0.0;

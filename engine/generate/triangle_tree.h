@@ -20,8 +20,8 @@ struct ClosestPoint {
     static constexpr std::uint32_t none = 0xffffffffu;
 };
 
-/// A triangle prepared for closest-point queries: first corner, two edges and their dot products. Scene
-/// units.
+/// A triangle prepared for closest-point queries: first corner, two edges and their dot products.
+/// Scene units.
 struct TriangleShape {
     glm::dvec3 a, ab, ac;
     double ab_ab, ab_ac, ac_ac;

@@ -23,8 +23,8 @@ class GltfFile {
     /// The element `index` of the list `name` at the top. Throws InputError where there is none.
     const nlohmann::json& element(const char* name, const nlohmann::json& index) const;
 
-    /// All numbers of an accessor with so many components, normalised integers as -1..1 or 0..1. Throws
-    /// InputError.
+    /// All numbers of an accessor with so many components, normalised integers as -1..1 or 0..1.
+    /// Throws InputError.
     std::vector<float> numbers(const nlohmann::json& accessor, int components);
 
     /// Throws InputError with the file.

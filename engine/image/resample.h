@@ -1,6 +1,6 @@
 // Images at another size: smaller by any ratio or larger by whole numbers, in pixels that are the means of
-// what they cover; or as the renderer's pixels would show them. In: an image in memory, or by rows. Out:
-// another.
+// what they cover; or as the renderer's pixels would show them. In: an image in memory, or by rows.
+// Out: another.
 #pragma once
 
 #include <glm/mat2x2.hpp>
@@ -53,8 +53,8 @@ struct PixelMap {
     glm::dmat2 linear{1.0};
 };
 
-/// The map under which the image fills an output of that size from left to right, its middle in the
-/// middle.
+/// The map under which the image fills an output of that size from left to right,
+/// its middle in the middle.
 PixelMap map_to_width(const Image& image, std::int64_t width, std::int64_t height);
 
 /// The image convolved with a Gaussian of `sigma_px` output pixels (for a map that scales unevenly: of as

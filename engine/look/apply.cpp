@@ -53,8 +53,8 @@ void trim(ShadedSplats& shaded) {
     });
 }
 
-// Hands the set's arrays to the shaded splats, the distances where it has no radii. The set's other arrays
-// stay.
+// Hands the set's arrays to the shaded splats, the distances where it has no radii.
+// The set's other arrays stay.
 ShadedSplats take_arrays(SplatSet& set) {
     ShadedSplats shaded;
     shaded.position = std::move(set.position);

@@ -48,7 +48,7 @@ ShadedSplats apply_look(const SplatSet& set, const Look& look, const LookInputs&
 void apply_look(const SplatSet& set, const Look& look, const LookInputs& inputs, ShadedSplats& shaded,
                 const Progress& progress = {}, LookStatistics* statistics = nullptr);
 
-/// The same in the memory of the set, which keeps no splats but its other values; for a set that nobody reads
+/// The same in the memory of the set, which keeps no splats but its other values; for a set that is not read
 /// again, because fresh memory costs more than the arithmetic. It throws before it begins or not at all, also
 /// Cancelled: a set that was changed in part would be of no use.
 ShadedSplats apply_look_in_place(SplatSet& set, const Look& look, const LookInputs& inputs,

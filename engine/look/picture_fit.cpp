@@ -254,8 +254,8 @@ class Fit {
         each_cell(light_, [&](std::size_t i) { light_[i] *= shown_[i]; });
     }
 
-    // Richardson's and Lucy's step: what is missing about a splat, by its footprint, which keeps the sum of
-    // light.
+    // Richardson's and Lucy's step: what is missing about a splat, by its footprint,
+    // which keeps the sum of light.
     void step(std::size_t channel) {
         draw(channel);
         each_cell(light_, [&](std::size_t i) {
@@ -287,7 +287,7 @@ ChannelValues picture_fit(const PictureChart& chart, PictureCells& cells, int ma
     return Fit(chart, cells, match, positions_due).factors();
 }
 
-// Memory that it takes beside the sums at its peak, bytes.
+// Memory that it takes besides the sums at its peak, bytes.
 std::int64_t picture_fit_bytes(const PictureChart& chart) {
     constexpr std::int64_t values = std::int64_t(picture_channels) + 8;
     return chart.cells() * values * std::int64_t(sizeof(float));

@@ -191,8 +191,8 @@ int match_kind(Match match, ColumnLaw law) {
     return law == ColumnLaw::sum ? MATCH_LIGHT : MATCH_TRANSMITTANCE;
 }
 
-// The factor of the integral, per scene unit of reach: splats times their area, or planes per scene
-// unit.
+// The factor of the integral, per scene unit of reach: splats times their area,
+// or planes per scene unit.
 double column_factor(const SplatSet& set, const LookInputs& inputs, const LookUniforms& u) {
     const glm::dvec3 s = set.spacing, a(u.axis);
     if (u.match == MATCH_PLANES) {

@@ -22,8 +22,8 @@ std::int64_t first_from(const Buffer<MortonRow>& rows, std::int64_t first, std::
     return found - rows.begin();
 }
 
-/// The first row with the highest bit in which codes of the node differ; its first row where they are all
-/// equal.
+/// The first row with the highest bit in which codes of the node differ; its first row where they
+/// are all equal.
 std::int64_t middle_of(const Buffer<MortonRow>& rows, const MergeNode& node) {
     const std::uint64_t low = rows[node.first].code, high = rows[node.end - 1].code;
     if (low == high) return node.first;

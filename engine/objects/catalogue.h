@@ -46,8 +46,8 @@ struct CatalogueObject {
 };
 
 /// The rows of a table with the columns of assets/objects/objects.csv. `file` begins messages. Throws
-/// InputError "FILE:LINE: expected ..." for a column that is missing, an unknown kind or a figure that is
-/// none.
+/// InputError "FILE:LINE: expected ..." for a column that is missing, an unknown kind or a figure
+/// that is none.
 std::vector<CatalogueObject> parse_catalogue(std::string_view text, const std::string& file);
 
 /// That of the assets, read once; empty, and said so, where they are not installed. Throws InputError where

@@ -22,8 +22,8 @@ bool has(const SkyObjects& objects, SkyObject object) {
 // and the table are wrong where a picture shows more than its object, titles also where they speak of where
 // it lies.
 constexpr double by_person = 0.999, by_category = 0.97, by_catalogue = 0.97, by_words = 0.85;
-// The light: of pictures that the model was not made of, where nothing else speaks, and beside other
-// witnesses.
+// The light: of pictures that the model was not made of, where nothing else speaks, and along with
+// other witnesses.
 constexpr double by_light_alone = 0.95, by_light = 0.81;
 
 struct Category {
@@ -180,7 +180,7 @@ const CatalogueObject* known_object(const ObjectClues& clues) {
     return by_title ? by_title : object_in(clues.file_name);
 }
 
-// What they say together, the kinds that have less than a hundredth left out.
+// The witnesses together, the kinds that have less than a hundredth left out.
 std::vector<ObjectGuess> weighed(const std::vector<Witness>& witnesses, const Likeness& seen) {
     const bool alone = std::ranges::all_of(witnesses, [](const Witness& w) { return w.objects.empty(); });
     const double light = alone ? by_light_alone : by_light;

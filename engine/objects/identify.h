@@ -1,5 +1,5 @@
-// What a picture shows. In: what its file, its name and a person say of it, and its light. Out: how sure one
-// may be of each kind of object, and because of what.
+// The object that a picture shows. In: what its file, its name and a person say of it, and its light. Out:
+// how sure one may be of each kind of object, and because of what.
 #pragma once
 
 #include <glm/vec2.hpp>
@@ -12,7 +12,7 @@
 
 namespace astrosplat {
 
-/// What is said of a picture, without a look at it.
+/// Clues to a picture's object that need no look at it.
 struct ObjectClues {
     ObjectMetadata metadata;
     std::string file_name;                   // without folder and ending
@@ -38,7 +38,7 @@ struct Identification {
     std::optional<double> distance_ly;               // by metadata, else by the catalogue
 };
 
-/// What is known of the object before its light is looked at: metadata, known, distance_ly.
+/// The object as far as it is known before its light is looked at: metadata, known, distance_ly.
 Identification said_of(const ObjectClues& clues);
 
 /// Puts what is said and what is seen together: AVM's categories, the catalogue's entry of a name in the

@@ -24,7 +24,7 @@ constexpr double edge_share = 0.06;     // of the width, that counts as the pict
 constexpr double nothing = 1e-12;
 
 constexpr double rim_share = 0.02;  // of the width
-constexpr float dark_rim = 0.001f;  // from aslant it shows several times as bright
+constexpr float dark_rim = 0.001f;  // at an angle it shows several times as bright
 
 struct Pixel {
     double radius = 0.0, light = 0.0;  // px from the middle; above the sky
@@ -352,7 +352,7 @@ constexpr Model in_grey{
       {-0.55, 0, -0.61, -2.38, 5.87, 3.54, 0, 0, 0, 0, -0.91, 2.48, 6.03, 2.08, -3.63, 0, -1.83},
       -6.06}}};
 
-// What a measure says where it is above or below the mean of these pictures.
+// In words, a measure above or below the mean of these pictures.
 struct Saying {
     double mean;
     const char *above, *below;
@@ -444,8 +444,8 @@ Likeness likeness_of(const Impression& seen) {
 }
 
 StructureKind structure_of(SkyObject object, const Impression& seen) {
-    // Of the mean light, at the picture's edges; nebulae alone have less, or a glow around them and no bright
-    // middle.
+    // Of the mean light, at the picture's edges; nebulae alone have less, or a glow around them and
+    // no bright middle.
     constexpr double dark_edge = 0.3, glowing_edge = 0.45, hollow_peak = 0.79;
     switch (object) {
         case SkyObject::galaxy:

@@ -51,8 +51,8 @@ struct Impression {
 /// `light`: RGB, linear, >= 0; one of less than 16 px a side is not lit.
 Impression impression_of(const Image& light);
 
-/// What shares of pictures with such measures show what; objects that stand for nothing else in the list have
-/// no share. They add up to 1. `why` says in words what speaks most for the likeliest.
+/// For each kind, the share that it has of pictures with such measures; objects that stand for nothing else
+/// in the list have no share. They add up to 1. `why` says in words what speaks most for the likeliest.
 struct Likeness {
     std::array<double, sky_object_count> share{};
     std::string why;

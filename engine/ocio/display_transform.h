@@ -83,7 +83,7 @@ class DisplayTransform {
 /// One that was made before, as long as its files stay as they are. Throws OcioError, InputError.
 std::shared_ptr<const DisplayTransform> display_transform(const OcioParams& params);
 
-/// "2.1.2"
+/// Of the library, such as "2.1.2".
 std::string ocio_version();
 
 }  // namespace astrosplat

@@ -1,4 +1,4 @@
-// What a frame file says of itself. Written: its header as text pairs that every format can hold (no host,
+// The metadata of a frame file. Written: its header as text pairs that every format can hold (no host,
 // user or clock), with the canonical text of frame_hash.h, deflated and in letters. Read: the header of a
 // stored frame, whatever its format, which keys differ between two frames, and of pictures of any kind.
 #pragma once
@@ -74,7 +74,7 @@ struct FrameHeader : StoredHeader {
     std::string hashed_text;  // what the frame hash was made of; empty in frames that older versions wrote
     Eye eye = Eye::centre;
 };
-/// Fields that are not told, or not in a readable way, are empty; all of them where the file is no picture.
+/// Fields that are missing, or not readable, are empty; all of them where the file is no picture.
 FrameHeader read_frame_header(const fs::path& file);
 
 /// True when the file can be read to its last pixel.

@@ -33,7 +33,7 @@ struct TiffError {
 int keep_error(TIFF*, void* user, const char*, const char* format, va_list values) {
     auto& text = static_cast<TiffError*>(user)->text;
     if (text[0] == 0) std::vsnprintf(text.data(), text.size(), format, values);
-    return 1;  // nothing else is to be told
+    return 1;  // handled: the library's own handler is to print nothing
 }
 int ignore_warning(TIFF*, void*, const char*, const char*, va_list) { return 1; }
 

@@ -1,6 +1,5 @@
-// What else can draw: a graphics card, as the renderer sees it. It projects and folds a blend group with the
-// bits of project() and fold(); what lies behind and between the groups stays the processor's. app/gl has
-// one.
+// A graphics card as the renderer sees it. It projects and folds a blend group with the bits of project() and
+// fold(); what lies behind and between the groups stays the processor's. app/gl has one.
 #pragma once
 
 #include "core/image.h"
@@ -10,7 +9,7 @@ namespace astrosplat {
 
 struct FrameJob;
 
-/// What is asked to draw: a card where there is one that has the processor's bits, or one of the two.
+/// The device asked to draw: a card where there is one that has the processor's bits, or one of the two.
 enum class DeviceChoice { automatic, cpu, gpu };
 
 /// A blend group over the region, as TilePlanes holds it of a tile. Four channels each, rows from the top.
@@ -28,7 +27,7 @@ class RenderDevice {
     virtual ~RenderDevice() = default;
     /// "NVIDIA H100"
     virtual std::string name() const = 0;
-    /// Bytes of its memory that nobody has taken; 0: its driver does not say.
+    /// Bytes of its memory that no one has taken; 0: its driver does not say.
     virtual std::int64_t free_bytes() const { return 0; }
     /// Why the processor has to draw this frame, "it ..."; empty: the card can. The job is prepared.
     virtual std::string cannot(const FrameJob& job) const = 0;
@@ -37,8 +36,8 @@ class RenderDevice {
     virtual std::optional<GroupPlanes> draw(const FrameJob& job, std::size_t group, bool alone) = 0;
 };
 
-/// The groups of a frame as its settings' device has drawn them; where `alone` the light of the first is the
-/// frame.
+/// The groups of a frame as its settings' device has drawn them; where `alone` the light of the first
+/// is the frame.
 struct DrawnGroups {
     std::vector<GroupPlanes> planes;
     bool alone = false;

@@ -312,8 +312,8 @@ void fold_cells(const FoldJob& job, TilePlanes& planes) {
         const int column = n % planes.cell_columns, row = n / planes.cell_columns;
         Cell cell{std::size_t(n * TilePlanes::cell_pixels), float(planes.x0 + column * TilePlanes::cell_px),
                   float(planes.y0 + row * TilePlanes::cell_px), used_blocks(planes, column, row), caps};
-        // Of the columns in use: of two places of a splat the nearer one is the one whose square surely
-        // touches.
+        // Of the columns in use: of two places of a splat the nearer one is the one whose
+        // square surely touches.
         const int used_px = std::min(TilePlanes::cell_px, planes.width - column * TilePlanes::cell_px);
         const float middle_px = cell.x0_px + 0.5f * float(used_px);
         found.count = 0;
@@ -357,8 +357,8 @@ void fold_kind(const FoldJob& job, TilePlanes& planes) {
         fold_pixels<GeneralPixels<kAovs, false>>(job, planes);
 }
 
-/// With splats that are not round, or not on the frame: the general folds alone, which give the bits of the
-/// others.
+/// With splats that are not round, or not on the frame: the general folds alone, which give the bits
+/// of the others.
 template <Outline kOutline, bool kAovs>
 void fold_general(const FoldJob& job, TilePlanes& planes) {
     if (job.settings.kind == FoldKind::lighten)

@@ -62,8 +62,8 @@ struct SplatBatch {
     alignas(64) float weight_gain[places];  // amplitude alone, for coverage
     // Outline::shaped: what offsets are mapped by, as in ShapedFootprint.
     alignas(64) float map_xx[places], map_xy[places], map_yy[places];
-    // Outline::sphere_shaped: which are not round, and what their offsets are mapped by, as in
-    // SphereFootprint.
+    // Outline::sphere_shaped: which are not round, and what their offsets are mapped by,
+    // as in SphereFootprint.
     std::uint8_t shaped[places];
     alignas(64) float row[2][3][places];
     float per_square = 0.0f;  // 1 / (2 focal_px)^2

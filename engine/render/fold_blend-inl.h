@@ -236,7 +236,7 @@ struct AddPixels {
     }
 };
 
-/// Depth, coverage and count beside a blend.
+/// Depth, coverage and count alongside a blend.
 struct AovPixels {
     V depth_sum, uncovered, count;
 

@@ -274,7 +274,7 @@ HWY_INLINE void normalise_footprints(const FootprintTable& table, SplatBatch& ba
     store(gains.amplitude.v, batch.weight_gain + n);
 }
 
-/// Weights of a splat whose layer is not the only one, or that is beside splats that are not round.
+/// Weights of a splat whose layer is not the only one, or that is drawn with splats that are not round.
 HWY_INLINE void prepare_weight(const FoldJob& job, const ScreenSplat& splat, SplatBatch& batch, int i) {
     const FootprintTable& table = *job.layers[splat.layer].footprints;
     const Lens& lens = job.settings.lens;

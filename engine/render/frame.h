@@ -125,7 +125,7 @@ struct RenderSettings {
     bool aov_depth = false, aov_coverage = false, aov_count = false, aov_layers = false;
     bool opacity = false;  // with aov_depth: what depth is weighted by, for means of several renderings
     int tile_px = 0;       // a multiple of 8 from 16 to 128; 0: the quicker of 32 and 64. Changes no bit
-    /// For all that rendering takes beside the splats in memory and the frame's images; 0: none. What takes
+    /// For all that rendering takes besides the splats in memory and the frame's images; 0: none. What takes
     /// more is rendered in bands and slabs of depth, same bits. `what_is_free`: what there is of memory when
     /// the splats are shaded.
     std::int64_t memory_limit_bytes = 0;
@@ -133,8 +133,8 @@ struct RenderSettings {
     /// Of a sample: how many splats each stands for, at least 1. Tiles are then as large as those of all.
     /// Changes no bit.
     double splats_each = 1.0;
-    /// For previews: the whole frame's backdrop (draw_backdrop()), which stands for the environment; null:
-    /// none.
+    /// For previews: the whole frame's backdrop (draw_backdrop()), which stands for the environment;
+    /// null: none.
     const Image* backdrop = nullptr;
     RenderDevice* device = nullptr;  // draws what it can (device.h); changes no bit
 };

@@ -149,8 +149,8 @@ std::vector<double> LodTable::mean_footprint(int level) const {
     return q;
 }
 
-/// The child alpha for which the light of both levels reaches `target`; `rest` is what the coarser one lets
-/// through.
+/// The child alpha for which the light of both levels reaches `target`; `rest` is what the coarser
+/// one lets through.
 double LodTable::solve(double target, const std::vector<double>& rest, int number, const Level& level) const {
     const auto light = [&](double alpha) {
         double sum = 0.0;

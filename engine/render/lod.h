@@ -92,8 +92,8 @@ struct ChildNoise {
 /// `strength` is lod.noise, 0..2; `radius` in layer space, > 0; `level` as in LevelChoice. Level 0 has none.
 ChildNoise make_child_noise(float strength, float radius, int level, std::uint32_t seed);
 
-/// Factor of the light of a child at `p` in layer space: > 0, 1 on average over space, and at most
-/// largest_child_light.
+/// Factor of the light of a child at `p` in layer space: > 0, 1 on average over space,
+/// and at most largest_child_light.
 float child_light(const ChildNoise& noise, const glm::vec3& p);
 float largest_child_light(float strength);
 

@@ -20,7 +20,7 @@ std::uint16_t hybrid_of(const LayerProjection& layer, const glm::vec3& p) {
 
 namespace {
 
-constexpr double slope_margin = 0.15;  // of the frame: how far beside it footprints of Gaussians differ
+constexpr double slope_margin = 0.15;  // of the frame: how far outside it footprints of Gaussians differ
 
 /// A splat relative to the camera, still in scene units.
 struct CameraSplat {

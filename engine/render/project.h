@@ -77,8 +77,8 @@ float support_px(const LayerProjection& layer, const ScreenSplat& splat, const B
 
 /// Appends the screen splats of shaded splats [begin, end) whose support touches `rect`, and the shapes of
 /// those that are not round. A frame that goes all the way round shows splats at up to three places, a period
-/// apart; of these the fold takes the one that is nearest to its cell. Throws Cancelled within some thousand
-/// children.
+/// apart; of these the fold takes the one that is nearest to its cell.
+/// Throws Cancelled within some thousand children.
 void project(const LayerProjection& layer, std::int64_t begin, std::int64_t end, const ScreenRect& rect,
              Buffer<ScreenSplat>& out, Buffer<Shape>& shapes);
 

@@ -154,8 +154,8 @@ class BandRun {
         return true;
     }
 
-    /// Of all splats that come by the block, those of which a slab is likely to be the last; for progress
-    /// alone.
+    /// Of all splats that come by the block, those of which a slab is likely to be the last;
+    /// for progress alone.
     double share_of(const DepthRange& slab) const {
         std::int64_t splats = 0;
         for (const VisibleBlock& block : blocks_)

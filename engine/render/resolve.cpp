@@ -20,8 +20,8 @@ FoldKind kind_of(std::span<const RenderLayer> layers, const std::vector<std::siz
     return all(Blend::over) ? FoldKind::over : all(Blend::add) ? FoldKind::add : FoldKind::general;
 }
 
-/// The light of a group at one pixel and the share of what lies behind that it lets through, per channel (3:
-/// alpha).
+/// The light of a group at one pixel and the share of what lies behind that it lets through,
+/// per channel (3: alpha).
 struct GroupPixel {
     float color[3], alpha;
     float through[4];

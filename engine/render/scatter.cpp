@@ -155,7 +155,7 @@ std::span<const TileBins::Entry> TileBins::list_entries(const LayerProjection& l
 }
 
 void TileBins::begin_block(std::uint32_t bin, SplatStore& store, Writer& writer) const {
-    // The store is shared; a limit is not to be spent on blocks that nobody uses.
+    // The store is shared; a limit is not to be spent on unused blocks.
     const std::int64_t share =
         store.limit_bytes() / (8 * thread_count() * block_records_ * std::int64_t{sizeof(ScreenSplat)});
     const std::int64_t blocks_at_once = store.limit_bytes() > 0 ? std::clamp<std::int64_t>(share, 1, 64) : 64;

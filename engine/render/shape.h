@@ -53,7 +53,7 @@ Shape outline_of(const glm::dvec3& across, const glm::dvec3& down);
 Shape project_ellipsoid(const Lens& lens, const glm::vec3& p, const glm::mat3& ellipsoid, float px_per_unit);
 
 /// The footprint of an ellipsoid under the affine approximation of the frame at p (EWA: Zwicker et al. 2001),
-/// in perspective; `slope` is where p / depth counts as being: beside the frame, what would come out is far
+/// in perspective; `slope` is where p / depth counts as being: outside the frame, what would come out is far
 /// too long.
 Shape project_affine(const glm::vec2& slope, const glm::mat3& ellipsoid, float px_per_unit);
 
@@ -63,8 +63,8 @@ struct Ellipse {
 };
 Ellipse ellipse_of(const Shape& shape);
 
-/// How much longer the profile of the smaller radius is made along the larger one; `variance` as in
-/// FootprintTable.
+/// How much longer the profile of the smaller radius is made along the larger one;
+/// `variance` as in FootprintTable.
 double stretch_of(const Ellipse& e, double variance, double filter_px);
 
 /// Values that the reach of a footprint depends on, besides its shape: as in FootprintTable.

@@ -124,8 +124,8 @@ class ShapeOnMap {
     glm::vec3 row(int i) const { return glm::vec3(rows_[i]); }
     double light() const { return double(table_.integral) * e_.larger * e_.smaller; }
 
-    /// Whether pixels around a pole or a rim are looked at one by one: of what is small enough that they
-    /// matter.
+    /// Whether pixels around a pole or a rim are looked at one by one: of what is small enough
+    /// that they matter.
     bool is_counted() const {
         return has_poles_ ? along_ * across_ < excessive_px && pole_.from_pole_px < support_ + near_pole_px
                           : is_at_rim();

@@ -135,8 +135,8 @@ inline double row_area(double focal, double row_px) {
            (real::cos(std::fmax(0.0, row_px - 0.5) / focal) - real::cos((row_px + 0.5) / focal));
 }
 
-/// Weights of pixels around a pole as far as `support_px` from `toward`; weight as in RimPixels, smooth over
-/// step_px.
+/// Weights of pixels around a pole as far as `support_px` from `toward`; weight as in RimPixels,
+/// smooth over step_px.
 template <class Weight>
 struct PoleRows {
     const Lens& frame;

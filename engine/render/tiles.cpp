@@ -133,7 +133,7 @@ void copy_planes(const FrameJob& job, const GroupPlanes& group, TilePlanes& plan
 /// None where the device has drawn less than all. Throws NotEnoughMemory, std::bad_alloc.
 std::optional<DrawnGroups> draw_groups(const FrameJob& job, RenderStatistics& statistics) {
     DrawnGroups drawn{{}, stands_alone(job) && !job.settings.backdrop};
-    if (!drawn.alone)  // the frame itself is told with its images
+    if (!drawn.alone)  // the frame itself is claimed with its images
         claim_memory(job.region.width * job.region.height * 3 * 16 * std::ssize(job.groups),
                      "what a card draws");
     for (std::size_t g = 0; g < job.groups.size(); ++g) {

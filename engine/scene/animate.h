@@ -38,8 +38,8 @@ std::vector<TrackHandles> handles_of(const Track& track, const ParameterSpec& sp
 /// Whether a layer's splats are shaded alike in all frames, as far as the tracks tell.
 bool is_shaded_alike(const Scene& scene, const std::string& layer);
 
-/// Whether a layer is drawn in some frame: visible as it stands, or switched on by a keyframe of the
-/// animation.
+/// Whether a layer is drawn in some frame: visible as it stands, or switched on by a keyframe
+/// of the animation.
 bool ever_visible(const Scene& scene, const LayerParams& layer);
 
 }  // namespace astrosplat

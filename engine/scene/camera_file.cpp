@@ -58,8 +58,8 @@ void check_sizes(const std::vector<double>& numbers, const char* key, const fs::
                       fmt::format("{:.4g}", x) + " (camera.file_scale makes it smaller)");
 }
 
-/// camera.position, camera.rotation and, where the samples have one, the lens, with a keyframe at each
-/// sample.
+/// camera.position, camera.rotation and, where the samples have one, the lens,
+/// with a keyframe at each sample.
 std::vector<Track> sampled_tracks(const CameraTrack& from, const FilePlacement& placement,
                                   const fs::path& file) {
     Track position, rotation, lens;

@@ -26,8 +26,8 @@ struct Checker {
         return file;
     }
 
-    /// Fails unless `holds`; `keys` are those the rule is about, the message is "KEY: expected ..., found
-    /// ...".
+    /// Fails unless `holds`; `keys` are those the rule is about, the message is "KEY: expected ...,
+    /// found ...".
     void require(bool holds, std::initializer_list<ParameterKey> keys, const std::string& message) const {
         if (holds) return;
         ParameterKey named = *keys.begin();
@@ -64,7 +64,7 @@ void check_look(const Look& look, const ParameterKey& at, const Checker& check) 
         fmt::format("expected min not above max, found {} and {}", look.radius.min, look.radius.max));
 }
 
-/// What is wrong with a range or an ellipse, if anything is.
+/// The fault of a range or an ellipse, if it has one.
 std::string problem_of(const std::optional<glm::dvec2>& range) {
     if (!range || range->x < range->y) return "";
     return fmt::format("expected the lower end first, found {} and {}", range->x, range->y);

@@ -10,8 +10,8 @@ namespace astrosplat {
 void check_scene(const Scene& scene, const std::string& file, const Places& places);
 
 /// Throws InputError, with the place of the key, for what this release reads and keeps but cannot render:
-/// stars along a camera without a place, splat files of other kinds. Layers that are never visible are left
-/// out.
+/// stars along a camera without a place, splat files of other kinds. Layers that are never visible
+/// are left out.
 void check_renderable(const Scene& scene, const Places& places);
 
 /// Whether frames are dome masters: of the preset of this name, one of one's own included.

@@ -55,7 +55,7 @@ void describe_output(const Describer& d, OutputParams& o) {
            "exr: zip zips piz dwaa none; tif: deflate lzw none.");
     format(o.alpha, "alpha", "Alpha", "", "auto: exr and tif premultiplied, png none (opaque over black).");
     format(o.primaries, "primaries", "Primaries", "",
-           "Of scene light in exr, told in its header: rec709 (D65) or acescg (AP1). Views stay rec709.");
+           "Of scene light in exr, named in its header: rec709 (D65) or acescg (AP1). Views stay rec709.");
     format(o.aovs, "aovs", "Extra channels", "", "Of depth, coverage, count and layers; exr only.",
            one_of({OutputParams::known_aovs.begin(), OutputParams::known_aovs.end()}));
     const Describer built_in =

@@ -238,7 +238,7 @@ void describe_structure(const Describer& d, StructureParams& s) {
            "Light fades over this share towards the picture's edges.", within(0, 0.5), slider(0, 0.2));
     bodies(s.margin, "margin", "Picture margin", "of the width",
            "How far a picture on a plane goes on beyond its edges, mirrored and fading: without straight "
-           "edges from aslant, and whole from the front.",
+           "edges at an angle, and whole from the front.",
            within(0, 0.5), slider(0, 0.3));
 }
 

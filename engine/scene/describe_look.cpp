@@ -1,5 +1,5 @@
-// The description of [layer.look] and [layer.render], one line per parameter, which are also what a preset
-// holds.
+// The description of [layer.look] and [layer.render], one line per parameter, which are also what
+// a preset holds.
 #include "scene/describe_layer.h"
 
 namespace astrosplat {

@@ -144,8 +144,8 @@ void set_list_length(Description& description, const Entry& entry, const EntryOr
     }
 }
 
-/// A parameter below a group that was given one value, as an example: the one that takes this value, or the
-/// first.
+/// A parameter below a group that was given one value, as an example: the one that takes this value,
+/// or the first.
 std::string example_below(const Entry& entry, const EntryOrigin& origin, const Description& description) {
     const auto* given = entry.node->as_string();
     std::string first;
@@ -223,7 +223,7 @@ void set_leaf(const Description& description, const Entry& entry, const EntryOri
     }
 }
 
-/// Of an unknown table its first key is told; an empty one is told itself.
+/// Of an unknown table its first key is reported; of an empty one the table itself.
 void check_table(const Description& description, const Entry& entry, const EntryOrigin& origin,
                  const std::vector<Entry>& entries) {
     if (is_group(description, full_key(description, entry.key)) || is_group(description, entry.key)) return;

@@ -169,8 +169,8 @@ namespace {
 constexpr double widest_px = 65536.0;
 constexpr std::int64_t rows_per_band = 64;
 
-// A face as the frame sees it: x to the right and y down in frame widths from its middle, z toward the
-// viewer.
+// A face as the frame sees it: x to the right and y down in frame widths from its middle,
+// z toward the viewer.
 struct SeenFace {
     glm::dvec3 a, ab, ac;
     glm::dvec2 uv, uv_ab, uv_ac;

@@ -22,8 +22,8 @@ struct FrontFrame {
 };
 
 /// The meshes' box along its thinnest axis (y where it is none), turned so that the pictures read right. In
-/// the meshes' own space. With the camera of the first mesh, if it has one. The meshes have an extent, else
-/// InputError.
+/// the meshes' own space. With the camera of the first mesh, if it has one. The meshes have an extent,
+/// else InputError.
 FrontFrame front_frame(std::span<const TexturedMesh> meshes);
 
 /// The same in the world, as the layer's transform has it.

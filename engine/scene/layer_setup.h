@@ -50,15 +50,15 @@ double parsec_of(const Scene& scene, const LayerParams& layer);
 /// with the rest of its layer's.
 SourceParams source_of(const Scene& scene, const LayerParams& layer);
 
-/// The files that a source names: meshes, textures, pictures of masks, splats, catalogues. Not what is built
-/// in.
+/// The files that a source names: meshes, textures, pictures of masks, splats, catalogues.
+/// Not what is built in.
 std::vector<fs::path> named_files(const SourceParams& source);
 /// The same with what an OBJ brings of its own: material libraries and their pictures. Reads it.
 std::vector<fs::path> all_files(const SourceParams& source);
 /// A mesh from a file that takes the pictures its own materials name.
 bool has_own_pictures(const MeshInput& input);
 
-/// Those of a scene beside its layers' sources: thickness maps and pictures of the sky.
+/// Those of a scene besides its layers' sources: thickness maps and pictures of the sky.
 std::vector<fs::path> picture_files(const Scene& scene);
 
 }  // namespace astrosplat

@@ -1,6 +1,6 @@
 // Scene files (TOML) to Scene values. Precedence: defaults < preset < scene < animation < camera.file < --set
-// < window. Every error is one line with file, line and the nearest known key; nothing half-loaded is ever
-// returned.
+// < window. Every error is one line with file, line and the nearest known key;
+// nothing half-loaded is ever returned.
 #pragma once
 
 #include "scene/parameter.h"

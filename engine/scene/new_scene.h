@@ -21,8 +21,8 @@ std::string new_scene_text(const fs::path& image, const std::string& shape, cons
 /// its file does not tell. Throws InputError where it cannot be read.
 std::string scale_text_of(const fs::path& image);
 
-/// Letters, digits and _ of a file's or person's name, beginning with a letter; `otherwise` where none is
-/// left.
+/// Letters, digits and _ of a file's or person's name, beginning with a letter;
+/// `otherwise` where none is left.
 std::string layer_name_of(const std::string& text, const char* otherwise = "layer");
 
 struct PictureScene {
@@ -43,7 +43,7 @@ struct PictureScene {
     double star_px = 1.0;  // standard deviation of their images, px of the picture
 };
 
-/// What a person says of a picture.
+/// A person's words on a picture.
 struct PictureRequest {
     std::optional<SkyObject> as;             // what it is to be taken for
     const CatalogueObject* named = nullptr;  // the object that it shows

@@ -151,8 +151,8 @@ std::vector<double> to_numbers(const ParameterSpec& spec, const Value& value);
 Value from_numbers(const ParameterSpec& spec, const std::vector<double>& numbers);
 
 /// The paths of a file, files or pattern parameter, expanded and put below `folder`; names that stand for
-/// themselves (built-in meshes) and empty ones stay. Frame patterns stay relative to the scene unless
-/// `absolute_patterns`.
+/// themselves (built-in meshes) and empty ones stay. Frame patterns stay relative to the
+/// scene unless `absolute_patterns`.
 Value resolve_paths(const Value& value, const ParameterSpec& spec, const fs::path& folder,
                     bool absolute_patterns);
 

@@ -1,6 +1,6 @@
 // Where a reference picture lies over the view, and what a hand makes of its placement. In: the placement in
-// frame heights, the picture's shape, the frame in px. Out: places in px (x to the right, y down), and
-// placements.
+// frame heights, the picture's shape, the frame in px. Out: places in px (x to the right, y down),
+// and placements.
 #pragma once
 
 #include <glm/vec2.hpp>
@@ -28,8 +28,8 @@ std::optional<std::size_t> find_reference(const Scene& scene, ReferenceParams::V
 /// `aspect`: the picture's width / height.
 PicturePlace place_of(const ReferenceParams& reference, double aspect, const FrameOnScreen& frame);
 
-/// The part that a press at `px` takes hold of: a corner within `reach` px scales, the inside moves, the rest
-/// turns.
+/// The part that a press at `px` takes hold of: a corner within `reach` px scales, the inside moves,
+/// the rest turns.
 enum class PlaceGrip { move, scale, turn };
 PlaceGrip grip_at(const PicturePlace& place, glm::dvec2 px, double reach);
 

@@ -1,5 +1,5 @@
-// Edits of a TOML text; after each the text is scanned again, which costs nothing at the size of a scene
-// file.
+// Edits of a TOML text; after each the text is scanned again, which costs nothing at the size of
+// a scene file.
 #include "scene/toml_text.h"
 
 #include "scene/entries.h"
@@ -217,7 +217,7 @@ bool TomlText::insert_in_inline_table(const TomlPath& path, const std::string& v
 }
 
 bool TomlText::insert_in_header(const TomlPath& path, std::size_t section, const std::string& value) {
-    // Beside the key that shares most of the path ...
+    // Next to the key that shares most of the path ...
     const Item* neighbour = nullptr;
     std::size_t shared = section;
     for (const Item& item : items_) {

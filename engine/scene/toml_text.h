@@ -1,6 +1,6 @@
 // A TOML text that can be edited without losing its comments, order or layout: finds where each key and value
-// stands, and changes, inserts or removes single ones. The text must be valid TOML (entries.h has parsed
-// it).
+// stands, and changes, inserts or removes single ones. The text must be valid TOML (entries.h
+// has parsed it).
 #pragma once
 
 #include "core/standard.h"
@@ -23,8 +23,8 @@ class TomlText {
     std::vector<std::string> children(const TomlPath& path) const;
 
     /// Replaces the value at `path`, or inserts it where its neighbours stand: in its inline table, after
-    /// keys of the same table, at the end of its header's part, or below a new header of the first `section`
-    /// parts.
+    /// keys of the same table, at the end of its header's part, or below a new header of the
+    /// first `section` parts.
     void set(const TomlPath& path, std::size_t section, const std::string& value);
     /// Removes the value at `path` and everything below it, with their lines.
     void remove(const TomlPath& path);

@@ -29,7 +29,7 @@ struct TrackPlace {
     }
 };
 
-/// What stands where another value was expected.
+/// Words for a node that stands where another value was expected.
 std::string found_in(const toml::node& node) {
     const auto* text = node.as_string();
     return text ? "'" + text->get() + "'" : kind_of(node);

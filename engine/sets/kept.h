@@ -61,8 +61,8 @@ Recipe geometry_recipe(const ColumnPlan& plan);
 
 struct SetCache {
     fs::path folder;  // made when something is kept; empty: no cache
-    /// Bytes of all entries; the least recently used go first. 0: 20 GiB or a tenth of the disk, whichever is
-    /// less.
+    /// Bytes of all entries; the least recently used go first. 0: 20 GiB or a tenth of the disk,
+    /// whichever is less.
     std::int64_t limit_bytes = 0;
 };
 

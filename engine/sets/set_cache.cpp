@@ -26,7 +26,7 @@ bool serves(const SetCache& cache, const SourceParams& source) {
     return !cache.folder.empty() && source.kind == SourceKind::mesh;
 }
 
-/// Removes lock files of processes that ended early: those whose lock nobody holds. `own_name` is the one
+/// Removes lock files of processes that ended early: those whose lock no process holds. `own_name` is the one
 /// held by the caller.
 void remove_leftovers(const fs::path& folder, const std::string& own_name) {
     constexpr std::size_t name_length = 64;

@@ -143,8 +143,8 @@ std::int64_t tile_pixels(fitsfile* in) {
     std::int64_t pixels = 1;
     for (int i = 1; i <= axes; ++i) {
         LONGLONG side = 1;
-        const bool told = read_keyword(in, TLONGLONG, fmt::format("ZTILE{}", i).c_str(), &side);
-        if (!told && i == 1) read_keyword(in, TLONGLONG, "ZNAXIS1", &side);  // rows of the picture
+        const bool tiled = read_keyword(in, TLONGLONG, fmt::format("ZTILE{}", i).c_str(), &side);
+        if (!tiled && i == 1) read_keyword(in, TLONGLONG, "ZNAXIS1", &side);  // rows of the picture
         pixels *= side;
     }
     return pixels;

@@ -1,6 +1,6 @@
 // FITS through CFITSIO. In: a path. Out: one plane of data values, or what the file holds; of data values
-// numbers from 0 (black) to 1 (white). (OpenImageIO 2.4's own FITS reader shifts the rows and forgets
-// BSCALE.)
+// numbers from 0 (black) to 1 (white). (OpenImageIO 2.4's own FITS reader shifts the rows
+// and forgets BSCALE.)
 #pragma once
 
 #include "core/buffer.h"

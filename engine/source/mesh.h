@@ -70,8 +70,8 @@ std::vector<std::array<std::uint32_t, 3>> triangulate(std::span<const glm::vec3>
 Mesh load_obj(const fs::path& file, const Progress& progress = {});
 
 /// The files besides the OBJ itself that its map_Kd pictures come from: the material libraries that it names
-/// and the pictures that those name, as far as they exist. Reads no geometry. Throws InputError,
-/// Cancelled.
+/// and the pictures that those name, as far as they exist. Reads no geometry.
+/// Throws InputError, Cancelled.
 std::vector<fs::path> obj_materials(const fs::path& file, const Progress& progress = {});
 
 }  // namespace astrosplat

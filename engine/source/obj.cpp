@@ -33,8 +33,8 @@ struct Polygon {
     std::int64_t line;
 };
 
-// The highest index used and where: faces may come before the vertices they name, so the check waits for the
-// end.
+// The highest index used and where: faces may come before the vertices they name, so the check waits
+// for the end.
 struct Highest {
     std::int64_t index = no_index;
     std::int64_t line = 0;

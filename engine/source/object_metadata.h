@@ -1,4 +1,4 @@
-// What a picture's file says of what it shows: AVM, the metadata that ESA, ESO, NASA and their telescopes
+// Metadata of the object in a picture's file: AVM, the metadata that ESA, ESO, NASA and their telescopes
 // write into published pictures (Astronomy Visualization Metadata 1.2, in an XMP packet), or the cards of a
 // FITS header. In: a file. Out: plain values.
 #pragma once

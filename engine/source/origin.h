@@ -1,4 +1,4 @@
-// What of a layer is measured, what a model says and what is invented, in one line for the headers of sets
+// The origin of a layer: what is measured, modelled and invented, in one line for the headers of sets
 // and frames and for `info`. In: a layer's source, and of its set what lies beyond the picture. Out: such as
 // "measured: ...; modelled: ...; invented: ...".
 #pragma once

@@ -157,8 +157,8 @@ void align_to(const fs::path& reference, const TextureSettings& settings, Prepar
     put_on_grid(input, grid_of(*plane.sky), plane.width, plane.height);
 }
 
-// The stretch that was still to come, as the texture of a scene would have had it: the result is linear
-// light.
+// The stretch that was still to come, as the texture of a scene would have had it:
+// the result is linear light.
 void apply_stretch(Image& image, TextureSettings::Stretch stretch, double softening) {
     if (stretch == TextureSettings::Stretch::linear) return;
     const StretchCurve curve({0.0, 1.0}, stretch, softening);

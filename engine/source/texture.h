@@ -1,8 +1,8 @@
 // Pictures as splat colours: any file OpenImageIO reads, and FITS through CFITSIO. In: one path, or three for
 // r, g, b. Out: Texture, linear light, premultiplied, filtered premultiplied and divided by alpha after
 // filtering. Also pictures of one channel made from a picture's own light: maps of where dust absorbs it and
-// where it is redder or bluer than the rest, and masks of where it is to show, told by brightness and colour,
-// by an ellipse or by another picture.
+// where it is redder or bluer than the rest, and masks of where it is to show, chosen by brightness and
+// colour, by an ellipse or by another picture.
 #pragma once
 
 #include <glm/vec2.hpp>

@@ -1,7 +1,7 @@
 // Reading: mmap and the handler of SIGBUS, which the kernel sends when a mapped page has no file behind it
 // any more. Writing: a ring of buffers between the threads that format and the file. Whoever finishes a chunk
-// while nobody writes becomes the writer and empties the ring as far as it is filled without a gap, so that
-// the file never waits for a thread to wake up.
+// while no thread writes becomes the writer and empties the ring as far as it is filled without a gap, so
+// that the file never waits for a thread to wake up.
 #include "splat_files/file_bytes.h"
 
 #include <fmt/format.h>

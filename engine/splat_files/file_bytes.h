@@ -21,8 +21,8 @@ class MappedFile {
     MappedFile& operator=(const MappedFile&) = delete;
 
     std::string_view bytes() const { return {memory_, size_}; }
-    /// Throws InputError when the file has become shorter since it was opened: its bytes are not to be
-    /// trusted.
+    /// Throws InputError when the file has become shorter since it was opened: its bytes are not
+    /// to be trusted.
     void require_whole() const;
 
   private:

@@ -1,8 +1,8 @@
 // The splat files of other programs, one reader (and writer) each; the program's own are native.h. In and
 // out: SplatSet. All rows come in the file's order; an id that a file does not say is the row's number.
 //
-// A new format: a row in core/file_format.cpp, its functions here and in a file of their own, and a row in
-// splat_file.cpp.
+// A new format: a row in core/file_format.cpp, its functions here and in a file of their own,
+// and a row in splat_file.cpp.
 #pragma once
 
 #include "core/atomic_file.h"

@@ -50,8 +50,8 @@ SplatSet read_native(const fs::path& file, const Progress& progress = {}, const 
 /// How many splats a file holds, from its header; of colours those whose alpha is not 0. Throws InputError.
 std::int64_t native_splat_count(const fs::path& file);
 
-/// The same bytes for any thread count. For RowOrder::id the set must be in ascending order of id. Throws
-/// OutputError.
+/// The same bytes for any thread count. For RowOrder::id the set must be in ascending order of id.
+/// Throws OutputError.
 void write_native(const WriteTarget& target, const SplatSet& set, const Progress& progress = {},
                   RowOrder order = RowOrder::space, NativePart part = NativePart::whole);
 

@@ -238,8 +238,8 @@ struct BinaryReader {
                   "the end of the file");
     }
 
-    /// Bytes of the property at `at`; data.size() + 1 when it does not fit into the data or its count is
-    /// negative.
+    /// Bytes of the property at `at`; data.size() + 1 when it does not fit into the data or its
+    /// count is negative.
     std::size_t property_bytes(const Column& column, std::size_t at) const {
         const std::size_t too_many = data.size() + 1, size = size_of(column.type);
         const std::size_t left = data.size() - at;

@@ -23,7 +23,7 @@ struct Functions {
     SplatColumns (*columns)(const fs::path&);
     std::int64_t (*count)(const fs::path&);
     std::string_view word;   // that files with splats have near their beginning; empty: all hold splats
-    bool keeps_all = false;  // splats that absorb are told from those that shine; shapes of Gaussians
+    bool keeps_all = false;  // splats that absorb are kept apart from those that shine; shapes of Gaussians
 };
 
 constexpr Functions functions[] = {

@@ -8,8 +8,8 @@
 
 namespace astrosplat {
 
-/// The format is told by the file's first bytes, else by its ending. Rows stay in file order (call sort_by_id
-/// before rendering). Throws InputError with file and place.
+/// The format is recognised by the file's first bytes, else by its ending. Rows stay in file order (call
+/// sort_by_id before rendering). Throws InputError with file and place.
 SplatSet read_splats(const fs::path& file, const Progress& progress = {});
 
 /// The columns of a file's splats, by its header alone: some of position, color, alpha, distance, radius, uv,

@@ -174,8 +174,8 @@ std::vector<TextChunk> cut(std::string_view text) {
     return chunks;
 }
 
-/// Counts a chunk's rows and lines into its own first_row and first_line; split_rows turns them into running
-/// sums.
+/// Counts a chunk's rows and lines into its own first_row and first_line;
+/// split_rows turns them into running sums.
 void count(TextChunk& chunk) {
     const char* p = chunk.text.data();
     const char* const end = p + chunk.text.size();

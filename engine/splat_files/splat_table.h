@@ -105,8 +105,8 @@ struct SplitRows {
     std::int64_t rows = 0;
 };
 
-/// Cuts and counts; `first_line` is the file's line where `text` begins. Blank lines count as lines, not as
-/// rows.
+/// Cuts and counts; `first_line` is the file's line where `text` begins. Blank lines count as lines,
+/// not as rows.
 SplitRows split_rows(std::string_view text, std::int64_t first_line);
 
 /// Reads rows [begin, end) of `rows` into the table's columns as its rows 0 .. end-begin. The lowest bad row
@@ -114,8 +114,8 @@ SplitRows split_rows(std::string_view text, std::int64_t first_line);
 void read_text_rows(const SplitRows& rows, std::int64_t begin, std::int64_t end, const SplatTable& table,
                     const fs::path& file, const Progress& progress);
 
-/// Text of a file for a message: one line, quoted, shortened to 32 characters, others than printable ASCII as
-/// \xNN.
+/// Text of a file for a message: one line, quoted, shortened to 32 characters,
+/// others than printable ASCII as \xNN.
 std::string quoted(std::string_view text);
 
 }  // namespace astrosplat

@@ -77,9 +77,10 @@ std::int64_t tuples_in(const UsdText& text, std::string_view list, int component
 
 /// The degree that the prim states, else the one its coefficients suffice for.
 int degree_of(const UsdText& text, const GaussianPrim& own, std::string_view list) {
-    const std::vector<double>& told = own.prim->attribute("radiance:sphericalHarmonicsDegree").value.numbers;
-    if (told.size() == 1) {
-        const double degree = told[0];
+    const std::vector<double>& stated =
+        own.prim->attribute("radiance:sphericalHarmonicsDegree").value.numbers;
+    if (stated.size() == 1) {
+        const double degree = stated[0];
         if (degree == 0.0 || degree == 1.0 || degree == 2.0 || degree == 3.0) return int(degree);
         text.fail(list.data(), "harmonics of degree 0 to 3", shortest(degree));
     }

@@ -20,7 +20,7 @@ struct ShadedSplats {
     /// Empty: all are balls. Else of each splat: what the ball becomes, around its centre, layer space.
     Buffer<glm::mat3> stretch;
     /// Another number whenever the arrays change, of all splats there are: who keeps a copy knows by it. 0:
-    /// nobody counts.
+    /// not counted.
     std::uint64_t stamp = 0;
     bool encoded = false;  // colours are display values (sRGB), composited as such: of isolated layers only
 
@@ -54,7 +54,7 @@ struct BlockFacts {
 /// Facts about every block, and a sample of all splats, stay in memory.
 class ShadedBlocks {
   public:
-    /// Of one block; ties are told from each other with 16 bits.
+    /// Of one block; ties are broken with 16 bits.
     static constexpr std::int64_t most_splats = 65536;
 
     virtual ~ShadedBlocks() = default;

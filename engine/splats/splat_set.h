@@ -137,7 +137,7 @@ constexpr const char* name_of(SplatColumn column) {
 /// Which columns a set or a file has.
 using SplatColumns = std::bitset<splat_column_count>;  // by index_of()
 
-/// Their names, in the order in which a person is told them: what is always there first, the id last.
+/// Their names, in the order in which they are reported: what is always there first, the id last.
 std::vector<std::string> column_names(const SplatColumns& columns);
 
 /// Bytes of one splat in the columns for which `wanted` says so.
@@ -150,7 +150,7 @@ std::size_t bytes_per_splat(Wanted wanted) {
     return bytes;
 }
 
-/// Which of the columns that a set can do without are wanted: pages that nobody reads cost as much as others.
+/// Which of the columns that a set can do without are wanted: unread pages cost as much as others.
 struct OptionalColumns {
     bool uv = true, normal = true, mesh = true, face = false;
 };

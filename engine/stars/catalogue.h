@@ -85,8 +85,8 @@ struct TableStar {
 using PictureTable = StarRows<TableStar>;
 
 /// Columns u, v and flux_r, flux_g, flux_b, in any order, and sigma_px where there is one; .gz too. Rows
-/// without light are bad ones. Throws InputError where a column is missing or no row of many can be used;
-/// Cancelled.
+/// without light are bad ones. Throws InputError where a column is missing or no row of many can
+/// be used; Cancelled.
 PictureTable read_picture_table(const fs::path& file, const Progress& progress = {});
 
 /// The same of its text; `name` begins messages.

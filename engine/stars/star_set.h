@@ -95,8 +95,8 @@ struct StarTube {
 std::vector<glm::dvec3> simplified_path(std::span<const glm::dvec3> path, double tolerance);
 
 /// `count` stars, evenly in the tube's volume; id 0, 1, ... `kinds` holds at least one. scale.limit is not
-/// used. The same bits for any thread count; the first n stars are those of a smaller count. Throws
-/// Cancelled.
+/// used. The same bits for any thread count; the first n stars are those of a smaller count.
+/// Throws Cancelled.
 SplatSet random_stars(const StarTube& tube, std::span<const StarKind> kinds, std::int64_t count,
                       std::uint32_t seed, const StarScale& scale, const Progress& progress = {});
 

@@ -1,5 +1,5 @@
-// A recursive descent that needs no list of types: a statement begins with words, an = and a value may
-// follow.
+// A recursive descent that needs no list of types: a statement begins with words, an = and a
+// value may follow.
 #include "usd/usda_stage.h"
 
 #include <fmt/format.h>
@@ -68,7 +68,7 @@ class UsdScanner {
         if (!take(c)) fail(fmt::format("'{}'", c));
     }
 
-    /// Letters, digits and what numbers and names hold beside them; may be empty.
+    /// Letters, digits and what numbers and names hold besides them; may be empty.
     std::string next_word() {
         skip_blanks();
         const std::size_t begin = at_;
@@ -103,7 +103,7 @@ class UsdScanner {
         return text_.substr(begin, at_ - begin);
     }
 
-    /// <...>
+    /// A path in angle brackets.
     void skip_path() {
         at_ = std::min(text_.find('>', at_), text_.size());
         require('>');

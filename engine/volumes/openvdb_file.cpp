@@ -12,7 +12,7 @@ namespace {
 
 constexpr const char* module_name = "astrosplat-openvdb.so";
 
-/// Beside the program where it was built, else where it is installed.
+/// Next to the program where it was built, else where it is installed.
 OpenvdbBytes* load_module() {
     std::error_code ignored;
     const fs::path program = fs::read_symlink("/proc/self/exe", ignored).parent_path();

@@ -9,8 +9,8 @@
 namespace astrosplat {
 namespace {
 
-// The first picture: what `astrosplat new` writes around an image shows, from the front, the image's own
-// light.
+// The first picture: what `astrosplat new` writes around an image shows, from the front,
+// the image's own light.
 
 using namespace astrosplat::analytic;
 
@@ -54,8 +54,8 @@ TEST(FirstPicture, FrontViewHasTheLightOfTheImage) {
 }
 
 // Without a camera: the whole plane, nothing cut off, the core bright but not beyond the image's own white,
-// and less light on the whole than the image, since the plane is seen from 35 degrees and fills the frame in
-// part.
+// and less light on the whole than the image, since the plane is seen from 35 degrees and fills the
+// frame in part.
 TEST(FirstPicture, FramesTheWholePlaneBrightEnoughToSee) {
     const TempFolder folder;
     Pipeline pipeline(first_scene(folder, {}));
@@ -73,14 +73,14 @@ TEST(FirstPicture, FramesTheWholePlaneBrightEnoughToSee) {
     }
 }
 
-// Pictures with soft edges keep their colour on the whole way: no dark rims from filtering, dividing or
-// blending.
+// Pictures with soft edges keep their colour on the whole way: no dark rims from filtering,
+// dividing or blending.
 
 const glm::vec3 stored(1.0f, 0.6f, 0.2f);  // sRGB, multiples of 1/255
 constexpr int disc_px = 32;
 
-/// A bright disc that fades out over half its radius. Empty texels are black, as painting programs write
-/// them.
+/// A bright disc that fades out over half its radius. Empty texels are black,
+/// as painting programs write them.
 glm::vec4 soft_disc(int x, int y) {
     const double dx = x - 15.5, dy = y - 15.5;
     const double alpha = std::clamp((14.0 - std::sqrt(dx * dx + dy * dy)) / 7.0, 0.0, 1.0);

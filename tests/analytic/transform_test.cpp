@@ -216,8 +216,8 @@ TEST(SplatFile, OneOpaqueSplatWritesItsColourIntoHalfExrToo) {
     EXPECT_EQ(file.at("A", 16, 16), 1.0f);
 }
 
-// PNG holds straight alpha: premultiplied (0.125, 0.25, 0.375, 0.5) is colour (0.25, 0.5, 0.75) of alpha one
-// half.
+// PNG holds straight alpha: premultiplied (0.125, 0.25, 0.375, 0.5) is colour (0.25, 0.5, 0.75)
+// of alpha one half.
 TEST(SplatFile, PremultipliedPixelSurvivesPng) {
     const TempFolder folder;
     folder.file("three.pda", pda("0 0 0 0.25 0.5 0.75 0.5 3\n"));

@@ -93,7 +93,7 @@ Row bodies_row(const Results& r, const std::string& work, const std::string& tar
     const std::string name = fmt::format("bodies/{}", width);
     const auto figure = [&](const char* field) { return r.median("bodies", 2, name, field); };
     return {work, target, seconds(figure("real_time")),
-            fmt::format("{:.2f} Mpx/s, {:.1f} M splats, {:.0f} B a texel ({:.0f} told before)",
+            fmt::format("{:.2f} Mpx/s, {:.1f} M splats, {:.0f} B a texel ({:.0f} estimated)",
                         1e3 * figure("Mpx") / figure("real_time"), figure("Msplats"), figure("texel_B"),
                         figure("told_B"))};
 }

@@ -1,5 +1,5 @@
-// A picture -> bodies fitted to it: stars, bands, depths, dust and the front fit, the reading of a file
-// apart.
+// A picture -> bodies fitted to it: stars, bands, depths, dust and the front fit,
+// the reading of a file apart.
 #include <benchmark/benchmark.h>
 
 #include "bodies/bodies.h"

@@ -1,5 +1,5 @@
 // Waiting times at the window: frames while orbiting, a slider, the timeline, the final frame,
-// the start. In: a scene (default: the demo) whose sets are in the cache. Out: Markdown; wall time beside
+// the start. In: a scene (default: the demo) whose sets are in the cache. Out: Markdown; wall and
 // processor time, because only the latter means anything on a busy machine.
 #include <fmt/format.h>
 #include <glad/gl.h>
@@ -370,8 +370,8 @@ void save_picture(const Image& image, const fs::path& file) {
     write_image(file, image.width, image.height, rgba);
 }
 
-/// What moves beside the final frame (issue 18, 1), with `shown` splats, or where that is 0 with those of 24
-/// frames a second.
+/// Moving views against the final frame (issue 18, 1), with `shown` splats, or where that is 0 with those of
+/// 24 frames a second.
 void measure_truths(const ViewerOptions& options, const GlInfo& gl, std::int64_t shown,
                     const fs::path& pictures) {
     if (shown == 0) shown = fluid_splats(options, gl);

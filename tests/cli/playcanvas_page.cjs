@@ -31,7 +31,7 @@ try {
     eye.lookAt(...${JSON.stringify(target)});
     app.root.addChild(asset.resource.instantiateRenderEntity());
     app.start();
-    let frames = 0;  // splats are sorted beside the frames
+    let frames = 0;  // splats are sorted alongside the frames
     app.on("frameend", () => {
         if (++frames === 120)
             canvas.toBlob((blob) => fetch("/picture", { method: "POST", body: blob }));

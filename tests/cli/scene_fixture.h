@@ -90,7 +90,7 @@ blend = "add"
     RunResult batch(const Words& more = {}, const RunOptions& options = {}) const {
         return run(joined({"--batch", "scene.toml"}, more), options);
     }
-    /// A run in the folder that goes on beside the test.
+    /// A run in the folder that goes on alongside the test.
     RunningProgram started(const Words& arguments) const {
         return RunningProgram(joined({ASTROSPLAT_PROGRAM}, arguments), {.folder = folder});
     }

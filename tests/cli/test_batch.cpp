@@ -111,7 +111,7 @@ TEST_F(Batch, PathsMayHoldSpacesAndUmlauts) {
     EXPECT_TRUE(fs::exists(odd / "Bilder/ä ö.0001.exr"));
 }
 
-// Of the folders that a scene lies in, or that a name goes to, nobody asks for frame numbers or eyes.
+// Folders that a scene lies in, or that a name goes to, need no frame numbers or eyes.
 TEST_F(Batch, FoldersMayBeNamedLikePatterns) {
     const fs::path odd = folder / "C#1 100%v {frame}";
     fs::create_directories(odd);
@@ -144,7 +144,7 @@ TEST_F(Batch, DryRunTellsAndWritesNothing) {
 }
 
 /// Four floats a pixel, and four more as it is written, with 256 rows as they are stored, in half; extra
-/// outputs theirs. A tenth more is told than that.
+/// outputs theirs. The estimate is a tenth more than that.
 TEST_F(Batch, DryRunEstimatesThePicturesThatAreKept) {
     const auto mib = [&](const Words& more) {
         const RunResult result = batch(joined({"--dry-run", "-f", "1"}, more));
@@ -152,15 +152,15 @@ TEST_F(Batch, DryRunEstimatesThePicturesThatAreKept) {
         EXPECT_HAS(result.out, " MiB, threads");
         return std::stod(result.out.substr(result.out.find(before) + before.size()));
     };
-    const auto told = [](double rows, double bytes, double stored_bytes) {
+    const auto estimated = [](double rows, double bytes, double stored_bytes) {
         return 1.1 * 2000.0 * (rows * bytes + 256.0 * stored_bytes) / 1048576.0;
     };
     const double small = mib({});
-    EXPECT_NEAR(mib({"--resolution", "2000x1500"}) - small, told(1500.0, 32.0, 8.0), 2.0);
+    EXPECT_NEAR(mib({"--resolution", "2000x1500"}) - small, estimated(1500.0, 32.0, 8.0), 2.0);
     EXPECT_NEAR(mib({"--resolution", "2000x1500", "--set", "output.aovs=[\"depth\"]"}) - small,
-                told(1500.0, 32.0 + 4.0, 8.0 + 4.0), 2.0);
+                estimated(1500.0, 32.0 + 4.0, 8.0 + 4.0), 2.0);
     EXPECT_NEAR(mib({"--resolution", "2000x1500", "--region", "0,0,2000,500"}) - small,
-                told(500.0, 32.0, 8.0), 2.0);
+                estimated(500.0, 32.0, 8.0), 2.0);
 }
 
 TEST_F(Batch, StatsHoldTheKeysOfTheContract) {

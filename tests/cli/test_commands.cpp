@@ -145,7 +145,7 @@ TEST_F(Commands, NewFindsTheAxisOfANebula) {
         run({"--batch", "ring.toml", "-f", "1,120", "-o", "ring.####.png", "--resolution", "48x30"}));
 }
 
-// What a picture shows is told by a person, by its file's metadata and name, and by its light.
+// The object of a picture comes from a person, from its file's metadata and name, and from its light.
 TEST_F(Commands, NewSaysWhatAPictureShowsAndBecauseOfWhat) {
     write_text(folder / "ngc 4594.ppm", small_picture());
     const RunResult named = expect_success(run({"new", "ngc 4594.ppm", "--json"}));

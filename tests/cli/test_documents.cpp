@@ -35,7 +35,7 @@ Words words_of(const std::string& line) {
     return {std::istream_iterator<std::string>(words), {}};
 }
 
-/// What is typed in indented blocks of code, from "astrosplat" on; without comments, continued lines joined.
+/// Commands in indented blocks of code, from "astrosplat" on; without comments, continued lines joined.
 Words commands_in(const std::string& text) {
     const std::string joined = std::regex_replace(text, std::regex(R"(\\\n)"), " ");
     return matches(joined, R"(\n    (?:\$ )?(?:build/release/)?(astrosplat [^#\n]*))");
@@ -449,8 +449,8 @@ TEST_F(Usage, SeveralFramesNeedAFrameToken) {
     EXPECT_TRUE(fs::exists(folder / "one.exr"));
 }
 
-// Short names of looks and scenes: beside the scene, then the person's own, then those that come with the
-// program.
+// Short names of looks and scenes: beside the scene, then the person's own, then those that come
+// with the program.
 
 class Names : public SceneTest {
   protected:

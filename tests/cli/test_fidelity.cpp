@@ -58,12 +58,12 @@ TEST_F(FidelityCommand, WritesNumbersThatReadBack) {
 }
 
 TEST_F(FidelityCommand, JudgesDisksAloneAsDisks) {
-    const auto told = [&](const char* kind) {
+    const auto judged = [&](const char* kind) {
         return fidelity({"-o", std::string(kind) + ".json", "--set",
                          std::string("layer.picture.source.structure.kind=") + kind})
             .out;
     };
-    const std::string disk = told("disk"), sheet = told("sheet");
+    const std::string disk = judged("disk"), sheet = judged("sheet");
     EXPECT_HAS(disk, "0.06 to 0.10");
     EXPECT_HAS(disk, "at least 2.5");
     EXPECT_HAS(disk, "roundness");

@@ -69,7 +69,7 @@ position = {}
 
     struct Run {
         std::string hash, err;
-        double told_mib = 0.0, taken_mib = 0.0;
+        double estimated_mib = 0.0, taken_mib = 0.0;
     };
     Run rendered(Words more, bool cached = false) const {
         more.insert(more.end(), {"--overwrite", "--stats", "stats.json"});
@@ -84,15 +84,15 @@ position = {}
         EXPECT_NE(at, std::string::npos) << result.err;
         std::istringstream rest(result.err.substr(at + about.size()));
         std::string unit;
-        rest >> run.told_mib >> unit;
-        if (unit == "GiB") run.told_mib *= 1024.0;
+        rest >> run.estimated_mib >> unit;
+        if (unit == "GiB") run.estimated_mib *= 1024.0;
         return run;
     }
 
-    /// What was told is never less than what was taken, and at most a fifth more.
+    /// The estimate is never less than what was taken, and at most a fifth more.
     static void expect_enough(const Run& run) {
-        EXPECT_GE(run.told_mib, run.taken_mib) << run.err;
-        EXPECT_LE(run.told_mib, 1.2 * run.taken_mib) << run.err;
+        EXPECT_GE(run.estimated_mib, run.taken_mib) << run.err;
+        EXPECT_LE(run.estimated_mib, 1.2 * run.taken_mib) << run.err;
     }
 };
 
@@ -151,7 +151,7 @@ TEST_F(Memory, EveryKindOfFrameIsCounted) {
 TEST_F(Memory, LibrariesThatReadPicturesAreCounted) {
     make_ball_to_generate(1000, "[3.0, 6.0, 13.0]");
     const Run run = rendered({});
-    EXPECT_GT(run.told_mib, 100.0);
+    EXPECT_GT(run.estimated_mib, 100.0);
     expect_enough(run);
 }
 
@@ -183,7 +183,7 @@ TEST_F(Memory, GeneratingTakesWhatIsAnnounced) {
 }
 
 // Splats close by, which are split, wide and out of the frame; their set is in the cache.
-TEST_F(Memory, WhatAPassCloseByTakesIsToldFromASample) {
+TEST_F(Memory, WhatAPassCloseByTakesIsEstimatedFromASample) {
     make_ball_to_generate(
         300000, "[0.6, 0.4, 1.3]",
         "[layer.render]\nlod = { max_px = 8 }\n[layer.look]\nradius = { min = 0.05, max = 0.05 }\n");
@@ -199,7 +199,7 @@ TEST_F(Memory, IntoHowManySplatsAreSplitIsNotGuessed) {
     expect_enough(rendered({}));
 }
 
-// Sets of Gaussians stay whole beside what the look makes of them, as their shapes do.
+// Sets of Gaussians stay whole alongside what the look makes of them, as their shapes do.
 TEST_F(Memory, CapturesAreCountedWithTheirShapesAndHarmonics) {
     make_scene_of("capture.ply", "[640, 360]", "[0.0, 0.0, 14.0]");
     for (const int degree : {0, 3}) {
@@ -234,8 +234,8 @@ TEST_F(Memory, TheSkyIsCounted) {
 // Estimates before a run: of bodies from their pictures as they will be, of columns with the
 // positions that are dropped at the end.
 
-// A round cloud of 400x250 px that is speckled and fades to black: `reach` px from the middle there is
-// nothing.
+// A round cloud of 400x250 px that is speckled and fades to black: `reach` px from the middle
+// there is nothing.
 std::string cloud_picture(double reach) {
     constexpr int width = 400, height = 250;
     std::uint32_t state = 7;
@@ -264,10 +264,10 @@ meshes = [ { mesh = "plane", texture = "cloud.ppm" } ]
     }
 
     // Figures of a dry run: splats, and MiB.
-    struct Told {
+    struct DryRun {
         double splats, mib;
     };
-    Told told(Words more = {}) const {
+    DryRun dry_run(Words more = {}) const {
         more.insert(more.begin(), {"--dry-run", "-q"});
         const RunResult result = expect_success(batch(more));
         return {number_after(result.out, "about ", {{'k', 1e3}, {'M', 1e6}}),
@@ -297,7 +297,7 @@ const std::string bodies = "structure = { kind = \"sheet\" }\n";
 TEST_F(Estimate, BodiesOfAReducedPictureAreThoseThatWillBeMade) {
     write_source(bodies);
     const Words little = {"--memory", "0.19"};
-    const double whole = told().splats, reduced = told(little).splats;
+    const double whole = dry_run().splats, reduced = dry_run(little).splats;
     EXPECT_LT(reduced, 0.6 * whole);
     EXPECT_NEAR(reduced, double(made(little)), 0.1 * reduced);
     EXPECT_NEAR(whole, double(made()), 0.1 * whole);
@@ -305,10 +305,10 @@ TEST_F(Estimate, BodiesOfAReducedPictureAreThoseThatWillBeMade) {
 
 TEST_F(Estimate, TheMemoryOfBodiesIsThatOfMakingThem) {
     write_source(bodies);
-    const Told whole = told();
+    const DryRun whole = dry_run();
     EXPECT_GT(whole.mib, 140.0 + 400.0 * 250.0 * 120.0 / 1048576.0);
     write_source(bodies + "splats = 20000\n");
-    const Told few = told();
+    const DryRun few = dry_run();
     EXPECT_LE(few.splats, 20000.0);
     EXPECT_LT(few.mib, whole.mib - 10.0);
 }
@@ -316,9 +316,9 @@ TEST_F(Estimate, TheMemoryOfBodiesIsThatOfMakingThem) {
 TEST_F(Estimate, ColumnsAskedForBySplatsHoldTransparentOnesWhileTheyAreMade) {
     const std::string keys = "splats = 1000000\n";
     write_source(keys);
-    const Told lit = told();
+    const DryRun lit = dry_run();
     write_source(keys, 60.0);  // an eighth of the picture
-    const Told dark = told();
+    const DryRun dark = dry_run();
     EXPECT_NEAR(dark.splats, lit.splats, 0.02 * lit.splats);
     EXPECT_GT(dark.mib, 2.0 * lit.mib);
 }
@@ -340,13 +340,13 @@ TEST_F(Estimate, ADryRunTellsTimeAndTheSizeOfFiles) {
     EXPECT_HAS(result.out, "\ntime about ");
     EXPECT_HAS(result.out, " s a frame, ");
     EXPECT_EQ(names_in("frames"), std::set<std::string>{});
-    const double told =
+    const double estimated =
         number_after(result.out, "files about ", {{'K', 1024.0}, {'k', 1024.0}, {'M', 1048576.0}});
     expect_success(batch({"-q", "-f", "1-3", "--resolution", "320x240"}));
     double taken = 0.0;
     for (const std::string& name : names_in("frames"))
         taken += double(fs::file_size(folder / "frames" / name)) / 3.0;
-    EXPECT_NEAR(told, taken, 0.1 * taken);
+    EXPECT_NEAR(estimated, taken, 0.1 * taken);
 }
 
 TEST_F(Estimate, SetsThatAreMissingAreMadeSmall) {

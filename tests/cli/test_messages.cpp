@@ -1,4 +1,4 @@
-// What a run says: --log-json, and exit codes of what was interrupted.
+// Messages of a run: --log-json; and the exit codes of interrupted ones.
 #include <fcntl.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -36,7 +36,7 @@ class LogJson : public SceneTest {
     }
 };
 
-TEST_F(LogJson, ARunIsToldEventByEvent) {
+TEST_F(LogJson, ARunIsReportedEventByEvent) {
     const RunResult result = expect_success(batch({"--log-json", "-o", "a \"b\"/é.##.exr"}));
     const std::vector<Event> all = events(result.err);
     for (const Event& event : all) EXPECT_EQ(event.at("time").get<std::string>().size(), 24u) << event;

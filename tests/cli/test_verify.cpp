@@ -247,8 +247,8 @@ TEST_F(Verify, LeavesNoFileBehind) {
     EXPECT_EQ(names_in("frames").size(), 1u);
 }
 
-// --resume: frames of this hash stay, missing and damaged ones come, others stop the run before its first
-// frame.
+// --resume: frames of this hash stay, missing and damaged ones come, others stop the run before
+// its first frame.
 
 class Resume : public SceneTest {
   protected:

@@ -243,7 +243,7 @@ std::string channels_text(Channels channels) {
     return "";
 }
 
-/// A movie is made of frames of its own, beside those that the scene is rendered to.
+/// A movie is made of frames of its own, apart from those that the scene is rendered to.
 const char* ending_text(Ending ending) {
     return ending == Ending::tif ? ".tif" : ending == Ending::png ? ".png" : ".exr";
 }

@@ -27,7 +27,7 @@ constexpr auto names_of(Switched) {
     return names_up_to<Switched::hidden>("still", "off_inside", "on_inside", "hidden");
 }
 
-/// What of a layer is animated: values that slide, and choices that change while the shutter is open.
+/// The animated part of a layer: values that slide, and choices that change while the shutter is open.
 enum class Moved { nothing, gain, density, turn, blend, isolate };
 constexpr auto names_of(Moved) {
     return names_up_to<Moved::isolate>("nothing", "gain", "density", "turn", "blend", "isolate");

@@ -1,4 +1,4 @@
-// What holds wherever features cross: one property a case, over scenes drawn from seeds (crossing.h). In the
+// Properties that hold wherever features cross: one a case, over scenes drawn from seeds (crossing.h). In the
 // lane ci these are the fewest seeds that let every pair of features meet; at night others follow. A scene
 // that fails names its seed and prints its text; alone it runs as
 //   ASTROSPLAT_CROSSING=SEED test_cross --gtest_filter='Seeds/*'  (or 'Runs/*')
@@ -24,7 +24,7 @@ namespace {
 
 constexpr std::uint32_t pool = 1500;  // seeds that those of the lane ci are chosen from
 
-/// A scene file in a folder that is named as the crossing has it; its text is told where a case fails.
+/// A scene file in a folder that is named as the crossing has it; its text is printed where a case fails.
 class Crossings : public testing::TestWithParam<std::uint32_t> {
   protected:
     Crossings() : crossing(crossing_of(GetParam())), text(scene_text(crossing)) {
@@ -329,7 +329,7 @@ TEST_P(Crossings, WhatIsSetIsWhatIsRendered) {
     Scene given = load_scene(folder / "scene.toml", std::vector{*assignment});
     Scene expected = scene_at(scene, frame());
     set_value(expected, key, chosen.value);
-    // What would replace it goes: --set wins over that, too.
+    // Keys that would replace it go: --set wins over those, too.
     if (key == "camera.target") expected.camera.rotation.reset();
     if (key == "camera.fov") expected.camera.focal_length = 0.0;
     for (const double at : {1.0, frame(), frame() + 0.2, 100.0})
@@ -377,7 +377,7 @@ TEST_P(Crossings, FilesLieInTheFolderNamed) {
     EXPECT_EQ(header.pixel_hash, pixel_hash(shot.frame.beauty));
 }
 
-/// What the dialog offers is what the job does: the same names as --batch, and a movie beside them.
+/// The job does what the dialog offers: the same names as --batch, and a movie next to them.
 TEST_P(Crossings, TheWindowsJobsHaveTheNamesOfBatch) {
     const Document document = Document::open(folder / "scene.toml");
     for (const RenderKind kind : {RenderKind::range, RenderKind::frame}) {
@@ -497,7 +497,7 @@ class ProgramCrossings : public Crossings {
         return files;
     }
 
-    /// What has come since the scene was written is exactly the frames.
+    /// Exactly the frames have come since the scene was written.
     void expect_only_frames() const {
         std::set<std::string> expected = before;
         for (const std::string& file : frame_files())

@@ -14,7 +14,8 @@ class Pipeline;
 
 namespace astrosplat::test {
 
-/// What a frame's pixels do not depend on. The pool and the instruction set are as before when it ends.
+/// The settings of a machine that a frame's pixels do not depend on. The pool and the instruction set are as
+/// before when it ends.
 struct Machine {
     int threads = 2, tile_px = 0;
     std::string target = "best";

@@ -127,7 +127,7 @@ RunResult ended_in_time(const RunningProgram& program) {
     return program.wait();
 }
 
-std::string told(const Fault& fault) {
+std::string description_of(const Fault& fault) {
     const char* error = fault.error == take_half     ? "takes half"
                         : fault.error == end_process ? "ends the process"
                                                      : std::strerror(fault.error);
@@ -247,7 +247,8 @@ std::string complaints_about(const Fault& fault, const FaultScene& scene, const 
     }
     if (result.code != 0) run.resume(whole, unremoved);  // else all is there and right
     if (run.complaints().empty()) return "";
-    return told(fault) + fmt::format(" ({}, {} threads)\n", scene.output, scene.threads) + run.complaints();
+    return description_of(fault) + fmt::format(" ({}, {} threads)\n", scene.output, scene.threads) +
+           run.complaints();
 }
 
 // Every call of a batch run that can fail does so once: here a fixed choice of about 100 of them, and at
@@ -258,8 +259,7 @@ struct Point {
     FaultScene scene;
 };
 
-/// What the points of a choice are numbered with becomes what is as good as chance, and the same on every
-/// run.
+/// From the number of a point to a number as good as chance, the same on every run.
 std::uint64_t hashed(std::uint64_t x) {
     x += 0x9e3779b97f4a7c15u;
     x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;

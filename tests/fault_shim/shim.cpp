@@ -3,12 +3,12 @@
 // the program ends by itself.
 //   ASTROSPLAT_FAULT_KIND    write, open, rename, sync, map, allocate, thread
 //   ASTROSPLAT_FAULT_AT      which call, from 1; 0: none
-//   ASTROSPLAT_FAULT_ERROR   the number that errno gets; 0: a write takes half; -1: SIGKILL, after half a
-//   write ASTROSPLAT_FAULT_ONWARD  1: all later calls fail too ASTROSPLAT_FAULT_COUNT   a file for the
-//   numbers of calls
-// What the standard library and others call on the program's behalf counts as well; what the dynamic linker
+//   ASTROSPLAT_FAULT_ERROR   errno of the call; 0: a write takes half; -1: SIGKILL, after half a write
+//   ASTROSPLAT_FAULT_ONWARD  1: all later calls fail too
+//   ASTROSPLAT_FAULT_COUNT   a file for the numbers of calls
+// Calls of the standard library and others on the program's behalf count as well; what the dynamic linker
 // does, with the constructors of the libraries that it loads, and what goes to stdin, stdout and stderr, does
-// not: nobody could handle that. Nor does the memory that libcrypto takes for itself: version 3.0 crashes
+// not: no program could handle that. Nor does the memory that libcrypto takes for itself: version 3.0 crashes
 // where its own set-up gets none.
 #include <dlfcn.h>
 #include <fcntl.h>

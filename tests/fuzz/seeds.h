@@ -1,6 +1,6 @@
 // Camera files, star catalogues, captures of every format and metadata of pictures for the fuzzer: seeds, and
-// checks of what was read. Readers throw InputError for bad input, std::logic_error for results that cannot
-// be.
+// checks of what was read. Readers throw InputError for bad input,
+// std::logic_error for results that cannot be.
 #pragma once
 
 #include <cstddef>
@@ -11,7 +11,7 @@
 namespace astrosplat::fuzz {
 
 std::vector<std::string> camera_seeds();
-/// By the reader that the bytes look most like: each format is told by its name's ending elsewhere.
+/// By the reader that the bytes look most like: elsewhere a format is recognised by its name's ending.
 std::size_t read_camera_bytes(std::string_view bytes);
 
 /// Hipparcos, HYG, a table with names, gzip-compressed, a picture's table.

@@ -44,7 +44,7 @@ class PanelDriver {
     bool has_row(const std::string& key) const;
     /// Opens every section of the tab and draws it whole.
     void show(PanelTab tab);
-    /// What the window gives the panel.
+    /// The frame that the window gives the panel.
     GuiFrame frame() { return {document, view, status, commands, drawn_}; }
     /// The value of a key in the scene as it is.
     Value value(const std::string& key) const;

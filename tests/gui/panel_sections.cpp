@@ -246,7 +246,7 @@ TEST(PanelCompanions, VoxelsReplaceTheVoxelSizeAndPicturesTheCube) {
 
 // The words at the head of folded sections.
 
-/// What the panel is told of a layer with this look, of which the window knows this much.
+/// The window's status and the scene, for a panel on a layer with this look.
 struct Shown {
     Document document;
     ViewState view;
@@ -287,7 +287,7 @@ std::string zero_of(const std::string& key, const LayerStatus& layer) {
 
 TEST(PanelStates, ZerosThatAreNoAmountSayWhatIsUsed) {
     LayerStatus layer;
-    EXPECT_EQ(zero_of("layer.dust.source.max_distance", layer), "Auto") << "as long as nobody knows";
+    EXPECT_EQ(zero_of("layer.dust.source.max_distance", layer), "Auto") << "as long as it is not known";
     layer.radius_min = 0.0165;
     layer.histograms = [] {
         auto histograms = std::make_shared<LayerHistograms>();

@@ -127,7 +127,7 @@ TEST_F(SaveConflict, IsAskedAbout) {
     window.document.save();
     window.document.edit("Fps", [](Scene& scene) { scene.output.fps = 31; });
     save();
-    EXPECT_EQ(commands_after_frames(), std::vector<Kind>{Kind::save}) << "nobody else wrote since";
+    EXPECT_EQ(commands_after_frames(), std::vector<Kind>{Kind::save}) << "no one else wrote since";
 }
 
 TEST_F(SaveConflict, GoesElsewhereByDefault) {

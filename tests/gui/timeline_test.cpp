@@ -269,7 +269,7 @@ TEST_F(TimelineHeader, InAndOutPointsAreSetByKeysAndDragged) {
     EXPECT_FALSE(window.view.play_first || window.view.play_last);
 }
 
-TEST_F(TimelineHeader, TheRateThatIsReachedIsTold) {
+TEST_F(TimelineHeader, TheRateThatIsReachedIsShown) {
     window.hover({-100, -100});
     const auto still = window.picture(Style::schematic).pixels;
     window.status.played_fps = 11.5;

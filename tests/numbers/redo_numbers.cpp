@@ -51,7 +51,7 @@ double number_of(double Seen::*measure, Seen one, const Is& is, double most = 1.
     return most;
 }
 
-/// What was measured on pictures of one side. Prints it; returns whether most of it lies there.
+/// Measurements on pictures of one side. Prints them; returns whether most of it lies there.
 struct Side {
     std::string_view what;
     std::vector<double> values;

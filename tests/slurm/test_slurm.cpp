@@ -1,5 +1,5 @@
-// --submit slurm on a real Slurm: tasks that are killed half-way, submitted again, give the frames of one run
-// here.
+// --submit slurm on a real Slurm: tasks that are killed half-way, submitted again, give the frames of
+// one run here.
 #include <arpa/inet.h>
 #include <fmt/format.h>
 #include <netinet/in.h>
@@ -39,7 +39,7 @@ bool wait_for(const Done& done) {
     return true;
 }
 
-/// Ports of loopback that nobody listens on, all different.
+/// Ports of loopback that nothing listens on, all different.
 std::vector<int> free_ports(int count) {
     std::vector<int> sockets, ports;
     for (int i = 0; i < count; ++i) {
@@ -162,8 +162,8 @@ void Cluster::write_configuration() const {
     for (const char* name : {"state", "spool"}) fs::create_directory(folder_ / name);
     write_text(folder_ / "munge.key", std::string(128, 'k'));
     fs::permissions(folder_ / "munge.key", fs::perms(0600));
-    // More CPUs than the machine may have (config_overrides), so that several tasks run side by side
-    // anywhere.
+    // More CPUs than the machine may have (config_overrides), so that several tasks run side
+    // by side anywhere.
     write_text(folder_ / "slurm.conf",
                fmt::format(R"(ClusterName=test
 SlurmctldHost={0}(127.0.0.1)

@@ -79,7 +79,8 @@ inline std::string little_endian(std::size_t n) {
     return bytes;
 }
 
-/// The glTF file of these; `node` is what the node that has them says beside its mesh: R"(,"scale":[2,2,2])".
+/// The glTF file of these; `node` is what the node that has them says besides its
+/// mesh: R"(,"scale":[2,2,2])".
 inline std::string glb_of(const std::vector<Trained>& all, int degree, const std::string& node = "",
                           const std::string& space = "srgb_rec709_display") {
     std::string data, views, accessors, attributes;

@@ -1,6 +1,6 @@
 // A small configuration of OpenColorIO whose views are closed forms: Film is a matrix and a square root,
-// Plain the light itself, Negative one minus it by a table in a file, Pure (of another display) the first
-// again.
+// Plain the light itself, Negative one minus it by a table in a file, Pure (of another display)
+// the first again.
 #pragma once
 
 #include <array>

@@ -34,7 +34,7 @@ void expect_near(const Vector& got, const Vector& expected, double tolerance = 1
 
 }  // namespace astrosplat
 
-/// What the InputError says that the statement throws, or "no error".
+/// The message of the InputError that the statement throws, or "no error".
 #define ERROR_OF(...) ::astrosplat::message_of<::astrosplat::InputError>([&] { __VA_ARGS__; })
 
 /// Shows both where the text has no such part.

@@ -27,7 +27,7 @@ inline std::string fits_sky(double px, double py, double ra, double dec, double 
     return cards;
 }
 
-/// `value(x, y)` of each pixel, row 0 at the bottom; `cards` beside those of its size.
+/// `value(x, y)` of each pixel, row 0 at the bottom; `cards` besides those of its size.
 template <class Value>
 std::string fits_file(int width, int height, const std::string& cards, const Value& value) {
     std::string file =

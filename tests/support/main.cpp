@@ -124,7 +124,7 @@ void watch(int signal) {
     sigaction(signal, &action, &handlers_before[signal]);
 }
 
-/// A parameter that GoogleTest can only show as bytes makes names that nobody can read, and that differ
+/// A parameter that GoogleTest can only show as bytes makes names that cannot be read, and that differ
 /// between runs.
 bool parameters_are_printable() {
     const testing::UnitTest& all = *testing::UnitTest::GetInstance();

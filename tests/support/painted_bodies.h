@@ -1,5 +1,5 @@
-// Bodies of revolution as a telescope would see them, painted by integrating what shines along every line of
-// sight.
+// Bodies of revolution as a telescope would see them, painted by integrating what shines along every
+// line of sight.
 #pragma once
 
 #include <glm/glm.hpp>

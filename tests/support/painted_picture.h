@@ -111,7 +111,7 @@ inline Image tilted_galaxy(std::int64_t width, std::int64_t height, const Tilted
             const double u = right * ca + up * sa, across = up * ca - right * sa,
                          v = t.near_above ? across : -across;
             double light[3] = {0.0, 0.0, 0.0}, passed = 1.0;
-            // From the eye on, along the disk where it is crossed aslant: denser near its plane.
+            // From the eye on, along the disk where it is crossed at an angle: denser near its plane.
             for (int k = 0; k < steps; ++k) {
                 const double q = 2.0 * (k + 0.5) / steps - 1.0, reach = 5.0 * t.size;
                 const double plane = c > 0.08 ? std::clamp(v * s / c, -reach, reach) : 0.0;

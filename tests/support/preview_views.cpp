@@ -64,7 +64,7 @@ double thickness(const Image& image) {
     return edge(1) + edge(-1);
 }
 
-/// Draws until `done`, as the window does while nobody touches it.
+/// Draws until `done`, as the window does while it is left alone.
 template <class Done>
 void draw_until(Session& session, const Done& done) {
     for (;;) {
@@ -83,9 +83,9 @@ void draw_until(Session& session, const Done& done) {
 std::span<const NamedView> preview_views() {
     static const NamedView views[] = {
         {"galaxy from the front", "whirlpool.toml", camera_at({0, 13, 0}, {}, {0, 0, -1})},
-        {"galaxy aslant", "whirlpool.toml", camera_at({3.0, 6.2, 8.4})},
+        {"galaxy at an angle", "whirlpool.toml", camera_at({3.0, 6.2, 8.4})},
         {"galaxy from its edge", "whirlpool.toml", camera_at({0, 0, 13}), true},
-        {"picture on a plane aslant", nullptr, camera_at({2.0, 3.5, 9.0})},
+        {"picture on a plane at an angle", nullptr, camera_at({2.0, 3.5, 9.0})},
         {"nebula from the side", "nebula.toml", camera_at({10.0, 1.0, 1.0})},
         {"nebula inside", "nebula.toml", camera_at({0.9, 0.3, 0.5}, {-1.5, 0.0, -0.5})},
     };

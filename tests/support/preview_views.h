@@ -16,11 +16,11 @@ struct NamedView {
     bool is_edge = false;  // of a disk, which has a thickness then
 };
 
-/// Galaxy from the front, aslant and from its edge; a picture on a plane from a slant; nebula from the side
-/// and inside.
+/// Galaxy from the front, at an angle and from its edge; a picture on a plane at an angle; nebula from the
+/// side and inside.
 std::span<const NamedView> preview_views();
 
-/// A preview beside the final frame of the same view, both linear and without a sky.
+/// A preview and the final frame of the same view, both linear and without a sky.
 struct ViewTruth {
     std::int64_t shown = 0, splats = 0;
     double light = 0.0;               // of the preview, over that of the final frame

@@ -1,5 +1,5 @@
-// What a process shares, for the length of a test: a variable of its environment, its locale, the size that
-// files may have.
+// State that a process shares, changed for the length of a test: a variable of its environment, its locale,
+// the size that files may have.
 #pragma once
 
 #include <gtest/gtest.h>

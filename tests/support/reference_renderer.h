@@ -8,8 +8,8 @@
 namespace astrosplat::test {
 
 /// The beauty frame (RGBA, linear, premultiplied) of the whole frame: for each pixel, for each splat, back
-/// to front. Level of detail, regions and the arbitrary output variables are left out. `environment` may be
-/// null.
+/// to front. Level of detail, regions and the arbitrary output variables are left out.
+/// `environment` may be null.
 Image reference_render(std::span<const RenderLayer> layers, const Camera& camera,
                        const Environment* environment, const RenderSettings& settings);
 

@@ -1,4 +1,4 @@
-// What nearly every test takes: GoogleTest, the standard library's files, texts, maps and threads, exact
+// Taken by nearly every test: GoogleTest, the standard library's files, texts, maps and threads, exact
 // maths, messages of errors, a folder of its own, a silent log, and bits that must be the same.
 #pragma once
 

@@ -186,7 +186,7 @@ TEST_F(WindowFileDialog, PicturesAreSeenBeforeTheyAreChosen) {
     person->scroll({width * 0.5f, height * 0.5f}, 400);
     EXPECT_TRUE(comes_true([&] { return seen(105, 106); }));
     EXPECT_FALSE(seen(201, 40));
-    EXPECT_EQ(end(SIGTERM).err.find("broken"), std::string::npos) << "nobody opened it";
+    EXPECT_EQ(end(SIGTERM).err.find("broken"), std::string::npos) << "it was not opened";
 }
 
 TEST_F(WindowFileDialog, WhateverWasOpenedIsRecent) {

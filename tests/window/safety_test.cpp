@@ -1,4 +1,4 @@
-// What survives a crash: unsaved changes and snapshots.
+// Unsaved changes and snapshots survive a crash.
 #include "edit/kept_files.h"
 #include "gui/widgets.h"
 #include "support/test.h"

@@ -184,7 +184,7 @@ class WindowLevels : public WindowTest {
     }
 };
 
-// What was too dark to be there comes back, too.
+// Light that was too dark to be there comes back, too.
 TEST_F(WindowLevels, ADraggedLevelIsSeenWithoutANewSet) {
     start({scene_file.string()});
     const Pixels before = settled_frame();

@@ -160,8 +160,8 @@ class WindowGrowth : public WindowTest {
 TEST_F(WindowGrowth, APartOfTheSetIsSeenBeforeItIsWhole) {
     start({scene_file.string(), "--no-cache", "--threads", "1"});
     ASSERT_TRUE(comes_true([&] { return something_is_seen(); }));
-    // Escape gives up what is being generated, and leaves alone what is whole: nothing goes on until it is
-    // pressed.
+    // Escape gives up what is being generated, and leaves alone what is whole: nothing goes on until
+    // it is pressed.
     stop();
     person->press("Escape");
     go_on();

@@ -10,7 +10,7 @@
 namespace astrosplat::test {
 namespace {
 
-// Looking around leaves the scene alone, and a window nobody touches rests.
+// Looking around leaves the scene alone, and an untouched window rests.
 
 class WindowView : public WindowTest {};
 

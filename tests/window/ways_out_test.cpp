@@ -225,7 +225,7 @@ echo "$n $task PENDING $name" >> "$here/queue"; echo $n
         write_text(folder / "no programs" / name, "#!/bin/bash\n" + script);
         fs::permissions(folder / "no programs" / name, fs::perms::owner_all);
     }
-    std::string told(const std::string& file) const {
+    std::string logged(const std::string& file) const {
         const fs::path path = folder / "no programs" / file;
         return fs::exists(path) ? text_of(path) : "";
     }
@@ -242,7 +242,7 @@ echo "$n $task PENDING $name" >> "$here/queue"; echo $n
             person->click(at);
         }
         same_widgets().take_commands();
-        ASSERT_TRUE(comes_true([&] { return told("jobs") == "2\n"; })) << program->err_so_far();
+        ASSERT_TRUE(comes_true([&] { return logged("jobs") == "2\n"; })) << program->err_so_far();
     }
     /// Renders what was submitted as a node of the farm would, and empties the queue.
     void work() {
@@ -265,7 +265,7 @@ echo "$n $task PENDING $name" >> "$here/queue"; echo $n
 
 TEST_F(WindowFarm, FramesAreSubmittedAndComeBack) {
     submit();
-    EXPECT_NE(told("submitted").find("--dependency=afterok:1 frames.sh\n"), std::string::npos);
+    EXPECT_NE(logged("submitted").find("--dependency=afterok:1 frames.sh\n"), std::string::npos);
     work();
     EXPECT_EQ(names_in("frames"),
               (std::set<std::string>{"shot.0001.png", "shot.0002.png", "shot.0003.png", "slurm"}));
@@ -279,7 +279,7 @@ TEST_F(WindowFarm, CancelTakesTheTasksOutOfTheQueue) {
     submit();
     open_queue(QueuedJob::State::submitted, {});
     click_when_shown("queue/end 1");
-    EXPECT_TRUE(comes_true([&] { return told("cancelled") == "2 1\n"; })) << told("cancelled");
+    EXPECT_TRUE(comes_true([&] { return logged("cancelled") == "2 1\n"; })) << logged("cancelled");
     EXPECT_TRUE(running());
 }
 
@@ -296,14 +296,14 @@ TEST_F(WindowFarm, WhatWasSubmittedIsListedByTheNextWindow) {
     again();
     open_queue(QueuedJob::State::submitted, {});
     click_when_shown("queue/end 1");
-    EXPECT_TRUE(comes_true([&] { return told("cancelled") == "1 2\n"; })) << told("cancelled");
+    EXPECT_TRUE(comes_true([&] { return logged("cancelled") == "1 2\n"; })) << logged("cancelled");
     work();
     person->press("Escape");
     same_widgets().tap(key_code::escape);
     again();
     open_queue(QueuedJob::State::done, {"a", "b", "c"});
     click_when_shown("queue/play");
-    EXPECT_EQ(told("jobs"), "2\n") << "nothing is submitted again";
+    EXPECT_EQ(logged("jobs"), "2\n") << "nothing is submitted again";
 }
 
 TEST_F(WindowFarm, WhatWasSubmittedOutlivesTheWindow) {
@@ -311,7 +311,7 @@ TEST_F(WindowFarm, WhatWasSubmittedOutlivesTheWindow) {
     ASSERT_TRUE(comes_true([&] { return fs::exists(folder / "frames/slurm/0001/submission.json"); }));
     person->press("ctrl+q");
     EXPECT_EQ(end().code, 0);
-    EXPECT_EQ(told("cancelled"), "");
+    EXPECT_EQ(logged("cancelled"), "");
     work();
     EXPECT_TRUE(fs::exists(folder / "frames/shot.0003.png"));
 }

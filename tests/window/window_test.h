@@ -1,5 +1,5 @@
 // The window as its users meet it: the program on a screen of its own, a quick scene in a folder of its own,
-// and the places of its controls, asked of the same widgets drawn beside it.
+// and the places of its controls, asked of the same widgets drawn in the test.
 #pragma once
 
 #include <csignal>

@@ -171,8 +171,8 @@ bool has_file(const SourceParams& source, SourceKind kind) {
     return !(kind == SourceKind::splats ? source.file : source.stars.catalogue).empty();
 }
 
-/// Stops for a thickness map that has none: red, green and blue, from thick to thin, all with the look's own
-/// shape.
+/// Stops for a thickness map that has none: red, green and blue, from thick to thin,
+/// all with the look's own shape.
 std::vector<ThicknessStop> first_thickness_stops(const Look& look) {
     return {{{1.0f, 0.0f, 0.0f}, 1.0f, look.pdf},
             {{0.0f, 1.0f, 0.0f}, 0.66f, look.pdf},

@@ -151,7 +151,7 @@ void follow_data(const Context& context, const ParameterSpec& spec, BoxContent& 
     content.fill = share_of_slider(of_data, content.value);
 }
 
-/// What a box was dragged or typed to; none: it stays. Typed texts are read as `spec` has them.
+/// The value that a box was dragged or typed to; none: it stays. Typed texts are read as `spec` has them.
 std::optional<Value> changed_value(const BoxEvent& event, const BoxContent& content,
                                    const ParameterSpec& spec, bool whole) {
     const bool dragged = event.kind == BoxEvent::Kind::dragged;

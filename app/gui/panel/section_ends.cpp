@@ -1,4 +1,4 @@
-// What single sections have besides the rows of parameters: the names of colour management, the two images
+// Contents of single sections besides the rows of parameters: the names of colour management, the two images
 // of a preparation, handles in the view, references, a look as a whole.
 
 #include "core/text.h"

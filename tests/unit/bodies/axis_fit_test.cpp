@@ -1,5 +1,5 @@
-// Painted bodies of revolution: their axis, their tilt, and what they look like from where no picture was
-// taken.
+// Painted bodies of revolution: their axis, their tilt, and what they look like from where no
+// picture was taken.
 #include "bodies/axis_fit.h"
 
 #include "bodies/axis_depths.h"

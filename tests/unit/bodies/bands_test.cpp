@@ -61,8 +61,8 @@ TEST(Bands, WhatIsEvenIsInTheCoarsest) {
     for (const float v : bands.back().pixels) ASSERT_NEAR(v, 0.25f, 1e-3f);
 }
 
-// A splat of a size is in the band of that size, not in the finest: this is what gives it a thickness of its
-// own.
+// A splat of a size is in the band of that size, not in the finest: this is what gives it a thickness
+// of its own.
 TEST(Bands, HoldWhatIsOfTheirSize) {
     for (const int wanted : {0, 2}) {
         Image light = make_image(320, 320, 3);

@@ -372,8 +372,8 @@ TEST(FrontFit, OfALargePictureIsAsClose) {
     EXPECT_GT(-10.0 * std::log10(squares / double(light.width * light.height)), 44.0);
 }
 
-// Seen on pixels of two texels, crowded points hide less of themselves: fitted so, their light is 1.3 % too
-// little.
+// Seen on pixels of two texels, crowded points hide less of themselves: fitted so, their light is 1.3
+// % too little.
 TEST(FrontFit, OfASmallPictureHasTheLightOfItsPoints) {
     Image points = make_image(560, 480, 3, 0.01f);
     for (std::uint32_t i = 0; i < 20000; ++i) {

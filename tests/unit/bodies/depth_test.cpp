@@ -233,7 +233,7 @@ double spread_at(const Placement& placement, float cx, float cy) {
     return std::sqrt(squares / block.count - mean * mean);
 }
 
-// On a sheet it is flatter: 60 degrees aslant those of an upright rim would be one needle.
+// On a sheet it is flatter: seen at 60 degrees those of an upright rim would be one needle.
 TEST(Placement, AKnotIsABall) {
     Image light = make_image(320, 200, 3, 0.05f);
     painted::add_point(light, 160.0, 100.0, 3.0, 0.5, 0.5, 0.5);

@@ -41,8 +41,8 @@ class HostilePictures : public testing::TestWithParam<StructureKind> {
         ASSERT_TRUE(set.distance[i] >= 0.0f && set.distance[i] < 5.0f) << i;
         ASSERT_TRUE(set.uv[i].x >= 0.0f && set.uv[i].x <= 1.0f && set.uv[i].y >= 0.0f && set.uv[i].y <= 1.0f);
     }
-    // Light of the splats within `reach` of a place on the plane, as square units of white; what absorbs has
-    // none.
+    // Light of the splats within `reach` of a place on the plane, as square units of white;
+    // what absorbs has none.
     static double light_of(const SplatSet& set, const glm::vec2& about = {}, float reach = 100.0f) {
         double sum = 0.0;
         for (std::size_t i = 0; i < set.id.size(); ++i) {

@@ -70,8 +70,8 @@ TEST(Stars, KnotsAndEdgesAreNone) {
     for (std::size_t i = 0; i < light.pixels.size(); ++i) ASSERT_EQ(light.pixels[i], before.pixels[i]);
 }
 
-// A flat top is narrower than the Gaussian of its peak and light: the ring around would be a hole, and so
-// dust.
+// A flat top is narrower than the Gaussian of its peak and light: the ring around would be a hole,
+// and so dust.
 TEST(Stars, FlatOnesLeaveNoHole) {
     Image light = make_image(128, 96, 3, 0.05f);
     painted::add_point(light, 60.4, 50.3, 0.9, 1.6, 1.6, 1.6);
@@ -139,8 +139,8 @@ TEST(Knots, ThoseOfAFilamentAreNotRound) {
     EXPECT_GE(along, 3);
 }
 
-// A star of one pixel is narrower than its Gaussian. Where there is dust, the hole around it would become
-// some.
+// A star of one pixel is narrower than its Gaussian. Where there is dust, the hole around it
+// would become some.
 TEST(Stars, LeaveNoHolesInDisksAndNoLightInClouds) {
     for (const StructureKind kind : {StructureKind::disk, StructureKind::sheet, StructureKind::walls}) {
         Image light = make_image(64, 48, 3, 0.05f);

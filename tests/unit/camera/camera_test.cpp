@@ -474,7 +474,7 @@ TEST(Stereo, TheReachOfABallHoldsAllOfIt) {
     }
 }
 
-TEST(Stereo, WrongNumbersAreTold) {
+TEST(Stereo, WrongNumbersAreReported) {
     CameraParams params = params_of(Projection::perspective, Eye::left);
     params.eye_separation = -1.0;
     EXPECT_THROW(make_camera(params, width_px, height_px, {}), InputError);

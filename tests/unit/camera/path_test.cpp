@@ -100,8 +100,8 @@ TEST(Positions, PassThroughTheirKeyframesAtTheirFrames) {
 }
 
 TEST(Positions, CentripetalCurveOfFourKeyframesMatchesBarryAndGoldman) {
-    // The pyramid of Barry and Goldman (1988) with knots sqrt(distance), an independent form of the same
-    // curve.
+    // The pyramid of Barry and Goldman (1988) with knots sqrt(distance), an independent form of
+    // the same curve.
     Positions keyframes = {
         {0, {0, 0, 0}, smooth}, {1, {1, 0, 0}, smooth}, {2, {1, 4, 0}, smooth}, {3, {3, 5, 2}, smooth}};
     double t[4] = {0, 0, 0, 0};
@@ -238,8 +238,8 @@ TEST(Rotations, EqualAndUnnormalisedKeyframesAreSafe) {
     EXPECT_NEAR(glm::length(evaluate_rotation(keyframes, -4, Ends::ease)), 1.0, 1e-15);
 }
 
-// Bezier keyframes against curves worked out by hand: handles, automatic, flat and free, of scalars and
-// positions.
+// Bezier keyframes against curves worked out by hand: handles, automatic, flat and free,
+// of scalars and positions.
 
 constexpr Interpolation bezier = Interpolation::bezier;
 constexpr HandleKind flat = HandleKind::flat, free_hand = HandleKind::free;

@@ -98,7 +98,7 @@ TEST(Threads, AtLeastOneAndAsSet) {
     EXPECT_EQ(thread_count(), available_threads());
 }
 
-// One thread beside the test's: all work done, in order, and none after the end.
+// A thread alongside the test's: all work done, in order, and none after the end.
 
 /// Work by number: the order in which it was done.
 struct Numbers {

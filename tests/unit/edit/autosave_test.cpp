@@ -1,4 +1,4 @@
-// What is kept beside a scene: autosaves and snapshots.
+// Files kept next to a scene: autosaves and snapshots.
 #include <signal.h>
 #include <sys/wait.h>
 
@@ -378,7 +378,7 @@ TEST_F(SnapshotFiles, AnotherNameChangesNothingElse) {
     EXPECT_EQ(*kept[0].scene, before);
 }
 
-TEST_F(SnapshotFiles, ABrokenOneIsToldAndTheOthersAreThere) {
+TEST_F(SnapshotFiles, ABrokenOneIsReportedAndTheOthersAreThere) {
     write(facts);
     test::write_text(folder / "0002.toml", "astrosplat = 1\n");
     test::write_text(folder / "0003.toml", "# astrosplat snapshot {\"name\": \n");

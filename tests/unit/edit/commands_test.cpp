@@ -1,4 +1,4 @@
-// What the window asks of the command line: --batch, prepare, movies.
+// Command lines that the window runs: --batch, prepare, movies.
 #include "edit/command_lines.h"
 #include "edit/edits.h"
 #include "edit/layers.h"
@@ -287,7 +287,7 @@ TEST(RenderTask, PlacesMayStandInTheNamesOfFolders) {
     EXPECT_EQ(movie.name, "shot.mp4");
 }
 
-/// What --batch would refuse is refused before it becomes a job.
+/// A job that --batch would refuse is refused before it starts.
 TEST(RenderTask, AMovieIsOneFileWhateverItsFramesAreCalled) {
     for (const char* name : {"a.####.mp4", "a.%04d.mp4", "a{frame:04}.mp4", "%V.mp4", "a.%v.mp4"})
         EXPECT_NE(render_problem(task_of(RenderKind::movie, name), {}), "") << name;

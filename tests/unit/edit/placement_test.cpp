@@ -29,8 +29,8 @@ TEST(Placement, AnglesSayTheirRotation) {
         expect_near(degrees_of(rotation_from_degrees(degrees), degrees), degrees);
 }
 
-/// The other triple of angles that says the same, whole turns, and a pole, where two angles turn about one
-/// line.
+/// The other triple of angles that says the same, whole turns, and a pole, where two angles turn
+/// about one line.
 TEST(Placement, OfAllAnglesTheNearestOnesAreTaken) {
     for (const glm::dvec3 degrees : {glm::dvec3(190, 160, 210), glm::dvec3(730, 20, -350),
                                      glm::dvec3(40, 90, 25), glm::dvec3(40, -90, 25)}) {

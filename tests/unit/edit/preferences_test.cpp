@@ -186,7 +186,7 @@ class WatchedFilesTest : public testing::Test {
     }
 };
 
-TEST_F(WatchedFilesTest, AChangeIsToldOnceItRests) {
+TEST_F(WatchedFilesTest, AChangeIsReportedOnceItRests) {
     EXPECT_EQ(watched.changed(), Paths{});
     date(a, 5);
     EXPECT_EQ(watched.changed(), Paths{}) << "it may still be written";
@@ -223,7 +223,7 @@ TEST_F(WatchedFilesTest, WatchingAgainForgetsNothing) {
     EXPECT_EQ(watched.changed(), Paths{a});
     watched.watch({a, b});
     watched.changed();
-    EXPECT_EQ(watched.changed(), Paths{}) << "b was changed while nobody watched it";
+    EXPECT_EQ(watched.changed(), Paths{}) << "b was changed while no one watched it";
 }
 
 TEST_F(WatchedFilesTest, FilesOfAScene) {

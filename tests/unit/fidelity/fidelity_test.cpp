@@ -85,8 +85,8 @@ TEST(Ssim, OfItselfIsOneAndOfFlatPicturesItsFormula) {
     EXPECT_NEAR(ssim(dark, light), (2 * 0.2 * 0.6 + 1e-4) / (0.04 + 0.36 + 1e-4), 1e-4);
 }
 
-// Floats instead of doubles move the displayed values by 1e-7, a sixtieth of a thousandth of the error
-// measured.
+// Floats instead of doubles move the displayed values by 1e-7, a sixtieth of a thousandth of
+// the error measured.
 TEST(FrontFidelity, IsTheNumbersOfTheMeasuresThatTargetsWereSetWith) {
     const Image picture = waves_and_stars(2), seen = rendered_waves_and_stars();
     const Image reference = resampled(picture, map_to_width(picture, 240, 160), 240, 160, 0.5);

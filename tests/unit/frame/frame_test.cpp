@@ -252,7 +252,7 @@ TEST_F(FrameHashTest, IgnoresWhereAndHowOftenFramesGo) {
     EXPECT_EQ(changed([](Scene& s) { s.layers[0].preset = "old.toml"; }), before);
 }
 
-// The scale of a scene reaches pixels where stars are placed by it, and is told as their unit.
+// The scale of a scene reaches pixels where stars are placed by it, and counts as their unit.
 TEST_F(FrameHashTest, TheScaleCountsAsTheUnitOfStars) {
     const auto of_stars = [&](double light_years_per_unit, std::optional<double> unit) {
         return changed([&](Scene& s) {
@@ -403,7 +403,7 @@ TEST_F(FrameHashTest, AConfigurationCountsWhereAViewIsWritten) {
     EXPECT_NE(film, managed("a.png", {config, "", "", ""}));
 }
 
-TEST_F(FrameHashTest, KeysOfOtherLensesAndOfBlursThatAreOffAreNotTold) {
+TEST_F(FrameHashTest, KeysOfOtherLensesAndOfBlursThatAreOffAreLeftOut) {
     EXPECT_NE(changed([](Scene& s) { s.output.primaries = OutputParams::Primaries::acescg; }), hash(scene()));
     for (const char* key : {"camera.eye", "camera.convergence", "camera.fisheye_tilt", "camera.panorama_fov",
                             "camera.f_number", "camera.focus_distance", "camera.unit_mm", "output.samples"})
@@ -432,7 +432,7 @@ TEST_F(FrameHashTest, MixingInDisplayValuesCountsWhereItIsDone) {
     EXPECT_NE(changed([&](Scene& s) { alone(s), display(s); }), changed(alone));
 }
 
-TEST_F(FrameHashTest, TheImageOfStarsCountsForStarsAndIsNotToldOfOthers) {
+TEST_F(FrameHashTest, TheImageOfStarsCountsForStarsAlone) {
     EXPECT_EQ(text(scene()).find("wings"), std::string::npos);
     EXPECT_EQ(text(scene()).find("spikes"), std::string::npos);
     const auto stars = [](Scene& s) { s.layers[0].source.kind = SourceKind::stars; };
@@ -442,8 +442,8 @@ TEST_F(FrameHashTest, TheImageOfStarsCountsForStarsAndIsNotToldOfOthers) {
     EXPECT_NE(before, changed([&](Scene& s) { stars(s), s.layers[0].source.stars.spikes.vanes = 3; }));
 }
 
-// Stars of a picture lie where that picture's layer has it, even one that is not seen; keys of others are not
-// told of.
+// Stars of a picture lie where that picture's layer has it, even one that is not seen; keys of others do
+// not count.
 TEST_F(FrameHashTest, TheLayerOfAPictureCountsForItsStars) {
     EXPECT_EQ(text(scene()).find("source.like"), std::string::npos);
     EXPECT_EQ(text(scene()).find("source.slab"), std::string::npos);

@@ -16,8 +16,8 @@
 namespace astrosplat::test {
 namespace {
 
-// Splats as Gaussians: the integral by summing over a fine grid, blends by hand, and fewer with the same
-// light.
+// Splats as Gaussians: the integral by summing over a fine grid, blends by hand,
+// and fewer with the same light.
 
 Falloff falloff_of(Falloff::Shape shape, float sharpness = 4.5f) {
     Falloff falloff;
@@ -492,7 +492,7 @@ TEST(HarmonicsExport, DisplayValuesBecomeLinearLight) {
     EXPECT_LT(differences(capture, found).mean, 0.05);
 }
 
-// Splats beside a capture have their colour from everywhere, and what has no directions no file tells of.
+// Splats drawn with a capture have their colour from everywhere, and what has no directions no file tells of.
 TEST(HarmonicsExport, OthersKeepTheirColour) {
     SeenCapture capture("in.ply", ply_of(test::capture(60, 1), 1));
     RenderLayer plain;

@@ -182,8 +182,8 @@ TEST_F(GenerateTest, SeveralMeshesWithTheirPictures) {
     EXPECT_TRUE(set.divided);
 }
 
-// A picture of 1-texel stripes: a voxel 10 texels wide sees their mean, a bilinear sample sees single
-// stripes.
+// A picture of 1-texel stripes: a voxel 10 texels wide sees their mean,
+// a bilinear sample sees single stripes.
 TEST_F(GenerateTest, AreaFilterAveragesOverTheVoxel) {
     Texture stripes = flat_texture({1, 1, 1, 1}, 200);
     for (std::int64_t y = 0; y < 200; ++y)

@@ -6,8 +6,8 @@
 namespace astrosplat::shared {
 namespace {
 
-// as_exp, as_log, as_pow against long double, at the accuracy maths.glsl states; as_hash as a source of
-// numbers.
+// as_exp, as_log, as_pow against long double, at the accuracy maths.glsl states;
+// as_hash as a source of numbers.
 
 double relative_error(float got, long double wanted) {
     return double(std::fabs((static_cast<long double>(got) - wanted) / wanted));

@@ -6,8 +6,8 @@
 namespace astrosplat {
 namespace {
 
-// Shapes over x: published numbers, curves after Fritsch and Carlson, kept fractions, and the integrals of
-// columns.
+// Shapes over x: published numbers, curves after Fritsch and Carlson, kept fractions,
+// and the integrals of columns.
 
 using Shape = DensityCurve::Shape;
 using namespace shared_types;
@@ -226,7 +226,7 @@ TEST(Crop, OpacityFallsOverTheSoftEdge) {
     }
 }
 
-/// Beside an edge and a corner the distance is that from these.
+/// Outside of an edge or a corner the distance is that from it.
 TEST(Crop, TheSoftEdgeOfABoxIsRound) {
     Crop box = box_of({0.0f, 0.0f, 0.0f}, {2.0f, 2.0f, 2.0f});
     box.soft = 2.0f;

@@ -42,7 +42,7 @@ TEST(Category, MeansKindsByTheMostSpecialEntry) {
         EXPECT_TRUE(objects_of_category(other).empty()) << other;
 }
 
-// What is said wins over what is seen, the person over the file.
+// Words win over what is seen, the person's over the file's.
 TEST(Identify, BelievesTheFileMoreThanTheLight) {
     const Image spiral = painted::galaxy(400, 250);
     EXPECT_EQ(likeliest({}, spiral), galaxy);

@@ -1,4 +1,4 @@
-// What a frame file holds: pixels, text, and settings that go together.
+// The content of frame files: pixels, text, and settings that go together.
 #include "core/color.h"
 #include "core/text.h"
 #include "output/compare.h"

@@ -142,15 +142,16 @@ TEST_F(WriteTest, ExrSaysItsPrimariesAndHoldsLightInThem) {
             for (const char* same : {"A", "stars.A", "dust.A", "Z", "coverage", "count"})
                 ASSERT_EQ(wide.at(x, y, same), plain.at(x, y, same)) << same;
         }
-    const auto told = [](const RawFile& raw) {
+    const auto stored = [](const RawFile& raw) {
         const OIIO::ParamValue* value =
             raw.spec.find_attribute("chromaticities", OIIO::TypeDesc(OIIO::TypeDesc::FLOAT, 8));
         std::vector<float> all;
         for (int i = 0; value && i < 8; ++i) all.push_back(value->get_float_indexed(i));
         return all;
     };
-    EXPECT_EQ(told(plain), (std::vector{0.64f, 0.33f, 0.30f, 0.60f, 0.15f, 0.06f, 0.3127f, 0.3290f}));
-    EXPECT_EQ(told(wide), (std::vector{0.713f, 0.293f, 0.165f, 0.830f, 0.128f, 0.044f, 0.32168f, 0.33767f}));
+    EXPECT_EQ(stored(plain), (std::vector{0.64f, 0.33f, 0.30f, 0.60f, 0.15f, 0.06f, 0.3127f, 0.3290f}));
+    EXPECT_EQ(stored(wide),
+              (std::vector{0.713f, 0.293f, 0.165f, 0.830f, 0.128f, 0.044f, 0.32168f, 0.33767f}));
 }
 
 TEST_F(WriteTest, HalfExrRoundsAndStaysFinite) {

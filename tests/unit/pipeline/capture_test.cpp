@@ -155,8 +155,8 @@ TEST(Capture, IsWhatAnEwaRendererMakesOfIt) {
     EXPECT_LT(display_psnr_db(picture, displayed(make_image(width, height, 4))), 20.0) << "nothing to see";
 }
 
-// The original's 0.3 px, which let what is thin gain light: as good as the same where Gaussians span some
-// pixels.
+// The original's 0.3 px, which let what is thin gain light: as good as the same where Gaussians
+// span some pixels.
 TEST(Capture, IsNearThe3dgsOriginal) {
     for (const double size : {0.25, 2.0}) {
         const CaptureScene scene(capture(400, 3, size), 3);

@@ -133,8 +133,8 @@ TEST_F(Fidelity, StopsWhenAsked) {
     EXPECT_THROW(measure_fidelity(scene, reference, settings), Cancelled);
 }
 
-// The stars of a picture beside what the picture without them became: from its camera they have the table's
-// light and place, whatever lies before them; elsewhere they have depth.
+// The stars of a picture together with what the picture without them became: from its camera they have the
+// table's light and place, whatever lies before them; elsewhere they have depth.
 
 constexpr std::int64_t width_px = 96, height_px = 72;
 constexpr int columns = 3, rows = 2, spacing_px = 28;

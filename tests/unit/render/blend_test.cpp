@@ -1,5 +1,5 @@
-// Blending by hand: one and two splats under every blend, holdout, hybrid, isolation, alpha, the stop rule,
-// AOVs.
+// Blending by hand: one and two splats under every blend, holdout, hybrid, isolation, alpha,
+// the stop rule, AOVs.
 #include "render/shared_render.h"
 #include "support/test.h"
 #include "unit/render/scenes.h"

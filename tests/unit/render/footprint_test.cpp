@@ -8,8 +8,8 @@
 namespace astrosplat {
 namespace {
 
-// Footprints: light at every size and place, flat cores, and the profile against a convolution done by brute
-// force.
+// Footprints: light at every size and place, flat cores, and the profile against a convolution done
+// by brute force.
 
 using test::all_shapes;
 
@@ -59,8 +59,8 @@ struct FootprintCase {
 
 class FootprintLight : public ::testing::TestWithParam<FootprintCase> {};
 
-// The sum over all pixels is the falloff's integral times the squared radius, within 0.5 %, from 0.02 to 500
-// px.
+// The sum over all pixels is the falloff's integral times the squared radius, within 0.5 %,
+// from 0.02 to 500 px.
 TEST_P(FootprintLight, IsConservedAtEverySizeAndOffset) {
     const FootprintTable table = make_footprint_table(GetParam().falloff, GetParam().pixel_filter_px);
     const double integral = falloff_integral(GetParam().falloff);

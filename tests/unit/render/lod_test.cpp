@@ -10,8 +10,8 @@
 namespace astrosplat {
 namespace {
 
-// Level of detail: the light of a splat equals that of its children, at every level and every stage of the
-// fade.
+// Level of detail: the light of a splat equals that of its children, at every level and every stage
+// of the fade.
 
 using namespace astrosplat::test;
 
@@ -319,8 +319,8 @@ TEST(ChildNoise, FinerLevelsRefineTheField) {
     }
 }
 
-/// Radii may be animated: the field of a splat that grows changes without steps, also where an octave comes
-/// in.
+/// Radii may be animated: the field of a splat that grows changes without steps,
+/// also where an octave comes in.
 TEST(ChildNoise, ChangesSmoothlyWithTheRadius) {
     const auto field = [](float radius, std::uint32_t i) {
         return child_light(make_child_noise(1.0f, radius, 4, 7), 0.01f * random_point(i));

@@ -1,6 +1,6 @@
 // Stars through the whole renderer: their light at every place and size of their image, what flying past,
-// other lenses and splats before them do to it, and the same bits for every tile size, thread and instruction
-// set.
+// other lenses and splats before them do to it, and the same bits for every tile size,
+// thread and instruction set.
 #include "camera/projection.h"
 #include "support/test.h"
 #include "unit/render/sphere_scenes.h"
@@ -123,10 +123,10 @@ Spikes spikes_at(const Image& picture, const Camera& camera, const glm::dvec3& t
                                          std::int64_t(double(at.y_px) + down) + y)[0]);
         return sum;
     };
-    const double aslant = px / std::sqrt(2.0);
+    const double diagonal = px / std::sqrt(2.0);
     return {light(px, 0.0) + light(-px, 0.0), light(0.0, px) + light(0.0, -px),
-            std::max({light(aslant, aslant), light(aslant, -aslant), light(-aslant, aslant),
-                      light(-aslant, -aslant)})};
+            std::max({light(diagonal, diagonal), light(diagonal, -diagonal), light(-diagonal, diagonal),
+                      light(-diagonal, -diagonal)})};
 }
 
 // As on a flat frame: so many px long, level and upright in the frame, and with the light that solid angles
@@ -240,7 +240,7 @@ TEST(Stars, KeepTheirLightWhileTheCameraPans) {
     }
 }
 
-// Stars that were measured in a picture's pixels are as bright beside its splats in any frame and lens.
+// Stars that were measured in a picture's pixels are as bright among its splats in any frame and lens.
 TEST(Stars, OfAPictureCoverWhatTheirPixelsDid) {
     const ShadedSplats splats = make_splats({star_at({0.0f, 3.0f, -40.0f})});
     RenderLayer layer = star_layer(splats);

@@ -79,7 +79,7 @@ Bits stars_removed() {
     return Bits() << removal.starless << star_table(removal.stars, galaxy().width, galaxy().height);
 }
 
-/// What is left of the picture, and what was taken of it.
+/// The rest of the picture, and what was taken of it.
 template <class Take>
 Bits taken(Image light, const Take& take) {
     const std::vector<Star> stars = take(light);

@@ -99,7 +99,7 @@ TEST(FrontFrame, TurnsAlongAGalaxy) {
     const FrontFrame frame;
     EXPECT_EQ(along_galaxy(frame, {}).toward, frame.toward) << "of which nothing is said";
     const FrontFrame along = along_galaxy(frame, {60.0, 0.0, glm::dvec2(0.75, 0.5), 90.0, {}});
-    // What lies above in the picture is nearer: the disk's normal points down there.
+    // The upper part of the picture is nearer: the disk's normal points down there.
     EXPECT_LT(glm::length(along.toward - glm::dvec3(0.0, 0.5, std::sqrt(0.75))), 1e-9);
     EXPECT_LT(glm::length(along.up - glm::dvec3(0.0, std::sqrt(0.75), -0.5)), 1e-9);
     EXPECT_LT(glm::length(along.right - frame.right), 1e-9);

@@ -174,7 +174,7 @@ TEST(DescriptionTest, EveryParameterHasAPlaceInTheWindow) {
 // Undo, the graph and search name a parameter by its label alone.
 TEST(DescriptionTest, NoTwoParametersOfALayerOrOfTheSceneHaveOneName) {
     // The same of two things that are never seen together, or of each of a list. What is prepared and masked
-    // is told in the same words.
+    // is described in the same words.
     const std::set<std::string> shared{"Rate",     "Points",   "Sigma", "Density with distance",
                                        "Rotation", "Position", "Scale", "Width",
                                        "Height"};

@@ -29,7 +29,7 @@ TEST(PictureScene, BeginsWithThePictureAsItIs) {
         EXPECT_EQ(scene.output.height % 2, 0);
         const double aspect = double(width) / double(height);
         EXPECT_NEAR(double(scene.output.width) / double(scene.output.height), aspect, 0.002 * aspect);
-        // What the camera sees of the plane, which is 10 units along its longer side.
+        // The part of the plane that the camera sees; the plane is 10 units along its longer side.
         const double seen =
             2.0 * scene.camera.position->y * std::tan(0.5 * scene.camera.fov * 3.14159265358979 / 180.0);
         EXPECT_NEAR(seen, aspect >= 1.0 ? 10.0 / aspect : 10.0, 1e-4);

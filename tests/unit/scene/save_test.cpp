@@ -206,8 +206,8 @@ Value some_value(const ParameterSpec& spec, std::uint32_t seed) {
     return random_value(wide, numbers);
 }
 
-/// The scene with one parameter changed; presets and camera files must exist and names are keys, so these
-/// stay.
+/// The scene with one parameter changed; presets and camera files must exist and names are keys,
+/// so these stay.
 Scene changed(const Scene& scene, std::size_t index, std::uint32_t seed) {
     Scene edited = scene;
     const Description description = describe(edited);

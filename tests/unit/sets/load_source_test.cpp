@@ -175,7 +175,7 @@ TEST_F(LoadSourceTest, BodiesOfAMarginLieBeyondThePictureAndTheOthersWhereTheyWe
 }
 
 // A plane of 10 units by 6.67.
-TEST_F(LoadSourceTest, AutomaticHeightAndWidthAreTold) {
+TEST_F(LoadSourceTest, AutomaticHeightAndWidthAreReported) {
     SourceParams source = sheet_of_gas(120, 80);
     EXPECT_NEAR(automatic_values(source).body_height, 0.011 * 10.0, 1e-4);
     EXPECT_EQ(automatic_values(source).uv_width, 0.0) << "the mesh's own";
@@ -185,9 +185,9 @@ TEST_F(LoadSourceTest, AutomaticHeightAndWidthAreTold) {
     EXPECT_NEAR(automatic_values(source).body_height, 0.018 * 11.0, 1e-4);
     const SplatSet automatic = load_source(source, "gas");
     source.structure.height = automatic_values(source).body_height;
-    const SplatSet told = load_source(source, "gas");
+    const SplatSet given = load_source(source, "gas");
     EXPECT_EQ(automatic_values(source).body_height, 0.0) << "nothing is automatic any more";
-    EXPECT_NEAR(bounds(told).extent().y / bounds(automatic).extent().y, 1.0, 1e-3);
+    EXPECT_NEAR(bounds(given).extent().y / bounds(automatic).extent().y, 1.0, 1e-3);
 
     SourceParams planar = mesh_source("sphere", source.meshes[0].texture);
     planar.uv = UvMode::planar_xy;

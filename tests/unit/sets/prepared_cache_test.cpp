@@ -160,21 +160,21 @@ TEST_F(PreparedSource, WhatDoesNothingStaysOutOfTheNames) {
     EXPECT_EQ(name(source_), prepared);
 }
 
-TEST_F(PreparedSource, BodiesLookForStarsUnlessThoseWereRemovedOrTheyAreTold) {
+TEST_F(PreparedSource, BodiesLookForStarsUnlessThoseWereRemovedOrTheSourceSays) {
     using Stars = StructureParams::Stars;
     source_.structure.kind = StructureKind::disk;
-    const auto finds = [&](PrepareParams::Stars removed, Stars told) {
+    const auto finds = [&](PrepareParams::Stars removed, Stars said) {
         source_.texture.prepare.stars = removed;
-        source_.structure.stars = told;
+        source_.structure.stars = said;
         return finds_stars(source_);
     };
     EXPECT_TRUE(finds(PrepareParams::Stars::keep, Stars::automatic));
     EXPECT_FALSE(finds(PrepareParams::Stars::keep, Stars::no));
     EXPECT_FALSE(finds(PrepareParams::Stars::remove, Stars::automatic));
     EXPECT_TRUE(finds(PrepareParams::Stars::remove, Stars::yes));
-    const std::string told = name(source_);
+    const std::string said = name(source_);
     source_.structure.stars = Stars::automatic;
-    EXPECT_NE(name(source_), told);
+    EXPECT_NE(name(source_), said);
     source_.structure.stars = Stars::no;
     const std::string off = name(source_);
     source_.structure.stars = Stars::automatic;
@@ -204,8 +204,8 @@ TEST_F(PreparedSource, RefusesToAlignWhatHasNoSky) {
                   ": expected a FITS picture whose header tells the sky (RA---TAN), found none");
 }
 
-// Skies of one picture are kept beside the sets, to the bit, under a name that everything enters that makes
-// them.
+// Skies of one picture are kept beside the sets, to the bit, under a name that everything enters
+// that makes them.
 
 class KeptSky : public testing::Test {
   protected:

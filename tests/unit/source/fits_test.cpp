@@ -131,7 +131,7 @@ TEST(FitsCompressed, DamagedGzipTilesAreRefused) {
                               ":tile 1: expected gzip data of at most 384 bytes, found something else");
             }
         }
-        EXPECT_GT(refused, 40);  // a byte of the gzip header that nobody reads does no harm
+        EXPECT_GT(refused, 40);  // a byte of the gzip header that is never read does no harm
         EXPECT_THROW(
             read_fits(folder.file("short.fits", std::string(whole).replace(tile, 30, 30, '\0')), "auto", 0),
             InputError);

@@ -172,8 +172,8 @@ TEST(ObjErrors, OneLineEach) {
     EXPECT_EQ(obj_error(square), ": expected an OBJ mesh with faces ('f'), found none");
 }
 
-// Why tinyobjloader reads our materials only. Where this fails with a newer version, it may read the faces
-// too.
+// Why tinyobjloader reads our materials only. Where this fails with a newer version,
+// it may read the faces too.
 TEST(Obj, TinyobjloaderDoesNotReadOrRefuseAsWeDo) {
     const auto triangles = [](const std::string& text) {
         std::istringstream in(text);

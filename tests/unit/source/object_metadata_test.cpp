@@ -137,7 +137,7 @@ TEST(XmpMetadata, NorthByScaleAndRotationAlsoInMirroredPictures) {
     EXPECT_NEAR(*in_the_sky("Spatial.Scale", "-3e-4 1e-4", "avm:Spatial.Rotation='90'").degrees_per_px, 3e-4,
                 1e-16)
         << "pixels that are wider than high";
-    EXPECT_FALSE(in_the_sky("Spatial.Scale", "-1e-4 1e-4").north_angle) << "nobody says it";
+    EXPECT_FALSE(in_the_sky("Spatial.Scale", "-1e-4 1e-4").north_angle) << "not said";
     EXPECT_EQ(find_xmp_metadata(packet("avm:Spatial.Rotation='200'", "")).north_angle, -160.0);
 }
 
@@ -174,7 +174,7 @@ TEST(XmpMetadata, PlacesAndNorthAreThoseOfTheEarthsSky) {
     }
 }
 
-// By the creator where nobody is credited, by the rights where there is no creator.
+// By the creator where no one is credited, by the rights where there is no creator.
 TEST(XmpMetadata, CreditIsWhoeverIsNamed) {
     const std::string creator = "<dc:creator><rdf:Seq><rdf:li>Some\n One</rdf:li></rdf:Seq></dc:creator>";
     const std::string rights = "<dc:rights><rdf:Alt><rdf:li>CC BY</rdf:li></rdf:Alt></dc:rights>";

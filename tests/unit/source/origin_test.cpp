@@ -1,4 +1,4 @@
-// What is said of a layer's origin, kind by kind.
+// The words on a layer's origin, kind by kind.
 #include "source/origin.h"
 
 #include "support/test.h"

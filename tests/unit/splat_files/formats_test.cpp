@@ -1,4 +1,4 @@
-// What all formats of splats share, and files that are read in part.
+// Rules that all formats of splats share, and files that are read in part.
 #include <cfloat>
 #include <charconv>
 #include <csignal>
@@ -17,9 +17,9 @@
 namespace astrosplat {
 namespace {
 
-// What all formats of splats share: rules, and numbers as text.
+// Shared by all formats of splats: rules, and numbers as text.
 
-// What all formats of splats keep: reading again, dust, files that stay.
+// Kept by all formats of splats: what is read again, dust, files that stay.
 
 // Every splat format of the table has a reader, and a writer where it says so; what is written is read again.
 // A new row of core/file_format.cpp is tested as soon as it is there.
@@ -310,8 +310,8 @@ TEST_F(NativeBlocksTest, ASampleOfAllRowsIsTheSet) {
     EXPECT_TRUE(std::ranges::equal(sample.alpha, whole.alpha));
 }
 
-// A file that another program shortens while it is read: one line, where the kernel alone would end the
-// process.
+// A file that another program shortens while it is read: one line, where the kernel alone would
+// end the process.
 
 using MappedFileTest = SplatFileTest;
 constexpr const char* shorter = ": cannot be read: it became shorter while it was read";

@@ -291,7 +291,7 @@ class Pda : public SplatFileTest {
     std::string error(const std::string& text) {
         return error_of(write("a.pda", text), [](const auto& file) { read_pda(file); });
     }
-    /// A file with one attribute beside position and one row.
+    /// A file with one attribute besides position and one row.
     static std::string one(const std::string& attribute, const std::string& type, const std::string& value) {
         return "ATTRIBUTES\n position " + attribute + "\nTYPES\n V " + type +
                "\nNUMBER_OF_PARTICLES: 1\nBEGIN DATA\n1 2 3 " + value + "\n";

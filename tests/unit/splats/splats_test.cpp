@@ -266,8 +266,8 @@ TEST(Harmonics, AreOrthonormal) {
         for (int j = 0; j < 16; ++j) EXPECT_NEAR(products[i][j], i == j ? 1.0 : 0.0, 1e-3) << i << ' ' << j;
 }
 
-// With the Condon-Shortley phase: functions of odd m are negative where their products of coordinates are
-// not.
+// With the Condon-Shortley phase: functions of odd m are negative where their products of
+// coordinates are not.
 TEST(Harmonics, HaveTheSignsOfTheirFormat) {
     const auto y = harmonic_functions(glm::normalize(glm::vec3(0.5f, 0.4f, 1.2f)));
     const int signs[16] = {1, -1, 1, -1, 1, -1, 1, -1, 1, -1, 1, -1, 1, -1, 1, 1};

@@ -1,5 +1,5 @@
 // The architecture as a test (DESIGN 2): includes point one way, libraries stay behind the files that wrap
-// them, and the top level holds only what was agreed. A rule nobody checks is lost.
+// them, and the top level holds only what was agreed. A rule that is not checked is lost.
 #include <regex>
 
 #include "support/test.h"
@@ -210,7 +210,7 @@ TEST(Structure, NoTwoTypesHaveOneName) {
     EXPECT_TRUE(file_of.contains("astrosplat::native Block"));
 }
 
-// What one file alone needs stands in that file. The number of the others may only fall.
+// Code that one file alone needs stands in that file. The number of the others may only fall.
 TEST(Structure, AHeaderHasTwoUsersOrATest) {
     constexpr std::size_t allowed = 2;
     std::map<std::string, std::set<std::string>> users;  // of each header, by its path

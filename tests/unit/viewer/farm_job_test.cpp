@@ -135,7 +135,7 @@ TEST_F(FarmJobTest, SaysWhyItWasNotSubmitted) {
     EXPECT_EQ(farm.text(), "sbatch: error: invalid partition: x");
 }
 
-/// What the records beside the frames tell a window that was not there when they were written.
+/// The records beside the frames, read by a window that was not there when they were written.
 class SubmittedFramesTest : public testing::Test {
   protected:
     void submitted(const std::string& number, std::vector<std::string> options,
@@ -177,11 +177,11 @@ TEST_F(SubmittedFramesTest, WhatCannotBeReadIsLeftOut) {
 /// The program is asked, and what it tells is listed once, however often a scene is opened.
 TEST(EarlierFarmJobs, AreThoseThatStatusTells) {
     const TempFolder folder;
-    std::string told = status_of(0, "", false, "");
-    told.insert(told.rfind("]}"), R"(, {"options": ["/a.toml", "--resolution=8x8"], "frames": "1-3"})");
+    std::string answer = status_of(0, "", false, "");
+    answer.insert(answer.rfind("]}"), R"(, {"options": ["/a.toml", "--resolution=8x8"], "frames": "1-3"})");
     const fs::path program =
         folder.file("program", "#!/bin/sh\necho \"$@\" >> '" + (folder / "asked").string() + "'\ncat '" +
-                                   folder.file("told", told).string() + "'\n");
+                                   folder.file("answer", answer).string() + "'\n");
     fs::permissions(program, fs::perms::owner_all);
     const Document document = Document::open(
         folder.file("m51.toml",

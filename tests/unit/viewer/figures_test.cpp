@@ -145,8 +145,8 @@ TEST(ReferenceAlignment, AnEmptyViewHasNone) {
     EXPECT_FALSE(align_reference(request).reference);
 }
 
-// Figures of a layer in the controls: histograms of its distances and of its picture's values, its mean
-// colour.
+// Figures of a layer in the controls: histograms of its distances and of its picture's values,
+// its mean colour.
 
 SplatSet set_of(const std::vector<float>& distances) {
     SplatSet set;
@@ -272,7 +272,7 @@ TEST_F(LayersAtPixel, WhatHidesIsSeenByTheLightItTakes) {
     EXPECT_EQ(seen(32, 32), (std::vector<std::size_t>{1, 0}));
 }
 
-TEST_F(LayersAtPixel, NothingIsSeenBesideTheFrame) {
+TEST_F(LayersAtPixel, NothingIsSeenOutsideTheFrame) {
     add("all", {0.0f, 0.0f, 0.0f}, glm::vec3(1.0f));
     for (const auto& [x, y] : {std::pair{-1, 32}, {64, 32}, {32, -1}, {32, 64}})
         EXPECT_EQ(light(x, y), std::vector<float>{0.0f}) << x << " " << y;

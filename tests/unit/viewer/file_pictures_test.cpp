@@ -56,7 +56,7 @@ TEST_F(RenderedFramesTest, OfSceneLightStayLight) {
     EXPECT_EQ(image.at(3, 3)[2], -0.25f);
 }
 
-TEST_F(RenderedFramesTest, OfOtherPrimariesAreToldInThoseOfTheViewport) {
+TEST_F(RenderedFramesTest, OfOtherPrimariesAreShownInThoseOfTheViewport) {
     OutputParams output;
     output.width = output.height = 8;
     output.path = (folder / "a.####.exr").string();

@@ -529,7 +529,7 @@ TEST_F(PlaybackTest, OnceStopsAtTheEndAndBeginsAgain) {
     EXPECT_EQ(frame_at(102.0), 10.0);
 }
 
-TEST_F(PlaybackTest, EveryFrameIsShownAndTheRateToldAsItIs) {
+TEST_F(PlaybackTest, EveryFrameIsShownAndTheRateAsItIs) {
     output.frames = "10-100";
     view.every_frame = true;
     frame_at(100.0);

@@ -1,4 +1,4 @@
-// What the badge says of the front: the measures of the engine; and before and after in the panel: what the
+// The badge's words on the front: the measures of the engine; and before and after in the panel: what the
 // engine prepares, small. Both of the last request and of no other.
 #include "viewer/comparison.h"
 
@@ -14,7 +14,7 @@
 namespace astrosplat {
 namespace {
 
-/// What is found for the request.
+/// The result for the request.
 template <class Work, class Request>
 auto asked(Work& work, const Request& request) {
     work.want(request);
@@ -164,8 +164,8 @@ TEST_F(PreparePreviewTest, IsSmallAndCutsWhereThePictureIsCut) {
     EXPECT_GT(view.before.at(1, 24)[0], 0.1f);
 }
 
-// A picture of 20 x 20 px with a bright upper half, seen upside down and half as fine by the one it is put
-// on.
+// A picture of 20 x 20 px with a bright upper half, seen upside down and half as fine by the one it
+// is put on.
 TEST_F(PreparePreviewTest, BothSidesAreAligned) {
     const auto bright_above = [](int, int y) { return y >= 10 ? 900.0 : 100.0; };
     const auto own = folder.file(

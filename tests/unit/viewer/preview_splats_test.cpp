@@ -314,11 +314,11 @@ TEST(FramePace, LeavesTimeForTheRestOfTheWindow) {
     FramePace pace;
     EXPECT_DOUBLE_EQ(pace.target_ms(5.0, 25.0), 25.0);  // nothing known
     pace.drew(20.0);
-    EXPECT_NEAR(pace.target_ms(5.050, 25.0), 1000.0 / 24.0 - 30.0, 1e-9);  // 30 ms beside the preview
+    EXPECT_NEAR(pace.target_ms(5.050, 25.0), 1000.0 / 24.0 - 30.0, 1e-9);  // 30 ms besides the preview
     pace.drew(12.0);
     EXPECT_NEAR(pace.target_ms(5.122, 25.0), 1000.0 / 24.0 - 30.0, 1e-9);  // a slower frame says nothing
     pace.drew(12.0);
-    EXPECT_DOUBLE_EQ(pace.target_ms(5.139, 25.0), 25.0);  // 5 ms beside it
+    EXPECT_DOUBLE_EQ(pace.target_ms(5.139, 25.0), 25.0);  // 5 ms besides it
     pace.drew(25.0);
     EXPECT_DOUBLE_EQ(pace.target_ms(6.0, 25.0), 25.0);  // after a pause, nothing known
     pace.drew(20.0);
@@ -336,7 +336,7 @@ TEST(FinerSteps, StepsAreSharesThatTheTimeAllows) {
 }
 
 TEST(FinerSteps, QuickFinalFramesAreNotHeldUp) {
-    EXPECT_EQ(plan_steps(-1.0).count, 2) << "nobody knows yet";
+    EXPECT_EQ(plan_steps(-1.0).count, 2) << "not known yet";
     EXPECT_EQ(plan_steps(5.0).count, 2);
     EXPECT_EQ(plan_steps(1.7).count, 1);
     EXPECT_LE(plan_steps(1.7).most_s, 0.09) << "within the rest before it";

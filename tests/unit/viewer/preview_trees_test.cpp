@@ -324,7 +324,7 @@ TEST(PreviewTruth, AHundredthAsManySplatsShowTheLightOfTheWhole) {
     for (const View& view : views) expect_light_of_the_whole(gallery, view);
 }
 
-/// What moves can be believed: six views of the shipped scenes, drawn by the viewer's own session with as
+/// Moving views can be believed: six views of the shipped scenes, drawn by the viewer's own session with as
 /// many splats as hold 24 frames a second on two cores, against their final frames.
 constexpr std::int64_t splats_of_two_cores = 60'000;  // fewer than two cores drew at that rate
 

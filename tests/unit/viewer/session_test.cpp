@@ -388,8 +388,8 @@ TEST(InputQueue, KeysAndCharactersKeepTheirOrder) {
               (Frames{{ctrl}, {a}, {a_up, ctrl_up, key, three}, {key_up, enter}}));
 }
 
-/// A word typed in no time is a word, however long a frame takes; Enter is after it, Left before what
-/// follows.
+/// A word typed in no time is a word, however long a frame takes; Enter is after it,
+/// Left before what follows.
 TEST(InputQueue, AWordIsOneFrameOfAText) {
     std::vector<InputEvent> word;
     for (const char letter : {'n', 'n', 'e'})

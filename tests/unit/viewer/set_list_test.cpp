@@ -175,10 +175,10 @@ TEST_F(SetListTest, WhatIsAbandonedBeginsAgainWhenItIsWanted) {
     EXPECT_FALSE(list.next_task());
     list.want(scene);
     EXPECT_EQ(list.next_task(), SetTask::load);
-    list.abandon("nobody");
+    list.abandon("unknown");
 }
 
-TEST_F(SetListTest, AGrowingSetIsShownBesideAnOldOneFromHalfOnwards) {
+TEST_F(SetListTest, AGrowingSetIsShownAlongsideAnOldOneFromHalfOnwards) {
     want({"gas"});
     begun();
     const auto keep_one = [&] {
@@ -215,7 +215,7 @@ TEST_F(SetListTest, AJobKeepsWhatItBeganWithWhateverBecomesOfItsLayer) {
     EXPECT_FALSE(list.shown("gas"));
     const std::uint64_t revision = list.revision();
     const SetList::Layer late = result(true);
-    EXPECT_EQ(list.replace(*job, late), late) << "nobody wants it any more";
+    EXPECT_EQ(list.replace(*job, late), late) << "it is not wanted any more";
     EXPECT_EQ(list.keep(*job, late), late);
     list.fail(*job, "too late");
     EXPECT_FALSE(list.shown("gas"));

@@ -150,7 +150,7 @@ TEST_F(SetLoaderTest, OutdatedLayersAreReadAgain) {
         EXPECT_EQ(second->set->color[0], glm::vec3(1.0f));
     }
     EXPECT_FALSE(status(0).stale);
-    loader.outdate("nobody");
+    loader.outdate("unknown");
 }
 
 TEST_F(SetLoaderTest, LayersThatAreNeverVisibleAreNotLoaded) {
