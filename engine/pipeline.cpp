@@ -9,6 +9,9 @@
 #include "core/buffer.h"
 #include "core/text.h"
 #include "look/apply.h"
+#include "look/device.h"
+#include "look/prepare.h"
+#include "render/device.h"
 #include "scene/animate.h"
 #include "scene/layer_setup.h"
 #include "source/origin.h"
@@ -31,6 +34,12 @@ struct ShadingInputs {
     bool operator==(const ShadingInputs&) const = default;
 };
 
+/// Another number each time.
+std::uint64_t new_stamp() {
+    static std::atomic<std::uint64_t> stamps = 0;
+    return ++stamps;
+}
+
 /// One layer between frames; the index is that of Scene::layers.
 struct LayerState {
     std::shared_ptr<const SplatSet> set;    // null: not drawn
@@ -42,6 +51,9 @@ struct LayerState {
     Image thickness_map;
     std::optional<ShadingInputs> shaded_with;  // what `shaded` was made with
     ShadedSplats shaded;
+    std::optional<ShadingInputs> shaded_there_with;  // the same of what a device has in its place
+    DeviceSplats there;
+    std::uint64_t set_stamp = new_stamp();
 };
 
 void count_set(const SplatSetFacts& facts, std::int64_t splats, LayerStatistics& counts) {
@@ -158,16 +170,52 @@ struct Pipeline::State {
         return found;
     }
 
+    ShadingInputs shading_inputs(std::size_t index, const LayerParams& params, const Camera& seen) const {
+        const LayerState& layer = layers[index];
+        ShadingInputs shading{look_of(params),
+                              look_inputs(params),
+                              {},
+                              is_mixed_in_display_space(params.render) && !facts_of(layer).stars};
+        if (layer.set && !layer.set->harmonics.empty())
+            shading.seen_from = seen_from(seen, render_layer(params));
+        return shading;
+    }
+
+    /// Applies the look in the memory of what draws, if it can. A match with the picture asks for sums over
+    /// all splats, and what is drawn once is made of the set's own memory.
+    bool shade_there(std::size_t index, const LayerParams& params, const Camera& seen, LookDevice* device) {
+        LayerState& layer = layers[index];
+        if (!device || !layer.set || layer.to_use_up || layer.set->stars || holds_gaussians(*layer.set))
+            return false;
+        const ShadingInputs shading = shading_inputs(index, params, seen);
+        const bool matches = shading.look.vertical.match == VerticalAlpha::Match::picture;
+        if (layer.shaded_with == shading || shading.seen_from || shading.encoded || matches) return false;
+        if (layer.shaded_there_with == shading) return true;
+        const auto start = Clock::now();
+        load_thickness_map(layer, shading.look.thickness);
+        LookInputs inputs = shading.inputs;
+        inputs.thickness_map = layer.thickness_file.empty() ? nullptr : &layer.thickness_map;
+        layer.shaded_there_with.reset();
+        const std::uint64_t stamp = new_stamp();
+        const auto found =
+            device->shade(*layer.set, layer.set_stamp, prepare_look(*layer.set, shading.look, inputs),
+                          inputs.thickness_map, stamp);
+        if (!found) return false;
+        layer.there = {stamp, layer.set->size(), found->kept, found->largest_light, found->largest_star_light,
+                       {}};
+        layer.shaded_there_with = shading;
+        statistics[index].drawn = found->kept;
+        statistics[index].look_seconds += seconds_since(start);
+        return true;
+    }
+
     /// Applies the look where anything that it depends on has changed since the last frame. Refusals, as of a
     /// matching that the layer's splats cannot have, name the layer.
     void shade(std::size_t index, const LayerParams& params, const Camera& seen,
                const Progress& progress) try {
         LayerState& layer = layers[index];
-        LookInputs inputs = look_inputs(params);
-        ShadingInputs shading{
-            look_of(params), inputs, {}, is_mixed_in_display_space(params.render) && !facts_of(layer).stars};
-        if (layer.set && !layer.set->harmonics.empty())
-            shading.seen_from = seen_from(seen, render_layer(params));
+        ShadingInputs shading = shading_inputs(index, params, seen);
+        LookInputs inputs = shading.inputs;
         if (layer.shaded_with == shading) return;
         load_thickness_map(layer, shading.look.thickness);
         inputs.thickness_map = layer.thickness_file.empty() ? nullptr : &layer.thickness_map;
@@ -191,8 +239,7 @@ struct Pipeline::State {
         if (layer.set && holds_gaussians(*layer.set)) add_shapes(*layer.set, layer.shaded);
         layer.shaded.encoded = false;
         if (shading.encoded) encode_colors(layer.shaded);
-        static std::atomic<std::uint64_t> stamps = 0;
-        layer.shaded.stamp = ++stamps;
+        layer.shaded.stamp = new_stamp();
         layer.shaded_with = shading;
         statistics[index].drawn = layer.streamed ? layer.streamed->splats() : layer.shaded.size();
         statistics[index].look_seconds += counts.seconds;
@@ -202,14 +249,24 @@ struct Pipeline::State {
         throw InputError("layer '" + params.name + "': " + error.what());
     }
 
-    void shade_visible(const Scene& now, const Camera& seen, const Progress& progress) {
+    void shade_visible(const Scene& now, const Camera& seen, const Progress& progress,
+                       LookDevice* device = nullptr) {
         for (std::size_t i = 0; i < now.layers.size(); ++i) {
             progress.check();
             if (!drawn(now, i)) continue;
             const LayerParams& layer = now.layers[i];
             check_extent(world_bounds(layers[i].box, render_layer(now, layer)), layer.name,
                          farthest_in_world);
-            shade(i, layer, seen, progress);
+            LayerState& state = layers[i];
+            if (shade_there(i, layer, seen, device)) {
+                state.there.make = [this, i, layer, seen, &progress, &state] {
+                    shade(i, layer, seen, progress);
+                    return &state.shaded;
+                };
+            } else {
+                state.shaded_there_with.reset();
+                shade(i, layer, seen, progress);
+            }
         }
     }
 
@@ -222,6 +279,8 @@ struct Pipeline::State {
             RenderLayer& layer = visible.emplace_back(render_layer(now, now.layers[i]));
             if (state.streamed)
                 layer.blocks = state.streamed.get();
+            else if (state.shaded_there_with)
+                layer.on_device = &state.there;
             else
                 layer.splats = &state.shaded;
             layer.absorbs = facts_of(state).absorbs;
@@ -244,7 +303,8 @@ struct Pipeline::State {
     RenderedFrame rendering(const Scene& now, const glm::dvec2& lens, const RenderSettings& settings,
                             const Progress& progress, const TileDone& tile_done) {
         const Camera middle = camera(now, settings);
-        shade_visible(now, middle, progress);
+        const bool flat = settings.device && !is_onto_sphere(now.camera.projection);
+        shade_visible(now, middle, progress, flat ? settings.device->looks() : nullptr);
         const Camera seen = through_lens(middle, now.camera, lens, double(settings.width));
         return render(visible_layers(now), seen, environment_at(now), settings, progress, &render_cache,
                       tile_done);
@@ -303,7 +363,7 @@ void Pipeline::set_scene(const Scene& scene, std::vector<std::shared_ptr<const S
     Scene taken = scene;
     for (std::size_t i = 0; i < sets.size(); ++i) {
         if (old[i] < state.layers.size()) layers[i] = std::move(state.layers[old[i]]);
-        statistics[i].drawn = layers[i].shaded.size();
+        statistics[i].drawn = layers[i].shaded_there_with ? layers[i].there.kept : layers[i].shaded.size();
     }
     if (has_other_pictures) state.environment = std::move(environment);
     state.scene = std::move(taken);

@@ -85,7 +85,9 @@ void set_camera(const Uniforms& set, const LayerProjection& layer) {
 }
 
 /// Whether the processor projects all of the layer's splats.
-bool is_given(const RenderLayer& layer) { return layer.stars || !layer.splats->stretch.empty(); }
+bool is_given(const RenderLayer& layer) {
+    return layer.stars || (layer.splats && !layer.splats->stretch.empty());
+}
 
 /// The driver does not take one of our programs.
 struct CardFailed : std::runtime_error {
@@ -209,8 +211,27 @@ GLuint Card::slabs_for(std::int64_t splats, const Share& share) const {
     return static_cast<GLuint>(std::min<std::int64_t>(slabs, most_slabs));
 }
 
-const Card::Kept* Card::keep(const ShadedSplats& splats, bool with_stars) {
+/// What is not needed yet, or was for other frames, gives way.
+bool Card::make_room(std::int64_t bytes_more) {
+    const auto has_room = [&] { return bytes() + bytes_more <= room(); };
+    if (has_room()) return true;
+    std::erase_if(kept_, [&](const auto& other) { return other.second.frame < frames_; });
+    std::erase_if(sets_, [&](const auto& other) { return other.second.frame < frames_; });
+    for (CardBuffer* const buffer : working()) buffer->release();
+    return has_room();
+}
+
+const Card::Kept* Card::keep(const RenderLayer& layer, bool with_stars) {
     std::erase_if(kept_, [&](const auto& kept) { return kept.second.frame + frames_kept < frames_; });
+    std::erase_if(sets_, [&](const auto& kept) { return kept.second.frame + frames_kept < frames_; });
+    if (layer.on_device) {
+        const auto found = kept_.find({layer.on_device->stamp, nullptr});
+        if (found == kept_.end()) return nullptr;
+        found->second.frame = frames_;
+        sets_[found->second.set_stamp].frame = frames_;  // stays for the next look
+        return &found->second;
+    }
+    const ShadedSplats& splats = *layer.splats;
     // Without a stamp nobody knows whether they are the same.
     const std::pair key{splats.stamp, splats.stamp != 0 ? nullptr : &splats};
     Kept& kept = kept_[key];
@@ -220,17 +241,11 @@ const Card::Kept* Card::keep(const ShadedSplats& splats, bool with_stars) {
     const std::int64_t n = splats.size();
     std::int64_t own = 0;
     for (const CardBuffer& array : kept.arrays) own += array.bytes();
-    const auto has_room = [&] {
-        return there || bytes() + std::max<std::int64_t>(0, 32 * n - own) <= room();
-    };
-    if (!has_room()) {  // what is not needed yet, or was for other frames, gives way
-        std::erase_if(kept_, [&](const auto& other) { return other.second.frame < frames_; });
-        for (CardBuffer* const buffer : working()) buffer->release();
-    }
     bool fits =
-        there || (has_room() && send(splats.position.data(), 12 * n, positions) &&
-                  send(splats.radius.data(), 4 * n, radii) && send(splats.alpha.data(), 4 * n, alphas) &&
-                  send(splats.color.data(), 12 * n, colors));
+        there ||
+        (make_room(std::max<std::int64_t>(0, 32 * n - own)) &&
+         send(splats.position.data(), 12 * n, positions) && send(splats.radius.data(), 4 * n, radii) &&
+         send(splats.alpha.data(), 4 * n, alphas) && send(splats.color.data(), 12 * n, colors));
     if (fits && with_stars && !(there && stars.bytes() > 0)) {
         std::vector<std::uint32_t> bits(static_cast<std::size_t>(n) / 32 + 1);
         for (std::size_t i = 0; i < splats.id.size(); ++i)
@@ -353,12 +368,13 @@ bool Card::gather(const FrameJob& job, std::size_t number, Group& group) {
             if (!give(job, group, l, nullptr)) return false;
         } else if (layer.size() > 0) {
             const bool stars = projection.star_distance > 0.0f;
-            const Kept* const kept = keep(*layer.splats, stars);
+            const Kept* const kept = keep(layer, stars);
             if (!kept) return false;
             group.splats.push_back({l, kept, layer.size(), 0, 0, 0});
             const auto rest = stars || projection.lod ? rest_of(job, group, group.splats.back())
                                                       : std::vector<std::int64_t>();
-            if (!rest || !give(job, group, l, &*rest)) return false;
+            if (!rest || (layer.on_device && !rest->empty())) return false;  // the processor has not its rows
+            if (!give(job, group, l, &*rest)) return false;
             group.ranked = group.ranked || !rest->empty();
         }
         for (std::size_t i = first; i < group.splats.size(); ++i)
@@ -471,6 +487,7 @@ ProgramSource card_source(const std::string& file, const std::string& defines, b
     if (file == "card_project.glsl")
         add({"maths.glsl", "blend.glsl"}), add(after_projections({"footprint.glsl"}));
     if (file == "card_probe.glsl") add({"maths.glsl"});
+    if (file == "card_look.glsl") add({"maths.glsl", "noise.glsl", "look_uniforms.glsl", "look.glsl"});
     if (file == "card_fold.glsl") add({"maths.glsl", "blend.glsl", "lens.glsl", "footprint.glsl"});
     add({file});
     return source;
@@ -745,6 +762,19 @@ int Card::list_slabs(const FrameJob& job, const Group& group) {
     return list_entries(group, order);
 }
 
+/// Whether no tile lists so many splats that Mesa's software rasterisers lose some: they end the loops of a
+/// thread after 65,535 rounds in all, without a word. More slabs are what helps.
+bool Card::is_shallow(const Group& group) const {
+    if (!info_.software) return true;
+    constexpr GLuint most = 32768;
+    const std::size_t slabs = group.listed() + 1;
+    std::vector<GLuint> range(slabs * std::size_t(group.columns) * std::size_t(group.rows));
+    glGetNamedBufferSubData(ranges_.name(), 0, GLsizeiptr(4 * range.size()), range.data());
+    for (std::size_t i = 0; i + 1 < range.size(); ++i)
+        if ((i + 1) % slabs != 0 && range[i + 1] - range[i] > most) return false;
+    return true;
+}
+
 /// All slabs at once. The last group's splats may have been few and wide: entries are counted, and listed
 /// again where there was no room for all.
 bool Card::fold_together(const FrameJob& job, const Group& group) {
@@ -757,6 +787,7 @@ bool Card::fold_together(const FrameJob& job, const Group& group) {
         mark("count");
         count(job, group);
         const int by_tile = list_slabs(job, group);
+        if (!is_shallow(group)) return false;
         mark("fold");
         fold(job, group, by_tile);
         mark("");
@@ -788,6 +819,7 @@ bool Card::fold_apart(const FrameJob& job, Group& group) {
         if (counts.entries_high > 0) return false;
         entries = std::max(entries, std::int64_t(spare * counts.entries_wanted));
         if (counts.entries_wanted > counts.entries) continue;
+        if (!is_shallow(group)) return false;
         mark("fold");
         fold(job, group, by_tile);
         ++group.only;
@@ -894,6 +926,69 @@ std::optional<GroupPlanes> Card::draw(const FrameJob& job, std::size_t number, b
     return {};
 }
 
+/// The arrays that this look reads, uploaded where they are not there yet. False: there is no memory for
+/// them.
+bool Card::keep_set(const SplatSet& set, const LookUniforms& look, bool with_uv, KeptSet& kept) {
+    const std::int64_t n = set.size();
+    const auto put = [&](std::size_t array, const auto& values) {
+        CardBuffer& buffer = kept.arrays[array];
+        if (buffer.bytes() > 0) return true;
+        const auto bytes = n * std::int64_t(sizeof values[0]);
+        return bytes <= most_bytes_ && make_room(bytes) && send(values.data(), bytes, buffer);
+    };
+    return put(0, set.position) && put(1, set.color) && put(2, set.alpha) && put(3, set.distance) &&
+           put(4, set.id) && (!look.radius.own || put(5, set.radius)) && (!with_uv || put(6, set.uv));
+}
+
+std::optional<DeviceLook> Card::shade(const SplatSet& set, std::uint64_t set_stamp, const LookUniforms& look,
+                                      const Image* map, std::uint64_t stamp) try {
+    if (lost_ || set.size() == 0) return {};
+    const bool with_map = look.stop_count > 1;
+    KeptSet& raw = sets_[set_stamp];
+    raw.frame = frames_ + 1;  // which is about to be drawn
+    // Looks follow one another: the last one's arrays are the next one's.
+    const auto last =
+        std::ranges::find_if(kept_, [&](const auto& k) { return k.second.set_stamp == set_stamp; });
+    Kept made;
+    if (last != kept_.end()) made = std::move(kept_.extract(last).mapped());
+    auto& [positions, radii, alphas, colors, stars] = made.arrays;
+    made.set_stamp = set_stamp;
+    made.frame = frames_ + 1;
+    const std::int64_t n = set.size();
+    const GLuint none[4] = {};
+    GLuint totals[3] = {};
+    const Image no_map = make_image(1, 1, 3);
+    const Image& texels = with_map ? *map : no_map;
+    const bool fits =
+        keep_set(set, look, with_map, raw) &&
+        make_room(32 * n - positions.bytes() - radii.bytes() - alphas.bytes() - colors.bytes()) &&
+        positions.reserve(12 * n) && radii.reserve(4 * n) && alphas.reserve(4 * n) &&
+        colors.reserve(12 * n) && look_uniforms_.fill(&look, sizeof look) &&
+        look_map_.fill(texels.pixels.data(), 4 * std::ssize(texels.pixels)) &&
+        look_totals_.fill(none, sizeof none);
+    if (!fits) {
+        sets_.erase(set_stamp);
+        return {};
+    }
+    const GlProgram& p = program("card_look.glsl", "");
+    const Uniforms to{p.name()};
+    to("splats", static_cast<GLuint>(n));
+    glProgramUniform3i(p.name(), to.at("map_size"), int(texels.width), int(texels.height),
+                       int(texels.channels));
+    glBindBufferBase(GL_UNIFORM_BUFFER, 0, look_uniforms_.name());
+    const auto& a = raw.arrays;
+    bind({&a[0], &a[1], &a[2], &a[3], &a[4], look.radius.own ? &a[5] : &a[3], with_map ? &a[6] : &a[3],
+          &look_map_, &positions, &radii, &alphas, &colors, &look_totals_});
+    dispatch(p, groups_for(n, group_size));
+    glGetNamedBufferSubData(look_totals_.name(), 0, sizeof totals, totals);
+    if (glGetError() != GL_NO_ERROR) return {};
+    kept_[{stamp, nullptr}] = std::move(made);
+    return DeviceLook{totals[0], std::bit_cast<float>(totals[1]), std::bit_cast<float>(totals[2])};
+} catch (const CardFailed& failed) {
+    log_warning(failed.what());
+    return {};
+}
+
 std::int64_t Card::bytes() {
     std::int64_t sum = 0;
     for (const CardBuffer* const buffer : working()) sum += buffer->bytes();
@@ -901,6 +996,8 @@ std::int64_t Card::bytes() {
          {&layers_, &nodes_, &moments_, &cosines_, &rest_, &given_splats_, &given_shapes_})
         sum += buffer->bytes();
     for (const auto& [key, kept] : kept_)
+        for (const CardBuffer& array : kept.arrays) sum += array.bytes();
+    for (const auto& [key, kept] : sets_)
         for (const CardBuffer& array : kept.arrays) sum += array.bytes();
     return sum;
 }

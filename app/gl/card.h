@@ -10,6 +10,7 @@
 #include <map>
 
 #include "gl/objects.h"
+#include "look/device.h"
 #include "render/device.h"
 #include "render/frame_job.h"
 
@@ -41,7 +42,7 @@ struct Uniforms {
     GLint at(const char* name) const { return glGetUniformLocation(program, name); }
 };
 
-class Card final : public RenderDevice {
+class Card final : public RenderDevice, public LookDevice {
   public:
     /// Of the current context, which has to be current in all calls. `native_division`: the driver's own
     /// division and square root have IEEE 754's bits. Throws NoContext where it cannot compute.
@@ -51,6 +52,9 @@ class Card final : public RenderDevice {
     std::int64_t free_bytes() const override;
     std::string cannot(const FrameJob& job) const override;
     std::optional<GroupPlanes> draw(const FrameJob& job, std::size_t group, bool alone) override;
+    LookDevice* looks() override { return this; }
+    std::optional<DeviceLook> shade(const SplatSet& set, std::uint64_t set_stamp, const LookUniforms& look,
+                                    const Image* map, std::uint64_t stamp) override;
 
     /// Slabs of depth from now on, which change no pixel; 0: as many as suit the memory.
     void set_slabs(int slabs) { slabs_ = slabs; }
@@ -79,6 +83,12 @@ class Card final : public RenderDevice {
     struct Kept {
         std::array<CardBuffer, 5> arrays;  // positions, radii, alphas, colours; which are stars, a bit each
         std::uint64_t frame = 0;           // that used it last
+        std::uint64_t set_stamp = 0;       // of the set that a look made them of here; 0: they were uploaded
+    };
+    struct KeptSet {  // as it is before a look
+        std::array<CardBuffer, 7>
+            arrays;  // positions, colours, alphas, distances, ids; radii, uv where asked
+        std::uint64_t frame = 0;
     };
     struct Splats {  // some of a layer's
         std::size_t layer;
@@ -113,7 +123,9 @@ class Card final : public RenderDevice {
     std::optional<std::vector<std::int64_t>> rest_of(const FrameJob& job, const Group& group,
                                                      const Splats& splats);
     bool send(const void* data, std::int64_t bytes, CardBuffer& to);
-    const Kept* keep(const ShadedSplats& splats, bool with_stars);
+    const Kept* keep(const RenderLayer& layer, bool with_stars);
+    bool keep_set(const SplatSet& set, const LookUniforms& look, bool with_uv, KeptSet& kept);
+    bool make_room(std::int64_t bytes_more);
     bool upload_tables(const FrameJob& job, const Group& group);
     std::int64_t room();
     void clear_layers(const FrameJob& job);
@@ -127,6 +139,7 @@ class Card final : public RenderDevice {
     bool read_planes(const FrameJob& job, const Group& group, GroupPlanes& planes);
     Counts read_counts() const;
     void count(const FrameJob& job, const Group& group);
+    bool is_shallow(const Group& group) const;
     bool fold_together(const FrameJob& job, const Group& group);
     bool fold_apart(const FrameJob& job, Group& group);
     int list_slabs(const FrameJob& job, const Group& group);
@@ -166,6 +179,8 @@ class Card final : public RenderDevice {
     using Query = GlObject<&glGenQueries, &glDeleteQueries>;
     std::vector<std::pair<const char*, Query>> marks_;  // where passes begin; the last ends
     std::size_t marked_ = 0;
+    std::map<std::uint64_t, KeptSet> sets_;  // by stamp
+    CardBuffer look_uniforms_, look_map_, look_totals_;
     std::map<std::pair<std::uint64_t, const ShadedSplats*>, Kept> kept_;  // by stamp; without one, by place
     CardBuffer counts_, arguments_, begins_, entry_begins_, records_, tags_, rects_, sums_, digits_, ranges_,
         light_, through_, more_, layer_light_, ranks_, rest_, given_splats_, given_shapes_, layers_, nodes_,

@@ -124,6 +124,7 @@ OptionalColumns columns_read(const Look& look) {
 void apply_look(const SplatSet& set, const Look& look, const LookInputs& inputs, ShadedSplats& shaded,
                 const Progress& progress, LookStatistics* statistics) {
     const auto start = Clock::now();
+    const DenormalsAreZero as_on_cards;
     const LookUniforms uniforms = prepare_look(set, look, inputs);
     make_room(shaded, set.size());
     LookColumns columns(set);
@@ -139,6 +140,7 @@ ShadedSplats apply_look_in_place(SplatSet& set, const Look& look, const LookInpu
                                  const Progress& progress, LookStatistics* statistics) {
     assert(!inputs.seen_colors);
     const auto start = Clock::now();
+    const DenormalsAreZero as_on_cards;
     const LookUniforms uniforms = prepare_look(set, look, inputs);
     progress.check();
     const std::int64_t count = set.size();

@@ -8,6 +8,7 @@
 namespace astrosplat {
 
 struct FrameJob;
+class LookDevice;
 
 /// The device asked to draw: a card where there is one that has the processor's bits, or one of the two.
 enum class DeviceChoice { automatic, cpu, gpu };
@@ -29,6 +30,8 @@ class RenderDevice {
     virtual std::string name() const = 0;
     /// Bytes of its memory that no one has taken; 0: its driver does not say.
     virtual std::int64_t free_bytes() const { return 0; }
+    /// What applies looks in its memory; null: it cannot.
+    virtual LookDevice* looks() { return nullptr; }
     /// Why the processor has to draw this frame, "it ..."; empty: the card can. The job is prepared.
     virtual std::string cannot(const FrameJob& job) const = 0;
     /// Draws a group of a job that it can; `alone`: its light, alpha within 0 and 1, is the frame. Null where

@@ -88,17 +88,29 @@ struct StarPsf {
 
 class RenderDevice;
 
+/// Splats that a look made in the device's memory (LookDevice), and nowhere else.
+struct DeviceSplats {
+    std::uint64_t stamp = 0;
+    std::int64_t rows = 0, kept = 0;                        // of the set; of these by the look
+    float largest_light = 0.0f, largest_star_light = 0.0f;  // of one splat: alpha * brightest channel
+    /// Makes them here, where the device does not draw them after all.
+    std::function<const ShadedSplats*()> make;
+};
+
 /// One layer as the renderer sees it.
 struct RenderLayer {
     std::string name;
-    const ShadedSplats* splats = nullptr;  // these, or
-    const ShadedBlocks* blocks = nullptr;  // those, which are not in memory as a whole
+    const ShadedSplats* splats = nullptr;     // these, or
+    const ShadedBlocks* blocks = nullptr;     // those, which are not in memory as a whole, or
+    const DeviceSplats* on_device = nullptr;  // those, which the settings' device has
     LayerRender render;
     glm::dmat3 world_from_layer{1.0};  // rotation
     double scale = 1.0;                // uniform; scales radii too
     glm::dvec3 translate{0.0};
     glm::dvec3 axis{0.0, 1.0, 0.0};  // the layer's thin direction, layer space
-    std::int64_t size() const { return blocks ? blocks->splats() : splats->size(); }
+    std::int64_t size() const {
+        return blocks ? blocks->splats() : on_device ? on_device->rows : splats->size();
+    }
     glm::dvec3 to_world(const glm::dvec3& p) const { return world_from_layer * (scale * p) + translate; }
     std::uint32_t seed = 1;  // for the children of level of detail
     /// Some splats may have colours below 0: these add no light and let (1 - s)^-color through, whatever the

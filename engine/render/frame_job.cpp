@@ -39,6 +39,12 @@ float largest_light(std::span<const RenderLayer> layers, const Progress& progres
                                             std::max(1.0f, star));
             continue;
         }
+        if (layer.on_device) {
+            const float most =
+                std::max(layer.on_device->largest_light, layer.on_device->largest_star_light * star);
+            largest = std::max(largest, most * layer.render.opacity * structure);
+            continue;
+        }
         const ShadedSplats& splats = *layer.splats;
         std::vector<float> partial(std::size_t((splats.size() + chunk - 1) / chunk), 0.0f);
         parallel_chunks(splats.size(), chunk, [&](std::int64_t begin, std::int64_t end, int) {

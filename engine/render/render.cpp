@@ -300,11 +300,29 @@ void render_bands(const FrameJob& job, RenderCache::State& state, RenderedFrame&
     if (limit > 0) state.store.shrink(limit);
 }
 
-/// By the settings' device, where it can, else by the processor.
-RenderedFrame draw_frame(const FrameJob& job, RenderCache::State& state) {
+/// Splats that only the device has are made here. False: there are none.
+bool fetch_splats(std::vector<RenderLayer>& layers) {
+    bool any = false;
+    for (RenderLayer& layer : layers)
+        if (layer.on_device) {
+            layer.splats = std::exchange(layer.on_device, nullptr)->make();
+            any = true;
+        }
+    return any;
+}
+
+/// By the settings' device, where it can, else by the processor. `layers` are the job's.
+RenderedFrame draw_frame(FrameJob& job, std::vector<RenderLayer>& layers, RenderCache::State& state) {
     RenderStatistics statistics;
     std::optional<DrawnGroups> groups;
-    if (job.settings.device) groups = draw_on_device(job, state, statistics);
+    const auto try_device = [&] {
+        if (job.settings.device) groups = draw_on_device(job, state, statistics);
+    };
+    try_device();
+    if (!groups && fetch_splats(layers)) {
+        for (std::size_t l = 0; l < layers.size(); ++l) job.projections[l].splats = layers[l].splats;
+        try_device();
+    }
     RenderedFrame frame = make_frame(job.layers, job.settings, job.region, !(groups && groups->alone));
     frame.statistics = statistics;
     for (const RenderLayer& layer : job.layers) frame.statistics.splats_in += layer.size();
@@ -341,13 +359,13 @@ RenderedFrame render(std::span<const RenderLayer> layers, const Camera& camera,
                              " splats in one layer, at most 4294967295 can be drawn");
     std::unique_ptr<RenderCache> own = cache ? nullptr : std::make_unique<RenderCache>();
     RenderCache::State& state = cache ? *cache->state : *own->state;
-    const std::vector<RenderLayer> drawn = as_drawn(layers);
+    std::vector<RenderLayer> drawn = as_drawn(layers);
     RenderSettings settings = asked;
     if (settings.memory_limit_bytes == RenderSettings::what_is_free)
         settings.memory_limit_bytes = free_bytes(layers, settings, state);
     FrameJob job{drawn, camera, environment, settings, progress, tile_done, {}, {}, {}, {}, {}, {}};
     prepare(job, state);
-    RenderedFrame frame = draw_frame(job, state);
+    RenderedFrame frame = draw_frame(job, drawn, state);
     const double covered = double(covered_pixels(frame.beauty));
     frame.statistics.mean_overlap = covered > 0.0 ? frame.statistics.mean_overlap / covered : 0.0;
     frame.statistics.seconds = seconds_since(start);

@@ -33,7 +33,7 @@ float look_formula(int shape, float rate, float x) {
 // Cubic Hermite piece from knot a to knot b, held between their values so that rounding cannot overshoot.
 float look_curve_piece(vec4 a, vec4 b, float x) {
     float h = b.x - a.x;
-    float t = h > 0.0f ? clamp((x - a.x) / h, 0.0f, 1.0f) : 0.0f;
+    float t = h > 0.0f ? clamp(as_div(x - a.x, h), 0.0f, 1.0f) : 0.0f;
     float s = 1.0f - t;
     float y = a.y * (s * s * (1.0f + 2.0f * t)) + b.y * (t * t * (3.0f - 2.0f * t));
     y = y + h * (s * t) * (a.z * s - b.z * t);
@@ -76,7 +76,7 @@ float look_weight(float r, float g, float b, vec3 color) {
     float dg = g - color.y;
     float db = b - color.z;
     float d = dr * dr + dg * dg + db * db + 1.0e-4f;
-    return 1.0f / (d * d);
+    return as_div(1.0f, d * d);
 }
 
 // Share of a quantity that noise value n leaves; it takes at most `amount` of it.
@@ -84,7 +84,7 @@ float look_bite(float amount, float n) { return 1.0f - amount * (0.5f + 0.5f * n
 
 // x = distance / reach; a splat on the surface has 0 whatever the reach, one off a surface without reach is outside.
 float look_x(float splat_distance, float reach) {
-    float x = reach > 0.0f ? splat_distance / reach : 2.0f;
+    float x = reach > 0.0f ? as_div(splat_distance, reach) : 2.0f;
     return splat_distance > 0.0f ? x : 0.0f;
 }
 
@@ -112,7 +112,7 @@ float look_crop_distance(LookCrop crop, float px, float py, float pz) {
 float look_crop(LookCrop crop, float px, float py, float pz) {
     float d = look_crop_distance(crop, px, py, pz);
     float hard = d <= 0.0f ? 1.0f : 0.0f;
-    float t = crop.soft > 0.0f ? clamp(0.5f - d / crop.soft, 0.0f, 1.0f) : hard;
+    float t = crop.soft > 0.0f ? clamp(0.5f - as_div(d, crop.soft), 0.0f, 1.0f) : hard;
     float inside = t * t * (3.0f - 2.0f * t);
     return crop.outside != 0 ? 1.0f - inside : inside;
 }
@@ -121,7 +121,7 @@ float look_crop(LookCrop crop, float px, float py, float pz) {
 
 // Factor of the colour: 1 / alpha where the step applies and there is an alpha to divide by.
 float look_unpremultiply(float alpha, LookAlpha step) {
-    return alpha < step.threshold && alpha > 0.0f ? 1.0f / alpha : 1.0f;
+    return alpha < step.threshold && alpha > 0.0f ? as_div(1.0f, alpha) : 1.0f;
 }
 
 float look_gain(float alpha, LookAlpha step) { return clamp(alpha * step.gain, 0.0f, 1.0f); }
@@ -137,7 +137,7 @@ float look_depth(float alpha) {
     float m = min(alpha, 0.998f);
     float u = 1.0f - m;
     float lost = 1.0f - u;
-    return lost > 0.0f ? -as_log(u) * (m / lost) : m;
+    return lost > 0.0f ? -as_log(u) * as_div(m, lost) : m;
 }
 
 // Factor of the radius by the alpha of step 4.
@@ -154,7 +154,7 @@ float look_column(int match, float column, float reach, float horizontal_radius)
 // Alpha after matching: the column of all such splats, seen along the normal, shows `alpha`.
 float look_matched(int match, float alpha, float f, float column) {
     float a = match >= MATCH_TRANSMITTANCE ? look_depth(alpha) : alpha;
-    float y = column > 0.0f ? min(1.0f, a * f / column) : 0.0f;
+    float y = column > 0.0f ? min(1.0f, as_div(a * f, column)) : 0.0f;
     return match == MATCH_NONE ? alpha * f : y;
 }
 
@@ -172,7 +172,7 @@ float look_vertical_radius(float x, LookRadius step) { return 1.0f + (step.verti
 float look_vary(float amount, float n) { return max(0.0f, 1.0f + amount * n); }
 
 float look_levels(float c, LookGrade step) {
-    return max(0.0f, (c - step.black) / max(1.0f - step.black, 1.0e-6f));
+    return max(0.0f, as_div(c - step.black, max(1.0f - step.black, 1.0e-6f)));
 }
 
 float look_luminance(float r, float g, float b) { return 0.2126f * r + 0.7152f * g + 0.0722f * b; }
@@ -193,7 +193,7 @@ float look_small_depth(float alpha) {
 // One channel of splats whose column is to show light `alpha` c when screened: 1 - e^(-depth c') = alpha c.
 float look_screened(float alpha, float c) {
     float depth = look_small_depth(alpha);
-    return depth > 0.0f ? look_small_depth(alpha * c) / depth : c;
+    return depth > 0.0f ? as_div(look_small_depth(alpha * c), depth) : c;
 }
 
 // --- the whole ---
@@ -260,7 +260,7 @@ LookOutput look_splat(LookUniforms u, LookInput s) {
     }
     for (int k = 0; k < LOOK_STOPS; ++k) {
         if (k < u.stop_count) {
-            weight[k] = u.stop_count > 1 ? weight[k] / weight_sum : 1.0f;
+            weight[k] = u.stop_count > 1 ? as_div(weight[k], weight_sum) : 1.0f;
             scale = scale + weight[k] * u.stops[k].scale;
             column = column + weight[k] * u.stops[k].column;
         }
@@ -284,7 +284,7 @@ LookOutput look_splat(LookUniforms u, LookInput s) {
     float undo = u.alpha.unpremultiply != 0 ? look_unpremultiply(s.alpha, u.alpha) : 1.0f;
     float alpha = look_horizontal(s.alpha, u.alpha);
     float radius_factor = look_horizontal_radius(alpha, u.radius);
-    float vertical_x = u.vertical_reach > 0.0f ? s.from_surface / u.vertical_reach : x;
+    float vertical_x = u.vertical_reach > 0.0f ? as_div(s.from_surface, u.vertical_reach) : x;
     float f = look_profile(u.vertical, vertical_x);
     float mean = look_column(u.match, column, reach, radius_factor);
     bool absorbs = u.absorbs != 0 && s.color.x < 0.0f;

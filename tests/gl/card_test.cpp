@@ -7,11 +7,13 @@
 
 #include "core/parallel.h"
 #include "gl/gl_fixture.h"
+#include "look/prepare.h"
 #include "splats/splat_set.h"
 #include "support/bits.h"
 #include "support/quiet.h"
 #include "support/temp_folder.h"
 #include "support/test.h"
+#include "unit/look/cases.h"
 #include "unit/render/random_scene.h"
 
 namespace astrosplat::test {
@@ -194,6 +196,56 @@ TEST_F(Cards, WithoutMemoryTheProcessorDraws) {
     expect_same(frame.beauty, render({&layer, 1}, cloud_camera(64, 36), nullptr, settings).beauty, "frame");
 }
 
+/// A look that the card applies is the processor's: how many splats it keeps, the largest light, and the
+/// pixels.
+TEST_F(Cards, LooksAppliedInItsMemory) {
+    std::uint64_t stamp = std::uint64_t{1} << 40;
+    for (LookCase& c : look_cases()) {
+        c.inputs.thickness_map = c.look.thickness.map.empty() ? nullptr : &c.map;
+        if (c.look.vertical.match == VerticalAlpha::Match::picture) continue;  // sums over all splats
+        const std::uint64_t set_stamp = ++stamp;
+        for (const float power : {0.8f, 1.7f}) {  // one look after the other
+            c.look.alpha.power = power;
+            ShadedSplats shaded = apply_look(c.set, c.look, c.inputs);
+            const auto found = card().shade(c.set, set_stamp, prepare_look(c.set, c.look, c.inputs),
+                                            c.inputs.thickness_map, ++stamp);
+            ASSERT_TRUE(found) << c.name;
+            EXPECT_EQ(found->kept, shaded.size()) << c.name;
+            float largest[2] = {};
+            for (std::size_t i = 0; i < shaded.id.size(); ++i) {
+                const glm::vec3& light = shaded.color[i];
+                float& most = largest[is_star(shaded.id[i])];
+                most = std::max(most, shaded.alpha[i] * std::max({light.x, light.y, light.z}));
+            }
+            EXPECT_EQ(found->largest_light, largest[0]) << c.name;
+            EXPECT_EQ(found->largest_star_light, largest[1]) << c.name;
+            const DeviceSplats there{stamp,      c.set.size(), found->kept,
+                                     largest[0], largest[1],   [&] { return &shaded; }};
+            for (const Blend blend : {Blend::over, Blend::screen}) {
+                RenderLayer layer = layer_of("layer", shaded, blend, Falloff::Shape::gaussian);
+                layer.absorbs = c.set.absorbs;
+                const RenderSettings of_processor = settings_of(160, 90);
+                RenderSettings settings = of_processor;
+                settings.device = &card();
+                const Camera camera = cloud_camera(160, 90);
+                const RenderedFrame expected = render({&layer, 1}, camera, nullptr, of_processor);
+                layer.splats = nullptr;
+                layer.on_device = &there;
+                const RenderedFrame frame = render({&layer, 1}, camera, nullptr, settings);
+                EXPECT_EQ(frame.statistics.device, card().name()) << c.name;
+                expect_same(frame.beauty, expected.beauty, c.name);
+                layer.on_device = &there;  // the processor makes them where level of detail divides them
+                layer.render.lod = {3.0f, 16, 0.5f, 0.0f};
+                const RenderedFrame divided = render({&layer, 1}, camera, nullptr, settings);
+                layer.on_device = nullptr;
+                layer.splats = &shaded;
+                expect_same(divided.beauty, render({&layer, 1}, camera, nullptr, of_processor).beauty,
+                            c.name + ", divided");
+            }
+        }
+    }
+}
+
 TEST_F(Cards, WhatACardDoesNotDrawTheProcessorDoes) {
     const ShadedSplats splats = cloud(100, 5);
     RenderLayer layer = layer_of("layer", splats);
@@ -287,6 +339,7 @@ TEST(CardPrograms, NothingMayBeContractedAndDivisionHasAName) {
                                                             {"card_project.glsl", "PASS 4"},
                                                             {"card_project.glsl", "PASS 3,ANY,RANKS"},
                                                             {"card_project.glsl", "PASS 3,ANY,GIVEN"},
+                                                            {"card_look.glsl", ""},
                                                             {"card_fold.glsl", "KIND 0"},
                                                             {"card_fold.glsl", "KIND 1"},
                                                             {"card_fold.glsl", "KIND 2,SCREEN"},
