@@ -7,7 +7,9 @@
 #include "core/shared_maths.h"
 #include "gl/card.h"
 #include "inputs.h"
+#include "pipeline.h"
 #include "render/render.h"
+#include "scene/load.h"
 
 namespace astrosplat {
 namespace {
@@ -88,6 +90,53 @@ void measure(const Case& c, Card& card, bool compares, const std::vector<int>& s
     std::fflush(stdout);
 }
 
+/// A look with four octaves of noise that is dragged: from a changed number to the frame.
+void measure_look(Card& card) {
+    const auto set = std::make_shared<const SplatSet>(bench::random_set(10'000'000));
+    Scene scene = parse_scene(R"(astrosplat = 1
+[output]
+resolution = [1920, 1080]
+[camera]
+position = [0.0, 3.0, 14.0]
+target = [0.0, 0.0, 0.0]
+[[layer]]
+name = "bench"
+source = { kind = "splats", file = "bench.splats" }
+[layer.look]
+noise = [ { frequency = 0.7, octaves = 4, cull = 0.5, brightness = 0.4 } ]
+alpha = { power = 1.1 }
+radius = { min = 0.005, max = 0.015 }
+)",
+                              "/bench.toml");
+    Pipeline there, here;
+    const auto drag = [&](Pipeline& pipeline, RenderDevice* device, int step) {
+        const auto start = Clock::now();
+        scene.layers[0].look.alpha.power = 1.1f + 0.1f * float(step);
+        pipeline.set_scene(scene, {set});
+        const FrameScene now = pipeline.frame_scene(1.0);
+        RenderSettings settings = render_settings(now.scene.output);
+        settings.device = device;
+        RenderedFrame frame = pipeline.frame(now, settings);
+        return std::pair(std::move(frame), 1e3 * seconds_since(start));
+    };
+    std::vector<double> times;
+    for (int step = 0; step < 9; ++step) times.push_back(drag(there, &card, step).second);
+    times.erase(times.begin(), times.begin() + 2);
+    const RenderedFrame frame = drag(there, &card, 9).first;
+    drag(here, nullptr, 7);
+    const auto [expected, milliseconds] = drag(here, nullptr, 9);
+    std::size_t differ = 0;
+    for (std::size_t i = 0; i < expected.beauty.pixels.size(); ++i)
+        differ += std::memcmp(&expected.beauty.pixels[i], &frame.beauty.pixels[i], 4) != 0;
+    fmt::print(
+        "| a look dragged on 10 M, four octaves | drawn by '{}' | {:.1f} ms, read back | {} of {} values "
+        "differ; "
+        "{} threads {:.0f} ms |\n",
+        frame.statistics.device, median(times), differ, expected.beauty.pixels.size(), thread_count(),
+        milliseconds);
+    std::fflush(stdout);
+}
+
 int run(const std::vector<std::string>& words) {
     const Case cases[] = {
         {"10 M 5 px over 1080p", 10'000'000, 5.0f, 0.3f, 1920, 1080, Blend::over},
@@ -109,6 +158,7 @@ int run(const std::vector<std::string>& words) {
     const bool compares = std::ranges::find(words, "--times") == words.end();
     for (const std::string& word : words)  // --room=1.5 GB of the card's memory
         if (word.starts_with("--room=")) card.set_room(std::int64_t(1e9 * std::stod(word.substr(7))));
+    if (words.empty() || std::ranges::find(words, "look") != words.end()) measure_look(card);
     for (const Case& c : cases) {
         const auto asked = [&](const std::string& word) {
             return std::string(c.name).find(word) != std::string::npos;

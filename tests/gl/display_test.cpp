@@ -107,7 +107,7 @@ TEST_F(DisplayPicture, ViewsOfAConfigurationAsTheWriter) {
                     encode_pixel(format, std::exp2(stops), image.at(x, y), stored);
                     for (int k = 0; k < 3; ++k)
                         ASSERT_NEAR(float(shown[std::size_t((y * width + x) * 4 + k)]), 255.0f * stored[k],
-                                    0.51f + 255.0f / 32.0f / 512.0f)
+                                    0.51f + 255.0f / 32.0f / 256.0f)
                             << view << " " << x << " " << y << " " << k;
                 }
         }
