@@ -256,7 +256,8 @@ void place_about_axis(const Placement& placement, const BandSplats& splats, Plac
     constexpr double longest_wave = 330.0;  // texels at a width of 1920
     constexpr double force = 10.0;          // gain for what is no ring's at all,
     constexpr float of_details = 0.1f;      // and for details of what is, of it
-    constexpr float outermost = 0.06f;      // share of the line's light beyond which nothing gathers
+    constexpr float outermost = 0.25f;  // share of the line's light beyond which nothing gathers: with .06
+                                        // the Hourglass's eye was a bar along the line
     constexpr auto places = float(DepthCandidates::count);
     const AxisDepths& axis = *placement.axis;
     const auto details = float(share_of_details(double(splats.feature) / placement.scale));
