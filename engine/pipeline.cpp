@@ -183,7 +183,8 @@ struct Pipeline::State {
 
     /// Applies the look in the memory of what draws, if it can. A match with the picture asks for sums over
     /// all splats, and what is drawn once is made of the set's own memory.
-    bool shade_there(std::size_t index, const LayerParams& params, const Camera& seen, LookDevice* device) {
+    bool shade_there(std::size_t index, const LayerParams& params, const Camera& seen,
+                     LookDevice* device) try {
         LayerState& layer = layers[index];
         if (!device || !layer.set || layer.to_use_up || layer.set->stars || holds_gaussians(*layer.set))
             return false;
@@ -207,6 +208,8 @@ struct Pipeline::State {
         statistics[index].drawn = found->kept;
         statistics[index].look_seconds += seconds_since(start);
         return true;
+    } catch (const InputError&) {  // which shade() says of the layer
+        return false;
     }
 
     /// Applies the look where anything that it depends on has changed since the last frame. Refusals, as of a

@@ -8,6 +8,8 @@
 #include "core/parallel.h"
 #include "gl/gl_fixture.h"
 #include "look/prepare.h"
+#include "pipeline.h"
+#include "scene/load.h"
 #include "splats/splat_set.h"
 #include "support/bits.h"
 #include "support/quiet.h"
@@ -234,6 +236,7 @@ TEST_F(Cards, LooksAppliedInItsMemory) {
                 const RenderedFrame frame = render({&layer, 1}, camera, nullptr, settings);
                 EXPECT_EQ(frame.statistics.device, card().name()) << c.name;
                 expect_same(frame.beauty, expected.beauty, c.name);
+                if (c.name != "defaults" || power > 1.0f || blend != Blend::over) continue;
                 layer.on_device = &there;  // the processor makes them where level of detail divides them
                 layer.render.lod = {3.0f, 16, 0.5f, 0.0f};
                 const RenderedFrame divided = render({&layer, 1}, camera, nullptr, settings);
@@ -244,6 +247,44 @@ TEST_F(Cards, LooksAppliedInItsMemory) {
             }
         }
     }
+}
+
+/// The pipeline's way: one look after the other, and one that the set cannot have.
+TEST_F(Cards, LooksThatMoveInAScene) {
+    const auto set = std::make_shared<const SplatSet>(file_set(2000));
+    Scene scene = parse_scene(R"(astrosplat = 1
+[output]
+resolution = [96, 54]
+[camera]
+position = [0.0, 4.0, 9.0]
+target = [0.0, 0.0, 0.0]
+[[layer]]
+name = "dust"
+source = { kind = "splats", file = "dust.splats" }
+[layer.look]
+noise = [ { frequency = 0.7, octaves = 4, cull = 0.5 } ]
+)",
+                              "/scene.toml");
+    Pipeline there, here;
+    const auto beauty_of = [&](Pipeline& pipeline, RenderDevice* device) {
+        pipeline.set_scene(scene, {set});
+        const FrameScene now = pipeline.frame_scene(1.0);
+        RenderSettings settings = render_settings(now.scene.output);
+        settings.device = device;
+        const RenderedFrame frame = pipeline.frame(now, settings);
+        EXPECT_EQ(frame.statistics.device, device ? card().name() : "");
+        return frame.beauty;
+    };
+    for (const float gain : {1.0f, 0.5f, 1.0f, 2.0f}) {
+        scene.layers[0].look.grade.gain = gain;
+        expect_same(beauty_of(there, &card()), beauty_of(here, nullptr), fmt::format("gain {}", gain));
+        EXPECT_EQ(there.statistics()[0].drawn, here.statistics()[0].drawn);
+    }
+    expect_same(beauty_of(there, nullptr), beauty_of(here, nullptr), "made by the processor again");
+    scene.layers[0].look.vertical = {VerticalAlpha::Shape::linear, 3.0f, {}, 0.0f, VerticalAlpha::Match::sum};
+    const std::string refusal = ERROR_OF(beauty_of(here, nullptr));
+    EXPECT_NE(refusal.find("dust"), std::string::npos) << refusal;
+    EXPECT_EQ(ERROR_OF(beauty_of(there, &card())), refusal);
 }
 
 TEST_F(Cards, WhatACardDoesNotDrawTheProcessorDoes) {
