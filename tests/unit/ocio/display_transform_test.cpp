@@ -141,7 +141,7 @@ TEST_F(DisplayTransformTest, ShadersGetTheSameTables) {
     EXPECT_HAS(negative.text, "vec4 ocio_display(vec4");
     ASSERT_EQ(negative.tables.size(), 1u);
     EXPECT_EQ(negative.tables[0].dimensions, 3);
-    EXPECT_EQ(negative.tables[0].values.size(), 24u);
+    EXPECT_EQ(negative.tables[0].values.size(), std::size_t{3 * 33 * 33 * 33});
     EXPECT_HAS(negative.text, negative.tables[0].sampler);
     EXPECT_TRUE(DisplayTransform({config_, "", "Film", ""}).glsl().tables.empty());
 }
