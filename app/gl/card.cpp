@@ -221,6 +221,17 @@ bool Card::make_room(std::int64_t bytes_more) {
     return has_room();
 }
 
+namespace {
+
+/// A bit a splat: whether it is a star.
+bool fill_stars(const Buffer<std::uint64_t>& ids, CardBuffer& stars) {
+    std::vector<std::uint32_t> bits(ids.size() / 32 + 1);
+    for (std::size_t i = 0; i < ids.size(); ++i) bits[i / 32] |= std::uint32_t{is_star(ids[i])} << i % 32;
+    return stars.fill(bits.data(), 4 * std::ssize(bits));
+}
+
+}  // namespace
+
 const Card::Kept* Card::keep(const RenderLayer& layer, bool with_stars) {
     std::erase_if(kept_, [&](const auto& kept) { return kept.second.frame + frames_kept < frames_; });
     std::erase_if(sets_, [&](const auto& kept) { return kept.second.frame + frames_kept < frames_; });
@@ -246,12 +257,7 @@ const Card::Kept* Card::keep(const RenderLayer& layer, bool with_stars) {
         (make_room(std::max<std::int64_t>(0, 32 * n - own)) &&
          send(splats.position.data(), 12 * n, positions) && send(splats.radius.data(), 4 * n, radii) &&
          send(splats.alpha.data(), 4 * n, alphas) && send(splats.color.data(), 12 * n, colors));
-    if (fits && with_stars && !(there && stars.bytes() > 0)) {
-        std::vector<std::uint32_t> bits(static_cast<std::size_t>(n) / 32 + 1);
-        for (std::size_t i = 0; i < splats.id.size(); ++i)
-            bits[i / 32] |= std::uint32_t{is_star(splats.id[i])} << i % 32;
-        fits = stars.fill(bits.data(), 4 * std::ssize(bits));
-    }
+    if (fits && with_stars && !(there && stars.bytes() > 0)) fits = fill_stars(splats.id, stars);
     if (fits) return &kept;
     kept_.erase(key);
     return nullptr;
@@ -963,7 +969,8 @@ std::optional<DeviceLook> Card::shade(const SplatSet& set, std::uint64_t set_sta
         keep_set(set, look, with_map, raw) &&
         make_room(32 * n - positions.bytes() - radii.bytes() - alphas.bytes() - colors.bytes()) &&
         positions.reserve(12 * n) && radii.reserve(4 * n) && alphas.reserve(4 * n) &&
-        colors.reserve(12 * n) && look_uniforms_.fill(&look, sizeof look) &&
+        colors.reserve(12 * n) && (stars.bytes() > 0 || fill_stars(set.id, stars)) &&
+        look_uniforms_.fill(&look, sizeof look) &&
         look_map_.fill(texels.pixels.data(), 4 * std::ssize(texels.pixels)) &&
         look_totals_.fill(none, sizeof none);
     if (!fits) {

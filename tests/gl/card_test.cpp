@@ -251,7 +251,9 @@ TEST_F(Cards, LooksAppliedInItsMemory) {
 
 /// The pipeline's way: one look after the other, and one that the set cannot have.
 TEST_F(Cards, LooksThatMoveInAScene) {
-    const auto set = std::make_shared<const SplatSet>(file_set(2000));
+    SplatSet made = file_set(2000);
+    for (std::size_t i = 1900; i < 2000; ++i) made.id[i] |= star_band << 48;  // stars, which stay points
+    const auto set = std::make_shared<const SplatSet>(std::move(made));
     Scene scene = parse_scene(R"(astrosplat = 1
 [output]
 resolution = [96, 54]
@@ -263,6 +265,8 @@ name = "dust"
 source = { kind = "splats", file = "dust.splats" }
 [layer.look]
 noise = [ { frequency = 0.7, octaves = 4, cull = 0.5 } ]
+[layer.render]
+lod = { max_px = 900.0, noise = 0.5, star_distance = 30.0 }
 )",
                               "/scene.toml");
     Pipeline there, here;
