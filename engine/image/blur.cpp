@@ -41,15 +41,16 @@ void mirror_ends(float* middle, std::int64_t width, int channels, std::int64_t m
     }
 }
 
-// Rows of a strip blurred along themselves, those that the columns' kernel reaches beyond it included. Its
-// memory serves strip after strip.
+// Rows of a strip blurred along themselves, those that the columns' kernel reaches beyond it included, each
+// once: beyond the image lie the same ones. Its memory serves strip after strip.
 class BlurredRows {
   public:
     void fill(const Image& image, const std::vector<float>& weights, std::int64_t begin, std::int64_t end) {
         const auto margin = std::int64_t(weights.size() / 2);
-        begin_ = begin - margin;
+        height_ = image.height;
+        first_ = std::max<std::int64_t>(begin - margin, 0);
         count_ = image.width * image.channels;
-        const std::int64_t rows = end + margin - begin_;
+        const std::int64_t rows = std::min(end + margin, height_) - first_;
         values_.resize(std::size_t(rows * count_));
         padded_.resize(std::size_t(count_ + 2 * margin * image.channels));
         float* const middle = padded_.data() + margin * image.channels;
@@ -57,16 +58,18 @@ class BlurredRows {
         for (std::size_t k = 0; k < weights.size(); ++k)
             shifted.push_back(padded_.data() + std::int64_t(k) * image.channels);
         for (std::int64_t row = 0; row < rows; ++row) {
-            std::copy_n(image.at(0, mirrored(begin_ + row, image.height)), count_, middle);
+            std::copy_n(image.at(0, first_ + row), count_, middle);
             mirror_ends(middle, image.width, image.channels, margin);
             weighted_rows(weights, shifted, count_, values_.data() + row * count_);
         }
     }
 
-    const float* row(std::int64_t y) const { return values_.data() + (y - begin_) * count_; }
+    const float* row(std::int64_t y) const {
+        return values_.data() + (mirrored(y, height_) - first_) * count_;
+    }
 
   private:
-    std::int64_t begin_ = 0, count_ = 0;
+    std::int64_t height_ = 0, first_ = 0, count_ = 0;
     Buffer<float> values_, padded_;
 };
 
