@@ -37,13 +37,6 @@ using Lane = float[DepthBlock::size];
 // A number of 0..1 that follows from a splat's hash: another for each `which`.
 float uniform_of(uint random, int which) { return as_uniform(as_mix(random + uint(which) * 0x9e3779b9u)); }
 
-// Quantile of sech^2(z / height) / (2 height), at most 2.1 heights from the middle: farther out a few wide
-// splats would stand alone, as smoke.
-float logistic(float u, float height) {
-    const float inside = 0.015f + 0.97f * u;
-    return 0.5f * height * as_log(inside / (1.0f - inside));
-}
-
 ASTROSPLAT_DEPTH_LOOP add_octave(const NoiseStack& noise, int octave, const DepthBlock& block,
                                  const float* HWY_RESTRICT z, float* HWY_RESTRICT sum) {
     const float frequency = noise.frequency[octave], gain = noise.gain[octave] * unit_deviation;
@@ -141,7 +134,7 @@ ASTROSPLAT_DEPTH_LOOP clear(float* HWY_RESTRICT values, int count) {
 ASTROSPLAT_DEPTH_LOOP coarse_places(const DepthBlock& block, int candidate, float* HWY_RESTRICT z) {
     for (int i = 0; i < block.count; ++i) {
         const float place = block.even[i] * float(coarse_candidates), within = place - floor(place);
-        z[i] = logistic((float(candidate) + within) / float(coarse_candidates), block.height[i]);
+        z[i] = 0.5f * block.height[i] * near_logistic((float(candidate) + within) / float(coarse_candidates));
     }
 }
 
@@ -216,7 +209,8 @@ void draw(const NoiseStack& noise, int first, int end, const float* choice, Dept
 ASTROSPLAT_DEPTH_LOOP add_spread(float spread, DepthBlock& block) {
     for (int i = 0; i < block.count; ++i) {
         const float most = 2.0f * block.height[i];
-        block.z[i] = clamp(block.z[i], -most, most) + logistic(block.even[i], min(spread, block.height[i]));
+        block.z[i] = clamp(block.z[i], -most, most) +
+                     0.5f * min(spread, block.height[i]) * near_logistic(block.even[i]);
     }
 }
 
@@ -253,12 +247,6 @@ ASTROSPLAT_DEPTH_LOOP shares_before(const DepthBlock& block, int candidate, floa
     }
 }
 
-// A number of 0..1 spread as a logistic of that deviation, no farther out than 2.1 scale heights.
-float spread_of(float u) {
-    const float inside = 0.015f + 0.97f * clamp(u, 0.0f, 1.0f);
-    return as_log(inside / (1.0f - inside)) / logistic_deviation;
-}
-
 // Of the candidates that are not before the Gaussian's own share: those of later ones are set again.
 ASTROSPLAT_DEPTH_LOOP find_within(const LineGaussian& g, const LineShare& line, const LinePlaces& places,
                                   const float* HWY_RESTRICT before, int count, float* HWY_RESTRICT within,
@@ -273,7 +261,8 @@ ASTROSPLAT_DEPTH_LOOP find_within(const LineGaussian& g, const LineShare& line, 
 
 ASTROSPLAT_DEPTH_LOOP spread_about(const float* HWY_RESTRICT within, const float* HWY_RESTRICT middle,
                                    const float* HWY_RESTRICT deviation, int count, float* HWY_RESTRICT z) {
-    for (int i = 0; i < count; ++i) z[i] = middle[i] + deviation[i] * spread_of(within[i]);
+    for (int i = 0; i < count; ++i)
+        z[i] = middle[i] + deviation[i] * (near_logistic(within[i]) / logistic_deviation);
 }
 
 }  // namespace

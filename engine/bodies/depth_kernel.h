@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <span>
 
+#include "core/shared_maths.h"
+
 namespace astrosplat {
 
 /// Octaves of a noise field, coarse to fine.
@@ -35,8 +37,14 @@ struct DepthCandidates {
     float weight[count][DepthBlock::size];  // logarithm
 };
 
-/// Deviation of ln(u / (1 - u)) of an even u.
+/// Deviation of ln(u / (1 - u)) of an even u: pi / sqrt(3).
 inline constexpr float logistic_deviation = 1.8138f;
+
+/// An even number of (0, 1) spread as a logistic: quantile of sech^2(z / 2) / 4, whose scale height is 2.
+static inline float logistic(float u) { return shared::as_log(u / (1.0f - u)); }
+
+/// No farther out than 2.1 scale heights, where a few wide splats would stand alone, as smoke; u: [0, 1].
+static inline float near_logistic(float u) { return logistic(0.015f + 0.97f * shared::clamp(u, 0.0f, 1.0f)); }
 
 /// A Gaussian of a galaxy as lines of sight meet it: light exp(-u^2 u2 - v^2 v2) `light` at (u, v), about
 /// the depth v * slope with a standard deviation; texels.

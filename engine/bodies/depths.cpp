@@ -8,7 +8,7 @@
 namespace astrosplat {
 namespace {
 
-using shared::as_exp, shared::as_hash, shared::as_log, shared::as_mix, shared::as_uniform;
+using shared::as_exp, shared::as_hash, shared::as_mix, shared::as_uniform;
 
 // Values for features of 2, 4, 8 ... 128 and 200 texels at a width of 1920, as DEPTH 3 and 4 have them, but
 // for its 40, 64 and 100 of the widest splats.
@@ -59,11 +59,6 @@ NoiseStack waves(const Placement& placement, std::uint32_t field,
         noise.gain[noise.count++] = float(gain);
     }
     return noise;
-}
-
-float logistic(float u, float height) {
-    const float inside = std::clamp(u, 1e-5f, 1.0f - 1e-5f);
-    return 0.5f * height * as_log(inside / (1.0f - inside));
 }
 
 namespace {
@@ -361,8 +356,10 @@ void follow_knots(const Placement& placement, const BandSplats& splats, PlacedBl
             of_star ? 1.0f : share_in_knots(placement, splats, knot) * (walls ? knot.ballness : 1.0f);
         if (as_uniform(random) >= follows * placement.knots.weight[at]) continue;
         block.knot[i] = owner;
+        const float across =
+            std::clamp(as_uniform(as_mix(random)), 1e-5f, 1.0f - 1e-5f);  // a logarithm's limits
         block.z[i] = placement.knot_z[owner] +
-                     logistic(as_uniform(as_mix(random)), depth_of_knots(placement, knot) * knot.sigma);
+                     0.5f * (depth_of_knots(placement, knot) * knot.sigma) * logistic(across);
     }
 }
 

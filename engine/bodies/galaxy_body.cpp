@@ -100,12 +100,8 @@ float sum_there(const std::vector<LineGaussian>& gaussians, glm::vec2 uv) {
     return sum;
 }
 
-// A number of 0..1 spread as a logistic of deviation 1, no farther out than 2.1 scale heights: farther a few
-// wide splats would stand alone.
-float spread_of(float u) {
-    const float inside = 0.015f + 0.97f * std::clamp(u, 0.0f, 1.0f);
-    return as_log(inside / (1.0f - inside)) / logistic_deviation;
-}
+// Of deviation 1.
+float spread_of(float u) { return near_logistic(u) / logistic_deviation; }
 
 }  // namespace
 

@@ -175,7 +175,4 @@ void place_freely(const Placement& placement, const BandSplats& splats, PlacedBl
 /// Fills z of what is small in a galaxy's disk, from x, y and random, as of the second finest band.
 void place_small_in_galaxy(const Placement& placement, const GalaxyBody& galaxy, PlacedBlock& block);
 
-/// Quantile `u` of sech^2(z / height) / (2 height).
-float logistic(float u, float height);
-
 }  // namespace astrosplat

@@ -28,7 +28,7 @@ float hybrid_amount(float cosine, float from_deg, float to_deg) {
     float theta = as_acos_deg(min(cosine, 1.0f));
     float span = to_deg - from_deg;
     float t = span > 0.0f ? clamp(as_div(theta - from_deg, span), 0.0f, 1.0f) : (theta >= to_deg ? 1.0f : 0.0f);
-    return t * t * (3.0f - 2.0f * t);
+    return as_smooth(t);
 }
 
 // Occlusion colour o of one channel.

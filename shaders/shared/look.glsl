@@ -25,7 +25,7 @@ float look_formula(int shape, float rate, float x) {
     if (shape == PROFILE_QUADRATIC) y = below * below;
     if (shape == PROFILE_EXPONENTIAL) y = as_exp(-rate * x);
     if (shape == PROFILE_GAUSSIAN) y = as_exp(-rate * (x * x));
-    if (shape == PROFILE_SMOOTH) y = x < 1.0f ? 1.0f - x * x * (3.0f - 2.0f * x) : 0.0f;
+    if (shape == PROFILE_SMOOTH) y = x < 1.0f ? 1.0f - as_smooth(x) : 0.0f;
     if (shape == PROFILE_S106) y = look_s106(x);
     return y;
 }
@@ -35,7 +35,7 @@ float look_curve_piece(vec4 a, vec4 b, float x) {
     float h = b.x - a.x;
     float t = h > 0.0f ? clamp(as_div(x - a.x, h), 0.0f, 1.0f) : 0.0f;
     float s = 1.0f - t;
-    float y = a.y * (s * s * (1.0f + 2.0f * t)) + b.y * (t * t * (3.0f - 2.0f * t));
+    float y = a.y * (s * s * (1.0f + 2.0f * t)) + b.y * as_smooth(t);
     y = y + h * (s * t) * (a.z * s - b.z * t);
     return clamp(y, min(a.y, b.y), max(a.y, b.y));
 }
@@ -113,7 +113,7 @@ float look_crop(LookCrop crop, float px, float py, float pz) {
     float d = look_crop_distance(crop, px, py, pz);
     float hard = d <= 0.0f ? 1.0f : 0.0f;
     float t = crop.soft > 0.0f ? clamp(0.5f - as_div(d, crop.soft), 0.0f, 1.0f) : hard;
-    float inside = t * t * (3.0f - 2.0f * t);
+    float inside = as_smooth(t);
     return crop.outside != 0 ? 1.0f - inside : inside;
 }
 

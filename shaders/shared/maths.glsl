@@ -53,6 +53,9 @@ float as_pow(float x, float y) {
     return y == 1.0f ? x : r;
 }
 
+// 0 to 1 with an even end on either side, of t in [0, 1].
+float as_smooth(float t) { return t * t * (3.0f - 2.0f * t); }
+
 // One round of a 32-bit mixer (Wellons' lowbias32: https://nullprogram.com/blog/2018/07/31/).
 uint as_mix(uint x) {
     x = x ^ (x >> 16);
