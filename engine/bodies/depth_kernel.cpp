@@ -209,7 +209,7 @@ void draw(const NoiseStack& noise, int first, int end, const float* choice, Dept
 ASTROSPLAT_DEPTH_LOOP add_spread(float spread, DepthBlock& block) {
     for (int i = 0; i < block.count; ++i) {
         const float most = 2.0f * block.height[i];
-        block.z[i] = clamp(block.z[i], -most, most) +
+        block.z[i] = clamp(block.clumping[i] * block.z[i], -most, most) +
                      0.5f * min(spread, block.height[i]) * near_logistic(block.even[i]);
     }
 }

@@ -298,6 +298,8 @@ void place_freely(const Placement& placement, const BandSplats& splats, PlacedBl
         fill_between_walls(placement, feature, block);
     } else {
         const double gain = sheet_folds * octave_deviation * sheet_wave * h * placement.clumps;
+        for (int i = 0; i < block.count; ++i)
+            block.clumping[i] = placement.structure_at(block.x[i], block.y[i]);
         sheet_depths(stack(placement, sheet_wave * h, feature, gain, sheet_ratio), splats.spread, block);
     }
     for (int i = 0; i < block.count; ++i) block.distance[i] = std::fabs(block.z[i]);

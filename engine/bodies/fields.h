@@ -21,6 +21,10 @@ Image thickness_field(const Image& brightest, double height);
 /// sky. Nowhere steeper than `steepest`; what is steeper looks like drapery.
 Image relief_field(const Image& brightest, double depth, double steepest);
 
+/// How much of its folds a sheet has at each place, .12..1: as much as the picture has structure of their
+/// size there, for light that is smooth from the front is so from aside (INCLINED 3).
+Image structure_field(const Image& brightest);
+
 /// Half of the distance between the walls of a shell: the picture's silhouette blown up like a balloon. h
 /// solves the Poisson equation -laplace(h) = 1 inside of it and is 0 outside, and its root is an ellipsoid's
 /// height over an ellipse, a ridge's over a filament. At most `depth`, at the middle of the widest part;

@@ -173,6 +173,7 @@ Placement make_placement(const Image& light, const StructureParams& params, doub
                                          light.width - 2 * margin_px, margin_px, seed);
     } else {
         placement.thickness = thickness_field(shown, placement.height);
+        placement.structure = structure_field(shown);
         if (!axis) stars = {};
     }
     if (params.kind == StructureKind::walls) {
@@ -209,6 +210,8 @@ Placement placement_to_count(const Texture& texture, const StructureParams& para
 }
 
 float Placement::scale_height(float x, float y) const { return value_at(*this, thickness, x, y); }
+
+float Placement::structure_at(float x, float y) const { return value_at(*this, structure, x, y); }
 
 float Placement::relief_at(float x, float y) const { return value_at(*this, relief, x, y); }
 

@@ -52,6 +52,7 @@ struct Placement {
     int field_halvings = 0;                              // of the size of the fields:
     std::vector<GalaxyBody> galaxies;                    // of a disk; else empty
     Image thickness;                                     // H(x, y), texels, of other kinds
+    Image structure;     // of other kinds, by how much their sheets fold
     Image relief;        // how far the middle of a sheet or a wall stands out, texels; empty: not at all
     FilledLight filled;  // of what has walls; empty: none
     std::optional<AxisDepths> axis;  // of a body of revolution
@@ -61,6 +62,7 @@ struct Placement {
 
     /// Values of the fields at a place of the picture.
     float scale_height(float x, float y) const;
+    float structure_at(float x, float y) const;
     float relief_at(float x, float y) const;
     /// The galaxy that light at a place belongs to, by a random number where there are several; 0..1.
     const GalaxyBody& galaxy_at(float x, float y, float random) const;

@@ -21,7 +21,7 @@ namespace astrosplat {
 // ---- names, under which things are kept: hashes of all that reaches a bit of them, and of nothing else
 
 /// Raised whenever generation, or the reading of meshes and pictures, gives other bits than before.
-inline constexpr int set_version = 37;
+inline constexpr int set_version = 38;
 
 /// The same of the preparation of pictures.
 inline constexpr int prepare_version = 3;

@@ -142,6 +142,7 @@ Placement flat_placement() {
     placement.seed = 7u;
     placement.picture_width = placement.picture_height = size_px;
     placement.thickness = make_image(size_px, size_px, 1, 10.0f);
+    placement.structure = make_image(size_px, size_px, 1, 1.0f);
     return placement;
 }
 

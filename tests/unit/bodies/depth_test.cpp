@@ -172,6 +172,33 @@ TEST(Fields, ThicknessIsBoundedAndLargestInBrightParts) {
     EXPECT_GT(*field.at(360, 225), 15.0f);
 }
 
+// A wave, of whose deviation both blurs leave .76; even light; and stripes.
+TEST(Fields, ASheetFoldsAsMuchAsThePictureHasStructure) {
+    constexpr double wave_px = 120.0, deviation = 0.125 / 0.76;  // half of what folds a sheet wholly
+    Image brightest = make_image(1920, 300, 1, 1.0f);
+    for (std::int64_t y = 0; y < brightest.height; ++y)
+        for (std::int64_t x = 0; x < brightest.width; ++x) {
+            const double wave = std::sqrt(2.0) * std::sin(2.0 * real::pi * double(x) / wave_px);
+            if (x < 640) *brightest.at(x, y) = float(std::exp(deviation * wave));
+            if (x >= 1280) *brightest.at(x, y) = (x / 40) % 2 == 0 ? 1.0f : 0.2f;
+        }
+    const Image field = structure_field(brightest);
+    const auto at = [&](std::int64_t x) { return *field.at(x * field.width / 1920, field.height / 2); };
+    EXPECT_NEAR(at(200), 0.5f, 0.05f);
+    EXPECT_LT(at(960), 0.13f);
+    EXPECT_FLOAT_EQ(at(1700), 1.0f);
+}
+
+TEST(Depths, ASheetsFoldsAreAsHighAsItsClumping) {
+    for (auto& block : scattered(2, 200.0f)) {
+        sheet_depths(octaves(4, 10.0f), 0.0f, *block);
+        const std::vector<float> whole(block->z, block->z + block->count);
+        std::fill_n(block->clumping, block->count, 0.25f);
+        sheet_depths(octaves(4, 10.0f), 0.0f, *block);
+        for (int i = 0; i < block->count; ++i) ASSERT_FLOAT_EQ(block->z[i], 0.25f * whole[std::size_t(i)]);
+    }
+}
+
 // A small bulge is less tall than a large one of the same light.
 TEST(Fields, ThicknessRisesNowhereSteeply) {
     for (const double sigma : {15.0, 160.0}) {
