@@ -205,12 +205,17 @@ void report(const WriteTarget& target, const VoxelGrid& grid, const BakeCounts& 
     fmt::print("{}\n", line);
 }
 
-/// The metadata of a volume's file, with the credit of the scene's files, where it gives none.
+/// Of the scene, or of its files where it gives none.
+std::string credit_of(const FrameScene& frame, const Pipeline& pipeline) {
+    const std::string& credit = frame.scene.provenance.credit;
+    return credit.empty() ? pipeline.input_credit() : credit;
+}
+
 VolumeWords words_about(const FrameScene& frame, const Pipeline& pipeline) {
     const ProvenanceParams& from = frame.scene.provenance;
     VolumeWords words = {{"creator", std::string("astrosplat ") + ASTROSPLAT_VERSION},
                          {"title", from.title},
-                         {"credit", from.credit.empty() ? pipeline.input_credit() : from.credit},
+                         {"credit", credit_of(frame, pipeline)},
                          {"type", from.type},
                          {"origin", pipeline.input_origin()},
                          {"frame", fmt::format("{}", frame.number)},
@@ -396,6 +401,8 @@ int run_export(const CommandOptions& options, const ExportOptions& own) {
     if (encoded) encode_for_display(baked.gaussians);
     if (encoded && !fits) fit_to_view(baked.gaussians, wanted, camera, settings);
     finish_harmonics(baked.gaussians, camera, encoded);
+    baked.gaussians.credit = credit_of(now, pipeline);
+    baked.gaussians.origin = pipeline.input_origin();
     const Progress writing = progress.begin_step("writing");
     if (format == "ply")
         write_gaussian_ply(target, baked.gaussians, writing);

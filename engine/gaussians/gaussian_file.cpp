@@ -7,6 +7,7 @@
 #include <cstring>
 #include <glm/common.hpp>
 #include <initializer_list>
+#include <nlohmann/json.hpp>
 
 #include "core/bounds.h"
 #include "core/color.h"
@@ -14,6 +15,7 @@
 #include "core/real.h"
 #include "splat_files/file_bytes.h"
 #include "splat_files/number_text.h"
+#include "splat_files/ply_bytes.h"
 #include "splats/harmonics.h"
 
 namespace astrosplat {
@@ -97,6 +99,18 @@ std::vector<GlbAttribute> glb_attributes(int degree) {
 // 63 are the most that glTF allows.
 int glb_floats_of(const Gaussians& g) { return glb_floats + 3 * rest_of(g); }
 
+// As JSON and USD write it alike: only quotes, backslashes and control characters are escaped.
+std::string quoted_text(const std::string& words) {
+    return nlohmann::json(words).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
+std::string glb_asset(const Gaussians& g) {
+    std::string text = R"({"version":"2.0","generator":"astrosplat")";
+    if (!g.credit.empty()) text += R"(,"copyright":)" + quoted_text(g.credit);
+    if (!g.origin.empty()) text += R"(,"extras":{"origin":)" + quoted_text(g.origin) + "}";
+    return text + "}";
+}
+
 std::string glb_json(const Gaussians& g, bool encoded, std::int64_t bytes) {
     std::string names, accessors;
     int number = 0, offset = 0;
@@ -111,14 +125,14 @@ std::string glb_json(const Gaussians& g, bool encoded, std::int64_t bytes) {
         ++number;
     }
     std::string json = fmt::format(
-        R"({{"asset":{{"version":"2.0","generator":"astrosplat"}},"extensionsUsed":["KHR_gaussian_splatting"],)"
+        R"({{"asset":{},"extensionsUsed":["KHR_gaussian_splatting"],)"
         R"("scene":0,"scenes":[{{"nodes":[0]}}],"nodes":[{{"mesh":0}}],"meshes":[{{"primitives":[{{"mode":0,)"
         R"("attributes":{{{}}},"extensions":{{"KHR_gaussian_splatting":{{"kernel":"ellipse",)"
         R"("colorSpace":"{}","projection":"perspective","sortingMethod":"cameraDistance"}}}}}}]}}],)"
         R"("accessors":[{}],"bufferViews":[{{"buffer":0,"byteLength":{},"byteStride":{},"target":34962}}],)"
         R"("buffers":[{{"byteLength":{}}}]}})",
-        names, encoded ? "srgb_rec709_display" : "lin_rec709_display", accessors, bytes, glb_floats_of(g) * 4,
-        bytes);
+        glb_asset(g), names, encoded ? "srgb_rec709_display" : "lin_rec709_display", accessors, bytes,
+        glb_floats_of(g) * 4, bytes);
     json.append((4 - json.size() % 4) % 4, ' ');
     return json;
 }
@@ -127,6 +141,7 @@ std::string glb_json(const Gaussians& g, bool encoded, std::int64_t bytes) {
 
 void write_gaussian_ply(const WriteTarget& target, const Gaussians& gaussians, const Progress& progress) {
     std::string header = "ply\nformat binary_little_endian 1.0\n";
+    header += ply_comments(gaussians.credit, gaussians.origin);
     header += fmt::format("element vertex {}\n", gaussians.size());
     const auto name = [&](const std::string& text) { header += fmt::format("property float {}\n", text); };
     for (const char* text : {"x", "y", "z", "nx", "ny", "nz", "f_dc_0", "f_dc_1", "f_dc_2"}) name(text);
@@ -212,6 +227,13 @@ char* put_row(char* out, const Gaussians& g, std::int64_t row) {
     return i + 1 < count ? out : put_text(out, array_end(g, array));
 }
 
+std::string usd_words(const Gaussians& g) {
+    std::string text;
+    if (!g.credit.empty()) text += "        string credit = " + quoted_text(g.credit) + "\n";
+    if (!g.origin.empty()) text += "        string origin = " + quoted_text(g.origin) + "\n";
+    return text.empty() ? text : "    customLayerData = {\n" + text + "    }\n";
+}
+
 /// Three standard deviations around all centres.
 std::string extent_text(const Gaussians& g) {
     Bounds box;
@@ -229,7 +251,8 @@ std::string extent_text(const Gaussians& g) {
 void write_gaussian_usda(const WriteTarget& target, const Gaussians& gaussians, const Progress& progress) {
     assert(gaussians.size() > 0);
     const std::string header =
-        "#usda 1.0\n(\n    defaultPrim = \"Splats\"\n    metersPerUnit = 1\n    upAxis = \"Y\"\n)\n\n"
+        "#usda 1.0\n(\n" + usd_words(gaussians) +
+        "    defaultPrim = \"Splats\"\n    metersPerUnit = 1\n    upAxis = \"Y\"\n)\n\n"
         "def ParticleField3DGaussianSplat \"Splats\"\n{\n    float3[] extent = " +
         extent_text(gaussians) +
         "\n    uniform token projectionModeHint = \"perspective\"\n"

@@ -1,5 +1,6 @@
 // Gaussians into files that other programs read: the PLY of 3D Gaussian Splatting, binary glTF with
-// KHR_gaussian_splatting, and USD. Atomic, and the same bytes for any thread count.
+// KHR_gaussian_splatting, and USD. Atomic, and the same bytes for any thread count. Credit and origin stand
+// in PLY's comments, as glTF's asset.copyright and asset.extras.origin, and in USD's customLayerData.
 #pragma once
 
 #include "core/atomic_file.h"

@@ -40,6 +40,7 @@ struct Gaussians {
     Buffer<Harmonics> harmonics;
     int degree = 0;                        // 0 to 3
     std::vector<HarmonicsSource> sources;  // in ascending order; Gaussians of none have no directions
+    std::string credit, origin;            // of the inputs; what is measured and what is invented
 
     std::int64_t size() const { return std::int64_t(position.size()); }
     std::size_t harmonics_each() const { return harmonics_up_to(degree); }

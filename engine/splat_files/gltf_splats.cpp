@@ -157,13 +157,22 @@ void read_part(GltfFile& file, const Part& part, std::size_t first, SplatSet& se
     place_gaussians(set, first, first + count, *placement);
 }
 
+// What the file's asset says of it, where that is text.
+std::string text_at(const GltfFile& file, const char* pointer) {
+    const Json found = file.json().value(Json::json_pointer(pointer), Json());
+    return found.is_string() ? found.get<std::string>() : std::string();
+}
+
 SplatSet read_parts(GltfFile& file, const Progress& progress) {
     const std::vector<Part> parts = parts_of(file);
     for (const Part& part : parts)
         column_of(file, part, "POSITION", 3);  // its count is of numbers that are there
-    return read_gaussian_parts(
+    SplatSet set = read_gaussian_parts(
         parts, {.trained = false, .display = parts[0].display}, file.path(), progress,
-        [&](const Part& part, std::size_t first, SplatSet& set) { read_part(file, part, first, set); });
+        [&](const Part& part, std::size_t first, SplatSet& out) { read_part(file, part, first, out); });
+    set.credit = text_at(file, "/asset/copyright");
+    set.origin = text_at(file, "/asset/extras/origin");
+    return set;
 }
 
 /// The result of `read` for the file; wrong types in its JSON are reported in our words.

@@ -236,13 +236,7 @@ char* put_row(char* out, const SplatSet& set, bool wide_ids, std::int64_t i) {
 
 std::string header_text(const SplatSet& set, bool wide_ids) {
     std::string text = "ply\nformat binary_little_endian 1.0\n";
-    const auto comment = [&](const char* name, std::string words) {
-        std::ranges::replace_if(
-            words, [](char c) { return c == '\n' || c == '\r'; }, ' ');
-        if (!words.empty()) text += fmt::format("comment {}: {}\n", name, words);
-    };
-    comment("credit", set.credit);
-    comment("origin", set.origin);
+    text += ply_comments(set.credit, set.origin);
     text += fmt::format("element vertex {}\n", set.size());
     for (const char* name : {"x", "y", "z", "red", "green", "blue", "alpha", "distance"})
         text += fmt::format("property float {}\n", name);

@@ -26,6 +26,8 @@ constexpr std::string_view type_names[][2] = {
     {"int", "int32"},     {"uint", "uint32"},   {"int64", "int64"}, {"uint64", "uint64"},
     {"float", "float32"}, {"double", "float64"}};
 
+constexpr std::string_view credit_begins = "comment credit: ", origin_begins = "comment origin: ";
+
 struct HeaderReader {
     std::string file;
     std::string_view rest;
@@ -108,9 +110,8 @@ bool read_line(HeaderReader& reader, PlyHeader& header) {
     const auto words = words_of(line);
     if (words.empty()) return true;
     if (words[0] == "end_header") return false;
-    constexpr std::string_view credit = "comment credit: ", origin = "comment origin: ";
-    if (line.starts_with(credit)) header.credit = trim(line.substr(credit.size()));
-    if (line.starts_with(origin)) header.origin = trim(line.substr(origin.size()));
+    if (line.starts_with(credit_begins)) header.credit = trim(line.substr(credit_begins.size()));
+    if (line.starts_with(origin_begins)) header.origin = trim(line.substr(origin_begins.size()));
     if (words[0] == "comment" || words[0] == "obj_info") return true;
     if (words[0] == "element") {
         header.elements.push_back(read_element(reader, words, line));
@@ -126,6 +127,16 @@ bool read_line(HeaderReader& reader, PlyHeader& header) {
 }
 
 }  // namespace
+
+std::string ply_comments(const std::string& credit, const std::string& origin) {
+    std::string text;
+    for (auto [begin, words] : {std::pair(credit_begins, credit), std::pair(origin_begins, origin)}) {
+        std::ranges::replace_if(
+            words, [](char c) { return c == '\n' || c == '\r'; }, ' ');
+        if (!words.empty()) text += fmt::format("{}{}\n", begin, words);
+    }
+    return text;
+}
 
 PlyHeader read_ply_header(const fs::path& file, std::string_view bytes) {
     HeaderReader reader{file.string(), bytes, 0};

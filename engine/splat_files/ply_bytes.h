@@ -23,6 +23,9 @@ struct PlyHeader {
     std::int64_t data_line = 0;  // the file's line where data begins
 };
 
+/// The lines of a header that tell them, each on one line; none of what is empty.
+std::string ply_comments(const std::string& credit, const std::string& origin);
+
 /// Throws InputError with the line.
 PlyHeader read_ply_header(const fs::path& file, std::string_view bytes);
 

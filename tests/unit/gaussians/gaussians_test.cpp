@@ -267,12 +267,20 @@ TEST(GaussianFile, ThatWereReadComeOutAsTheyAre) {
     write_gaussian_glb(folder / "linear.glb", gaussians, false);
     expect_same_gaussians(read_splats(folder / "linear.glb"), shown.set, 3e-6);
     encode_for_display(gaussians);
+    gaussians.credit = "NASA, \"ESA\"; É. Méchain \\ M 104";
+    gaussians.origin = "measured: light; invented: depths";
     write_gaussian_ply(folder / "b.ply", gaussians);
     write_gaussian_glb(folder / "b.glb", gaussians, true);
     expect_same_gaussians(read_splats(folder / "b.ply"), shown.set, 3e-6);
     expect_same_gaussians(read_splats(folder / "b.glb"), shown.set, 3e-6);
     write_gaussian_usda(folder / "b.usda", gaussians);
     expect_same_gaussians(read_splats(folder / "b.usda"), shown.set, 3e-6);
+    for (const char* file : {"b.ply", "b.glb"}) {
+        EXPECT_EQ(read_splats(folder / file).credit, gaussians.credit);
+        EXPECT_EQ(read_splats(folder / file).origin, gaussians.origin);
+    }
+    EXPECT_HAS(test::bytes_of(folder / "b.usda"), R"(string credit = "NASA, \"ESA\"; É. Méchain \\ M 104")");
+    EXPECT_HAS(test::bytes_of(folder / "b.usda"), R"(string origin = "measured: light; invented: depths")");
     // A turned and doubled layer turns and doubles them.
     shown.layer.world_from_layer = rotation_from_degrees({20.0, 30.0, 40.0});
     shown.layer.scale = 2.0;
