@@ -24,8 +24,8 @@ TEST_F(Assets, DemoScenesListTheirFrames) {
                                      {"m51", "0096"},
                                      {"s106", "0096"}}) {
         const std::string scene = fmt::format("{}/assets/scenes/{}.toml", ASTROSPLAT_SOURCE_DIR, name);
-        const RunResult result =
-            expect_success(run({"--batch", scene, "--dry-run", "--output", "shot.####.png"}));
+        const RunResult result = expect_success(
+            run({"--batch", scene, "--dry-run", "-o", "shot.####.png", "--resolution", "48x27"}));
         EXPECT_HAS(result.out, fmt::format("shot.{}.png", last));
     }
 }
@@ -193,7 +193,7 @@ Image middle_of(const Image& image, std::int64_t width, std::int64_t height) {
 }
 
 TEST_F(TableTest, ANebulaBeyondThePictureIsASheetThatReachesThem) {
-    expect_targets_of(middle_of(painted::nebula(1920, 1200), 720, 450), "sheet", of_most);
+    expect_targets_of(middle_of(painted::nebula(1280, 800), 480, 300), "sheet", of_most);
 }
 
 TEST_F(TableTest, APaintedRemnantIsTwoWallsThatReachThem) {

@@ -133,7 +133,7 @@ TEST_F(Memory, EveryKindOfFrameIsCounted) {
     const std::string aovs = "output.aovs=[\"depth\", \"coverage\", \"count\", \"layers\"]";
     const std::vector<Words> kinds = {
         {aovs},
-        {"camera.shutter=180", aovs},
+        {"camera.shutter=180", "output.samples=4", aovs},
         {"camera.projection=equirectangular", "camera.position=[0.2, 0.1, 0.3]"},
         {"camera.position=[0.6, 0.4, 1.3]", "layer.ball.render.lod.max_px=8"},
         {"layer.ball.render.isolate=true", "layer.ball.render.blend=screen"}};

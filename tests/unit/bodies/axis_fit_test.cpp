@@ -121,19 +121,23 @@ TEST(AxisFit, WhatIsGivenIsTaken) {
 
 // Of few clouds rings are too little. Many that fill the frame they nearly are, as of anything smooth; but
 // their sides are not alike.
-TEST(AxisFit, TakesNoCloudsForABody) {
-    for (std::uint32_t seed = 10; seed < 50; seed += 10) {
-        const AxisFit few = fit_axis(painted::clouds(12, 4.0, 5.0, seed)),
-                      many = fit_axis(painted::clouds(300, 3.0, 30.0, seed));
-        EXPECT_FALSE(is_about_axis(few)) << few.explained << ' ' << few.alike;
-        EXPECT_FALSE(is_about_axis(many)) << many.explained << ' ' << many.alike;
-        EXPECT_GT(many.explained, 0.75);
-        EXPECT_LT(many.alike, 0.4);
-        // Of a bubble most light is smooth, too, and smooth light is made of rings, but not its clouds.
-        const AxisFit bubble = fit_axis(painted::shell_among_clouds(seed));
-        EXPECT_FALSE(is_about_axis(bubble)) << bubble.explained << ' ' << bubble.alike;
-        EXPECT_GT(bubble.explained, 0.75);
-    }
+void expect_no_body(std::uint32_t seed) {
+    const AxisFit few = fit_axis(painted::clouds(12, 4.0, 5.0, seed)),
+                  many = fit_axis(painted::clouds(300, 3.0, 30.0, seed));
+    EXPECT_FALSE(is_about_axis(few)) << few.explained << ' ' << few.alike;
+    EXPECT_FALSE(is_about_axis(many)) << many.explained << ' ' << many.alike;
+    EXPECT_GT(many.explained, 0.75);
+    EXPECT_LT(many.alike, 0.4);
+    // Of a bubble most light is smooth, too, and smooth light is made of rings, but not its clouds.
+    const AxisFit bubble = fit_axis(painted::shell_among_clouds(seed));
+    EXPECT_FALSE(is_about_axis(bubble)) << bubble.explained << ' ' << bubble.alike;
+    EXPECT_GT(bubble.explained, 0.75);
+}
+
+TEST(AxisFit, TakesNoCloudsForABody) { expect_no_body(10); }
+
+TEST(AxisFit, TakesNoOtherCloudsForABodyNightly) {
+    for (const std::uint32_t seed : {20u, 30u, 40u}) expect_no_body(seed);
 }
 
 TEST(AxisFit, OfNoLightIsStillAFit) {
@@ -183,6 +187,11 @@ Placement placed_about_axis(Image light) {
     return make_placement(light, params, 96.0, true, 1, stars.all, std::move(depths));
 }
 
+const Placement& lobes_in_place() {
+    static const Placement placement = placed_about_axis(lobes_and_star());
+    return placement;
+}
+
 BandSplats of_band(int index, float feature) {
     BandSplats splats;
     splats.index = index;
@@ -193,7 +202,7 @@ BandSplats of_band(int index, float feature) {
 
 // Its light is in bands as all light is; each by itself along the line it would be a streak.
 TEST(PlacedAboutAxis, BrightStarsAreAtOneDepth) {
-    const Placement placement = placed_about_axis(lobes_and_star());
+    const Placement& placement = lobes_in_place();
     for (int index = 0; index < 4; ++index) {
         PlacedBlock block = splats_about({star_x, star_y}, {6.0f, 6.0f}, std::uint32_t(index));
         place(placement, of_band(index, float(2 << index)), block);
@@ -229,7 +238,7 @@ double most_aside(const Placement& placement, const BandSplats* details) {
 
 // A thin sheet of details is seen wherever one looks along it, most of all where it leaps from wall to wall.
 TEST(PlacedAboutAxis, DetailsAreNoCracks) {
-    const Placement placement = placed_about_axis(lobes_and_star());
+    const Placement& placement = lobes_in_place();
     const BandSplats details = of_band(1, 4.0f);
     EXPECT_LT(most_aside(placement, &details), 2.0 * most_aside(placement, nullptr));
 }
