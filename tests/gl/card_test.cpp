@@ -287,7 +287,7 @@ lod = { max_px = 900.0, noise = 0.5, star_distance = 30.0 }
     expect_same(beauty_of(there, nullptr), beauty_of(here, nullptr), "made by the processor again");
     scene.layers[0].look.vertical = {VerticalAlpha::Shape::linear, 3.0f, {}, 0.0f, VerticalAlpha::Match::sum};
     const std::string refusal = ERROR_OF(beauty_of(here, nullptr));
-    EXPECT_NE(refusal.find("dust"), std::string::npos) << refusal;
+    EXPECT_HAS(refusal, "dust");
     EXPECT_EQ(ERROR_OF(beauty_of(there, &card())), refusal);
 }
 

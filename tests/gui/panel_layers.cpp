@@ -78,7 +78,7 @@ TEST_F(PanelLayersTest, ANameThatIsTakenIsRefused) {
     d.type("disk");
     d.tap(ImGuiKey_Enter);
     EXPECT_EQ(names(d), (Names{"disk", "dust", "stars"}));
-    EXPECT_NE(d.panel.message().find("disk"), std::string::npos) << d.panel.message();
+    EXPECT_HAS(d.panel.message(), "disk");
 }
 
 TEST_F(PanelLayersTest, DraggingChangesTheOrder) {

@@ -172,7 +172,7 @@ TEST_F(PanelRowsTest, ARefusedValueIsSaidAndChangesNothing) {
     d.enter(opacity, "2");
     EXPECT_DOUBLE_EQ(d.value(opacity).number(), 1.0);
     EXPECT_FALSE(d.document.can_undo());
-    EXPECT_NE(d.panel.message().find("from 0 to 1"), std::string::npos) << d.panel.message();
+    EXPECT_HAS(d.panel.message(), "from 0 to 1");
     d.drag(d.row(opacity).value, {-50.0f, 0.0f});
     EXPECT_EQ(d.panel.message(), "");
 }

@@ -44,8 +44,7 @@ TEST_F(PanelColors, DisplayAndViewAreChosenUndoneAndSaved) {
     EXPECT_EQ(text("view"), "") << "a view of the display before";
     choose("view", "Pure");
     const std::string saved = d.document.text_for("/nowhere/scene.toml");
-    for (const char* line : {"colors.ocio", "\"Projector\"", "\"Pure\""})
-        EXPECT_NE(saved.find(line), std::string::npos) << saved;
+    for (const char* line : {"colors.ocio", "\"Projector\"", "\"Pure\""}) EXPECT_HAS(saved, line);
     d.document.undo();
     d.document.undo();
     EXPECT_EQ(text("display"), "");

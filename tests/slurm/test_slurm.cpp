@@ -321,7 +321,7 @@ TEST_F(Slurm, TasksKilledHalfWayAndSubmittedAgainGiveTheSameFrames) {
     ASSERT_EQ(here({"--batch", "scene.toml", "-q", "-o", "local/shot.####.exr", "--no-cache"}).code, 0);
 
     const RunResult first = expect_success(submit());
-    EXPECT_NE(first.out.find("40 frames in 4 tasks submitted as job 2, "), std::string::npos) << first.out;
+    EXPECT_HAS(first.out, "40 frames in 4 tasks submitted as job 2, ");
     // Each when it has written a frame: not before it began, nor after its end.
     while (!fs::exists(frame(11)) || !kill_program_with("--frames=11-20")) wait_a_little();
     while (!fs::exists(frame(1))) wait_a_little();
@@ -337,13 +337,13 @@ TEST_F(Slurm, TasksKilledHalfWayAndSubmittedAgainGiveTheSameFrames) {
     EXPECT_NE(status.out.find(fmt::format("\ndone {} of 40: ", done)), std::string::npos) << status.out;
     EXPECT_NE(status.out.find(fmt::format("\nmissing {}: ", 40 - done)), std::string::npos)
         << status.out << "killed programs leave no half frame";
-    EXPECT_NE(status.out.find("\nqueue job 2, 4 tasks: "), std::string::npos) << status.out;
-    EXPECT_NE(log("0001/1.log").find("layer gas: "), std::string::npos) << "the sets' job";
+    EXPECT_HAS(status.out, "\nqueue job 2, 4 tasks: ");
+    EXPECT_HAS(log("0001/1.log"), "layer gas: ") << "the sets' job";
 
     const RunResult second = expect_success(submit());
     EXPECT_EQ(second.out.find(fmt::format("{} frames in ", 40 - done)), 0u) << second.out;
     const RunResult third = expect_success(submit());
-    EXPECT_NE(third.out.find("in the queue already"), std::string::npos) << third.out;
+    EXPECT_HAS(third.out, "in the queue already");
     ASSERT_TRUE(cluster->wait_until_idle());
     EXPECT_EQ(here({"status", "scene.toml"}).code, 0) << here({"status", "scene.toml"}).out;
     EXPECT_EQ(submit().out, "no frame is missing: nothing to submit\n");
@@ -363,12 +363,12 @@ TEST_F(Slurm, TasksDoNotRunWithoutTheirSets) {
     ASSERT_TRUE(cluster->wait_until_idle());
     EXPECT_EQ(frames_there(), 0u);
     const RunResult status = here({"status", "scene.toml"});
-    EXPECT_NE(status.out.find(", the sets: FAILED\n"), std::string::npos) << status.out;
-    EXPECT_NE(status.out.find("4 tasks: 4 CANCELLED\n"), std::string::npos) << status.out;
+    EXPECT_HAS(status.out, ", the sets: FAILED\n");
+    EXPECT_HAS(status.out, "4 tasks: 4 CANCELLED\n");
     std::string logs;
     for (const auto& entry : fs::directory_iterator(place / "frames/slurm/0001"))
         if (entry.path().extension() == ".log") logs += text_of(entry.path());
-    EXPECT_NE(logs.find("file: cannot create this folder"), std::string::npos) << logs;
+    EXPECT_HAS(logs, "file: cannot create this folder");
 }
 
 TEST_F(Slurm, WhatItRefusesLeavesNothing) {

@@ -238,8 +238,7 @@ TEST_F(WindowSlow, AValueIsKeyedAtTwoFramesBlindly) {
 void expect_line(const RunResult& result, int code, const std::vector<std::string>& parts) {
     EXPECT_EQ(result.code, code) << result.err;
     EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
-    for (const std::string& part : parts)
-        EXPECT_NE(result.err.find(part), std::string::npos) << part << " in " << result.err;
+    for (const std::string& part : parts) EXPECT_HAS(result.err, part);
     EXPECT_EQ(result.out, "");
 }
 

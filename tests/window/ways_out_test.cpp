@@ -265,7 +265,7 @@ echo "$n $task PENDING $name" >> "$here/queue"; echo $n
 
 TEST_F(WindowFarm, FramesAreSubmittedAndComeBack) {
     submit();
-    EXPECT_NE(logged("submitted").find("--dependency=afterok:1 frames.sh\n"), std::string::npos);
+    EXPECT_HAS(logged("submitted"), "--dependency=afterok:1 frames.sh\n");
     work();
     EXPECT_EQ(names_in("frames"),
               (std::set<std::string>{"shot.0001.png", "shot.0002.png", "shot.0003.png", "slurm"}));

@@ -377,8 +377,8 @@ def "cameras" ( prepend references = @./base.usda@</cameras> (offset = 1) )
                             glm::dvec3(-std::sqrt(0.5), 0.0, -std::sqrt(0.5))),
               1e-9);
     ASSERT_EQ(houdini.warnings.size(), 2u);
-    EXPECT_NE(houdini.warnings[0].find("has no verticalAperture"), std::string::npos);
-    EXPECT_NE(houdini.warnings[1].find("of 2 cameras 'camera1' is read"), std::string::npos);
+    EXPECT_HAS(houdini.warnings[0], "has no verticalAperture");
+    EXPECT_HAS(houdini.warnings[1], "of 2 cameras 'camera1' is read");
 }
 
 TEST_F(Usda, OddFilesEndInOneLine) {

@@ -180,7 +180,7 @@ TEST_F(AutosaveTest, AKilledProcessIsRecovered) {
     recovered.save();
     const std::string text = f.text();
     EXPECT_EQ(text.rfind("# by hand, keep this\n", 0), 0u);  // saved into the original, as if edited there
-    EXPECT_NE(text.find("Bilder/m 51 ä.png"), std::string::npos);
+    EXPECT_HAS(text, "Bilder/m 51 ä.png");
     EXPECT_EQ(text.find(f.folder.path().string()), std::string::npos);
     EXPECT_EQ(load_scene(f.file), wanted.scene());
 
@@ -220,7 +220,7 @@ TEST_F(AutosaveTest, TheOriginalMayBeGone) {
     Document recovered = recover(recoveries(folder).at(0).autosave);
     recovered.save();
     EXPECT_EQ(load_scene(f.file), recovered.scene());
-    EXPECT_NE(f.text().find("# by hand, keep this"), std::string::npos);
+    EXPECT_HAS(f.text(), "# by hand, keep this");
 }
 
 TEST_F(AutosaveTest, APresetThatIsGoneLosesNothing) {
@@ -390,7 +390,7 @@ TEST_F(SnapshotFiles, ABrokenOneIsReportedAndTheOthersAreThere) {
     ASSERT_EQ(problems.size(), 3u);
     EXPECT_EQ(problems[0], (folder / "0002.toml").string() + ":1: expected a snapshot, found another file");
     EXPECT_EQ(problems[1], (folder / "0003.toml").string() + ":1: expected a snapshot, found another file");
-    EXPECT_NE(problems[2].find("opacty"), std::string::npos) << problems[2];
+    EXPECT_HAS(problems[2], "opacty");
     EXPECT_TRUE(fs::exists(folder / "0003.toml")) << "nothing is thrown away";
 }
 

@@ -204,7 +204,7 @@ TEST_F(DocumentTest, TypedPathsAreRelativeToTheScene) {
     document.set("layer.dust.look.thickness.map", "neue karte.png", 1.0);
     EXPECT_EQ(document.scene().layers[0].look.thickness.map, f.folder / "neue karte.png");
     document.save();
-    EXPECT_NE(f.text().find("map = \"neue karte.png\""), std::string::npos);
+    EXPECT_HAS(f.text(), "map = \"neue karte.png\"");
 }
 
 TEST_F(DocumentTest, SavingTouchesOnlyWhatChanged) {
@@ -235,7 +235,7 @@ TEST_F(DocumentTest, WhatWasSavedIsSavedAgainByteForByte) {
     document.reload();
     document.undo();
     document.save();
-    EXPECT_NE(f.text().find("# from other hands"), std::string::npos);
+    EXPECT_HAS(f.text(), "# from other hands");
 }
 
 TEST_F(DocumentTest, SavingElsewhereMovesTheDocument) {
@@ -249,7 +249,7 @@ TEST_F(DocumentTest, SavingElsewhereMovesTheDocument) {
     EXPECT_FALSE(document.edited());
     EXPECT_EQ(load_scene(target), document.scene());
     EXPECT_EQ(load_scene(target).layers[0].source.meshes[0].texture[0], f.folder / "Bilder/m 51 ä.png");
-    EXPECT_NE(text.find("# by hand, keep this"), std::string::npos);
+    EXPECT_HAS(text, "# by hand, keep this");
     document.undo();  // the old scene, but of the new file
     EXPECT_EQ(document.scene().file, target);
     EXPECT_TRUE(document.edited());
@@ -393,8 +393,8 @@ TEST_F(DocumentTest, ACommaLocaleChangesNothing) {
     document.set(opacity, 0.125, 1.0);
     document.set("layer.dust.source.count", std::int64_t{1234567}, 1.0);
     document.save();
-    EXPECT_NE(f.text().find("opacity = 0.125"), std::string::npos);
-    EXPECT_NE(f.text().find("count = 1234567"), std::string::npos);
+    EXPECT_HAS(f.text(), "opacity = 0.125");
+    EXPECT_HAS(f.text(), "count = 1234567");
     EXPECT_EQ(load_scene(f.file), document.scene());
 }
 

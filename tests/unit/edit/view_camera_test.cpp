@@ -10,7 +10,7 @@ namespace astrosplat {
 namespace {
 
 const glm::dvec2 viewport(1600.0, 900.0);
-const Bounds box{{-4.0, -1.0, -3.0}, {6.0, 1.0, 5.0}};
+const Bounds volume{{-4.0, -1.0, -3.0}, {6.0, 1.0, 5.0}};
 const double aspect = viewport.x / viewport.y;
 
 /// Where the engine's camera sees a point, px.
@@ -201,13 +201,13 @@ TEST(Navigation, FlyingMovesAlongThePicturesAxes) {
 /// Every corner in the picture, one of them at 90 % of its half width or height.
 TEST(Navigation, FramingFillsThePicture) {
     for (const FreeCamera& camera : cameras()) {
-        const FreeCamera result = framed(camera, box, aspect);
+        const FreeCamera result = framed(camera, volume, aspect);
         expect_near(view_axes(result).forward, view_axes(camera).forward, 1e-9);
-        expect_near(result.pivot, box.center(), 1e-12);
+        expect_near(result.pivot, volume.center(), 1e-12);
         double fill = 0.0;
         for (int corner = 0; corner < 8; ++corner) {
-            const glm::dvec3 p(corner & 1 ? box.hi.x : box.lo.x, corner & 2 ? box.hi.y : box.lo.y,
-                               corner & 4 ? box.hi.z : box.lo.z);
+            const glm::dvec3 p(corner & 1 ? volume.hi.x : volume.lo.x, corner & 2 ? volume.hi.y : volume.lo.y,
+                               corner & 4 ? volume.hi.z : volume.lo.z);
             const glm::dvec2 off = glm::abs(project(result, p) - viewport * 0.5) / (viewport * 0.5);
             fill = std::fmax(fill, std::fmax(off.x, off.y));
             EXPECT_GT(glm::dot(p - result.position, view_axes(result).forward), 0.0);
@@ -237,9 +237,9 @@ TEST(Views, FrontTopAndSideReadRight) {
     ViewState view;
     const auto off = [&](ViewKind kind, const glm::dvec3& direction) {
         view.view = kind;
-        const CameraParams camera = view_camera(scene, view, box, aspect);
+        const CameraParams camera = view_camera(scene, view, volume, aspect);
         EXPECT_EQ(camera.projection, Projection::orthographic);
-        const glm::dvec2 delta = project(camera, box.center() + direction) - viewport * 0.5;
+        const glm::dvec2 delta = project(camera, volume.center() + direction) - viewport * 0.5;
         return glm::dvec2(std::round(delta.x / glm::length(delta)),
                           std::round(-delta.y / glm::length(delta)));
     };
@@ -259,10 +259,10 @@ TEST(Views, TheSceneCameraIsTheOneAtTheFrame) {
     set_keyframe(scene, "camera.fov", 3.0, 60.0);
     ViewState view;
     view.frame = 2.0;
-    EXPECT_EQ(view_camera(scene, view, box, aspect).fov, 50.0);
+    EXPECT_EQ(view_camera(scene, view, volume, aspect).fov, 50.0);
     view.view = ViewKind::free;
     view.free = cameras()[3];
-    EXPECT_EQ(view_camera(scene, view, box, aspect), camera_params(cameras()[3]));
+    EXPECT_EQ(view_camera(scene, view, volume, aspect), camera_params(cameras()[3]));
 }
 
 /// A free copy of any camera shows the same picture, and written back it still does.
@@ -277,18 +277,18 @@ TEST(Views, AFreeCopyShowsTheSame) {
     all[6].projection = Projection::orthographic;
     all[6].position.reset();
     for (const CameraParams& params : all) {
-        const FreeCamera free = free_camera(params, box, aspect);
+        const FreeCamera free = free_camera(params, volume, aspect);
         const CameraParams back = moved_camera(params, free, aspect);
         for (const glm::dvec3& p : {glm::dvec3(0, 0, 0), glm::dvec3(1, 2, -3), glm::dvec3(-4, 1, 0.5)}) {
-            expect_near(project(free, p), project(params, p, box), 1e-6);
-            expect_near(project(back, p), project(params, p, box), 1e-6);
+            expect_near(project(free, p), project(params, p, volume), 1e-6);
+            expect_near(project(back, p), project(params, p, volume), 1e-6);
         }
         EXPECT_EQ(back.near, params.near);
         EXPECT_EQ(back.focal_length, params.focal_length);  // the lens is as it was, to the bit
         EXPECT_EQ(back.fov, params.fov);
         EXPECT_TRUE(!params.position || back.height == params.height);
     }
-    EXPECT_EQ(free_camera(all[0], box, aspect).pivot, all[0].target);
+    EXPECT_EQ(free_camera(all[0], volume, aspect).pivot, all[0].target);
 }
 
 /// From in front, the right and above at once, with the lens as it was and the whole box in the picture.
@@ -296,16 +296,16 @@ TEST(Views, ThreeQuarterIsDiagonalAndHoldsTheBox) {
     for (const Projection projection : {Projection::perspective, Projection::orthographic}) {
         FreeCamera before = cameras()[3];
         before.projection = projection;
-        const FreeCamera camera = three_quarter_view(before, box, aspect);
+        const FreeCamera camera = three_quarter_view(before, volume, aspect);
         EXPECT_EQ(camera.fov_deg, before.fov_deg);
         EXPECT_EQ(camera.projection, projection);
-        expect_near(camera.pivot, box.center(), 1e-12);
+        expect_near(camera.pivot, volume.center(), 1e-12);
         expect_near(view_axes(camera).forward, -glm::normalize(glm::dvec3(1.0, 0.8, 1.0)), 1e-12);
         EXPECT_NEAR(view_axes(camera).right.y, 0.0, 1e-12);
         double fill = 0.0;
-        for (const double x : {box.lo.x, box.hi.x})
-            for (const double y : {box.lo.y, box.hi.y})
-                for (const double z : {box.lo.z, box.hi.z}) {
+        for (const double x : {volume.lo.x, volume.hi.x})
+            for (const double y : {volume.lo.y, volume.hi.y})
+                for (const double z : {volume.lo.z, volume.hi.z}) {
                     const glm::dvec2 off = glm::abs(project(camera, {x, y, z}) - viewport * 0.5);
                     fill = std::fmax(fill, std::fmax(off.x / viewport.x, off.y / viewport.y));
                 }
@@ -318,7 +318,7 @@ struct SeenCamera : testing::Test {
     ViewState view;
     Status status;
     SeenCamera() {
-        status.box = box;
+        status.box = volume;
         status.viewport_aspect = aspect;
         view.frame = 6.8;
         view.free = cameras()[3];
@@ -339,9 +339,9 @@ TEST_F(SeenCamera, IsWhatIsKeyedInEveryView) {
             for (const FreeCamera& free : cameras()) {
                 view.view = kind;
                 view.free = free;
-                const CameraParams shown = view_camera(scene, view, box, aspect), now = with_keyframe();
+                const CameraParams shown = view_camera(scene, view, volume, aspect), now = with_keyframe();
                 for (const glm::dvec3& p : {glm::dvec3(0, 0, 0), glm::dvec3(1, 0.2, -1)})
-                    expect_near(project(now, p, box), project(shown, p, box), 1e-6);
+                    expect_near(project(now, p, volume), project(shown, p, volume), 1e-6);
             }
     }
 }
@@ -361,7 +361,7 @@ TEST_F(SeenCamera, SetsNothingButPlaceAndDirectionOfACameraThatMoves) {
 TEST_F(SeenCamera, KeepsTheLensWhereTheViewportIsNarrow) {
     status.viewport_aspect = 0.5 * aspect;
     view.view = ViewKind::free;
-    view.free = free_camera(scene.camera, box, aspect);
+    view.free = free_camera(scene.camera, volume, aspect);
     view.free.fov_deg = 2.0 * real::degrees(real::atan(2.0 * real::tan(real::radians(20.0))));
     EXPECT_EQ(seen_camera(scene, view, status).fov, 40.0);
     expect_near(project(with_keyframe(), {1, 2, -3}), project(scene.camera, {1, 2, -3}), 1e-6);
@@ -372,7 +372,7 @@ TEST_F(SeenCamera, HasAPlaceWhereTheSceneCameraFramesItsLayers) {
     for (const double focal_length : {0.0, 90.0}) {
         scene.camera.focal_length = focal_length;
         const CameraParams seen = seen_camera(scene, view, status);
-        expect_near(project(seen, {1, 2, -3}), project(scene.camera, {1, 2, -3}, box), 1e-9);
+        expect_near(project(seen, {1, 2, -3}), project(scene.camera, {1, 2, -3}, volume), 1e-9);
     }
     status.box = {};
     EXPECT_EQ(ERROR_OF(seen_camera(scene, view, status)),

@@ -372,7 +372,7 @@ TEST_F(WriteTest, TextsBeyondAsciiAreKept) {
         EXPECT_EQ(spec.get_string_attribute("Copyright"), metadata_.provenance.credit) << name;
     }
     const std::string png = bytes_of(folder_ / "a.png");
-    EXPECT_NE(png.find("iTXtCopyright"), std::string::npos) << "tEXt would be Latin 1";
+    EXPECT_HAS(png, "iTXtCopyright") << "tEXt would be Latin 1";
     EXPECT_HAS(png, "tEXtastrosplat/frame");
 }
 

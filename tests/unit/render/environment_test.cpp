@@ -287,7 +287,7 @@ TEST_F(EnvironmentTest, ErrorsNameWhatIsWrong) {
     EXPECT_EQ(error_of(params), "environment: expected image, cube or tile, found several of them");
     EnvironmentParams missing;
     missing.image = folder_ / "missing.exr";
-    EXPECT_NE(error_of(missing).find("missing.exr"), std::string::npos);
+    EXPECT_HAS(error_of(missing), "missing.exr");
 }
 
 // On a sphere of radius 4 about the origin: what rays from its inside meet.

@@ -267,7 +267,7 @@ TEST_F(ExportCamera, UsdHasRowsAndAVerticalAperture) {
          {"#usda 1.0\n", "startTimeCode = 7\n", "endTimeCode = 9\n", "timeCodesPerSecond = 24\n",
           "upAxis = \"Y\"", "float2 clippingRange = (0.01, 50)", "float horizontalAperture = 72\n",
           "float verticalAperture = 24\n", "uniform token[] xformOpOrder = [\"xformOp:transform\"]"})
-        EXPECT_NE(text.find(part), std::string::npos) << part << text;
+        EXPECT_HAS(text, part) << part << text;
     // Looks along -x: right is -z, back is +x.
     const std::size_t at = text.find("9: ( (");
     ASSERT_NE(at, std::string::npos) << text;

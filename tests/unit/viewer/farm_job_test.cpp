@@ -230,8 +230,8 @@ TEST(RenderQueue, JobsTakeNoMoreOfTheMachineThanTheWindow) {
     EXPECT_TRUE(poll_until(queue, now, 0.001, ended));
     const std::string asked = text_of(folder / "asked"), render = asked.substr(0, asked.find('\n')),
                       prepare = asked.substr(render.size() + 1);
-    EXPECT_NE(render.find(" --threads=4 --memory=8 "), std::string::npos) << asked;
-    EXPECT_NE(prepare.find(" --threads=4 "), std::string::npos) << asked;
+    EXPECT_HAS(render, " --threads=4 --memory=8 ") << asked;
+    EXPECT_HAS(prepare, " --threads=4 ") << asked;
     EXPECT_EQ(prepare.find("--memory"), std::string::npos) << asked;
 }
 

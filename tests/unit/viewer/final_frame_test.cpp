@@ -281,8 +281,7 @@ TEST_F(FinalFrameTest, ALimitOfMemoryMakesBandsAndNotAnError) {
     ASSERT_EQ(picture.outcome().state, State::done) << picture.outcome().error;
     EXPECT_EQ(pixel_hash(picture.outcome().frame->beauty), hash);
     EXPECT_EQ(refused.outcome().state, State::failed);
-    EXPECT_NE(refused.outcome().error.find(" that a dial allows; this takes "), std::string::npos)
-        << refused.outcome().error;
+    EXPECT_HAS(refused.outcome().error, " that a dial allows; this takes ");
 }
 
 TEST_F(FinalFrameTest, AFailureIsOneLineAndTheNextPictureWorks) {
@@ -292,7 +291,7 @@ TEST_F(FinalFrameTest, AFailureIsOneLineAndTheNextPictureWorks) {
     picture.start(bad);
     wait(picture);
     EXPECT_EQ(picture.outcome().state, State::failed);
-    EXPECT_NE(picture.outcome().error.find("missing.png"), std::string::npos);
+    EXPECT_HAS(picture.outcome().error, "missing.png");
     EXPECT_EQ(picture.outcome().error.find('\n'), std::string::npos);
     EXPECT_FALSE(picture.outcome().frame);
     finish(picture, request(0));

@@ -107,7 +107,7 @@ TEST_F(SetLoaderTest, ACopiedLayerSharesItsSet) {
 TEST_F(SetLoaderTest, AnErrorStaysUntilTheSourceChanges) {
     small.scene.layers[0].source.meshes[0].texture = {small.folder / "later.ppm"};
     EXPECT_FALSE(loaded("gas"));
-    EXPECT_NE(status(0).error.find("later.ppm"), std::string::npos);
+    EXPECT_HAS(status(0).error, "later.ppm");
     EXPECT_EQ(status(0).error.find('\n'), std::string::npos);
     EXPECT_FALSE(status(0).loading);
     EXPECT_TRUE(loader.layer("dust"));
