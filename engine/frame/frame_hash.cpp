@@ -24,18 +24,15 @@ bool is_elsewhere(const ParameterSpec& spec) {
            spec.generic_key.is_below("output.ocio");
 }
 
-/// Keys of lenses that the camera does not have, and of blurs that are off.
-bool is_idle(const ParameterKey& key, const CameraParams& camera) {
-    const bool fisheye = camera.projection == Projection::fisheye;
-    if (key == "camera.shift") return camera.projection != Projection::perspective;
-    if (key == "camera.fisheye_tilt") return !fisheye;
+/// Keys of lenses that the camera does not have, of a pair and of blurs that are off.
+bool is_idle(const ParameterSpec& spec, const CameraParams& camera) {
+    const ParameterKey& key = spec.generic_key;
     if (key == "camera.eye" || key == "camera.eye_separation" || key == "camera.convergence")
-        return camera.eye == Eye::centre || !has_two_eyes(camera.projection);
+        if (camera.eye == Eye::centre) return true;
     if (key == "camera.f_number" || key == "camera.focus_distance" || key == "camera.unit_mm")
-        return camera.f_number == 0.0;
+        if (camera.f_number == 0.0) return true;
     if (key == "output.samples") return !is_blurred(camera);
-    if (key == "camera.panorama_fov") return fisheye || !is_onto_sphere(camera.projection);
-    return false;
+    return is_of_another_lens(spec, camera.projection);
 }
 
 bool is_idle(const ParameterKey& key, const EnvironmentParams& environment) {
@@ -66,7 +63,7 @@ bool is_idle(const ParameterSpec& spec, const Scene& now) {
     if (spec.generic_key.is_below("environment")) return is_idle(spec.generic_key, now.environment);
     const auto layer = std::ranges::find(now.layers, spec.key.layer(), &LayerParams::name);
     if (layer != now.layers.end()) return is_idle(spec.generic_key, now, *layer);
-    return is_idle(spec.generic_key, now.camera);
+    return is_idle(spec, now.camera);
 }
 
 bool is_hidden(const ParameterSpec& spec, const FrameScene& frame) {
@@ -81,6 +78,16 @@ std::shared_ptr<const DisplayTransform> managed_view(const OutputParams& output)
 }
 
 }  // namespace
+
+bool is_of_another_lens(const ParameterSpec& spec, Projection projection) {
+    const ParameterKey& key = spec.generic_key;
+    if (key == "camera.fov" || key == "camera.focal_length" || key == "camera.film_width") return false;
+    const Value name(std::string(name_of(projection)));
+    return std::ranges::any_of(spec.conditions, [&](const Condition& condition) {
+        const bool has = std::ranges::find(condition.values, name) != condition.values.end();
+        return condition.key == "camera.projection" && has != condition.wanted;
+    });
+}
 
 // The text itself where nothing lies under that name: "plane", "", or a file whose absence the
 // loader will report.

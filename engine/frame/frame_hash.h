@@ -26,6 +26,10 @@ using HashedFiles = std::map<fs::path, HashedFile>;
 /// may not be what was hashed; Cancelled.
 void check_unchanged(const HashedFiles& files, const Progress& progress = {});
 
+/// Whether a key of the camera is of lenses other than this projection's, as its description says. The field
+/// of view never is: it places a camera without a position, whatever its projection.
+bool is_of_another_lens(const ParameterSpec& spec, Projection projection);
+
 /// Hashes frames; input files are hashed by content, once each.
 class FrameHasher {
   public:

@@ -129,9 +129,7 @@ OutputPattern output_pattern(const fs::path& base, const std::string& text) {
 std::vector<Eye> eyes_of(const OutputPattern& pattern, const CameraParams& camera) {
     if (!pattern.is_stereo()) return {camera.eye};
     if (!has_two_eyes(camera.projection))
-        bad_input(pattern.text(),
-                  "no %V, for only perspective, equirectangular and cylindrical cameras have a left and a "
-                  "right eye",
+        bad_input(pattern.text(), "no %V, for this projection has no left and right eye",
                   std::string(name_of(camera.projection)));
     return {Eye::left, Eye::right};
 }

@@ -83,6 +83,14 @@ void describe_ocio(const Describer& d, OcioParams& o) {
       "scene_linear.");
 }
 
+/// The projections with a left and a right eye.
+std::vector<Value> two_eyed() {
+    std::vector<Value> names;
+    for (int k = 0; const std::string& name : all_names<Projection>())
+        if (has_two_eyes(Projection(k++))) names.emplace_back(name);
+    return names;
+}
+
 void describe_camera(const Describer& d, CameraParams& c) {
     const Describer place = d.shown_in("Camera", "Place"), lens = d.shown_in("Camera", "Lens");
     lens(c.projection, "projection", "Projection", "", "How space becomes a frame.");
@@ -133,8 +141,7 @@ void describe_camera(const Describer& d, CameraParams& c) {
          "Of a scene unit, for depth of field: as if the scene was a model of that size.", within(1e-6, 1e12),
          slider(1, 100000), logarithmic(), only_with("projection", {"perspective"}),
          never_with("f_number", {0.0}));
-    const Describer stereo = d.shown_in("Camera", "Stereo")
-                                 .only_with("projection", {"perspective", "equirectangular", "cylindrical"});
+    const Describer stereo = d.shown_in("Camera", "Stereo").only_with("projection", two_eyed());
     stereo.still()(c.eye, "eye", "Eye", "",
                    "The eye of a stereo pair that is shown; where %V is in output.path, it stands for left "
                    "and right and --batch writes both.");

@@ -1,5 +1,7 @@
 // Fisheye, equidistant: px from the middle = focal_px * the angle from the view axis.
 
+const int PROJECTION_FISHEYE = 2;
+
 Instance fisheye_instance(Lens lens, Vec3 p) {
     // Straight behind there is no direction across: one is as good as another.
     Float tiny = 1e-18f;

@@ -9,17 +9,10 @@
 #define Vec3 vec3
 #endif
 
-// In the order of Projection in engine/camera/camera.h. Those from the fisheye on are onto the sphere.
-const int PROJECTION_PERSPECTIVE = 0;
-const int PROJECTION_ORTHOGRAPHIC = 1;
-const int PROJECTION_FISHEYE = 2;
-const int PROJECTION_EQUIRECTANGULAR = 3;
-const int PROJECTION_CYLINDRICAL = 4;
-
 const Real SPHERE_TURN = Real(6.283185307179586);  // radians all the way round
 
 struct Lens {
-    int projection;    // one of the above
+    int projection;    // the number of its file
     Real focal_px;     // px per unit of x / z; with parallel rays px per scene unit; onto the sphere px per radian
     Real center_x_px;  // where the optical axis meets the frame, y down
     Real center_y_px;

@@ -1,6 +1,9 @@
 // Panoramas, equirectangular and cylindrical: px from the middle = focal_px * the longitude, to the right, and upwards
 // focal_px * the latitude or its tangent. The view axis is at (0, 0); up is the pole.
 
+const int PROJECTION_EQUIRECTANGULAR = 3;
+const int PROJECTION_CYLINDRICAL = 4;
+
 // Of a direction of any length: what lies across the pole's axis.
 Float from_pole(Vec3 p) { return max(sqrt(p.x * p.x + p.z * p.z), 1e-18f); }
 

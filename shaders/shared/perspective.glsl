@@ -1,5 +1,7 @@
 // Perspective: px from the optical axis = focal_px * x / z. Camera space: x right, y up, in front is -z.
 
+const int PROJECTION_PERSPECTIVE = 0;
+
 Instance perspective_instance(Lens lens, Vec3 p) {
     Float depth = -p.z;
     Float px_per_unit = as_div(lens.focal_px, depth);

@@ -1,6 +1,7 @@
-// Projection: camera space (x right, y up, in front is -z) to the frame. To the renderer and the preview all
-// projections are alike. Each is a file of functions with its name in front, listed in projections.inc, a number in
-// lens.glsl, lines in the table below, and what make_camera makes of its parameters.
+// Projection: camera space (x right, y up, in front is -z) to the frame. To the renderer and to cards all
+// projections are alike. Each is a file of its number and functions with its name in front, listed in projections.inc,
+// lines in the table below, and what make_camera makes of its parameters. Numbers are those of Projection in
+// engine/camera/camera.h, from the fisheye on onto the sphere.
 //
 // Projections onto the sphere draw a splat as a disc there, round in the chord between directions: a pixel's distance is
 // focal_px * |direction of the pixel - direction of the splat|, whatever the frame makes of the sphere, so there are no

@@ -6,6 +6,7 @@
 #include "scene/camera_file.h"
 #include "scene/describe.h"
 #include "scene/load.h"
+#include "support/all_values.h"
 #include "support/color_config.h"
 #include "support/test.h"
 
@@ -278,10 +279,8 @@ TEST_F(FrameHashTest, EveryOtherParameterCounts) {
                                              "layer.source.depth",
                                              "layer.source.slab",           // of stars of a picture
                                              "scene.light_years_per_unit",  // of stars of a catalogue
-                                             "camera.fisheye_tilt",
-                                             "camera.panorama_fov",
                                              "camera.eye_separation",
-                                             "camera.convergence",  // of lenses
+                                             "camera.convergence",  // of pairs
                                              "camera.focus_distance",
                                              "camera.unit_mm",
                                              "output.samples"};  // of blurs
@@ -296,6 +295,7 @@ TEST_F(FrameHashTest, EveryOtherParameterCounts) {
         if (of_others.contains(key) || parameter.spec.key == "layer.dust.visible") continue;
         if (key.starts_with("camera.file_") || key.starts_with("environment.tile_")) continue;  // of no file
         if (parameter.spec.section == "Star image") continue;  // of layers that are stars
+        if (is_of_another_lens(parameter.spec, other.camera.projection)) continue;
         const Value value = parameter.get();
         if (parameter.spec.type != ParameterType::number && parameter.spec.type != ParameterType::boolean)
             continue;
@@ -405,23 +405,57 @@ TEST_F(FrameHashTest, AConfigurationCountsWhereAViewIsWritten) {
 
 TEST_F(FrameHashTest, KeysOfOtherLensesAndOfBlursThatAreOffAreLeftOut) {
     EXPECT_NE(changed([](Scene& s) { s.output.primaries = OutputParams::Primaries::acescg; }), hash(scene()));
-    for (const char* key : {"camera.eye", "camera.convergence", "camera.fisheye_tilt", "camera.panorama_fov",
-                            "camera.f_number", "camera.focus_distance", "camera.unit_mm", "output.samples"})
+    for (const char* key : {"camera.eye", "camera.convergence", "camera.fisheye_tilt", "camera.f_number",
+                            "camera.focus_distance", "camera.unit_mm", "output.samples"})
         EXPECT_EQ(text(scene()).find(key), std::string::npos) << key;
     EXPECT_NE(changed([](Scene& s) { s.camera.shift.x = 0.1; }), hash(scene()));
     EXPECT_NE(changed([](Scene& s) { s.camera.shutter = 90.0; }), hash(scene()));
     EXPECT_NE(changed([](Scene& s) { s.camera.f_number = 2.0; }), hash(scene()));
-    const auto of_lens = [&](Projection projection, auto change) {
-        return changed([&](Scene& s) {
-            s.camera.projection = projection;
-            change(s.camera);
-        });
-    };
-    const auto nothing = [](CameraParams&) {};
-    EXPECT_NE(of_lens(Projection::fisheye, [](CameraParams& c) { c.fisheye_tilt = 20.0; }),
-              of_lens(Projection::fisheye, nothing));
-    EXPECT_NE(of_lens(Projection::cylindrical, [](CameraParams& c) { c.panorama_fov = 200.0; }),
-              of_lens(Projection::cylindrical, nothing));
+}
+
+/// All numbers of the camera that a frame is seen with.
+std::vector<double> camera_numbers(const CameraParams& params) {
+    Bounds box;
+    box.add({-2.0, -1.0, -3.0});
+    box.add({1.0, 2.0, 0.5});
+    const Camera c = through_lens(make_camera(params, 640, 480, box), params, {0.3, -0.6}, 640);
+    std::vector<double> numbers{c.focal_px,  c.center_x_px, c.center_y_px, c.near,           c.far,
+                                c.near_fade, c.edge,        c.parallax,    c.target_distance};
+    for (int k = 0; k < 3; ++k) numbers.push_back(c.eye[k]);
+    for (int k = 0; k < 9; ++k) numbers.push_back(c.world_from_camera[k / 3][k % 3]);
+    return numbers;
+}
+
+// What the hash leaves out reaches no camera, and what it does not is left out of no other.
+TEST_F(FrameHashTest, ALensCountsWhereItIsTheCameras) {
+    std::map<std::string, std::set<bool>> counted;  // by key: of which projections
+    for (const Projection projection : test::all_values<Projection>)
+        for (const bool placed : {true, false}) {
+            Scene scene;
+            scene.camera.projection = projection;
+            scene.camera.eye = Eye::left;
+            scene.camera.f_number = 4.0;
+            scene.camera.focal_length = 0.0;
+            if (placed) scene.camera.position = glm::dvec3(1.0, 2.0, 30.0);
+            const std::vector<double> before = camera_numbers(scene.camera);
+            const std::string text = this->text(scene);
+            const Description description = describe(scene);
+            for (const Parameter& parameter : description.parameters) {
+                const std::string& key = parameter.spec.key.text();
+                const Value value = parameter.get();
+                if (!key.starts_with("camera.") || parameter.spec.type != ParameterType::number) continue;
+                const bool counts = text.find(key + " =") != std::string::npos;
+                counted[key].insert(counts);
+                if (counts) continue;
+                parameter.set(from_numbers(parameter.spec, {value.number() == 0.5 ? 0.75 : 0.5}));
+                EXPECT_EQ(camera_numbers(scene.camera), before) << key << ", " << name_of(projection);
+                parameter.set(value);
+            }
+        }
+    for (const char* key : {"camera.fisheye_fov", "camera.fisheye_tilt", "camera.panorama_fov",
+                            "camera.f_number", "camera.convergence", "camera.height"})
+        EXPECT_EQ(counted[key].size(), 2u) << key;
+    for (const char* key : {"camera.fov", "camera.near"}) EXPECT_EQ(counted[key], std::set{true}) << key;
 }
 
 TEST_F(FrameHashTest, MixingInDisplayValuesCountsWhereItIsDone) {

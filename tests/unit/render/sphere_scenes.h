@@ -38,19 +38,17 @@ inline glm::dvec3 direction(double longitude_deg, double latitude_deg) {
     return {real::cos(b) * real::sin(l), real::sin(b), -real::cos(b) * real::cos(l)};
 }
 
-/// Solid angle of a pixel in px of the middle of the frame; 0 where nothing is shown.
+/// Solid angle of a pixel in px of the middle of the frame, by how far apart the directions at its sides are;
+/// 0 where nothing is shown.
 inline double solid_angle(const Camera& camera, std::int64_t x, std::int64_t y) {
     const double x_px = double(x) + 0.5, y_px = double(y) + 0.5;
     if (!shows(camera, x_px, y_px)) return 0.0;
-    const double u = (x_px - camera.center_x_px) / camera.focal_px,
-                 v = (y_px - camera.center_y_px) / camera.focal_px;
-    if (camera.projection == Projection::fisheye) {
-        const double angle = std::sqrt(u * u + v * v);
-        return angle > 0.0 ? real::sin(angle) / angle : 1.0;
-    }
-    if (camera.projection == Projection::cylindrical) return 1.0 / ((1.0 + v * v) * std::sqrt(1.0 + v * v));
-    const double half = 0.5 / camera.focal_px;
-    return camera.focal_px * (real::sin(v + half) - real::sin(v - half));
+    constexpr double half = 0.5;
+    const auto toward = [&](double right, double down) {
+        return ray_direction(camera, x_px + half * right, y_px + half * down);
+    };
+    const glm::dvec3 wide = toward(1.0, 0.0) - toward(-1.0, 0.0), high = toward(0.0, 1.0) - toward(0.0, -1.0);
+    return camera.focal_px * camera.focal_px * glm::length(glm::cross(wide, high));
 }
 
 /// Of every pixel, row by row: for pictures of one camera after the other.

@@ -89,7 +89,7 @@ TEST(Animate, CurvesAndListElements) {
 }
 
 TEST(Animate, EveryAnimatableParameterHoldsItsKey) {
-    Scene scene = parse(full_scene);
+    Scene scene = parse(full_scene());
     int animated_parameters = 0;
     for (const Parameter& parameter : describe(scene).parameters) {
         const Value value = parameter.get();

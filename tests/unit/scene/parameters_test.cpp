@@ -195,7 +195,7 @@ TEST(DescriptionTest, NoTwoParametersOfALayerOrOfTheSceneHaveOneName) {
 }
 
 TEST(DescriptionTest, ConditionsNameParametersAndValuesTheyTake) {
-    Scene scene = parse(full_scene);
+    Scene scene = parse(full_scene());
     const Description description = describe(scene);
     int conditions = 0;
     for (const Parameter& parameter : description.parameters)

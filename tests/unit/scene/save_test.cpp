@@ -220,7 +220,7 @@ Scene changed(const Scene& scene, std::size_t index, std::uint32_t seed) {
 }
 
 TEST(Save, EveryParameterSurvives) {
-    for (const char* original : {commented, full_scene}) {
+    for (const std::string& original : {std::string(commented), full_scene()}) {
         Scene scene = parse(original);
         const std::size_t count = describe(scene).parameters.size();
         std::size_t edits = 0;

@@ -7,8 +7,10 @@
 
 namespace astrosplat::test {
 
-/// Every key of the manual at its default, as an artist would write it down.
-extern const char* const full_scene;
+/// All defaults of one layer, "stars", with an element in each list.
+Scene scene_of_defaults();
+/// The text that says so, with every described key.
+std::string full_scene();
 
 /// One layer, nothing else.
 inline std::string small_scene(const std::string& layer_rest = "") {
