@@ -2,7 +2,7 @@
 // near to far, going on from where the slab before left the pixels. 32 splats at a time are read and their cubics
 // interpolated; then parts of 4 x 4 px fold those that touch them. KIND is the number of the FoldKind; ANY: records of any
 // mix of layers, SHAPED: some are not round. Else records are plain: SCREEN: all are screens, LINEAR: profiles run over the
-// distance. Needs maths.glsl, blend.glsl and footprint.glsl.
+// distance. Needs maths.glsl, blend.glsl, lens.glsl and footprint.glsl.
 layout(local_size_x = 256) in;
 layout(std430, binding = 1) readonly buffer Records { vec4 record[]; };
 layout(std430, binding = 2) readonly buffer Entries { uint entry[]; };

@@ -1,8 +1,8 @@
 // A layer's splats onto the frame, and those that touch the region into records: slab by slab of depth from near to far, in
 // a slab in the order of the splats. PASS 0: between which depths a sample lies; 1: how many of it each bin of depth has; 2:
-// how many splats each group of 256 leaves in each slab; 3: the records, of all slabs or of the `only` one; 4: which splats are left to the processor, because
-// level of detail divides them or they are stars that stay points. As engine/render/project_vector.cpp and
-// fold_prepare-inl.h. Needs projection.glsl, blend.glsl and footprint.glsl. ANY: records with what any mix of layers asks
+// how many splats each group of 256 leaves in each slab; 3: the records, of all slabs or of the `only` one; 4: which splats
+// are left to the processor, because level of detail divides them or they are stars that stay points. As
+// engine/render/project_vector.cpp and fold_prepare-inl.h. Needs projection.glsl, blend.glsl and footprint.glsl. ANY: records with what any mix of layers asks
 // for. GIVEN: splats that the processor has projected. RANKS: places in the order of ties are kept.
 layout(local_size_x = 256) in;
 #ifdef GIVEN

@@ -21,8 +21,9 @@ constexpr std::int64_t fitted_width = 240;  // px
 // What is compact, by the median around it.
 bool stands_out(const Image& grey, const Image& median, std::int64_t x, std::int64_t y) {
     const auto brighter = [&](std::int64_t i, std::int64_t j) {
-        return i >= 0 && j >= 0 && i < grey.width &&
-               j<grey.height&& * grey.at(i, j)> 1.35f * *median.at(i, j) + 0.02f;
+        if (i < 0 || j < 0 || i >= grey.width || j >= grey.height) return false;
+        const float own = *grey.at(i, j), around = *median.at(i, j);
+        return own > 1.35f * around + 0.02f;
     };
     return brighter(x, y) || brighter(x - 1, y) || brighter(x + 1, y) || brighter(x, y - 1) ||
            brighter(x, y + 1);

@@ -1,6 +1,6 @@
 // The seven operators of DESIGN 5, in order: SplatSet + Look -> ShadedSplats. The arithmetic of one splat is
-// shaders/shared/look.glsl, which the preview compiles too; this prepares its uniforms and runs it over the
-// set. Gaussians have more than other splats: colours that depend on where they are seen from, which come
+// shaders/shared/look.glsl, which cards compile too; this prepares its uniforms and runs it over the set.
+// Gaussians have more than other splats: colours that depend on where they are seen from, which come
 // before the look, and shapes, which come after it.
 #pragma once
 

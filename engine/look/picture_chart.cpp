@@ -26,7 +26,7 @@ struct SurfaceMetric {
     double area = 0.0;                    // square scene units under a unit square of u and v; 0: not known
 };
 
-// A map's value as the kernel and the preview read it.
+// A map's value as the kernel and cards read it.
 glm::vec3 map_value(const Image& map, const glm::vec2& uv) {
     const int width = int(map.width), height = int(map.height);
     const float x = shared::look_texel(uv.x, width), y = shared::look_texel(1.0f - uv.y, height);

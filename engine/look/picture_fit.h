@@ -1,6 +1,6 @@
 // match = "picture": a front view shows the light of the picture, whichever of its positions became splats
 // and however wide they are. A set's pictures are grids of cells about as small as its splats' footprints,
-// one grid for each mesh. In: a set, and its look by the preview's arithmetic (look.glsl), for a splat's
+// one grid for each mesh. In: a set, and its look by the arithmetic of one splat (look.glsl), for a splat's
 // chances rather than its fate. Out: grids, sums over the positions of a cell, values blurred by the
 // footprints, neither beyond a picture's edges nor into another mesh's; in the end factors of alpha and
 // colour for each splat that is kept.

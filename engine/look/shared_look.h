@@ -1,4 +1,4 @@
-// shaders/shared/look.glsl as C++, in astrosplat::shared like the maths: the look of one splat as the preview
+// shaders/shared/look.glsl as C++, in astrosplat::shared like the maths: the look of one splat as a card
 // computes it. Each translation unit gets its own copy with internal linkage.
 #pragma once
 

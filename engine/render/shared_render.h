@@ -1,4 +1,4 @@
-// The renderer's maths that the preview's shaders share, as C++: projections, falloffs, blending and
+// The renderer's maths that a card's programs share, as C++: projections, falloffs, blending and
 // footprints in astrosplat::shared; projections and footprints with doubles in astrosplat::exact.
 #pragma once
 

@@ -1,6 +1,6 @@
 // Footprints: the sums that bring a splat's light to what it shall be. A profile P(u) falls over u in [0, 1], which
 // runs over the distance d from the centre, or over d^2, from `lo` to `hi`; inside lo it is 1. The tables hold moments
-// of P and its spectrum for 32 radii an octave. Needs instance.glsl and lens.glsl.
+// of P and its spectrum for 32 radii an octave. Needs lens.glsl.
 
 const float FOOTPRINT_PI = 3.14159265f;
 const float SMALLEST_RADIUS_PX = 1.0f / 64.0f;  // below, the shape is that of this radius and the light is as R^2

@@ -2,12 +2,6 @@
 // before it are its steps, which the engine runs over blocks of splats, one step at a time, to the same bits. Needs
 // maths.glsl, noise.glsl and look_uniforms.glsl.
 
-// Bounds of loops; a program that is made for one look may need less, and software rasterisers run every step.
-const int LOOK_STOPS = LOOK_MAX_STOPS;
-const int LOOK_NOISES = LOOK_MAX_NOISES;
-const int LOOK_POINTS = LOOK_MAX_POINTS;
-const int LOOK_CROPS = LOOK_MAX_CROPS;
-
 // --- profiles over x ---
 
 // Published fit of the nebula S106: three straight pieces, 0 from 1 on.
@@ -43,7 +37,7 @@ float look_curve_piece(vec4 a, vec4 b, float x) {
 float look_curve(LookCurve curve, float x) {
     vec4 a = curve.knots[0];
     vec4 b = curve.knots[0];
-    for (int k = 0; k < LOOK_POINTS - 1; ++k) {
+    for (int k = 0; k < LOOK_MAX_POINTS - 1; ++k) {
         bool reached = k + 1 < curve.count && x >= curve.knots[k].x;
         a = reached ? curve.knots[k] : a;
         b = reached ? curve.knots[k + 1] : b;
@@ -227,18 +221,18 @@ float look_noise(LookNoise noise, vec3 p) {
 vec3 look_across(vec3 p, vec3 axis) { return p - axis * dot(p, axis); }
 
 LookOutput look_splat(LookUniforms u, LookInput s) {
-    float n[LOOK_NOISES];
+    float n[LOOK_MAX_NOISES];
     float scale = 0.0f;
     float density = 0.0f;
     float column = 0.0f;
     float weight_sum = 0.0f;
-    float weight[LOOK_STOPS];
+    float weight[LOOK_MAX_STOPS];
     float reach = 1.0f;
     float culled = 1.0f;
     float along = 0.0f;
     float alpha_factor = 1.0f;
     float color_factor = 1.0f;
-    for (int j = 0; j < LOOK_NOISES; ++j) {
+    for (int j = 0; j < LOOK_MAX_NOISES; ++j) {
         if (j < u.noise_count) {
             n[j] = look_noise(u.noises[j], s.position);
             if (u.noises[j].silhouette != 0.0f) {
@@ -252,13 +246,13 @@ LookOutput look_splat(LookUniforms u, LookInput s) {
         }
     }
 
-    for (int k = 0; k < LOOK_STOPS; ++k) {
+    for (int k = 0; k < LOOK_MAX_STOPS; ++k) {
         if (k < u.stop_count) {
             weight[k] = look_weight(s.map_value.x, s.map_value.y, s.map_value.z, u.stops[k].color);
             weight_sum = weight_sum + weight[k];
         }
     }
-    for (int k = 0; k < LOOK_STOPS; ++k) {
+    for (int k = 0; k < LOOK_MAX_STOPS; ++k) {
         if (k < u.stop_count) {
             weight[k] = u.stop_count > 1 ? as_div(weight[k], weight_sum) : 1.0f;
             scale = scale + weight[k] * u.stops[k].scale;
@@ -268,10 +262,10 @@ LookOutput look_splat(LookUniforms u, LookInput s) {
     reach = u.reach * scale * reach;
     float x = look_x(s.from_surface, reach);
     float cropped = 1.0f;
-    for (int j = 0; j < LOOK_CROPS; ++j) {
+    for (int j = 0; j < LOOK_MAX_CROPS; ++j) {
         if (j < u.crop_count) cropped = cropped * look_crop(u.crops[j], s.position.x, s.position.y, s.position.z);
     }
-    for (int k = 0; k < LOOK_STOPS; ++k) {
+    for (int k = 0; k < LOOK_MAX_STOPS; ++k) {
         if (k < u.stop_count) density = density + weight[k] * look_profile(u.stops[k].pdf, x);
     }
 

@@ -1,7 +1,7 @@
 // The look of one layer once its scene keys are resolved: plain numbers in fixed-size arrays, the
 // same struct in C++ and in a shader. engine/look/prepare.h fills it; look.glsl reads it. Members stand in rows of
 // four words, vec3 before its float, and every struct is whole rows: so std140 places them as C++ does, and the
-// preview copies the struct as it is. engine/look/shared_uniforms.h checks the rows.
+// card gets the struct as it is. engine/look/shared_uniforms.h checks the rows.
 
 const int LOOK_MAX_STOPS = 8;     // thickness stops
 const int LOOK_MAX_NOISES = 4;   // entries of the noise list
