@@ -8,6 +8,7 @@
 #include <glm/gtc/quaternion.hpp>
 #include <set>
 
+#include "camera/framing.h"
 #include "camera/keyframe.h"
 #include "core/real.h"
 #include "core/rotation.h"

@@ -6,7 +6,7 @@
 
 #include <sstream>
 
-#include "camera/camera.h"
+#include "camera/framing.h"
 #include "core/error.h"
 #include "core/file.h"
 #include "edit/edits.h"

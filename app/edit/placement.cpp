@@ -6,6 +6,7 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
+#include "camera/framing.h"
 #include "camera/projection.h"
 #include "core/real.h"
 #include "core/rotation.h"

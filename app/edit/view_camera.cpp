@@ -2,6 +2,7 @@
 
 #include <glm/geometric.hpp>
 
+#include "camera/framing.h"
 #include "camera/projection.h"
 #include "core/error.h"
 #include "core/real.h"

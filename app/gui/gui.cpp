@@ -4,7 +4,7 @@
 #include <unistd.h>
 
 #include "gui/file_dialog.h"
-#include "gui/panel/context.h"
+#include "gui/panel/panel.h"
 #include "gui/parts.h"
 #include "gui/timeline.h"
 #include "gui/viewport.h"

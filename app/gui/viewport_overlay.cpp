@@ -5,6 +5,7 @@
 
 #include <numeric>
 
+#include "camera/framing.h"
 #include "edit/placement.h"
 #include "edit/view_camera.h"
 #include "gui/widgets.h"

@@ -1,6 +1,6 @@
-// Files beside the sets. Small images, read in the background: thumbnails of a folder, frames of the
-// output while they are played, the finished frame of a job. And those that a scene names: pictures that
-// views share, the configuration of OpenColorIO, and what becomes of files that change.
+// Files beside the sets. Small images, read in the background: thumbnails of a folder, played frames of the
+// output, the finished frame of a job. And those that a scene names: pictures that views share, the
+// configuration of OpenColorIO, and what becomes of files that change.
 #pragma once
 
 #include <exception>
@@ -108,10 +108,9 @@ class PictureFiles {
     void load(const EnvironmentParams& params);
 
     std::map<std::pair<fs::path, Derived>, std::unique_ptr<Image>> maps_;  // null: to be read
-    std::vector<std::unique_ptr<Image>> old_maps_;  // so that new ones do not get their addresses
-    /// The comparison may have another one; with the worker's lock.
-    std::map<EnvironmentParams, Sky, ByPictures> skies_;
-    std::optional<EnvironmentParams> wanted_;  // asked for last; with the lock
+    std::vector<std::unique_ptr<Image>> old_maps_;        // so that new ones do not get their addresses
+    std::map<EnvironmentParams, Sky, ByPictures> skies_;  // with the lock; the comparison may have another
+    std::optional<EnvironmentParams> wanted_;             // asked for last; with the lock
     Worker worker_{[this] { return next_sky(); }};
 };
 

@@ -1,11 +1,12 @@
-// CameraParams -> Camera: the axes from target, up and roll or from a quaternion, the focal length in pixels,
-// and the position that frames a box. Everything in double, with the engine's own trigonometry.
+// CameraParams -> Camera: the axes from target, up and roll or from a quaternion, and the focal length in
+// pixels. Everything in double, with the engine's own trigonometry.
 #include "camera/camera.h"
 
 #include <fmt/format.h>
 
 #include <glm/geometric.hpp>
 
+#include "camera/framing.h"
 #include "camera/projection.h"
 #include "core/error.h"
 #include "core/real.h"
@@ -44,8 +45,6 @@ void move_to_eye(Camera& camera, const CameraParams& params) {
     turn(axes[0], axes[2], -real::atan2(sine, std::sqrt(1.0 - sine * sine)));
 }
 
-constexpr double framing_elevation_deg = 35.0;
-constexpr double framing_fill = 0.9;    // share of the frame's width or height a framed box fills
 constexpr double parallel_sine = 1e-9;  // below this sine two directions count as parallel
 
 void expect(bool good, const char* key, const char* expected, double found) {
@@ -91,39 +90,6 @@ glm::dmat3 look_along(const glm::dvec3& view, glm::dvec3 up, double roll_deg) {
     glm::dvec3 above = glm::cross(back, right);
     turn(right, above, real::radians(roll_deg));
     return glm::dmat3(right, above, back);
-}
-
-// Half the frame's height at distance 1.
-double half_height(const CameraParams& params, double aspect) {
-    if (params.focal_length > 0.0) return 0.5 * params.film_width / params.focal_length / aspect;
-    return real::tan(real::radians(params.fov) * 0.5);
-}
-
-Framing frame_box_within(const Bounds& box, const glm::dmat3& world_from_camera, double tan_y,
-                         double aspect) {
-    const Bounds framed = box_to_frame(box);
-    const glm::dvec3 &right = world_from_camera[0], &above = world_from_camera[1],
-                     &back = world_from_camera[2];
-    Framing framing{{}, framed.center(), 0.0};
-    double distance = 0.0;
-    for (int corner = 0; corner < 8; ++corner) {
-        const glm::dvec3 p = framed.corner(corner) - framing.target;
-        // The frame's height that just holds this corner, at the corner's own depth.
-        double height = 2.0 *
-                        std::fmax(std::fabs(glm::dot(right, p)) / aspect, std::fabs(glm::dot(above, p))) /
-                        framing_fill;
-        framing.height = std::fmax(framing.height, height);
-        distance = std::fmax(distance, glm::dot(back, p) + 0.5 * height / tan_y);
-    }
-    framing.position = framing.target + back * distance;
-    return framing;
-}
-
-/// Where a camera without a position looks from.
-glm::dmat3 framing_direction() {
-    const double elevation = real::radians(framing_elevation_deg);
-    const glm::dvec3 back(0.0, real::sin(elevation), real::cos(elevation));
-    return {glm::dvec3(1.0, 0.0, 0.0), glm::dvec3(0.0, back.z, -back.y), back};
 }
 
 glm::dmat3 orientation(const CameraParams& params, const glm::dvec3& position, const glm::dvec3& target) {
@@ -235,30 +201,6 @@ glm::dvec3 ray_direction(const Camera& camera, double x_px, double y_px) {
 }
 
 double pixel_spread(const Camera& camera) { return exact::pixel_spread(make_exact_lens(camera)); }
-
-Framing frame_box(const Bounds& box, double vertical_fov_deg, double aspect) {
-    return frame_box(box, framing_direction(), vertical_fov_deg, aspect);
-}
-
-Framing frame_box(const Bounds& box, const CameraParams& params, double aspect) {
-    return frame_box_within(box, framing_direction(), half_height(params, aspect), aspect);
-}
-
-Framing frame_box(const Bounds& box, const glm::dmat3& world_from_camera, double vertical_fov_deg,
-                  double aspect) {
-    const double tan_y = real::tan(real::radians(vertical_fov_deg) * 0.5);
-    return frame_box_within(box, world_from_camera, tan_y, aspect);
-}
-
-Bounds box_to_frame(const Bounds& box) {
-    Bounds framed = box;
-    if (framed.empty()) framed.add(glm::dvec3(0.0));
-    if (glm::length(framed.extent()) == 0.0) {
-        framed.lo -= 0.5;
-        framed.hi += 0.5;
-    }
-    return framed;
-}
 
 // OpenEXR's camera space is left-handed, z forward; its NDC has (0, 0) at the display window's upper left
 // corner and (1, 1) at the lower right one (OpenEXR, Standard Attributes: worldToCamera, worldToNDC).

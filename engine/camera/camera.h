@@ -111,22 +111,6 @@ glm::dvec3 ray_direction(const Camera& camera, double x_px, double y_px);
 /// 0 where rays are parallel.
 double pixel_spread(const Camera& camera);
 
-/// Position and target that frame a box from 35 degrees above +z with the given vertical field of view: its
-/// corners fill 90 % of the frame's width or height. An empty box counts as the origin, a point as a cube
-/// of side 1.
-struct Framing {
-    glm::dvec3 position, target;
-    double height;  // orthographic height that frames the same
-};
-Framing frame_box(const Bounds& box, double vertical_fov_deg, double aspect);
-/// As a camera without a position looks at a box, through its own lens.
-Framing frame_box(const Bounds& box, const CameraParams& params, double aspect);
-/// The same seen along another direction; `world_from_camera` has the columns right, up, back.
-Framing frame_box(const Bounds& box, const glm::dmat3& world_from_camera, double vertical_fov_deg,
-                  double aspect);
-/// The box that frame_box frames: the origin for an empty box, a cube of side 1 around a point.
-Bounds box_to_frame(const Bounds& box);
-
 /// 4x4 row-major matrices as OpenEXR defines them (row vectors: p * M): camera space is left-handed with z
 /// forward; NDC, after division by w, runs from (0, 0) at the upper left to (1, 1) at the lower right of the
 /// whole frame.

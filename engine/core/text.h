@@ -12,8 +12,7 @@ namespace astrosplat {
 /// `text` without spaces, tabs and line ends at both ends.
 std::string_view trim(std::string_view text);
 
-/// `text` fit for a terminal and for one line: control characters, which file names may hold,
-/// as "\\n", "\\x1b".
+/// `text` fit for one line of a terminal: control characters, as of file names, as "\\n", "\\x1b".
 std::string printable(std::string_view text);
 
 /// "1 frame", "12 frames", of a noun that takes an s.

@@ -70,8 +70,7 @@ std::vector<TrackHandles> handles_of(const Track& track, const ParameterSpec& sp
         }
     };
     if (spec.type == ParameterType::position) {
-        const std::vector<Keyframe<glm::dvec3>> keyframes = position_keyframes(track);
-        fill(keyframes, [](Handle<std::vector<double>>& handle, const Handle<glm::dvec3>& h) {
+        fill(position_keyframes(track), [](Handle<std::vector<double>>& handle, const Handle<glm::dvec3>& h) {
             handle = {h.kind, h.frames, {h.value.x, h.value.y, h.value.z}};
         });
         return result;

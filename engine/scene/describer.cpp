@@ -1,10 +1,7 @@
 // The checks behind Field<T>: a Value either fits a parameter or is refused with what was expected and found.
 #include "scene/describer.h"
 
-#include "scene/parameter_key.h"
-
 namespace astrosplat {
-
 namespace {
 
 [[noreturn]] void refuse(const std::string& expected, const std::string& found) {

@@ -1,5 +1,5 @@
 // One line for each thing that a generated set depends on.
-#include "sets/kept.h"
+#include "sets/recipe.h"
 
 #include <fmt/format.h>
 

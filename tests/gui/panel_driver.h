@@ -4,7 +4,7 @@
 
 #include <imgui.h>
 
-#include "gui/panel/context.h"
+#include "gui/panel/panel.h"
 #include "gui/software_draw.h"
 
 namespace astrosplat {

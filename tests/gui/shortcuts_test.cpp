@@ -1,7 +1,7 @@
 // Shortcuts pressed over the window: what they change and ask for.
 #include "edit/edits.h"
 #include "edit/view_camera.h"
-#include "gui/panel/context.h"
+#include "gui/panel/panel.h"
 #include "gui/parts.h"
 #include "gui/test_window.h"
 #include "gui/widgets.h"

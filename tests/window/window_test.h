@@ -4,7 +4,7 @@
 
 #include <csignal>
 
-#include "gui/panel/context.h"
+#include "gui/panel/panel.h"
 #include "gui/test_window.h"
 #include "scene/load.h"
 #include "support/run_program.h"

@@ -1,4 +1,5 @@
 // The panel as a whole: the layers with the tabs of the selected one, or the tabs of the scene.
+#include "gui/panel/panel.h"
 
 #include "gui/panel/parts.h"
 

@@ -3,6 +3,7 @@
 
 #include <glm/matrix.hpp>
 
+#include "camera/framing.h"
 #include "camera/projection.h"
 #include "core/rotation.h"
 #include "support/test.h"

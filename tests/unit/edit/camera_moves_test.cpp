@@ -1,7 +1,7 @@
 // Keyframes as they are edited, of cameras and of any track, and camera moves.
 #include "edit/view_camera.h"
 
-#include "camera/camera.h"
+#include "camera/framing.h"
 #include "edit/document.h"
 #include "edit/edits.h"
 #include "scene/animate.h"
