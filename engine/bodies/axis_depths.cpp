@@ -53,9 +53,11 @@ struct Elsewhere {
     float thin = 0.0f;  // in the middle
 };
 Elsewhere elsewhere_of(const Image& rings) {
-    constexpr double blur = 0.08, near_share = 0.02, thin_share = 2e-4;
+    // Little beside rings, which have their light to themselves; much beside nothing: shares of blurred light
+    // and of that of bright rings.
+    constexpr double blur = 0.08, near_share = 0.02, thin_share = 2e-4, bright_ones = 0.99;
     Image sum = mean_of_channels(rings);
-    const double bright = percentile({sum.pixels.begin(), sum.pixels.end()}, 0.99);
+    const double bright = percentile({sum.pixels.begin(), sum.pixels.end()}, bright_ones);
     Elsewhere e{gaussian_blur(sum, blur * double(rings.width)), float(thin_share * bright) + 1e-12f};
     for (float& value : e.near.pixels) value *= float(near_share);
     return e;
@@ -67,6 +69,8 @@ constexpr int sight_samples = 192;  // along a line of sight
 void set_depths(const Sight& sight, const Elsewhere& elsewhere, double farthest, double width, float* depths,
                 float* seen) {
     constexpr float thin_depth = 0.06f;  // picture widths
+    constexpr float outermost =
+        0.004f;  // of a line's light on either side: what is beyond is next to nothing
     std::array<float, sight_samples + 1> behind{};
     const double step = 2.0 * farthest / sight_samples;
     glm::vec3 all(0.0f);
@@ -83,8 +87,7 @@ void set_depths(const Sight& sight, const Elsewhere& elsewhere, double farthest,
     for (int c = 0; c < 3; ++c) seen[c] = all[c] * float(step);
     int k = 0;
     for (int i = 0; i <= AxisDepths::steps; ++i) {
-        // The outermost: what is beyond is next to nothing.
-        const float share = std::clamp(float(i) / float(AxisDepths::steps), 0.004f, 0.996f);
+        const float share = std::clamp(float(i) / float(AxisDepths::steps), outermost, 1.0f - outermost);
         const float wanted = share * behind[sight_samples];
         while (k + 1 < sight_samples && behind[std::size_t(k) + 1] < wanted) ++k;
         const float part = behind[std::size_t(k) + 1] - behind[std::size_t(k)];

@@ -21,10 +21,11 @@ constexpr double steepest_deg = 80.0;
 
 // The picture small, and above what its sky shines: the least twentieth of each channel.
 Image small_above_sky(const Image& picture) {
+    constexpr double sky_share = 0.05;
     Image light = reduced_to_width(picture, fit_width);
     for (int c = 0; c < light.channels; ++c) {
         const Image one = channel_of(light, c);
-        const auto sky = float(percentile({one.pixels.begin(), one.pixels.end()}, 0.05));
+        const auto sky = float(percentile({one.pixels.begin(), one.pixels.end()}, sky_share));
         change_pixels(light, [&](float* p) { p[c] = std::max(0.0f, p[c] - sky); });
     }
     return light;
@@ -73,15 +74,20 @@ struct Symmetric {
     double value = -1.0;
 };
 
-// The most symmetric of lines up to `across_px` beside one and turned against it by up to `turn`.
-Symmetric best_about(const Image& root, const Line& line, double across_px, double step_px,
-                     double turn = 0.0) {
+// How far across a line others are tried, and in what steps.
+struct Search {
+    double far_px, step_px;
+};
+
+// The most symmetric of lines beside one and turned against it by up to `turn`.
+Symmetric best_about(const Image& root, const Line& line, const Search& search, double turn = 0.0) {
     constexpr int turns = 6;  // to either side
-    const int steps = int(across_px / step_px), most = turn > 0.0 ? turns : 0, lines = 2 * steps + 1;
+    const int steps = int(search.far_px / search.step_px), most = turn > 0.0 ? turns : 0,
+              lines = 2 * steps + 1;
     std::vector<Symmetric> tried(std::size_t(lines) * std::size_t(2 * most + 1));
     parallel_for(std::int64_t(tried.size()), [&](std::int64_t i, int) {
         Symmetric& one = tried[std::size_t(i)];
-        one.line = {line.place + (double(i % lines) - steps) * step_px * line.across(),
+        one.line = {line.place + (double(i % lines) - steps) * search.step_px * line.across(),
                     line.angle + (double(i / lines) - most) / turns * turn};
         one.value = symmetry(root, one.line);
     });
@@ -108,9 +114,13 @@ std::vector<Line> likely_axes(const Image& light, std::optional<double> angle) {
     const Image coarse = reduced_by_area(root, (root.width + 1) / coarser, (root.height + 1) / coarser);
     const glm::dvec2 middle = middle_of_light(coarse), finer(double(root.width) / double(coarse.width),
                                                              double(root.height) / double(coarse.height));
+    // About the middle of the light; about what was found there, also turned by an angle's step; and along
+    // it.
+    constexpr Search first{8.0, 1.0}, second{2.0, 0.5}, lengthwise{24.0, 1.0};
+    const double turn = angle ? 0.0 : real::radians(180.0 / angles);
     std::vector<Symmetric> found;
     for (int k = 0; k < (angle ? 1 : angles); ++k)
-        found.push_back(best_about(coarse, {middle, angle.value_or(real::pi * k / angles)}, 8.0, 1.0));
+        found.push_back(best_about(coarse, {middle, angle.value_or(real::pi * k / angles)}, first));
     std::vector<std::size_t> peaks;
     for (std::size_t k = 0, n = found.size(); k < n; ++k)
         if (found[k].value >= found[(k + n - 1) % n].value && found[k].value >= found[(k + 1) % n].value)
@@ -121,8 +131,8 @@ std::vector<Line> likely_axes(const Image& light, std::optional<double> angle) {
     std::vector<Line> axes;
     for (const std::size_t k : peaks) {
         const Line start{finer * found[k].line.place, found[k].line.angle};
-        Line axis = best_about(root, start, 2.0, 0.5, angle ? 0.0 : real::radians(3.0)).line;
-        axis.place = best_about(root, {axis.place, axis.angle + 0.5 * real::pi}, 24.0, 1.0).line.place;
+        Line axis = best_about(root, start, second, turn).line;
+        axis.place = best_about(root, {axis.place, axis.angle + 0.5 * real::pi}, lengthwise).line.place;
         axes.push_back(axis);
     }
     return axes;
@@ -151,14 +161,15 @@ glm::dvec2 reach_of(const Image& light, const Line& axis) {
             along.emplace_back(std::fabs(from.x * v.x + from.y * v.y), sum);
             all += sum;
         }
+    constexpr double all_but = 1.0 / 60.0, margin_px = 2.0, least_px = 4.0;
     const auto farthest = [&](auto& values) {
         std::ranges::sort(values);
         double sum = 0.0;
         for (const auto& [distance, amount] : values)
-            if ((sum += amount) >= all * (1.0 - 1.0 / 60.0)) return distance + 2.0;
+            if ((sum += amount) >= all * (1.0 - all_but)) return distance + margin_px;
         return values.back().first;
     };
-    return {std::max(4.0, farthest(across)), std::max(4.0, farthest(along))};
+    return {std::max(least_px, farthest(across)), std::max(least_px, farthest(along))};
 }
 
 Folded folded(const Image& light, const Line& axis, const glm::dvec2& reach, double step_px) {
@@ -278,7 +289,8 @@ struct Solved {
 Solved solved(const Folded& f, const std::vector<glm::vec3>& light, const Rings& rings, int rounds) {
     float brightest = 0.0f;
     for (const glm::vec3& p : light) brightest = std::max({brightest, p.x, p.y, p.z});
-    const float little = 1e-4f * brightest + 1e-12f;
+    constexpr float little_share = 1e-4f;  // added to both sides of a ratio: noise of a dark sky is no ring
+    const float little = little_share * brightest + 1e-12f;
     const std::vector<float> counted = given_to_rings(rings, f.weight);
     Solved s;
     s.light.assign(counted.size(), glm::vec3(brightest / float(rings.heights)));
@@ -349,12 +361,13 @@ struct LikelyAxis {
 LikelyAxis best_axis(const Image& light, const GivenAxis& given) {
     constexpr int rounds = 20;
     constexpr double asymmetry = 0.3, lines = 32.0;  // within the reach
+    constexpr double tilt_step_deg = 10.0;           // enough to tell axes apart; set_tilt() looks closer
     std::optional<LikelyAxis> best;
     double least = 0.0;
     for (const Line& axis : likely_axes(light, given.angle)) {
         LikelyAxis one{axis, reach_of(light, axis), {}};
         one.folded = folded(light, axis, one.reach, std::max(one.reach.x, one.reach.y) / lines);
-        const std::vector<Tried> tried = tried_tilts(one.folded, 10.0, given.tilt_deg, rounds);
+        const std::vector<Tried> tried = tried_tilts(one.folded, tilt_step_deg, given.tilt_deg, rounds);
         const Tried& tilt = *std::ranges::min_element(tried, {}, &Tried::of_common);
         const double left =
             std::lerp(tilt.of_common, tilt.of_sides, asymmetry) * std::sqrt(one.reach.x / one.reach.y);
@@ -369,8 +382,12 @@ LikelyAxis best_axis(const Image& light, const GivenAxis& given) {
 // tilted as it is, and then grows slowly. An ellipsoid leaves as little at any that is not too steep: then it
 // is one of the gentle ones.
 void set_tilt(const std::vector<Tried>& tried, AxisFit& fit) {
-    constexpr double as_good = 1.4, along = 0.65, about_as_good = 1.5, noise = 5e-5, by_rule = 15.0,
-                     rule_to = 30.0;
+    // Times what the best leaves, and where between the first and the last of these; axis_fit_test's painted
+    // bodies hold them to it.
+    constexpr double as_good = 1.4, along = 0.65;
+    // Times that and some rounding: what cannot be told apart. Where that begins so gently, so gentle at
+    // most.
+    constexpr double about_as_good = 1.5, noise = 5e-5, gentle_deg = 15.0, gentlest_deg = 30.0;
     const auto best = std::ranges::min_element(tried, {}, &Tried::of_common);
     const auto worse = [&](const Tried& one) { return one.of_common > as_good * best->of_common; };
     const auto last = std::find_if(best, tried.end(), worse) - 1;
@@ -382,7 +399,8 @@ void set_tilt(const std::vector<Tried>& tried, AxisFit& fit) {
         fit.tilt_from_deg = std::min(fit.tilt_from_deg, one.tilt_deg);
         fit.tilt_to_deg = one.tilt_deg;
     }
-    if (!fit.tilt_is_sure() && fit.tilt_from_deg <= by_rule) fit.tilt_deg = std::min(fit.tilt_deg, rule_to);
+    if (!fit.tilt_is_sure() && fit.tilt_from_deg <= gentle_deg)
+        fit.tilt_deg = std::min(fit.tilt_deg, gentlest_deg);
 }
 
 // The mean difference of mirrored places over that of any two (Gini 1912), from 1: a share of what is uneven,
@@ -435,6 +453,7 @@ std::string symmetry_words(const AxisFit& fit) {
 
 AxisFit fit_axis(const Image& picture, const GivenAxis& given) {
     constexpr int rounds = 150;
+    constexpr double tilt_step_deg = 5.0;
     const Image light = small_above_sky(picture);
     const LikelyAxis best = best_axis(light, given);
     AxisFit fit;
@@ -445,7 +464,7 @@ AxisFit fit_axis(const Image& picture, const GivenAxis& given) {
     if (given.tilt_deg)
         fit.tilt_deg = fit.tilt_from_deg = fit.tilt_to_deg = *given.tilt_deg;
     else
-        set_tilt(tried_tilts(best.folded, 5.0, {}, rounds), fit);
+        set_tilt(tried_tilts(best.folded, tilt_step_deg, {}, rounds), fit);
     set_rings(light, best, fit);
     return fit;
 }

@@ -33,6 +33,7 @@ constexpr float certain_depth = 0.1f;  // optical depth from which no splat is l
 // Optical depth of the sheet's middle line, and how far that stands out, bent by waves of its own so that
 // edge-on it is torn and not ruled.
 void bend(const Placement& placement, DepthBlock& block) {
+    // Waves, texels at a width of 1920, and their heights, of H.
     DepthBlock bent = block;
     noise_sum(waves(placement, 3, {{160.0, 0.15}, {70.0, 0.1}, {30.0, 0.04}}), bent);
     for (int i = 0; i < block.count; ++i) {

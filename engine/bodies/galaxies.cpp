@@ -19,7 +19,8 @@ namespace {
 // What the scene says of one galaxy, where it says it.
 GalaxyPlane as_told(const GalaxyParams& told, const GalaxyPlane& found, double height_over_width) {
     GalaxyPlane plane = found;
-    if (told.inclination) plane.inclination_deg = std::min(*told.inclination, 89.9);
+    constexpr double nearly_edge_on_deg = 89.9;  // a plane that is a line has no place for what is seen on it
+    if (told.inclination) plane.inclination_deg = std::min(*told.inclination, nearly_edge_on_deg);
     if (told.center) {
         plane.x = told.center->x;
         plane.y = (1.0 - told.center->y) * height_over_width;
@@ -85,13 +86,17 @@ PictureGalaxies galaxies_in(const Image& light, const StructureParams& params) {
 // neighbours along the major axis (across it, a disk that is seen from the edge changes by itself). Channel
 // 1: whether it is lit.
 Image differences(const Image& light, const GalaxyPlane& plane) {
-    constexpr double apart_px = 10.0, noise_px = 2.0, lit_share = 0.1, share_of_top = 0.04;
+    constexpr double apart_px = 10.0, noise_px = 2.0;  // of a neighbour; of the blur against noise
+    // Lit is what, blurred, has that share of nearly all of the light and of its top: else sky is measured.
+    constexpr double wide_px = 12.0, lit_share = 0.1, nearly_all = 0.98, share_of_top = 0.04;
+    constexpr float dark_sky = 0.01f;  // added to light
     Image logarithm = brightest_channel(light);
-    const Image wide = gaussian_blur(logarithm, 12.0);
-    for (float& value : logarithm.pixels) value = shared::as_log(value + 0.01f);
+    const Image wide = gaussian_blur(logarithm, wide_px);
+    for (float& value : logarithm.pixels) value = shared::as_log(value + dark_sky);
     logarithm = gaussian_blur(logarithm, noise_px);
-    const auto lit = float(std::max(lit_share * percentile({wide.pixels.begin(), wide.pixels.end()}, 0.98),
-                                    share_of_top * double(std::ranges::max(wide.pixels))));
+    const auto lit =
+        float(std::max(lit_share * percentile({wide.pixels.begin(), wide.pixels.end()}, nearly_all),
+                       share_of_top * double(std::ranges::max(wide.pixels))));
     const auto dx = float(apart_px * real::cos(plane.angle)), dy = float(-apart_px * real::sin(plane.angle));
     Image away = make_image(light.width, light.height, 2);
     for_each_pixel(wide, [&](std::int64_t x, std::int64_t y) {
@@ -136,8 +141,10 @@ void set_fields(const Image& to_fit, double texels, double offset, GalaxyBody& b
     constexpr float expected = 1.2f;                    // of the smooth galaxy's light, that is not above it
     constexpr float most_in_clouds = 0.5f;              // the rest keeps the disk whole: INCLINED 9
     constexpr float dark_sky = 0.02f, sky_fade = 1.5f;  // INCLINED 2: where all is halo
-    const Image soft = gaussian_blur(to_fit, 6.0 * double(to_fit.width) / 960.0),
-                wide = gaussian_blur(to_fit, 12.0 * double(to_fit.width) / 960.0);
+    constexpr double soft_px = 6.0, wide_px = 12.0, at_width = 960.0;  // of INCLINED's pictures
+    constexpr float noise = 0.01f;                                     // added to light that divides
+    const Image soft = gaussian_blur(to_fit, soft_px * double(to_fit.width) / at_width),
+                wide = gaussian_blur(to_fit, wide_px * double(to_fit.width) / at_width);
     body.spheroid = unfilled_image(to_fit.width, to_fit.height, 1);
     body.excess = unfilled_image(to_fit.width, to_fit.height, 1);
     body.lit = unfilled_image(to_fit.width, to_fit.height, 1);
@@ -148,7 +155,7 @@ void set_fields(const Image& to_fit, double texels, double offset, GalaxyBody& b
         const float sky = body.hidden * std::clamp(sky_fade - *wide.at(x, y) / dark_sky, 0.0f, 1.0f);
         *body.spheroid.at(x, y) = f + sky * (1.0f - f);
         *body.excess.at(x, y) = most_in_clouds * *body.roughness.at(x, y) * (1.0f - f) *
-                                std::clamp(1.0f - expected * sum / (*soft.at(x, y) + 0.01f), 0.0f, 1.0f);
+                                std::clamp(1.0f - expected * sum / (*soft.at(x, y) + noise), 0.0f, 1.0f);
         *body.lit.at(x, y) = std::clamp(*wide.at(x, y) / lit_light, 0.0f, 1.0f);
     });
     body.to_field = float(1.0 / texels);

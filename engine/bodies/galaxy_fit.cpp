@@ -37,12 +37,13 @@ Five least_downhill(const std::function<double(const Five&)>& value_of, int eval
         --left;
         return corner;
     };
+    constexpr double alike = 1e-5;  // values, of misfits of .006 and more: nothing is left to find
     while (left > 0) {
         std::ranges::stable_sort(corners, {}, &Corner::value);
-        if (corners[5].value - corners[0].value < 1e-5) break;
+        if (corners[5].value - corners[0].value < alike) break;
         Five middle{};
         for (std::size_t k = 0; k < 5; ++k)
-            for (std::size_t i = 0; i < 5; ++i) middle[i] += 0.2 * corners[k].place[i];
+            for (std::size_t i = 0; i < 5; ++i) middle[i] += 0.2 * corners[k].place[i];  // the mean of five
         Corner& worst = corners[5];
         const Corner mirrored = try_at(middle, worst.place, -1.0);
         if (mirrored.value < corners[0].value) {
@@ -68,12 +69,14 @@ struct FoundEllipses {
     double loss = 0.0;
 };
 
-// The best of 8 angles and three ratios about the brightest place.
+// The best of 8 angles and three ratios about the brightest place (INCLINED 1).
 FoundEllipses first_guess(const Image& light, const Image& share,
                           const std::function<double(const Ellipses&)>& loss) {
+    constexpr double smooth_share = 0.02;                         // of the width
+    constexpr double usual_spheroid = 0.75, least_rounder = 0.1;  // its ratio, and over the disk's
     Image weighed = light;
     for (std::size_t p = 0; p < weighed.pixels.size(); ++p) weighed.pixels[p] *= share.pixels[p];
-    const Image smooth = gaussian_blur(weighed, 0.02 * double(light.width));
+    const Image smooth = gaussian_blur(weighed, smooth_share * double(light.width));
     const auto top = std::ranges::max_element(smooth.pixels) - smooth.pixels.begin();
     Ellipses start{double(top % light.width), double(top / light.width)};
     FoundEllipses best{start, 1e300};
@@ -81,7 +84,7 @@ FoundEllipses first_guess(const Image& light, const Image& share,
         for (const double q : {0.12, 0.35, 0.7}) {
             start.angle = real::pi * k / 8.0;
             start.disk = q;
-            start.spheroid = std::max(0.75, q + 0.1);
+            start.spheroid = std::max(usual_spheroid, q + least_rounder);
             if (const double value = loss(start); value < best.loss) best = {start, value};
         }
     }
@@ -90,18 +93,21 @@ FoundEllipses first_guess(const Image& light, const Image& share,
 
 FoundEllipses find_ellipses(const Image& light, const Image& share) {
     const Image half = at_half_size(light), half_share = at_half_size(share);
+    // INCLINED 1; the finest of the widths is too fine for half the size.
     const double finest = 1.2, widest = 1.1 * double(light.width);
-    std::vector<double> sigmas = geometric(0.5 * finest, 0.5 * widest, 13);
+    constexpr int widths = 13, evaluations = 160;
+    std::vector<double> sigmas = geometric(0.5 * finest, 0.5 * widest, widths);
     sigmas.erase(sigmas.begin());
     const auto loss = [&](const Ellipses& e) { return misfit(at_half_size(e), half, half_share, sigmas); };
     const FoundEllipses best = first_guess(light, share, loss);
-    constexpr Five step{3.0, 3.0, 0.12, 0.08, 0.1};
+    constexpr Five step{3.0, 3.0, 0.12, 0.08,
+                        0.1};  // px, radians and ratios: about as far as the guess is off
     const auto stepped = [&](const Five& d) {
         const Ellipses& e = best.ellipses;
         return bounded({e.x + d[0] * step[0], e.y + d[1] * step[1], e.angle + d[2] * step[2],
                         e.disk + d[3] * step[3], e.spheroid + d[4] * step[4]});
     };
-    const Five least = least_downhill([&](const Five& d) { return loss(stepped(d)); }, 160);
+    const Five least = least_downhill([&](const Five& d) { return loss(stepped(d)); }, evaluations);
     return {stepped(least), loss(stepped(least))};
 }
 
@@ -157,6 +163,7 @@ struct Harmonic {
 Harmonic even_harmonic(const Image& above, const Ellipses& e, double half_light) {
     constexpr int rings = 22, least_rings = 8;
     constexpr double first = 0.4, last = 2.5;  // half-light radii
+    constexpr double faint = 0.02;             // of the brightest: fainter rings do not count more
     const double brightest = double(std::ranges::max(above.pixels));
     double as_cos = 0.0, as_sin = 0.0;
     int counted = 0;
@@ -165,7 +172,7 @@ Harmonic even_harmonic(const Image& above, const Ellipses& e, double half_light)
             half_light / std::sqrt(e.disk) * (first + (last - first) * counted / (rings - 1.0));
         const SampledRing ring = ring_of(above, e, radius);
         if (!ring.seen) break;
-        const double weight = 1.0 / (ring.mean + 0.02 * sectors * brightest);
+        const double weight = 1.0 / (ring.mean + faint * sectors * brightest);
         as_cos += ring.as_cos * weight;
         as_sin += ring.as_sin * weight;
     }
@@ -181,14 +188,15 @@ struct ByArms {
     double seen = 0.0;  // share of the rings
 };
 std::optional<ByArms> by_arms(const Image& light, Ellipses e) {
-    Image above = gaussian_blur(light, 1.5);
-    const auto sky = float(percentile({above.pixels.begin(), above.pixels.end()}, 0.1));
+    constexpr double noise_px = 1.5, sky_share = 0.1, ratio_step = 0.025;
+    Image above = gaussian_blur(light, noise_px);
+    const auto sky = float(percentile({above.pixels.begin(), above.pixels.end()}, sky_share));
     for (float& value : above.pixels) value = std::max(0.0f, value - sky);
     const double half_light = half_light_radius(above, e.x, e.y);
     constexpr int ratios = 29, angles = 36;  // .3 to 1; 5 degrees
     const auto ellipses = [e](std::size_t k) {
         Ellipses tried = e;
-        tried.disk = 1.0 - 0.025 * double(k / angles);
+        tried.disk = 1.0 - ratio_step * double(k / angles);
         tried.angle = real::pi * double(k % angles) / angles;
         return tried;
     };
@@ -210,7 +218,8 @@ Ellipses mended_by_arms(const Image& light, Ellipses e, double& differs_deg) {
     const double by_light = inclination_of_ratio(e.disk), by_arms = inclination_of_ratio(arms->ellipses.disk);
     if (by_arms < farthest_arms) differs_deg = std::fabs(by_light - by_arms);
     if (by_arms >= arms_tell || by_light >= light_tells) return e;
-    if (arms->seen > 0.5) e.angle = arms->ellipses.angle;
+    constexpr double enough_rings = 0.5;
+    if (arms->seen > enough_rings) e.angle = arms->ellipses.angle;
     e.disk = ratio_of_inclination(std::lerp(by_light, by_arms, arms->seen));
     return bounded(e);
 }

@@ -1,6 +1,7 @@
 #include "bodies/galaxy_light.h"
 
 #include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
 #include <queue>
 #include <tuple>
 
@@ -18,12 +19,21 @@ namespace {
 constexpr double edge_on_ratio = 0.13;      // of a disk that is seen from its edge (INCLINED 1)
 constexpr std::int64_t fitted_width = 240;  // px
 
-// What is compact, by the median around it.
+// Numbers are those of INCLINED 1 and 2, found on inclined galaxies, where no comment says otherwise.
+// Red counts most: it has less of dust and of young stars. Compact is what is so many times as bright as the
+// median of 9 x 9 px, and brighter by so much.
+constexpr glm::vec3 of_channels{0.6f, 0.3f, 0.1f};
+constexpr float compact_times = 1.35f, compact_more = 0.02f;
+constexpr std::int64_t median_reach_px = 4;
+// Within the core, where the light blurred by this is that share of its top, what is compact stays.
+constexpr double core_blur_px = 6.0;
+constexpr float core_share = 0.6f;
+
 bool stands_out(const Image& grey, const Image& median, std::int64_t x, std::int64_t y) {
     const auto brighter = [&](std::int64_t i, std::int64_t j) {
         if (i < 0 || j < 0 || i >= grey.width || j >= grey.height) return false;
         const float own = *grey.at(i, j), around = *median.at(i, j);
-        return own > 1.35f * around + 0.02f;
+        return own > compact_times * around + compact_more;
     };
     return brighter(x, y) || brighter(x - 1, y) || brighter(x + 1, y) || brighter(x, y - 1) ||
            brighter(x, y + 1);
@@ -44,11 +54,12 @@ Image medians_about(const Image& grey, std::int64_t reach_px) {
 
 Image light_to_fit(const Image& light) {
     const int green = std::min(1, light.channels - 1), blue = std::min(2, light.channels - 1);
-    const Image grey = made_by_pixel(
-        reduced_to_width(light, fitted_width), 1,
-        [&](const float* c, float* to) { *to = 0.6f * c[0] + 0.3f * c[green] + 0.1f * c[blue]; });
-    const Image medians = medians_about(grey, 4), wide = gaussian_blur(grey, 6.0);
-    const float core = 0.6f * std::ranges::max(wide.pixels);
+    const Image grey =
+        made_by_pixel(reduced_to_width(light, fitted_width), 1, [&](const float* c, float* to) {
+            *to = of_channels.x * c[0] + of_channels.y * c[green] + of_channels.z * c[blue];
+        });
+    const Image medians = medians_about(grey, median_reach_px), wide = gaussian_blur(grey, core_blur_px);
+    const float core = core_share * std::ranges::max(wide.pixels);
     Image clean = grey;
     for_each_pixel(grey, [&](std::int64_t x, std::int64_t y) {
         if (*wide.at(x, y) < core && stands_out(grey, medians, x, y)) *clean.at(x, y) = *medians.at(x, y);
@@ -99,14 +110,19 @@ double inclination_of_ratio(double ratio) {
 }
 
 Ellipses ellipses_of(const GalaxyPlane& plane, std::int64_t width) {
+    constexpr double usual_spheroid = 0.8;  // ratio that a fit begins with
     const auto w = double(width);
     return bounded({plane.x * w - 0.5, plane.y * w - 0.5, -plane.angle,
-                    ratio_of_inclination(plane.inclination_deg), 0.8});
+                    ratio_of_inclination(plane.inclination_deg), usual_spheroid});
 }
 
 Ellipses bounded(Ellipses e) {
-    e.disk = std::clamp(e.disk, 0.04, 0.98);
-    e.spheroid = std::clamp(e.spheroid, std::max(0.5, std::min(e.disk + 0.1, 0.95)), 1.0);
+    constexpr double thinnest = 0.04, roundest_disk = 0.98;
+    // A spheroid is rounder than the disk: by at least so much, up to what leaves room for the fit.
+    constexpr double least_spheroid = 0.5, rounder = 0.1, roundest_least = 0.95;
+    e.disk = std::clamp(e.disk, thinnest, roundest_disk);
+    const double least = std::max(least_spheroid, std::min(e.disk + rounder, roundest_least));
+    e.spheroid = std::clamp(e.spheroid, least, 1.0);
     return e;
 }
 
@@ -124,6 +140,10 @@ Image at_half_size(const Image& image) {
 namespace {
 
 constexpr double darker = 0.35;  // weight of what is darker than the sum: dust only takes away
+// Light that is added where its noise weighs it, where one divides by it, and where the loss is weighed.
+constexpr double noise_light = 0.03, least_light = 0.02, least_weight = 0.01;
+constexpr double outlier = 0.4, most_off = 1.5;  // share of the sum: counts half from there; and no more
+constexpr int reweighted = 3;
 
 double power_of_three_halves(double x) { return x * std::sqrt(x); }
 
@@ -135,19 +155,19 @@ double misfit(const Ellipses& e, const Image& light, const Image& share, const s
     const std::vector<bool> all(std::size_t(basis.count), true);
     std::vector<double> weights(pixels), model, away(pixels);
     for (std::size_t p = 0; p < pixels; ++p)
-        weights[p] = double(share.pixels[p]) / power_of_three_halves(double(light.pixels[p]) + 0.03);
-    for (int turn = 0; turn < 3; ++turn) {
+        weights[p] = double(share.pixels[p]) / power_of_three_halves(double(light.pixels[p]) + noise_light);
+    for (int turn = 0; turn < reweighted; ++turn) {
         model = sum_of(basis, nonnegative_amplitudes(basis, light, weights, all));
         for (std::size_t p = 0; p < pixels; ++p) {
-            const double r = away[p] = (double(light.pixels[p]) - model[p]) / (model[p] + 0.02);
-            weights[p] = double(share.pixels[p]) / power_of_three_halves(model[p] + 0.03) *
-                         (r < 0.0 ? darker : 1.0) / (1.0 + (r / 0.4) * (r / 0.4));
+            const double r = away[p] = (double(light.pixels[p]) - model[p]) / (model[p] + least_light);
+            weights[p] = double(share.pixels[p]) / power_of_three_halves(model[p] + noise_light) *
+                         (r < 0.0 ? darker : 1.0) / (1.0 + (r / outlier) * (r / outlier));
         }
     }
     double sum = 0.0, whole = 1e-300;
     for (std::size_t p = 0; p < pixels; ++p) {
-        const double weight = double(share.pixels[p]) * std::sqrt(model[p] + 0.01);
-        const double off = power_of_three_halves(std::min(std::fabs(away[p]), 1.5));
+        const double weight = double(share.pixels[p]) * std::sqrt(model[p] + least_weight);
+        const double off = power_of_three_halves(std::min(std::fabs(away[p]), most_off));
         sum += off * (away[p] < 0.0 ? darker : 1.0) * weight;
         whole += weight;
     }
@@ -164,27 +184,31 @@ struct FittedSum {
     Ellipses ellipses;                              // their ratios, where the shape cannot tell them
 };
 
-// Parts the families by size: the disk's rms width times .4 lies between them (INCLINED 2).
+// Parts the families by size: the disk's rms width times .4 lies between them (INCLINED 2). Wider ones count
+// as wide as a frame shows.
 void allow_by_size(const FittedSum& found, double width, std::vector<bool>& allowed) {
+    constexpr double parts_at = 0.4, spheroids_below = 0.85, widest_seen = 0.4;
     const std::size_t n = found.sigmas.size();
     double all = 1e-300, square = 0.0;
     for (std::size_t k = 0; k < n; ++k) {
-        const double s = found.sigmas[k], seen = std::min(s, 0.4 * width);
+        const double s = found.sigmas[k], seen = std::min(s, widest_seen * width);
         const double flux = found.amplitudes[k] * seen * seen;
         all += flux;
         square += flux * seen * seen;
     }
-    const double parting = 0.4 * std::sqrt(square / all);
+    const double parting = parts_at * std::sqrt(square / all);
     for (std::size_t k = 0; k < n; ++k) {
         allowed[k] = found.sigmas[k] > parting;
-        allowed[n + k] = found.sigmas[k] < 0.85 * parting;
+        allowed[n + k] = found.sigmas[k] < spheroids_below * parting;
     }
 }
 
 // `dusty`: what is darker counts little.
 FittedSum fitted_sum(Ellipses e, const Image& light, const Image& share, bool dusty) {
-    const auto width = double(light.width);
-    FittedSum found{geometric(0.9, 0.6 * width, 16), {}, {}, e};
+    constexpr double finest_px = 0.9, widest = 0.6;  // INCLINED 2: sixteen of them, the last of the width
+    constexpr int widths = 16, rounds = 4;
+    constexpr double dark_weight = 0.3;  // of what is darker, which may be dust
+    FittedSum found{geometric(finest_px, widest * double(light.width), widths), {}, {}, e};
     const double i = real::radians(inclination_of_ratio(e.disk)), s = real::sin(i), c = real::cos(i);
     const bool by_size = inclination_of_ratio(e.disk) < shape_tells;
     if (by_size) found.ellipses.spheroid = std::sqrt(usual_roundness * usual_roundness * s * s + c * c);
@@ -193,33 +217,40 @@ FittedSum fitted_sum(Ellipses e, const Image& light, const Image& share, bool du
     std::vector<double> weights(light.pixels.size());
     for (int turn = 0; turn < (by_size ? 2 : 1); ++turn) {
         for (std::size_t p = 0; p < weights.size(); ++p)
-            weights[p] = double(share.pixels[p]) / (double(light.pixels[p]) + 0.02);
-        for (int round = 0; round < 4; ++round) {
+            weights[p] = double(share.pixels[p]) / (double(light.pixels[p]) + least_light);
+        for (int round = 0; round < rounds; ++round) {
             found.amplitudes = nonnegative_amplitudes(basis, light, weights, allowed);
             found.model = sum_of(basis, found.amplitudes);
             for (std::size_t p = 0; p < weights.size(); ++p) {
                 const bool dark = double(light.pixels[p]) < found.model[p];
-                weights[p] = double(share.pixels[p]) / (found.model[p] + 0.02) * (dusty && dark ? 0.3 : 1.0);
+                weights[p] = double(share.pixels[p]) / (found.model[p] + least_light) *
+                             (dusty && dark ? dark_weight : 1.0);
             }
         }
-        allow_by_size(found, width, allowed);
+        allow_by_size(found, double(light.width), allowed);
     }
     return found;
 }
 
-// Optical depth: darker than the model and than what is around, where the galaxy shines.
+// Optical depth: darker than the model and than what is around, where the galaxy shines. The model alone took
+// its own errors for dust (INCLINED 1).
 Image dust_map(const Image& light, const std::vector<double>& model, const Image& share) {
+    constexpr double noise_px = 0.6, near_by = 0.02, far_off = 0.04;    // blurs; the latter of the width
+    constexpr float dark_sky = 0.01f;                                   // added to light
+    constexpr double lit_share = 0.12, top = 0.995;                     // of the model's top, a percentile
+    constexpr float model_errs = 0.15f, noise = 0.05f, deepest = 2.0f;  // in logarithms
     const auto width = double(light.width);
-    Image logarithm = gaussian_blur(light, 0.6);
-    for (float& value : logarithm.pixels) value = shared::as_log(value + 0.01f);
-    const Image near = gaussian_blur(logarithm, 0.02 * width), far = gaussian_blur(logarithm, 0.04 * width);
-    const double lit = 0.12 * percentile(model, 0.995);
+    Image logarithm = gaussian_blur(light, noise_px);
+    for (float& value : logarithm.pixels) value = shared::as_log(value + dark_sky);
+    const Image near = gaussian_blur(logarithm, near_by * width),
+                far = gaussian_blur(logarithm, far_off * width);
+    const double lit = lit_share * percentile(model, top);
     Image dust = make_image(light.width, light.height, 1);
     for (std::size_t p = 0; p < dust.pixels.size(); ++p) {
         if (model[p] <= lit || share.pixels[p] <= 0.5f) continue;
-        const float below = shared::as_log(float(model[p]) + 0.01f) - logarithm.pixels[p] + 0.15f;
+        const float below = shared::as_log(float(model[p]) + dark_sky) - logarithm.pixels[p] + model_errs;
         const float around = std::max(near.pixels[p], far.pixels[p]) - logarithm.pixels[p];
-        dust.pixels[p] = std::clamp(std::min(below, around) - 0.05f, 0.0f, 2.0f);
+        dust.pixels[p] = std::clamp(std::min(below, around) - noise, 0.0f, deepest);
     }
     return dust;
 }
@@ -230,10 +261,11 @@ struct SumAndDust {
     Image dust;
 };
 SumAndDust sum_and_dust(const Ellipses& e, const Image& light, const Image& share) {
+    constexpr float dusty = 0.03f;  // optical depth
     const Image first = dust_map(light, fitted_sum(e, light, share, true).model, share);
     Image undimmed = share;
     for (std::size_t p = 0; p < undimmed.pixels.size(); ++p)
-        if (first.pixels[p] >= 0.03f) undimmed.pixels[p] = 0.0f;
+        if (first.pixels[p] >= dusty) undimmed.pixels[p] = 0.0f;
     FittedSum sum = fitted_sum(e, light, undimmed, false);
     Image dust = dust_map(light, sum.model, share);
     return {std::move(sum), std::move(dust)};
@@ -253,26 +285,30 @@ struct DustAt {
 
 // Within so many px of the major axis; by |u|.
 std::vector<DustAt> dust_near_axis(const Ellipses& e, const Image& dust, double within_px) {
+    constexpr double farthest = 0.45;  // of the width, along the axis
     std::vector<DustAt> points;
     for (std::int64_t y = 0; y < dust.height; ++y)
         for (std::int64_t x = 0; x < dust.width; ++x) {
             const AlongEllipses a = along(e, double(x), double(y));
             if (*dust.at(x, y) > 0.0f && std::fabs(a.v) < within_px &&
-                std::fabs(a.u) < 0.45 * double(dust.width))
+                std::fabs(a.u) < farthest * double(dust.width))
                 points.push_back({a.u, a.v, double(*dust.at(x, y))});
         }
     std::ranges::sort(points, {}, [](const DustAt& p) { return std::fabs(p.u); });
     return points;
 }
 
-// The lane through these, by least squares; false where there are too few.
+// The lane through these, by least squares; false where there are too few. Its radius is 1.05 of that within
+// which 95 % of the dust lies (INCLINED 1); it turns by a part of the way, so that turns end.
 bool fit_lane(const std::vector<DustAt>& points, Lane& lane) {
+    constexpr double least_dust = 3.0;  // optical depths of a pixel
+    constexpr double inner_share = 0.95, beyond = 1.05, part_of_turn = 0.7;
     double all = 0.0, sum = 0.0;
     for (const DustAt& p : points) all += p.depth;
-    if (all < 3.0) return false;
+    if (all < least_dust) return false;
     for (const DustAt& p : points) {
-        if ((sum += p.depth) < 0.95 * all) continue;
-        lane.radius = 1.05 * std::fabs(p.u) + 1.0;
+        if ((sum += p.depth) < inner_share * all) continue;
+        lane.radius = beyond * std::fabs(p.u) + 1.0;
         break;
     }
     const auto ring = [&](double u) {
@@ -291,7 +327,7 @@ bool fit_lane(const std::vector<DustAt>& points, Lane& lane) {
         square += d * rest * rest;
     }
     lane.spread = std::sqrt(square / all) / lane.radius;
-    lane.angle += 0.7 * real::atan2(slope, 1.0);
+    lane.angle += part_of_turn * real::atan2(slope, 1.0);
     lane.inclination = real::degrees(real::acos(std::min(1.0, std::fabs(height) / lane.radius)));
     return true;
 }
@@ -312,14 +348,18 @@ double lost_share(const Image& dust, const std::vector<double>& model) {
 
 std::optional<Lane> find_lane(const Ellipses& e, const SumAndDust& seen) {
     constexpr double least_deg = 72.0, most_turn_deg = 12.0, most_spread = 0.03, least_lost = 0.008;
+    // It is looked for ever nearer to the axis: of the width, at first and in the end; times so much a turn.
+    constexpr double within_first = 0.12, within_last = 0.03, closing_in = 0.6;
+    constexpr int turns = 8;
     if (inclination_of_ratio(e.disk) <= least_deg) return {};
     const auto width = double(seen.dust.width);
     Lane lane{e.angle};
     Ellipses turned = e;
-    double narrow = 0.12 * width;
-    for (int turn = 0; turn < 8; ++turn, narrow *= 0.6) {
+    double narrow = within_first * width;
+    for (int turn = 0; turn < turns; ++turn, narrow *= closing_in) {
         turned.angle = lane.angle;
-        if (!fit_lane(dust_near_axis(turned, seen.dust, std::max(narrow, 0.03 * width)), lane)) return {};
+        const double within_px = std::max(narrow, within_last * width);
+        if (!fit_lane(dust_near_axis(turned, seen.dust, within_px), lane)) return {};
     }
     if (lane.inclination > least_deg && degrees_between_axes(lane.angle, e.angle) < most_turn_deg &&
         lane.spread < most_spread && lost_share(seen.dust, seen.sum.model) > least_lost)
@@ -329,12 +369,15 @@ std::optional<Lane> find_lane(const Ellipses& e, const SumAndDust& seen) {
 
 // By the light that dust takes away on either side of the major axis: positive where v is.
 double more_dust_below(const Ellipses& e, const SumAndDust& seen) {
-    const double q = std::max(e.disk, 0.1), reach = 0.3 * double(seen.dust.width);
+    // Of a disk as it is seen; of the width; of an ellipse's height there.
+    constexpr double thinnest = 0.1, farthest = 0.3, off_axis = 0.3;
+    const double q = std::max(e.disk, thinnest), reach = farthest * double(seen.dust.width);
     double below = 0.0, above = 0.0;
     for (std::int64_t y = 0; y < seen.dust.height; ++y)
         for (std::int64_t x = 0; x < seen.dust.width; ++x) {
             const AlongEllipses a = along(e, double(x), double(y));
-            if (std::hypot(a.u, a.v / q) >= reach || std::fabs(a.v) <= 0.3 * q * std::fabs(a.u)) continue;
+            if (std::hypot(a.u, a.v / q) >= reach || std::fabs(a.v) <= off_axis * q * std::fabs(a.u))
+                continue;
             const double taken = seen.sum.model[y * seen.dust.width + x] *
                                  (1.0 - double(shared::as_exp(-*seen.dust.at(x, y))));
             (a.v > 0.0 ? below : above) += taken;
@@ -353,15 +396,23 @@ std::vector<GaussianLight> gaussians(const FittedSum& sum, std::size_t first, do
 }
 
 double flux_within_picture(const std::vector<GaussianLight>& gaussians) {
+    constexpr double half = 0.5;  // of the width: of wider ones the picture shows a square of it
     double sum = 0.0;
-    for (const GaussianLight& g : gaussians) sum += g.flux * std::min(1.0, 0.25 / (g.sigma * g.sigma));
+    for (const GaussianLight& g : gaussians) sum += g.flux * std::min(1.0, half * half / (g.sigma * g.sigma));
     return sum;
 }
 
-// Seen from the edge, how thick a disk and how round a spheroid is shows in the light.
+// What ratios are tried with, at half the size.
+std::vector<double> sigmas_of_trials(const Image& light) {
+    constexpr double finest_px = 0.8, widest = 0.55;  // of the width
+    return geometric(finest_px, widest * double(light.width), 12);
+}
+
+// Seen from the edge, how thick a disk and how round a spheroid is shows in the light: a coarse grid of
+// ratios, then the disk's in finer steps.
 Ellipses with_ratios_seen(Ellipses e, const Image& light, const Image& share) {
     const Image half = at_half_size(light), half_share = at_half_size(share);
-    const std::vector<double> sigmas = geometric(0.8, 0.55 * double(light.width), 12);
+    const std::vector<double> sigmas = sigmas_of_trials(light);
     Ellipses best = e;
     double least = 1e300;
     const auto try_ratios = [&](double disk, double spheroid) {
@@ -380,9 +431,10 @@ Ellipses with_ratios_seen(Ellipses e, const Image& light, const Image& share) {
 // Of light that is round in space, both families are alike.
 Ellipses as_one_spheroid(Ellipses e, const Image& light, const Image& share) {
     const Image half = at_half_size(light), half_share = at_half_size(share);
-    const std::vector<double> sigmas = geometric(0.8, 0.55 * double(light.width), 12);
+    const std::vector<double> sigmas = sigmas_of_trials(light);
+    constexpr double flattest = 0.3, step = 0.05;  // ellipticals are no flatter
     double least = 1e300, best = 1.0;
-    for (double ratio = 0.3; ratio <= 1.0; ratio += 0.05) {
+    for (double ratio = flattest; ratio <= 1.0; ratio += step) {
         e.disk = e.spheroid = ratio;
         const double loss = misfit(at_half_size(e), half, half_share, sigmas);
         if (loss < least) least = loss, best = ratio;
