@@ -24,10 +24,10 @@ constexpr std::int64_t fitted_width = 240;  // px
 // median of 9 x 9 px, and brighter by so much.
 constexpr glm::vec3 of_channels{0.6f, 0.3f, 0.1f};
 constexpr float compact_times = 1.35f, compact_more = 0.02f;
-constexpr std::int64_t median_reach_px = 4;
+constexpr std::int64_t around_px = 4;
 // Within the core, where the light blurred by this is that share of its top, what is compact stays.
 constexpr double core_blur_px = 6.0;
-constexpr float core_share = 0.6f;
+constexpr float core_of_top = 0.6f;
 
 bool stands_out(const Image& grey, const Image& median, std::int64_t x, std::int64_t y) {
     const auto brighter = [&](std::int64_t i, std::int64_t j) {
@@ -58,8 +58,8 @@ Image light_to_fit(const Image& light) {
         made_by_pixel(reduced_to_width(light, fitted_width), 1, [&](const float* c, float* to) {
             *to = of_channels.x * c[0] + of_channels.y * c[green] + of_channels.z * c[blue];
         });
-    const Image medians = medians_about(grey, median_reach_px), wide = gaussian_blur(grey, core_blur_px);
-    const float core = core_share * std::ranges::max(wide.pixels);
+    const Image medians = medians_about(grey, around_px), wide = gaussian_blur(grey, core_blur_px);
+    const float core = core_of_top * std::ranges::max(wide.pixels);
     Image clean = grey;
     for_each_pixel(grey, [&](std::int64_t x, std::int64_t y) {
         if (*wide.at(x, y) < core && stands_out(grey, medians, x, y)) *clean.at(x, y) = *medians.at(x, y);
@@ -141,7 +141,7 @@ namespace {
 
 constexpr double darker = 0.35;  // weight of what is darker than the sum: dust only takes away
 // Light that is added where its noise weighs it, where one divides by it, and where the loss is weighed.
-constexpr double noise_light = 0.03, least_light = 0.02, least_weight = 0.01;
+constexpr double noise_light = 0.03, divided_light = 0.02, least_weight = 0.01;
 constexpr double outlier = 0.4, most_off = 1.5;  // share of the sum: counts half from there; and no more
 constexpr int reweighted = 3;
 
@@ -159,7 +159,7 @@ double misfit(const Ellipses& e, const Image& light, const Image& share, const s
     for (int turn = 0; turn < reweighted; ++turn) {
         model = sum_of(basis, nonnegative_amplitudes(basis, light, weights, all));
         for (std::size_t p = 0; p < pixels; ++p) {
-            const double r = away[p] = (double(light.pixels[p]) - model[p]) / (model[p] + least_light);
+            const double r = away[p] = (double(light.pixels[p]) - model[p]) / (model[p] + divided_light);
             weights[p] = double(share.pixels[p]) / power_of_three_halves(model[p] + noise_light) *
                          (r < 0.0 ? darker : 1.0) / (1.0 + (r / outlier) * (r / outlier));
         }
@@ -217,13 +217,13 @@ FittedSum fitted_sum(Ellipses e, const Image& light, const Image& share, bool du
     std::vector<double> weights(light.pixels.size());
     for (int turn = 0; turn < (by_size ? 2 : 1); ++turn) {
         for (std::size_t p = 0; p < weights.size(); ++p)
-            weights[p] = double(share.pixels[p]) / (double(light.pixels[p]) + least_light);
+            weights[p] = double(share.pixels[p]) / (double(light.pixels[p]) + divided_light);
         for (int round = 0; round < rounds; ++round) {
             found.amplitudes = nonnegative_amplitudes(basis, light, weights, allowed);
             found.model = sum_of(basis, found.amplitudes);
             for (std::size_t p = 0; p < weights.size(); ++p) {
                 const bool dark = double(light.pixels[p]) < found.model[p];
-                weights[p] = double(share.pixels[p]) / (found.model[p] + least_light) *
+                weights[p] = double(share.pixels[p]) / (found.model[p] + divided_light) *
                              (dusty && dark ? dark_weight : 1.0);
             }
         }
