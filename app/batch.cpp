@@ -22,7 +22,6 @@
 #include "pipeline.h"
 
 namespace astrosplat {
-
 namespace {
 
 // The figures of a run (--stats), as JSON: of each frame, of each layer, and of the whole.

@@ -11,7 +11,6 @@
 #include "scene/parameter_key.h"
 
 namespace astrosplat {
-
 namespace {
 
 /// Throws where `value` is not from lo to hi.

@@ -25,7 +25,6 @@
 #include "streamed/streamed_set.h"
 
 namespace astrosplat {
-
 namespace {
 
 // One layer: from its source and the sizes of its files, and from its sample where there is one.

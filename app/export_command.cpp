@@ -30,7 +30,6 @@
 #include "volumes/voxel_grid.h"
 
 namespace astrosplat {
-
 namespace {
 
 /// The output, once it is sure that it can be written.

@@ -26,7 +26,6 @@
 #include "source/write_image.h"
 
 namespace astrosplat {
-
 namespace {
 
 /// none: there is no target.

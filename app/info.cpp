@@ -22,7 +22,6 @@
 #include "stars/catalogue.h"
 
 namespace astrosplat {
-
 namespace {
 
 Report to_report(const glm::dvec3& v) { return {v.x, v.y, v.z}; }

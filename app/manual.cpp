@@ -16,7 +16,6 @@
 #include "scene/parameter.h"
 
 namespace astrosplat {
-
 namespace {
 
 struct OptionWords {

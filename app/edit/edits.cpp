@@ -15,7 +15,6 @@
 #include "scene/load.h"
 
 namespace astrosplat {
-
 namespace {
 
 void check_names(const Scene& scene, const std::string& name) {

@@ -26,7 +26,6 @@
 #include "scene/save.h"
 
 namespace astrosplat {
-
 namespace {
 
 constexpr const char* first_words = "# astrosplat autosave ";

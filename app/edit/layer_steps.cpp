@@ -4,7 +4,6 @@
 #include "edit/layers.h"
 
 namespace astrosplat {
-
 namespace {
 
 const std::string& name_of(const Document& document, std::size_t index) {

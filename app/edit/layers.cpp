@@ -22,7 +22,6 @@
 #include "stars/catalogue.h"
 
 namespace astrosplat {
-
 namespace {
 
 bool belongs_to(const Track& track, const std::string& layer) { return track.key.layer() == layer; }

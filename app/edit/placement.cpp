@@ -14,7 +14,6 @@
 #include "edit/edits.h"
 
 namespace astrosplat {
-
 namespace {
 
 /// The same angles up to whole turns, next to those of `near`.

@@ -11,7 +11,6 @@
 #include "core/log.h"
 
 namespace astrosplat {
-
 namespace {
 
 using Json = nlohmann::ordered_json;

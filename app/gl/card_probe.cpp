@@ -13,7 +13,6 @@
 #include "render/render.h"
 
 namespace astrosplat {
-
 namespace {
 
 constexpr GLuint inputs = 100'000;

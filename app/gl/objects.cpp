@@ -21,7 +21,6 @@
 #include "core/text.h"
 
 namespace astrosplat {
-
 namespace {
 
 constexpr int oldest_major = 4, oldest_minor = 1;

@@ -9,7 +9,6 @@
 #include "gui/parts.h"
 
 namespace astrosplat {
-
 namespace {
 
 void recent_files(GuiFrame& frame) {

@@ -7,7 +7,6 @@
 #include "gui/parts.h"
 
 namespace astrosplat {
-
 namespace {
 
 using JobState = QueuedJob::State;

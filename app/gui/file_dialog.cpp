@@ -17,7 +17,6 @@
 #include "gui/parts.h"
 
 namespace astrosplat {
-
 namespace {
 
 bool wanted(const FileEntry& entry, const std::vector<std::string>& extensions) {

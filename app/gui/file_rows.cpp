@@ -7,7 +7,6 @@
 #include "scene/describe.h"
 
 namespace astrosplat {
-
 namespace {
 
 using Extensions = std::vector<std::string>;

@@ -10,7 +10,6 @@
 #include "gui/viewport.h"
 
 namespace astrosplat {
-
 namespace {
 
 // From a request to a complete command: asks for the file that is missing, and what to do with unsaved

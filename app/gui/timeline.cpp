@@ -13,7 +13,6 @@
 #include "scene/describe.h"
 
 namespace astrosplat {
-
 namespace {
 
 using Drag = TimelineState::Drag;

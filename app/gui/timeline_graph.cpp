@@ -7,7 +7,6 @@
 #include "scene/animate.h"
 
 namespace astrosplat {
-
 namespace {
 
 using Drag = TimelineState::Drag;

@@ -8,7 +8,6 @@
 #include "gui/widgets.h"
 
 namespace astrosplat {
-
 namespace {
 
 using Drag = TimelineState::Drag;

@@ -12,7 +12,6 @@
 #include "scene/animate.h"
 
 namespace astrosplat {
-
 namespace {
 
 constexpr float inset = 12;

@@ -8,7 +8,6 @@
 #include <map>
 
 namespace astrosplat {
-
 namespace {
 
 constexpr float regular_px = 15.0f;

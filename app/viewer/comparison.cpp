@@ -14,7 +14,6 @@
 #include "source/write_image.h"
 
 namespace astrosplat {
-
 namespace {
 
 /// Its picture faces the front, along y; the surface of a sculpted mesh with texture coordinates of its own

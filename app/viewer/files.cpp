@@ -15,7 +15,6 @@
 #include "source/texture.h"
 
 namespace astrosplat {
-
 namespace {
 
 /// An image made small while it is read, its pixels as they are stored.

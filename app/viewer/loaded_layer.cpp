@@ -20,7 +20,6 @@
 #include "splat_files/file_bytes.h"
 
 namespace astrosplat {
-
 namespace {
 
 // Of a set that grows every splat has a rank of chance. Those below a highest rank are in the sample;

@@ -6,7 +6,6 @@
 #include "core/progress.h"
 
 namespace astrosplat {
-
 namespace {
 
 constexpr float least_share = 0.02f;  // of the brightest layer's light

@@ -26,7 +26,6 @@
 #include "viewer/window.h"
 
 namespace astrosplat {
-
 namespace {
 
 /// Frames drawn after the last event, so that hovers, tooltips and layouts come to rest.

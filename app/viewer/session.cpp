@@ -12,7 +12,6 @@
 #include "source/write_image.h"
 
 namespace astrosplat {
-
 namespace {
 
 /// Splats of a layer that previews know until its tree is there.

@@ -17,7 +17,6 @@
 #include "scene/layer_setup.h"
 
 namespace astrosplat {
-
 namespace {
 
 void copy_tile(const Image& from, const Region& tile, Image& to) {

@@ -108,10 +108,6 @@ struct BandMaker {
     }
 };
 
-}  // namespace
-
-namespace {
-
 std::uint32_t reversed_bits(std::uint32_t n) {
     n = n >> 16 | n << 16;
     n = (n & 0xff00ff00u) >> 8 | (n & 0x00ff00ffu) << 8;

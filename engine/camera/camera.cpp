@@ -13,7 +13,6 @@
 #include "core/rotation.h"
 
 namespace astrosplat {
-
 namespace {
 
 /// Turns two orthogonal axes in their plane: `a` away from `b`, which follows.

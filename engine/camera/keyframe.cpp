@@ -9,7 +9,6 @@
 #include "core/real.h"
 
 namespace astrosplat {
-
 namespace {
 
 // Tangent per frame of an automatic handle: that of the neighbours; for scalars limited to three times the

@@ -8,7 +8,6 @@
 #include "core/text.h"
 
 namespace astrosplat {
-
 namespace {
 
 bool normalise(glm::dvec3& v) {

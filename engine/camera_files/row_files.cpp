@@ -11,7 +11,6 @@
 #include "core/text.h"
 
 namespace astrosplat {
-
 namespace {
 
 // Ry * Rx * Rz: z acts first.

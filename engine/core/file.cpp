@@ -17,7 +17,6 @@
 #include "core/memory.h"
 
 namespace astrosplat {
-
 namespace {
 
 [[noreturn]] void cannot_read(const fs::path& file, std::string_view reason) {

@@ -15,7 +15,6 @@
 #include "core/text.h"
 
 namespace astrosplat {
-
 namespace {
 
 constexpr std::int64_t unlimited = std::numeric_limits<std::int64_t>::max();

@@ -25,7 +25,6 @@
 #include "core/text.h"
 
 namespace astrosplat {
-
 namespace {
 
 using Body = std::function<void(std::int64_t, std::int64_t, int)>;

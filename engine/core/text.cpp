@@ -8,7 +8,6 @@
 #include "core/error.h"
 
 namespace astrosplat {
-
 namespace {
 
 template <class T>

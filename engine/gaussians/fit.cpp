@@ -15,7 +15,6 @@
 #include "render/shared_render.h"
 
 namespace astrosplat {
-
 namespace {
 
 constexpr int rounds = 8;

@@ -19,7 +19,6 @@
 #include "splats/harmonics.h"
 
 namespace astrosplat {
-
 namespace {
 
 static_assert(std::endian::native == std::endian::little);

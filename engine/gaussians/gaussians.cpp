@@ -15,7 +15,6 @@
 #include "render/shared_render.h"
 
 namespace astrosplat {
-
 namespace {
 
 constexpr double frame_px = 65536.0;  // of the frame that shows the whole model: every splat has some size

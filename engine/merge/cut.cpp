@@ -11,7 +11,6 @@
 #include "splats/splat_set.h"
 
 namespace astrosplat {
-
 namespace {
 
 /// Splats of one node, side by side along what looks longest of it.

@@ -8,7 +8,6 @@
 #include "render/shared_render.h"
 
 namespace astrosplat {
-
 namespace {
 
 /// A row of splats with the moments of what they stand for has dips between them; wider ones have few.

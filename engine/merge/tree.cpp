@@ -10,7 +10,6 @@
 #include "splats/row_order.h"
 
 namespace astrosplat {
-
 namespace {
 
 constexpr std::int64_t nodes_a_chunk = 1 << 12;

@@ -13,7 +13,6 @@
 // fmt first: OpenImageIO brings a copy of it with other settings.
 
 namespace astrosplat {
-
 namespace {
 
 bool same_bits(float a, float b) {

@@ -24,7 +24,6 @@
 #include "core/parallel.h"
 
 namespace astrosplat {
-
 namespace {
 
 /// The threads that OpenEXR may pack and unpack pixels with: as many as the program's own; none where there

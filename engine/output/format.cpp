@@ -12,7 +12,6 @@
 #include "core/text.h"
 
 namespace astrosplat {
-
 namespace {
 
 using Depth = OutputParams::Depth;

@@ -18,7 +18,6 @@
 // fmt first: OpenImageIO brings a copy of it with other settings.
 
 namespace astrosplat {
-
 namespace {
 
 struct KeyLine {

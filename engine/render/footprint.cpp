@@ -3,7 +3,6 @@
 #include "core/parallel.h"
 
 namespace astrosplat {
-
 namespace {
 
 /// Integral of w(t) f(t) from 0 to 1.

@@ -10,7 +10,6 @@
 #include "splats/splat_set.h"
 
 namespace astrosplat {
-
 namespace {
 
 RenderCache::State::Profile numbers_of(const Falloff& falloff) {

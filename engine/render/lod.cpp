@@ -9,7 +9,6 @@
 #include "render/shared_render.h"
 
 namespace astrosplat {
-
 namespace {
 
 constexpr int first_level = 2;  // four children (level 1) would be as large as their parent

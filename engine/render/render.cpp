@@ -13,7 +13,6 @@
 #include "render/screen_splat.h"
 
 namespace astrosplat {
-
 namespace {
 
 // ---- a band of the frame

@@ -6,7 +6,6 @@
 #include "render/sphere_sums.h"
 
 namespace astrosplat {
-
 namespace {
 
 /// Second derivative of a coordinate along the needle.

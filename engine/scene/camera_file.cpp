@@ -16,7 +16,6 @@
 #include "scene/layer_setup.h"
 
 namespace astrosplat {
-
 namespace {
 
 bool is_table(const fs::path& file) {

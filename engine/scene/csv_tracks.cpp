@@ -12,7 +12,6 @@
 #include "scene/parameter.h"
 
 namespace astrosplat {
-
 namespace {
 
 constexpr std::array<std::string_view, 2> component_names{"xyzw", "rgb"};

@@ -6,7 +6,6 @@
 #include "source/mesh.h"
 
 namespace astrosplat {
-
 namespace {
 
 using Type = ParameterType;

@@ -11,7 +11,6 @@
 #include "source/texture.h"
 
 namespace astrosplat {
-
 namespace {
 
 // Sums over all faces, seen along an axis: gradients of u and of v times the area, and the largest that

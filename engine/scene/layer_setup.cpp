@@ -12,7 +12,6 @@
 #include "stars/star_set.h"
 
 namespace astrosplat {
-
 namespace {
 
 /// By Blend.

@@ -15,7 +15,6 @@
 #include "scene/entries.h"
 
 namespace astrosplat {
-
 namespace {
 
 /// A file of keys that hold before a scene's own: the look of a layer, or the output for a kind of screen.

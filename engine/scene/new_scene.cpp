@@ -27,7 +27,6 @@
 #include "stars/catalogue.h"
 
 namespace astrosplat {
-
 namespace {
 
 const std::vector<std::string> shapes{"plane", "relief", "disk", "sphere"};

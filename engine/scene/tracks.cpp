@@ -9,7 +9,6 @@
 #include "scene/parameter_key.h"
 
 namespace astrosplat {
-
 namespace {
 
 // The handles of a keyframe as scenes write them, the fourth part of

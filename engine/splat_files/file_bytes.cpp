@@ -20,7 +20,6 @@
 #include "core/parallel.h"
 
 namespace astrosplat {
-
 namespace {
 
 /// A mapping as the signal handler sees it, which may only read and write atomics.

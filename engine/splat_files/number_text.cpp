@@ -41,7 +41,6 @@ const char* scan_whole(const char* p, const char* end, std::uint64_t& value) {
 }  // namespace astrosplat::scan
 
 namespace astrosplat {
-
 namespace {
 
 static_assert(std::endian::native == std::endian::little, "the first digit is the lowest byte of a word");

@@ -12,7 +12,6 @@
 #include "splat_files/splat_table.h"
 
 namespace astrosplat {
-
 namespace {
 
 /// The header's words, with the line each stands on.

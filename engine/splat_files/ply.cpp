@@ -15,7 +15,6 @@
 #include "splat_files/splat_table.h"
 
 namespace astrosplat {
-
 namespace {
 
 constexpr std::int64_t rows_written_at_once = 1 << 15;

@@ -17,7 +17,6 @@
 #include "splat_files/number_text.h"
 
 namespace astrosplat {
-
 namespace {
 
 /// By NumberType.

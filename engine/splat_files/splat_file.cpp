@@ -13,7 +13,6 @@
 #include "usd/usda_stage.h"
 
 namespace astrosplat {
-
 namespace {
 
 struct Functions {

@@ -15,7 +15,6 @@
 #include "splat_files/number_text.h"
 
 namespace astrosplat {
-
 namespace {
 
 constexpr std::int64_t rows_per_chunk = 1 << 16;

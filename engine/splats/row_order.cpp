@@ -11,7 +11,6 @@
 #include "core/sorting.h"
 
 namespace astrosplat {
-
 namespace {
 
 /// Rows are counted and placed in parts, one after the other within a part, so that the order is stable.

@@ -8,7 +8,6 @@
 #include "splats/row_order.h"
 
 namespace astrosplat {
-
 namespace {
 
 constexpr std::int64_t splats_per_chunk = 1 << 16;

@@ -7,7 +7,6 @@
 #include "core/real.h"
 
 namespace astrosplat {
-
 namespace {
 
 constexpr double lowest = -0.4, highest = 5.0, step = 0.01;  // B-V

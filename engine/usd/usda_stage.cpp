@@ -8,7 +8,6 @@
 #include "core/text.h"
 
 namespace astrosplat {
-
 namespace {
 
 constexpr int deepest_usd = 64;  // prims and brackets within each other

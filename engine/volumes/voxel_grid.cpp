@@ -12,7 +12,6 @@
 #include "core/sorting.h"
 
 namespace astrosplat {
-
 namespace {
 
 /// m m^T times `square`.

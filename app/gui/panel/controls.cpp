@@ -9,7 +9,6 @@
 #include "gui/panel/parts.h"
 
 namespace astrosplat::panel {
-
 namespace {
 
 void begin_entry(Touch& touch, ImGuiID id, const std::string& text) {

@@ -8,7 +8,6 @@
 #include "scene/load.h"
 
 namespace astrosplat::panel {
-
 namespace {
 
 // Values that are chosen: yes or no, one of several words, some of several words.

@@ -14,7 +14,6 @@
 #include "render/footprint.h"
 
 namespace astrosplat::panel {
-
 namespace {
 
 // Histogram of the picture's values with black and white point to drag.

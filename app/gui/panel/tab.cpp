@@ -8,7 +8,6 @@
 #include "edit/edits.h"
 
 namespace astrosplat::panel {
-
 namespace {
 
 // Lists of tables within a layer (meshes, noises, thickness stops): their place in a tab, and how elements

@@ -8,7 +8,6 @@
 #include "gui/parts.h"
 
 namespace astrosplat::panel {
-
 namespace {
 
 bool unfolded(const Context&) { return true; }
