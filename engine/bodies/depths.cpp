@@ -80,6 +80,7 @@ float threshold_of(const Band& band, double each) {
     return float(band.index <= 1 ? fine_threshold : threshold_of_one / each);
 }
 
+constexpr double natural_sigma = 0.25;  // of a feature, as DEPTH 3 has most bands
 // One looks into what lies about an axis from all sides: fewer large splats would be seen one by one.
 constexpr double more_about_axis = 4.0;
 
@@ -95,24 +96,23 @@ BandSplats splats_of_size(const Band& band, bool glow, double sigma, double each
     return splats;
 }
 
-}  // namespace
-
-namespace {
-
 // A spheroid is seen into and through, so its splats are large and soft (INCLINED 3, by band).
 constexpr double spheroid_sigmas[] = {1.2, 1.6, 2.4, 5.0, 9.0, 14.0, 20.0, widest_in_galaxy_px};
 constexpr double thickest_small_px = 4.0;  // sigma of the widest splats of the disk's finer bands
 constexpr int last_fine_band = 3;          // the widest of what is as thin as the disk's small things
 
 std::vector<BandSplats> splats_of_galaxy(const Band& band, double usual, const GalaxyBody& galaxy) {
-    constexpr double most_behind = 12.0;
+    // INCLINED 3: so many bodies lie behind each other, and splats grow in number with a power of it.
+    constexpr double most_behind = 12.0, least_cosine = 0.08, crowded = 0.7;
+    constexpr double least_wide_px = 2.0;  // sigma of the disk's coarse bands
     const double thick = double(galaxy.thickness);
-    const double least = band.index > last_fine_band ? 2.0 : thickest_small_px,
+    const double least = band.index > last_fine_band ? least_wide_px : thickest_small_px,
                  widest = std::clamp(widest_in_disk * thick, least, widest_in_galaxy_px);
-    // So many bodies behind each other: from along the normal fewer would be grains.
-    const double behind = std::min(most_behind, std::round(1.0 / std::max(0.08, double(galaxy.cos_i))));
-    BandSplats disk =
-        splats_of_size(band, false, std::min(band.feature / 4.0, widest), usual * real::pow(behind, 0.7));
+    // From along the normal fewer would be grains.
+    const double behind =
+        std::min(most_behind, std::round(1.0 / std::max(least_cosine, double(galaxy.cos_i))));
+    BandSplats disk = splats_of_size(band, false, std::min(natural_sigma * band.feature, widest),
+                                     usual * real::pow(behind, crowded));
     disk.family = GalaxyFamily::disk;
     const int last = int(std::size(spheroid_sigmas)) - 1;
     BandSplats spheroid = disk;
@@ -133,7 +133,7 @@ std::vector<BandSplats> band_splats(const Band& band, bool coarsest, const Place
     const double widest =
         std::max({widest_sigma_share * placement.height, glow ? widest_glow_share * placement.depth : 0.0,
                   about_axis ? widest_about_axis * placement.scale : 0.0});
-    const double natural = coarsest ? 4.0 * widest : band.feature / 4.0;
+    const double natural = coarsest ? 4.0 * widest : natural_sigma * band.feature;
     const double usual =
         (about_axis && band.index > last_fine_band ? more_about_axis : 1.0) *
         by_feature(splats_each, band.index == 0 ? 2.0 : std::max(4.0, band.feature / placement.scale));
@@ -251,6 +251,7 @@ void place_about_axis(const Placement& placement, const BandSplats& splats, Plac
     constexpr double longest_wave = 330.0;  // texels at a width of 1920
     constexpr double force = 10.0;          // gain for what is no ring's at all,
     constexpr float of_details = 0.1f;      // and for details of what is, of it
+    constexpr float strong_residue = 0.5f;  // from which on all of it counts
     constexpr float outermost = 0.25f;  // share of the line's light beyond which nothing gathers: with .06
                                         // the Hourglass's eye was a bar along the line
     constexpr auto places = float(DepthCandidates::count);
@@ -260,7 +261,7 @@ void place_about_axis(const Placement& placement, const BandSplats& splats, Plac
     for (int i = 0; i < block.count; ++i) {
         const float x = block.x[i], y = block.y[i], residue = axis.residue_at(x, y);
         const bool gathers = as_uniform(as_mix(block.random[i] ^ 0x3c6ef372u)) < std::max(details, residue);
-        const float strong = std::min(1.0f, 4.0f * residue * residue);
+        const float strong = std::min(1.0f, residue * residue / (strong_residue * strong_residue));
         block.clumping[i] = gathers ? std::lerp(of_details, 1.0f, strong) : 0.0f;
         const float place = block.even[i] * places, within = place - std::floor(place),
                     first = gathers ? outermost : 0.0f;
