@@ -1,4 +1,4 @@
-// What the rooms of Card share: card.cpp (a group of a frame, whole or in parts), card_gather.cpp (its
+// What the rooms of Card share: card_draw.cpp (a group of a frame, whole or in parts), card_gather.cpp (its
 // splats), card_memory.cpp, card_passes.cpp (its programs) and card_look.cpp.
 #pragma once
 

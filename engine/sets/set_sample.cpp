@@ -5,6 +5,7 @@
 #include "core/file_format.h"
 #include "generate/generate.h"
 #include "sets/load_source.h"
+#include "sets/recipe.h"
 #include "splat_files/native.h"
 
 namespace astrosplat {

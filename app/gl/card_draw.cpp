@@ -1,5 +1,4 @@
-#include "gl/card.h"
-
+// Groups of a frame, all slabs at once, one after the other, or band by band.
 #include <fmt/format.h>
 
 #include "core/log.h"
