@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t most_drawn_layers = 4;  // before what is settled
 
-/// Every factor of a scene with the weights of its choices, even ones where there are none. Drawing, counting
+/// Every factor of a scene with the weights of its choices, 1 where there are none. Drawing, counting
 /// and naming are loops over these.
 void visit_scene(auto& c, const auto& visit) {
     visit("blur", c.blur, {2, 3, 1, 3});
@@ -22,7 +22,7 @@ void visit_scene(auto& c, const auto& visit) {
     visit("sky_switched", c.sky_switched, {2, 2, 2, 1});
     visit("moved", c.moved, {});
     visit("path", c.path, {});
-    visit("projection", c.projection, {3, 1, 1, 1, 1});
+    visit("projection", c.projection, {3});
     visit("seen", c.seen, {3, 1, 1, 2});
     visit("channels", c.channels, {1, 1, 2, 2});
     visit("sky", c.sky, {});
@@ -60,7 +60,7 @@ struct Draw {
     void operator()(const char*, E& choice, Weights weights) const {
         const std::size_t count = names_of(E{}).size();
         std::vector<int> shares(weights);
-        shares.resize(count, weights.size() ? 0 : 1);
+        shares.resize(count, 1);
         int sum = 0;
         for (const int share : shares) sum += share;
         int left = int(numbers->below(std::size_t(sum)));
