@@ -282,10 +282,8 @@ glm::dvec2 on_map(const Camera& camera, const Axes& axes, const glm::dvec3& ray)
            glm::dvec2(glm::dot(ray, axes.larger), glm::dot(ray, axes.smaller));
 }
 
-/// Whether an ellipse stays inside of a cylinder's frame.
 bool fits(const Camera& camera, const SphereEllipse& e) {
-    return camera.projection != Projection::cylindrical ||
-           std::fabs(e.latitude) + 2.0 * real::degrees(e.larger_px / camera.focal_px) <= 38.0;
+    return test::fits(camera, e.latitude, 2.0 * real::degrees(e.larger_px / camera.focal_px));
 }
 
 class SphereEllipseLight : public ::testing::TestWithParam<SphereCase> {};

@@ -51,6 +51,11 @@ inline double solid_angle(const Camera& camera, std::int64_t x, std::int64_t y) 
     return camera.focal_px * camera.focal_px * glm::length(glm::cross(wide, high));
 }
 
+/// Whether the frame shows all within so many degrees of a place; a cylinder's ends above and below.
+inline bool fits(const Camera& camera, double latitude_deg, double within_deg) {
+    return camera.projection != Projection::cylindrical || std::fabs(latitude_deg) + within_deg <= 38.0;
+}
+
 /// Of every pixel, row by row: for pictures of one camera after the other.
 inline std::vector<double> solid_angles(const Camera& camera) {
     std::vector<double> angles;
