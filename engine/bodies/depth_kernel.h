@@ -70,8 +70,8 @@ void line_depths(const NoiseStack& noise, const DepthCandidates& candidates, Dep
 /// among 24 candidates by the first three octaves, then eight about the one chosen by the others.
 void disk_depths(const NoiseStack& noise, DepthBlock& block);
 
-/// z = clumping * sum of gain N(x, y, 0), at most 2 H_k from 0, and a draw from sech^2(z / spread) with the spread at
-/// most H_k.
+/// z = clumping * sum of gain N(x, y, 0), at most 2 H_k from 0, and a draw from sech^2(z / spread) with the
+/// spread at most H_k.
 void sheet_depths(const NoiseStack& noise, float spread, DepthBlock& block);
 
 /// z = sum of gain N(x, y, 0) alone.

@@ -52,7 +52,7 @@ struct Placement {
     int field_halvings = 0;                              // of the size of the fields:
     std::vector<GalaxyBody> galaxies;                    // of a disk; else empty
     Image thickness;                                     // H(x, y), texels, of other kinds
-    Image structure;     // of other kinds, by how much their sheets fold
+    Image structure;                                     // of other kinds, by how much their sheets fold
     Image relief;        // how far the middle of a sheet or a wall stands out, texels; empty: not at all
     FilledLight filled;  // of what has walls; empty: none
     std::optional<AxisDepths> axis;  // of a body of revolution

@@ -282,8 +282,8 @@ glm::dvec2 on_map(const Camera& camera, const Axes& axes, const glm::dvec3& ray)
            glm::dvec2(glm::dot(ray, axes.larger), glm::dot(ray, axes.smaller));
 }
 
-bool fits(const Camera& camera, const SphereEllipse& e) {
-    return test::fits(camera, e.latitude, 2.0 * real::degrees(e.larger_px / camera.focal_px));
+bool ellipse_fits(const Camera& camera, const SphereEllipse& e) {
+    return fits(camera, e.latitude, 2.0 * real::degrees(e.larger_px / camera.focal_px));
 }
 
 class SphereEllipseLight : public ::testing::TestWithParam<SphereCase> {};
@@ -308,7 +308,7 @@ TEST_P(SphereEllipseLight, IsConservedAtEveryPlaceSizeAndOrientation) {
                                         {-89.3, 180.0, 0.0},
                                         {90.0, 0.1, 20.0}}) {
             const SphereEllipse e{larger, smaller, place.z, place.y, place.x};
-            if (larger > 0.9 * camera.focal_px || !fits(camera, e)) continue;
+            if (larger > 0.9 * camera.focal_px || !ellipse_fits(camera, e)) continue;
             const double wanted = 0.5 * integral * larger * smaller;
             const double error =
                 light_on_sphere(ellipse_picture(camera, e, falloff, &tables), angles, 3) / wanted - 1.0;
@@ -334,7 +334,7 @@ TEST(SphereEllipseNightly, LightIsRightOfManyAtRandom) {
                             360.0 * share(n, 4) - 180.0, real::degrees(real::asin(2.0 * share(n, 5) - 1.0))};
             if (n % 3 == 0) e.latitude = 90.0 - 8.0 * share(n, 5) * share(n, 5);
             if (n % 3 == 1) e.degrees = 90.0 * std::floor(4.0 * share(n, 3));
-            if (larger > 0.7 * camera.focal_px || !fits(camera, e)) continue;
+            if (larger > 0.7 * camera.focal_px || !ellipse_fits(camera, e)) continue;
             const Falloff falloff{all_shapes[n % all_shapes.size()], 0.5f, 4.5f};
             const double wanted = 0.5 * falloff_integral(falloff) * e.larger_px * e.smaller_px;
             const double error =
@@ -361,7 +361,7 @@ TEST(SphereEllipse, HasItsSecondMomentsOnTheEqualAreaMap) {
             for (const double latitude : {0.0, 25.0, -71.0, 88.0, -90.0})
                 for (const auto& [longitude, degrees] : {std::pair{10.3, 35.0}, std::pair{-179.8, 110.0}}) {
                     const SphereEllipse e{larger, smaller, degrees, longitude, latitude};
-                    if (larger > 0.6 * camera.focal_px || !fits(camera, e)) continue;
+                    if (larger > 0.6 * camera.focal_px || !ellipse_fits(camera, e)) continue;
                     // A pole's few rows show how much light, not how wide.
                     if (smaller < 3.0 && std::fabs(latitude) > 80.0) continue;
                     const Axes axes = axes_of(e);
