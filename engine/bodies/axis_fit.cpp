@@ -4,7 +4,7 @@
 
 #include <glm/exponential.hpp>
 #include <glm/vec2.hpp>
-#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
 
 #include "core/parallel.h"
 #include "core/real.h"
@@ -138,13 +138,16 @@ std::vector<Line> likely_axes(const Image& light, std::optional<double> angle) {
     return axes;
 }
 
+// Red, green, blue and a zero, which make one vector.
+using Light = glm::vec4;
+
 // The light on either side of an axis on a grid of lines of sight, in rows along it.
 struct Folded {
     int across = 0, along = 0;  // lines
-    std::vector<glm::vec3> side[2];
+    std::vector<Light> side[2];
     std::vector<float> known[2], weight;  // 0 or 1; both, 0..2
     /// Of both sides, and what is on both: a knot on one of them counts as little as can be.
-    std::vector<glm::vec3> mean, common;
+    std::vector<Light> mean, common;
 };
 
 // How far from the axis and from its middle all but a sixtieth of the light lies, px.
@@ -177,7 +180,7 @@ Folded folded(const Image& light, const Line& axis, const glm::dvec2& reach, dou
     f.across = std::max(4, int(std::ceil(reach.x / step_px)));
     f.along = 2 * std::max(4, int(std::ceil(reach.y / step_px)));
     const auto lines = std::size_t(f.across) * std::size_t(f.along);
-    f.mean.assign(lines, glm::vec3(0.0f));
+    f.mean.assign(lines, Light(0.0f));
     f.weight.assign(lines, 0.0f);
     for (int s = 0; s < 2; ++s) {
         f.side[s].resize(lines);
@@ -187,7 +190,7 @@ Folded folded(const Image& light, const Line& axis, const glm::dvec2& reach, dou
                          v = (double(i / std::size_t(f.across)) + 0.5 - 0.5 * f.along) * step_px;
             const glm::dvec2 p = axis.place + u * axis.across() + v * axis.along();
             const LinearSample sample(light, float(p.x), float(p.y));
-            f.side[s][i] = {sample.of(light, 0), sample.of(light, 1), sample.of(light, 2)};
+            f.side[s][i] = {sample.of(light, 0), sample.of(light, 1), sample.of(light, 2), 0.0f};
             f.known[s][i] = is_inside(light, p) ? 1.0f : 0.0f;
             f.mean[i] += f.known[s][i] * f.side[s][i];
             f.weight[i] += f.known[s][i];
@@ -196,7 +199,7 @@ Folded folded(const Image& light, const Line& axis, const glm::dvec2& reach, dou
     f.common.resize(lines);
     for (std::size_t i = 0; i < lines; ++i) {
         f.mean[i] /= std::max(1.0f, f.weight[i]);
-        const glm::vec3 product = f.side[0][i] * f.side[1][i];
+        const Light product = f.side[0][i] * f.side[1][i];
         f.common[i] = f.weight[i] < 2.0f ? f.mean[i] : product / (f.mean[i] + 1e-9f);
     }
     return f;
@@ -242,11 +245,11 @@ Rings rings_of(const Folded& f, double tilt) {
     return rings;
 }
 
-glm::vec3 seen_along(const Rings& rings, std::size_t line, const std::vector<glm::vec3>& light) {
-    glm::vec3 sum(0.0f);
+Light seen_along(const Rings& rings, std::size_t line, const std::vector<Light>& light) {
+    Light sum(0.0f);
     for (const Crossing& at : rings.of(line)) {
-        const glm::vec3* const p = light.data() + at.ring;
-        const glm::vec3* const q = p + rings.heights;
+        const Light* const p = light.data() + at.ring;
+        const Light* const q = p + rings.heights;
         sum += (1.0f - at.radius) * ((1.0f - at.height) * p[0] + at.height * p[1]) +
                at.radius * ((1.0f - at.height) * q[0] + at.height * q[1]);
     }
@@ -280,31 +283,31 @@ std::vector<Value> given_to_rings(const Rings& rings, const std::vector<Value>& 
 }
 
 struct Solved {
-    std::vector<glm::vec3> light;  // of each ring
-    std::vector<glm::vec3> seen;   // along each line
+    std::vector<Light> light;  // of each ring
+    std::vector<Light> seen;   // along each line
 };
 
 // Rings from the picture: the multiplicative steps of expectation maximisation (Richardson 1972, Lucy 1974),
 // to the power 1.5, by which they need fewer. No ring becomes negative. Stopped before rings explain noise.
-Solved solved(const Folded& f, const std::vector<glm::vec3>& light, const Rings& rings, int rounds) {
+Solved solved(const Folded& f, const std::vector<Light>& light, const Rings& rings, int rounds) {
     float brightest = 0.0f;
-    for (const glm::vec3& p : light) brightest = std::max({brightest, p.x, p.y, p.z});
+    for (const Light& p : light) brightest = std::max({brightest, p.x, p.y, p.z});
     constexpr float little_share = 1e-4f;  // added to both sides of a ratio: noise of a dark sky is no ring
     const float little = little_share * brightest + 1e-12f;
     const std::vector<float> counted = given_to_rings(rings, f.weight);
     Solved s;
-    s.light.assign(counted.size(), glm::vec3(brightest / float(rings.heights)));
+    s.light.assign(counted.size(), Light(brightest / float(rings.heights)));
     s.seen.resize(light.size());
-    std::vector<glm::vec3> ratio(light.size());
+    std::vector<Light> ratio(light.size());
     const auto look = [&](std::size_t i) { s.seen[i] = seen_along(rings, i, s.light); };
     for (int round = 0; round < rounds; ++round) {
         parallel_each(ratio.size(), 1024, [&](std::size_t i) {
             look(i);
             ratio[i] = f.weight[i] * ((light[i] + little) / (s.seen[i] + little));
         });
-        const std::vector<glm::vec3> change = given_to_rings(rings, ratio);
+        const std::vector<Light> change = given_to_rings(rings, ratio);
         for (std::size_t i = 0; i < counted.size(); ++i) {
-            const glm::vec3 step = counted[i] > 0.0f ? change[i] / counted[i] : glm::vec3(0.0f);
+            const Light step = counted[i] > 0.0f ? change[i] / counted[i] : Light(0.0f);
             s.light[i] *= step * glm::sqrt(step);
         }
     }
@@ -314,7 +317,7 @@ Solved solved(const Folded& f, const std::vector<glm::vec3>& light, const Rings&
 
 // How far light is from what is seen, of all of it.
 template <class Apart>
-double unlike(const std::vector<glm::vec3>& light, const std::vector<glm::vec3>& seen,
+double unlike(const std::vector<Light>& light, const std::vector<Light>& seen,
               const std::vector<float>& weight, const Apart& of) {
     double sum = 0.0, all = 1e-30;
     for (std::size_t i = 0; i < seen.size(); ++i)
@@ -326,7 +329,7 @@ double unlike(const std::vector<glm::vec3>& light, const std::vector<glm::vec3>&
 }
 
 template <class Apart>
-double unlike_sides(const Folded& f, const std::vector<glm::vec3>& seen, const Apart& of) {
+double unlike_sides(const Folded& f, const std::vector<Light>& seen, const Apart& of) {
     return 0.5 * (unlike(f.side[0], seen, f.known[0], of) + unlike(f.side[1], seen, f.known[1], of));
 }
 
@@ -410,7 +413,7 @@ double alike_sides(const Image& light, const Line& axis, const glm::dvec2& reach
     const Folded f = folded(gaussian_blur(light, details_px), axis, reach, step_px);
     std::vector<double> all;
     double mirrored = 0.0, any = 1e-30;
-    const auto mean = [](const glm::vec3& p) { return double(p.x + p.y + p.z) / 3.0; };
+    const auto mean = [](const Light& p) { return double(p.x + p.y + p.z) / 3.0; };
     for (std::size_t i = 0; i < f.weight.size(); ++i) {
         if (f.weight[i] < 2.0f) continue;
         for (const auto& side : f.side) all.push_back(mean(side[i]));
