@@ -137,6 +137,9 @@ LayerNeed need_of(const BatchPlan& plan, const LayerParams& layer, const Sampled
 
 constexpr std::int64_t program_bytes = 44'000'000;  // with its libraries, before any scene
 constexpr std::int64_t picture_bytes = 92'000'000;  // libraries that read pictures
+// What malloc keeps of one layer while the next is read: two and three of 1 M splats each took 8 to 14 MB
+// more.
+constexpr std::int64_t next_layer_bytes = 12'000'000;
 constexpr std::int64_t drawing_bytes = 10'000'000;  // what rendering and writing any frame adds
 constexpr std::int64_t worker_bytes = 800'000;      // a thread that renders, besides what folding takes
 constexpr std::int64_t block_bytes = 6'700'000;     // the same where sets come by the block
@@ -235,10 +238,13 @@ struct JobNeed {
 using Names = std::vector<std::string>;
 
 std::int64_t held_bytes(const JobNeed& job, const Names& streamed) {
-    std::int64_t held = job.sky.held + (streamed.empty() ? 0 : thread_count() * block_bytes);
-    for (const LayerNeed& need : job.layers)
-        held += std::ranges::count(streamed, need.params->name) ? need.streamed : need.held;
-    return held;
+    std::int64_t held = job.sky.held + (streamed.empty() ? 0 : thread_count() * block_bytes), whole = 0;
+    for (const LayerNeed& need : job.layers) {
+        const bool on_disk = std::ranges::count(streamed, need.params->name) > 0;
+        held += on_disk ? need.streamed : need.held;
+        whole += !on_disk;
+    }
+    return held + std::max<std::int64_t>(0, whole - 1) * next_layer_bytes;
 }
 
 /// While sets and sky are made one after the other, sky last.
@@ -247,7 +253,7 @@ std::int64_t making_bytes(const JobNeed& job, const Names& streamed) {
     for (const LayerNeed& need : job.layers) {
         const bool on_disk = std::ranges::count(streamed, need.params->name) > 0;
         if (!on_disk) most = std::max(most, held + need.making);
-        held += on_disk ? need.streamed : need.held;
+        held += on_disk ? need.streamed : need.held + next_layer_bytes;
     }
     return job.program + most;
 }

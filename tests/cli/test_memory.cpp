@@ -145,6 +145,8 @@ TEST_F(Memory, EveryKindOfFrameIsCounted) {
     const Run streamed = rendered({"--memory", "0.23", "--set", aovs});
     EXPECT_HAS(streamed.err, "block by block");
     expect_enough(streamed);
+    // From within the ball few are drawn, and reading the second layer takes the most.
+    expect_enough(rendered({"--set", "camera.position=[0.2, 0.1, 0.3]"}));
 }
 
 // More than what a small frame takes.
