@@ -15,7 +15,7 @@ constexpr int patch_stride = 2;  // px of the base between the middles of patche
 constexpr int row_floats = 8;    // room for a row of a patch: vectors
 constexpr int search_reach = 6;  // px of the exemplar about the same place
 constexpr int farthest = 24;     // of these, that matches which are handed on get from their own
-constexpr int first_guesses = 5, sweeps = 3, all_turns = 8;
+constexpr int first_guesses = 5, search_sweeps = 3, all_turns = 8;
 constexpr float least_deviation = 0.004f, level_weight = 0.15f, contrast_weight = 0.5f;
 constexpr float most_gain = 2.0f;       // of a patch's contrast over that of its like
 constexpr float best_distance = 0.02f;  // below which distances weigh alike
@@ -155,9 +155,9 @@ class PatchSearch {
 
     PatchMatches find(const Progress& progress) const {
         PatchMatches found;
-        for (int sweep = 0; sweep <= sweeps; ++sweep) {
+        for (int sweep = 0; sweep <= search_sweeps; ++sweep) {
             found = swept(sweep, found, progress);
-            progress.at(double(sweep + 1) / double(sweeps + 1));
+            progress.at(double(sweep + 1) / double(search_sweeps + 1));
         }
         return found;
     }
