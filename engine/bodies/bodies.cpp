@@ -6,6 +6,7 @@
 
 #include "bodies/axis_depths.h"
 #include "bodies/axis_fit.h"
+#include "bodies/detail_picture.h"
 #include "bodies/dust.h"
 #include "bodies/front_fit.h"
 #include "bodies/picture_light.h"
@@ -42,7 +43,7 @@ void add(const Image& light, Image& sum) {
 
 // What bodies are made of, for all pictures of a layer; each has a seed of its own.
 struct BodiesTask {
-    const StructureParams& params;
+    StructureParams params;
     std::uint32_t seed;
     const std::string& layer_name;
 };
@@ -64,13 +65,53 @@ std::optional<AxisDepths> axis_of(const Image& light, const StructureParams& par
     return make_axis_depths(std::move(fit), light);
 }
 
+// The texels of a picture before it was enlarged: a side of them is `times` pixels. What is left at the right
+// and lower edge, as margins are of any width, is mirrored up to a whole one.
+Image own_texels(const Image& image, int times) {
+    const auto whole = [&](std::int64_t px) { return (px + times - 1) / times; };
+    const std::int64_t width = whole(image.width), height = whole(image.height);
+    Image padded = unfilled_image(width * times, height * times, image.channels);
+    for_each_pixel(padded, [&](std::int64_t x, std::int64_t y) {
+        const auto inside = [](std::int64_t at, std::int64_t size) {
+            return at < size ? at : 2 * size - 1 - at;
+        };
+        std::copy_n(image.at(inside(x, image.width), inside(y, image.height)), image.channels,
+                    padded.at(x, y));
+    });
+    return reduced_by_area(padded, width, height);
+}
+
+// Puts invented detail in the place of an enlarged picture's even texels, but for its stars: `rest` is what
+// they left of the light.
+void add_detail(const BodiesTask& task, const Progress& progress, PictureLight& picture, Image& rest) {
+    constexpr float of_star = 0.01f;  // of the light, at which a texel was a star's
+    const Image texels = own_texels(rest, picture.times), whole = own_texels(picture.light, picture.times);
+    Image sources = unfilled_image(texels.width, texels.height, 1);
+    for_each_pixel(texels, [&](std::int64_t x, std::int64_t y) {
+        const float *const left = texels.at(x, y), *const all = whole.at(x, y);
+        const auto is_whole = [&](int c) { return all[c] - left[c] <= of_star * all[c]; };
+        *sources.at(x, y) = is_whole(0) && is_whole(1) && is_whole(2) ? 1.0f : 0.0f;
+    });
+    const DetailWish wish{task.params.detail, task.params.detail_strength, task.seed};
+    const Image detail = detail_picture(texels, sources, wish, progress);
+    for_each_pixel(rest, [&](std::int64_t x, std::int64_t y) {
+        float *const left = rest.at(x, y), *const all = picture.light.at(x, y);
+        for (int c = 0; c < 3; ++c) {
+            all[c] = std::max(0.0f, all[c] - left[c]) + detail.at(x, y)[c];
+            left[c] = detail.at(x, y)[c];
+        }
+    });
+}
+
 // Adds all splats of a picture, with their colours as they would be if nothing hid anything.
-void add_splats(const PictureLight& picture, const UvSurface& surface, const BodiesTask& task,
+void add_splats(PictureLight& picture, const UvSurface& surface, const BodiesTask& task,
                 const Progress& progress, PictureSplats& set) {
     StructureParams params = task.params;
     Image rest = copied(picture.light);
-    const PictureStars stars = take_picture_stars(rest, params, picture.enlarged);
+    const PictureStars stars = take_picture_stars(rest, params, picture.times > 1);
     progress.check();
+    if (params.detail > 0 && picture.times == 1 << params.detail)
+        add_detail(task, progress.part(0.0, 0.1), picture, rest);
     std::optional<AxisDepths> axis = axis_of(rest, params, task.layer_name);
     if (params.kind == StructureKind::axis && !axis) params.kind = StructureKind::walls;
     progress.at(0.1);
@@ -223,7 +264,7 @@ Image smaller(const Image& image, double area) {
 
 // A picture's splats on its mesh. While they are more than `most` (0: any number), the picture is reduced.
 SplatSet bodies_of(const PictureOnMesh& picture, std::size_t number, Texture& texture, double expected,
-                   std::int64_t most, const BodiesTask& task, const Progress& progress) {
+                   std::int64_t most, BodiesTask task, const Progress& progress) {
     constexpr int most_tries = 8;
     constexpr double aimed_at = 0.97, made_share = 0.4;  // of the time, that making the splats takes
     for (int tries = 1;; ++tries) {
@@ -237,6 +278,7 @@ SplatSet bodies_of(const PictureOnMesh& picture, std::size_t number, Texture& te
                                 rows, texture.image.width, texture.image.height, most));
             const double area = double(texels_of(texture)) * aimed_at * double(most) / double(rows);
             texture.image = smaller(texture.image, area);
+            task.params.detail = 0;
             log_detail(fmt::format("layer '{}': {} rows are more than {}, so its picture is reduced to {}x{}",
                                    task.layer_name, rows, most, texture.image.width, texture.image.height));
             continue;

@@ -136,7 +136,8 @@ std::vector<BandSplats> band_splats(const Band& band, bool coarsest, const Place
     const double natural = coarsest ? 4.0 * widest : natural_sigma * band.feature;
     const double usual =
         (about_axis && band.index > last_fine_band ? more_about_axis : 1.0) *
-        by_feature(splats_each, band.index == 0 ? 2.0 : std::max(4.0, band.feature / placement.scale));
+        by_feature(splats_each,
+                   band.index == 0 ? 2.0 : std::max(4.0, band.feature / placement.scale * placement.detail));
     if (!placement.galaxies.empty()) return splats_of_galaxy(band, usual, placement.galaxies.front());
     return {splats_of_size(band, glow, std::min(natural, widest), usual)};
 }

@@ -24,7 +24,7 @@ PictureLight picture_light(const Texture& texture, double border) {
     const Image& image = texture.image;
     const double width_px = border * double(image.width);
     PictureLight result{unfilled_image(image.width, image.height, 3),
-                        unfilled_image(image.width, image.height, 1), texture.times > 1};
+                        unfilled_image(image.width, image.height, 1), texture.times};
     for_each_pixel(image, [&](std::int64_t x, std::int64_t y) {
         const float fade = edge_fade(y, image.height, width_px) * edge_fade(x, image.width, width_px);
         const float* const in = image.at(x, y);

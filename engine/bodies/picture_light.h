@@ -9,9 +9,9 @@
 namespace astrosplat {
 
 struct PictureLight {
-    Image light;            // RGB, linear, premultiplied, >= 0; what is not a number is 0
-    Image alpha;            // one channel, 0..1; without pixels where the picture is opaque everywhere
-    bool enlarged = false;  // of a small picture, whose own texels are several of these
+    Image light;    // RGB, linear, premultiplied, >= 0; what is not a number is 0
+    Image alpha;    // one channel, 0..1; without pixels where the picture is opaque everywhere
+    int times = 1;  // of these, along a side, are a texel of a picture that was enlarged
 };
 
 /// `border`: share of the width over which light and alpha fade to 0 towards the picture's edges, 0..0.5.

@@ -71,7 +71,7 @@ double splats_a_texel(const Texture& part, PixelPlace begin, const StructurePara
     const PictureLight picture = picture_light(part, 0.0);
     const Image brightest = brightest_channel(picture.light);
     Image rest = picture.light;
-    take_picture_stars(rest, params, picture.enlarged);
+    take_picture_stars(rest, params, picture.times > 1);
     const Image without_stars = brightest_channel(rest);
     Image emission = make_image(rest.width, rest.height, 3);
     const auto shows = [&](std::int64_t x, std::int64_t y) {
@@ -139,7 +139,10 @@ double expected_splats(const Texture& texture, const StructureParams& params) {
         densities[i] = splats_a_texel(part, begin, params, placement, bands);
     });
     const double mean = std::accumulate(densities.begin(), densities.end(), 0.0) / double(densities.size());
-    return mean * double(image.width * image.height);
+    // Invented detail shows where these samples are even: 4 to 12 % more splats for the Pillars at three
+    // sizes.
+    constexpr double detail_adds = 1.12;
+    return (params.detail > 0 ? detail_adds : 1.0) * mean * double(image.width * image.height);
 }
 
 std::vector<PictureOnMesh> pictures_of(std::span<const TexturedMesh> meshes) {
@@ -230,14 +233,24 @@ void reduce(Texture& texture, double first_share, const std::function<double()>&
 
 }  // namespace
 
-void enlarge_small_pictures(std::vector<TexturedMesh>& meshes, const std::string& layer_name) {
+namespace {
+
+// Small pictures become larger by themselves, up to four times.
+int times_by_itself(std::int64_t texels) {
     constexpr std::int64_t most_texels = 4 * texels_read_whole;
     constexpr int most_times = 4;
+    int times = 1;
+    while (times < most_times && texels * (times + 1) * (times + 1) <= most_texels) ++times;
+    return times;
+}
+
+}  // namespace
+
+void enlarge_pictures(std::vector<TexturedMesh>& meshes, int detail, const std::string& layer_name) {
     for (TexturedMesh& mesh : meshes) {
         for (Texture& texture : mesh.textures) {
             const std::int64_t texels = texels_of(texture);
-            int times = 1;
-            while (times < most_times && texels * (times + 1) * (times + 1) <= most_texels) ++times;
+            const int times = detail > 0 ? 1 << detail : times_by_itself(texels);
             if (times == 1 || texels == 0 || texture.file_width > 0) continue;
             log_detail(fmt::format("layer '{}': a picture of {}x{} px is enlarged {} times", layer_name,
                                    texture.image.width, texture.image.height, times));

@@ -43,6 +43,7 @@ struct DepthReach {
 struct Placement {
     StructureKind kind = StructureKind::disk;
     double scale = 1.0;   // the picture's width over 1920 px, by which wavelengths grow
+    int detail = 1;       // texels along a side of each that the picture had before detail was invented
     double height = 0.0;  // texels, typical scale height H
     double depth = 0.0;   // texels, from the middle to the front of a relief or a wall
     double clumps = 1.0;

@@ -239,6 +239,13 @@ void describe_structure(const Describer& d, StructureParams& s) {
            "How far a picture on a plane goes on beyond its edges, mirrored and fading: without straight "
            "edges at an angle, and whole from the front.",
            within(0, 0.5), slider(0, 0.3));
+    bodies(
+        s.detail, "detail", "Invented detail", "octaves",
+        "What close views show of each texel: 2 or 4 times as fine, and from afar the texel as it is; 4 or "
+        "16 times as many splats.",
+        range(0, 2));
+    bodies(s.detail_strength, "detail_strength", "Its grain", "",
+           "Of the noise where the picture has no like of a place to copy from.", range(0, 1));
 }
 
 void describe_uv_camera(const Describer& d, UvCamera& c) {

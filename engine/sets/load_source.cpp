@@ -84,7 +84,9 @@ SplatSet generate_bodies(const SourceParams& source, const std::string& layer_na
     SplatSet set = make_bodies(std::move(plan.meshes), plan.structure, resolved_seed(source.seed, layer_name),
                                layer_name, progress, source.splats);
     uv_of_pictures(plan.times, set);
-    set.origin = origin_of(source, share_beyond(set));
+    SourceParams made = source;
+    made.structure.detail = plan.structure.detail;
+    set.origin = origin_of(made, share_beyond(set));
     set.of_this_machine = !plan.fits_memory;
     return set;
 }
@@ -196,9 +198,10 @@ BodiesPlan plan_bodies(const SourceParams& source, std::vector<TexturedMesh> mes
     BodiesPlan plan{std::move(meshes), source.structure, {}};
     plan.structure.stars = finds_stars(source) ? StructureParams::Stars::yes : StructureParams::Stars::no;
     const bool read_whole = have_all_texels(plan.meshes, source.structure.most_texels);
-    enlarge_small_pictures(plan.meshes, layer_name);
+    enlarge_pictures(plan.meshes, plan.structure.detail, layer_name);
     plan.times = add_margins(plan.meshes, plan.structure, layer_name);
     if (std::ranges::all_of(plan.times, is_one)) plan.structure.margin = 0.0;
+    const std::int64_t whole = largest_picture(plan.meshes);
     reduce_to(plan.meshes, plan.structure.most_texels, layer_name);
     if (source.splats > 0)
         reduce_pictures(plan.meshes, plan.structure,
@@ -206,6 +209,11 @@ BodiesPlan plan_bodies(const SourceParams& source, std::vector<TexturedMesh> mes
     const std::int64_t asked_for = largest_picture(plan.meshes);
     reduce_pictures(plan.meshes, plan.structure, {room_for_bodies(), 0}, layer_name);
     plan.fits_memory = read_whole && largest_picture(plan.meshes) == asked_for;
+    if (plan.structure.detail > 0 && !(read_whole && largest_picture(plan.meshes) == whole)) {
+        log_warning(fmt::format("layer '{}': source.structure.detail is left out, as its picture is reduced",
+                                layer_name));
+        plan.structure.detail = 0;
+    }
     return plan;
 }
 

@@ -56,6 +56,7 @@ SetSample sample_bodies(const SetCache& cache, const SourceParams& source, const
     const std::int64_t making_bytes = bodies_memory_bytes(plan.meshes, splats);
     const double reading = seconds_since(start);
     reduce_to(plan.meshes, rows_of(texels), layer_name);
+    plan.structure.detail = 0;  // of a picture that is reduced there is none
     const double smaller = double(texels) / double(std::max<std::int64_t>(1, largest_picture(plan.meshes)));
     const auto making = Clock::now();
     SetSample sample;

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "core/text.h"
+
 namespace astrosplat {
 namespace {
 
@@ -51,8 +53,11 @@ std::string beyond_words(const StructureParams& params, const std::optional<Shar
 std::string origin_of(const StructureParams& params, const std::optional<ShareBeyond>& beyond) {
     return fmt::format(
         "measured: light and colours, as the picture's camera sees them; modelled: depths, by {}; invented: "
-        "each splat's place within that depth, all backs{}{}",
+        "each splat's place within that depth, all backs{}{}{}",
         model_words(params),
+        params.detail > 0
+            ? fmt::format(", detail of {} beyond the picture's texels", counted(params.detail, "octave"))
+            : "",
         hides_plane(params) ? ", arms and clouds along the line of sight, the dust's far side" : "",
         beyond_words(params, beyond));
 }

@@ -116,7 +116,7 @@ TEST(Bodies, SmallPicturesAreEnlargedUpToThoseOf2048x2048) {
     std::vector<TexturedMesh> meshes;
     for (const auto& [width, height] : {std::pair{300, 200}, {700, 500}, {1024, 1024}, {1024, 1025}})
         meshes.push_back(on_plane(make_image(width, height, 4, 0.5f)));
-    enlarge_small_pictures(meshes, "gas");
+    enlarge_pictures(meshes, 0, "gas");
     EXPECT_EQ(meshes[0].textures[0].image.width, 1200);
     EXPECT_EQ(meshes[1].textures[0].image.width, 2100);
     EXPECT_EQ(meshes[2].textures[0].image.width, 2048);
@@ -455,6 +455,72 @@ TEST(Bodies, EveryKeyCounts) {
     for (const auto change : of_positions) EXPECT_FALSE(changed(change).position == usual.position);
     EXPECT_FALSE(changed([](StructureParams& p) { p.opacity = 0.9; }).alpha == usual.alpha);
     EXPECT_FALSE(changed([](StructureParams& p) { p.density = 0.3; }).alpha == usual.alpha);
+}
+
+/// The front of a plane's splats, as wide as `picture` with a pixel a texel.
+Image front_of(const SplatSet& set, const Image& picture) {
+    ShadedSplats splats;
+    splats.position = set.position;
+    splats.color = set.color;
+    splats.alpha = set.alpha;
+    splats.radius = set.radius;
+    splats.id = set.id;
+    RenderLayer layer;
+    layer.splats = &splats;
+    CameraParams params;
+    params.projection = Projection::orthographic;
+    params.position = {0.0, 100.0, 0.0};
+    params.target = glm::dvec3(0.0);
+    params.up = {0.0, 0.0, -1.0};
+    params.height = 10.0 * double(picture.height) / double(picture.width);
+    RenderSettings settings;
+    settings.width = picture.width;
+    settings.height = picture.height;
+    const Camera camera = make_camera(params, double(picture.width), double(picture.height), {});
+    return render({&layer, 1}, camera, nullptr, settings).beauty;
+}
+
+/// Mean difference of green between two images, over the mean of the first.
+double relative_difference(const Image& a, const Image& b) {
+    double away = 0.0, all = 0.0;
+    for_each_pixel(a, [&](std::int64_t x, std::int64_t y) {
+        away += std::fabs(double(a.at(x, y)[1]) - double(b.at(x, y)[1]));
+        all += double(a.at(x, y)[1]);
+    });
+    return away / all;
+}
+
+// From afar the picture; close by what the enlarged picture does not have, and another with another seed. A
+// margin leaves parts of texels at the edges.
+TEST(Bodies, DetailIsThePictureFromAfar) {
+    constexpr std::int64_t width = 150, height = 90;
+    constexpr int times = 4;
+    Image picture = painted::nebula(width, height);
+    for (std::size_t i = 0; i < picture.pixels.size(); ++i)
+        picture.pixels[i] *= float(0.6 + 0.8 * painted::random(std::uint32_t(i / 3), 7));
+    const auto seen = [&](int detail, std::uint32_t seed, std::int64_t less) {
+        std::vector<TexturedMesh> meshes{on_plane(picture)};
+        enlarge_pictures(meshes, 2, "gas");
+        Texture& texture = meshes[0].textures[0];
+        EXPECT_EQ(texture.times, times);
+        Image part = unfilled_image(texture.image.width - less, texture.image.height, 4);
+        for_each_pixel(part, [&](std::int64_t x, std::int64_t y) {
+            std::copy_n(texture.image.at(x, y), 4, part.at(x, y));
+        });
+        texture.image = std::move(part);
+        StructureParams params = of_kind(StructureKind::sheet);
+        params.detail = detail;
+        const Image shown = make_image(times * width - less, times * height, 1);
+        return front_of(make_bodies(std::move(meshes), params, seed, "gas"), shown);
+    };
+    const Image even = seen(0, 3u, 0), detailed = seen(2, 3u, 0);
+    EXPECT_GT(relative_difference(even, detailed), 0.05);
+    EXPECT_GT(relative_difference(seen(2, 4u, 0), detailed), 0.03);
+    const auto texels = [&](const Image& image) { return reduced_by_area(image, width, height); };
+    EXPECT_LT(relative_difference(texels(even), texels(detailed)), 0.02);
+    const Image odd = seen(2, 3u, 3);
+    EXPECT_EQ(odd.width, times * width - 3);
+    EXPECT_LT(relative_difference(seen(0, 3u, 3), odd), 0.3);
 }
 
 // Light that fades towards the border is darker than what is around it, as dust would be.
