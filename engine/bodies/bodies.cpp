@@ -65,27 +65,37 @@ std::optional<AxisDepths> axis_of(const Image& light, const StructureParams& par
     return make_axis_depths(std::move(fit), light);
 }
 
-// The texels of a picture before it was enlarged: a side of them is `times` pixels. What is left at the right
-// and lower edge, as margins are of any width, is mirrored up to a whole one.
-Image own_texels(const Image& image, int times) {
-    const auto whole = [&](std::int64_t px) { return (px + times - 1) / times; };
-    const std::int64_t width = whole(image.width), height = whole(image.height);
-    Image padded = unfilled_image(width * times, height * times, image.channels);
-    for_each_pixel(padded, [&](std::int64_t x, std::int64_t y) {
-        const auto inside = [](std::int64_t at, std::int64_t size) {
-            return at < size ? at : 2 * size - 1 - at;
+// How the pixels of an enlarged picture lie in the texels that it had: `times` a side, of which the first may
+// lack some, as a margin of any width lies before the picture's own.
+struct OwnTexels {
+    int times = 1;
+    std::int64_t lacking = 0;  // px
+
+    // Their means; what they lack at the edges is mirrored.
+    Image of(const Image& image) const {
+        const auto whole = [&](std::int64_t px) { return (lacking + px + times - 1) / times; };
+        const std::int64_t width = whole(image.width), height = whole(image.height);
+        Image padded = unfilled_image(width * times, height * times, image.channels);
+        const auto inside = [&](std::int64_t at, std::int64_t size) {
+            at -= lacking;
+            return at < 0 ? -1 - at : at < size ? at : 2 * size - 1 - at;
         };
-        std::copy_n(image.at(inside(x, image.width), inside(y, image.height)), image.channels,
-                    padded.at(x, y));
-    });
-    return reduced_by_area(padded, width, height);
-}
+        for_each_pixel(padded, [&](std::int64_t x, std::int64_t y) {
+            std::copy_n(image.at(inside(x, image.width), inside(y, image.height)), image.channels,
+                        padded.at(x, y));
+        });
+        return reduced_by_area(padded, width, height);
+    }
+};
 
 // Puts invented detail in the place of an enlarged picture's even texels, but for its stars: `rest` is what
 // they left of the light.
 void add_detail(const BodiesTask& task, const Progress& progress, PictureLight& picture, Image& rest) {
     constexpr float of_star = 0.01f;  // of the light, at which a texel was a star's
-    const Image texels = own_texels(rest, picture.times), whole = own_texels(picture.light, picture.times);
+    const double margin = task.params.margin;
+    const auto margin_px = std::llround(double(rest.width) * margin / (1.0 + 2.0 * margin));
+    const OwnTexels own{picture.times, (picture.times - margin_px % picture.times) % picture.times};
+    const Image texels = own.of(rest), whole = own.of(picture.light);
     Image sources = unfilled_image(texels.width, texels.height, 1);
     for_each_pixel(texels, [&](std::int64_t x, std::int64_t y) {
         const float *const left = texels.at(x, y), *const all = whole.at(x, y);
@@ -96,9 +106,10 @@ void add_detail(const BodiesTask& task, const Progress& progress, PictureLight& 
     const Image detail = detail_picture(texels, sources, wish, progress);
     for_each_pixel(rest, [&](std::int64_t x, std::int64_t y) {
         float *const left = rest.at(x, y), *const all = picture.light.at(x, y);
+        const float* const here = detail.at(x + own.lacking, y + own.lacking);
         for (int c = 0; c < 3; ++c) {
-            all[c] = std::max(0.0f, all[c] - left[c]) + detail.at(x, y)[c];
-            left[c] = detail.at(x, y)[c];
+            all[c] = std::max(0.0f, all[c] - left[c]) + here[c];
+            left[c] = here[c];
         }
     });
 }
