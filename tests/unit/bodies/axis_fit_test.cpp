@@ -140,6 +140,20 @@ TEST(AxisFit, TakesNoOtherCloudsForABodyNightly) {
     for (const std::uint32_t seed : {20u, 30u, 40u}) expect_no_body(seed);
 }
 
+// The rings in a hole of one colour are dimmed in every round, to nothing in the end if nothing held them;
+// and what they would be seen to be next to, nothing over nothing.
+TEST(AxisFit, NoRingGoesOut) {
+    Image picture = seen({shell(0.2, 0.15), 90.0, 0.0}, 0.0);
+    const double x = body_x * body_width, y = body_y * body_width;
+    for_each_pixel(picture, [&](std::int64_t i, std::int64_t j) {
+        if (std::hypot(double(i) + 0.5 - x, double(j) + 0.5 - y) < 9.0) picture.at(i, j)[2] *= 0.02f;
+    });
+    const AxisFit fit = fit_axis(picture, {0.5 * real::pi, 0.0});
+    const std::int64_t middle = fit.rings.width / 2;
+    EXPECT_GT(fit.rings.at(middle, 0)[2], 1e-7f * brightest(fit.rings));
+    EXPECT_LT(fit.rings.at(middle, 0)[2], 1e-3f * brightest(fit.rings));
+}
+
 TEST(AxisFit, OfNoLightIsStillAFit) {
     const AxisFit fit = fit_axis(make_image(40, 30, 3));
     EXPECT_TRUE(std::isfinite(fit.angle) && std::isfinite(fit.tilt_deg) && std::isfinite(fit.explained));
