@@ -96,8 +96,10 @@ BandSplats splats_of_size(const Band& band, bool glow, double sigma, double each
     return splats;
 }
 
-// A spheroid is seen into and through, so its splats are large and soft (INCLINED 3, by band).
-constexpr double spheroid_sigmas[] = {1.2, 1.6, 2.4, 5.0, 9.0, 14.0, 20.0, widest_in_galaxy_px};
+// A spheroid is seen into and through, so its splats are large and soft (INCLINED 3, by band), but not those
+// of its stars.
+constexpr int last_sharp_band = 2;
+constexpr double spheroid_sigmas[] = {5.0, 9.0, 14.0, 20.0, widest_in_galaxy_px};  // beyond
 constexpr double thickest_small_px = 4.0;  // sigma of the widest splats of the disk's finer bands
 constexpr int last_fine_band = 3;          // the widest of what is as thin as the disk's small things
 
@@ -114,9 +116,9 @@ std::vector<BandSplats> splats_of_galaxy(const Band& band, double usual, const G
     BandSplats disk = splats_of_size(band, false, std::min(natural_sigma * band.feature, widest),
                                      usual * real::pow(behind, crowded));
     disk.family = GalaxyFamily::disk;
-    const int last = int(std::size(spheroid_sigmas)) - 1;
+    const int beyond = std::min(band.index - last_sharp_band, int(std::size(spheroid_sigmas))) - 1;
     BandSplats spheroid = disk;
-    spheroid.sigma = float(spheroid_sigmas[std::min(band.index, last)]);
+    if (beyond >= 0) spheroid.sigma = float(spheroid_sigmas[beyond]);
     spheroid.spacing = spacing_of(spheroid.sigma, usual);
     spheroid.threshold = threshold_of(band, usual);
     spheroid.size = 1;

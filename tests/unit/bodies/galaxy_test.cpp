@@ -147,6 +147,16 @@ TEST(GalaxyFamilies, ASpheroidIsRoundAndADiskFlat) {
     EXPECT_LT(flatness(GalaxyFamily::spheroid), 1.1);
 }
 
+// A globular cluster is a spheroid, and its stars are points.
+TEST(GalaxyFamilies, WhatIsSharpIsAsSharpInASpheroid) {
+    const Families families;
+    for (const int band : {0, 1, 2})
+        EXPECT_FLOAT_EQ(families.of(GalaxyFamily::spheroid, band).splats.radius[0],
+                        families.of(GalaxyFamily::disk, band).splats.radius[0]);
+    EXPECT_GT(families.of(GalaxyFamily::spheroid, 3).splats.radius[0],
+              families.of(GalaxyFamily::disk, 3).splats.radius[0]);
+}
+
 // Both families together are the band's light, and a spheroid hides .35 of what a disk does.
 TEST(GalaxyFamilies, ShareTheLight) {
     const Families families;
