@@ -23,8 +23,9 @@ constexpr float sky = 0.002f;                   // added to both sides of a rati
 constexpr float largest_ratio = 4.0f;           // of a step, and its inverse: DEPTH 5
 constexpr double largest_cell_ratio = 2.0;      // of a cell's flux, at the end
 constexpr int first_steps = 4, last_steps = 3;  // before the rendering and after it
-constexpr int last_steps_of_small = 6;          // pictures, which are all detail, and take no time
-constexpr double share_blur_px = 2.0;           // coarse pixels, of the share that is supposed
+// Of small pictures, which are all detail, and where there is dust, whose details light has to make up for.
+constexpr int last_steps_of_detail = 6;
+constexpr double share_blur_px = 2.0;  // coarse pixels, of the share that is supposed
 constexpr std::int64_t flux_cell_px = 32;
 // Of the rendering's records; with more it takes its picture in parts.
 constexpr std::int64_t least_projected_bytes = std::int64_t{64} << 20, projected_bytes_a_texel = 12;
@@ -189,7 +190,7 @@ double FittedView::psnr_db(const Image& seen) const {
 
 FrontFit fit_front(PictureSplats& set, Image light, bool small, const Progress& progress) {
     FittedView view(set, light, small);
-    const int steps_after = small ? last_steps_of_small : last_steps;
+    const int steps_after = small || set.absorbs ? last_steps_of_detail : last_steps;
     light = {};
     Image seen = view.supposed();
     for (int step = 0; step < first_steps; ++step) {

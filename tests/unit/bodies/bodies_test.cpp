@@ -324,6 +324,14 @@ TEST(FrontFit, IsCloseToItsPictureAfterSevenSteps) {
     EXPECT_GT(fit.psnr_db, 44.0);
 }
 
+TEST(FrontFit, TakesMoreStepsWhereThereIsDust) {
+    const Image light = painted::nebula(96, 64);
+    PictureSplats set = fitted(light, StructureKind::disk, 10.0).set;
+    EXPECT_EQ(fit_front(set, light).steps, 7);
+    set.absorbs = true;
+    EXPECT_EQ(fit_front(set, light).steps, 10);
+}
+
 Image view_along_z(const PictureSplats& set, const Image& light, double from) {
     RenderLayer layer;
     layer.splats = &set.splats;
