@@ -12,6 +12,7 @@
 #include "bodies/picture_light.h"
 #include "bodies/picture_splats.h"
 #include "bodies/placement.h"
+#include "bodies/spikes.h"
 #include "bodies/stars.h"
 #include "bodies/uv_surface.h"
 #include "core/error.h"
@@ -119,7 +120,10 @@ void add_splats(PictureLight& picture, const UvSurface& surface, const BodiesTas
                 const Progress& progress, PictureSplats& set) {
     StructureParams params = task.params;
     Image rest = copied(picture.light);
-    const PictureStars stars = take_picture_stars(rest, params, picture.times > 1);
+    const bool takes_stars = params.stars != StructureParams::Stars::no;
+    Spikes spikes = takes_stars ? take_spikes(rest, picture.times) : Spikes();
+    const PictureStars stars =
+        take_picture_stars(rest, params, picture.times > 1, std::move(spikes.gaussians));
     progress.check();
     if (params.detail > 0 && picture.times == 1 << params.detail)
         add_detail(task, progress.part(0.0, 0.1), picture, rest);
@@ -146,6 +150,11 @@ void add_splats(PictureLight& picture, const UvSurface& surface, const BodiesTas
         add_dust(transmittance_of(without_stars, emission, picture.alpha), dust,
                  dust_exponents_of(picture.light), placement, set);
     add_picture_stars(stars, placement, opacity, set);
+    add_spikes(spikes, picture.times, placement, opacity, set);
+    if (spikes.arms > 0)
+        log_detail(fmt::format("layer '{}': {} with {} spikes each, at {:.1f} degrees; {} splats",
+                               task.layer_name, counted(std::ssize(spikes.stars), "star"), spikes.arms,
+                               real::degrees(spikes.angle), human_count(double(spikes.light.size()))));
     log_detail(fmt::format("layer '{}': {} splats and {} in {}", task.layer_name,
                            human_count(double(set.splats.size())), counted(stars.count, "star"),
                            counted(std::int64_t(bands.size()), "band")));

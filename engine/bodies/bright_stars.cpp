@@ -26,9 +26,7 @@ constexpr float apart = 2.0f;                           // half widths between t
 constexpr std::int64_t middle_reach_px = 4;             // about a peak, of light that tells the middle
 constexpr double soft_px = 1.0;                         // blur under which a plateau has one peak
 
-struct Ring {
-    float median = 0.0f, quartiles_apart = 0.0f;
-};
+}  // namespace
 
 Ring ring_at(const Image& image, int channel, float x, float y, float r) {
     static const std::array<std::pair<float, float>, ring_places> around = [] {
@@ -47,19 +45,16 @@ Ring ring_at(const Image& image, int channel, float x, float y, float r) {
             values[3 * ring_places / 4] - values[ring_places / 4 - 1]};
 }
 
-// A star as the rings around it tell, in pixels of its level.
-struct Found {
-    float x = 0.0f, y = 0.0f;
-    float half_width = 0.0f;
-};
+namespace {
 
-std::optional<Found> bright_star_at(const Image& brightest, std::int64_t column, std::int64_t row,
-                                    float peak) {
+// As the rings around it tell, in pixels of its level.
+std::optional<RoundStar> bright_star_at(const Image& brightest, std::int64_t column, std::int64_t row,
+                                        float peak) {
     const auto x0 = float(column) + 0.5f, y0 = float(row) + 0.5f;
     const float far = ring_at(brightest, 0, x0, y0, float(rings - 1)).median;
     if (peak - far < least_bright) return {};
     const PointLight above_half = light_about(brightest, column, row, middle_reach_px, 0.5f * (far + peak));
-    Found star{above_half.x, above_half.y};
+    RoundStar star{above_half.x, above_half.y};
     std::array<Ring, rings> ring;
     float sky = peak;
     for (std::size_t r = 0; r < ring.size(); ++r) {
@@ -82,16 +77,16 @@ std::optional<Found> bright_star_at(const Image& brightest, std::int64_t column,
     return star;
 }
 
-std::vector<Found> stars_of_level(const Image& brightest) {
+std::vector<RoundStar> stars_of_level(const Image& brightest) {
     const Image soft = gaussian_blur(brightest, soft_px);
-    return found_by_rows(brightest, edge_px, [&](std::int64_t x, std::int64_t y) -> std::optional<Found> {
+    return found_by_rows(brightest, edge_px, [&](std::int64_t x, std::int64_t y) -> std::optional<RoundStar> {
         if (*soft.at(x, y) < least_bright || !is_peak(soft, x, y, bright_reach_px)) return {};
         return bright_star_at(brightest, x, y, *soft.at(x, y));
     });
 }
 
 // Whether a star has no details that a coarser level does not show: knots of nebulae have.
-bool is_smooth(const Image& brightest, const Found& star) {
+bool is_smooth(const Image& brightest, const RoundStar& star) {
     constexpr int samples = 6;
     const float peak = bilinear(brightest, 0, star.x, star.y);
     const float sky = ring_at(brightest, 0, star.x, star.y, sky_at * star.half_width).median;
@@ -103,21 +98,22 @@ bool is_smooth(const Image& brightest, const Found& star) {
 }
 
 // The widest first, of which each keeps narrower ones away.
-std::vector<Found> all_stars(const Image& light) {
+std::vector<RoundStar> all_stars(const Image& light) {
     const float widest = widest_share * float(std::max(usual_width, light.width));
-    std::vector<std::vector<Found>> levels;
+    std::vector<std::vector<RoundStar>> levels;
     const Image whole = brightest_channel(light);
     Image brightest = copied(whole);
     for (float scale = 1.0f; scale * narrowest_px < widest; scale *= 2.0f) {
         if (std::min(brightest.width, brightest.height) <= 2 * edge_px) break;
         levels.push_back(stars_of_level(brightest));
-        for (Found& star : levels.back()) star = {scale * star.x, scale * star.y, scale * star.half_width};
+        for (RoundStar& star : levels.back())
+            star = {scale * star.x, scale * star.y, scale * star.half_width};
         brightest = halved(brightest);
     }
-    std::vector<Found> stars;
+    std::vector<RoundStar> stars;
     for (auto level = levels.rbegin(); level != levels.rend(); ++level)
-        for (const Found& star : *level)
-            if (is_smooth(whole, star) && std::ranges::none_of(stars, [&](const Found& other) {
+        for (const RoundStar& star : *level)
+            if (is_smooth(whole, star) && std::ranges::none_of(stars, [&](const RoundStar& other) {
                     const float dx = star.x - other.x, dy = star.y - other.y;
                     const float least = apart * other.half_width;
                     return dx * dx + dy * dy < least * least;
@@ -142,7 +138,7 @@ float middle_sigma(float half_width) {
 }
 
 struct Taken {
-    Found star;
+    RoundStar star;
     std::array<Star, widths> parts;
     glm::vec3 around{0.0f};  // light of its surroundings
     float reach() const { return taken_sigmas * parts[widths - 1].sigma; }
@@ -200,7 +196,8 @@ void fit_peaks(const Profile& profile, int channel, std::array<Star, widths>& pa
         parts[k].peak[channel] = float(std::max(scale, least_scale) * peak[k]);
 }
 
-Taken taken(const Found& star, const Image& light) {
+// `uneven`: how much of what the quartiles of a ring are apart its light is to be below the median.
+Taken taken(const RoundStar& star, const Image& light, float uneven) {
     constexpr int samples = 32;
     Taken out;
     out.star = star;
@@ -211,7 +208,8 @@ Taken taken(const Found& star, const Image& light) {
         Profile profile;
         for (int i = 0; i < samples; ++i) {
             const float r = sky_at * star.half_width * (float(i) + 0.5f) / samples;
-            const float value = ring_at(light, c, star.x, star.y, r).median - out.around[c];
+            const Ring ring = ring_at(light, c, star.x, star.y, r);
+            const float value = ring.median - uneven * ring.quartiles_apart - out.around[c];
             profile.emplace_back(double(r), double(std::max(0.0f, value)));
         }
         fit_peaks(profile, c, out.parts);
@@ -245,10 +243,11 @@ void take_away(const Taken& star, std::int64_t begin, std::int64_t end, Image& l
 
 }  // namespace
 
-std::vector<Star> take_bright_stars(Image& light) {
-    const std::vector<Found> found = all_stars(light);
+std::vector<Star> take_bright_stars(Image& light) { return take_bright_stars(light, all_stars(light), 0.0f); }
+
+std::vector<Star> take_bright_stars(Image& light, std::span<const RoundStar> found, float uneven) {
     std::vector<Taken> all(found.size());
-    parallel_each(found.size(), 16, [&](std::size_t i) { all[i] = taken(found[i], light); });
+    parallel_each(found.size(), 16, [&](std::size_t i) { all[i] = taken(found[i], light, uneven); });
     constexpr std::int64_t strip = 64;
     parallel_chunks(light.height, strip, [&](std::int64_t begin, std::int64_t end, int) {
         for (const Taken& star : all) take_away(star, begin, end, light);

@@ -217,4 +217,32 @@ void add_picture_stars(const PictureStars& stars, const Placement& placement, co
     }
 }
 
+void add_spikes(const Spikes& spikes, int times, const Placement& placement, const Opacity& opacity,
+                PictureSplats& out) {
+    if (spikes.light.empty()) return;
+    constexpr float sigma = 0.45f;  // texels, as of the finest band: one range with its splats
+    constexpr float footprint = footprint_share * float(2.0 * real::pi) * sigma * sigma;
+    std::vector<float> heights;
+    for (const RoundStar& star : spikes.stars) heights.push_back(star_height(placement, {star.x, star.y}));
+    const auto begin = std::size_t(out.splats.size());
+    resize_splats(out, std::int64_t(begin + spikes.light.size()));
+    const std::int64_t columns = placement.picture_width / times + 1;
+    parallel_each(spikes.light.size(), 4096, [&](std::size_t i) {
+        const SpikeLight& spike = spikes.light[i];
+        const RoundStar& star = spikes.stars[std::size_t(spike.star)];
+        const float height = heights[std::size_t(spike.star)];
+        const float most = std::max({spike.light.x, spike.light.y, spike.light.z});
+        const float alpha = std::clamp(star_opacity * opacity.depth_of(most, 1.0f) / footprint, 1e-3f, 1.0f);
+        out.splats.position[begin + i] = placement.among_splats(
+            (float(spike.column) + 0.5f) * float(times), (float(spike.row) + 0.5f) * float(times),
+            height + middle_plane(placement, star.x, star.y));
+        out.splats.color[begin + i] = spike.light / (alpha * footprint);
+        out.splats.alpha[begin + i] = alpha;
+        out.splats.radius[begin + i] = radius_sigmas * sigma * float(times);
+        out.splats.id[begin + i] = spike_band << 48 | std::uint64_t(spike.row * columns + spike.column);
+        out.distance[begin + i] = std::fabs(height);
+    });
+    out.ranges.push_back({std::int64_t(begin), out.splats.size(), sigma * float(times)});
+}
+
 }  // namespace astrosplat

@@ -7,6 +7,7 @@
 #include "bodies/depth_kernel.h"
 #include "bodies/picture_light.h"
 #include "bodies/placement.h"
+#include "bodies/spikes.h"
 #include "bodies/stars.h"
 #include "core/parallel.h"
 #include "splats/shaded_splats.h"
@@ -20,8 +21,8 @@ struct SplatRange {
 };
 
 struct PictureSplats {
-    ShadedSplats
-        splats;  // id: band, 254 for dust or 255 for stars from bit 48 on, size from 40, lattice cell
+    ShadedSplats splats;  // id: band, 253 for spikes, 254 for dust or 255 for stars from bit 48 on, size from
+                          // 40, lattice cell
     Buffer<float> distance;          // texels from the middle of the layer
     std::vector<SplatRange> ranges;  // of those that shine
     bool absorbs = false;            // there is dust: splats of colours below 0 (blend.glsl)
@@ -58,6 +59,10 @@ void add_band(const Image& band, const BandSplats& splats, const Image& brightes
 /// Adds one splat for each Gaussian of a star, at a depth of the layer's own distribution.
 void add_picture_stars(const PictureStars& stars, const Placement& placement, const Opacity& opacity,
                        PictureSplats& out);
+
+/// Adds the light of spikes: one splat a texel, in a plane at the depth of their star.
+void add_spikes(const Spikes& spikes, int times, const Placement& placement, const Opacity& opacity,
+                PictureSplats& out);
 
 struct LatticeCell {
     std::int64_t column, row;

@@ -203,28 +203,36 @@ std::vector<Star> take_stars(Image& light, float least_left, StarsTaken taken) {
     return stars;
 }
 
-PictureStars take_picture_stars(Image& light, const StructureParams& params, bool enlarged) {
+PictureStars take_picture_stars(Image& light, const StructureParams& params, bool enlarged,
+                                std::vector<Star> spiked) {
     PictureStars stars;
     if (params.stars == StructureParams::Stars::no) return stars;
-    std::vector<Star> bright;
+    std::vector<Star> bright = std::move(spiked), left;
+    const auto add = [&](std::vector<Star> more, std::vector<Star>& to) {
+        const std::uint32_t first = bright.empty() ? 0 : std::ranges::max(bright, {}, &Star::body).body + 1;
+        for (Star& star : more) star.body += first;
+        to.insert(to.end(), more.begin(), more.end());
+    };
     const bool disk = params.kind == StructureKind::disk;
-    if (disk) bright = take_bright_stars(light);
+    if (disk) add(take_bright_stars(light), bright);
     if (params.kind == StructureKind::axis) {
         Image without = copied(light);
-        bright = take_bright_stars(without);
+        add(take_bright_stars(without), left);
     }
     const float least_left = disk ? least_left_in_dust : 0.0f;  // without dust a hole is nearer the front
     stars.all = take_stars(light, least_left, enlarged ? StarsTaken::explained : StarsTaken::round);
     std::ranges::stable_sort(stars.all, {}, &Star::sigma);
     stars.ordinary = stars.all.size();
     stars.count = std::int64_t(stars.ordinary);
-    for (Star& star : bright) {
-        star.body += std::uint32_t(stars.ordinary);
-        stars.count = std::max(stars.count, std::int64_t(star.body) + 1);
+    stars.taken = stars.ordinary + bright.size();
+    for (std::vector<Star>* const part : {&bright, &left}) {
+        for (Star& star : *part) {
+            star.body += std::uint32_t(stars.ordinary);
+            stars.count = std::max(stars.count, std::int64_t(star.body) + 1);
+        }
+        std::ranges::stable_sort(*part, {}, &Star::sigma);
+        stars.all.insert(stars.all.end(), part->begin(), part->end());
     }
-    std::ranges::stable_sort(bright, {}, &Star::sigma);
-    stars.all.insert(stars.all.end(), bright.begin(), bright.end());
-    stars.taken = disk ? stars.all.size() : stars.ordinary;
     return stars;
 }
 

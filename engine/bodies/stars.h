@@ -30,11 +30,27 @@ enum class StarsTaken { round, explained };
 std::vector<Star> take_stars(Image& light, float least_left = least_left_in_dust,
                              StarsTaken taken = StarsTaken::round);
 
+/// A bright star where it is round, px.
+struct RoundStar {
+    float x = 0.0f, y = 0.0f;
+    float half_width = 0.0f;  // at half of its peak
+};
+
+struct Ring {
+    float median = 0.0f, quartiles_apart = 0.0f;
+};
+
+/// A channel's values on a ring of `r` px about a place.
+Ring ring_at(const Image& image, int channel, float x, float y, float r);
+
 /// Finds round bright points of a half width of 1.7 px up to 14 px (and in proportion in pictures wider than
 /// 1920 px) that fall off on all sides as stars do. Takes for each up to three Gaussians of one `body` out of
 /// `light`, down to 0.9 times what is around it. Their sigmas are powers of two. The same bits with any
 /// number of threads.
 std::vector<Star> take_bright_stars(Image& light);
+/// The same of stars that are known; each is a body. `uneven`: their light is that of rings' medians less so
+/// much of what its quartiles are apart.
+std::vector<Star> take_bright_stars(Image& light, std::span<const RoundStar> known, float uneven = 0.5f);
 
 struct PictureStars {
     std::vector<Star> all;     // ordinary ones, each a Gaussian; then those of bright ones; each by sigma
@@ -46,7 +62,9 @@ struct PictureStars {
 /// Takes the stars out of `light`, where `params` say so. Bright ones of disks only; about an axis they are
 /// found and left, and for other kinds not looked for, as there is no one depth for what such a star leaves
 /// around itself. Where the picture was `enlarged`, a star is some texels with flat light between them; only
-/// what a Gaussian explains is one then.
-PictureStars take_picture_stars(Image& light, const StructureParams& params, bool enlarged = false);
+/// what a Gaussian explains is one then. `spiked`: Gaussians of stars that were taken before, with their
+/// spikes, of bodies from 0 on.
+PictureStars take_picture_stars(Image& light, const StructureParams& params, bool enlarged = false,
+                                std::vector<Star> spiked = {});
 
 }  // namespace astrosplat

@@ -171,7 +171,7 @@ void drop_splats(SplatSet& set);
 
 /// Ids of sets that were made of a picture hold the number of their band in bits 48 to 55, above the place
 /// within it; ids of lattices and rows of files do not reach that far.
-inline constexpr std::uint64_t star_band = 255, dust_band = 254;
+inline constexpr std::uint64_t star_band = 255, dust_band = 254, spike_band = 253;
 
 constexpr bool is_star(std::uint64_t id) { return (id >> 48 & 255) == star_band; }
 
