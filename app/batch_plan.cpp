@@ -169,7 +169,7 @@ void limit_bodies(LayerParams& layer, std::int64_t bytes, const SetCache& cache)
     if (source.kind != SourceKind::mesh || source.structure.kind == StructureKind::columns) return;
     std::vector<TexturedMesh> meshes =
         load_meshes(cache, source, stoppable(), most_texels_read(source, bytes));
-    enlarge_pictures(meshes, source.structure.detail, layer.name);
+    if (source.structure.detail == 0) enlarge_small_pictures(meshes, layer.name);
     const std::int64_t largest = largest_picture(meshes);
     reduce_pictures(meshes, source.structure, {bytes, 0}, layer.name);
     const std::int64_t fitting = largest_picture(meshes);

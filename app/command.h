@@ -136,19 +136,20 @@ std::pair<CLI::App&, Own&> add_command(CLI::App& app, Invocation& call, const ch
 // The commands, in the order of the help. Each returns an exit code (exit.h), prints results on stdout, and
 // throws InputError, OutputError and Cancelled.
 
-void add_new(CLI::App& app, Invocation& call);         // a first scene around a picture
-void add_prepare(CLI::App& app, Invocation& call);     // a picture made ready for a scene
-void add_generate(CLI::App& app, Invocation& call);    // splats into files, without rendering
-void add_convert(CLI::App& app, Invocation& call);     // likewise
-void add_export(CLI::App& app, Invocation& call);      // splats with their look, for other programs
-void add_camera(CLI::App& app, Invocation& call);      // the scene's camera, for other programs
-void add_status(CLI::App& app, Invocation& call);      // frames that are there, missing or damaged
-void add_info(CLI::App& app, Invocation& call);        // the content of any file that is read
-void add_compare(CLI::App& app, Invocation& call);     // the difference of two images
-void add_parameters(CLI::App& app, Invocation& call);  // every key of scene files, or those of one scene
-void add_fidelity(CLI::App& app, Invocation& call);    // the likeness of a scene to its picture
-void add_verify(CLI::App& app, Invocation& call);      // frames rendered again, compared with their files
-void add_device(CLI::App& app, Invocation& call);      // what draws frames on this machine
+void add_new(CLI::App& app, Invocation& call);             // a first scene around a picture
+void add_detail_command(CLI::App& app, Invocation& call);  // detail where a scene's camera comes close
+void add_prepare(CLI::App& app, Invocation& call);         // a picture made ready for a scene
+void add_generate(CLI::App& app, Invocation& call);        // splats into files, without rendering
+void add_convert(CLI::App& app, Invocation& call);         // likewise
+void add_export(CLI::App& app, Invocation& call);          // splats with their look, for other programs
+void add_camera(CLI::App& app, Invocation& call);          // the scene's camera, for other programs
+void add_status(CLI::App& app, Invocation& call);          // frames that are there, missing or damaged
+void add_info(CLI::App& app, Invocation& call);            // the content of any file that is read
+void add_compare(CLI::App& app, Invocation& call);         // the difference of two images
+void add_parameters(CLI::App& app, Invocation& call);      // every key of scene files, or those of one scene
+void add_fidelity(CLI::App& app, Invocation& call);        // the likeness of a scene to its picture
+void add_verify(CLI::App& app, Invocation& call);          // frames rendered again, compared with their files
+void add_device(CLI::App& app, Invocation& call);          // what draws frames on this machine
 void add_manual(CLI::App& app, Invocation& call);
 void add_completion(CLI::App& app, Invocation& call);
 

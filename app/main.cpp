@@ -203,9 +203,9 @@ void add_everything(CLI::App& app, Invocation& call) {
     add_batch(app, call);
     add_submit(app, call.submit);
     add_screenshot(app, call);
-    for (const auto add :
-         {add_new, add_prepare, add_generate, add_convert, add_export, add_camera, add_status, add_info,
-          add_compare, add_parameters, add_fidelity, add_verify, add_device, add_manual, add_completion})
+    for (const auto add : {add_new, add_detail_command, add_prepare, add_generate, add_convert, add_export,
+                           add_camera, add_status, add_info, add_compare, add_parameters, add_fidelity,
+                           add_verify, add_device, add_manual, add_completion})
         add(app, call);
 }
 

@@ -8,9 +8,11 @@
 #include "core/file_format.h"
 #include "core/log.h"
 #include "core/text.h"
+#include "detail.h"
 #include "exit.h"
 #include "scene/new_scene.h"
 #include "scene/parameter_key.h"
+#include "scene/save.h"
 #include "source/picture.h"
 
 namespace astrosplat {
@@ -92,13 +94,19 @@ struct BodiesScene {
     std::string text;
     Report report;
 };
-BodiesScene bodies_scene(const fs::path& picture, const fs::path& place, const NewOptions& options) {
+BodiesScene bodies_scene(const fs::path& picture, const fs::path& place, const NewOptions& options,
+                         const SetCache& cache) {
     Identification found;
     PictureScene scene =
         picture_scene(picture, {object_of(options.as), object_by_name(options.object)}, found);
     scene.film = options.film;
     say(picture, found);
-    return {picture_scene_text(scene, place), to_report(found, scene)};
+    BodiesScene made{picture_scene_text(scene, place), to_report(found, scene)};
+    if (!options.film) return made;
+    Scene film = parse_scene(made.text, place);
+    made.report["detail"] = set_detail(film, usual_detail_splats, cache);
+    made.text = save_text(film, made.text, place);
+    return made;
 }
 
 std::string columns_text(const fs::path& picture, const fs::path& place, const NewOptions& options) {
@@ -120,7 +128,7 @@ int run_new(const CommandOptions& options, const NewOptions& own) {
         bad_input(scene.string(), "", "a name ending in .toml", "'" + scene.extension().string() + "'");
     const bool columns = !own.shape.empty() || own.as == "plane";
     const BodiesScene made = columns ? BodiesScene{columns_text(picture, scene, own), Report::object()}
-                                     : bodies_scene(picture, scene, own);
+                                     : bodies_scene(picture, scene, own, options.cache);
     refuse_to_overwrite(scene, options.overwrite);
     prove_writable(folder_of(scene));
     write_file_atomically(scene, made.text, existing_of(options));

@@ -6,7 +6,7 @@
 
 #include "bodies/axis_depths.h"
 #include "bodies/axis_fit.h"
-#include "bodies/detail_picture.h"
+#include "bodies/detail_parts.h"
 #include "bodies/dust.h"
 #include "bodies/front_fit.h"
 #include "bodies/picture_light.h"
@@ -66,58 +66,22 @@ std::optional<AxisDepths> axis_of(const Image& light, const StructureParams& par
     return make_axis_depths(std::move(fit), light);
 }
 
-// How the pixels of an enlarged picture lie in the texels that it had: `times` a side, of which the first may
-// lack some, as a margin of any width lies before the picture's own.
-struct OwnTexels {
-    int times = 1;
-    std::int64_t lacking = 0;  // px
-
-    // Their means; what they lack at the edges is mirrored.
-    Image of(const Image& image) const {
-        const auto whole = [&](std::int64_t px) { return (lacking + px + times - 1) / times; };
-        const std::int64_t width = whole(image.width), height = whole(image.height);
-        Image padded = unfilled_image(width * times, height * times, image.channels);
-        const auto inside = [&](std::int64_t at, std::int64_t size) {
-            at -= lacking;
-            return at < 0 ? -1 - at : at < size ? at : 2 * size - 1 - at;
-        };
-        for_each_pixel(padded, [&](std::int64_t x, std::int64_t y) {
-            std::copy_n(image.at(inside(x, image.width), inside(y, image.height)), image.channels,
-                        padded.at(x, y));
-        });
-        return reduced_by_area(padded, width, height);
-    }
-};
-
-// Puts invented detail in the place of an enlarged picture's even texels, but for its stars: `rest` is what
-// they left of the light.
-void add_detail(const BodiesTask& task, const Progress& progress, PictureLight& picture, Image& rest) {
+// Where nothing of it was a star's, 1; else 0.
+Image without_stars_in(const Image& rest, const Image& light) {
     constexpr float of_star = 0.01f;  // of the light, at which a texel was a star's
-    const double margin = task.params.margin;
-    const auto margin_px = std::llround(double(rest.width) * margin / (1.0 + 2.0 * margin));
-    const OwnTexels own{picture.times, (picture.times - margin_px % picture.times) % picture.times};
-    const Image texels = own.of(rest), whole = own.of(picture.light);
-    Image sources = unfilled_image(texels.width, texels.height, 1);
-    for_each_pixel(texels, [&](std::int64_t x, std::int64_t y) {
-        const float *const left = texels.at(x, y), *const all = whole.at(x, y);
+    Image sources = unfilled_image(rest.width, rest.height, 1);
+    for_each_pixel(rest, [&](std::int64_t x, std::int64_t y) {
+        const float *const left = rest.at(x, y), *const all = light.at(x, y);
         const auto is_whole = [&](int c) { return all[c] - left[c] <= of_star * all[c]; };
         *sources.at(x, y) = is_whole(0) && is_whole(1) && is_whole(2) ? 1.0f : 0.0f;
     });
-    const DetailWish wish{task.params.detail, task.params.detail_strength, task.seed};
-    const Image detail = detail_picture(texels, sources, wish, progress);
-    for_each_pixel(rest, [&](std::int64_t x, std::int64_t y) {
-        float *const left = rest.at(x, y), *const all = picture.light.at(x, y);
-        const float* const here = detail.at(x + own.lacking, y + own.lacking);
-        for (int c = 0; c < 3; ++c) {
-            all[c] = std::max(0.0f, all[c] - left[c]) + here[c];
-            left[c] = here[c];
-        }
-    });
+    return sources;
 }
 
-// Adds all splats of a picture, with their colours as they would be if nothing hid anything.
-void add_splats(PictureLight& picture, const UvSurface& surface, const BodiesTask& task,
-                const Progress& progress, PictureSplats& set) {
+// Adds all splats of a picture, with their colours as they would be if nothing hid anything. Out: the parts
+// that have invented detail.
+std::vector<DetailPart> add_splats(const PictureLight& picture, const UvSurface& surface,
+                                   const BodiesTask& task, const Progress& progress, PictureSplats& set) {
     StructureParams params = task.params;
     Image rest = copied(picture.light);
     const bool takes_stars = params.stars != StructureParams::Stars::no;
@@ -125,8 +89,6 @@ void add_splats(PictureLight& picture, const UvSurface& surface, const BodiesTas
     const PictureStars stars =
         take_picture_stars(rest, params, picture.times > 1, std::move(spikes.gaussians));
     progress.check();
-    if (params.detail > 0 && picture.times == 1 << params.detail)
-        add_detail(task, progress.part(0.0, 0.1), picture, rest);
     std::optional<AxisDepths> axis = axis_of(rest, params, task.layer_name);
     if (params.kind == StructureKind::axis && !axis) params.kind = StructureKind::walls;
     progress.at(0.1);
@@ -136,14 +98,22 @@ void add_splats(PictureLight& picture, const UvSurface& surface, const BodiesTas
     const Opacity opacity{float(params.opacity), float(params.density)};
     const std::vector<Band> bands = make_bands(rest.width);
     const double dust = dust_of(params);
-    Image emission;         // of all bands, where there is dust
+    Image emission;  // of all bands, where there is dust
+    const bool detailed = placement.detail.any();
+    const Image all_bands = detailed ? copied(rest) : Image(),
+                sources = detailed ? without_stars_in(rest, picture.light) : Image();
+    std::vector<DetailPart> detail;
     release_spare_pages();  // of reading and of the fields: bands and their splats are the most there is
+    const Region whole{0, 0, rest.width, rest.height};
     split_bands(std::move(rest), bands, dust > 0.0, [&](const Band& band, const Image& light) {
         progress.check();
         if (dust > 0.0) add(light, emission);
         const bool coarsest = band.index + 1 == int(bands.size());
         for (const BandSplats& size : band_splats(band, coarsest, placement))
-            add_band(light, size, brightest, picture.alpha, placement, opacity, set);
+            add_band({light, whole, whole}, size, brightest, picture.alpha, placement, opacity, set);
+        if (detailed && band.index == 0)
+            detail = add_detail(all_bands, light, sources, brightest, picture.alpha, params, placement,
+                                opacity, progress.part(0.1, 0.2), set);
         progress.at(0.2 + 0.7 * (band.index + 1.0) / double(bands.size()));
     });
     if (dust > 0.0)
@@ -158,6 +128,7 @@ void add_splats(PictureLight& picture, const UvSurface& surface, const BodiesTas
     log_detail(fmt::format("layer '{}': {} splats and {} in {}", task.layer_name,
                            human_count(double(set.splats.size())), counted(stars.count, "star"),
                            counted(std::int64_t(bands.size()), "band")));
+    return detail;
 }
 
 constexpr std::int64_t rows_per_task = 16384;
@@ -258,6 +229,7 @@ struct MadeSplats {
     PictureSplats set;
     Buffer<std::uint8_t> faces;
     Image light;  // of the picture that they are to show
+    std::vector<DetailPart> detail;
 };
 
 constexpr double most_expected = 1.08;  // times as many splats as are expected
@@ -269,7 +241,7 @@ MadeSplats made_of(Texture& texture, const UvSurface& surface, const BodiesTask&
     if (!once_more) texture.image.pixels = {};
     MadeSplats made;
     reserve_splats(made.set, std::int64_t(most_expected * expected));
-    add_splats(picture, surface, task, progress, made.set);
+    made.detail = add_splats(picture, surface, task, progress, made.set);
     made.faces = faces_of(made.set, surface, texture.image);
     made.light = std::move(picture.light);
     return made;
@@ -298,15 +270,15 @@ SplatSet bodies_of(const PictureOnMesh& picture, std::size_t number, Texture& te
                                 rows, texture.image.width, texture.image.height, most));
             const double area = double(texels_of(texture)) * aimed_at * double(most) / double(rows);
             texture.image = smaller(texture.image, area);
-            task.params.detail = 0;
             log_detail(fmt::format("layer '{}': {} rows are more than {}, so its picture is reduced to {}x{}",
                                    task.layer_name, rows, most, texture.image.width, texture.image.height));
             continue;
         }
         texture.image.pixels = {};
         release_spare_pages();  // of the bands
-        const FrontFit fit =
-            fit_front(made.set, std::move(made.light), texture.times > 1, progress.part(made_share, 1.0));
+        const FrontFit fit = fit_front(made.set, std::move(made.light), texture.times > 1,
+                                       progress.part(made_share, 1.0), made.detail);
+        made.detail.clear();
         release_spare_pages();  // of the fit
         log_detail(fmt::format("layer '{}': front view {:.1f} dB after {} steps of the fit", task.layer_name,
                                fit.psnr_db, fit.steps));

@@ -50,10 +50,10 @@ struct BodiesLimit {
     std::int64_t splats = 0;  // 0: as many as there are
 };
 
-/// Enlarges pictures: by `detail` octaves, which make_bodies then fills; without, those that are small by
-/// whole numbers, to no more than a picture of 2048x2048 has, for a texel to be several splats that together
-/// show it as sharp as it was. None that was reduced while it was read. Says so at detail level.
-void enlarge_pictures(std::vector<TexturedMesh>& meshes, int detail, const std::string& layer_name);
+/// Enlarges small pictures by whole numbers, to no more than a picture of 2048x2048 has, for a texel to be
+/// several splats that together show it as sharp as it was. None that was reduced while it was read. Says so
+/// at detail level.
+void enlarge_small_pictures(std::vector<TexturedMesh>& meshes, const std::string& layer_name);
 
 /// Reduces every picture of more texels by an area filter to so many; 0: none. Says so at detail level, also
 /// of those that were reduced as they were read.

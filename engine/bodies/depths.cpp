@@ -86,7 +86,7 @@ constexpr double more_about_axis = 4.0;
 
 BandSplats splats_of_size(const Band& band, bool glow, double sigma, double each) {
     BandSplats splats;
-    splats.index = band.index;
+    splats.index = splats.number = band.index;
     splats.feature = float(band.feature);
     splats.spread = sheet_spread * splats.feature;
     splats.glow = glow;
@@ -138,10 +138,29 @@ std::vector<BandSplats> band_splats(const Band& band, bool coarsest, const Place
     const double natural = coarsest ? 4.0 * widest : natural_sigma * band.feature;
     const double usual =
         (about_axis && band.index > last_fine_band ? more_about_axis : 1.0) *
-        by_feature(splats_each,
-                   band.index == 0 ? 2.0 : std::max(4.0, band.feature / placement.scale * placement.detail));
+        by_feature(splats_each, band.index == 0 ? 2.0 : std::max(4.0, band.feature / placement.scale));
     if (!placement.galaxies.empty()) return splats_of_galaxy(band, usual, placement.galaxies.front());
     return {splats_of_size(band, glow, std::min(natural, widest), usual)};
+}
+
+std::vector<BandSplats> detail_splats(const Band& band, int octaves, const Placement& placement) {
+    constexpr double finest_sigma_px = double(least_sigma);
+    constexpr int first_number = 128;              // beyond those of all bands
+    const double px = 1.0 / double(1 << octaves);  // texels
+    BandSplats splats;
+    splats.octaves = octaves;
+    splats.number = first_number + 4 * octaves + band.index;
+    splats.sigma = float(finest_sigma_px * px * (1 << band.index));
+    splats.spacing = float(std::sqrt(2.0 * real::pi / splats_each[0]) * double(splats.sigma));
+    splats.threshold = float(fine_threshold);
+    splats.feature = float(band.feature * px);
+    splats.spread = sheet_spread * splats.feature;
+    if (placement.galaxies.empty()) return {splats};
+    BandSplats spheroid = splats;
+    splats.family = GalaxyFamily::disk;
+    spheroid.family = GalaxyFamily::spheroid;
+    spheroid.size = 1;
+    return {splats, spheroid};
 }
 
 float share_of(const Placement& placement, const BandSplats& splats, float x, float y) {

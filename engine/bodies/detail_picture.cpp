@@ -1,5 +1,5 @@
-// Numbers are those of DETAIL 3. The slope and the copies' gain are of the whole picture; all else reaches
-// some 60 of its pixels, and what is random follows from a place: so will it be for parts of a picture.
+// Numbers are those of DETAIL 3. All but the slope follows from what is near, and what is random from a
+// place.
 #include "bodies/detail_picture.h"
 
 #include "bodies/exemplar.h"
@@ -129,23 +129,20 @@ double amplitude_of(const Image& octave) {
         std::sqrt(std::max(0.0, double(median(local.pixels))) * sum / double(all.pixels.size())));
 }
 
-// The picture's own: of an octave's amplitude over that of the next coarser one.
-float slope_of(const FinestOctaves& octaves) {
+}  // namespace
+
+Image octaves_larger(Image image, int octaves) {
+    for (int i = 0; i < octaves; ++i) image = twice_as_large(image);
+    return image;
+}
+
+float detail_slope(const Image& light) {
     constexpr double least = 1e-5;  // of flat light, which has no slope, there is only rounding
+    const FinestOctaves octaves = finest_octaves(luminance(logarithms(light)));
     return float(std::clamp(amplitude_of(octaves.fine) / (amplitude_of(octaves.next) + least), 0.5, 0.95));
 }
 
-// Deviation that the octave below the picture is to have, at the picture's pixels.
-Image amplitude(const FinestOctaves& octaves, float slope) {
-    Image fine = gaussian_blur(squares(octaves.fine), 2.0), next = gaussian_blur(squares(octaves.next), 1.5);
-    change_values(next, [&](std::size_t i) { return std::sqrt(std::max(0.0f, next.pixels[i])); });
-    next = twice_as_large(next, fine.width, fine.height);
-    change_values(fine, [&](std::size_t i) {
-        return slope *
-               std::sqrt(std::sqrt(std::max(0.0f, fine.pixels[i])) * std::max(slope * next.pixels[i], 1e-5f));
-    });
-    return fine;
-}
+namespace {
 
 // Deviation of what is quiet about a pixel: a power mean that a front does not rule.
 Image quiet_deviation(const Image& octave, float gain, double blur_px) {
@@ -179,21 +176,17 @@ Image quiet_amplitude(const FinestOctaves& octaves, float slope) {
     return least;
 }
 
-// What copied details are short of, as they are means: one number for all the picture. Half of their size.
-float gain_of(const Image& details, const Image& amplitude) {
-    const Image have = gaussian_blur(half_by_area(squares(details)), 1.5);
-    Image ratio = made_of_values(amplitude, [&](std::size_t i) {
-        return amplitude.pixels[i] * amplitude.pixels[i] / (have.pixels[i] + 1e-8f);
-    });
-    return std::clamp(std::sqrt(median(ratio.pixels)), 1.0f, 1.25f);
-}
+// Copied details are means, and so too small: by 1.22 to more than 1.25, that is DETAIL 3's limit, in both
+// octaves of the Pillars, the Crab and M101.
+constexpr float gain_of_copies = 1.25f;
 
-// Of unit variance wherever one looks.
-Image even_noise(std::int64_t width, std::int64_t height, std::uint32_t seed) {
+// Of unit variance wherever one looks. (first_x, first_y): where it begins in that of the whole picture.
+Image even_noise(std::int64_t width, std::int64_t height, std::int64_t first_x, std::int64_t first_y,
+                 std::uint32_t seed) {
     Image white = unfilled_image(width, height, 1);
     for_each_pixel(white, [&](std::int64_t x, std::int64_t y) {
-        const std::uint32_t h =
-            shared::as_hash(seed, std::uint32_t(x), std::uint32_t(y), shared::PURPOSE_DETAIL);
+        const std::uint32_t h = shared::as_hash(seed, std::uint32_t(first_x + x), std::uint32_t(first_y + y),
+                                                shared::PURPOSE_DETAIL);
         *white.at(x, y) = float(int(h & 0xffffu) + int(h >> 16) - 0xffff) * (1.0f / 65536.0f);
     });
     white = gaussian_blur(white, 0.45);
@@ -204,17 +197,15 @@ Image even_noise(std::int64_t width, std::int64_t height, std::uint32_t seed) {
     return noise;
 }
 
-// Adds noise where the details, of luminance, are quieter than the picture lets expect.
-Image quiet_fill(const Image& details, float gain, const FinestOctaves& octaves, float slope, double strength,
-                 std::uint32_t seed) {
-    Image fill = even_noise(details.width, details.height, seed);
-    const Image wanted = twice_as_large(quiet_amplitude(octaves, slope)),
-                have = quiet_deviation(details, gain, 3.0);
-    change_values(fill, [&](std::size_t i) {
+// Adds noise where the details, of luminance, are quieter than the picture lets expect. `noise`: as large.
+Image quiet_fill(const Image& details, const FinestOctaves& octaves, const DetailWish& wish, Image noise) {
+    const Image wanted = twice_as_large(quiet_amplitude(octaves, wish.slope)),
+                have = quiet_deviation(details, gain_of_copies, 3.0);
+    change_values(noise, [&](std::size_t i) {
         const float w = std::max(0.0f, wanted.pixels[i]), h = have.pixels[i];
-        return float(strength) * std::sqrt(std::max(0.0f, w * w - h * h)) * fill.pixels[i];
+        return float(wish.strength) * std::sqrt(std::max(0.0f, w * w - h * h)) * noise.pixels[i];
     });
-    return fill;
+    return noise;
 }
 
 // The last step: the mean of what lies in each of the picture's pixels becomes that pixel.
@@ -252,44 +243,43 @@ void keep_means(Image& detail, const Image& picture) {
     scale_to_means(detail, picture);
 }
 
-// What holds for all octaves, of the whole picture.
-struct KnownDetail {
-    Exemplar exemplar;
-    float slope;
-};
-
-KnownDetail known_detail(const Image& light, const Image& sources) {
+Exemplar exemplar_of(const Image& light, const Image& sources) {
     const Image logs = logarithms(light);
     const Image coarse = twice_as_large(half_by_area(logs), logs.width, logs.height);
-    return {{luminance(coarse), difference(logs, coarse), sources},
-            slope_of(finest_octaves(luminance(logs)))};
+    return {luminance(coarse), difference(logs, coarse), sources};
 }
 
 // `light` twice as large with what is invented, its area means not yet those of `light`. `times`: of the
 // known picture's size, afterwards.
-Image invented(const Image& light, const KnownDetail& known, int times, const DetailWish& wish,
+Image invented(const Image& light, const Exemplar& known, int times, const DetailWish& wish,
                const Progress& progress) {
     const Image logs = logarithms(light);
     const FinestOctaves octaves = finest_octaves(luminance(logs));
     Image detail = twice_as_large(logs);
-    const Image copies = exemplar_details(luminance(detail), known.exemplar, times, wish.seed, progress);
+    const PatchPlace place{times * wish.x, times * wish.y};
+    const Image copies = exemplar_details(luminance(detail), known, times, place, wish.seed, progress);
     progress.check();
     Image own = luminance(copies);
     own = difference(own, gaussian_blur(own, 1.1));
-    const float gain = gain_of(own, amplitude(octaves, known.slope));
-    const Image fill =
-        quiet_fill(own, gain, octaves, known.slope, wish.strength, wish.seed + std::uint32_t(times));
+    const Image fill = quiet_fill(
+        own, octaves, wish,
+        even_noise(detail.width, detail.height, place.x, place.y, wish.seed + std::uint32_t(times)));
+    const float px = 1.0f / float(times);
+    const int octave = times / 2;
     for_each_pixel(detail, [&](std::int64_t x, std::int64_t y) {
         float* const value = detail.at(x, y);
+        const float share = wish.share ? wish.share(float(wish.x) + (float(x) + 0.5f) * px,
+                                                    float(wish.y) + (float(y) + 0.5f) * px, octave)
+                                       : 1.0f;
         for (int c = 0; c < light.channels; ++c) {
-            const float log = value[c] + copies.at(x, y)[c] * gain + *fill.at(x, y);
+            const float log = value[c] + share * (copies.at(x, y)[c] * gain_of_copies + *fill.at(x, y));
             value[c] = std::max(0.0f, shared::as_exp(log) - dark_offset);
         }
     });
     return detail;
 }
 
-Image with_next_octave(const Image& light, const KnownDetail& known, int times, const DetailWish& wish,
+Image with_next_octave(const Image& light, const Exemplar& known, int times, const DetailWish& wish,
                        const Progress& progress) {
     Image detail = invented(light, known, times, wish, progress.part(0.0, 0.6));
     progress.check();
@@ -306,7 +296,7 @@ Image detail_picture(const Image& light, const Image& sources, const DetailWish&
     assert(sources.pixels.empty() || (sources.width == light.width && sources.height == light.height));
     claim_memory((light.width * light.height * bytes_a_detail_pixel) << (2 * wish.octaves),
                  "a picture's details");
-    const KnownDetail known = known_detail(light, sources);
+    const Exemplar known = exemplar_of(light, sources);
     const double first_share = wish.octaves == 1 ? 1.0 : 0.2;
     Image detail = with_next_octave(light, known, 2, wish, progress.part(0.0, first_share));
     if (wish.octaves == 1) return detail;

@@ -142,8 +142,14 @@ float sum_of_products(const float* patch, const float* under, std::int64_t width
 
 class PatchSearch {
   public:
-    PatchSearch(const Image& base, const Exemplar& exemplar, int times, std::uint32_t seed)
-        : base_(base), coarse_(exemplar.coarse), times_(times), seed_(seed), shapes_(coarse_.pixels.size()) {
+    PatchSearch(const Image& base, const Exemplar& exemplar, int times, const PatchPlace& place,
+                std::uint32_t seed)
+        : base_(base),
+          coarse_(exemplar.coarse),
+          times_(times),
+          place_(place),
+          seed_(seed),
+          shapes_(coarse_.pixels.size()) {
         for_each_pixel(coarse_, [&](std::int64_t x, std::int64_t y) {
             PatchShape& shape = shapes_[y * coarse_.width + x] = {};
             if (!is_source(exemplar.sources, x, y)) return;
@@ -183,7 +189,8 @@ class PatchSearch {
             for (std::int64_t x = 0; x < after.width; ++x) {
                 SoughtPatch patch(base_, x * patch_stride, y * patch_stride, times_);
                 const std::uint32_t random =
-                    shared::as_hash(seed, std::uint32_t(x), std::uint32_t(y), shared::PURPOSE_DETAIL_PATCH);
+                    shared::as_hash(seed, std::uint32_t(place_.x / patch_stride + x),
+                                    std::uint32_t(place_.y / patch_stride + y), shared::PURPOSE_DETAIL_PATCH);
                 after.at(x, y) = sweep == 0 ? first(patch, random) : better(before, patch, x, y, random);
             }
         });
@@ -250,6 +257,7 @@ class PatchSearch {
     const Image& base_;
     Image coarse_;
     int times_;
+    PatchPlace place_;
     std::uint32_t seed_;
     Buffer<PatchShape> shapes_;  // at each pixel of coarse_
 };
@@ -299,10 +307,10 @@ class PatchVotes {
 
 }  // namespace
 
-Image exemplar_details(const Image& base, const Exemplar& exemplar, int times, std::uint32_t seed,
-                       const Progress& progress) {
+Image exemplar_details(const Image& base, const Exemplar& exemplar, int times, const PatchPlace& place,
+                       std::uint32_t seed, const Progress& progress) {
     assert(exemplar.fine.channels == 1 || exemplar.fine.channels == 3);
-    const PatchVotes votes(exemplar.fine, PatchSearch(base, exemplar, times, seed).find(progress));
+    const PatchVotes votes(exemplar.fine, PatchSearch(base, exemplar, times, place, seed).find(progress));
     Image details = unfilled_image(base.width, base.height, exemplar.fine.channels);
     for_each_pixel(details, [&](std::int64_t x, std::int64_t y) { votes.mean_at(x, y, details.at(x, y)); });
     return details;

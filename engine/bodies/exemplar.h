@@ -14,10 +14,15 @@ struct Exemplar {
     Image sources;  // one channel, as large: 0 where nothing is copied from; or empty
 };
 
+/// Where the first pixel of a base lies in that of the whole picture, px; even numbers.
+struct PatchPlace {
+    std::int64_t x = 0, y = 0;
+};
+
 /// Details of `base` (one channel, `times` as large as the exemplar, a power of 2), in as many channels as
 /// exemplar.fine: means of what lies about the places that look most alike, at most 24 of the exemplar's
 /// pixels away; 0 where there are none. The same bits for any number of threads. Throws Cancelled.
-Image exemplar_details(const Image& base, const Exemplar& exemplar, int times, std::uint32_t seed,
-                       const Progress& progress = {});
+Image exemplar_details(const Image& base, const Exemplar& exemplar, int times, const PatchPlace& place,
+                       std::uint32_t seed, const Progress& progress = {});
 
 }  // namespace astrosplat

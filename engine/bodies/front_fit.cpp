@@ -8,6 +8,7 @@
 
 #include <numeric>
 
+#include "bodies/detail_picture.h"
 #include "camera/camera.h"
 #include "core/color.h"
 #include "core/parallel.h"
@@ -77,6 +78,36 @@ std::int64_t rendered_step(const Image& picture, bool small) {
     return small || picture.width * picture.height <= most_whole ? 1 : 2;
 }
 
+// Steps towards an image, each of which takes half of the last one along.
+class Steps {
+  public:
+    explicit Steps(const Image& target) : target_(target) {}
+
+    /// The ratio of what is wanted to what is seen. Its weights make steps those down the square of what
+    /// differs as a display shows it, whose values grow by light to the power -.58: so that what is dark
+    /// counts beside what is bright.
+    Fraction weighted_ratio(Image seen) {
+        const bool first = momentum_.pixels.empty();
+        if (first) momentum_ = unfilled_image(seen.width, seen.height, 3);
+        Fraction ratio{unfilled_image(seen.width, seen.height, 3), std::move(seen)};
+        parallel_each(ratio.seen.pixels.size(), 65536, [&](std::size_t i) {
+            float& here = ratio.seen.pixels[i];
+            here += sky;
+            const auto held = [](float r) { return std::clamp(r, 1.0f / largest_ratio, largest_ratio); };
+            const float now = held((target_.pixels[i] + sky) / here);
+            const float step = first ? now : held(now * momentum_.pixels[i]);
+            momentum_.pixels[i] = std::sqrt(step);
+            here = 1.0f / std::sqrt(std::sqrt(here));  // about seen^(1 - 2 * .58)
+            ratio.wanted.pixels[i] = step * here;
+        });
+        return ratio;
+    }
+
+  private:
+    const Image& target_;
+    Image momentum_;  // root of the last step's ratio; without pixels before the first step
+};
+
 class FittedView {
   public:
     FittedView(PictureSplats& set, const Image& picture, bool small)
@@ -109,23 +140,26 @@ class FittedView {
     /// The visible light if the same share of it is hidden as then.
     Image seen() const { return shown(flat_.sum()); }
     /// Takes the colours a step on from what is seen.
-    void step_from(Image seen, bool overshoot) { flat_.correct(weighted_ratio(std::move(seen)), overshoot); }
+    void step_from(Image seen, bool overshoot) {
+        flat_.correct(steps_.weighted_ratio(std::move(seen)), overshoot);
+    }
     /// Takes them to the picture's flux, cell by cell.
     void match_cells(const Image& seen) { flat_.multiply(cell_ratio(target_, seen), double(flux_cell_px)); }
     /// On sRGB values of some rows.
     double psnr_db(const Image& seen) const;
+    /// The share of the flat light that reaches the viewer, as smooth as at half the picture's size.
+    const Image& share() const { return share_; }
 
   private:
     Image shown(Image flat) const;
-    Fraction weighted_ratio(Image seen);
 
-    Image target_;    // the picture as the filter shows it
-    Image momentum_;  // root of the last step's ratio; without pixels before the first step
+    Image target_;  // the picture as the filter shows it
+    Steps steps_{target_};
     FlatLight flat_;
     RenderSettings settings_;
     RenderLayer layer_;
     Camera camera_;
-    Image share_;  // of the flat light that reaches the viewer, as smooth as at half the picture's size
+    Image share_;
 };
 
 Image FittedView::supposed() {
@@ -154,23 +188,6 @@ Image FittedView::shown(Image flat) const {
     return flat;
 }
 
-// The ratio of what is wanted to what is seen, weighted by what is seen.
-Fraction FittedView::weighted_ratio(Image seen) {
-    const bool first = momentum_.pixels.empty();
-    if (first) momentum_ = unfilled_image(seen.width, seen.height, 3);
-    Fraction ratio{unfilled_image(seen.width, seen.height, 3), std::move(seen)};
-    parallel_each(ratio.seen.pixels.size(), 65536, [&](std::size_t i) {
-        float& here = ratio.seen.pixels[i];
-        here += sky;
-        const auto held = [](float r) { return std::clamp(r, 1.0f / largest_ratio, largest_ratio); };
-        const float now = held((target_.pixels[i] + sky) / here);
-        const float step = first ? now : held(now * momentum_.pixels[i]);
-        momentum_.pixels[i] = std::sqrt(step);
-        ratio.wanted.pixels[i] = step * here;
-    });
-    return ratio;
-}
-
 double FittedView::psnr_db(const Image& seen) const {
     std::vector<double> rows(std::size_t((target_.height + psnr_step - 1) / psnr_step), 0.0);
     parallel_each(rows.size(), 16, [&](std::size_t row) {
@@ -186,9 +203,83 @@ double FittedView::psnr_db(const Image& seen) const {
     return -10.0 / real::log(10.0) * real::log(std::max(mean, 1e-12));
 }
 
+constexpr int detail_steps = 8;  // DETAIL 4 has 6
+
+// The flat light of those splats that are no detail and no stars.
+Image coarser_light(PictureSplats& set, std::int64_t width, std::int64_t height) {
+    std::vector<SplatRange> all = set.ranges;
+    std::erase_if(set.ranges, [](const SplatRange& range) { return range.of != SplatRange::Of::bands; });
+    Image sum = FlatLight(set, width, height, 0.25 * filter_px).sum();
+    set.ranges = std::move(all);
+    return sum;
+}
+
+// Splats of detail that are seen in a part, in its own detail pixels.
+struct SeenDetail {
+    PictureSplats set;
+    std::vector<std::int64_t> row;  // in the whole set; -1: another part's
+};
+
+SeenDetail seen_detail(const PictureSplats& all, std::span<const DetailPart> parts, std::size_t number,
+                       const glm::vec2& picture) {
+    const DetailPart& part = parts[number];
+    const Region& shown = part.shown;
+    const auto times = float(1 << part.octaves);
+    const glm::vec2 size(shown.width, shown.height);
+    SeenDetail seen;
+    for (std::size_t p = 0; p < parts.size(); ++p) {
+        const Region& there = parts[p].region;
+        if (there.x >= shown.x + shown.width || there.x + there.width <= shown.x ||
+            there.y >= shown.y + shown.height || there.y + there.height <= shown.y)
+            continue;
+        for (const SplatRange& range : parts[p].ranges) {
+            const std::int64_t begin = std::ssize(seen.row);
+            for (std::int64_t i = range.begin; i < range.end; ++i) {
+                const glm::vec3& from = all.splats.position[i];
+                const glm::vec2 texel(from.x + 0.5f * picture.x - float(shown.x),
+                                      0.5f * picture.y - from.y - float(shown.y));
+                if (texel.x < 0.0f || texel.y < 0.0f || texel.x >= size.x || texel.y >= size.y) continue;
+                seen.set.splats.position.push_back(
+                    {times * (texel.x - 0.5f * size.x), times * (0.5f * size.y - texel.y), 0.0f});
+                seen.set.splats.color.push_back(all.splats.color[i]);
+                seen.set.splats.alpha.push_back(all.splats.alpha[i]);
+                seen.row.push_back(p == number ? i : -1);
+            }
+            if (std::ssize(seen.row) > begin)
+                seen.set.ranges.push_back({begin, std::ssize(seen.row), range.sigma * times, range.of});
+        }
+    }
+    return seen;
+}
+
+// Takes the splats of a part's detail on until they and what is coarser, seen through the filter at its own
+// pixels, are the part itself: what the filter would take of it is put in before. `colors`: of all splats
+// before; what lies in other parts stays as it is.
+void fit_part(PictureSplats& all, std::span<const DetailPart> parts, std::size_t number, const Image& coarser,
+              const Image& share, Buffer<glm::vec3>& colors) {
+    const DetailPart& part = parts[number];
+    SeenDetail own = seen_detail(all, parts, number, {coarser.width, coarser.height});
+    if (own.row.empty()) return;
+    const Image passes = octaves_larger(part_of(share, part.shown), part.octaves),
+                below = octaves_larger(part_of(coarser, part.shown), part.octaves);
+    FlatLight flat(own.set, part.light.width, part.light.height, filter_px);
+    Steps steps(part.light);
+    for (int step = 0; step < detail_steps; ++step) {
+        Image seen = flat.sum();
+        parallel_each(seen.pixels.size(), 65536, [&](std::size_t i) {
+            seen.pixels[i] =
+                std::max(0.0f, passes.pixels[i]) * (seen.pixels[i] + std::max(0.0f, below.pixels[i]));
+        });
+        flat.correct(steps.weighted_ratio(std::move(seen)), step + 1 < detail_steps);
+    }
+    for (std::size_t i = 0; i < own.row.size(); ++i)
+        if (own.row[i] >= 0) colors[std::size_t(own.row[i])] = own.set.splats.color[i];
+}
+
 }  // namespace
 
-FrontFit fit_front(PictureSplats& set, Image light, bool small, const Progress& progress) {
+FrontFit fit_front(PictureSplats& set, Image light, bool small, const Progress& progress,
+                   std::span<const DetailPart> detail) {
     FittedView view(set, light, small);
     const int steps_after = small || set.absorbs ? last_steps_of_detail : last_steps;
     light = {};
@@ -207,6 +298,15 @@ FrontFit fit_front(PictureSplats& set, Image light, bool small, const Progress& 
     }
     view.match_cells(seen);
     view.match_cells(view.seen());  // between the cells' middles a factor is that of neither
+    if (!detail.empty()) {
+        const Image coarser = coarser_light(set, seen.width, seen.height);
+        Buffer<glm::vec3> colors = set.splats.color;
+        for (std::size_t i = 0; i < detail.size(); ++i) {
+            progress.check();
+            fit_part(set, detail, i, coarser, view.share(), colors);
+        }
+        set.splats.color = std::move(colors);
+    }
     return {first_steps + steps_after, view.psnr_db(seen)};
 }
 

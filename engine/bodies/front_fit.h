@@ -4,6 +4,7 @@
 // small part of what compositing them costs.
 #pragma once
 
+#include "bodies/detail_parts.h"
 #include "bodies/picture_splats.h"
 #include "core/image.h"
 #include "core/progress.h"
@@ -18,8 +19,9 @@ struct FrontFit {
 /// Multiplies colours until the orthographic front view is the picture as the default pixel filter shows it;
 /// last, cells of 32 px get the picture's flux. `small`: the picture was enlarged, its own texels are several
 /// of these. The same bits with any number of threads. Throws Cancelled; InputError where memory does not
-/// suffice.
-FrontFit fit_front(PictureSplats& set, Image light, bool small = false, const Progress& progress = {});
+/// suffice. Then the splats of `detail` are taken on by themselves until their parts are as they should be.
+FrontFit fit_front(PictureSplats& set, Image light, bool small = false, const Progress& progress = {},
+                   std::span<const DetailPart> detail = {});
 
 /// The ratio of the wanted light to the visible: three channels each, of one size, > 0.
 struct Fraction {

@@ -246,11 +246,11 @@ int times_by_itself(std::int64_t texels) {
 
 }  // namespace
 
-void enlarge_pictures(std::vector<TexturedMesh>& meshes, int detail, const std::string& layer_name) {
+void enlarge_small_pictures(std::vector<TexturedMesh>& meshes, const std::string& layer_name) {
     for (TexturedMesh& mesh : meshes) {
         for (Texture& texture : mesh.textures) {
             const std::int64_t texels = texels_of(texture);
-            const int times = detail > 0 ? 1 << detail : times_by_itself(texels);
+            const int times = times_by_itself(texels);
             if (times == 1 || texels == 0 || texture.file_width > 0) continue;
             log_detail(fmt::format("layer '{}': a picture of {}x{} px is enlarged {} times", layer_name,
                                    texture.image.width, texture.image.height, times));

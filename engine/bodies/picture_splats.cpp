@@ -49,17 +49,17 @@ void shade(const Candidate& splat, float hiding, float footprint, const Opacity&
 
 // The splats of a band that are of one size.
 struct BandMaker {
-    const Image& band;
+    const BandLight& band;
     const BandSplats& splats;
     const Image &brightest, &alpha;
     const Placement& placement;
     const Opacity& opacity;
-    SplatLattice lattice{band.width, band.height, splats.spacing};
+    SplatLattice lattice{brightest.width, brightest.height, splats.spacing, band.region};
 
     // A cell's splat, where there is light and it is not thinned out.
     std::optional<Candidate> candidate_of(const LatticeCell& cell) const {
         Candidate splat;
-        splat.id = std::uint64_t(splats.index) << 48 | std::uint64_t(splats.size) << 40;
+        splat.id = std::uint64_t(splats.number) << 48 | std::uint64_t(splats.size) << 40;
         splat.id += lattice.number(cell);
         const auto place_in = [&](std::int64_t step, std::uint32_t purpose) {
             const float random = as_uniform(placement.hash_of(splat.id, purpose));
@@ -67,10 +67,18 @@ struct BandMaker {
         };
         splat.x = place_in(cell.column, shared::PURPOSE_JITTER_X);
         splat.y = place_in(cell.row, shared::PURPOSE_JITTER_Y);
-        if (splat.x >= float(band.width) || splat.y >= float(band.height)) return {};
-        const LinearSample place(band, splat.x, splat.y);
+        const Region& part = band.region;
+        if (splat.x < float(part.x) || splat.x >= float(part.x + part.width) || splat.y < float(part.y) ||
+            splat.y >= float(part.y + part.height))
+            return {};
+        if (splats.index == 0 && placement.detail.at(splat.x, splat.y) != splats.octaves) return {};
+        const LinearSample place(brightest, splat.x, splat.y);
+        const LinearSample fine(band.light, (splat.x - float(band.shown.x)) * band.times,
+                                (splat.y - float(band.shown.y)) * band.times);
         splat.light = share_of(placement, splats, splat.x, splat.y) *
-                      glm::vec3(place.of(band, 0), place.of(band, 1), place.of(band, 2));
+                      glm::vec3(fine.of(band.light, 0), fine.of(band.light, 1), fine.of(band.light, 2));
+        if (splats.index > 0 && placement.detail.any())
+            splat.light *= 1.0f - detail_share * placement.detail.share(splat.x, splat.y, 1);
         splat.amplitude = std::max({splat.light.x, splat.light.y, splat.light.z});
         if (splat.amplitude <= 0.0f) return {};
         splat.opacity_limit = alpha.pixels.empty() ? 1.0f : place.of(alpha);
@@ -87,7 +95,7 @@ struct BandMaker {
     void make_splats(std::span<const LatticeCell> cells, std::size_t first, PictureSplats& out) const {
         const float footprint = footprint_share * float(2.0 * real::pi) * splats.sigma * splats.sigma;
         const std::uint32_t even_key = placement.hash_of(
-            std::uint64_t(splats.index) << 8 | std::uint64_t(splats.size), shared::PURPOSE_EVEN);
+            std::uint64_t(splats.number) << 8 | std::uint64_t(splats.size), shared::PURPOSE_EVEN);
         PlacedBlock block;
         block.count = int(cells.size());
         for (std::size_t i = 0; i < cells.size(); ++i) {
@@ -170,10 +178,13 @@ float Opacity::depth_of(float brightest, float alpha) const {
     return -as_log(1.0f - std::min(hidden, alpha));
 }
 
-void add_band(const Image& band, const BandSplats& splats, const Image& brightest, const Image& alpha,
-              const Placement& placement, const Opacity& opacity, PictureSplats& out) {
+SplatRange add_band(const BandLight& band, const BandSplats& splats, const Image& brightest,
+                    const Image& alpha, const Placement& placement, const Opacity& opacity,
+                    PictureSplats& out) {
     out.ranges.push_back(
         add_on_lattice(BandMaker{band, splats, brightest, alpha, placement, opacity}, splats.sigma, out));
+    if (splats.octaves > 0) out.ranges.back().of = SplatRange::Of::detail;
+    return out.ranges.back();
 }
 
 namespace {
@@ -200,7 +211,8 @@ void add_stars(std::span<const Star> stars, std::size_t first_number, const Plac
         out.distance[at] = std::fabs(spread);
         sigmas += double(star.sigma);
     }
-    out.ranges.push_back({begin, out.splats.size(), float(sigmas / double(stars.size()))});
+    out.ranges.push_back(
+        {begin, out.splats.size(), float(sigmas / double(stars.size())), SplatRange::Of::stars});
 }
 
 }  // namespace

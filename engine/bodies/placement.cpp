@@ -144,7 +144,7 @@ Placement placement_without_fields(std::int64_t width, std::int64_t height, cons
     placement.picture_height = height;
     const double width_without_margin = double(width) / (1.0 + 2.0 * params.margin);
     placement.scale = width_without_margin / 1920.0;
-    placement.detail = 1 << params.detail;
+    placement.detail = DetailLevels(params, width, height);
     const double longest_of_picture =
         std::max(width_without_margin, double(height) - 2.0 * params.margin * width_without_margin);
     // A disk that goes on is a larger disk, and so a thicker one: half of its margin is lit.

@@ -8,6 +8,7 @@
 
 #include "bodies/axis_depths.h"
 #include "bodies/depth_kernel.h"
+#include "bodies/detail_levels.h"
 #include "bodies/fields.h"
 #include "bodies/galaxy_body.h"
 #include "bodies/picture_light.h"
@@ -43,7 +44,7 @@ struct DepthReach {
 struct Placement {
     StructureKind kind = StructureKind::disk;
     double scale = 1.0;   // the picture's width over 1920 px, by which wavelengths grow
-    int detail = 1;       // texels along a side of each that the picture had before detail was invented
+    DetailLevels detail;  // where the finest band has splats below its texels
     double height = 0.0;  // texels, typical scale height H
     double depth = 0.0;   // texels, from the middle to the front of a relief or a wall
     double clumps = 1.0;
@@ -123,6 +124,8 @@ enum class GalaxyFamily { all, disk, spheroid };
 /// How the splats of one band are made (DEPTH 3), lengths in texels.
 struct BandSplats {
     int index = 0, size = 0;  // of the band; of its sizes
+    int octaves = 0;          // of the finest band: below its texels, where the picture has so many
+    int number = 0;           // in ids
     float sigma = 0.0f;       // of a splat
     float spacing = 0.0f;     // of the lattice they are drawn on
     float threshold = 0.0f;   // amplitude over brightness below which they are thinned out
@@ -133,6 +136,9 @@ struct BandSplats {
 };
 /// One size; of a galaxy one for its disk and one for its spheroid.
 std::vector<BandSplats> band_splats(const Band& band, bool coarsest, const Placement& placement);
+
+/// Those of a band of invented detail, blurs in px of so many octaves below the texels.
+std::vector<BandSplats> detail_splats(const Band& band, int octaves, const Placement& placement);
 
 /// A block's splats with their distances from the middle of what they belong to.
 struct PlacedBlock : DepthBlock {

@@ -21,7 +21,7 @@ constexpr double least_passing = 0.95;
 
 constexpr float nearest_star = 0.95f;  // of the way to the picture's camera, as of other splats
 constexpr double eye_heights = 10.0;   // from the stars to an eye that sees in parallel: before all of them
-constexpr double steepest = 0.9;       // of a view's y axis; of steeper ones, along y, -z is up
+constexpr double steepest_y = 0.9;     // of a view's y axis; of steeper ones, along y, -z is up
 
 std::optional<std::uint32_t> material_of_picture(const TexturedMesh& mesh) {
     for (std::uint32_t i = 0; i < mesh.textures.size(); ++i)
@@ -63,7 +63,7 @@ Camera front_camera(const PlacedStars& stars, const glm::dvec3& toward, double a
     params.target = middle;
     params.height = stars.texel_side * stars.height_texels;
     params.position = middle + eye_heights * std::max(aspect, 1.0) * params.height * toward;
-    params.up = std::fabs(toward.y) < steepest ? glm::dvec3(0.0, 1.0, 0.0) : glm::dvec3(0.0, 0.0, -1.0);
+    params.up = std::fabs(toward.y) < steepest_y ? glm::dvec3(0.0, 1.0, 0.0) : glm::dvec3(0.0, 0.0, -1.0);
     return picture_camera(params, aspect);
 }
 

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "bodies/detail_levels.h"
 #include "camera/camera.h"
 #include "core/error.h"
 #include "core/file_format.h"
@@ -143,6 +144,8 @@ void check_source(const SourceParams& source, const ParameterKey& at, const Chec
     check.require(source.splats == 0 || (!source.voxels && source.voxel_size == 0.0),
                   {at / "voxels", at / "voxel_size", at / "splats"},
                   "expected voxels, voxel_size or splats, found two of them");
+    const std::string fault = fault_of_tiles(source.structure.detail_tiles);
+    check.require(fault.empty(), {at / "structure" / "detail_tiles"}, fault);
     if (source.uv == UvMode::camera) check_uv_camera(source.uv_camera, at, check);
     const TextureSettings& t = source.texture;
     check_prepare(t.prepare, at / "prepare", check);

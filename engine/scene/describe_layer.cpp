@@ -239,11 +239,14 @@ void describe_structure(const Describer& d, StructureParams& s) {
            "How far a picture on a plane goes on beyond its edges, mirrored and fading: without straight "
            "edges at an angle, and whole from the front.",
            within(0, 0.5), slider(0, 0.3));
+    bodies(s.detail, "detail", "Invented detail", "octaves",
+           "What close views show of each texel at most: 2 or 4 times as fine, and from afar the texel as it "
+           "is.",
+           range(0, 2));
     bodies(
-        s.detail, "detail", "Invented detail", "octaves",
-        "What close views show of each texel: 2 or 4 times as fine, and from afar the texel as it is; 4 or "
-        "16 times as many splats.",
-        range(0, 2));
+        s.detail_tiles, "detail_tiles", "Its places", "",
+        "Octaves of each tile of the picture, row by row with a blank between: where the camera comes close, "
+        "as 'detail' writes them; empty: everywhere, 4 or 16 times as many splats.");
     bodies(s.detail_strength, "detail_strength", "Its grain", "",
            "Of the noise where the picture has no like of a place to copy from.", range(0, 1));
 }

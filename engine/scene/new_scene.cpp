@@ -174,7 +174,7 @@ grade    = {{ gain = 1.0, tint = [1.0, 1.0, 1.0], saturation = 1.0, gamma = 1.0 
 
 [layer.render]
 opacity = 1.0                     # of the whole layer
-lod     = {{ max_px = {split}, noise = 0.75, star_distance = {points} }}  # splats that look larger, close by, become clouds; nearer stars stay points
+lod     = {{ max_px = {split}, star_distance = {points} }}  # splats that look larger, close by, are divided; nearer stars stay points
 )";
 
 constexpr const char* stars_format = R"(

@@ -198,7 +198,7 @@ BodiesPlan plan_bodies(const SourceParams& source, std::vector<TexturedMesh> mes
     BodiesPlan plan{std::move(meshes), source.structure, {}};
     plan.structure.stars = finds_stars(source) ? StructureParams::Stars::yes : StructureParams::Stars::no;
     const bool read_whole = have_all_texels(plan.meshes, source.structure.most_texels);
-    enlarge_pictures(plan.meshes, plan.structure.detail, layer_name);
+    if (plan.structure.detail == 0) enlarge_small_pictures(plan.meshes, layer_name);
     plan.times = add_margins(plan.meshes, plan.structure, layer_name);
     if (std::ranges::all_of(plan.times, is_one)) plan.structure.margin = 0.0;
     const std::int64_t whole = largest_picture(plan.meshes);

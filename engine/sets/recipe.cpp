@@ -146,7 +146,7 @@ std::string galaxy_lines(const StructureParams& params) {
 std::string structure_lines(const SourceParams& source) {
     [[maybe_unused]] const auto& [kind, height, depth, clumps, flare, warp, galaxy, galaxies, spiral,
                                   axis_angle, tilt, stars, dust, opacity, density, border, margin, detail,
-                                  detail_strength, most_texels] = source.structure;
+                                  detail_tiles, detail_strength, most_texels] = source.structure;
     if (kind == StructureKind::columns) return "";
     return line("structure", kind) + line("height", height) + line("depth", depth) + line("clumps", clumps) +
            line("stars", finds_stars(source)) +
@@ -155,7 +155,8 @@ std::string structure_lines(const SourceParams& source) {
            (kind == StructureKind::axis ? line("axis angle", axis_angle) + line("tilt", tilt) : "") +
            line("dust", dust) + line("opacity", opacity) + line("density", density) + line("border", border) +
            (margin > 0.0 ? line("margin", margin) : "") +
-           (detail > 0 ? line("detail", detail, "strength", detail_strength) : "") +
+           (detail > 0 ? line("detail", detail, "strength", detail_strength) + line("tiles", detail_tiles)
+                       : "") +
            (most_texels > 0 ? line("most texels", most_texels) : "");
 }
 

@@ -240,6 +240,9 @@ struct StructureParams {
     double border = 0.0;    // of the width, over which light fades towards the picture's edges
     double margin = 0.0;    // of the width, by which the picture is continued beyond its edges
     int detail = 0;         // octaves below the picture's texels, 0..2, that are invented (DETAIL)
+    /// Where: rows of tiles with a blank between, each with so many octaves (at most `detail`), which
+    /// together are the picture without its margin. Empty: everywhere.
+    std::string detail_tiles;
     double detail_strength = 0.8;  // of the noise among them
     std::int64_t most_texels = 0;  // that a picture is reduced to; 0: all. Not a key: follows from --memory
     bool operator==(const StructureParams&) const = default;

@@ -29,7 +29,7 @@ struct PictureReaders {
 
 struct Texture {
     Image image;    // RGBA, linear, premultiplied; row 0 is the top (v = 1)
-    int times = 1;  // as wide and high as the picture that was read (enlarge_pictures)
+    int times = 1;  // as wide and high as the picture that was read (enlarge_small_pictures)
     std::int64_t file_width = 0, file_height = 0;  // px, of a file that was reduced while it was read; else 0
     TextureSettings::Filter filter = TextureSettings::Filter::bilinear;
     TextureSettings::Wrap wrap = TextureSettings::Wrap::clamp;  // never automatic once loaded

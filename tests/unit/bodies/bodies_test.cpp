@@ -117,7 +117,7 @@ TEST(Bodies, SmallPicturesAreEnlargedUpToThoseOf2048x2048) {
     std::vector<TexturedMesh> meshes;
     for (const auto& [width, height] : {std::pair{300, 200}, {700, 500}, {1024, 1024}, {1024, 1025}})
         meshes.push_back(on_plane(make_image(width, height, 4, 0.5f)));
-    enlarge_pictures(meshes, 0, "gas");
+    enlarge_small_pictures(meshes, "gas");
     EXPECT_EQ(meshes[0].textures[0].image.width, 1200);
     EXPECT_EQ(meshes[1].textures[0].image.width, 2100);
     EXPECT_EQ(meshes[2].textures[0].image.width, 2048);
@@ -508,7 +508,7 @@ TEST(Bodies, DetailIsThePictureFromAfar) {
         picture.pixels[i] *= float(0.6 + 0.8 * painted::random(std::uint32_t(i / 3), 7));
     const auto seen = [&](int detail, std::uint32_t seed, double margin) {
         std::vector<TexturedMesh> meshes{on_plane(picture)};
-        enlarge_pictures(meshes, 2, "gas");
+        if (detail == 0) enlarge_small_pictures(meshes, "gas");
         EXPECT_EQ(meshes[0].textures[0].times, times);
         StructureParams params = of_kind(StructureKind::sheet);
         params.detail = detail;

@@ -1,0 +1,30 @@
+// Splats below a picture's pixels (DETAIL 4). In: the picture without its stars and its finest band, where
+// it has invented detail. Out: smaller splats in place of that band's, part by part, and what they are to
+// show: the front's fit takes both.
+#pragma once
+
+#include "bodies/picture_splats.h"
+#include "core/progress.h"
+
+namespace astrosplat {
+
+/// A part of the picture with so much detail everywhere in it that is not another part's.
+struct DetailPart {
+    int octaves = 1;
+    Region region;  // texels, in which its splats lie
+    Region shown;   // those and some more about them
+    Image light;    // of `shown`, 2^octaves pixels a texel
+    std::vector<SplatRange> ranges;
+};
+
+/// `light`: of the picture without stars; `finest`: of the band that they take the place of; `sources`: 0
+/// where nothing is to be copied from (detail_picture). Throws Cancelled; NotEnoughMemory, an InputError.
+std::vector<DetailPart> add_detail(const Image& light, const Image& finest, const Image& sources,
+                                   const Image& brightest, const Image& alpha, const StructureParams& params,
+                                   const Placement& placement, const Opacity& opacity,
+                                   const Progress& progress, PictureSplats& out);
+
+/// Part of an image.
+Image part_of(const Image& image, const Region& region);
+
+}  // namespace astrosplat
