@@ -66,18 +66,6 @@ std::optional<AxisDepths> axis_of(const Image& light, const StructureParams& par
     return make_axis_depths(std::move(fit), light);
 }
 
-// Where nothing of it was a star's, 1; else 0.
-Image without_stars_in(const Image& rest, const Image& light) {
-    constexpr float of_star = 0.01f;  // of the light, at which a texel was a star's
-    Image sources = unfilled_image(rest.width, rest.height, 1);
-    for_each_pixel(rest, [&](std::int64_t x, std::int64_t y) {
-        const float *const left = rest.at(x, y), *const all = light.at(x, y);
-        const auto is_whole = [&](int c) { return all[c] - left[c] <= of_star * all[c]; };
-        *sources.at(x, y) = is_whole(0) && is_whole(1) && is_whole(2) ? 1.0f : 0.0f;
-    });
-    return sources;
-}
-
 // Adds all splats of a picture, with their colours as they would be if nothing hid anything. Out: the parts
 // that have invented detail.
 std::vector<DetailPart> add_splats(const PictureLight& picture, const UvSurface& surface,
@@ -100,19 +88,17 @@ std::vector<DetailPart> add_splats(const PictureLight& picture, const UvSurface&
     const double dust = dust_of(params);
     Image emission;  // of all bands, where there is dust
     const bool detailed = placement.detail.any();
-    const Image all_bands = detailed ? copied(rest) : Image(),
-                sources = detailed ? without_stars_in(rest, picture.light) : Image();
+    const Image all_bands = detailed ? copied(rest) : Image();
     std::vector<DetailPart> detail;
     release_spare_pages();  // of reading and of the fields: bands and their splats are the most there is
-    const Region whole{0, 0, rest.width, rest.height};
     split_bands(std::move(rest), bands, dust > 0.0, [&](const Band& band, const Image& light) {
         progress.check();
         if (dust > 0.0) add(light, emission);
         const bool coarsest = band.index + 1 == int(bands.size());
         for (const BandSplats& size : band_splats(band, coarsest, placement))
-            add_band({light, whole, whole}, size, brightest, picture.alpha, placement, opacity, set);
+            add_band(whole_band(light), size, brightest, picture.alpha, placement, opacity, set);
         if (detailed && band.index == 0)
-            detail = add_detail(all_bands, light, sources, brightest, picture.alpha, params, placement,
+            detail = add_detail(picture.light, all_bands, light, brightest, picture.alpha, params, placement,
                                 opacity, progress.part(0.1, 0.2), set);
         progress.at(0.2 + 0.7 * (band.index + 1.0) / double(bands.size()));
     });
@@ -291,6 +277,19 @@ SplatSet bodies_of(const PictureOnMesh& picture, std::size_t number, Texture& te
     }
 }
 
+// Of what the parts with detail are to show.
+std::int64_t detail_memory_bytes(std::span<const TexturedMesh> meshes, const StructureParams& params) {
+    constexpr double bytes_a_pixel = 13.0;  // three channels, and what is shown about each part
+    double most = 0.0;
+    for (const PictureOnMesh& picture : pictures_of(meshes)) {
+        const Image& image = picture.texture().image;
+        const DetailLevels levels(params, image.width, image.height);
+        most = std::max(most, double(image.width * image.height) *
+                                  (4.0 * levels.area_share(1) + 16.0 * levels.area_share(2)));
+    }
+    return std::int64_t(bytes_a_pixel * most);
+}
+
 }  // namespace
 
 SplatSet make_bodies(std::vector<TexturedMesh> meshes, const StructureParams& params, std::uint32_t seed,
@@ -300,7 +299,7 @@ SplatSet make_bodies(std::vector<TexturedMesh> meshes, const StructureParams& pa
     for (const PictureOnMesh& picture : pictures)
         expected.push_back(expected_splats(picture.texture(), params));
     const double all = std::accumulate(expected.begin(), expected.end(), 0.0);
-    claim_memory(bodies_memory_bytes(meshes, std::int64_t(all)),
+    claim_memory(bodies_memory_bytes(meshes, std::int64_t(all)) + detail_memory_bytes(meshes, params),
                  fmt::format("making bodies for layer '{}'", layer_name));
     SplatSet set;
     for (std::size_t i = 0; i < pictures.size(); ++i) {

@@ -29,7 +29,7 @@ struct PictureOnMesh {
 /// All of them, in order. Throws InputError where they are more than ids can number.
 std::vector<PictureOnMesh> pictures_of(std::span<const TexturedMesh> meshes);
 
-/// From samples of the picture, taken apart as the whole will be; within some 5 %.
+/// From samples of the picture, taken apart as the whole will be; within some 5 %, of invented detail 15 %.
 double expected_splats(const Texture& texture, const StructureParams& params);
 
 /// More than a picture of width x height texels can become; at once.

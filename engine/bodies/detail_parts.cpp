@@ -1,6 +1,7 @@
 #include "bodies/detail_parts.h"
 
 #include "bodies/detail_picture.h"
+#include "image/channels.h"
 
 namespace astrosplat {
 namespace {
@@ -19,6 +20,18 @@ Region widened(const Region& region, std::int64_t by, const Image& picture) {
     const std::int64_t x = begin(region.x), y = begin(region.y);
     return {x, y, end(region.x + region.width, picture.width) - x,
             end(region.y + region.height, picture.height) - y};
+}
+
+// 1, else 0: of a star nothing is copied.
+Image where_no_star_was(const Image& rest, const Image& light) {
+    constexpr float of_star = 0.01f;  // of the light, at which a texel was a star's
+    Image sources = unfilled_image(rest.width, rest.height, 1);
+    for_each_pixel(rest, [&](std::int64_t x, std::int64_t y) {
+        const float *const left = rest.at(x, y), *const all = light.at(x, y);
+        const auto is_whole = [&](int c) { return all[c] - left[c] <= of_star * all[c]; };
+        *sources.at(x, y) = is_whole(0) && is_whole(1) && is_whole(2) ? 1.0f : 0.0f;
+    });
+    return sources;
 }
 
 // The detail of a part, of what is coarser than it and less than it.
@@ -65,11 +78,12 @@ Image part_of(const Image& image, const Region& region) {
     return part;
 }
 
-std::vector<DetailPart> add_detail(const Image& light, const Image& finest, const Image& sources,
+std::vector<DetailPart> add_detail(const Image& with_stars, const Image& light, const Image& finest,
                                    const Image& brightest, const Image& alpha, const StructureParams& params,
                                    const Placement& placement, const Opacity& opacity,
                                    const Progress& progress, PictureSplats& out) {
     const DetailLevels& levels = placement.detail;
+    const Image sources = where_no_star_was(light, with_stars);
     std::vector<DetailPart> parts;
     for (std::int64_t y = 0; y < light.height; y += block_texels)
         for (std::int64_t x = 0; x < light.width; x += block_texels)
@@ -78,7 +92,7 @@ std::vector<DetailPart> add_detail(const Image& light, const Image& finest, cons
                                    std::min(block_texels, light.height - y)};
                 const Region region = levels.bounds(block, octaves);
                 if (region.width > 0)
-                    parts.push_back({octaves, region, widened(region, shown_about, light), {}, {}});
+                    parts.push_back({octaves, region, widened(region, shown_about, light), {}, {}, {}});
             }
     DetailWish wish;
     wish.strength = params.detail_strength;
@@ -89,6 +103,9 @@ std::vector<DetailPart> add_detail(const Image& light, const Image& finest, cons
         DetailPart& part = parts[i];
         const double done = double(i) / double(parts.size()), next = double(i + 1) / double(parts.size());
         part.light = detail_of(part, light, sources, wish, progress.part(done, next));
+        part.stars = part_of(with_stars, part.shown);
+        const Image without = part_of(light, part.shown);
+        for (std::size_t k = 0; k < without.pixels.size(); ++k) part.stars.pixels[k] -= without.pixels[k];
         split_bands(
             beyond_coarser(part, light, finest), bands_of(part.octaves), false,
             [&](const Band& band, const Image& of_band) {

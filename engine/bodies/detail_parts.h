@@ -13,13 +13,14 @@ struct DetailPart {
     int octaves = 1;
     Region region;  // texels, in which its splats lie
     Region shown;   // those and some more about them
-    Image light;    // of `shown`, 2^octaves pixels a texel
+    Image light;    // of `shown` without stars, 2^octaves pixels a texel
+    Image stars;    // what these have there, a pixel a texel
     std::vector<SplatRange> ranges;
 };
 
-/// `light`: of the picture without stars; `finest`: of the band that they take the place of; `sources`: 0
-/// where nothing is to be copied from (detail_picture). Throws Cancelled; NotEnoughMemory, an InputError.
-std::vector<DetailPart> add_detail(const Image& light, const Image& finest, const Image& sources,
+/// `light`: of the picture, with stars and without; `finest`: of the band that they take the place of. Throws
+/// Cancelled; NotEnoughMemory, an InputError.
+std::vector<DetailPart> add_detail(const Image& with_stars, const Image& light, const Image& finest,
                                    const Image& brightest, const Image& alpha, const StructureParams& params,
                                    const Placement& placement, const Opacity& opacity,
                                    const Progress& progress, PictureSplats& out);

@@ -28,8 +28,8 @@ inline constexpr std::int64_t detail_reach_px = 32;
 /// `light`: 1 or 3 channels, >= 0, with what `sources` (one channel, as large; or empty) says of it: 0 where
 /// a star was taken out, so that nothing is copied from there. Out: 2^octaves times as large, with area means
 /// that are `light` to 3e-7 of it (of 1 at least). The same bits for any number of threads, and for a part of
-/// a picture as for all of it where that goes on by detail_reach_px. Throws Cancelled; NotEnoughMemory, an
-/// InputError.
+/// a picture as for all of it, but for rounding, where that goes on by detail_reach_px. Throws Cancelled;
+/// NotEnoughMemory, an InputError.
 Image detail_picture(const Image& light, const Image& sources, const DetailWish& wish,
                      const Progress& progress = {});
 

@@ -14,6 +14,7 @@
 #include "core/parallel.h"
 #include "core/real.h"
 #include "image/blur.h"
+#include "image/channels.h"
 #include "render/render.h"
 
 namespace astrosplat {
@@ -83,10 +84,11 @@ class Steps {
   public:
     explicit Steps(const Image& target) : target_(target) {}
 
-    /// The ratio of what is wanted to what is seen. Its weights make steps those down the square of what
-    /// differs as a display shows it, whose values grow by light to the power -.58: so that what is dark
-    /// counts beside what is bright.
-    Fraction weighted_ratio(Image seen) {
+    /// The ratio of what is wanted to what is seen. A display's values grow by light to the power -.58, so a
+    /// step down the square of what differs there weighs the ratio by seen^(1 - 2 * .58): what is dark counts
+    /// beside what is bright. What is too bright is weighed so; for what is to be raised less of that is as
+    /// good, and flux is kept. The last step keeps it.
+    Fraction weighted_ratio(Image seen, bool last) {
         const bool first = momentum_.pixels.empty();
         if (first) momentum_ = unfilled_image(seen.width, seen.height, 3);
         Fraction ratio{unfilled_image(seen.width, seen.height, 3), std::move(seen)};
@@ -97,7 +99,8 @@ class Steps {
             const float now = held((target_.pixels[i] + sky) / here);
             const float step = first ? now : held(now * momentum_.pixels[i]);
             momentum_.pixels[i] = std::sqrt(step);
-            here = 1.0f / std::sqrt(std::sqrt(here));  // about seen^(1 - 2 * .58)
+            const float root = std::sqrt(std::sqrt(here));
+            if (!last) here = step < 1.0f ? 1.0f / root : root;
             ratio.wanted.pixels[i] = step * here;
         });
         return ratio;
@@ -116,23 +119,14 @@ class FittedView {
         layer_.name = "front";
         layer_.splats = &set.splats;
         layer_.absorbs = set.absorbs;
-        float highest = 0.0f;
-        for (const glm::vec3& p : set.splats.position) highest = std::max(highest, p.z);
-        const std::int64_t step = rendered_step(picture, small);
-        settings_.width = (picture.width + step - 1) / step;
-        settings_.height = (picture.height + step - 1) / step;
-        const auto width = double(step * settings_.width),
-                   height = double(step * settings_.height);  // texels
-        CameraParams params;
-        params.projection = Projection::orthographic;
-        params.target = 0.5 * glm::dvec3(width - double(picture.width), double(picture.height) - height, 0.0);
-        params.position = params.target + glm::dvec3(0.0, 0.0, 2.0 * double(highest) + width);
-        params.height = height;
-        camera_ = make_camera(params, double(settings_.width), double(settings_.height), {});
+        for (const glm::vec3& p : set.splats.position) highest_ = std::max(highest_, p.z);
+        stand_at(rendered_step(picture, small));
         settings_.memory_limit_bytes =
             std::max(least_projected_bytes, projected_bytes_a_texel * picture.width * picture.height);
     }
 
+    /// The next rendering has pixels of so many texels a side.
+    void stand_at(std::int64_t step);
     /// The visible light if the light that the picture does not have is hidden.
     Image supposed();
     /// The visible light, from a rendering.
@@ -141,14 +135,15 @@ class FittedView {
     Image seen() const { return shown(flat_.sum()); }
     /// Takes the colours a step on from what is seen.
     void step_from(Image seen, bool overshoot) {
-        flat_.correct(steps_.weighted_ratio(std::move(seen)), overshoot);
+        flat_.correct(steps_.weighted_ratio(std::move(seen), !overshoot), overshoot);
     }
     /// Takes them to the picture's flux, cell by cell.
     void match_cells(const Image& seen) { flat_.multiply(cell_ratio(target_, seen), double(flux_cell_px)); }
     /// On sRGB values of some rows.
     double psnr_db(const Image& seen) const;
-    /// The share of the flat light that reaches the viewer, as smooth as at half the picture's size.
-    const Image& share() const { return share_; }
+    /// The share of each texel's flat light that reaches the viewer: of detail there are enough splats in
+    /// each for it to follow none of them.
+    Image share_by_texel(const Progress& progress);
 
   private:
     Image shown(Image flat) const;
@@ -159,8 +154,21 @@ class FittedView {
     RenderSettings settings_;
     RenderLayer layer_;
     Camera camera_;
-    Image share_;
+    Image share_;  // of the flat light that reaches the viewer, as smooth as at half the picture's size
+    float highest_ = 0.0f;  // splat, texels
 };
+
+void FittedView::stand_at(std::int64_t step) {
+    settings_.width = (target_.width + step - 1) / step;
+    settings_.height = (target_.height + step - 1) / step;
+    const auto width = double(step * settings_.width), height = double(step * settings_.height);  // texels
+    CameraParams params;
+    params.projection = Projection::orthographic;
+    params.target = 0.5 * glm::dvec3(width - double(target_.width), double(target_.height) - height, 0.0);
+    params.position = params.target + glm::dvec3(0.0, 0.0, 2.0 * double(highest_) + width);
+    params.height = height;
+    camera_ = make_camera(params, double(settings_.width), double(settings_.height), {});
+}
 
 Image FittedView::supposed() {
     Image flat = flat_.sum();
@@ -183,6 +191,12 @@ Image FittedView::rendered(const Progress& progress) {
     return shown(std::move(flat));
 }
 
+Image FittedView::share_by_texel(const Progress& progress) {
+    stand_at(1);
+    const Image flat = flat_.sum();
+    return share_of(render({&layer_, 1}, camera_, nullptr, settings_, progress).beauty, flat);
+}
+
 Image FittedView::shown(Image flat) const {
     parallel_each(flat.pixels.size(), 65536, [&](std::size_t i) { flat.pixels[i] *= share_.pixels[i]; });
     return flat;
@@ -203,16 +217,23 @@ double FittedView::psnr_db(const Image& seen) const {
     return -10.0 / real::log(10.0) * real::log(std::max(mean, 1e-12));
 }
 
-constexpr int detail_steps = 8;  // DETAIL 4 has 6
+constexpr int detail_steps[] = {4, 6};  // before and after a rendering with them; DETAIL 4 has 6
 
-// The flat light of those splats that are no detail and no stars.
-Image coarser_light(PictureSplats& set, std::int64_t width, std::int64_t height) {
+// The flat light of splats of one sort.
+Image flat_light_of(SplatRange::Of sort, PictureSplats& set, std::int64_t width, std::int64_t height,
+                    double filter_texels) {
     std::vector<SplatRange> all = set.ranges;
-    std::erase_if(set.ranges, [](const SplatRange& range) { return range.of != SplatRange::Of::bands; });
-    Image sum = FlatLight(set, width, height, 0.25 * filter_px).sum();
+    std::erase_if(set.ranges, [&](const SplatRange& range) { return range.of != sort; });
+    Image sum = FlatLight(set, width, height, filter_texels).sum();
     set.ranges = std::move(all);
     return sum;
 }
+
+// What all parts are seen with: texels of the whole picture.
+struct AboutDetail {
+    Image coarser, stars;  // flat light
+    Image share;           // of it that reaches the viewer
+};
 
 // Splats of detail that are seen in a part, in its own detail pixels.
 struct SeenDetail {
@@ -252,26 +273,68 @@ SeenDetail seen_detail(const PictureSplats& all, std::span<const DetailPart> par
     return seen;
 }
 
+// A part's light with what the Gaussians of stars do not show of them, texel by texel.
+Image with_lacking_stars(const DetailPart& part, const AboutDetail& about) {
+    Image lacking = part_of(about.stars, part.shown);
+    const Image share = part_of(about.share, part.shown);
+    for (std::size_t i = 0; i < lacking.pixels.size(); ++i)
+        lacking.pixels[i] = part.stars.pixels[i] - share.pixels[i] * lacking.pixels[i];
+    lacking = octaves_larger(std::move(lacking), part.octaves);
+    parallel_each(lacking.pixels.size(), 65536, [&](std::size_t i) {
+        lacking.pixels[i] = std::max(0.0f, part.light.pixels[i] + lacking.pixels[i]);
+    });
+    return lacking;
+}
+
+// By what the light of splats of detail, as if nothing hid anything, misses each texel's.
+Image texel_ratio(const DetailPart& part, const Image& light, const Image& below, const Image& passes,
+                  const Image& flat) {
+    constexpr float largest = 2.0f;
+    const std::int64_t times = std::int64_t{1} << part.octaves;
+    Image ratio = unfilled_image(part.shown.width, part.shown.height, 3);
+    for_each_pixel(ratio, [&](std::int64_t x, std::int64_t y) {
+        glm::dvec3 wanted(0.0), own(0.0);
+        for_each_between(flat, times * x, times * y, times * (x + 1) - 1, times * (y + 1) - 1,
+                         [&](std::int64_t i, std::int64_t j) {
+                             for (int c = 0; c < 3; ++c) {
+                                 const auto share = double(std::max(0.0f, passes.at(i, j)[c]));
+                                 wanted[c] += double(light.at(i, j)[c]) -
+                                              share * double(std::max(0.0f, below.at(i, j)[c]));
+                                 own[c] += share * double(flat.at(i, j)[c]);
+                             }
+                         });
+        for (int c = 0; c < 3; ++c)
+            ratio.at(x, y)[c] =
+                own[c] > 0.0 ? std::clamp(float(wanted[c] / own[c]), 1.0f / largest, largest) : 1.0f;
+    });
+    return ratio;
+}
+
 // Takes the splats of a part's detail on until they and what is coarser, seen through the filter at its own
 // pixels, are the part itself: what the filter would take of it is put in before. `colors`: of all splats
 // before; what lies in other parts stays as it is.
-void fit_part(PictureSplats& all, std::span<const DetailPart> parts, std::size_t number, const Image& coarser,
-              const Image& share, Buffer<glm::vec3>& colors) {
+void fit_part(PictureSplats& all, std::span<const DetailPart> parts, std::size_t number,
+              const AboutDetail& about, int count, Buffer<glm::vec3>& colors) {
     const DetailPart& part = parts[number];
-    SeenDetail own = seen_detail(all, parts, number, {coarser.width, coarser.height});
+    SeenDetail own = seen_detail(all, parts, number, {about.share.width, about.share.height});
     if (own.row.empty()) return;
-    const Image passes = octaves_larger(part_of(share, part.shown), part.octaves),
-                below = octaves_larger(part_of(coarser, part.shown), part.octaves);
+    const Image passes = octaves_larger(part_of(about.share, part.shown), part.octaves),
+                below = octaves_larger(part_of(about.coarser, part.shown), part.octaves);
+    const double times = double(1 << part.octaves);
     FlatLight flat(own.set, part.light.width, part.light.height, filter_px);
-    Steps steps(part.light);
-    for (int step = 0; step < detail_steps; ++step) {
+    const Image wanted = with_lacking_stars(part, about);
+    Steps steps(wanted);
+    for (int step = 0; step < count; ++step) {
         Image seen = flat.sum();
         parallel_each(seen.pixels.size(), 65536, [&](std::size_t i) {
             seen.pixels[i] =
                 std::max(0.0f, passes.pixels[i]) * (seen.pixels[i] + std::max(0.0f, below.pixels[i]));
         });
-        flat.correct(steps.weighted_ratio(std::move(seen)), step + 1 < detail_steps);
+        flat.correct(steps.weighted_ratio(std::move(seen), step + 1 == count), step + 1 < count);
     }
+    constexpr int flux_rounds = 2;  // between cells' middles a factor is that of neither
+    for (int round = 0; round < flux_rounds; ++round)
+        flat.multiply(texel_ratio(part, wanted, below, passes, flat.sum()), times);
     for (std::size_t i = 0; i < own.row.size(); ++i)
         if (own.row[i] >= 0) colors[std::size_t(own.row[i])] = own.set.splats.color[i];
 }
@@ -299,13 +362,19 @@ FrontFit fit_front(PictureSplats& set, Image light, bool small, const Progress& 
     view.match_cells(seen);
     view.match_cells(view.seen());  // between the cells' middles a factor is that of neither
     if (!detail.empty()) {
-        const Image coarser = coarser_light(set, seen.width, seen.height);
-        Buffer<glm::vec3> colors = set.splats.color;
-        for (std::size_t i = 0; i < detail.size(); ++i) {
-            progress.check();
-            fit_part(set, detail, i, coarser, view.share(), colors);
+        constexpr double texel_deviation = 0.2887;  // of a square's light, texels
+        AboutDetail about;
+        about.coarser = flat_light_of(SplatRange::Of::bands, set, seen.width, seen.height, 0.25 * filter_px);
+        about.stars = flat_light_of(SplatRange::Of::stars, set, seen.width, seen.height, texel_deviation);
+        for (const int count : detail_steps) {
+            about.share = view.share_by_texel(progress);
+            Buffer<glm::vec3> colors = set.splats.color;
+            for (std::size_t i = 0; i < detail.size(); ++i) {
+                progress.check();
+                fit_part(set, detail, i, about, count, colors);
+            }
+            set.splats.color = std::move(colors);
         }
-        set.splats.color = std::move(colors);
     }
     return {first_steps + steps_after, view.psnr_db(seen)};
 }

@@ -15,7 +15,7 @@ constexpr float least_brightness = 0.002f;  // below which opacity falls to 0: e
 constexpr float greatest_opacity = 0.985f;
 constexpr float star_opacity = 0.25f;     // of a star's own
 constexpr float spheroid_hiding = 0.35f;  // share of its optical depth that a spheroid keeps (INCLINED 3)
-constexpr float glow_hiding = 0.5f;       // and the glow between two walls
+constexpr float glow_hiding = 0.47f;      // and the glow between two walls
 
 // A splat before it has a depth.
 struct Candidate {
@@ -254,7 +254,8 @@ void add_spikes(const Spikes& spikes, int times, const Placement& placement, con
         out.splats.id[begin + i] = spike_band << 48 | std::uint64_t(spike.row * columns + spike.column);
         out.distance[begin + i] = std::fabs(height);
     });
-    out.ranges.push_back({std::int64_t(begin), out.splats.size(), sigma * float(times)});
+    out.ranges.push_back(
+        {std::int64_t(begin), out.splats.size(), sigma * float(times), SplatRange::Of::stars});
 }
 
 }  // namespace astrosplat

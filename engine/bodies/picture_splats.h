@@ -17,8 +17,8 @@ namespace astrosplat {
 /// Splats [begin, end) of one size.
 struct SplatRange {
     std::int64_t begin = 0, end = 0;
-    float sigma = 0.0f;  // texels; of stars: of most of them
-    enum class Of { bands, detail, stars } of = Of::bands;
+    float sigma = 0.0f;                                     // texels; of stars: of most of them
+    enum class Of { bands, detail, stars } of = Of::bands;  // stars: and their spikes
 };
 
 struct PictureSplats {
@@ -64,6 +64,12 @@ struct BandLight {
     Region shown, region;
     float times = 1.0f;
 };
+
+/// That of all of a picture.
+inline BandLight whole_band(const Image& light) {
+    const Region all{0, 0, light.width, light.height};
+    return {light, all, all};
+}
 
 /// Adds a band's splats. `picture` is the whole picture's light, whose brightness decides the opacity.
 SplatRange add_band(const BandLight& band, const BandSplats& splats, const Image& brightest,

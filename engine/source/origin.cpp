@@ -56,7 +56,8 @@ std::string origin_of(const StructureParams& params, const std::optional<ShareBe
         "each splat's place within that depth, all backs{}{}{}",
         model_words(params),
         params.detail > 0
-            ? fmt::format(", detail of {} beyond the picture's texels", counted(params.detail, "octave"))
+            ? fmt::format(", detail of {} beyond the picture's texels{}", counted(params.detail, "octave"),
+                          params.detail_tiles.empty() ? "" : " where the camera comes close")
             : "",
         hides_plane(params) ? ", arms and clouds along the line of sight, the dust's far side" : "",
         beyond_words(params, beyond));

@@ -131,6 +131,35 @@ TEST_F(Commands, NewMakesBodiesOfAPicture) {
     EXPECT_FALSE(fs::exists(folder / "x.toml"));
 }
 
+// A film's tiles are written into its scene, whose other lines stay; what they say is rendered and said.
+TEST_F(Commands, DetailFollowsTheCamera) {
+    write_text(folder / "picture.ppm", small_picture());
+    const auto new_film = [&] {
+        expect_success(
+            run({"new", "picture.ppm", "-o", "f.toml", "--as", "nebula", "--film", "--overwrite"}));
+        return text_of(folder / "f.toml");
+    };
+    const std::string film = new_film();
+    EXPECT_HAS(film, "detail = ");
+    EXPECT_HAS(film, "detail_tiles = \"");
+    const RunResult none = expect_success(run({"detail", "f.toml", "--none"}));
+    EXPECT_HAS(none.out, "more_splats: 0");
+    const std::string without = text_of(folder / "f.toml");
+    EXPECT_HAS(without, "# splats that look larger, close by, are divided");
+    EXPECT_HAS(without, "detail = 0");
+    expect_success(run({"detail", "f.toml"}));
+    EXPECT_EQ(text_of(folder / "f.toml"), film);
+    expect_success(run({"detail", "f.toml", "--splats", "1", "-o", "g.toml"}));
+    EXPECT_EQ(text_of(folder / "g.toml"), without);
+    expect_one_line(run({"detail", "f.toml", "-o", "g.toml"}), 2, "g.toml");
+    expect_one_line(run({"detail", "f.toml", "--splats", "many"}), 2, "--splats");
+    expect_one_line(
+        run({"--batch", "f.toml", "-f", "1", "--set", "layer.picture.source.structure.detail_tiles=01 2"}), 2,
+        "expected rows of 2 tiles as the first, found 1 in '2'");
+    const RunResult plane = expect_success(run({"new", "picture.ppm", "-o", "plane.toml", "--as", "plane"}));
+    expect_one_line(run({"detail", "plane.toml"}), 2, "expected a layer of bodies");
+}
+
 TEST_F(Commands, NewFindsTheAxisOfANebula) {
     write_text(folder / "ring.ppm", pixmap(160, 100, [](int x, int y, int k) {
                    const double r = std::hypot((x - 80) / 50.0, (y - 50) / 30.0);

@@ -1,4 +1,6 @@
 // Whole pictures on meshes, and what carries them.
+#include <map>
+
 #include "bodies/bodies.h"
 
 #include "bodies/front_fit.h"
@@ -80,7 +82,8 @@ TEST(Bodies, AreNeverMoreThanTheMostForTheirSize) {
         const auto made = double(make_bodies({on_plane(noise)}, of_kind(kind), 3u, "gas").size());
         const double most = splats_at_most(320, 200, of_kind(kind));
         EXPECT_LE(made, most);
-        EXPECT_GE(made, 0.5 * most);
+        // Of a disk's places both families may have what is sharp, but hardly do.
+        EXPECT_GE(made, (kind == StructureKind::disk ? 0.4 : 0.5) * most);
     }
 }
 
@@ -300,7 +303,7 @@ Fitted fitted(const Image& light, StructureKind kind, double texels_per_unit, bo
     split_bands(light, bands, false, [&](const Band& band, const Image& image) {
         const bool coarsest = band.index + 1 == int(bands.size());
         for (const BandSplats& size : band_splats(band, coarsest, placement))
-            add_band(image, size, brightest, {}, placement, {}, result.set);
+            add_band(whole_band(image), size, brightest, {}, placement, {}, result.set);
     });
     result.fit = fit_front(result.set, light, enlarged);
     return result;
@@ -492,24 +495,24 @@ Image front_of(const SplatSet& set, double texels_per_unit, std::int64_t width, 
 /// Mean difference of green between two images, over the mean of the first.
 double relative_difference(const Image& a, const Image& b) {
     double away = 0.0, all = 0.0;
-    for_each_pixel(a, [&](std::int64_t x, std::int64_t y) {
+    for_each_between(a, 0, 0, a.width, a.height, [&](std::int64_t x, std::int64_t y) {
         away += std::fabs(double(a.at(x, y)[1]) - double(b.at(x, y)[1]));
         all += double(a.at(x, y)[1]);
     });
     return away / all;
 }
 
-// From afar the picture; close by what the enlarged picture does not have, and another with another seed.
+// From afar the picture, stars included; close by what the enlarged picture does not have, and another with
+// another seed.
 TEST(Bodies, DetailIsThePictureFromAfar) {
     constexpr std::int64_t width = 150, height = 90;
     constexpr int times = 4;
     Image picture = painted::nebula(width, height);
     for (std::size_t i = 0; i < picture.pixels.size(); ++i)
-        picture.pixels[i] *= float(0.6 + 0.8 * painted::random(std::uint32_t(i / 3), 7));
+        picture.pixels[i] *= float(0.85 + 0.3 * painted::random(std::uint32_t(i / 3), 7));
     const auto seen = [&](int detail, std::uint32_t seed, double margin) {
         std::vector<TexturedMesh> meshes{on_plane(picture)};
         if (detail == 0) enlarge_small_pictures(meshes, "gas");
-        EXPECT_EQ(meshes[0].textures[0].times, times);
         StructureParams params = of_kind(StructureKind::sheet);
         params.detail = detail;
         params.margin = margin;
@@ -522,8 +525,44 @@ TEST(Bodies, DetailIsThePictureFromAfar) {
     EXPECT_GT(relative_difference(seen(2, 4u, 0.0), detailed), 0.03);
     const auto texels = [&](const Image& image) { return reduced_by_area(image, width, height); };
     EXPECT_LT(relative_difference(texels(even), texels(detailed)), 0.02);
+    EXPECT_LT(relative_difference(picture, texels(detailed)), 0.03);
     // A margin of 98 px, no whole number of texels, parts none of them.
     EXPECT_LT(relative_difference(texels(seen(0, 3u, 0.1625)), texels(seen(2, 3u, 0.1625))), 0.02);
+}
+
+// Tiles of detail change what is in them alone: all else has the same splats at the same places.
+TEST(Bodies, DetailLiesInItsTiles) {
+    const TexturedMesh mesh = on_plane(painted::nebula(320, 198));
+    StructureParams params = of_kind(StructureKind::sheet);
+    params.stars = StructureParams::Stars::no;
+    const SplatSet plain = make_bodies({mesh}, params, 3u, "gas");
+    params.detail = 2;
+    params.detail_tiles = "0000 0120 0000";
+    const SplatSet tiled = make_bodies({mesh}, params, 3u, "gas");
+    const auto places = [](const SplatSet& set, bool detail) {
+        std::map<std::uint64_t, std::pair<glm::vec3, glm::vec2>> all;
+        for (std::size_t i = 0; i < set.id.size(); ++i)
+            if ((set.id[i] >> 48 & 255) >= 128 == detail) all[set.id[i]] = {set.position[i], set.uv[i]};
+        return all;
+    };
+    const auto before = places(plain, false), after = places(tiled, false), detail = places(tiled, true);
+    const auto in_tiles = [](const glm::vec2& uv) {
+        return uv.x >= 0.25f && uv.x < 0.75f && uv.y > 1.0f / 3.0f && uv.y < 2.0f / 3.0f;
+    };
+    std::size_t finest = 0;
+    for (const auto& [id, place] : before) {
+        const bool inside = in_tiles(place.second), is_finest = (id >> 48 & 255) == 0;
+        finest += inside && is_finest ? 1 : 0;
+        if (inside && is_finest) ASSERT_FALSE(after.contains(id));
+        if (!inside) ASSERT_TRUE(after.contains(id) && after.at(id).first == place.first);
+    }
+    for (const auto& [id, place] : after) ASSERT_TRUE(before.contains(id));
+    EXPECT_GT(detail.size(), 8 * finest);
+    for (const auto& [id, place] : detail) ASSERT_TRUE(in_tiles(place.second)) << place.second.x;
+    test::expect_same_bits([&] {
+        const SplatSet set = make_bodies({mesh}, params, 3u, "gas");
+        return test::Bits() << set.position << set.color << set.alpha;
+    });
 }
 
 // Light that fades towards the border is darker than what is around it, as dust would be.

@@ -1,4 +1,6 @@
 // Details that no telescope saw: invented below a picture's pixels.
+#include "bodies/detail_levels.h"
+#include "bodies/detail_parts.h"
 #include "bodies/detail_picture.h"
 #include "bodies/exemplar.h"
 #include "core/memory.h"
@@ -82,6 +84,96 @@ TEST(DetailPicture, FlatLightStaysFlat) {
 TEST(DetailPicture, HasTheSameBitsOnAnyNumberOfThreads) {
     const Image light = threads(96, 60);
     test::expect_same_bits([&] { return test::Bits() << detail_picture(light, {}, octaves_of_detail(2)); });
+}
+
+// Where a part goes on by what detail depends on, wherever it begins.
+TEST(DetailPicture, APartHasTheDetailOfTheWhole) {
+    const Image light = threads(160, 128);
+    DetailWish wish = octaves_of_detail(2);
+    wish.slope = detail_slope(light);
+    const Image whole = detail_picture(light, {}, wish);
+    const Region part{40, 16, 104, 96};
+    wish.x = part.x;
+    wish.y = part.y;
+    const Image alone = detail_picture(part_of(light, part), {}, wish);
+    const std::int64_t reach = 4 * detail_reach_px;
+    for (std::int64_t y = reach; y < alone.height - reach; ++y)
+        for (std::int64_t x = reach; x < alone.width - reach; ++x)
+            for (int c = 0; c < 3; ++c)
+                ASSERT_NEAR(alone.at(x, y)[c], whole.at(4 * part.x + x, 4 * part.y + y)[c], 1e-5f)
+                    << x << " " << y;
+}
+
+// It fades to what is there without.
+TEST(DetailPicture, OnlyItsShareCounts) {
+    const Image light = threads(48, 40);
+    DetailWish wish = octaves_of_detail(1);
+    wish.share = [](float x, float, int) { return x < 24.0f ? 0.0f : 1.0f; };
+    const Image half = detail_picture(light, {}, wish), all = detail_picture(light, {}, octaves_of_detail(1));
+    wish.share = [](float, float, int) { return 0.0f; };
+    const Image none = detail_picture(light, {}, wish);
+    double away[2] = {};  // on either side, from what is there without
+    for_each_between(half, 0, 0, half.width, half.height, [&](std::int64_t x, std::int64_t y) {
+        if (x >= 44 && x < 52) return;
+        const double differs = std::fabs(double(half.at(x, y)[1]) - double(none.at(x, y)[1]));
+        if (x < 48) away[0] += differs;
+        if (x >= 52) away[1] += differs;
+    });
+    EXPECT_LT(away[0], 0.2 * away[1]);
+    EXPECT_NEAR(half.at(80, 40)[1], all.at(80, 40)[1], 0.01f * all.at(80, 40)[1]);
+}
+
+StructureParams with_tiles(const char* tiles, int most = 2, double margin = 0.0) {
+    StructureParams params;
+    params.detail = most;
+    params.detail_tiles = tiles;
+    params.margin = margin;
+    return params;
+}
+
+TEST(DetailLevels, TilesSayWhere) {
+    const DetailLevels levels(with_tiles("012 002"), 300, 200);
+    EXPECT_EQ(levels.at(50.0f, 50.0f), 0);
+    EXPECT_EQ(levels.at(150.0f, 50.0f), 1);
+    EXPECT_EQ(levels.at(199.9f, 50.0f), 1);
+    EXPECT_EQ(levels.at(200.0f, 150.0f), 2);
+    EXPECT_EQ(levels.at(150.0f, 150.0f), 0);
+    EXPECT_EQ(DetailLevels(with_tiles("012 002", 1), 300, 200).at(250.0f, 150.0f), 1);
+    EXPECT_FALSE(DetailLevels(with_tiles("012 002", 0), 300, 200).any());
+    EXPECT_EQ(DetailLevels(with_tiles("", 2), 300, 200).at(3.0f, 3.0f), 2);
+    const Region right = levels.bounds({0, 0, 300, 150}, 2);
+    EXPECT_EQ(right.x, 200);
+    EXPECT_EQ(right.width, 100);
+    EXPECT_EQ(right.height, 150);
+    EXPECT_EQ(levels.bounds({0, 0, 100, 200}, 1).width, 0);
+    EXPECT_DOUBLE_EQ(levels.area_share(2), 1.0 / 3.0);
+}
+
+// In the picture without its margin, beyond which there is none.
+TEST(DetailLevels, TilesLieWithinTheMargin) {
+    const DetailLevels levels(with_tiles("22 22", 2, 0.1), 240, 160);  // 20 px on each side
+    EXPECT_EQ(levels.at(19.5f, 80.0f), 0);
+    EXPECT_EQ(levels.at(20.5f, 80.0f), 2);
+    EXPECT_EQ(levels.at(219.5f, 139.5f), 2);
+    EXPECT_EQ(levels.at(220.5f, 80.0f), 0);
+    EXPECT_NEAR(levels.area_share(2), 200.0 * 120.0 / (240.0 * 160.0), 1e-12);
+}
+
+TEST(DetailLevels, AnOctaveFadesTowardsThoseThatLackIt) {
+    const DetailLevels levels(with_tiles("0122"), 400, 100);
+    EXPECT_FLOAT_EQ(levels.share(104.0f, 50.0f, 1), 0.25f);
+    EXPECT_FLOAT_EQ(levels.share(196.0f, 50.0f, 1), 1.0f);
+    EXPECT_FLOAT_EQ(levels.share(208.0f, 50.0f, 2), 0.5f);
+    EXPECT_FLOAT_EQ(levels.share(208.0f, 50.0f, 1), 1.0f);
+    EXPECT_FLOAT_EQ(levels.share(399.0f, 1.0f, 2), 1.0f);  // the picture's edge is none
+}
+
+TEST(DetailLevels, FaultyTilesAreRefused) {
+    EXPECT_EQ(fault_of_tiles(""), "");
+    EXPECT_EQ(fault_of_tiles("01 20"), "");
+    EXPECT_EQ(fault_of_tiles("01 2"), "expected rows of 2 tiles as the first, found 1 in '2'");
+    EXPECT_EQ(fault_of_tiles("01 3x"), "expected rows of 0, 1 and 2 with a blank between, found '3x'");
+    EXPECT_EQ(fault_of_tiles("01  20"), "expected rows of 0, 1 and 2 with a blank between, found ''");
 }
 
 TEST(DetailPicture, AnotherSeedInventsSomethingElse) {
@@ -194,7 +286,7 @@ TEST(ExemplarDetails, FrontsGetTheirThreadsWhicheverWayTheyRun) {
             const std::int64_t along = way < 2 ? x : y, from_dark = way % 2 == 0 ? along : 63 - along;
             *base.at(x, y) = std::clamp(0.1f * float(from_dark - 28), 0.0f, 0.7f);
         });
-        const Image details = exemplar_details(base, front, 2, 5u);
+        const Image details = exemplar_details(base, front, 2, {}, 5u);
         ASSERT_EQ(details.channels, 3);
         const auto at = [&](std::int64_t from_dark) {
             const std::int64_t along = way % 2 == 0 ? from_dark : 63 - from_dark;
@@ -217,13 +309,13 @@ TEST(ExemplarDetails, NothingComesFromWhatIsNoSource) {
     for_each_pixel(base,
                    [&](std::int64_t x, std::int64_t y) { *base.at(x, y) = *front.coarse.at(x / 2, y / 2); });
     double energy = 0.0;
-    for (const float value : exemplar_details(base, front, 2, 5u).pixels) {
+    for (const float value : exemplar_details(base, front, 2, {}, 5u).pixels) {
         ASSERT_TRUE(std::isfinite(value));
         energy += double(value * value);
     }
     EXPECT_GT(energy, 1.0);
     front.sources = make_image(32, 32, 1);
-    for (const float value : exemplar_details(base, front, 2, 5u).pixels) ASSERT_EQ(value, 0.0f);
+    for (const float value : exemplar_details(base, front, 2, {}, 5u).pixels) ASSERT_EQ(value, 0.0f);
 }
 
 }  // namespace

@@ -120,7 +120,7 @@ struct Families {
         split_bands(light, bands, false, [&](const Band& band, const Image& image) {
             for (const BandSplats& splats : band_splats(band, false, placement))
                 if (band.index == band_index && splats.family == family)
-                    add_band(image, splats, brightest, {}, placement, {}, set);
+                    add_band(whole_band(image), splats, brightest, {}, placement, {}, set);
         });
         return set;
     }
