@@ -55,8 +55,7 @@ Image beyond_coarser(const DetailPart& part, const Image& light, const Image& fi
     for (std::size_t i = 0; i < coarser.pixels.size(); ++i) coarser.pixels[i] -= band.pixels[i];
     coarser = octaves_larger(std::move(coarser), part.octaves);
     parallel_each(coarser.pixels.size(), 1 << 16, [&](std::size_t i) {
-        coarser.pixels[i] =
-            std::max(0.0f, part.light.pixels[i] - (1.0f - detail_share) * std::max(0.0f, coarser.pixels[i]));
+        coarser.pixels[i] = std::max(0.0f, part.light.pixels[i] - std::max(0.0f, coarser.pixels[i]));
     });
     return coarser;
 }

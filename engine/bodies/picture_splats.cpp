@@ -77,8 +77,6 @@ struct BandMaker {
                                 (splat.y - float(band.shown.y)) * band.times);
         splat.light = share_of(placement, splats, splat.x, splat.y) *
                       glm::vec3(fine.of(band.light, 0), fine.of(band.light, 1), fine.of(band.light, 2));
-        if (splats.index > 0 && placement.detail.any())
-            splat.light *= 1.0f - detail_share * placement.detail.share(splat.x, splat.y, 1);
         splat.amplitude = std::max({splat.light.x, splat.light.y, splat.light.z});
         if (splat.amplitude <= 0.0f) return {};
         splat.opacity_limit = alpha.pixels.empty() ? 1.0f : place.of(alpha);

@@ -49,11 +49,6 @@ inline constexpr float radius_sigmas = 3.0f;
 inline constexpr float footprint_share = 0.9494f;
 inline constexpr double footprint_variance = 0.8802;
 
-/// Share of the coarser bands' light that splats of detail get, where there are some: what they can take away
-/// from as much as they add. Found: without, close views of the Pillars have .5 dB less of the octave below
-/// texels.
-inline constexpr float detail_share = 0.15f;
-
 /// Share of a band's splats that are kept where its light's brightest channel is `amplitude`, and the
 /// picture's `brightest`.
 float kept_share(float amplitude, float brightest, const BandSplats& splats);

@@ -48,12 +48,12 @@ TEST(DetailTiles, FollowWhatATexelIsWideInTheFrame) {
 // The closest of all frames counts, also between keyframes; keys that move no camera change nothing.
 TEST(DetailTiles, LookAtAllOfTheFlight) {
     const std::string flight =
-        "[animation]\n\"camera.position\" = [[1, 0, 10, 0], [5, 0, 1, 0], [9, 0, 10, 0]]\n";
+        "[animation]\n\"camera.position\" = { keys = [[1, [0, 10, 0]], [5, [0, 1, 0]], [9, [0, 10, 0]]] }\n";
     const DetailTiles flown = tiles_of(seen_from(10.0, flight));
     EXPECT_EQ(flown.tiles, tiles_of(seen_from(1.0)).tiles);
     EXPECT_GT(flown.shares[2], 0.0);
     Scene other = seen_from(3.0);
-    other.layers[0].look.density = 0.2;
+    other.layers[0].look.density = 0.2f;
     other.layers[0].render.lod.max_px = 7.0f;
     EXPECT_EQ(tiles_of(other).tiles, tiles_of(seen_from(3.0)).tiles);
 }
