@@ -133,6 +133,12 @@ std::pair<CLI::App&, Own&> add_command(CLI::App& app, Invocation& call, const ch
     return {add_command(app, call, name, help, run_with), *own};
 }
 
+inline constexpr std::int64_t usual_detail_splats = 6000000;  // DETAIL 4
+
+/// Sets source.structure.detail and detail_tiles of all layers of bodies for the camera's path, each to at
+/// most about so many more splats; 0: none. What each got, by its name. Throws InputError, Cancelled.
+Report set_detail(Scene& scene, std::int64_t most_splats, const SetCache& cache);
+
 // The commands, in the order of the help. Each returns an exit code (exit.h), prints results on stdout, and
 // throws InputError, OutputError and Cancelled.
 

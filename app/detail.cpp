@@ -1,10 +1,9 @@
 // detail: where the camera of a scene comes close, its pictures get detail below their texels.
-#include "detail.h"
-
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
 
+#include "command.h"
 #include "core/error.h"
 #include "core/file.h"
 #include "core/file_format.h"

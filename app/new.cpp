@@ -8,7 +8,6 @@
 #include "core/file_format.h"
 #include "core/log.h"
 #include "core/text.h"
-#include "detail.h"
 #include "exit.h"
 #include "scene/new_scene.h"
 #include "scene/parameter_key.h"

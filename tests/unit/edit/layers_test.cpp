@@ -153,12 +153,13 @@ bool try_set(Document& document, const std::string& key, const Value& value, dou
 
 /// Rules between parameters may refuse these: curves without points, half of a pair such as radius.min above
 /// max, a cube that is none, a camera file that is not there, places that need a camera or a
-/// file beside them.
+/// file beside them, tiles of detail that are none.
 bool may_be_refused(const std::string& key) {
     return std::ranges::any_of(
         std::initializer_list<const char*>{".shape", ".radius.min", ".radius.max", ".source.kind",
                                            ".source.uv", ".prepare.alpha", "camera.file", ".thickness.map",
-                                           ".hybrid.from_deg", ".hybrid.to_deg", "environment.cube"},
+                                           ".hybrid.from_deg", ".hybrid.to_deg", "environment.cube",
+                                           ".detail_tiles"},
         [&](const char* ending) { return key.ends_with(ending); });
 }
 
