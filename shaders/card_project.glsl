@@ -1,27 +1,15 @@
 // A layer's splats onto the frame, and those that touch the region into records: slab by slab of depth from near to far, in
 // a slab in the order of the splats. PASS 0: between which depths a sample lies; 1: how many of it each bin of depth has; 2:
-// how many splats each group of 256 leaves in each slab; 3: the records, of all slabs or of the `only` one; 4: which splats
-// are left to the processor, because level of detail divides them or they are stars that stay points. As
-// engine/render/project_vector.cpp and fold_prepare-inl.h. Needs projection.glsl, blend.glsl and footprint.glsl. ANY: records with what any mix of layers asks
-// for. GIVEN: splats that the processor has projected. RANKS: places in the order of ties are kept.
+// how many splats each group of 256 leaves in each slab; 3: the records, of all slabs or of the `only` one. As
+// engine/render/project_vector.cpp and fold_prepare-inl.h. Needs card_layer.glsl and footprint.glsl. ANY: records with what
+// any mix of layers asks for. GIVEN: splats that card_children.glsl or the processor has projected. RANKS: places in the order
+// of ties are kept.
 layout(local_size_x = 256) in;
 #ifdef GIVEN
 layout(std430, binding = 1) readonly buffer Splats { uint given[]; };  // ScreenSplat of engine/render/screen_splat.h
 layout(std430, binding = 2) readonly buffer Shapes { vec4 shapes[]; };  // of those that are not round: three each
 uniform uint first_given;
 uniform bool in_order;  // ties are in order already
-#else
-layout(std430, binding = 1) readonly buffer Positions { float position[]; };  // layer space
-layout(std430, binding = 2) readonly buffer Radii { float radius_of[]; };
-layout(std430, binding = 3) readonly buffer Alphas { float alpha_of[]; };
-layout(std430, binding = 4) readonly buffer Colors { float color_of[]; };
-layout(std430, binding = 14) readonly buffer Stars { uint star_bits[]; };
-uniform float lod_limit_px;  // > 0: wider splats are divided
-uniform float child_reach;
-uniform bool leaves_stars;
-#if PASS == 4
-layout(std430, binding = 15) buffer Rest { uint rest_count, rest[]; };
-#endif
 #endif
 layout(std430, binding = 5) buffer Begins { uint begin[]; };  // [slab][group of all layers]: counts, in the end begins
 layout(std430, binding = 6) writeonly buffer Records { vec4 record[]; };
@@ -35,39 +23,10 @@ layout(std430, binding = 13) writeonly buffer Ranks { uint rank_of[]; };   // th
 uniform uint first_rank;
 uniform uint count, first_group, all_groups, every, slabs, only;
 const uint ALL_SLABS = 0xffffffffu;
-uniform dvec4 camera_row[3];  // camera from layer, and the layer's origin
-uniform Lens lens;
-uniform float opacity, radius_scale;  // of the layer
-uniform vec4 region;                  // x0, y0, x1, y1 px
 uniform ivec2 tiles;
-uniform float reach, margin_px, core, integral;  // of its footprints
+uniform float core, integral;  // of its footprints
 uniform bool linear_in_distance, flat_core;
 uniform uint layer, table;
-uniform bool is_hybrid;
-uniform vec3 axis;  // camera space
-uniform float hybrid_from_deg, hybrid_to_deg;
-
-// Doubles until it is relative to the camera; their sums and products are the processor's.
-float camera_coordinate(dvec4 row, dvec3 p) {
-    double sum = row.x * p.x + row.y * p.y;
-    sum = (sum + row.z * p.z) + row.w;
-    return float(sum);
-}
-
-vec3 camera_place(dvec3 p) {
-    return vec3(camera_coordinate(camera_row[0], p), camera_coordinate(camera_row[1], p),
-                camera_coordinate(camera_row[2], p));
-}
-
-struct Splat {
-    bool shows;
-    uint key;  // of depth
-    float x_px, y_px, radius_px, opacity;
-    vec3 color;
-    uint h_bits;  // of hybrid
-    uint rank;
-    int shape;  // < 0: it is round
-};
 
 #ifdef GIVEN
 Splat splat_at(uint i) {
@@ -76,43 +35,17 @@ Splat splat_at(uint i) {
     float radius_px = shape < 0 ? uintBitsToFloat(radius_bits) : shapes[3 * shape + 2].w;
     vec3 color = vec3(uintBitsToFloat(given[at + 4u]), uintBitsToFloat(given[at + 5u]), uintBitsToFloat(given[at + 6u]));
     uint rank = first_rank + (in_order ? i : given[at + 8u]);
-    return Splat(true, given[at + 7u], uintBitsToFloat(given[at]), uintBitsToFloat(given[at + 1u]), radius_px,
-                 uintBitsToFloat(given[at + 3u]), color, given[at + 9u] >> 16, rank, shape);
+    float opacity_here = uintBitsToFloat(given[at + 3u]);  // 0: it does not show
+    return Splat(opacity_here > 0.0f, given[at + 7u], uintBitsToFloat(given[at]), uintBitsToFloat(given[at + 1u]), radius_px,
+                 opacity_here, color, given[at + 9u] >> 16, rank, shape);
 }
 #else
-bool is_large(vec3 place, float radius) {
-    float wide_px = 2.0f * radius * instance_of(lens, beyond_near(lens, place)).px_per_unit;
-    return lod_limit_px > 0.0f && wide_px > lod_limit_px;
-}
-
-// Of large ones: neither it nor its children may show.
-bool is_out_of_sight(vec3 place, Instance at, float radius) {
-    float wide = radius * child_reach, px = reach_px(lens, place, wide, margin_px);
-    float back = at.depth + wide, front = at.depth - wide;
-    bool before = front > lens.near;
-    return back < lens.near ||
-           (before && !touches_rect(at.x_px, at.y_px, px, region.x, region.y, region.z, region.w));
-}
-
-bool is_left_star(uint i) { return leaves_stars && (star_bits[i >> 5] >> (i & 31u) & 1u) != 0u; }
-
 Splat splat_at(uint i) {
-    dvec3 p = dvec3(position[3u * i], position[3u * i + 1u], position[3u * i + 2u]);
-    vec3 place = camera_place(p);
-    float alpha = alpha_of[i], radius = radius_of[i] * radius_scale;
-    Instance at = instance_of(lens, place);
-    float radius_px = radius * at.px_per_unit;
-    float x_px = snap_px(at.x_px), y_px = snap_px(at.y_px);
-    float support_px = radius_px * reach + margin_px;
-    float shown = alpha * opacity * near_fade(lens, at.depth, radius);
-    bool shows = is_in_range(lens, at.depth) && alpha > 0.0f && shown > 0.0f &&
-                 touches_rect(x_px, y_px, support_px, region.x, region.y, region.z, region.w);
-    shows = shows && !is_large(place, radius) && !is_left_star(i);
-    float depth = sort_depth(lens, place), h = 0.0f;
-    if (is_hybrid) h = hybrid_amount(axis_cosine(lens, axis, place), hybrid_from_deg, hybrid_to_deg);
-    float of_65535 = h * 65535.0f + 0.5f;
-    vec3 color = vec3(color_of[3u * i], color_of[3u * i + 1u], color_of[3u * i + 2u]);
-    return Splat(shows, floatBitsToUint(depth), x_px, y_px, radius_px, shown, color, uint(of_65535), first_rank + i, -1);
+    vec3 place = camera_place(dvec3(splat_place(i)));
+    float radius = radius_of[i] * radius_scale;
+    Splat splat = ball_at(place, radius, alpha_of[i], splat_color(i), 1.0f, first_rank + i);
+    splat.shows = splat.shows && !is_large(place, radius) && !is_left_star(i);
+    return splat;
 }
 #endif
 
@@ -202,6 +135,11 @@ void write_record(uint at, Splat splat) {
     rect_of[at] = rect_at(x_px, y_px, support_px);
 }
 
+void add_area(uint sum) {
+    uint before = atomicAdd(counts.area_low, sum);
+    if (before + sum < before) atomicAdd(counts.area_high, 1u);
+}
+
 shared uint words[GROUP];  // by slab: which of the group's splats it has
 #if PASS == 0 || PASS == 2
 shared uint least, most;
@@ -209,17 +147,6 @@ shared uint least, most;
 shared uint bins[1024];
 #endif
 
-#if PASS == 4
-void main() {
-    uint i = group_number() * GROUP + gl_LocalInvocationIndex;
-    if (i >= count) return;
-    dvec3 p = dvec3(position[3u * i], position[3u * i + 1u], position[3u * i + 2u]);
-    vec3 place = camera_place(p);
-    float radius = radius_of[i] * radius_scale;
-    bool large = is_large(place, radius) && !is_out_of_sight(place, instance_of(lens, place), radius);
-    if (large || is_left_star(i)) rest[atomicAdd(rest_count, 1u)] = i;
-}
-#else
 void main() {
     uint t = gl_LocalInvocationIndex, group = group_number() * every, i = group * GROUP + t;
     words[t] = 0u;
@@ -260,7 +187,9 @@ void main() {
 #endif
 #if PASS == 2
     float area = splat.radius_px * splat.radius_px * (16.0f * FOOTPRINT_PI) + 0.5f;
-    scan_group(splat.shows ? uint(min(area, 8388608.0f)) : 0u);
+    bool is_wide = area >= 8388608.0f;  // of those a group's sum would not fit
+    scan_group(splat.shows && !is_wide ? uint(area) : 0u);
+    if (splat.shows && is_wide) add_area(uint(min(area, 4294967040.0f)));
     if (group * GROUP >= count) return;
     if (t < slabs) {
         uint sum = 0u;
@@ -270,8 +199,7 @@ void main() {
     if (t == 0u && most >= least) {
         atomicMin(counts.first_key, least);
         atomicMax(counts.last_key, most);
-        uint sum = group_sums[255], before = atomicAdd(counts.area_low, sum);
-        if (before + sum < before) atomicAdd(counts.area_high, 1u);
+        add_area(group_sums[255]);
     }
 #elif PASS == 3
     barrier();
@@ -283,4 +211,3 @@ void main() {
     write_record(at, splat);
 #endif
 }
-#endif

@@ -81,7 +81,8 @@ class Card final : public RenderDevice, public LookDevice {
 
   private:
     struct Kept {
-        std::array<CardBuffer, 5> arrays;  // positions, radii, alphas, colours; which are stars, a bit each
+        std::array<CardBuffer, 5> arrays;  // positions, radii, alphas, colours, ids where asked
+        const CardBuffer* ids = nullptr;   // where they are
         std::uint64_t frame = 0;           // that used it last
         std::uint64_t set_stamp = 0;       // of the set that a look made them of here; 0: they were uploaded
     };
@@ -92,7 +93,8 @@ class Card final : public RenderDevice, public LookDevice {
     };
     struct Splats {  // some of a layer's
         std::size_t layer;
-        const Kept* kept;  // that the card projects; null: the processor has, from `first_given` on
+        const Kept* kept;         // that the card projects; null: they are,
+        const CardBuffer* given;  // here, from `first_given` on
         std::int64_t count, first_given;
         GLuint first_group, first_rank;  // groups are of 256 splats
     };
@@ -119,11 +121,11 @@ class Card final : public RenderDevice, public LookDevice {
     Group plan(const FrameJob& job, std::size_t group, bool alone, const Region& region) const;
     GLuint slabs_for(std::int64_t splats, const Share& share) const;
     bool gather(const FrameJob& job, std::size_t number, Group& group);
-    bool give(const FrameJob& job, Group& group, std::size_t layer, const std::vector<std::int64_t>* rows);
-    std::optional<std::vector<std::int64_t>> rest_of(const FrameJob& job, const Group& group,
-                                                     const Splats& splats);
+    bool give(const FrameJob& job, Group& group, std::size_t layer);
+    bool make_children(const FrameJob& job, Group& group, std::size_t layer, const Kept& kept);
+    void set_children(const GlProgram& program, const FrameJob& job, const Group& group, std::size_t layer);
     bool send(const void* data, std::int64_t bytes, CardBuffer& to);
-    const Kept* keep(const RenderLayer& layer, bool with_stars);
+    const Kept* keep(const RenderLayer& layer, bool with_ids);
     bool keep_set(const SplatSet& set, const LookUniforms& look, bool with_uv, KeptSet& kept);
     bool make_room(std::int64_t bytes_more);
     bool upload_tables(const FrameJob& job, const Group& group);
@@ -183,12 +185,13 @@ class Card final : public RenderDevice, public LookDevice {
     CardBuffer look_uniforms_, look_map_, look_totals_;
     std::map<std::pair<std::uint64_t, const ShadedSplats*>, Kept> kept_;  // by stamp; without one, by place
     CardBuffer counts_, arguments_, begins_, entry_begins_, records_, tags_, rects_, sums_, digits_, ranges_,
-        light_, through_, more_, layer_light_, ranks_, rest_, given_splats_, given_shapes_, layers_, nodes_,
-        moments_, cosines_, staging_, sending_;
-    std::byte* sent_ = nullptr;                // where `sending_` is mapped
-    std::array<CardBuffer, 4> keys_, values_;  // 0, 1: entries, and back and forth with 2, 3: records
-    Buffer<ScreenSplat> given_;                // that the processor has projected
-    std::vector<float> shapes_;                // twelve numbers a shape
+        light_, through_, more_, layer_light_, ranks_, given_splats_, given_shapes_, layers_, nodes_,
+        moments_, cosines_, staging_, sending_, child_radius_, child_fading_, child_steady_, child_total_;
+    std::map<std::size_t, CardBuffer> children_;  // by layer, ScreenSplats
+    std::byte* sent_ = nullptr;                   // where `sending_` is mapped
+    std::array<CardBuffer, 4> keys_, values_;     // 0, 1: entries, and back and forth with 2, 3: records
+    Buffer<ScreenSplat> given_;                   // that the processor has projected
+    std::vector<float> shapes_;                   // twelve numbers a shape
 };
 
 /// One of its programs; defines with commas between them.

@@ -1,4 +1,6 @@
 // The splats of a group: what the card projects itself, and what the processor has projected for it.
+#include <fmt/format.h>
+
 #include "core/parallel.h"
 #include "gl/card_parts.h"
 #include "render/shape.h"
@@ -40,37 +42,64 @@ void add_shape(const FootprintTable& table, const Shape& shape, const ScreenSpla
 
 }  // namespace
 
-/// Those splats of a layer that level of detail divides or that are stars which stay points, ascending.
-std::optional<std::vector<std::int64_t>> Card::rest_of(const FrameJob& job, const Group& group,
-                                                       const Splats& splats) {
-    const GLuint none = 0;
-    if (!counts_.reserve(sizeof(Counts)) || !rest_.reserve(4 * (splats.count + 1))) return {};
-    glNamedBufferSubData(rest_.name(), 0, 4, &none);
+/// Splats of a layer that level of detail divides, and stars that stay points close by: what becomes of them,
+/// as the card projects it.
+bool Card::make_children(const FrameJob& job, Group& group, std::size_t number, const Kept& kept) {
+    const std::int64_t n = job.layers[number].size();
+    if (!begins_.reserve(4 * n) || !sums_.reserve(4 * (n / scanned + 64)) || !child_total_.reserve(8))
+        return false;
+    const LayerProjection& layer = job.projections[number];
+    if (layer.lod) {
+        const LodTable::Numbers& numbers = layer.lod->numbers();
+        const auto fill = [](CardBuffer& to, const auto& from) {
+            return to.fill(from.data(), std::ssize(from) * std::int64_t(sizeof from[0]));
+        };
+        if (!fill(child_radius_, numbers.radius) || !fill(child_fading_, numbers.fading) ||
+            !fill(child_steady_, numbers.steady))
+            return false;
+    }
+    CardBuffer& to = children_[number];
+    const auto run = [&](int pass, std::int64_t threads) {
+        const GlProgram& p = program("card_children.glsl", fmt::format("PASS {}", pass));
+        set_children(p, job, group, number);
+        Uniforms{p.name()}("wanted", static_cast<GLuint>(threads));
+        const auto& a = kept.arrays;
+        bind({&a[0], &a[1], &a[2], &a[3], &begins_, &child_total_, &to, &child_radius_, &child_fading_,
+              &child_steady_});
+        (kept.ids ? *kept.ids : a[0]).bind(14);
+        dispatch(p, groups_for(threads, group_size));
+    };
+    const GLuint none[2] = {};
+    GLuint total[2] = {};
+    glNamedBufferSubData(child_total_.name(), 0, 8, none);
+    run(0, n);
+    glGetNamedBufferSubData(child_total_.name(), 0, 8, total);
+    constexpr std::int64_t bytes_each = sizeof(ScreenSplat);
+    const std::int64_t count = total[0];
+    if (total[1] > 0 || bytes_each * count > most_bytes_) return false;
+    if (count == 0) return true;
+    if (count * bytes_each > to.bytes() && bytes() + count * bytes_each > room()) return false;
+    if (!counts_.reserve(sizeof(Counts)) || !to.reserve(bytes_each * count)) return false;
     counts_.bind(0);
-    rest_.bind(15);
-    project_some(job, group, splats, 4, 1);
-    GLuint count = 0;
-    glGetNamedBufferSubData(rest_.name(), 0, 4, &count);
-    std::vector<GLuint> found(count);
-    if (count > 0) glGetNamedBufferSubData(rest_.name(), 4, 4 * static_cast<GLsizeiptr>(count), found.data());
-    std::ranges::sort(found);
-    return std::vector<std::int64_t>(found.begin(), found.end());
+    scan(begins_, static_cast<GLuint>(n), 0, 0, 0);
+    run(1, count);
+    group.splats.push_back({number, nullptr, &to, count, 0, 0, 0});
+    group.ranked = true;
+    return true;
 }
 
-/// Projects splats by the processor: `rows` of a layer, or all of them.
-bool Card::give(const FrameJob& job, Group& group, std::size_t number,
-                const std::vector<std::int64_t>* rows) {
+/// Projects a layer's splats by the processor.
+bool Card::give(const FrameJob& job, Group& group, std::size_t number) {
     constexpr std::int64_t chunk = 1024;
     const LayerProjection& layer = job.projections[number];
     const FootprintTable& table = *job.fold_layers[number].footprints;
     const Region& r = group.region;
     const ScreenRect rect{float(r.x), float(r.y), float(r.x + r.width), float(r.y + r.height)};
-    const std::int64_t count = rows ? std::ssize(*rows) : job.layers[number].size();
+    const std::int64_t count = job.layers[number].size();
     std::vector<GivenPart> parts(static_cast<std::size_t>(groups_for(count, chunk)));
     parallel_chunks(count, chunk, [&](std::int64_t begin, std::int64_t end, int) {
         job.progress.check();
         auto& [splats, numbers] = parts[begin / chunk];
-        if (rows) return project_rows(layer, std::span(*rows).subspan(begin, end - begin), rect, splats);
         Buffer<Shape> shapes;
         astrosplat::project(layer, begin, end, rect, splats, shapes);
         order_ties(splats);
@@ -101,7 +130,7 @@ bool Card::give(const FrameJob& job, Group& group, std::size_t number,
     });
     const std::int64_t splats = std::ssize(given_) - first, limit = job.settings.memory_limit_bytes;
     if (limit > 0 && std::ssize(given_) * std::int64_t(sizeof(ScreenSplat)) > limit) return false;
-    if (splats > 0) group.splats.push_back({number, nullptr, splats, first, 0, 0});
+    if (splats > 0) group.splats.push_back({number, nullptr, &given_splats_, splats, first, 0, 0});
     return true;
 }
 
@@ -115,17 +144,13 @@ bool Card::gather(const FrameJob& job, std::size_t number, Group& group) {
         const LayerProjection& projection = job.projections[l];
         const std::size_t first = group.splats.size();
         if (is_given(layer)) {
-            if (!give(job, group, l, nullptr)) return false;
+            if (!give(job, group, l)) return false;
         } else if (layer.size() > 0) {
-            const bool stars = projection.star_distance > 0.0f;
-            const Kept* const kept = keep(layer, stars);
+            const bool divides = projection.lod || projection.star_distance > 0.0f;
+            const Kept* const kept = keep(layer, divides);
             if (!kept) return false;
-            group.splats.push_back({l, kept, layer.size(), 0, 0, 0});
-            const auto rest = stars || projection.lod ? rest_of(job, group, group.splats.back())
-                                                      : std::vector<std::int64_t>();
-            if (!rest || (layer.on_device && !rest->empty())) return false;  // the processor has not its rows
-            if (!give(job, group, l, &*rest)) return false;
-            group.ranked = group.ranked || !rest->empty();
+            group.splats.push_back({l, kept, nullptr, layer.size(), 0, 0, 0});
+            if (divides && !make_children(job, group, l, *kept)) return false;
         }
         for (std::size_t i = first; i < group.splats.size(); ++i)
             group.splats[i].first_rank = static_cast<GLuint>(rank);

@@ -32,7 +32,7 @@ std::optional<DeviceLook> Card::shade(const SplatSet& set, std::uint64_t set_sta
         std::ranges::find_if(kept_, [&](const auto& k) { return k.second.set_stamp == set_stamp; });
     Kept made;
     if (last != kept_.end()) made = std::move(kept_.extract(last).mapped());
-    auto& [positions, radii, alphas, colors, stars] = made.arrays;
+    auto& [positions, radii, alphas, colors, ids] = made.arrays;
     made.set_stamp = set_stamp;
     made.frame = frames_ + 1;
     const std::int64_t n = set.size();
@@ -44,8 +44,7 @@ std::optional<DeviceLook> Card::shade(const SplatSet& set, std::uint64_t set_sta
         keep_set(set, look, with_map, raw) &&
         make_room(32 * n - positions.bytes() - radii.bytes() - alphas.bytes() - colors.bytes()) &&
         positions.reserve(12 * n) && radii.reserve(4 * n) && alphas.reserve(4 * n) &&
-        colors.reserve(12 * n) && (stars.bytes() > 0 || fill_stars(set.id, stars)) &&
-        look_uniforms_.fill(&look, sizeof look) &&
+        colors.reserve(12 * n) && look_uniforms_.fill(&look, sizeof look) &&
         look_map_.fill(texels.pixels.data(), 4 * std::ssize(texels.pixels)) &&
         look_totals_.fill(none, sizeof none);
     if (!fits) {

@@ -124,9 +124,9 @@ std::int64_t Card::room() {
 std::int64_t Card::bytes() {
     std::int64_t sum = 0;
     for (const CardBuffer* const buffer : working()) sum += buffer->bytes();
-    for (const CardBuffer* buffer :
-         {&layers_, &nodes_, &moments_, &cosines_, &rest_, &given_splats_, &given_shapes_})
+    for (const CardBuffer* buffer : {&layers_, &nodes_, &moments_, &cosines_, &given_splats_, &given_shapes_})
         sum += buffer->bytes();
+    for (const auto& [layer, children] : children_) sum += children.bytes();
     for (const auto& [key, kept] : kept_)
         for (const CardBuffer& array : kept.arrays) sum += array.bytes();
     for (const auto& [key, kept] : sets_)
@@ -151,6 +151,7 @@ bool Card::make_room(std::int64_t bytes_more) {
     std::erase_if(kept_, [&](const auto& other) { return other.second.frame < frames_; });
     std::erase_if(sets_, [&](const auto& other) { return other.second.frame < frames_; });
     for (CardBuffer* const buffer : working()) buffer->release();
+    children_.clear();
     return has_room();
 }
 
@@ -211,27 +212,23 @@ bool Card::upload_tables(const FrameJob& job, const Group& group) {
            cosines_.fill(pixel_cosines.data(), sizeof pixel_cosines);
 }
 
-bool card::fill_stars(const Buffer<std::uint64_t>& ids, CardBuffer& stars) {
-    std::vector<std::uint32_t> bits(ids.size() / 32 + 1);
-    for (std::size_t i = 0; i < ids.size(); ++i) bits[i / 32] |= std::uint32_t{is_star(ids[i])} << i % 32;
-    return stars.fill(bits.data(), 4 * std::ssize(bits));
-}
-
-const Card::Kept* Card::keep(const RenderLayer& layer, bool with_stars) {
+const Card::Kept* Card::keep(const RenderLayer& layer, bool with_ids) {
     std::erase_if(kept_, [&](const auto& kept) { return kept.second.frame + frames_kept < frames_; });
     std::erase_if(sets_, [&](const auto& kept) { return kept.second.frame + frames_kept < frames_; });
     if (layer.on_device) {
         const auto found = kept_.find({layer.on_device->stamp, nullptr});
         if (found == kept_.end()) return nullptr;
         found->second.frame = frames_;
-        sets_[found->second.set_stamp].frame = frames_;  // stays for the next look
-        return &found->second;
+        KeptSet& set = sets_[found->second.set_stamp];
+        set.frame = frames_;  // stays for the next look
+        found->second.ids = &set.arrays[4];
+        return with_ids && set.arrays[4].bytes() == 0 ? nullptr : &found->second;
     }
     const ShadedSplats& splats = *layer.splats;
     // Without a stamp nobody knows whether they are the same.
     const std::pair key{splats.stamp, splats.stamp != 0 ? nullptr : &splats};
     Kept& kept = kept_[key];
-    auto& [positions, radii, alphas, colors, stars] = kept.arrays;
+    auto& [positions, radii, alphas, colors, ids] = kept.arrays;
     const bool there = splats.stamp != 0 && kept.frame != 0;
     kept.frame = frames_;
     const std::int64_t n = splats.size();
@@ -242,7 +239,9 @@ const Card::Kept* Card::keep(const RenderLayer& layer, bool with_stars) {
         (make_room(std::max<std::int64_t>(0, 32 * n - own)) &&
          send(splats.position.data(), 12 * n, positions) && send(splats.radius.data(), 4 * n, radii) &&
          send(splats.alpha.data(), 4 * n, alphas) && send(splats.color.data(), 12 * n, colors));
-    if (fits && with_stars && !(there && stars.bytes() > 0)) fits = fill_stars(splats.id, stars);
+    if (fits && with_ids && !(there && ids.bytes() > 0))
+        fits = make_room(8 * n) && send(splats.id.data(), 8 * n, ids);
+    kept.ids = ids.bytes() > 0 ? &ids : nullptr;
     if (fits) return &kept;
     kept_.erase(key);
     return nullptr;

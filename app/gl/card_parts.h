@@ -30,7 +30,4 @@ inline bool is_given(const RenderLayer& layer) {
     return layer.stars || (layer.splats && !layer.splats->stretch.empty());
 }
 
-/// A bit a splat: whether it is a star.
-bool fill_stars(const Buffer<std::uint64_t>& ids, CardBuffer& stars);
-
 }  // namespace astrosplat::card

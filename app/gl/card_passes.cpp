@@ -33,6 +33,27 @@ void set_camera(const Uniforms& set, const LayerProjection& layer) {
     glProgramUniform4dv(set.program, set.at("camera_row"), 3, rows);
 }
 
+/// What card_layer.glsl asks for.
+void set_layer(const Uniforms& set, const LayerProjection& layer, const FootprintTable& table,
+               const Region& r) {
+    set_camera(set, layer);
+    set_lens(set, layer.lens);
+    set("opacity", layer.opacity);
+    set("radius_scale", layer.radius_scale);
+    set("lod_limit_px", layer.lod ? layer.lod_limit_px : 0.0f);
+    set("child_reach", child_reach);
+    set("leaves_stars", int(layer.star_distance > 0.0f));
+    glProgramUniform4f(set.program, set.at("region"), float(r.x), float(r.y), float(r.x + r.width),
+                       float(r.y + r.height));
+    set("reach", table.reach);
+    set("margin_px", 4.0f * table.pixel_filter_px);
+    set("is_hybrid", int(layer.render.blend == Blend::hybrid));
+    const glm::vec3& axis = layer.axis_in_camera;
+    glProgramUniform3f(set.program, set.at("axis"), axis.x, axis.y, axis.z);
+    set("hybrid_from_deg", layer.render.hybrid_from_deg);
+    set("hybrid_to_deg", layer.render.hybrid_to_deg);
+}
+
 }  // namespace
 
 ProgramSource card_source(const std::string& file, const std::string& defines, bool native_division) {
@@ -45,7 +66,11 @@ ProgramSource card_source(const std::string& file, const std::string& defines, b
         source.compute.insert(source.compute.end(), names.begin(), names.end());
     };
     if (file == "card_project.glsl")
-        add({"maths.glsl", "blend.glsl"}), add(after_projections({"footprint.glsl"}));
+        add({"maths.glsl", "blend.glsl"}), add(after_projections({"footprint.glsl", "card_layer.glsl"}));
+    if (file == "card_children.glsl") {
+        add({"maths.glsl", "noise.glsl", "blend.glsl", "child_types.glsl", "children.glsl"});
+        add(after_projections({"card_layer.glsl", "card_tables.glsl", "circle.glsl", "child_tables.glsl"}));
+    }
     if (file == "card_probe.glsl") add({"maths.glsl"});
     if (file == "card_look.glsl") add({"maths.glsl", "noise.glsl", "look_uniforms.glsl", "look.glsl"});
     if (file == "card_fold.glsl") add({"maths.glsl", "blend.glsl", "lens.glsl", "footprint.glsl"});
@@ -124,6 +149,23 @@ int Card::sort(int in, int out, int of, GLuint first_key, GLuint last_key) {
     return in;
 }
 
+void Card::set_children(const GlProgram& p, const FrameJob& job, const Group& group, std::size_t number) {
+    const LayerProjection& layer = job.projections[number];
+    const LayerRender& render = layer.render;
+    const Uniforms set{p.name()};
+    set_layer(set, layer, *job.fold_layers[number].footprints, group.region);
+    set("count", static_cast<GLuint>(job.layers[number].size()));
+    set("layer", static_cast<GLuint>(number));
+    set("seed", GLuint{layer.seed});
+    set("finest", finest_level(render.lod.max_children));
+    set("blend", int(render.holdout ? Blend::over : render.blend));
+    set("own_blend", int(render.blend));
+    set("keeps_opaque", int(render.falloff.shape == Falloff::Shape::constant));
+    set("noise", render.lod.noise);
+    set("star_distance", layer.star_distance);
+    glProgramUniform1dv(p.name(), set.at("circle_numbers"), 14, real::circle_numbers.data());
+}
+
 void Card::project_some(const FrameJob& job, const Group& group, const Splats& splats, int pass,
                         GLuint every) {
     const LayerProjection& projection = job.projections[splats.layer];
@@ -132,6 +174,7 @@ void Card::project_some(const FrameJob& job, const Group& group, const Splats& s
         program("card_project.glsl", fmt::format("PASS {}{}{}{}", pass, group.any ? ",ANY" : "",
                                                  group.ranked ? ",RANKS" : "", splats.kept ? "" : ",GIVEN"));
     const Uniforms set{p.name()};
+    set_layer(set, projection, table, group.region);
     set("count", static_cast<GLuint>(splats.count));
     set("first_given", static_cast<GLuint>(splats.first_given));
     set("in_order", int(is_given(job.layers[splats.layer])));
@@ -141,36 +184,19 @@ void Card::project_some(const FrameJob& job, const Group& group, const Splats& s
     set("every", every);
     set("slabs", group.slabs);
     set("only", group.only);
-    set_camera(set, projection);
-    set_lens(set, projection.lens);
-    set("opacity", projection.opacity);
-    set("radius_scale", projection.radius_scale);
-    set("lod_limit_px", projection.lod ? projection.lod_limit_px : 0.0f);
-    set("child_reach", child_reach);
-    set("leaves_stars", int(projection.star_distance > 0.0f));
-    const Region& r = group.region;
-    glProgramUniform4f(p.name(), set.at("region"), float(r.x), float(r.y), float(r.x + r.width),
-                       float(r.y + r.height));
     glProgramUniform2i(p.name(), set.at("tiles"), group.columns, group.rows);
-    set("reach", table.reach);
-    set("margin_px", 4.0f * table.pixel_filter_px);
     set("core", table.core);
     set("integral", table.integral);
     set("linear_in_distance", int(table.linear_in_distance));
     set("flat_core", int(table.flat_core));
     set("layer", static_cast<GLuint>(splats.layer));
     set("table", static_cast<GLuint>(std::ranges::find(group.tables, &table) - group.tables.begin()));
-    set("is_hybrid", int(projection.render.blend == Blend::hybrid));
-    const glm::vec3& axis = projection.axis_in_camera;
-    glProgramUniform3f(p.name(), set.at("axis"), axis.x, axis.y, axis.z);
-    set("hybrid_from_deg", projection.render.hybrid_from_deg);
-    set("hybrid_to_deg", projection.render.hybrid_to_deg);
     if (splats.kept) {
         const auto& a = splats.kept->arrays;
         bind({&a[0], &a[1], &a[2], &a[3], &begins_, &records_, &keys_[2], &values_[2], &rects_, &moments_,
-              &cosines_, &tags_, &ranks_, &a[4]});
+              &cosines_, &tags_, &ranks_, splats.kept->ids ? splats.kept->ids : &a[0]});
     } else {
-        bind({&given_splats_, &given_shapes_, &counts_, &counts_, &begins_, &records_, &keys_[2], &values_[2],
+        bind({splats.given, &given_shapes_, &counts_, &counts_, &begins_, &records_, &keys_[2], &values_[2],
               &rects_, &moments_, &cosines_, &tags_, &ranks_});
     }
     dispatch(p, groups_for(groups_for(splats.count, group_size), every));

@@ -203,18 +203,15 @@ double tan(double x) {
     return r.quadrant & 1 ? -quotient(c, s) : quotient(s, c);
 }
 
-OnCircle on_circle(float turns) {
-    static constexpr auto sines = inverse_factorials<6>(3, 2, -1.0);
-    static constexpr auto cosines = inverse_factorials<7>(4, 2, -1.0);
-    const double quarters = 4.0 * double(turns);
-    const int quadrant = int(quarters + 0.5);                        // 0..4
-    const double x = (quarters - quadrant) * half_pi.hi, z = x * x;  // |x| <= pi / 4
-    const double part[2] = {1.0 - 0.5 * z + z * z * polynomial(cosines, z), x - x * z * polynomial(sines, z)};
-    static constexpr double cosine_sign[] = {1.0, -1.0, -1.0, 1.0, 1.0},
-                            sine_sign[] = {1.0, 1.0, -1.0, -1.0, 1.0};
-    const int odd = quadrant & 1;
-    return {float(cosine_sign[quadrant] * part[odd]), float(sine_sign[quadrant] * part[1 - odd])};
-}
+const std::array<double, 14> circle_numbers = [] {
+    std::array<double, 14> numbers{half_pi.hi};
+    std::ranges::copy(inverse_factorials<6>(3, 2, -1.0), numbers.begin() + 1);
+    std::ranges::copy(inverse_factorials<7>(4, 2, -1.0), numbers.begin() + 7);
+    return numbers;
+}();
+
+using glm::vec2;
+#include "circle.glsl"
 
 double atan2(double y, double x) {
     if (std::isnan(x) || std::isnan(y)) return nan;

@@ -4,6 +4,8 @@
 // versions that the shaders share are in shaders/shared/maths.glsl. Also integrals by Gauss and Legendre.
 #pragma once
 
+#include <glm/vec2.hpp>
+
 #include "core/standard.h"
 
 namespace astrosplat::real {
@@ -24,10 +26,9 @@ double asinh(double x);            // 3 ulp
 
 /// Cosine and sine of 2 pi `turns` as floats; 0 <= turns < 1 in steps of 2^-24, as as_uniform gives them.
 /// They are those of cos and sin, but exact at the quarters, in a quarter of their time.
-struct OnCircle {
-    float cosine, sine;
-};
-OnCircle on_circle(float turns);
+glm::vec2 on_circle(float turns);
+/// What shaders/shared/circle.glsl, which has it, reads.
+extern const std::array<double, 14> circle_numbers;
 
 /// 0 to 1 with an even end on either side, of t in [0, 1]: 3 t^2 - 2 t^3.
 template <class T>

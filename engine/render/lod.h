@@ -6,29 +6,25 @@
 
 #include <glm/vec3.hpp>
 
+#include "camera/lens.h"
 #include "core/progress.h"
 #include "render/frame.h"
 
+namespace astrosplat::shared_types {
+using glsl::vec3, glsl::uint;
+#include "child_types.glsl"
+}  // namespace astrosplat::shared_types
+
 namespace astrosplat {
+using shared_types::LevelChoice;
 
-/// Levels to draw for one splat. Level 0 is the splat itself. `fade` is the share of the finer one, in [0,
-/// 1]; when it is 1 only the finer level is drawn, when both levels are 0 the splat is drawn as it is.
-struct LevelChoice {
-    int coarse = 0;
-    int fine = 0;
-    float fade = 0.0f;
-};
-
-/// Level for a projected diameter; `limit_px` is lod.max_px scaled to the frame's height. The finer level
-/// fades in over a factor 1.5 in size.
+/// As choose_levels() of shaders/shared/children.glsl, of levels with at most so many children.
 LevelChoice choose_levels(float diameter_px, float limit_px, int max_children);
 
 /// The finest level of at most so many children.
 int finest_level(int max_children);
 
 inline std::int64_t children_of_level(int level) { return std::int64_t{1} << (2 * level); }
-/// Radius of the children over that of the parent: 2 / sqrt(N).
-inline float child_radius_scale(int level) { return level == 0 ? 1.0f : 2.0f / float(1 << level); }
 
 /// The reach of children, parent radii.
 inline constexpr float child_reach = 1.25f;
@@ -42,50 +38,38 @@ class LodTable {
     /// Makes lookups for levels up to `finest` possible.
     void prepare(int finest, const Progress& progress = {});
 
-    /// Alphas of the coarse and the fine level's splats which together deposit the light of a parent of alpha
-    /// `a` under over: Integral[1 - (1 - a_coarse q_coarse)^M (1 - a_fine q_fine)^N] = a Integral[w].
-    struct Alphas {
-        float coarse, fine;
+    /// For child_tables.glsl, whose functions are its own: child_alphas() are those of the coarse and the
+    /// fine level's splats which together deposit the light of a parent of alpha `a` under over: Integral[1 -
+    /// (1 - a_coarse q_coarse)^M (1 - a_fine q_fine)^N] = a Integral[w]. child_offset(): centre of a child
+    /// relative to the parent's, in parent radii: density w(|p|) in the ball of radius 1 less half the
+    /// child's radius, hashed from (seed, id, level, child).
+    struct Numbers {
+        std::vector<float> radius, fading;  // inverse of the centres' radial distribution; child alpha over
+                                            // (parent alpha, fade), while the coarser level fades out
+        std::vector<double> steady;         // child alpha over parent alpha, when drawn alone
     };
-    Alphas alphas(const LevelChoice& choice, float a) const;
-    /// The same for add, where light is the sum of alphas.
-    static Alphas alphas_for_add(const LevelChoice& choice, float a);
-
-    /// Centre of a child relative to the parent's, in parent radii: density w(|p|) in the ball of radius 1
-    /// less half the child's radius, hashed from (seed, id, level, child).
-    glm::vec3 child_offset(int level, std::int64_t child, std::uint32_t seed, std::uint64_t id) const;
+    const Numbers& numbers() const { return numbers_; }
 
   private:
-    struct Level {
-        std::vector<double> footprint;   // mean child weight q at the integration nodes
-        std::vector<float> radius_of_u;  // inverse of the centres' radial distribution
-        std::vector<double> steady;      // child alpha over parent alpha, when drawn alone
-        // Child alpha over (parent alpha, fade), while the coarser level fades out.
-        std::vector<float> fading;
-    };
     void build(int level, const Progress& progress);
     std::vector<double> centre_density(int level) const;
     std::vector<double> mean_footprint(int level) const;
-    double solve(double target, const std::vector<double>& rest, int number, const Level& level) const;
+    double solve(double target, const std::vector<double>& rest, int level) const;
 
     Falloff falloff_;
     // Integration over the disc of radius 1.5 parent radii: t and 2 pi t dt.
     std::vector<double> nodes_, weights_;
-    std::vector<Level> levels_;  // by level; 0 is the parent itself
+    std::vector<std::vector<double>>
+        footprints_;   // mean child weight q at the nodes, by level; 0 is the parent
+    Numbers numbers_;  // of the same levels
 };
 
 /// Noise for the children of one splat at one level. It depends on nothing but the splat's radius, the level
 /// and the layer's seed: a child keeps its light however near the camera is.
 struct ChildNoise {
-    struct Octave {
-        float frequency;  // per scene unit, a power of two: the same field for splats of every size
-        float amplitude;  // factor of the noise in the exponent
-        glm::vec3 shift;  // of the field, cells
-        std::uint32_t seed;
-    };
-    std::array<Octave, 12> octaves;
+    std::array<shared_types::ChildOctave, shared_types::CHILD_OCTAVES> octaves;
     int count = 0;
-    float limit = 0.0f;   // of the exponent
+    float strength = 0.0f;
     float offset = 0.0f;  // of the exponent: makes the mean over space 1
 };
 
@@ -100,13 +84,10 @@ float largest_child_light(float strength);
 /// The most that the colour of a star close by is multiplied by.
 inline constexpr float brightest_near_star = 16.0f;
 
-/// Radius of the image of a star at a share `nearness`, in (0, 1), of lod.star_distance, over that of a splat
+/// Radius of the image of a star at a share `nearness`, in (0, 1], of lod.star_distance, over that of a splat
 /// there. From that distance on the image grows only with the fourth root of 1 / nearness, as a brighter star
 /// in a photograph is a little larger, until its light, which is the splat's, is brightest_near_star times as
 /// dense. 1 where nearness is 1.
-inline float near_star_size(float nearness) {
-    const float root = std::sqrt(nearness);
-    return std::max(1.0f / std::sqrt(brightest_near_star), root * std::sqrt(root));
-}
+float near_star_size(float nearness);
 
 }  // namespace astrosplat

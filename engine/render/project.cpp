@@ -118,55 +118,25 @@ void project_stretched(const LayerProjection& layer, CameraSplat splat, std::int
     shapes.push_back(shape);
 }
 
-/// Alpha and colour of the two levels for the layer's blend. Under screen and hybrid the light of a channel
-/// depends on s o with its own occlusion o, so each channel is solved by itself and the colour takes up the
-/// difference: exact for screen, to first order for hybrid.
-struct LevelShade {
-    float alpha;
-    glm::vec3 color;
-};
-struct LevelShades {
-    LevelShade coarse, fine;
-};
-LevelShades shade_levels(const LayerProjection& layer, const LevelChoice& choice, const CameraSplat& splat) {
-    const Blend blend = layer.render.holdout ? Blend::over : layer.render.blend;
-    const LodTable::Alphas whole = blend == Blend::add ? LodTable::alphas_for_add(choice, splat.alpha)
-                                                       : layer.lod->alphas(choice, splat.alpha);
-    LevelShades shades{{whole.coarse, splat.color}, {whole.fine, splat.color}};
-    if (blend != Blend::screen && blend != Blend::hybrid) return shades;
-    constexpr float least = 1e-3f;  // occlusion below which light is proportional to alpha
-    const float h = float(hybrid_of(layer, splat.position)) / 65535.0f;
-    const auto occlusion_at = [&](int k) {
-        return std::clamp(shared::blend_occlusion(int(blend), splat.color[k], h), least, 1.0f);
-    };
-    const float mean = (occlusion_at(0) + occlusion_at(1) + occlusion_at(2)) / 3.0f;
-    const LodTable::Alphas middle = layer.lod->alphas(choice, splat.alpha * mean);
-    shades.coarse.alpha = middle.coarse / mean;
-    shades.fine.alpha = middle.fine / mean;
-    for (int k = 0; k < 3; ++k) {
-        const float o = occlusion_at(k);
-        const LodTable::Alphas own = layer.lod->alphas(choice, splat.alpha * o);
-        if (middle.coarse > 0.0f) shades.coarse.color[k] *= own.coarse / o / shades.coarse.alpha;
-        if (middle.fine > 0.0f) shades.fine.color[k] *= own.fine / o / shades.fine.alpha;
-    }
-    return shades;
-}
-
 void project_level(const LayerProjection& layer, const CameraSplat& parent, std::int64_t index, int level,
-                   const LevelShade& shade, const ScreenRect& rect, Buffer<ScreenSplat>& out) {
+                   const shared::LevelShade& shade, const ScreenRect& rect, Buffer<ScreenSplat>& out) {
     if (!(shade.alpha > 0.0f)) return;
     const ShadedSplats& splats = *layer.splats;
+    shared::ChildTables tables(layer.lod->numbers());
+    const std::uint64_t id = splats.id[index];
     const float radius = splats.radius[index];
     const float structure = structure_of(layer, parent.position, parent.color, parent.alpha);
     const ChildNoise noise = make_child_noise(structure, radius, level, layer.seed);
-    CameraSplat child{parent.position, parent.radius * child_radius_scale(level), shade.alpha, shade.color};
+    CameraSplat child{parent.position, parent.radius * shared::child_radius_scale(level), shade.alpha,
+                      shade.color};
     const std::int64_t children = children_of_level(level);
     constexpr std::int64_t uninterrupted = 4096;
     for (std::int64_t k = 0; k < children; ++k) {
         if (k % uninterrupted == 0) Progress{{}, layer.cancelled}.check();
         glm::vec3 p = splats.position[index];
         if (level > 0) {
-            p += radius * layer.lod->child_offset(level, k, layer.seed, splats.id[index]);
+            p += radius * tables.child_offset(level, std::uint32_t(k), layer.seed, std::uint32_t(id),
+                                              std::uint32_t(id >> 32));
             child.position = to_camera(layer, p);
         }
         const std::size_t first = out.size();
@@ -198,7 +168,10 @@ bool project_as_children(const LayerProjection& layer, const CameraSplat& splat,
             return true;
     }
     if (layer.render.falloff.shape == Falloff::Shape::constant && splat.alpha > 0.5f) return false;
-    const LevelShades shades = shade_levels(layer, choice, splat);
+    const Blend blend = layer.render.holdout ? Blend::over : layer.render.blend;
+    shared::ChildTables tables(layer.lod->numbers());
+    const shared::LevelShades shades = tables.shade_levels(int(blend), float(hybrid_of(layer, p)) / 65535.0f,
+                                                           choice, splat.alpha, splat.color);
     project_level(layer, splat, index, choice.coarse, shades.coarse, rect, out);
     project_level(layer, splat, index, choice.fine, shades.fine, rect, out);
     return true;
@@ -208,12 +181,9 @@ bool project_as_children(const LayerProjection& layer, const CameraSplat& splat,
 
 float structure_of(const LayerProjection& layer, const glm::vec3& position, const glm::vec3& color,
                    float alpha) {
-    const Blend blend = layer.render.blend;
-    if (shared::blend_absorbs(int(blend), color.x)) return 0.5f * layer.render.lod.noise;
-    if (blend != Blend::screen && blend != Blend::hybrid) return layer.render.lod.noise;
-    const float screened = blend == Blend::screen ? 1.0f : float(hybrid_of(layer, position)) / 65535.0f;
-    const float brightest = std::max({color.x, color.y, color.z});
-    return layer.render.lod.noise * (1.0f - screened * std::min(1.0f, alpha * brightest));
+    const LayerRender& render = layer.render;
+    return shared::child_structure(render.lod.noise, int(render.blend),
+                                   float(hybrid_of(layer, position)) / 65535.0f, alpha, color);
 }
 
 LayerProjection make_projection(const RenderLayer& layer, std::uint16_t number, const Camera& camera,

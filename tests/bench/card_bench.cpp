@@ -20,7 +20,8 @@ struct Case {
     float diameter_px, alpha;
     std::int64_t width, height;
     Blend blend;
-    float share = 1.0f;  // of the frame's sides, in which nine of ten lie
+    float share = 1.0f;   // of the frame's sides, in which nine of ten lie
+    float lod_px = 0.0f;  // level of detail
 };
 
 template <class T>
@@ -37,6 +38,7 @@ void measure(const Case& c, Card& card, bool compares, const std::vector<int>& s
     layer.name = "bench";
     layer.splats = &set;
     layer.render.blend = c.blend;
+    layer.render.lod = {c.lod_px, 64};
     Camera camera;
     camera.focal_px = 1000.0 * double(c.width) / 1920.0;
     camera.center_x_px = 0.5 * double(c.width);
@@ -146,7 +148,8 @@ int run(const std::vector<std::string>& words) {
         {"10 M 5 px over clustered", 10'000'000, 5.0f, 0.3f, 1920, 1080, Blend::over, 0.2236f},
         {"10 M 5 px over faint clustered", 10'000'000, 5.0f, 0.005f, 1920, 1080, Blend::over, 0.2236f},
         {"1 M 3 px faint one tile", 1'000'000, 3.0f, 0.0001f, 1920, 1080, Blend::over, 0.005f},
-        {"2.6 M 26 px hybrid 1080p", 2'600'000, 26.0f, 0.3f, 1920, 1080, Blend::hybrid}};
+        {"2.6 M 26 px hybrid 1080p", 2'600'000, 26.0f, 0.3f, 1920, 1080, Blend::hybrid},
+        {"1.2 M by level of detail 20 M", 1'200'000, 10.0f, 0.3f, 1920, 1080, Blend::over, 1.0f, 8.0f}};
     const auto start = Clock::now();
     OffscreenContext context;
     const GlInfo& info = context.info();

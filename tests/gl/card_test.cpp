@@ -113,6 +113,66 @@ TEST_F(Cards, SplatsThatTheProcessorProjects) {
     card().set_slabs(0);
 }
 
+/// Children, stars that stay points and what neither becomes either, from within the cloud.
+TEST_F(Cards, WhatLevelOfDetailDivides) {
+    ShadedSplats splats = cloud(300, 12);
+    for (std::size_t i = 0; i < splats.id.size(); i += 5) splats.id[i] |= star_band << 48;
+    for (std::size_t i = 1; i < splats.id.size(); i += 9) splats.color[i] = glm::vec3(-0.5f, -1.0f, -2.0f);
+    Camera inside = cloud_camera(160, 100);
+    inside.eye = {0.3, 0.2, 1.0};
+    const LevelOfDetail kinds[] = {
+        {9.0f, 256, 0.0f, 0.0f}, {9.0f, 64, 1.3f, 0.0f}, {0.0f, 64, 0.0f, 4.0f}, {12.0f, 8, 0.4f, 2.0f}};
+    const auto all = [&](const char* what, const Camera& camera, Blend blend, Falloff::Shape shape,
+                         bool holdout) {
+        for (const LevelOfDetail& lod : kinds) {
+            RenderLayer layers[] = {layer_of("divided", splats, blend, shape),
+                                    layer_of("too", splats, Blend::over, Falloff::Shape::linear)};
+            layers[0].absorbs = true;
+            for (RenderLayer& layer : layers) layer.render.lod = lod;
+            layers[0].render.holdout = holdout;
+            expect_same_frame(card(), layers, camera, settings_of(160, 100),
+                              fmt::format("{}, blend {}, shape {}, {} children, noise {}", what, int(blend),
+                                          int(shape), lod.max_children, lod.noise));
+        }
+    };
+    for (const Blend blend : {Blend::over, Blend::add, Blend::screen, Blend::hybrid, Blend::absorb})
+        all("outside", cloud_camera(160, 100), blend, Falloff::Shape::gaussian, false);
+    all("inside", inside, Blend::hybrid, Falloff::Shape::constant, false);
+    all("held out", inside, Blend::screen, Falloff::Shape::exponential, true);
+}
+
+/// The processor has none of their rows.
+TEST_F(Cards, DividesWhatALookHasMadeInItsMemory) {
+    Scene scene = parse_scene(R"(astrosplat = 1
+[output]
+resolution = [160, 100]
+[camera]
+position = [0.0, 0.3, 2.0]
+target = [0.0, 0.0, 0.0]
+[[layer]]
+name = "a"
+source = { kind = "splats", file = "a.splats" }
+render = { lod = { max_px = 12.0, max_children = 64, noise = 0.5, star_distance = 1.5 } }
+[layer.look]
+radius = { min = 0.05, max = 0.15 }
+)",
+                              "/a.toml");
+    SplatSet set = file_set(400);
+    for (std::size_t i = 0; i < set.id.size(); i += 7) set.id[i] |= star_band << 48;
+    const std::vector sets = {std::make_shared<const SplatSet>(std::move(set))};
+    const auto frame_of = [&](RenderDevice* device) {
+        Pipeline pipeline;
+        pipeline.set_scene(scene, sets);
+        const FrameScene now = pipeline.frame_scene(1.0);
+        RenderSettings settings = render_settings(now.scene.output);
+        settings.device = device;
+        return pipeline.frame(now, settings);
+    };
+    const RenderedFrame expected = frame_of(nullptr), found = frame_of(&card());
+    EXPECT_EQ(found.statistics.device, card().name()) << found.statistics.not_on_device;
+    expect_same(found.beauty, expected.beauty, "a look's children");
+}
+
 TEST_F(Cards, OverAnImage) {
     const ShadedSplats splats = cloud(3000, 11);
     Image sky = make_image(211, 133, 4, 1.0f);
@@ -381,7 +441,8 @@ TEST(CardPrograms, NothingMayBeContractedAndDivisionHasAName) {
         GTEST_SKIP() << "glslangValidator is not installed (glslang-tools)";
     const std::pair<const char*, const char*> programs[] = {{"card_project.glsl", "PASS 2"},
                                                             {"card_project.glsl", "PASS 3"},
-                                                            {"card_project.glsl", "PASS 4"},
+                                                            {"card_children.glsl", "PASS 0"},
+                                                            {"card_children.glsl", "PASS 1"},
                                                             {"card_project.glsl", "PASS 3,ANY,RANKS"},
                                                             {"card_project.glsl", "PASS 3,ANY,GIVEN"},
                                                             {"card_look.glsl", ""},

@@ -358,16 +358,16 @@ TEST(Real, OnACircleTheBitsAreThoseOfCosAndSin) {
     constexpr int turn = 1 << 24;
     for (int i = 0; i < turn; ++i) {
         const float turns = float(i) / turn;
-        const real::OnCircle at = real::on_circle(turns);
+        const glm::vec2 at = real::on_circle(turns);
         if (i % (turn / 4) == 0) continue;  // exact: see below
         const double angle = 2.0 * real::pi * double(turns);
-        ASSERT_EQ(at.cosine, float(real::cos(angle))) << i;
-        ASSERT_EQ(at.sine, float(real::sin(angle))) << i;
+        ASSERT_EQ(at.x, float(real::cos(angle))) << i;
+        ASSERT_EQ(at.y, float(real::sin(angle))) << i;
     }
     for (int quarter = 0; quarter < 4; ++quarter) {
-        const real::OnCircle at = real::on_circle(0.25f * float(quarter));
-        EXPECT_EQ(at.cosine, quarter == 0 ? 1.0f : quarter == 2 ? -1.0f : 0.0f) << quarter;
-        EXPECT_EQ(at.sine, quarter == 1 ? 1.0f : quarter == 3 ? -1.0f : 0.0f) << quarter;
+        const glm::vec2 at = real::on_circle(0.25f * float(quarter));
+        EXPECT_EQ(at.x, quarter == 0 ? 1.0f : quarter == 2 ? -1.0f : 0.0f) << quarter;
+        EXPECT_EQ(at.y, quarter == 1 ? 1.0f : quarter == 3 ? -1.0f : 0.0f) << quarter;
     }
 }
 

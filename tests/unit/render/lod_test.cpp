@@ -2,6 +2,7 @@
 #include "render/lod.h"
 
 #include "camera/camera.h"
+#include "render/shared_render.h"
 #include "splats/splat_set.h"
 #include "support/printing.h"
 #include "support/test.h"
@@ -20,8 +21,8 @@ TEST(ChooseLevels, SmallestCountThatGetsTheChildrenUnderTheLimit) {
     EXPECT_EQ(choose_levels(10.0f, 10.0f, 4096).fine, 0);
     for (const float diameter : {10.1f, 19.9f, 20.1f, 39.0f, 41.0f, 75.0f, 90.0f, 159.0f, 200.0f, 300.0f}) {
         const LevelChoice choice = choose_levels(diameter, 10.0f, 4096);
-        EXPECT_LE(diameter * child_radius_scale(choice.fine), 10.0f) << diameter;
-        EXPECT_GT(diameter * child_radius_scale(choice.fine - 1), 10.0f) << diameter;
+        EXPECT_LE(diameter * shared::child_radius_scale(choice.fine), 10.0f) << diameter;
+        EXPECT_GT(diameter * shared::child_radius_scale(choice.fine - 1), 10.0f) << diameter;
     }
     EXPECT_EQ(choose_levels(1e6f, 10.0f, 4096).fine, 6);
     EXPECT_EQ(choose_levels(1e6f, 10.0f, 100).fine, 3);
@@ -39,11 +40,12 @@ TEST(ChooseLevels, FadesOverAFactorOfOneAndAHalf) {
 TEST(Children, LieInTheBallAndStayWhereTheyAre) {
     LodTable table({Falloff::Shape::gaussian, 0.5f, 4.5f});
     table.prepare(3);
+    shared::ChildTables tables(table.numbers());
     glm::vec3 mean(0.0f);
-    for (std::int64_t i = 0; i < 4000; ++i) {
-        const glm::vec3 p = table.child_offset(3, i % 64, 5, std::uint64_t(i / 64));
+    for (std::uint32_t i = 0; i < 4000; ++i) {
+        const glm::vec3 p = tables.child_offset(3, i % 64, 5, i / 64, 0);
         EXPECT_LE(std::sqrt(p.x * p.x + p.y * p.y + p.z * p.z), 1.0f - 0.125f + 1e-6f);
-        EXPECT_EQ(p, table.child_offset(3, i % 64, 5, std::uint64_t(i / 64)));
+        EXPECT_EQ(p, tables.child_offset(3, i % 64, 5, i / 64, 0));
         mean += p / 4000.0f;
     }
     for (int k = 0; k < 3; ++k) EXPECT_NEAR(mean[k], 0.0f, 0.025f);
@@ -58,18 +60,19 @@ TEST(Children, AloneHaveTheLightOfTheirParent) {
         const Falloff falloff{shape, 0.5f, 4.5f};
         LodTable table(falloff);
         table.prepare(level);
+        shared::ChildTables tables(table.numbers());
         std::vector<double> weight(steps, 0.0);
-        for (std::uint64_t id = 0; id < places; ++id)
-            for (std::int64_t child = 0; child < children_of_level(level); ++child) {
-                const glm::vec3 p = table.child_offset(level, child, 3, id);
+        for (std::uint32_t id = 0; id < places; ++id)
+            for (std::uint32_t child = 0; child < children_of_level(level); ++child) {
+                const glm::vec3 p = tables.child_offset(level, child, 3, id, 0);
                 for (int i = 0; i < steps; ++i) {
-                    const double t = 1.5 * (i + 0.5) / steps, r = child_radius_scale(level);
+                    const double t = 1.5 * (i + 0.5) / steps, r = shared::child_radius_scale(level);
                     weight[std::size_t(i)] +=
                         falloff_value(falloff, std::hypot(p.x - t, double(p.y)) / r) / (places * children);
                 }
             }
         for (const float alpha : {0.1f, 0.6f, 1.0f}) {
-            const LodTable::Alphas found = table.alphas({level - 1, level, 1.0f}, alpha);
+            const shared::ChildAlphas found = tables.child_alphas({level - 1, level, 1.0f}, alpha);
             EXPECT_EQ(found.coarse, 0.0f);
             double light = 0.0;
             for (int i = 0; i < steps; ++i) {
