@@ -9,6 +9,7 @@
 #include "core/atomic_file.h"
 #include "progress_report.h"
 #include "render/device.h"
+#include "scene/detail_tiles.h"
 #include "scene/load.h"
 #include "scene/scene.h"
 #include "sets/kept.h"
@@ -133,11 +134,8 @@ std::pair<CLI::App&, Own&> add_command(CLI::App& app, Invocation& call, const ch
     return {add_command(app, call, name, help, run_with), *own};
 }
 
-inline constexpr std::int64_t usual_detail_splats = 6000000;  // DETAIL 4
-
-/// Sets source.structure.detail and detail_tiles of all layers of bodies for the camera's path, each to at
-/// most about so many more splats; 0: none. What each got, by its name. Throws InputError, Cancelled.
-Report set_detail(Scene& scene, std::int64_t most_splats, const SetCache& cache);
+/// What set_detail() gave each layer.
+Report to_report(const std::map<std::string, DetailTiles>& found);
 
 // The commands, in the order of the help. Each returns an exit code (exit.h), prints results on stdout, and
 // throws InputError, OutputError and Cancelled.

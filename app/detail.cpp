@@ -4,32 +4,56 @@
 #include <nlohmann/json.hpp>
 
 #include "command.h"
+#include "core/color.h"
 #include "core/error.h"
 #include "core/file.h"
 #include "core/file_format.h"
 #include "core/text.h"
 #include "exit.h"
+#include "image/channels.h"
 #include "scene/detail_tiles.h"
 #include "scene/save.h"
+#include "source/write_image.h"
 
 namespace astrosplat {
 namespace {
 
-constexpr std::int64_t enough_texels = 65536;  // only the pictures' shape counts
-
 struct DetailOptions {
     std::optional<std::string> splats;
     bool none = false;  // takes detail away
+    std::optional<fs::path> image;
 };
 
-bool is_of_bodies(const LayerParams& layer) {
-    return layer.source.kind == SourceKind::mesh && layer.source.structure.kind != StructureKind::columns;
+/// The first picture of a layer, grey and dim, with its tiles of one octave in blue, of two in orange.
+void write_levels(const fs::path& file, const TexturedMesh& mesh, const std::string& tiles) {
+    const Image picture = brightest_channel(mesh.textures.front().image);
+    const auto columns = std::int64_t(std::min(tiles.find(' '), tiles.size())),
+               rows = std::int64_t(tiles.size() + 1) / (columns + 1);
+    constexpr float tints[3][3] = {{0.5f, 0.5f, 0.5f}, {0.4f, 0.7f, 1.6f}, {1.6f, 0.8f, 0.3f}};
+    std::vector<unsigned char> rgb;
+    for (std::int64_t y = 0; y < picture.height; ++y)
+        for (std::int64_t x = 0; x < picture.width; ++x) {
+            const float grey = display_srgb(*picture.at(x, y));
+            const std::int64_t column = x * columns / picture.width, row = y * rows / picture.height;
+            const int level = tiles.empty() ? 0 : tiles[std::size_t(row * (columns + 1) + column)] - '0';
+            for (const float tint : tints[level])
+                rgb.push_back(static_cast<unsigned char>(255.0f * std::min(1.0f, (0.1f + grey) * tint)));
+        }
+    write_file_atomically(file, png_bytes(picture.width, picture.height, rgb));
 }
 
-Report to_report(const DetailTiles& found) {
-    return {{"one_octave", number(found.shares[1])},
-            {"two_octaves", number(found.shares[2])},
-            {"more_splats", number(std::round(found.more_splats))}};
+/// Of all layers of bodies; where there are several, their names are put before the ending.
+void write_images(const fs::path& file, const Scene& scene, const SetCache& cache) {
+    const auto count = std::ranges::count_if(scene.layers, has_bodies);
+    for (const LayerParams& layer : scene.layers) {
+        if (!has_bodies(layer)) continue;
+        fs::path own = file;
+        if (count > 1)
+            own.replace_filename(file.stem().string() + "." + layer.name + file.extension().string());
+        const auto meshes = load_meshes(cache, layer.source, stoppable(), enough_texels);
+        if (!meshes.empty() && !meshes.front().textures.empty())
+            write_levels(own, meshes.front(), layer.source.structure.detail_tiles);
+    }
 }
 
 int run_detail(const CommandOptions& options, const DetailOptions& own) {
@@ -40,35 +64,30 @@ int run_detail(const CommandOptions& options, const DetailOptions& own) {
                                : own.splats ? option_count("--splats", *own.splats, "a number of splats", 0,
                                                            std::int64_t(most_splats))
                                             : usual_detail_splats;
-    if (std::ranges::none_of(scene.layers, is_of_bodies))
+    const auto meshes_of = [&](const SourceParams& source) {
+        return load_meshes(options.cache, source, stoppable(), enough_texels);
+    };
+    const auto found = set_detail(scene, double(limit), meshes_of);
+    if (found.empty())
         throw InputError(printable(file.string()) +
                          ": expected a layer of bodies (source.structure), found none");
-    const Report report = set_detail(scene, limit, options.cache);
     const fs::path target = options.output.value_or(file);
     if (options.output) refuse_to_overwrite(target, options.overwrite);
     prove_writable(folder_of(target));
     write_file_atomically(target, save_text(scene, read_file(file), target), Existing::replace);
-    print_report(report, options.json);
+    if (own.image) write_images(*own.image, scene, options.cache);
+    print_report(to_report(found), options.json);
     return exit_done;
 }
 
 }  // namespace
 
-Report set_detail(Scene& scene, std::int64_t most_splats, const SetCache& cache) {
+Report to_report(const std::map<std::string, DetailTiles>& found) {
     Report report = Report::object();
-    for (LayerParams& layer : scene.layers) {
-        if (!is_of_bodies(layer)) continue;
-        StructureParams& structure = layer.source.structure;
-        structure.detail_tiles.clear();
-        structure.detail = 0;
-        DetailTiles found;
-        if (most_splats > 0)
-            found = detail_tiles(scene, layer, load_meshes(cache, layer.source, stoppable(), enough_texels),
-                                 double(most_splats));
-        structure.detail_tiles = found.tiles;
-        structure.detail = found.shares[2] > 0.0 ? 2 : found.shares[1] > 0.0 ? 1 : 0;
-        report[layer.name] = to_report(found);
-    }
+    for (const auto& [layer, tiles] : found)
+        report[layer] = {{"one_octave", number(tiles.shares[1])},
+                         {"two_octaves", number(tiles.shares[2])},
+                         {"more_splats", number(std::round(tiles.more_splats))}};
     return report;
 }
 
@@ -81,6 +100,8 @@ void add_detail_command(CLI::App& app, Invocation& call) {
     add_output(command, call.options, "SCENE", "Writes it there instead")->required(false);
     add_value(command, "--splats", own.splats, "N", "At most about so many more splats (default: 6000000)");
     command.add_flag("--none", own.none, "Takes detail away");
+    add_value(command, "--image", own.image, "FILE.png",
+              "Also writes the picture with its tiles in false colours: one octave blue, two orange");
     add_json(command, call.options);
 }
 

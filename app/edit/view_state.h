@@ -165,6 +165,7 @@ struct Command {
         cancel_load,      // index: layer being generated
         render,           // what ViewState::render says
         choose_target,    // path: where that goes
+        make_detail,      // where the camera comes close, in all layers of bodies
         prepare_picture,  // path: folder for the files, index: layer
         cancel_render,    // the job that runs
         cancel_job,       // index: number of the job

@@ -129,6 +129,7 @@ Session::Session(const ViewerOptions& options, const GlInfo& gl_info)
       preferences(load_preferences()),
       document(options.input.empty() ? demo_document(options.assignments)
                                      : document_for(options.input, options.assignments)),
+      cache(options.cache),
       sets(options.cache, sample_limit),
       view_frame(files, card_choice),
       comparison(files, card_choice),

@@ -47,6 +47,7 @@ struct Session {
     ViewState view;
     Status status;
 
+    SetCache cache;
     SetWishes sets;
     std::shared_ptr<PictureFiles> files = std::make_shared<PictureFiles>();
     ViewFrame view_frame;  // A

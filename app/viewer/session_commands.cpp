@@ -9,6 +9,7 @@
 #include "edit/view_camera.h"
 #include "scene/animate.h"
 #include "scene/camera_file.h"
+#include "scene/detail_tiles.h"
 #include "scene/frames.h"
 #include "scene/layer_setup.h"
 #include "scene/reference_place.h"
@@ -118,6 +119,20 @@ void save_look(State& s, const Command& c) {
     if (!layer) return;
     write_file_atomically(c.path, save_preset_text(layer->look, layer->render, c.path));
     say(s.status, "Saved the look of " + layer->name + " in " + c.path.string());
+}
+
+void make_detail(State& s, const Command&) {
+    std::map<std::string, DetailTiles> found;
+    s.document.edit("Detail where the camera comes close", [&](Scene& scene) {
+        found = set_detail(scene, double(usual_detail_splats), [&](const SourceParams& source) {
+            return load_meshes(s.cache, source, {}, enough_texels);
+        });
+    });
+    double more_splats = 0.0;
+    for (const auto& [layer, tiles] : found) more_splats += tiles.more_splats;
+    say(s.status, more_splats > 0.0 ? human_count(std::int64_t(more_splats), "more splat") +
+                                          " of detail where the camera comes close"
+                                    : "The camera comes nowhere so close that a picture's texels show");
 }
 
 void apply_look_file(State& s, const Command& c) {
@@ -285,6 +300,7 @@ constexpr Entry entries[] = {
      }},
     {Kind::render, render_files},
     {Kind::choose_target, choose_target},
+    {Kind::make_detail, make_detail},
     {Kind::prepare_picture,
      [](State& s, const Command& c) {
          if (const LayerParams* layer = layer_at(s, c.index)) s.jobs.add_preparation(layer->source, c.path);

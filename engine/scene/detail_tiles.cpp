@@ -145,4 +145,25 @@ DetailTiles detail_tiles(const Scene& scene, const LayerParams& layer, std::span
     return found;
 }
 
+bool has_bodies(const LayerParams& layer) {
+    return layer.source.kind == SourceKind::mesh && layer.source.structure.kind != StructureKind::columns;
+}
+
+std::map<std::string, DetailTiles> set_detail(
+    Scene& scene, double most_splats,
+    const std::function<std::vector<TexturedMesh>(const SourceParams& source)>& meshes_of) {
+    std::map<std::string, DetailTiles> all;
+    for (LayerParams& layer : scene.layers) {
+        StructureParams& structure = layer.source.structure;
+        if (!has_bodies(layer)) continue;
+        structure.detail_tiles.clear();
+        structure.detail = 0;
+        DetailTiles& found = all[layer.name];
+        if (most_splats > 0.0) found = detail_tiles(scene, layer, meshes_of(layer.source), most_splats);
+        structure.detail_tiles = found.tiles;
+        structure.detail = found.shares[2] > 0.0 ? 2 : found.shares[1] > 0.0 ? 1 : 0;
+    }
+    return all;
+}
+
 }  // namespace astrosplat

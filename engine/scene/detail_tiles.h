@@ -2,6 +2,9 @@
 // moves, and the meshes of a layer with their pictures. Out: source.structure.detail_tiles of the layer.
 #pragma once
 
+#include <functional>
+#include <map>
+
 #include "scene/scene.h"
 #include "source/textured_mesh.h"
 
@@ -20,5 +23,18 @@ struct DetailTiles {
 /// reduced; all get the same tiles.
 DetailTiles detail_tiles(const Scene& scene, const LayerParams& layer, std::span<const TexturedMesh> meshes,
                          double most_splats);
+
+constexpr std::int64_t usual_detail_splats = 6'000'000;
+constexpr std::int64_t enough_texels = 65536;  // of its meshes' pictures: only their shape counts
+
+/// Whether a layer's pictures are made into bodies, which can have detail.
+bool has_bodies(const LayerParams& layer);
+
+/// Sets source.structure.detail and detail_tiles of all layers of bodies for the camera's path, each to at
+/// most about so many more splats; 0: none. `meshes_of`: reads those of a layer's source, whose pictures may
+/// be reduced. What each layer got, by its name.
+std::map<std::string, DetailTiles> set_detail(
+    Scene& scene, double most_splats,
+    const std::function<std::vector<TexturedMesh>(const SourceParams& source)>& meshes_of);
 
 }  // namespace astrosplat

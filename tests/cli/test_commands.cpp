@@ -2,6 +2,7 @@
 #include <sys/stat.h>
 
 #include "scene_fixture.h"
+#include "source/texture.h"
 #include "support/pixmap.h"
 #include "support/process_state.h"
 
@@ -147,8 +148,16 @@ TEST_F(Commands, DetailFollowsTheCamera) {
     const std::string without = text_of(folder / "f.toml");
     EXPECT_HAS(without, "# splats that look larger, close by, are divided");
     EXPECT_HAS(without, "detail = 0");
-    expect_success(run({"detail", "f.toml"}));
+    expect_success(run({"detail", "f.toml", "--image", "levels.png"}));
     EXPECT_EQ(text_of(folder / "f.toml"), film);
+    const Image levels = load_raw_image(folder / "levels.png");
+    std::int64_t blue = 0, orange = 0;
+    for (std::int64_t i = 0; i < levels.width * levels.height; ++i) {
+        const float* const p = &levels.pixels[std::size_t(i * levels.channels)];
+        blue += p[2] > p[0];
+        orange += p[0] > p[2];
+    }
+    EXPECT_EQ(blue + orange > 0, film.find_first_of("12", film.find("detail_tiles = \"")) != std::string::npos);
     expect_success(run({"detail", "f.toml", "--splats", "1", "-o", "g.toml"}));
     EXPECT_EQ(text_of(folder / "g.toml"), without);
     expect_one_line(run({"detail", "f.toml", "-o", "g.toml"}), 2, "g.toml");

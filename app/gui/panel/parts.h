@@ -82,6 +82,7 @@ bool suits_layer(const Context& context, const ParameterSpec& spec);
 
 /// The two images with a line between them to drag, what was done, a button.
 void draw_preparation(Context& context);
+void detail_buttons(Context& context);
 void placement_buttons(Context& context);
 void crop_buttons(Context& context);
 void reference_buttons(Context& context);

@@ -3,6 +3,7 @@
 
 #include "core/text.h"
 #include "gui/panel/parts.h"
+#include "scene/detail_tiles.h"
 
 namespace astrosplat::panel {
 namespace {
@@ -159,6 +160,12 @@ void draw_preparation(Context& context) {
     if (button_line(context, {"Write to folder..."}) == 0)
         request(context, Command::Kind::prepare_picture, context.view.layer);
     ImGui::Dummy({0.0f, px(4)});
+}
+
+void detail_buttons(Context& context) {
+    if (!has_bodies(context.layer())) return;
+    if (button_line(context, {"Detail where the camera comes close"}) == 0)
+        request(context, Command::Kind::make_detail);
 }
 
 void placement_buttons(Context& context) {

@@ -155,7 +155,7 @@ const TabSection sections[] = {
       "layer.source.hdu", "layer.source.plane"}},
     {"Source", "Prepare", nullptr, preparation_state, {}, draw_preparation, has_pictures},
     {"Source", "Masks", nullptr, masks_state},
-    {"Source", "Structure", unfolded, value_of<structure>},
+    {"Source", "Structure", unfolded, value_of<structure>, {}, detail_buttons},
     {"Source",
      "Splats",
      unfolded,

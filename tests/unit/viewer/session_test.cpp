@@ -75,6 +75,26 @@ TEST_F(Start, APictureIsSeenByItsOwnCamera) {
               session.document.scene().layers[0].source.uv_camera.position);
 }
 
+// By the scene's own camera, as one edit.
+TEST_F(Start, DetailComesWhereTheCameraDoes) {
+    const auto structure = [&]() -> const StructureParams& {
+        return session.document.scene().layers[0].source.structure;
+    };
+    carry_out(session, {Command::Kind::make_detail, {}, {}});
+    EXPECT_EQ(structure().detail, 0) << "a layer of columns has none";
+    session.document.edit("Closer", [](Scene& scene) {
+        scene.layers[0].source.structure.kind = StructureKind::sheet;
+        scene.camera.position = glm::dvec3(0.0, 1.0, 1.0);
+    });
+    carry_out(session, {Command::Kind::make_detail, {}, {}});
+    EXPECT_EQ(structure().detail, 2);
+    EXPECT_HAS(structure().detail_tiles, "2");
+    EXPECT_HAS(session.status.message.text, "more splats of detail");
+    session.document.undo();
+    EXPECT_EQ(structure().detail, 0);
+    EXPECT_EQ(session.document.scene().camera.position, glm::dvec3(0.0, 1.0, 1.0));
+}
+
 // Whoever moves needs them at once.
 TEST_F(Start, AMovingHandDoesNotHoldUpTheTrees) {
     int moves = 0;
