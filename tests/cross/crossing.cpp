@@ -116,10 +116,12 @@ std::string mesh_text(const char* shape, const char* picture, const char* more) 
                        path_text(picture), more);
 }
 
-std::string bodies_text(std::uint32_t kind) {
+std::string bodies_text(std::uint32_t kind, bool detailed) {
     const char* const structures[] = {"sheet\"", "walls\"", "disk\"", "axis\", tilt = 20.0"};
     return mesh_text("plane", kind % 2 ? "shell.ppm" : "small.ppm",
-                     fmt::format("count = 300\nstructure = {{ kind = \"{} }}", structures[kind]).c_str());
+                     fmt::format("count = 300\nstructure = {{ kind = \"{}{} }}", structures[kind],
+                                 detailed ? ", detail = 1, detail_tiles = \"01 10\"" : "")
+                         .c_str());
 }
 
 std::string source_text(const Crossing& c, const CrossingLayer& layer) {
@@ -127,7 +129,7 @@ std::string source_text(const Crossing& c, const CrossingLayer& layer) {
         case Source::mesh:
             return mesh_text("sphere", "picture.ppm", "count = 300");
         case Source::bodies:
-            return bodies_text(c.seed % 2 + (&layer == &c.layers.front() ? 0 : 2));
+            return bodies_text(c.seed % 2 + (&layer == &c.layers.front() ? 0 : 2), c.seed / 2 % 2 == 1);
         case Source::table:
             return "kind = \"splats\"\nfile = " + path_text("table.pda") + "\n";
         case Source::native:
