@@ -45,6 +45,9 @@ struct Impression {
     double detail = 0.0;             // deviation from a blur of 3 px of 256, over it
     double roundness = 1.0;          // axis ratio of what is within 1.5 half-light radii
     double dark = 0.0;               // share of the pixels under 3 % of the brightest hundredth
+    double together = 0.0;           // ln: spread of its brightest fifth over that of all light
+    double like_colors = 1.0;        // correlation of red and blue, from place to place
+    double star_spread = 0.0;        // ln: the brightest twentieth of the stars over their median
     double balance = 1.0;            // as sides, about the centre of all light in place of the middle
 };
 

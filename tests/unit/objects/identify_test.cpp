@@ -160,6 +160,36 @@ TEST(Impression, HasItsMiddleWhereWideLightIsBrightest) {
     EXPECT_EQ(identify({}, light).middle, middle);
 }
 
+Image two_lights(double apart, glm::vec3 left, glm::vec3 right) {
+    Image light = make_image(640, 400, 3, 0.01f);
+    painted::add_point(light, 320.0 - 0.5 * apart, 200.0, 30.0, left.r, left.g, left.b);
+    painted::add_point(light, 320.0 + 0.5 * apart, 200.0, 30.0, right.r, right.g, right.b);
+    return light;
+}
+
+TEST(Impression, KnowsWhetherBrightPlacesLieTogetherAndRedWithBlue) {
+    const glm::vec3 white(0.4f), red(0.5f, 0.2f, 0.02f), blue(0.02f, 0.2f, 0.5f);
+    const Impression together = impression_of(two_lights(0.0, white, white)),
+                     apart = impression_of(two_lights(300.0, white, white));
+    EXPECT_LT(together.together, -3.0);
+    EXPECT_GT(apart.together, -2.0);
+    EXPECT_GT(apart.like_colors, 0.99);
+    EXPECT_LT(impression_of(two_lights(300.0, red, blue)).like_colors, 0.1);
+}
+
+TEST(Impression, KnowsWhetherStarsAreAlike) {
+    const auto of_stars = [](double brighter) {
+        Image light = make_image(640, 400, 3, 0.01f);
+        for (int i = 0; i < 40; ++i) {
+            const double peak = 0.1 * (i % 5 == 0 ? brighter : 1.0);
+            painted::add_point(light, 40.0 + i % 8 * 80.0, 40.0 + i / 8 * 80.0, 1.3, peak, peak, peak);
+        }
+        return impression_of(light).star_spread;
+    };
+    EXPECT_NEAR(of_stars(1.0), 0.0, 0.1);
+    EXPECT_NEAR(of_stars(8.0), std::log(8.0), 0.3);
+}
+
 TEST(LitShareOfRim, CountsThePixelsAtTheEdges) {
     constexpr std::int64_t width = 200, height = 120;
     EXPECT_EQ(lit_share_of_rim(make_image(width, height, 3, 0.2f)), 1.0);
