@@ -340,8 +340,8 @@ constexpr float widest_in_knots = 5.0f;   // texels, sigma of the largest splats
 const Knot& knot_of(const Placement& placement, std::int32_t knot) { return placement.knots.knots[knot]; }
 
 // How many of a knot's splats follow it: all, about an axis those of what may be a star, but none of a smooth
-// galaxy's, nor of its spheroid's. Beyond the galaxy, where knots are background galaxies, all of its light
-// does.
+// galaxy's; of a spheroid's, as of a cluster's, those of what may be a star. Beyond the galaxy, where knots
+// are background galaxies, all of its light does.
 float share_in_knots(const Placement& placement, const BandSplats& splats, const Knot& knot) {
     constexpr float widest_ball = 3.5f, fades_over = 2.0f;  // px, sigma of a knot
     const float compact = knot.ballness * std::clamp((widest_ball - knot.sigma) / fades_over, 0.0f, 1.0f);
@@ -349,10 +349,10 @@ float share_in_knots(const Placement& placement, const BandSplats& splats, const
     if (placement.galaxies.empty()) return 1.0f;
     const GalaxyBody& galaxy = placement.galaxy_at(knot.x, knot.y, 0.5f);
     const float beyond = 1.0f - galaxy.value_at(galaxy.lit, knot.x, knot.y);
-    if (splats.family == GalaxyFamily::spheroid) return beyond;
     // Pieces of arms are no balls: from above a disk that is seen aslant would be made of beads.
-    return std::max(beyond, galaxy.value_at(galaxy.roughness, knot.x, knot.y) *
-                                std::lerp(1.0f, compact, galaxy.sin_i * galaxy.sin_i));
+    const float round = splats.family == GalaxyFamily::spheroid ? 1.0f : galaxy.sin_i * galaxy.sin_i;
+    return std::max(beyond,
+                    galaxy.value_at(galaxy.roughness, knot.x, knot.y) * std::lerp(1.0f, compact, round));
 }
 
 // Scale height over sigma. In a disk that is seen aslant knots are as deep as wide, or from above they were

@@ -74,10 +74,11 @@ void set_cloud_depths(Placement& placement, GalaxyBody& galaxy) {
     });
 }
 
-// Whether a knot is not the galaxy's but lies somewhere behind or before it.
-bool is_beyond(const Placement& placement, float x, float y, std::uint32_t random) {
+// Whether a knot is not the disk's but the spheroid's, or lies somewhere behind or before the galaxy.
+bool is_off_disk(const Placement& placement, float x, float y, std::uint32_t random) {
     const GalaxyBody& galaxy = placement.galaxy_at(x, y, 0.5f);
-    return as_uniform(as_mix(random ^ 0x1f83d9abu)) >= galaxy.value_at(galaxy.lit, x, y);
+    const float spheroid = galaxy.value_at(galaxy.spheroid, x, y);
+    return as_uniform(as_mix(random ^ 0x1f83d9abu)) >= galaxy.value_at(galaxy.lit, x, y) * (1.0f - spheroid);
 }
 
 // Those of splats of the second finest band, and of stars their own.
@@ -97,7 +98,8 @@ void set_knot_depths(Placement& placement, std::span<const Star> stars) {
         }
         place_freely(placement, like, block);
         for (int i = 0; i < block.count; ++i) {
-            if (!placement.galaxies.empty() && is_beyond(placement, block.x[i], block.y[i], block.random[i]))
+            if (!placement.galaxies.empty() &&
+                is_off_disk(placement, block.x[i], block.y[i], block.random[i]))
                 block.z[i] =
                     star_height(placement, block.x[i], block.y[i], as_uniform(as_mix(block.random[i])));
             placement.knot_z[begin + i] = block.z[i];

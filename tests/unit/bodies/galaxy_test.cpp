@@ -157,6 +157,35 @@ TEST(GalaxyFamilies, WhatIsSharpIsAsSharpInASpheroid) {
               families.of(GalaxyFamily::disk, 3).splats.radius[0]);
 }
 
+// Sharp light of a cluster that is too wide for a star of the list is at one depth with what it belongs to:
+// spread along its line of sight it is a streak from aside.
+TEST(GalaxyFamilies, WhatMayBeAStarOfAClusterIsAtOneDepth) {
+    Families cluster;
+    cluster.light = make_image(320, 200, 3, 0.002f);
+    painted::add_point(cluster.light, 160.0, 100.0, 35.0, 0.05, 0.05, 0.05);
+    const auto x_of = [](int i) { return 66.0 + 21.0 * (i % 10); };
+    const auto y_of = [](int i) { return 48.0 + 21.0 * (i / 10); };
+    for (int i = 0; i < 60; ++i) painted::add_point(cluster.light, x_of(i), y_of(i), 1.5, 0.3, 0.3, 0.3);
+    StructureParams params = galaxy_params(90.0);
+    params.galaxy.bulge = 1.0;
+    cluster.placement = make_placement(cluster.light, params, 32.0, true, 1u);
+    const PictureSplats set = cluster.of(GalaxyFamily::spheroid, 1);
+    int together = 0, all = 0;
+    for (int i = 0; i < 60; ++i) {
+        std::vector<double> z;
+        for (const glm::vec3& p : set.splats.position)
+            if (std::hypot(double(p.x) + 160.0 - x_of(i), 100.0 - double(p.y) - y_of(i)) < 2.0)
+                z.push_back(double(p.z));
+        if (z.empty()) continue;
+        std::ranges::sort(z);
+        const double middle = z[z.size() / 2];
+        together += int(std::ranges::count_if(z, [=](double v) { return std::fabs(v - middle) < 4.0; }));
+        all += int(z.size());
+    }
+    ASSERT_GT(all, 200);
+    EXPECT_GT(together, all * 3 / 5) << together << " of " << all;
+}
+
 // Both families together are the band's light, and a spheroid hides .35 of what a disk does.
 TEST(GalaxyFamilies, ShareTheLight) {
     const Families families;
