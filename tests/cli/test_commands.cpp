@@ -157,7 +157,8 @@ TEST_F(Commands, DetailFollowsTheCamera) {
         blue += p[2] > p[0];
         orange += p[0] > p[2];
     }
-    EXPECT_EQ(blue + orange > 0, film.find_first_of("12", film.find("detail_tiles = \"")) != std::string::npos);
+    EXPECT_EQ(blue + orange > 0,
+              film.find_first_of("12", film.find("detail_tiles = \"")) != std::string::npos);
     expect_success(run({"detail", "f.toml", "--splats", "1", "-o", "g.toml"}));
     EXPECT_EQ(text_of(folder / "g.toml"), without);
     expect_one_line(run({"detail", "f.toml", "-o", "g.toml"}), 2, "g.toml");
