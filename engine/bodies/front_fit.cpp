@@ -217,7 +217,8 @@ double FittedView::psnr_db(const Image& seen) const {
     return -10.0 / real::log(10.0) * real::log(std::max(mean, 1e-12));
 }
 
-constexpr int detail_steps[] = {4, 6};  // before and after a rendering with them; DETAIL 4 has 6
+// Each after a rendering with the last ones: what hides what has changed with them.
+constexpr int detail_steps[] = {4, 2, 2};
 
 // The flat light of splats of one sort.
 Image flat_light_of(SplatRange::Of sort, PictureSplats& set, std::int64_t width, std::int64_t height,
@@ -332,7 +333,7 @@ void fit_part(PictureSplats& all, std::span<const DetailPart> parts, std::size_t
         });
         flat.correct(steps.weighted_ratio(std::move(seen), step + 1 == count), step + 1 < count);
     }
-    constexpr int flux_rounds = 2;  // between cells' middles a factor is that of neither
+    constexpr int flux_rounds = 5;  // between cells' middles a factor is that of neither
     for (int round = 0; round < flux_rounds; ++round)
         flat.multiply(texel_ratio(part, wanted, below, passes, flat.sum()), times);
     for (std::size_t i = 0; i < own.row.size(); ++i)
