@@ -74,7 +74,8 @@ std::vector<DetailPart> add_splats(const PictureLight& picture, const UvSurface&
     Image rest = copied(picture.light);
     const bool takes_stars = params.stars != StructureParams::Stars::no;
     Spikes spikes = takes_stars ? take_spikes(rest, picture.times) : Spikes();
-    const PictureStars stars = take_picture_stars(rest, params, std::move(spikes.gaussians));
+    const PictureStars stars =
+        take_picture_stars(rest, params, picture.times > 1, std::move(spikes.gaussians));
     progress.check();
     std::optional<AxisDepths> axis = axis_of(rest, params, task.layer_name);
     if (params.kind == StructureKind::axis && !axis) params.kind = StructureKind::walls;
@@ -105,8 +106,7 @@ std::vector<DetailPart> add_splats(const PictureLight& picture, const UvSurface&
         add_dust(transmittance_of(without_stars, emission, picture.alpha), dust,
                  dust_exponents_of(picture.light), placement, set);
     add_picture_stars(stars, placement, opacity, set);
-    add_spikes(spikes.light, places_of(spikes.stars), 0, picture.times, placement, opacity, set);
-    add_spikes(stars.rest, places_of(stars.all), 1, 1, placement, opacity, set);
+    add_spikes(spikes, picture.times, placement, opacity, set);
     if (spikes.arms > 0)
         log_detail(fmt::format("layer '{}': {} with {} spikes each, at {:.1f} degrees; {} splats",
                                task.layer_name, counted(std::ssize(spikes.stars), "star"), spikes.arms,

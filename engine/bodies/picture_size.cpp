@@ -71,7 +71,7 @@ double splats_a_texel(const Texture& part, PixelPlace begin, const StructurePara
     const PictureLight picture = picture_light(part, 0.0);
     const Image brightest = brightest_channel(picture.light);
     Image rest = picture.light;
-    take_picture_stars(rest, params);
+    take_picture_stars(rest, params, picture.times > 1);
     const Image without_stars = brightest_channel(rest);
     Image emission = make_image(rest.width, rest.height, 3);
     const auto shows = [&](std::int64_t x, std::int64_t y) {

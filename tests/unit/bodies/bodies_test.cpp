@@ -509,7 +509,7 @@ TEST(Bodies, DetailIsThePictureFromAfar) {
     constexpr int times = 4;
     Image picture = painted::nebula(width, height);
     for (std::size_t i = 0; i < picture.pixels.size(); ++i)
-        picture.pixels[i] *= float(0.6 + 0.8 * painted::random(std::uint32_t(i / 3), 7));
+        picture.pixels[i] *= float(0.85 + 0.3 * painted::random(std::uint32_t(i / 3), 7));
     const auto seen = [&](int detail, std::uint32_t seed, double margin) {
         std::vector<TexturedMesh> meshes{on_plane(picture)};
         if (detail == 0) enlarge_small_pictures(meshes, "gas");
