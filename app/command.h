@@ -135,7 +135,7 @@ std::pair<CLI::App&, Own&> add_command(CLI::App& app, Invocation& call, const ch
 }
 
 /// What set_detail() gave each layer.
-Report to_report(const std::map<std::string, DetailTiles>& found);
+Report to_report(std::span<const LayerDetail> found);
 
 // The commands, in the order of the help. Each returns an exit code (exit.h), prints results on stdout, and
 // throws InputError, OutputError and Cancelled.

@@ -103,10 +103,7 @@ BodiesScene bodies_scene(const fs::path& picture, const fs::path& place, const N
     BodiesScene made{picture_scene_text(scene, place), to_report(found, scene)};
     if (!options.film) return made;
     Scene film = parse_scene(made.text, place);
-    made.report["detail"] =
-        to_report(set_detail(film, double(usual_detail_splats), [&](const SourceParams& s) {
-            return load_meshes(cache, s, stoppable(), enough_texels);
-        }));
+    made.report["detail"] = to_report(set_detail(film, double(usual_detail_splats), cache, stoppable()));
     made.text = save_text(film, made.text, place);
     return made;
 }

@@ -77,7 +77,10 @@ bool Card::make_children(const FrameJob& job, Group& group, std::size_t number, 
     constexpr std::int64_t bytes_each = sizeof(ScreenSplat);
     const std::int64_t count = total[0];
     if (total[1] > 0 || bytes_each * count > most_bytes_) return false;
-    if (count == 0) return true;
+    if (count == 0) {
+        children_.erase(number);
+        return true;
+    }
     if (count * bytes_each > to.bytes() && bytes() + count * bytes_each > room()) return false;
     if (!counts_.reserve(sizeof(Counts)) || !to.reserve(bytes_each * count)) return false;
     counts_.bind(0);

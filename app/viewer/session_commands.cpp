@@ -122,14 +122,11 @@ void save_look(State& s, const Command& c) {
 }
 
 void make_detail(State& s, const Command&) {
-    std::map<std::string, DetailTiles> found;
-    s.document.edit("Detail where the camera comes close", [&](Scene& scene) {
-        found = set_detail(scene, double(usual_detail_splats), [&](const SourceParams& source) {
-            return load_meshes(s.cache, source, {}, enough_texels);
-        });
-    });
     double more_splats = 0.0;
-    for (const auto& [layer, tiles] : found) more_splats += tiles.more_splats;
+    s.document.edit("Detail where the camera comes close", [&](Scene& scene) {
+        for (const LayerDetail& found : set_detail(scene, double(usual_detail_splats), s.cache))
+            more_splats += found.tiles.more_splats;
+    });
     say(s.status, more_splats > 0.0 ? human_count(std::int64_t(more_splats), "more splat") +
                                           " of detail where the camera comes close"
                                     : "The camera comes nowhere so close that a picture's texels show");

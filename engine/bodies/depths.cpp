@@ -350,9 +350,9 @@ float share_in_knots(const Placement& placement, const BandSplats& splats, const
     const GalaxyBody& galaxy = placement.galaxy_at(knot.x, knot.y, 0.5f);
     const float beyond = 1.0f - galaxy.value_at(galaxy.lit, knot.x, knot.y);
     // Pieces of arms are no balls: from above a disk that is seen aslant would be made of beads.
-    const float round = splats.family == GalaxyFamily::spheroid ? 1.0f : galaxy.sin_i * galaxy.sin_i;
+    const float by_shape = splats.family == GalaxyFamily::spheroid ? 1.0f : galaxy.sin_i * galaxy.sin_i;
     return std::max(beyond,
-                    galaxy.value_at(galaxy.roughness, knot.x, knot.y) * std::lerp(1.0f, compact, round));
+                    galaxy.value_at(galaxy.roughness, knot.x, knot.y) * std::lerp(1.0f, compact, by_shape));
 }
 
 // Scale height over sigma. In a disk that is seen aslant knots are as deep as wide, or from above they were

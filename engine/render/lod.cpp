@@ -29,7 +29,7 @@ double centre_ball(int level) { return 1.0 - 0.5 * double(shared::child_radius_s
 
 int finest_level(int max_children) {
     int finest = 0;
-    while (finest < 12 && children_of_level(finest + 1) <= max_children) ++finest;
+    while (finest < shared::CHILD_FINEST_LEVEL && children_of_level(finest + 1) <= max_children) ++finest;
     return finest;
 }
 

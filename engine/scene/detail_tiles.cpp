@@ -149,19 +149,21 @@ bool has_bodies(const LayerParams& layer) {
     return layer.source.kind == SourceKind::mesh && layer.source.structure.kind != StructureKind::columns;
 }
 
-std::map<std::string, DetailTiles> set_detail(
-    Scene& scene, double most_splats,
-    const std::function<std::vector<TexturedMesh>(const SourceParams& source)>& meshes_of) {
-    std::map<std::string, DetailTiles> all;
+std::vector<LayerDetail> set_detail(Scene& scene, double most_splats, const SetCache& cache,
+                                    const Progress& progress) {
+    std::vector<LayerDetail> all;
     for (LayerParams& layer : scene.layers) {
-        StructureParams& structure = layer.source.structure;
         if (!has_bodies(layer)) continue;
+        StructureParams& structure = layer.source.structure;
         structure.detail_tiles.clear();
         structure.detail = 0;
-        DetailTiles& found = all[layer.name];
-        if (most_splats > 0.0) found = detail_tiles(scene, layer, meshes_of(layer.source), most_splats);
+        DetailTiles found;
+        if (most_splats > 0.0)
+            found = detail_tiles(scene, layer, load_meshes(cache, layer.source, progress, enough_texels),
+                                 most_splats);
         structure.detail_tiles = found.tiles;
         structure.detail = found.shares[2] > 0.0 ? 2 : found.shares[1] > 0.0 ? 1 : 0;
+        all.push_back({layer.name, std::move(found)});
     }
     return all;
 }

@@ -2,11 +2,8 @@
 // moves, and the meshes of a layer with their pictures. Out: source.structure.detail_tiles of the layer.
 #pragma once
 
-#include <functional>
-#include <map>
-
 #include "scene/scene.h"
-#include "source/textured_mesh.h"
+#include "sets/kept.h"
 
 namespace astrosplat {
 
@@ -30,11 +27,14 @@ constexpr std::int64_t enough_texels = 65536;  // of its meshes' pictures: only 
 /// Whether a layer's pictures are made into bodies, which can have detail.
 bool has_bodies(const LayerParams& layer);
 
+struct LayerDetail {
+    std::string layer;
+    DetailTiles tiles;
+};
+
 /// Sets source.structure.detail and detail_tiles of all layers of bodies for the camera's path, each to at
-/// most about so many more splats; 0: none. `meshes_of`: reads those of a layer's source, whose pictures may
-/// be reduced. What each layer got, by its name.
-std::map<std::string, DetailTiles> set_detail(
-    Scene& scene, double most_splats,
-    const std::function<std::vector<TexturedMesh>(const SourceParams& source)>& meshes_of);
+/// most about so many more splats; 0: none. What each got. Throws InputError, Cancelled.
+std::vector<LayerDetail> set_detail(Scene& scene, double most_splats, const SetCache& cache,
+                                    const Progress& progress = {});
 
 }  // namespace astrosplat

@@ -33,3 +33,4 @@ struct ChildOctave {
 };
 
 const int CHILD_OCTAVES = 12;
+const int CHILD_FINEST_LEVEL = 12;

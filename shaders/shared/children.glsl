@@ -20,7 +20,7 @@ LevelChoice choose_levels(float diameter_px, float limit_px, int finest) {
     if (!(limit_px > 0.0f) || !(diameter_px > limit_px) || finest < CHILD_FIRST_LEVEL) return LevelChoice(0, 0, 0.0f);
     float threshold_px = limit_px;  // above it, level `fine`
     int fine = CHILD_FIRST_LEVEL;
-    for (int k = 0; k < CHILD_OCTAVES; ++k) {
+    for (int k = 0; k < CHILD_FINEST_LEVEL; ++k) {
         float next_px = 2.0f * threshold_px;
         if (diameter_px > next_px && fine < finest) {
             threshold_px = next_px;
@@ -36,10 +36,11 @@ float child_radius_scale(int level) { return level == 0 ? 1.0f : as_div(2.0f, fl
 
 float child_lerp(float a, float b, float t) { return a + (b - a) * t; }
 
+const float NEAR_STAR_LEAST = 0.25f;  // has brightest_near_star times the light per area
 // As near_star_size() of lod.h; nearness in (0, 1].
 float near_star_size(float nearness) {
     float root = sqrt(nearness);
-    return max(0.25f, root * sqrt(root));
+    return max(NEAR_STAR_LEAST, root * sqrt(root));
 }
 
 // How much structure (`strength`: lod.noise) the children of a splat get: those of dust half of it. Light that screen

@@ -159,6 +159,9 @@ TEST_F(Commands, DetailFollowsTheCamera) {
     }
     EXPECT_EQ(blue + orange > 0,
               film.find_first_of("12", film.find("detail_tiles = \"")) != std::string::npos);
+    expect_one_line(run({"detail", "f.toml", "--none", "--image", "levels.png"}), 2, "levels.png");
+    expect_one_line(run({"detail", "f.toml", "--none", "--image", "levels.doc"}), 4, "levels.doc");
+    EXPECT_EQ(text_of(folder / "f.toml"), film) << "what fails changes no scene";
     expect_success(run({"detail", "f.toml", "--splats", "1", "-o", "g.toml"}));
     EXPECT_EQ(text_of(folder / "g.toml"), without);
     expect_one_line(run({"detail", "f.toml", "-o", "g.toml"}), 2, "g.toml");

@@ -141,38 +141,6 @@ TEST_F(Cards, WhatLevelOfDetailDivides) {
     all("held out", inside, Blend::screen, Falloff::Shape::exponential, true);
 }
 
-/// The processor has none of their rows.
-TEST_F(Cards, DividesWhatALookHasMadeInItsMemory) {
-    Scene scene = parse_scene(R"(astrosplat = 1
-[output]
-resolution = [160, 100]
-[camera]
-position = [0.0, 0.3, 2.0]
-target = [0.0, 0.0, 0.0]
-[[layer]]
-name = "a"
-source = { kind = "splats", file = "a.splats" }
-render = { lod = { max_px = 12.0, max_children = 64, noise = 0.5, star_distance = 1.5 } }
-[layer.look]
-radius = { min = 0.05, max = 0.15 }
-)",
-                              "/a.toml");
-    SplatSet set = file_set(400);
-    for (std::size_t i = 0; i < set.id.size(); i += 7) set.id[i] |= star_band << 48;
-    const std::vector sets = {std::make_shared<const SplatSet>(std::move(set))};
-    const auto frame_of = [&](RenderDevice* device) {
-        Pipeline pipeline;
-        pipeline.set_scene(scene, sets);
-        const FrameScene now = pipeline.frame_scene(1.0);
-        RenderSettings settings = render_settings(now.scene.output);
-        settings.device = device;
-        return pipeline.frame(now, settings);
-    };
-    const RenderedFrame expected = frame_of(nullptr), found = frame_of(&card());
-    EXPECT_EQ(found.statistics.device, card().name()) << found.statistics.not_on_device;
-    expect_same(found.beauty, expected.beauty, "a look's children");
-}
-
 TEST_F(Cards, OverAnImage) {
     const ShadedSplats splats = cloud(3000, 11);
     Image sky = make_image(211, 133, 4, 1.0f);
@@ -297,9 +265,10 @@ TEST_F(Cards, LooksAppliedInItsMemory) {
                 EXPECT_EQ(frame.statistics.device, card().name()) << c.name;
                 expect_same(frame.beauty, expected.beauty, c.name);
                 if (c.name != "defaults" || power > 1.0f || blend != Blend::over) continue;
-                layer.on_device = &there;  // the processor makes them where level of detail divides them
+                layer.on_device = &there;  // divided there too: the processor has none of their rows
                 layer.render.lod = {3.0f, 16, 0.5f, 0.0f};
                 const RenderedFrame divided = render({&layer, 1}, camera, nullptr, settings);
+                EXPECT_EQ(divided.statistics.device, card().name()) << c.name;
                 layer.on_device = nullptr;
                 layer.splats = &shaded;
                 expect_same(divided.beauty, render({&layer, 1}, camera, nullptr, of_processor).beauty,
