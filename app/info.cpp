@@ -118,6 +118,7 @@ Report describe_image(const fs::path& file) {
         report["whole_frame"] = {info.whole_width, info.whole_height};
         report["at"] = {info.x, info.y};
     }
+    if (!info.parts.empty()) report["pictures"] = info.parts;
     const FrameHeader header = read_frame_header(file);
     if (!header.frame_hash.empty()) {
         report["frame_hash"] = header.frame_hash;

@@ -17,6 +17,9 @@ pkg_check_modules(OIIO REQUIRED IMPORTED_TARGET OpenImageIO>=2.4)
 pkg_check_modules(OPENEXR REQUIRED IMPORTED_TARGET OpenEXR>=3.1)
 pkg_check_modules(OCIO REQUIRED IMPORTED_TARGET OpenColorIO>=2.1)
 pkg_check_modules(CFITSIO REQUIRED IMPORTED_TARGET cfitsio)
+pkg_check_modules(WCSLIB REQUIRED IMPORTED_TARGET wcslib)
+pkg_check_modules(ERFA REQUIRED IMPORTED_TARGET erfa)
+pkg_check_modules(LCMS REQUIRED IMPORTED_TARGET lcms2)
 pkg_check_modules(XXHASH REQUIRED IMPORTED_TARGET libxxhash)
 pkg_check_modules(HWY REQUIRED IMPORTED_TARGET libhwy)
 if(ASTROSPLAT_WINDOW)
@@ -81,7 +84,7 @@ target_link_libraries(openvdb INTERFACE ${OPENVDB_LIBRARY} ${TBB_LIBRARY} PkgCon
 
 # For --version, of those that have a say in pictures or files.
 set(astrosplat_library_versions "OpenEXR ${OPENEXR_VERSION}" "OpenImageIO ${OIIO_VERSION}" "OpenColorIO ${OCIO_VERSION}"
-  "CFITSIO ${CFITSIO_VERSION}" "Highway ${HWY_VERSION}" "fmt ${fmt_VERSION}" "zlib ${ZLIB_VERSION_STRING}"
+  "CFITSIO ${CFITSIO_VERSION}" "WCSLIB ${WCSLIB_VERSION}" "ERFA ${ERFA_VERSION}" "Little CMS ${LCMS_VERSION}" "Highway ${HWY_VERSION}" "fmt ${fmt_VERSION}" "zlib ${ZLIB_VERSION_STRING}"
   "libpng ${PNG_VERSION_STRING}" "libtiff ${TIFF_VERSION_STRING}" "OpenSSL ${OPENSSL_VERSION}")
 if(ASTROSPLAT_WINDOW)
   list(APPEND astrosplat_library_versions "GLFW ${glfw3_VERSION}" "Dear ImGui ${IMGUI_VERSION}")

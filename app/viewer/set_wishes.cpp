@@ -35,9 +35,12 @@ RawPicture thinned(RawPicture raw) {
     if (step <= 1 || width < 1 || height < 1) return raw;
     if (raw.fits) {
         Buffer<double> values;
-        values.reserve(static_cast<std::size_t>(width * height));
+        const int channels = raw.fits->channels;
+        values.reserve(static_cast<std::size_t>(width * height * channels));
         for_each_thinned(width, height, step, [&](std::int64_t x, std::int64_t y) {
-            values.push_back(raw.fits->values[static_cast<std::size_t>(y * full_width + x)]);
+            for (int c = 0; c < channels; ++c)
+                values.push_back(
+                    raw.fits->values[static_cast<std::size_t>((y * full_width + x) * channels + c)]);
         });
         raw.fits->values = std::move(values);
         raw.fits->width = width;
@@ -58,21 +61,23 @@ class ThinnedFiles {
   public:
     /// Files as they are, for shapes that are made of pictures.
     RawReader whole_reader() {
-        return [this](const fs::path& file, const std::string& hdu, int plane, const Progress& progress) {
+        return [this](const fs::path& file, const std::string& hdu, std::optional<int> plane,
+                      const Progress& progress) {
             RawPicture raw = read_raw(file, hdu, plane, progress);
             files_.insert_or_assign({file, hdu, plane}, thinned(raw));
             return raw;
         };
     }
     RawReader reader() {
-        return [this](const fs::path& file, const std::string& hdu, int plane, const Progress& progress) {
+        return [this](const fs::path& file, const std::string& hdu, std::optional<int> plane,
+                      const Progress& progress) {
             const auto found = files_.find({file, hdu, plane});
             return found != files_.end() ? found->second : thinned(read_raw(file, hdu, plane, progress));
         };
     }
 
   private:
-    std::map<std::tuple<fs::path, std::string, int>, RawPicture> files_;
+    std::map<std::tuple<fs::path, std::string, std::optional<int>>, RawPicture> files_;
 };
 
 /// The pictures of all meshes, as smooth as the splats that show them.

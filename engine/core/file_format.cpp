@@ -30,7 +30,21 @@ std::span<const FileFormat> file_formats() {
         {"bmp", "BMP", picture, {".bmp"}, {}},
         {"gif", "GIF", picture, {".gif"}, {"GIF87a", "GIF89a"}},
         {"targa", "TGA", picture, {".tga"}, {}},
-        {"pnm", "PNM", picture, {".ppm", ".pgm", ".pnm"}, {"P2\n", "P3\n", "P5\n", "P6\n"}},
+        {"pnm",
+         "PNM",
+         picture,
+         {".ppm", ".pgm", ".pnm", ".pbm", ".pfm"},
+         {"P1\n", "P2\n", "P3\n", "P4\n", "P5\n", "P6\n", "PF\n", "Pf\n"}},
+        {"heif",
+         "HEIC or AVIF",
+         picture,
+         {".heic", ".heif", ".avif"},
+         {"????ftyphei", "????ftypmif1", "????ftypavi"}},
+        {"raw",
+         "camera raw",
+         picture,
+         {".dng", ".nef", ".arw", ".pef", ".cr2", ".cr3", ".orf", ".rw2", ".raf"},
+         {}},
         {"chan", "Nuke's chan", unknown, {".chan"}, {}, camera_read | camera_written},
         {"gaia_sky", "Gaia Sky", unknown, {".gsc"}, {}, camera_read},
         {"openspace", "OpenSpace", unknown, {".osrectxt"}, {}, camera_read},
@@ -96,7 +110,10 @@ const FileFormat* format_of_file(const fs::path& file) {
         return std::ranges::any_of(format.magic,
                                    [&](std::string_view magic) { return begins_with(bytes, magic); });
     });
-    return by_content ? by_content : format_by_name(file);
+    const FileFormat* const by_name = format_by_name(file);
+    // Most cameras' files are TIFF inside, with a small picture in front.
+    const bool is_raw = by_content && by_content->id == "tiff" && by_name && by_name->id == "raw";
+    return by_content && !is_raw ? by_content : by_name;
 }
 
 FileKind kind_of(const FileFormat* format) { return format ? format->kind : FileKind::unknown; }

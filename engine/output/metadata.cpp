@@ -14,6 +14,7 @@
 #include "core/text.h"
 #include "output/frame_formats.h"
 #include "source/open_picture.h"
+#include "source/picture.h"
 
 // fmt first: OpenImageIO brings a copy of it with other settings.
 
@@ -212,12 +213,14 @@ std::vector<KeyDifference> differing_keys(const std::string& first, const std::s
 
 ImageInfo read_image_info(const fs::path& file) {
     const auto in = open_picture(file);
-    const OIIO::ImageSpec& spec = in->spec();
+    const PictureParts parts = describe_parts(file);
+    const OIIO::ImageSpec spec = in->spec(parts.taken);
     ImageInfo info{spec.width,       spec.height,       spec.x, spec.y, spec.full_width,
-                   spec.full_height, in->format_name(), {},     {}};
+                   spec.full_height, in->format_name(), {},     {},     {}};
     for (int c = 0; c < spec.nchannels; ++c) {
         info.channels.emplace_back(spec.channel_name(c), spec.channelformat(c).c_str());
     }
+    if (parts.parts.size() > 1) info.parts = parts.parts;
     for (const OIIO::ParamValue& value : spec.extra_attribs) {
         info.metadata.emplace_back(value.name().string(), value.get_string());
     }

@@ -61,10 +61,11 @@ struct ImageInfo {
     std::string file_format;                                    // "openexr", "tiff", "png", ...
     std::vector<std::pair<std::string, std::string>> channels;  // name and type: "R", "half"
     std::vector<std::pair<std::string, std::string>> metadata;  // everything else in the header, as text
+    std::vector<std::string> parts = {};  // of a file of several pictures each; else none
 };
 
-/// The header of a picture file, without reading its pixels. Throws InputError when the
-/// file cannot be opened as a picture.
+/// The header of a picture file (of several pictures in it that which is taken), without reading its pixels.
+/// Throws InputError when the file cannot be opened as a picture.
 ImageInfo read_image_info(const fs::path& file);
 
 /// The header of a frame file. The stored size and region are those of its hashed text, where it has one.

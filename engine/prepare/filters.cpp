@@ -1,8 +1,8 @@
-// Sky to plane and back, with a blur before sampling where pixels grow. Of Lupton's stretch one factor a
-// pixel for all three channels.
+// A blur before sampling where pixels grow. Of Lupton's stretch one factor a pixel for all three channels.
 #include "prepare/stages.h"
 
 #include "core/color.h"
+#include "core/parallel.h"
 #include "core/real.h"
 #include "image/blur.h"
 #include "image/channels.h"
@@ -11,10 +11,6 @@ namespace astrosplat {
 namespace {
 
 constexpr int lobes = 3;  // of the Lanczos kernel, on either side
-
-double determinant(const TanGrid& grid) {
-    return grid.deg_per_px[0] * grid.deg_per_px[3] - grid.deg_per_px[1] * grid.deg_per_px[2];
-}
 
 double lanczos(double x) {
     if (std::fabs(x) < 1e-9) return 1.0;
@@ -58,49 +54,22 @@ void sample(const Image& image, double x, double y, float* out) {
 
 }  // namespace
 
-glm::dvec2 sky_at(const TanGrid& grid, const glm::dvec2& px) {
-    const glm::dvec2 d = px - grid.reference_px;
-    const double xi = real::radians(grid.deg_per_px[0] * d.x + grid.deg_per_px[1] * d.y);
-    const double eta = real::radians(grid.deg_per_px[2] * d.x + grid.deg_per_px[3] * d.y);
-    const double ra = real::radians(grid.reference_deg.x), dec = real::radians(grid.reference_deg.y);
-    const double towards = real::cos(dec) - eta * real::sin(dec);
-    const double found = ra + real::atan2(xi, towards);
-    const double up = real::sin(dec) + eta * real::cos(dec);
-    const double degrees = real::degrees(found);
-    return {degrees - 360.0 * std::floor(degrees / 360.0),
-            real::degrees(real::atan2(up, std::sqrt(xi * xi + towards * towards)))};
-}
-
-std::optional<glm::dvec2> place_of(const TanGrid& grid, const glm::dvec2& sky_deg) {
-    const double away = real::radians(sky_deg.x - grid.reference_deg.x), dec = real::radians(sky_deg.y);
-    const double dec0 = real::radians(grid.reference_deg.y);
-    const double depth =
-        real::sin(dec) * real::sin(dec0) + real::cos(dec) * real::cos(dec0) * real::cos(away);
-    if (!(depth > 0.0)) return {};
-    const double xi = real::degrees(real::cos(dec) * real::sin(away) / depth);
-    const double eta = real::degrees(
-        (real::sin(dec) * real::cos(dec0) - real::cos(dec) * real::sin(dec0) * real::cos(away)) / depth);
-    const double whole = determinant(grid);
-    return grid.reference_px + glm::dvec2((grid.deg_per_px[3] * xi - grid.deg_per_px[1] * eta) / whole,
-                                          (grid.deg_per_px[0] * eta - grid.deg_per_px[2] * xi) / whole);
-}
-
-Image regridded(const Image& image, const TanGrid& own, const TanGrid& target, std::int64_t width,
+Image regridded(const Image& image, const RowPlaces& places, double texels, std::int64_t width,
                 std::int64_t height, PixelMask& outside) {
-    const double texels = std::sqrt(std::fabs(determinant(target) / determinant(own)));
     // Half a pixel of the target as sigma, less the half texel that the source has already.
     const Image source = texels > 1.0 ? gaussian_blur(image, 0.5 * std::sqrt(texels * texels - 1.0)) : image;
     Image out = make_image(width, height, image.channels);
     outside = make_mask(width, height);
-    for_each_pixel(out, [&](std::int64_t x, std::int64_t y) {
-        const std::optional<glm::dvec2> place =
-            place_of(own, sky_at(target, glm::dvec2(double(x) + 1.0, double(height - y))));
-        const double u = place ? place->x - 0.5 : -1.0;
-        const double v = place ? double(image.height) + 0.5 - place->y : -1.0;
-        if (u >= 0.0 && v >= 0.0 && u <= double(image.width) && v <= double(image.height))
-            sample(source, u, v, out.at(x, y));
-        else
-            outside.at(x, y) = 1;
+    parallel_each(height, 8, [&](std::int64_t y) {
+        std::vector<glm::dvec2> row(static_cast<std::size_t>(width));
+        places(y, row);
+        for (std::int64_t x = 0; x < width; ++x) {
+            const auto [u, v] = std::pair(row[x].x, row[x].y);
+            if (u >= 0.0 && v >= 0.0 && u <= double(image.width) && v <= double(image.height))
+                sample(source, u, v, out.at(x, y));
+            else
+                outside.at(x, y) = 1;
+        }
     });
     return out;
 }

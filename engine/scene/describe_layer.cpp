@@ -337,7 +337,8 @@ void describe_layer(const Describer& d, LayerParams& layer) {
 
 void describe_fits(const Describer& d, TextureSettings& t) {
     d.custom(
-        spec("hdu", "FITS HDU", "", "Number or EXTNAME of the HDU; auto: the first with a picture.",
+        spec("hdu", "Picture in file", "",
+             "Number or name of the FITS HDU, EXR part or TIFF page; auto: the one that shows most.",
              as(Type::text)),
         [&t](const ParameterSpec&) {
             const bool number =
@@ -348,7 +349,9 @@ void describe_fits(const Describer& d, TextureSettings& t) {
             const bool number = std::holds_alternative<std::int64_t>(value.data);
             t.hdu = number ? to_toml(value) : text_of(value, s);
         });
-    d(t.plane, "plane", "FITS plane", "", "Plane of a FITS cube, from 0.", at_least(0), slider(0, 100));
+    d(t.plane, "plane", "FITS plane", "",
+      "Plane of a FITS cube, from 0; auto: three are colours, else the first that shows.", or_auto(),
+      at_least(0), slider(0, 100));
     d(t.stretch, "stretch", "Stretch", "",
       "Curve from data values to display values; auto: asinh for FITS, linear else.");
     d(t.black, "black", "Black point", "data values", "Data value shown as 0; auto: the 0.25 percentile.",

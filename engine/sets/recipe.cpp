@@ -24,7 +24,10 @@ std::string text_of(const T& value) {
 std::string text_of(const glm::dvec2& v) { return fmt::format("{} {}", v.x, v.y); }
 std::string text_of(const glm::dvec3& v) { return fmt::format("{} {} {}", v.x, v.y, v.z); }
 std::string text_of(const glm::dvec4& v) { return fmt::format("{} {} {} {}", v.x, v.y, v.z, v.w); }
-std::string text_of(const std::optional<double>& v) { return v ? fmt::format("{}", *v) : "auto"; }
+template <class T>
+std::string text_of(const std::optional<T>& v) {
+    return v ? text_of(*v) : "auto";
+}
 
 // "NAME VALUE VALUE ..." and the line's end.
 template <class... Values>

@@ -8,7 +8,9 @@
 #include "core/error.h"
 #include "core/file.h"
 #include "core/file_format.h"
+#include "core/log.h"
 #include "core/memory.h"
+#include "core/parallel.h"
 #include "core/real.h"
 #include "core/text.h"
 
@@ -213,21 +215,68 @@ Buffer<double> room_for(const fs::path& file, std::int64_t count) {
     return Buffer<double>(std::size_t(count));
 }
 
-FitsHdu find_hdu(const fs::path& file, fitsfile* in, const std::string& wanted) {
+// Names that observatories give to what is no picture of the sky.
+bool is_auxiliary(const FitsHdu& hdu) {
+    constexpr std::array names{"dq",   "err",   "error",       "wht",        "weight",   "con",
+                               "ctx",  "var",   "var_poisson", "var_rnoise", "var_flat", "mask",
+                               "stat", "sigma", "uncert",      "bpm"};
+    return std::ranges::find(names, lower_case(hdu.name)) != names.end();
+}
+
+// Whether `count` values from `first` on are all the same, or none.
+bool is_blank(const fs::path& file, fitsfile* in, std::int64_t first, std::int64_t count,
+              const Progress& progress) {
+    constexpr std::int64_t portion = std::int64_t{1} << 18;
+    Buffer<double> values(std::size_t(std::min(portion, count)));
+    double known = std::numeric_limits<double>::quiet_NaN();
+    for (std::int64_t done = 0; done < count; done += portion) {
+        const std::int64_t n = std::min(portion, count - done);
+        read_into(file, in, first + done, n, progress, values.data());
+        for (std::int64_t i = 0; i < n; ++i) {
+            if (!std::isfinite(values[i])) continue;
+            if (!std::isnan(known) && values[i] != known) return false;
+            known = values[i];
+        }
+    }
+    return true;
+}
+
+FitsHdu automatic_hdu(const fs::path& file, fitsfile* in, int count, const Progress& progress) {
+    std::vector<FitsHdu> pictures;
+    for (int i = 0; i < count; ++i)
+        if (FitsHdu hdu = go_to_hdu(file, in, i); hdu.picture) pictures.push_back(std::move(hdu));
+    if (pictures.empty()) bad_input(file, "an HDU with a picture", fmt::format("none in {} HDUs", count));
+    const auto is_science = [](const FitsHdu& hdu) { return lower_case(hdu.name) == "sci"; };
+    auto taken = std::ranges::find_if(pictures, is_science);
+    const bool named = taken != pictures.end();
+    const auto shows = [&](const FitsHdu& hdu) {
+        if (is_auxiliary(hdu)) return false;
+        if (pictures.size() == 1) return true;
+        go_to_hdu(file, in, hdu.number);
+        check_tiles(file, in);
+        return !is_blank(file, in, 0, product(file, hdu.axes), progress);
+    };
+    if (!named) taken = std::ranges::find_if(pictures, shows);
+    if (taken == pictures.end()) taken = pictures.begin();
+    if (pictures.size() > 1 && !named)
+        log_warning(fmt::format(
+            "{}: {} HDUs hold pictures; HDU {}{}{} is taken (hdu = NAME or NUMBER takes another)",
+            file.string(), pictures.size(), taken->number, taken->name.empty() ? "" : " ", taken->name));
+    return go_to_hdu(file, in, taken->number);
+}
+
+FitsHdu find_hdu(const fs::path& file, fitsfile* in, const std::string& wanted, const Progress& progress) {
     const int count = hdu_count(file, in);
+    if (wanted == "auto") return automatic_hdu(file, in, count, progress);
     const std::optional<std::int64_t> number = parse_int64(wanted);
     if (number && (*number < 0 || *number >= count))
         bad_input(file, fmt::format("an HDU from 0 to {}", count - 1), fmt::format("hdu = {}", wanted));
     for (int i = 0; i < count; ++i) {
         const FitsHdu hdu = go_to_hdu(file, in, i);
-        const bool asked = wanted == "auto" ? hdu.picture
-                           : number         ? *number == i
-                                            : lower_case(hdu.name) == lower_case(wanted);
-        if (!asked) continue;
+        if (number ? *number != i : lower_case(hdu.name) != lower_case(wanted)) continue;
         if (!hdu.picture) bad_input(file, fmt::format("HDU {}", i), "a picture", "none (" + hdu.kind + ")");
         return hdu;
     }
-    if (wanted == "auto") bad_input(file, "an HDU with a picture", fmt::format("none in {} HDUs", count));
     bad_input(file, fmt::format("an HDU named '{}'", wanted), fmt::format("none in {} HDUs", count));
 }
 
@@ -237,45 +286,159 @@ void swap_rows(std::int64_t width, std::int64_t rows, double* values) {
         std::swap_ranges(values + y * width, values + (y + 1) * width, values + (rows - 1 - y) * width);
 }
 
-std::optional<double> number_keyword(fitsfile* in, const std::string& keyword) {
-    double value = 0.0;
-    if (!read_keyword(in, TDOUBLE, keyword.c_str(), &value) || !std::isfinite(value)) return {};
-    return value;
+// Of the current HDU, as cards of 80 characters; of compressed pictures what they were.
+std::string cards_of(const fs::path& file, fitsfile* in) {
+    char* cards = nullptr;
+    int count = 0, status = 0;
+    fits_convert_hdr2str(in, 1, nullptr, 0, &cards, &count, &status);
+    check(file, "reading the header", status);
+    std::string text(cards, std::size_t(count) * 80);
+    fits_free_memory(cards, &status);
+    return text;
 }
 
-// CD, or CDELT with PC or CROTA2 (Greisen and Calabretta 2002, A&A 395, 1061).
-std::optional<std::array<double, 4>> degrees_per_pixel(fitsfile* in) {
-    constexpr std::array axes{"1_1", "1_2", "2_1", "2_2"};
-    std::array<double, 4> cd{};
-    bool any = false;
+// Where a picture's values are in its HDU.
+struct FitsLayout {
+    enum class Values { plane, planes, by_pixel, bayer } values = Values::plane;
+    std::int64_t width = 0, height = 0;
+    std::int64_t first = 0;      // value of the HDU that is the picture's
+    std::int64_t stride = 1;     // of one channel's values
+    bool top_down = false;       // the first row is on top
+    std::array<int, 4> pattern;  // Bayer's: channels of the lower left 2 x 2 of the file
+    std::string what;
+};
+
+// Means of neighbours cannot be taken of planes that are no colours of one another.
+bool is_of_colors(fitsfile* in, std::size_t axis) {
+    const std::string type = lower_case(text_keyword(in, fmt::format("CTYPE{}", axis + 1).c_str()));
+    constexpr std::array others{"freq", "velo", "vrad", "vopt", "wave",   "awav", "ener",
+                                "wavn", "zopt", "beta", "felo", "stokes", "time", "utc"};
+    return std::ranges::none_of(others, [&](const char* other) { return type.starts_with(other); });
+}
+
+// The letters belong to a picture as a camera stores it, from its top on. What says that it was turned over
+// begins with the other row; of what says nothing the rows are as the camera's.
+std::optional<std::array<int, 4>> bayer_pattern(fitsfile* in, bool bottom_up) {
+    const std::string letters = text_keyword(in, "BAYERPAT");
+    int x = 0, y = 0;
+    read_keyword(in, TINT, "XBAYROFF", &x);
+    read_keyword(in, TINT, "YBAYROFF", &y);
+    if (bottom_up) ++y;
+    std::array<int, 4> pattern{};
+    if (letters.size() != 4) return {};
     for (std::size_t i = 0; i < 4; ++i) {
-        const std::optional<double> value = number_keyword(in, fmt::format("CD{}", axes[i]));
-        any = any || value;
-        cd[i] = value.value_or(0.0);
+        const char letter = letters[((i / 2 + std::size_t(y & 1)) % 2) * 2 + (i + std::size_t(x & 1)) % 2];
+        const std::size_t channel = std::string_view("RGB").find(letter);
+        if (channel == std::string_view::npos) return {};
+        pattern[i] = int(channel);
     }
-    if (any) return cd;
-    const auto across = number_keyword(in, "CDELT1"), up = number_keyword(in, "CDELT2");
-    if (!across || !up || *across == 0.0 || *up == 0.0) return {};
-    const double turn = real::radians(number_keyword(in, "CROTA2").value_or(0.0));
-    const std::array<double, 4> turned{real::cos(turn), -real::sin(turn) * *up / *across,
-                                       real::sin(turn) * *across / *up, real::cos(turn)};
-    for (std::size_t i = 0; i < 4; ++i)
-        cd[i] =
-            (i < 2 ? *across : *up) * number_keyword(in, fmt::format("PC{}", axes[i])).value_or(turned[i]);
-    return cd;
+    return pattern;
 }
 
-std::optional<FitsSky> sky_of(fitsfile* in) {
-    if (text_keyword(in, "CTYPE1").substr(0, 8) != "RA---TAN" ||
-        text_keyword(in, "CTYPE2").substr(0, 8) != "DEC--TAN")
-        return {};
-    const auto x = number_keyword(in, "CRPIX1"), y = number_keyword(in, "CRPIX2");
-    const auto ra = number_keyword(in, "CRVAL1"), dec = number_keyword(in, "CRVAL2");
-    const auto cd = degrees_per_pixel(in);
-    if (!x || !y || !ra || !dec || !cd) return {};
-    const double whole = (*cd)[0] * (*cd)[3] - (*cd)[1] * (*cd)[2];
-    if (!(std::fabs(whole) > 0.0)) return {};
-    return FitsSky{{*x, *y}, {*ra, *dec}, *cd};
+FitsLayout layout_of(const fs::path& file, fitsfile* in, const FitsHdu& hdu, std::optional<int> plane,
+                     const Progress& progress) {
+    const std::vector<std::int64_t> axes = picture_axes(hdu.axes);
+    FitsLayout layout;
+    using Values = FitsLayout::Values;
+    const std::string order = text_keyword(in, "ROWORDER");
+    layout.top_down = order == "TOP-DOWN";
+    if (!order.empty() && !layout.top_down && order != "BOTTOM-UP")
+        log_warning(fmt::format("{}: ROWORDER = '{}' is not followed: the first row is the lowest",
+                                file.string(), order));
+    const bool by_pixel =
+        axes.size() == 3 && axes[0] == 3 && axes[1] > 3 && axes[2] > 3 && is_of_colors(in, 0);
+    layout.width = axes[by_pixel ? 1 : 0];
+    layout.height = axes[by_pixel ? 2 : 1];
+    const std::int64_t pixels = product(file, {layout.width, layout.height});
+    const std::int64_t planes = product(file, hdu.axes) / pixels;
+    if (plane && (*plane < 0 || *plane >= planes))
+        bad_input(file, fmt::format("HDU {}", hdu.number), fmt::format("a plane from 0 to {}", planes - 1),
+                  fmt::format("plane = {}", *plane));
+    layout.stride = by_pixel ? 3 : 1;
+    if (plane || planes == 1) {
+        layout.first = plane.value_or(0) * (by_pixel ? 1 : pixels);
+        const auto pattern = plane ? std::nullopt : bayer_pattern(in, order == "BOTTOM-UP");
+        if (pattern && layout.width > 1 && layout.height > 1) {
+            layout.values = Values::bayer;
+            layout.pattern = *pattern;
+            layout.what = fmt::format("Bayer's mosaic {}", text_keyword(in, "BAYERPAT"));
+        } else if (!plane && !text_keyword(in, "BAYERPAT").empty()) {
+            log_warning(fmt::format("{}: BAYERPAT = '{}' is not followed: the picture stays grey",
+                                    file.string(), text_keyword(in, "BAYERPAT")));
+        }
+        return layout;
+    }
+    if (by_pixel) {
+        layout.values = Values::by_pixel;
+        return layout;
+    }
+    if (planes == 3 && axes.size() == 3 && is_of_colors(in, 2)) {
+        layout.values = Values::planes;
+        layout.what = "3 planes as red, green and blue";
+        return layout;
+    }
+    std::int64_t taken = 0;
+    while (taken < planes && is_blank(file, in, taken * pixels, pixels, progress)) ++taken;
+    if (taken == planes) taken = 0;
+    layout.first = taken * pixels;
+    layout.what = fmt::format("plane {} of {}", taken, planes);
+    log_warning(fmt::format("{}: it has {} planes; plane {} is taken{} (plane = N takes another)",
+                            file.string(), planes, taken, taken > 0 ? ", the first that is not blank" : ""));
+    return layout;
+}
+
+// Rows of the file, from `first` on, as red, green and blue: what a pixel has not is the mean of those of its
+// 3 x 3 neighbours that have it.
+void demosaic(const FitsLayout& layout, std::int64_t first, std::int64_t rows, const double* mosaic,
+              std::int64_t mosaic_first, std::int64_t mosaic_rows, double* rgb) {
+    parallel_each(rows, 16, [&](std::int64_t row) {
+        const std::int64_t y = first + row;
+        for (std::int64_t x = 0; x < layout.width; ++x) {
+            double sum[3] = {}, count[3] = {};
+            const auto channel = [&](std::int64_t px, std::int64_t py) {
+                return layout.pattern[std::size_t(2 * (py & 1) + (px & 1))];
+            };
+            const auto value = [&](std::int64_t px, std::int64_t py) {
+                return mosaic[(py - mosaic_first) * layout.width + px];
+            };
+            for (std::int64_t py = std::max(y - 1, mosaic_first);
+                 py <= y + 1 && py < mosaic_first + mosaic_rows; ++py)
+                for (std::int64_t px = std::max<std::int64_t>(x - 1, 0); px <= x + 1 && px < layout.width;
+                     ++px) {
+                    sum[channel(px, py)] += value(px, py);
+                    count[channel(px, py)] += 1.0;
+                }
+            double* const to = rgb + 3 * (row * layout.width + x);
+            for (int c = 0; c < 3; ++c) to[c] = sum[c] / count[c];
+            to[channel(x, y)] = value(x, y);
+        }
+    });
+}
+
+// Rows [begin, end) of the file, channel by channel of each pixel.
+void read_file_rows(const fs::path& file, fitsfile* in, const FitsLayout& layout, std::int64_t begin,
+                    std::int64_t end, const Progress& progress, double* values) {
+    using Values = FitsLayout::Values;
+    const std::int64_t width = layout.width, count = (end - begin) * width;
+    if (layout.values == Values::plane && layout.stride == 1)
+        return read_into(file, in, layout.first + begin * width, count, progress, values);
+    if (layout.values == Values::by_pixel)
+        return read_into(file, in, 3 * begin * width, 3 * count, progress, values);
+    if (layout.values == Values::bayer) {
+        const std::int64_t first = std::max<std::int64_t>(begin - 1, 0),
+                           last = std::min(end + 1, layout.height);
+        Buffer<double> mosaic(std::size_t((last - first) * width));
+        read_into(file, in, first * width, std::ssize(mosaic), progress, mosaic.data());
+        return demosaic(layout, begin, end - begin, mosaic.data(), first, last - first, values);
+    }
+    const bool planes = layout.values == Values::planes;
+    Buffer<double> some(std::size_t(planes ? count : 3 * count));
+    for (std::int64_t c = 0; c < (planes ? 3 : 1); ++c) {
+        const std::int64_t from = planes ? c * width * layout.height + begin * width : 3 * begin * width;
+        read_into(file, in, from, std::ssize(some), progress, some.data());
+        for (std::int64_t i = 0; i < count; ++i)
+            planes ? values[3 * i + c] = some[i] : values[i] = some[3 * i + layout.first];
+    }
 }
 
 }  // namespace
@@ -287,7 +450,7 @@ bool is_fits(const fs::path& file) {
 
 void require_fits_picture(const fs::path& file) {
     const Handle in = open_fits(file);
-    find_hdu(file, in.get(), "auto");
+    find_hdu(file, in.get(), "auto", {});
 }
 
 std::vector<FitsHdu> describe_fits(const fs::path& file, const Progress& progress) {
@@ -308,38 +471,39 @@ std::vector<FitsHdu> describe_fits(const fs::path& file, const Progress& progres
     return hdus;
 }
 
-FitsRows open_fits_rows(const fs::path& file, const std::string& hdu, int plane, const Progress& progress) {
+FitsRows open_fits_rows(const fs::path& file, const std::string& hdu, std::optional<int> plane,
+                        const Progress& progress) {
     const std::shared_ptr<fitsfile> in(open_fits(file));
-    const FitsHdu found = find_hdu(file, in.get(), hdu);
-    const std::vector<std::int64_t> axes = picture_axes(found.axes);
-    const std::int64_t pixels = product(file, {axes[0], axes[1]});
-    const std::int64_t planes = product(file, found.axes) / pixels;
-    if (plane < 0 || plane >= planes)
-        bad_input(file, fmt::format("HDU {}", found.number), fmt::format("a plane from 0 to {}", planes - 1),
-                  fmt::format("plane = {}", plane));
-    FitsRows rows;
-    rows.plane.width = axes[0];
-    rows.plane.height = axes[1];
-    rows.plane.hdu = found.number;
-    rows.plane.name = found.name;
-    rows.plane.credit = text_keyword(in.get(), "AUTHOR");
-    if (rows.plane.credit.empty()) rows.plane.credit = text_keyword(in.get(), "ORIGIN");
-    rows.plane.object = text_keyword(in.get(), "OBJECT");
-    rows.plane.distance_ly = distance_ly_of(in.get());
-    rows.plane.sky = sky_of(in.get());
+    const FitsHdu found = find_hdu(file, in.get(), hdu, progress);
     check_tiles(file, in.get());
-    rows.read = [=, width = axes[0], height = axes[1]](std::int64_t begin, std::int64_t end, double* values) {
-        read_into(file, in.get(), pixels * plane + (height - end) * width, (end - begin) * width, progress,
-                  values);
-        swap_rows(width, end - begin, values);
+    const FitsLayout layout = layout_of(file, in.get(), found, plane, progress);
+    FitsRows rows;
+    FitsPlane& picture = rows.plane;
+    picture.width = layout.width;
+    picture.height = layout.height;
+    picture.channels = layout.values == FitsLayout::Values::plane ? 1 : 3;
+    picture.hdu = found.number;
+    picture.name = found.name;
+    picture.what = layout.what;
+    picture.credit = text_keyword(in.get(), "AUTHOR");
+    if (picture.credit.empty()) picture.credit = text_keyword(in.get(), "ORIGIN");
+    picture.object = text_keyword(in.get(), "OBJECT");
+    picture.distance_ly = distance_ly_of(in.get());
+    picture.sky = read_fits_sky(file, cards_of(file, in.get()), layout.height, layout.top_down);
+    rows.read = [=, channels = picture.channels](std::int64_t begin, std::int64_t end, double* values) {
+        const bool down = layout.top_down;
+        read_file_rows(file, in.get(), layout, down ? begin : layout.height - end,
+                       down ? end : layout.height - begin, progress, values);
+        if (!down) swap_rows(layout.width * channels, end - begin, values);
     };
     return rows;
 }
 
-FitsPlane read_fits(const fs::path& file, const std::string& hdu, int plane, const Progress& progress) {
+FitsPlane read_fits(const fs::path& file, const std::string& hdu, std::optional<int> plane,
+                    const Progress& progress) {
     FitsRows rows = open_fits_rows(file, hdu, plane, progress);
     FitsPlane result = std::move(rows.plane);
-    result.values = room_for(file, result.width * result.height);
+    result.values = room_for(file, result.width * result.height * result.channels);
     rows.read(0, result.height, result.values.data());
     return result;
 }

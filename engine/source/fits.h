@@ -5,6 +5,7 @@
 
 #include "core/buffer.h"
 #include "core/progress.h"
+#include "source/sky_grid.h"
 #include "source/source.h"
 
 namespace astrosplat {
@@ -74,23 +75,17 @@ std::vector<FitsHdu> describe_fits(const fs::path& file, const Progress& progres
 /// Throws InputError unless one of the HDUs holds a picture.
 void require_fits_picture(const fs::path& file);
 
-/// How the sky lies on a picture: the keywords CRPIX, CRVAL and CD of a tangent plane (CTYPE RA---TAN,
-/// DEC--TAN, of which distortions are left out); CDELT with PC or CROTA2 make a CD.
-struct FitsSky {
-    std::array<double, 2> crpix{};  // px, from 1 at the middle of the lower left pixel
-    std::array<double, 2> crval{};  // degrees: right ascension, declination
-    std::array<double, 4> cd{};     // degrees a pixel: 1_1, 1_2, 2_1, 2_2; not singular
-};
-
 struct FitsPlane {
     std::int64_t width = 0, height = 0;  // px
+    int channels = 1;                    // 3: red, green and blue of each pixel
     Buffer<double> values;  // physical (BSCALE, BZERO applied), row 0 on top; NaN where undefined
     int hdu = 0;
     std::string name;                   // EXTNAME
+    std::string what;                   // "plane 1 of 4", "3 planes as red, green and blue"; may be empty
     std::string credit;                 // AUTHOR or ORIGIN
     std::string object;                 // OBJECT; may be empty
     std::optional<double> distance_ly;  // DISTANCE, where its comment tells the unit
-    std::optional<FitsSky> sky;         // where the header tells it
+    FitsSky sky;
 };
 
 /// A plane that is handed out by rows.
@@ -100,10 +95,16 @@ struct FitsRows {
     std::function<void(std::int64_t begin, std::int64_t end, double* values)> read;
 };
 
-/// `hdu`: "auto" (the first with a picture), a number from 0 (the primary HDU), or an EXTNAME in any case.
-/// `plane` counts from 0 over the axes beyond two. Throws InputError, Cancelled.
-FitsRows open_fits_rows(const fs::path& file, const std::string& hdu, int plane,
+/// `hdu`: "auto", a number from 0 (the primary HDU), or an EXTNAME in any case; auto takes SCI where there is
+/// one, else the first with a picture that is no mask, weight or error and not blank, and says so where there
+/// are several. `plane` counts from 0 over the axes beyond two (of values that are stored by pixel, over the
+/// first); empty: three of them are a colour picture unless their axis is one of a spectrum or of
+/// polarisation, a plane with BAYERPAT is one as well (its missing values are means of their neighbours'), of
+/// others the first that is not blank is taken, with a warning. ROWORDER is followed. Throws InputError,
+/// Cancelled.
+FitsRows open_fits_rows(const fs::path& file, const std::string& hdu, std::optional<int> plane,
                         const Progress& progress = {});
-FitsPlane read_fits(const fs::path& file, const std::string& hdu, int plane, const Progress& progress = {});
+FitsPlane read_fits(const fs::path& file, const std::string& hdu, std::optional<int> plane,
+                    const Progress& progress = {});
 
 }  // namespace astrosplat

@@ -272,15 +272,16 @@ std::string xmp_packet(const ObjectMetadata& m) {
 ObjectMetadata read_xmp_metadata(const fs::path& file) { return find_xmp_metadata(read_ends(file)); }
 
 ObjectMetadata read_fits_metadata(const fs::path& file) {
-    const FitsPlane plane = open_fits_rows(file, "auto", 0).plane;
+    const FitsPlane plane = open_fits_rows(file, "auto", {}).plane;
     ObjectMetadata found;
     if (!plane.object.empty()) found.names.push_back(plane.object);
     found.credit = plane.credit;
     found.distance_ly = if_distance(plane.distance_ly);
     found.reference_px = {double(plane.width), double(plane.height)};
-    if (!plane.sky) return found;
-    set_matrix(found, plane.sky->cd);
-    found.sky_position = plane.sky->crval;
+    if (!plane.sky.grid) return found;
+    set_matrix(found, plane.sky.grid->degrees_per_px());
+    const glm::dvec2 position = plane.sky.grid->reference_deg();
+    found.sky_position = {position.x, position.y};
     return found;
 }
 

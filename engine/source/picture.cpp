@@ -107,10 +107,11 @@ void check_spec(const fs::path& file, const ImageSpec& spec) {
 // The rows of a file, of which a band is held.
 class Bands {
   public:
-    Bands(fs::path file, std::unique_ptr<ImageInput> in, Progress progress)
+    Bands(fs::path file, std::unique_ptr<ImageInput> in, int part, Progress progress)
         : file_(std::move(file)),
           in_(std::move(in)),
-          spec_(in_->spec()),
+          part_(part),
+          spec_(in_->spec(part)),
           progress_(std::move(progress)),
           rows_(band_rows(spec_)) {}
 
@@ -136,14 +137,15 @@ class Bands {
   private:
     bool read_rows(int begin, int end) {
         if (spec_.tile_width == 0)
-            return in_->read_scanlines(0, 0, begin, end, spec_.z, 0, spec_.nchannels, OIIO::TypeFloat,
+            return in_->read_scanlines(part_, 0, begin, end, spec_.z, 0, spec_.nchannels, OIIO::TypeFloat,
                                        band_.pixels.data());
-        return in_->read_tiles(0, 0, spec_.x, spec_.x + spec_.width, begin, end, spec_.z, spec_.z + 1, 0,
+        return in_->read_tiles(part_, 0, spec_.x, spec_.x + spec_.width, begin, end, spec_.z, spec_.z + 1, 0,
                                spec_.nchannels, OIIO::TypeFloat, band_.pixels.data());
     }
 
     fs::path file_;
     std::unique_ptr<ImageInput> in_;
+    int part_;
     ImageSpec spec_;
     Progress progress_;
     std::int64_t rows_, begin_ = 0;
@@ -243,6 +245,154 @@ double largest_integer(const ImageSpec& spec) {
     return spec.format.size() == 1 ? 255.0 : spec.format.size() == 2 ? 65535.0 : 4294967295.0;
 }
 
+// ---- several pictures in one file
+
+bool has_colors(const ImageSpec& spec) {
+    return find_channel(spec, "R") >= 0 && find_channel(spec, "G") >= 0 && find_channel(spec, "B") >= 0;
+}
+
+std::string part_name(const ImageSpec& spec) { return spec.get_string_attribute("oiio:subimagename"); }
+
+std::vector<ImageSpec> parts_of(ImageInput& in) {
+    constexpr int most_parts = 4096;
+    const QuietStderr quiet;
+    std::vector<ImageSpec> parts;
+    for (int i = 0; i < most_parts && in.seek_subimage(i, 0); ++i) parts.push_back(in.spec(i));
+    (void)in.geterror();
+    return parts;
+}
+
+// Bit 0: of lower resolution than another one, bit 2: a mask (TIFF 6.0, NewSubfileType).
+bool is_lesser_page(const ImageSpec& spec) {
+    return (spec.get_int_attribute("tiff:subfiletype", 0) & 5) != 0;
+}
+
+bool is_blank_page(ImageInput& in, int page, const ImageSpec& spec) {
+    if (spec.tile_width > 0) return false;
+    const QuietStderr quiet;
+    std::vector<float> row(std::size_t(spec.width) * std::size_t(spec.nchannels));
+    for (int y = 0; y < spec.height; ++y) {
+        if (!in.read_scanlines(page, 0, spec.y + y, spec.y + y + 1, spec.z, 0, spec.nchannels,
+                               OIIO::TypeFloat, row.data())) {
+            (void)in.geterror();
+            return false;
+        }
+        for (std::size_t i = 0; i < row.size(); ++i)
+            if (row[i] != row[i % std::size_t(spec.nchannels)]) return false;
+    }
+    return true;
+}
+
+int best_page(ImageInput& in, const std::vector<ImageSpec>& pages) {
+    int best = -1;
+    const auto area = [&](int page) { return std::int64_t{pages[page].width} * pages[page].height; };
+    for (int i = 0; i < int(pages.size()); ++i) {
+        if (best >= 0 && (is_lesser_page(pages[i]) || area(i) <= area(best))) continue;
+        if (i + 1 < int(pages.size()) && (is_lesser_page(pages[i]) || is_blank_page(in, i, pages[i])))
+            continue;
+        best = i;
+    }
+    return std::max(best, 0);
+}
+
+// ImageJ stores channels as pages, and says so in the first one's description.
+bool are_channels(const std::vector<ImageSpec>& pages) {
+    const std::string text = pages[0].get_string_attribute("ImageDescription");
+    return pages.size() == 3 && text.starts_with("ImageJ=") && text.find("channels=3") != std::string::npos &&
+           std::ranges::all_of(pages, [&](const ImageSpec& page) {
+               return page.nchannels == 1 && page.width == pages[0].width && page.height == pages[0].height;
+           });
+}
+
+// The picture that is taken of those in a file: its number, or the first of three that are its channels.
+struct PartChoice {
+    int first = 0;
+    bool three = false;
+};
+
+int named_part(const fs::path& file, const std::vector<ImageSpec>& parts, const std::string& wanted) {
+    const std::optional<std::int64_t> number = parse_int64(wanted);
+    if (number && *number >= 0 && *number < std::ssize(parts)) return int(*number);
+    std::vector<std::string> names;
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+        const std::string name = part_name(parts[i]);
+        if (!name.empty() && lower_case(name) == lower_case(wanted)) return int(i);
+        names.push_back(name.empty() ? std::to_string(i) : name);
+    }
+    bad_input(file, fmt::format("a picture of {}", fmt::join(names, ", ")), "hdu = " + wanted);
+}
+
+PartChoice choose_part(const fs::path& file, ImageInput& in, const std::string& wanted) {
+    const std::vector<ImageSpec> parts = parts_of(in);
+    if (wanted != "auto") return {named_part(file, parts, wanted)};
+    const std::string_view format = in.format_name();
+    if (parts.size() < 2 || (format != "openexr" && format != "tiff")) return {};
+    if (format == "tiff" && are_channels(parts)) return {0, true};
+    PartChoice choice;
+    std::int64_t candidates = 0;
+    if (format == "tiff") {
+        choice.first = best_page(in, parts);
+        candidates =
+            std::ranges::count_if(parts, [](const ImageSpec& page) { return !is_lesser_page(page); });
+    } else {
+        candidates = std::ranges::count_if(parts, has_colors);
+        const auto has_light = [](const ImageSpec& part) { return find_channel(part, "Y") >= 0; };
+        auto best = std::ranges::find_if(parts, has_colors);
+        if (best == parts.end()) best = std::ranges::find_if(parts, has_light);
+        if (best != parts.end()) choice.first = int(best - parts.begin());
+    }
+    const std::string name = part_name(parts[choice.first]);
+    if (candidates != 1)
+        log_warning(fmt::format("{}: it holds {} pictures; {}{} is taken (hdu = {}NUMBER takes another)",
+                                file.string(), parts.size(), choice.first,
+                                name.empty() ? "" : " '" + name + "'", name.empty() ? "" : "NAME or "));
+    return choice;
+}
+
+// Rows of three pictures of one channel each.
+ImageRows joined_channels(const std::array<ImageRows, 3>& channels) {
+    const auto read = [channels](std::int64_t begin, std::int64_t end, float* rows) {
+        for (int c = 0; c < 3; ++c) {
+            Image strip = unfilled_image(channels[c].width, end - begin, channels[c].channels);
+            channels[c].read(begin, end, strip.pixels.data());
+            for (std::int64_t i = 0; i < strip.width * strip.height; ++i)
+                rows[3 * i + c] = strip.pixels[i * strip.channels];
+        }
+    };
+    return {channels[0].width, channels[0].height, 3, read};
+}
+
+// ---- colours
+
+std::shared_ptr<const ColorEncoding> encoding_of(const fs::path& file, ImageInput& in,
+                                                 const ImageSpec& spec) {
+    const double largest = largest_integer(spec);
+    std::string problem;
+    std::shared_ptr<const ColorEncoding> encoding;
+    const bool png = std::string_view(in.format_name()) == "png";
+    if (png) encoding = png_encoding(file, problem);
+    const OIIO::ParamValue* const profile = spec.find_attribute("ICCProfile");
+    if (!encoding && problem.empty() && profile && profile->type().basetype == OIIO::TypeDesc::UINT8)
+        encoding = icc_encoding({static_cast<const std::uint8_t*>(profile->data()),
+                                 static_cast<std::size_t>(profile->type().size())},
+                                problem);
+    const OIIO::ParamValue* const xy = spec.find_attribute("chromaticities");
+    if (!encoding && xy && xy->type().size() == 8 * sizeof(float))
+        encoding = chromaticity_encoding(std::span<const float, 8>(static_cast<const float*>(xy->data()), 8),
+                                         {}, "chromaticities");
+    const std::string space = spec.get_string_attribute("oiio:ColorSpace");
+    if (!encoding && problem.empty() && !png && space.starts_with("Gamma")) {
+        TransferCurve curve{TransferCurve::Kind::parametric, {1.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0}, {}};
+        curve.parameters[0] = double(spec.get_float_attribute("oiio:Gamma", 2.2f));
+        encoding = std::make_shared<const ColorEncoding>(ColorEncoding{space, {curve, curve, curve}, {}, {}});
+    }
+    if (problem.empty() && space == "KodakLog") problem = "colour space KodakLog";
+    if (!problem.empty())
+        log_warning(fmt::format("{}: its {} is not followed; colours are read as {}", file.string(), problem,
+                                largest > 0.0 ? "sRGB" : "linear Rec. 709"));
+    return with_tables(encoding, largest);
+}
+
 std::string find_credit(const fs::path& file, const ImageSpec& spec) {
     std::string credit = read_xmp_metadata(file).credit;
     if (!credit.empty()) return credit;
@@ -255,21 +405,30 @@ std::string find_credit(const fs::path& file, const ImageSpec& spec) {
 
 }  // namespace
 
-PictureRows open_picture_rows(const fs::path& file, const Progress& progress) {
+PictureRows open_picture_rows(const fs::path& file, const Progress& progress, const std::string& part) {
     std::unique_ptr<ImageInput> in = open_picture(file);
-    const ImageSpec spec = in->spec();
+    const PartChoice choice = choose_part(file, *in, part);
+    const ImageSpec spec = in->spec(choice.first);
     check_spec(file, spec);
     if (std::string_view(in->format_name()) == "jpeg" && !jpeg_is_whole(file))
         fail_picture(file, "the file ends before the picture does");
     const Channels channels = choose_channels(spec);
     PictureRows result;
-    result.rows = rows_of_file(std::make_shared<Bands>(file, std::move(in), progress), channels);
+    Picture& picture = result.picture;
+    picture.colors = encoding_of(file, *in, spec);
+    const auto rows_of_part = [&](std::unique_ptr<ImageInput> own, int number) {
+        return rows_of_file(std::make_shared<Bands>(file, std::move(own), number, progress), channels);
+    };
+    if (choice.three)
+        result.rows = joined_channels({rows_of_part(open_picture(file), 0),
+                                       rows_of_part(open_picture(file), 1), rows_of_part(std::move(in), 2)});
+    else
+        result.rows = rows_of_part(std::move(in), choice.first);
     if (const int orientation = orientation_of(spec); orientation != 1) {
         result.rows = rows_of(turned(all_rows(result.rows, file), orientation));
         log_info(fmt::format("{}: {}, as its orientation {} says", file.string(), orientations[orientation],
                              orientation));
     }
-    Picture& picture = result.picture;
     picture.image = {result.rows.width, result.rows.height, result.rows.channels, {}};
     picture.max_integer = largest_integer(spec);
     picture.associated = channels.alpha >= 0 && spec.get_int_attribute("oiio:UnassociatedAlpha", 0) == 0;
@@ -280,17 +439,32 @@ PictureRows open_picture_rows(const fs::path& file, const Progress& progress) {
     return result;
 }
 
-Picture read_picture(const fs::path& file, const Progress& progress) {
-    PictureRows rows = open_picture_rows(file, progress);
+Picture read_picture(const fs::path& file, const Progress& progress, const std::string& part) {
+    PictureRows rows = open_picture_rows(file, progress, part);
     rows.picture.image = all_rows(rows.rows, file);
     return std::move(rows.picture);
 }
 
+PictureParts describe_parts(const fs::path& file) {
+    const std::unique_ptr<ImageInput> in = open_picture(file);
+    const QuietLog quiet;
+    PictureParts found;
+    for (const ImageSpec& spec : parts_of(*in)) {
+        const std::string name = part_name(spec);
+        found.parts.push_back(
+            fmt::format("{}: {}x{} px, {}{}", found.parts.size(), spec.width, spec.height,
+                        spec.nchannels == 1 ? "1 channel" : fmt::format("{} channels", spec.nchannels),
+                        name.empty() ? "" : ", '" + name + "'"));
+    }
+    found.taken = choose_part(file, *in, "auto").first;
+    return found;
+}
+
 void require_picture(const fs::path& file) {
-    if (is_fits(file))
-        require_fits_picture(file);
-    else
-        check_spec(file, open_picture(file)->spec());
+    if (is_fits(file)) return require_fits_picture(file);
+    const std::unique_ptr<ImageInput> in = open_picture(file);
+    const QuietLog quiet;  // what is taken is said when it is read
+    check_spec(file, in->spec(choose_part(file, *in, "auto").first));
 }
 
 }  // namespace astrosplat

@@ -4,6 +4,7 @@
 #include "core/image.h"
 #include "core/progress.h"
 #include "image/resample.h"
+#include "source/color_encoding.h"
 
 namespace astrosplat {
 
@@ -12,8 +13,9 @@ struct Picture {
     double max_integer = 0.0;  // largest value of integer files (255, 65535); 0 for float files
     bool associated = false;   // the colours are already multiplied by the file's alpha
     bool cube = false;         // an environment: six square faces +x -x +y -y +z -z one above the other
-    std::string credit;        // may be empty
-    std::string summary;       // "1920x1200 px, uint8"
+    std::shared_ptr<const ColorEncoding> colors;  // what the file says of them; null: nothing
+    std::string credit;                           // may be empty
+    std::string summary;                          // "1920x1200 px, uint8"
 
     bool has_alpha() const { return image.channels == 4; }
 };
@@ -22,14 +24,27 @@ struct Picture {
 /// single-channel pictures become r = g = b; luminance/chroma EXR becomes RGB; where an EXR's data window
 /// differs from its display window, the display window is filled with what lies in it (empty elsewhere).
 /// Throws InputError, Cancelled.
-Picture read_picture(const fs::path& file, const Progress& progress = {});
+///
+/// `part`: of several pictures in a file the number from 0 or the name of an EXR part, or the number of a
+/// TIFF page; "auto": the first part with red, green and blue, else with luminance; the largest page that is
+/// not reduced and not blank, or three of ImageJ's that are channels. Where several would do, a warning says
+/// which.
+Picture read_picture(const fs::path& file, const Progress& progress = {}, const std::string& part = "auto");
 
 /// The same by rows, which `progress` hears of. A picture that has to be turned is held as a whole.
 struct PictureRows {
     Picture picture;  // without its pixels
     ImageRows rows;   // throw InputError, Cancelled
 };
-PictureRows open_picture_rows(const fs::path& file, const Progress& progress = {});
+PictureRows open_picture_rows(const fs::path& file, const Progress& progress = {},
+                              const std::string& part = "auto");
+
+/// All pictures in a file, "0: 60x40 px, 'rgba'", and which of them is taken.
+struct PictureParts {
+    std::vector<std::string> parts;
+    int taken = 0;
+};
+PictureParts describe_parts(const fs::path& file);
 
 /// Throws InputError unless the file's headers promise a picture, also in FITS.
 void require_picture(const fs::path& file);

@@ -14,6 +14,7 @@
 #include "prepare/star_removal.h"
 #include "source/fits.h"
 #include "source/picture.h"
+#include "source/sky_grid.h"
 #include "source/stored_picture.h"
 #include "source/texture.h"
 
@@ -27,15 +28,11 @@ struct PrepareInput {
     double saturation = 0.0;  // linear light from which a channel tells nothing more; infinite where unknown
     TextureSettings::Stretch stretch = TextureSettings::Stretch::linear;  // still to come
     std::string credit;
-    std::optional<TanGrid> grid;  // how the sky lies on it, where that is known
-    std::string name;             // of its file
+    FitsSky sky;
+    std::string name;  // of its file
 };
 
 constexpr double saturated_integer = 0.98;  // of linear light, in pictures of integers
-
-TanGrid grid_of(const FitsSky& sky) {
-    return {{sky.crpix[0], sky.crpix[1]}, {sky.crval[0], sky.crval[1]}, sky.cd};
-}
 
 PrepareInput read_fits_input(const fs::path& file, const TextureSettings& settings,
                              const Progress& progress) {
@@ -44,17 +41,22 @@ PrepareInput read_fits_input(const fs::path& file, const TextureSettings& settin
     PrepareInput input;
     input.image = make_image(plane.width, plane.height, 4);
     input.empty = make_mask(plane.width, plane.height);
-    for (std::size_t i = 0; i < plane.values.size(); ++i) {
-        const double value = (plane.values[i] - limits.black) / (limits.white - limits.black);
+    const auto channels = std::size_t(plane.channels);
+    for (std::size_t i = 0; i < input.empty.pixels.size(); ++i) {
         float* const p = input.image.pixels.data() + 4 * i;
-        input.empty.pixels[i] = std::isfinite(value) ? 0 : 1;
-        std::fill_n(p, 3, std::isfinite(value) ? float(value) : 0.0f);
-        p[3] = std::isfinite(value) ? 1.0f : 0.0f;
+        p[3] = 1.0f;
+        for (std::size_t c = 0; c < 3; ++c) {
+            const double value = plane.values[channels * i + c % channels];
+            p[c] = float((value - limits.black) / (limits.white - limits.black));
+            if (!std::isfinite(p[c])) p[3] = 0.0f;
+        }
+        input.empty.pixels[i] = p[3] == 0.0f;
+        if (p[3] == 0.0f) std::fill_n(p, 3, 0.0f);
     }
     input.stretch = stretch_of(settings);
     input.saturation = std::numeric_limits<double>::infinity();
     input.credit = plane.credit;
-    if (plane.sky) input.grid = grid_of(*plane.sky);
+    input.sky = plane.sky;
     return input;
 }
 
@@ -76,11 +78,6 @@ PrepareInput read_picture_input(const fs::path& file, const TextureSettings& set
     return input;
 }
 
-bool same_grid(const TanGrid& a, const TanGrid& b) {
-    return a.reference_px == b.reference_px && a.reference_deg == b.reference_deg &&
-           a.deg_per_px == b.deg_per_px;
-}
-
 // Pixels as a picture of 0 and 1, so that they can be put on a grid as well.
 Image as_picture(const PixelMask& mask) {
     Image image = make_image(mask.width, mask.height, 1);
@@ -88,15 +85,50 @@ Image as_picture(const PixelMask& mask) {
     return image;
 }
 
-// On a grid of width x height pixels; what was mostly empty stays so.
-void put_on_grid(PrepareInput& input, const TanGrid& grid, std::int64_t width, std::int64_t height) {
+// How the sky lies on a picture that has to tell it. Throws InputError.
+const SkyGrid& required_grid(const std::string& name, const FitsSky& sky) {
+    if (!sky.grid)
+        bad_input(name, "a FITS picture whose header tells the sky",
+                  sky.unfollowed.empty() ? "none" : sky.unfollowed + ", which is not followed");
+    return *sky.grid;
+}
+
+// Rows of a picture `height` high, on a picture of another grid.
+RowPlaces rows_on(const SkyGrid& own, std::int64_t own_height, const SkyGrid& target, std::int64_t height) {
+    return [=, &own, &target](std::int64_t row, std::span<glm::dvec2> places) {
+        for (std::size_t x = 0; x < places.size(); ++x) places[x] = {double(x) + 1.0, double(height - row)};
+        target.to_sky(places);
+        own.to_pixels(places);
+        for (glm::dvec2& place : places) place = {place.x - 0.5, double(own_height) + 0.5 - place.y};
+    };
+}
+
+// How many pixels of `own` one of `target` is wide, on the same steps as places.
+double texels_of(const SkyGrid& own, const SkyGrid& target) {
+    const auto area = [](const SkyGrid& grid) {
+        const auto& [a, b, c, d] = grid.degrees_per_px();
+        return std::fabs(a * d - b * c);
+    };
+    return std::floor(std::sqrt(area(target) / area(own)) * 4096.0 + 0.5) / 4096.0;
+}
+
+// On the grid of `reference`, of width x height pixels; what was mostly empty stays so. Throws InputError
+// where nothing of the picture is there.
+void put_on_grid(PrepareInput& input, const SkyGrid& grid, std::int64_t width, std::int64_t height,
+                 const std::string& reference) {
+    const SkyGrid& own = required_grid(input.name, input.sky);
+    const RowPlaces places = rows_on(own, input.image.height, grid, height);
+    const double texels = texels_of(own, grid);
     PixelMask outside;
-    const Image emptiness = regridded(as_picture(input.empty), *input.grid, grid, width, height, outside);
-    input.image = regridded(input.image, *input.grid, grid, width, height, outside);
+    const Image emptiness = regridded(as_picture(input.empty), places, texels, width, height, outside);
+    if (std::ranges::find(outside.pixels, 0) == outside.pixels.end())
+        bad_input(input.name, fmt::format("a part of the sky that {} shows", reference),
+                  fmt::format("none: they are about {:.4g} and {:.4g} degrees", own.reference_deg().x,
+                              own.reference_deg().y));
+    input.image = regridded(input.image, places, texels, width, height, outside);
     for (std::size_t i = 0; i < outside.pixels.size(); ++i)
         if (emptiness.pixels[i] > 0.5f) outside.pixels[i] = 1;
     input.empty = std::move(outside);
-    input.grid = grid;
 }
 
 // The mean of a filter's channels becomes one channel of the picture.
@@ -118,8 +150,8 @@ PrepareInput read_prepare_input(const fs::path& file, const TextureSettings& set
     return input;
 }
 
-// Three filters as red, green and blue. Where the sky is known on all of them (FITS) and their grids differ,
-// green and blue are sampled on red's; else they must have one size. Throws InputError, Cancelled.
+// Three filters as red, green and blue. Green and blue are sampled on red's grid where headers tell the sky,
+// which all or none have to do; without it they have one size. Throws InputError, Cancelled.
 PrepareInput read_three_filters(const std::array<fs::path, 3>& files, const TextureSettings& settings,
                                 const Progress& progress) {
     const PrepareInput first = read_prepare_input(files[0], settings, progress);
@@ -129,14 +161,20 @@ PrepareInput read_three_filters(const std::array<fs::path, 3>& files, const Text
         PrepareInput filter = read_prepare_input(files[c], settings, progress);
         const bool same_size =
             filter.image.width == rgb.image.width && filter.image.height == rgb.image.height;
-        const bool known = filter.grid && first.grid;
-        if (!same_size && !known)
+        const auto says = [](const PrepareInput& input) {
+            return input.sky.grid || !input.sky.unfollowed.empty();
+        };
+        if (says(filter) || says(first)) {
+            const SkyGrid &grid = required_grid(first.name, first.sky),
+                          &own = required_grid(filter.name, filter.sky);
+            if (!same_size || !(own == grid))
+                put_on_grid(filter, grid, rgb.image.width, rgb.image.height, first.name);
+        } else if (!same_size) {
             bad_input(files[c],
                       fmt::format("{}x{} px like {}, or where the sky is on both", rgb.image.width,
                                   rgb.image.height, files[0].string()),
                       fmt::format("{}x{} px", filter.image.width, filter.image.height));
-        if (known && !(same_size && same_grid(*filter.grid, *first.grid)))
-            put_on_grid(filter, *first.grid, rgb.image.width, rgb.image.height);
+        }
         put_channel(filter, int(c), rgb);
         rgb.credit = joined_once({rgb.credit, filter.credit});
     }
@@ -147,14 +185,11 @@ PrepareInput read_three_filters(const std::array<fs::path, 3>& files, const Text
 // InputError where the sky is not known on both, Cancelled.
 void align_to(const fs::path& reference, const TextureSettings& settings, PrepareInput& input,
               const Progress& progress) {
-    const auto require_sky = [](const std::string& name, bool known) {
-        if (!known) bad_input(name, "a FITS picture whose header tells the sky (RA---TAN)", "none");
-    };
-    require_sky(input.name, input.grid.has_value());
-    require_sky(reference.string(), is_fits(reference));
-    const FitsPlane plane = read_fits(reference, settings.hdu, settings.plane, progress);
-    require_sky(reference.string(), plane.sky.has_value());
-    put_on_grid(input, grid_of(*plane.sky), plane.width, plane.height);
+    required_grid(input.name, input.sky);
+    if (!is_fits(reference)) required_grid(reference.string(), {});
+    const FitsPlane plane = open_fits_rows(reference, settings.hdu, settings.plane, progress).plane;
+    put_on_grid(input, required_grid(reference.string(), plane.sky), plane.width, plane.height,
+                reference.string());
 }
 
 // The stretch that was still to come, as the texture of a scene would have had it:

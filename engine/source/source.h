@@ -99,8 +99,8 @@ struct TextureSettings {
     Colorspace colorspace = Colorspace::automatic;
     Alpha alpha = Alpha::automatic;
     Unpremultiply unpremultiply = Unpremultiply::automatic;
-    std::string hdu = "auto";  // FITS: "auto", a number or an EXTNAME
-    int plane = 0;             // FITS cubes: plane, from 0
+    std::string hdu = "auto";  // of several pictures in a file: "auto", a number or a name
+    std::optional<int> plane;  // FITS cubes: plane, from 0; empty: as open_fits_rows() has it
     Stretch stretch = Stretch::automatic;
     std::optional<double> black;  // data value shown as 0; empty: the 0.25 percentile of finite pixels
     std::optional<double> white;  // data value shown as 1; empty: the 99.75 percentile

@@ -17,16 +17,18 @@ Stored stored_without_pixels(const FitsPlane& plane, const Limits& limits, Setti
     stored.display_values = stretch != Settings::Stretch::linear;
     stored.picture.credit = plane.credit;
     stored.picture.image = {plane.width, plane.height, 3, {}};
-    stored.picture.summary = fmt::format("{}x{} px, HDU {}{}{}, {} stretch, black {:.6g}, white {:.6g}",
-                                         plane.width, plane.height, plane.hdu, plane.name.empty() ? "" : " ",
-                                         plane.name, name_of(stretch), limits.black, limits.white);
+    stored.picture.summary =
+        fmt::format("{}x{} px, HDU {}{}{}{}{}, {} stretch, black {:.6g}, white {:.6g}", plane.width,
+                    plane.height, plane.hdu, plane.name.empty() ? "" : " ", plane.name,
+                    plane.what.empty() ? "" : ", ", plane.what, name_of(stretch), limits.black, limits.white);
     return stored;
 }
 
-// As r = g = b.
-void stretch_values(std::span<const double> values, const StretchCurve& curve, float* rgb) {
+// Of one channel as r = g = b.
+void stretch_values(std::span<const double> values, int channels, const StretchCurve& curve, float* rgb) {
+    const std::size_t copies = channels == 1 ? 3 : 1;
     parallel_each(values.size(), 1 << 13,
-                  [&](std::size_t i) { std::fill_n(rgb + 3 * i, 3, float(curve(values[i]))); });
+                  [&](std::size_t i) { std::fill_n(rgb + copies * i, copies, float(curve(values[i]))); });
 }
 
 Stored stretched_plane(const FitsPlane& plane, const ValueRange& range, const Settings& settings,
@@ -35,15 +37,15 @@ Stored stretched_plane(const FitsPlane& plane, const ValueRange& range, const Se
     Stored stored = stored_without_pixels(plane, limits, stretch_of(settings));
     Image& image = stored.picture.image;
     image = unfilled_image(plane.width, plane.height, 3);
-    stretch_values(plane.values, StretchCurve(limits, stretch_of(settings), settings.softening),
-                   image.pixels.data());
+    stretch_values(plane.values, plane.channels,
+                   StretchCurve(limits, stretch_of(settings), settings.softening), image.pixels.data());
     return stored;
 }
 
 // Hands out all values of a plane, some rows at a time.
 void hand_out(const FitsRows& rows, const ValueTaker& take) {
     constexpr std::int64_t values_at_once = std::int64_t{1} << 22;
-    const std::int64_t width = rows.plane.width, height = rows.plane.height;
+    const std::int64_t width = rows.plane.width * rows.plane.channels, height = rows.plane.height;
     const std::int64_t at_once = std::clamp<std::int64_t>(values_at_once / width, 1, height);
     Buffer<double> values(std::size_t(at_once * width));
     for (std::int64_t begin = 0; begin < height; begin += at_once) {
@@ -63,9 +65,10 @@ StoredRows stretched_rows(const FitsRows& plane, const Settings& settings, const
     result.stored = stored_without_pixels(plane.plane, limits, stretch_of(settings));
     result.rows = {plane.plane.width, plane.plane.height, 3,
                    [=](std::int64_t begin, std::int64_t end, float* rgb) {
-                       Buffer<double> values(std::size_t((end - begin) * plane.plane.width));
+                       const int channels = plane.plane.channels;
+                       Buffer<double> values(std::size_t((end - begin) * plane.plane.width * channels));
                        plane.read(begin, end, values.data());
-                       stretch_values(values, curve, rgb);
+                       stretch_values(values, channels, curve, rgb);
                    }};
     return result;
 }
@@ -111,13 +114,14 @@ Settings::Stretch stretch_of(const Settings& settings) {
     return settings.stretch == Settings::Stretch::automatic ? Settings::Stretch::asinh : settings.stretch;
 }
 
-RawPicture read_raw(const fs::path& file, const std::string& hdu, int plane, const Progress& progress) {
+RawPicture read_raw(const fs::path& file, const std::string& hdu, std::optional<int> plane,
+                    const Progress& progress) {
     RawPicture raw;
     if (is_fits(file)) {
         raw.fits = read_fits(file, hdu, plane, progress);
         raw.range = value_range(raw.fits->values);
     } else {
-        raw.picture = read_picture(file, progress);
+        raw.picture = read_picture(file, progress, hdu);
     }
     return raw;
 }
@@ -142,12 +146,13 @@ StoredRows rows_of(Stored stored) {
 StoredRows open_stored(const fs::path& file, const Settings& settings, const Progress& progress,
                        std::int64_t most_held) {
     if (!is_fits(file)) {
-        PictureRows picture = open_picture_rows(file, progress);
+        PictureRows picture = open_picture_rows(file, progress, settings.hdu);
         const bool integers = picture.picture.max_integer > 0.0;
         return {{std::move(picture.picture), integers}, std::move(picture.rows)};
     }
     const FitsRows plane = open_fits_rows(file, settings.hdu, settings.plane, progress);
-    if (plane.plane.width * plane.plane.height > most_held) return stretched_rows(plane, settings, file);
+    if (plane.plane.width * plane.plane.height * plane.plane.channels > most_held)
+        return stretched_rows(plane, settings, file);
     return rows_of(read_stored(file, settings, progress));
 }
 
@@ -155,17 +160,25 @@ Stored read_stored(const fs::path& file, const Settings& settings, const Progres
     return stored_of(read_raw(file, settings.hdu, settings.plane, progress), settings, file);
 }
 
-bool is_encoded(const Stored& stored, Settings::Colorspace colorspace) {
-    if (colorspace == Settings::Colorspace::automatic) return stored.display_values;
-    return colorspace == Settings::Colorspace::srgb;
+std::string colors_of(const Stored& stored, Settings::Colorspace colorspace) {
+    using Kind = TransferCurve::Kind;
+    const ColorEncoding* const own = stored.picture.colors.get();
+    if (colorspace == Settings::Colorspace::srgb) return "sRGB";
+    if (colorspace == Settings::Colorspace::linear) return "linear";
+    if (!own) return stored.display_values ? "sRGB" : "linear";
+    return own->is_rec709(Kind::srgb) ? "sRGB" : own->is_rec709(Kind::linear) ? "linear" : own->name;
 }
 
 void make_linear(Stored& stored, Settings::Colorspace colorspace, bool premultiplied) {
-    if (!is_encoded(stored, colorspace)) return;
-    if (premultiplied && stored.picture.associated)
-        linearise_associated(stored.picture.image);
+    const std::string colors = colors_of(stored, colorspace);
+    const bool associated = premultiplied && stored.picture.associated;
+    Image& image = stored.picture.image;
+    if (colors == "linear") return;
+    if (colors != "sRGB") return decode_colors(image, *stored.picture.colors, associated);
+    if (associated)
+        linearise_associated(image);
     else
-        linearise(stored.picture.image, stored.picture.max_integer);
+        linearise(image, stored.picture.max_integer);
 }
 
 Image linear_image(Stored stored, Settings::Colorspace colorspace) {

@@ -16,16 +16,17 @@ struct RawPicture {
 };
 
 /// Throws InputError, Cancelled.
-RawPicture read_raw(const fs::path& file, const std::string& hdu, int plane, const Progress& progress);
+RawPicture read_raw(const fs::path& file, const std::string& hdu, std::optional<int> plane,
+                    const Progress& progress);
 
 /// The source of load_texture()'s files: read_raw(), or a store of its earlier results.
-using RawReader = std::function<RawPicture(const fs::path& file, const std::string& hdu, int plane,
-                                           const Progress& progress)>;
+using RawReader = std::function<RawPicture(const fs::path& file, const std::string& hdu,
+                                           std::optional<int> plane, const Progress& progress)>;
 
 // A picture as stored, with what is known about its values.
 struct Stored {
     Picture picture;
-    bool display_values = false;  // sRGB, when the settings leave the colour space open
+    bool display_values = false;  // sRGB, when neither settings nor the file say what its colours are
 };
 
 /// The meaning of automatic: asinh.
@@ -47,9 +48,10 @@ StoredRows open_stored(const fs::path& file, const TextureSettings& settings, co
 /// The same at once. Throws InputError, Cancelled.
 Stored read_stored(const fs::path& file, const TextureSettings& settings, const Progress& progress);
 
-bool is_encoded(const Stored& stored, TextureSettings::Colorspace colorspace);
+/// "sRGB", "linear", or the name of what the file says of its colours.
+std::string colors_of(const Stored& stored, TextureSettings::Colorspace colorspace);
 
-/// Decodes the sRGB curve where there is one. `premultiplied`: colours that the file multiplied by its alpha
+/// To linear light of Rec. 709. `premultiplied`: colours that the file multiplied by its alpha
 /// are to stay so.
 void make_linear(Stored& stored, TextureSettings::Colorspace colorspace, bool premultiplied);
 

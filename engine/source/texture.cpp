@@ -236,9 +236,8 @@ Texture load_texture(const std::vector<fs::path>& files, const TextureSettings& 
     texture.alpha_from_light = settings.alpha == Settings::Alpha::automatic && alpha == Settings::Alpha::max;
     rework(texture, settings, alpha);
     texture.credit = stored.picture.credit;
-    texture.summary =
-        fmt::format("{}, {}, {}", stored.picture.summary,
-                    is_encoded(stored, settings.colorspace) ? "sRGB" : "linear", alpha_names[int(alpha)]);
+    texture.summary = fmt::format("{}, {}, {}", stored.picture.summary,
+                                  colors_of(stored, settings.colorspace), alpha_names[int(alpha)]);
     return texture;
 }
 
@@ -254,10 +253,13 @@ void apply_mask(Texture& texture) {
 Image load_raw_image(const fs::path& file) {
     Image image;
     if (is_fits(file)) {
-        const FitsPlane plane = read_fits(file, "auto", 0);
+        const FitsPlane plane = read_fits(file, "auto", {});
         image = make_image(plane.width, plane.height, 3);
-        for (std::size_t i = 0; i < image.pixels.size(); ++i)
-            image.pixels[i] = std::isnan(plane.values[i / 3]) ? 0.0f : float(plane.values[i / 3]);
+        const std::size_t copies = plane.channels == 1 ? 3 : 1;
+        for (std::size_t i = 0; i < image.pixels.size(); ++i) {
+            const double value = plane.values[i / copies];
+            image.pixels[i] = std::isnan(value) ? 0.0f : float(value);
+        }
         return image;
     }
     const Image stored = read_picture(file).image;

@@ -3,12 +3,12 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
-#include "prepare/stages.h"
 #include "scene_fixture.h"
 #include "source/object_metadata.h"
 #include "source/texture.h"
 #include "support/fits_text.h"
 #include "support/pixmap.h"
+#include "support/tan_grid.h"
 
 namespace astrosplat::test {
 namespace {
@@ -283,13 +283,24 @@ TEST_F(PrepareAlign, NeedsTheSkyOnBoth) {
     const auto refused = [&](const char* own, const char* reference, const char* named) {
         const RunResult result =
             run({"prepare", own, "--align", reference, "-o", "out", "--progress", "none"});
-        expect_one_line(
-            result, 2,
-            std::string(named) + ": expected a FITS picture whose header tells the sky (RA---TAN)");
+        expect_one_line(result, 2, named);
     };
-    refused("plain.fits", "sky.fits", "plain.fits");
-    refused("sky.fits", "plain.fits", "plain.fits");
+    refused("plain.fits", "sky.fits",
+            "plain.fits: expected a FITS picture whose header tells the sky, found none");
+    refused("sky.fits", "plain.fits",
+            "plain.fits: expected a FITS picture whose header tells the sky, found none");
     expect_one_line(run({"prepare", "sky.fits", "--align", "missing.fits", "-o", "out"}), 2, "missing.fits");
+    write_text(folder / "far.fits", fits_file(40, 30, fits_sky(20, 15, ra + 90.0, dec, 0.001, 0.0), dark));
+    refused("far.fits", "sky.fits", "far.fits: expected a part of the sky that sky.fits shows");
+    const auto filters = [&](const char* r, const char* g, const char* b) {
+        return run(
+            {"prepare", "--r", r, "--g", g, "--b", b, "-o", "out", "--overwrite", "--progress", "none"});
+    };
+    expect_one_line(filters("sky.fits", "sky.fits", "plain.fits"), 2,
+                    "plain.fits: expected a FITS picture whose");
+    expect_one_line(filters("plain.fits", "sky.fits", "plain.fits"), 2,
+                    "plain.fits: expected a FITS picture");
+    expect_success(filters("sky.fits", "sky.fits", "sky.fits"));
 }
 
 }  // namespace

@@ -27,23 +27,34 @@ inline std::string fits_sky(double px, double py, double ra, double dec, double 
     return cards;
 }
 
-/// `value(x, y)` of each pixel, row 0 at the bottom; `cards` besides those of its size.
-template <class Value>
-std::string fits_file(int width, int height, const std::string& cards, const Value& value) {
-    std::string file =
-        fits_card("SIMPLE  =                    T") + fits_card("BITPIX  =                  -32") +
-        fits_card("NAXIS   =                    2") + fits_card(fmt::format("NAXIS1  = {:20}", width)) +
-        fits_card(fmt::format("NAXIS2  = {:20}", height)) + cards + fits_card("END");
+/// An HDU of such axes, NAXIS1 first; `cards` besides those of its size. The primary one where `first`.
+inline std::string fits_hdu(const std::vector<int>& axes, const std::string& cards,
+                            const std::vector<float>& values, bool first = true) {
+    std::string file = fits_card(first ? "SIMPLE  =                    T" : "XTENSION= 'IMAGE   '") +
+                       fits_card("BITPIX  =                  -32") +
+                       fits_card(fmt::format("NAXIS   = {:20}", axes.size()));
+    for (std::size_t i = 0; i < axes.size(); ++i)
+        file += fits_card(fmt::format("{:8}= {:20}", fmt::format("NAXIS{}", i + 1), axes[i]));
+    if (!first)
+        file += fits_card("PCOUNT  =                    0") + fits_card("GCOUNT  =                    1");
+    file += cards + fits_card("END");
     file.resize((file.size() + 2879) / 2880 * 2880, ' ');
-    for (int y = 0; y < height; ++y)
-        for (int x = 0; x < width; ++x) {
-            const auto number = float(value(x, y));
-            std::uint32_t bits;
-            std::memcpy(&bits, &number, 4);
-            for (int shift = 24; shift >= 0; shift -= 8) file += char(bits >> shift & 255u);
-        }
+    for (const float number : values) {
+        std::uint32_t bits;
+        std::memcpy(&bits, &number, 4);
+        for (int shift = 24; shift >= 0; shift -= 8) file += char(bits >> shift & 255u);
+    }
     file.resize((file.size() + 2879) / 2880 * 2880, '\0');
     return file;
+}
+
+/// `value(x, y)` of each pixel, row 0 at the bottom.
+template <class Value>
+std::string fits_file(int width, int height, const std::string& cards, const Value& value) {
+    std::vector<float> values;
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) values.push_back(float(value(x, y)));
+    return fits_hdu({width, height}, cards, values);
 }
 
 }  // namespace astrosplat

@@ -18,6 +18,7 @@ struct Said {
     std::vector<std::string> lines, warnings;
 
     Said() {
+        flush_warning_counts();
         set_log_sink([this](LogLevel level, const std::string& line) {
             lines.push_back(line);
             if (level == LogLevel::warning) warnings.push_back(line);
@@ -40,5 +41,13 @@ struct Said {
         return all;
     }
 };
+
+/// What a call warns of.
+template <class Call>
+std::vector<std::string> warnings_of(const Call& call) {
+    const Said said;
+    call();
+    return said.warnings;
+}
 
 }  // namespace astrosplat

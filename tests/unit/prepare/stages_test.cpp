@@ -2,6 +2,7 @@
 #include "prepare/stages.h"
 #include "core/color.h"
 #include "prepare/registration.h"
+#include "support/tan_grid.h"
 #include "support/test.h"
 #include "unit/prepare/painted.h"
 
@@ -105,23 +106,8 @@ TanGrid grid(const glm::dvec2& px, const glm::dvec2& sky, double scale, double t
     return {px, sky, {-c, s, s, c}};
 }
 
-TEST(SkyGrid, KnowsWhereNorthAndEastAre) {
-    const TanGrid g = grid({50.5, 40.5}, {83.8, -5.4}, 0.01, 0.0);
-    EXPECT_NEAR(sky_at(g, {50.5, 40.5}).x, 83.8, 1e-12);
-    EXPECT_NEAR(sky_at(g, {50.5, 50.5}).y, -5.3, 1e-6) << "north is up";
-    EXPECT_NEAR(sky_at(g, {40.5, 40.5}).x, 83.8 + 0.1 / std::cos(real::radians(5.4)), 1e-6) << "east is left";
-    EXPECT_FALSE(place_of(g, {263.8, 5.4})) << "behind";
-    for (const glm::dvec2 sky : {glm::dvec2(0.0, 89.9), {359.9, 0.0}, {120.0, -70.0}}) {
-        const TanGrid turned = grid({10.0, 300.0}, sky, 0.002, 33.0);
-        const std::optional<glm::dvec2> back = place_of(turned, sky_at(turned, {417.3, -20.6}));
-        ASSERT_TRUE(back);
-        EXPECT_NEAR(back->x, 417.3, 1e-7);
-        EXPECT_NEAR(back->y, -20.6, 1e-7);
-    }
-}
-
 // Dots painted at places of the sky are found within .3 px of where the other grid has these places.
-TEST(SkyGrid, PicturesOfOtherScaleAndAngleMeet) {
+TEST(Regridded, PicturesOfOtherScaleAndAngleMeet) {
     const TanGrid target = grid({100.5, 80.5}, {202.47, 47.2}, 0.0012, 0.0);
     for (const double factor : {3.0, 1.0, 1.0 / 3.0}) {
         const TanGrid own = grid({260.0, 240.0}, {202.5, 47.18}, 0.0012 * factor, 37.0);
@@ -137,7 +123,13 @@ TEST(SkyGrid, PicturesOfOtherScaleAndAngleMeet) {
             return sum;
         });
         PixelMask outside;
-        const Image seen = regridded(image, own, target, 200, 160, outside);
+        const RowPlaces rows = [&](std::int64_t y, std::span<glm::dvec2> row) {
+            for (std::size_t x = 0; x < row.size(); ++x) {
+                const glm::dvec2 px = *place_of(own, sky_at(target, {double(x) + 1.0, double(160 - y)}));
+                row[x] = {px.x - 0.5, 480.0 + 0.5 - px.y};
+            }
+        };
+        const Image seen = regridded(image, rows, 1.0 / factor, 200, 160, outside);
         for (const glm::dvec2& place : places) {
             double sum = 0.0, x = 0.0, y = 0.0;
             const double left = place.x - 0.5, top = 160.0 + 0.5 - place.y;

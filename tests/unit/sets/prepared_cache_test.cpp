@@ -201,7 +201,7 @@ TEST_F(PreparedSource, RefusesToAlignWhatHasNoSky) {
     source_.texture.prepare.align = folder_ / "p.ppm";
     EXPECT_EQ(ERROR_OF(load_source(source_, "dust")),
               "layer 'dust': " + (folder_ / "p.ppm").string() +
-                  ": expected a FITS picture whose header tells the sky (RA---TAN), found none");
+                  ": expected a FITS picture whose header tells the sky, found none");
 }
 
 // Skies of one picture are kept beside the sets, to the bit, under a name that everything enters

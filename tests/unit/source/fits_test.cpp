@@ -4,8 +4,12 @@
 #include <fitsio.h>
 #include <sys/stat.h>
 
+#include <map>
+
 #include "source/picture.h"
+#include "source/stored_picture.h"
 #include "support/fits_text.h"
+#include "support/quiet.h"
 #include "support/test.h"
 
 namespace astrosplat {
@@ -178,53 +182,280 @@ TEST(Fits, PipesAreRefusedAndReadingStopsWhenAsked) {
     EXPECT_EQ(ERROR_OF(describe_fits(pipe)), pipe.string() + ": cannot be read: it is not a regular file");
     const fs::path file = write_compressed(folder / "a.fits", RICE_1);
     const std::atomic<bool> stop{true};
-    EXPECT_THROW(read_fits(file, "auto", 0, Progress{{}, &stop}), Cancelled);
+    EXPECT_THROW(read_fits(file, "auto", {}, Progress{{}, &stop}), Cancelled);
     EXPECT_THROW(describe_fits(file, Progress{{}, &stop}), Cancelled);
 }
 
-// A picture of 4x4 with these keys.
-std::optional<FitsSky> sky_with(const std::vector<std::pair<const char*, double>>& keys,
-                                const char* type = "RA---TAN") {
+// Of several pictures in one file the one that shows most is taken, or a line says which.
+
+std::vector<double> values_of(const FitsPlane& plane) { return {plane.values.begin(), plane.values.end()}; }
+
+TEST(FitsPictures, ThreePlanesAreColours) {
     const TempFolder folder;
-    std::string cards = fits_card(fmt::format("CTYPE1  = '{}'", type)) + fits_card("CTYPE2  = 'DEC--TAN'");
-    for (const auto& [key, value] : keys) cards += fits_card(fmt::format("{:8}= {:20.12f}", key, value));
-    return read_fits(folder.file("sky.fits", fits_file(4, 4, cards, [](int, int) { return 1; })), "auto", 0)
+    std::vector<float> planes, pixels;
+    for (int c = 0; c < 3; ++c)
+        for (int i = 0; i < 20; ++i) planes.push_back(float(100 * c + i));
+    for (int i = 0; i < 20; ++i)
+        for (int c = 0; c < 3; ++c) pixels.push_back(float(100 * c + i));
+    const auto is_colour = [&](const std::vector<int>& axes, const std::vector<float>& values,
+                               const std::string& cards) {
+        const FitsPlane plane = read_fits(folder.file("a.fits", fits_hdu(axes, cards, values)), "auto", {});
+        if (plane.channels != 3) return false;
+        EXPECT_EQ(plane.width, 5);
+        EXPECT_EQ(plane.height, 4);
+        EXPECT_EQ(values_of(plane)[0], 15.0) << "the last row of the file is on top";
+        EXPECT_EQ(values_of(plane)[1], 115.0);
+        EXPECT_EQ(values_of(plane)[59], 204.0);
+        return true;
+    };
+    EXPECT_TRUE(is_colour({5, 4, 3}, planes, ""));
+    EXPECT_TRUE(is_colour({5, 4, 3, 1}, planes, fits_card("CTYPE3  = 'RGB     '")));
+    EXPECT_TRUE(is_colour({3, 5, 4}, pixels, ""));
+    for (const char* other : {"FREQ", "VELO-LSR", "STOKES", "WAVE-TAB"})
+        EXPECT_FALSE(is_colour({5, 4, 3}, planes, fits_card(fmt::format("CTYPE3  = '{}'", other)))) << other;
+    const fs::path file = folder.file("b.fits", fits_hdu({5, 4, 3}, "", planes));
+    EXPECT_EQ(values_of(read_fits(file, "auto", 2))[0], 215.0);
+    EXPECT_EQ(values_of(read_fits(folder.file("c.fits", fits_hdu({3, 5, 4}, "", pixels)), "auto", 1))[0],
+              115.0);
+    TextureSettings settings;  // one curve for all three
+    settings.black = 0.0;
+    settings.white = 300.0;
+    settings.stretch = TextureSettings::Stretch::linear;
+    settings.colorspace = TextureSettings::Colorspace::linear;
+    const Image whole = read_stored(file, settings, {}).picture.image;
+    EXPECT_FLOAT_EQ(whole.at(0, 0)[1], 115.0f / 300.0f);
+    const StoredRows rows = open_stored(file, settings, {}, 8);  // not held
+    EXPECT_EQ(read_whole(rows.rows).pixels, whole.pixels);
+}
+
+TEST(FitsPictures, WhatIsBlankOrNoPictureIsPassedBy) {
+    const TempFolder folder;
+    std::vector<float> planes(80, std::numeric_limits<float>::quiet_NaN());
+    for (int i = 20; i < 80; ++i) planes[i] = i < 40 ? 7.0f : float(i);
+    const fs::path cube = folder.file("cube.fits", fits_hdu({5, 4, 4}, "", planes));
+    FitsPlane plane;
+    std::vector<std::string> said = warnings_of([&] { plane = read_fits(cube, "auto", {}); });
+    EXPECT_EQ(plane.values[15], 40.0);
+    EXPECT_EQ(said, std::vector<std::string>{
+                        cube.string() + ": it has 4 planes; plane 2 is taken, the first that is not blank "
+                                        "(plane = N takes another)"});
+    EXPECT_EQ(warnings_of([&] { plane = read_fits(cube, "auto", 3); }).size(), 0u);
+    const auto named = [](const char* name) { return fits_card(fmt::format("EXTNAME = '{:8}'", name)); };
+    const std::vector<float> some{1, 2, 3, 4}, blank(4, 5.0f);
+    const auto taken = [&](const std::string& bytes) {
+        said = warnings_of([&] { plane = read_fits(folder.file("x.fits", bytes), "auto", {}); });
+        return plane.hdu;
+    };
+    EXPECT_EQ(taken(fits_hdu({2, 2}, named("DQ"), some) + fits_hdu({2, 2}, named("SCI"), blank, false)), 1);
+    EXPECT_TRUE(said.empty());
+    EXPECT_EQ(taken(fits_hdu({2, 2}, named("WHT"), some) + fits_hdu({2, 2}, named("B"), blank, false) +
+                    fits_hdu({2, 2}, named("R"), some, false)),
+              2);
+    ASSERT_EQ(said.size(), 1u);
+    EXPECT_HAS(said[0], "3 HDUs hold pictures; HDU 2 R is taken");
+    EXPECT_EQ(taken(fits_hdu({2, 2}, named("DQ"), some)), 0) << "better than none";
+}
+
+TEST(FitsPictures, RowsAndMosaicsOfCameras) {
+    const TempFolder folder;
+    const auto read = [&](const std::string& cards, const std::vector<float>& values, int width, int height) {
+        return read_fits(folder.file("a.fits", fits_hdu({width, height}, cards, values)), "auto", {});
+    };
+    const std::string down = fits_card("ROWORDER= 'TOP-DOWN'"), up = fits_card("ROWORDER= 'BOTTOM-UP'");
+    EXPECT_EQ(values_of(read(down, {1, 2, 3, 4}, 2, 2)), (std::vector<double>{1, 2, 3, 4}));
+    EXPECT_EQ(values_of(read(up, {1, 2, 3, 4}, 2, 2)), (std::vector<double>{3, 4, 1, 2}));
+    // A plane of each colour, seen through the mosaic: what is bilinear comes back as it was.
+    const auto light = [](int c, int x, int y) { return 10.0f * float(c + 1) + float(x) + 2.0f * float(y); };
+    const auto mosaic = [&](const char* letters, bool from_top) {
+        std::vector<float> values;
+        for (int row = 0; row < 8; ++row)
+            for (int x = 0; x < 6; ++x) {
+                const int y = from_top ? row : 7 - row;  // from the top
+                const char letter = letters[2 * (y % 2) + x % 2];
+                values.push_back(light(letter == 'R' ? 0 : letter == 'G' ? 1 : 2, x, y));
+            }
+        return values;
+    };
+    for (const char* letters : {"RGGB", "BGGR", "GRBG", "GBRG"})
+        for (const bool from_top : {true, false}) {
+            const std::string pattern = fits_card(fmt::format("BAYERPAT= '{}    '", letters));
+            const FitsPlane plane = read(pattern + (from_top ? down : up), mosaic(letters, from_top), 6, 8);
+            ASSERT_EQ(plane.channels, 3);
+            for (int y = 1; y < 7; ++y)
+                for (int x = 1; x < 5; ++x)
+                    for (int c = 0; c < 3; ++c)
+                        EXPECT_EQ(plane.values[3 * (6 * y + x) + c], light(c, x, y)) << letters << from_top;
+        }
+    const std::string shifted = fits_card("BAYERPAT= 'BGGR    '") +
+                                fits_card("XBAYROFF=                    1") +
+                                fits_card("YBAYROFF=                    1") + down;
+    EXPECT_EQ(read(shifted, mosaic("RGGB", true), 6, 8).values[3 * 7], light(0, 1, 1));
+    const std::vector<std::string> said = warnings_of([&] {
+        EXPECT_EQ(read(fits_card("BAYERPAT= 'TRUE    '"), {1, 2, 3, 4}, 2, 2).channels, 1);
+    });
+    ASSERT_EQ(said.size(), 1u);
+    EXPECT_HAS(said[0], "BAYERPAT = 'TRUE' is not followed");
+}
+
+// How the sky lies on a picture; where nothing else is said, of these cards.
+using SkyCards = std::vector<std::pair<const char*, std::string>>;
+const SkyCards tangent_plane = {{"CTYPE1", "'RA---TAN'"}, {"CTYPE2", "'DEC--TAN'"}, {"CRVAL1", "83.8"},
+                                {"CRVAL2", "-5.4"},       {"CRPIX1", "120.5"},      {"CRPIX2", "100.5"}};
+const SkyCards square_px = {{"CD1_1", "-0.001388888888888889"}, {"CD2_2", "0.001388888888888889"}};
+const SkyCards scales = {{"CDELT1", "-0.001388888888888889"}, {"CDELT2", "0.001388888888888889"}};
+
+FitsSky sky_with(const SkyCards& own, const SkyCards& pixels = square_px, bool top_down = false) {
+    std::map<std::string, std::string> cards;
+    for (const SkyCards* some : {&tangent_plane, &pixels, &own})
+        for (const auto& [key, value] : *some) cards[key] = value;
+    std::string text;
+    for (const auto& [key, value] : cards) text += fits_card(fmt::format("{:8}= {:>20}", key, value));
+    if (top_down) text += fits_card("ROWORDER= 'TOP-DOWN'");
+    const TempFolder folder;
+    return read_fits(folder.file("sky.fits", fits_file(4, 200, text, [](int, int) { return 1; })), "auto", {})
         .sky;
 }
 
-TEST(FitsSky, IsReadFromAllThreeKindsOfKeywords) {
-    using Keys = std::vector<std::pair<const char*, double>>;
-    const auto with = [](Keys more) {
-        more.insert(more.begin(), {{"CRPIX1", 2.5}, {"CRPIX2", 3.5}, {"CRVAL1", 83.8}, {"CRVAL2", -5.4}});
-        return more;
+// Right ascension and declination (ICRS) of the pixel (41, 31), by astropy 5.2.
+TEST(FitsSky, IsWhatAstropyReads) {
+    struct Case {
+        const char* what;
+        SkyCards cards, pixels;
+        glm::dvec2 sky;
     };
-    const auto expect_cd = [](const std::optional<FitsSky>& sky, const std::array<double, 4>& cd) {
-        ASSERT_TRUE(sky);
-        EXPECT_EQ(sky->crpix[1], 3.5);
-        EXPECT_EQ(sky->crval[0], 83.8);
-        for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(sky->cd[i], cd[i], 1e-15) << i;
+    const SkyCards cases_pc = {{"CDELT1", "-0.001388888888888889"}, {"CDELT2", "0.001388888888888889"},
+                               {"PC01_01", "0.877582562"},          {"PC01_02", "-0.479425539"},
+                               {"PC02_01", "0.479425539"},          {"PC02_02", "0.877582562"}};
+    const auto types = [](const std::string& name) {
+        return SkyCards{{"CTYPE1", "'RA---" + name + "'"}, {"CTYPE2", "'DEC--" + name + "'"}};
     };
-    expect_cd(sky_with(with({{"CD1_1", -0.01}, {"CD1_2", 0.002}, {"CD2_1", 0.003}, {"CD2_2", 0.01}})),
-              {-0.01, 0.002, 0.003, 0.01});
-    expect_cd(sky_with(with({{"CDELT1", -0.02}, {"CDELT2", 0.01}})), {-0.02, 0.0, 0.0, 0.01});
-    expect_cd(sky_with(with({{"CDELT1", -0.02}, {"CDELT2", 0.01}, {"PC1_2", 0.5}, {"PC2_1", -0.25}})),
-              {-0.02, -0.01, -0.0025, 0.01});
-    const double c = std::sqrt(0.75), s = 0.5;  // AIPS: CD1_2 = -CDELT2 sin, CD2_1 = CDELT1 sin
-    expect_cd(sky_with(with({{"CDELT1", -0.02}, {"CDELT2", 0.01}, {"CROTA2", 30.0}})),
-              {-0.02 * c, -0.01 * s, -0.02 * s, 0.01 * c});
+    const Case cases[] = {
+        {"SIP",
+         {{"CTYPE1", "'RA---TAN-SIP'"},
+          {"CTYPE2", "'DEC--TAN-SIP'"},
+          {"A_ORDER", "2"},
+          {"B_ORDER", "2"},
+          {"A_2_0", "8E-4"},
+          {"A_0_2", "-5E-4"},
+          {"A_1_1", "3E-4"},
+          {"B_2_0", "-4E-4"},
+          {"B_0_2", "6E-4"},
+          {"B_1_1", "2E-4"}},
+         square_px,
+         {83.90492816, -5.49446978}},
+        {"SCAMP",
+         {{"PV1_0", "0.0"},
+          {"PV1_1", "1.0"},
+          {"PV1_4", "0.3"},
+          {"PV1_5", "-0.2"},
+          {"PV2_0", "0.0"},
+          {"PV2_1", "1.0"},
+          {"PV2_4", "-0.25"},
+          {"PV2_7", "0.15"}},
+         square_px,
+         {83.91674280, -5.49898065}},
+        {"LONPOLE", {{"LONPOLE", "150.0"}}, square_px, {83.94453541, -5.42837000}},
+        {"SIN", types("SIN"), square_px, {83.91092677, -5.49651776}},
+        {"ZEA", types("ZEA"), square_px, {83.91092668, -5.49651769}},
+        {"CAR", types("CAR"), square_px, {83.91092655, -5.49651772}},
+        {"AIT", types("AIT"), square_px, {83.91092667, -5.49651772}},
+        {"small letters",
+         {{"CTYPE1", "'ra---tan'"}, {"CTYPE2", "'dec--tan'"}},
+         square_px,
+         {83.91092641, -5.49651745}},
+        {"galactic",
+         {{"CTYPE1", "'GLON-TAN'"},
+          {"CTYPE2", "'GLAT-TAN'"},
+          {"CRVAL1", "209.011607779684"},
+          {"CRVAL2", "-19.405229985210"}},
+         square_px,
+         {83.76368265, -5.54213514}},
+        {"ecliptic",
+         {{"CTYPE1", "'ELON-TAN'"},
+          {"CTYPE2", "'ELAT-TAN'"},
+          {"CRVAL1", "82.959833242331"},
+          {"CRVAL2", "-28.687888542961"}},
+         square_px,
+         {83.91554113, -5.49099359}},
+        {"FK4",
+         {{"RADESYS", "'FK4'"},
+          {"EQUINOX", "1950.0"},
+          {"CRVAL1", "83.185652334882"},
+          {"CRVAL2", "-5.431567002280"}},
+         square_px,
+         {83.91045488, -5.49705182}},
+        {"1950",
+         {{"EQUINOX", "1950.0"}, {"CRVAL1", "83.185652334882"}, {"CRVAL2", "-5.431567002280"}},
+         square_px,
+         {83.91045488, -5.49705182}},
+        {"FK5 of 2015",
+         {{"RADESYS", "'FK5'"},
+          {"EQUINOX", "2015.5"},
+          {"CRVAL1", "83.990491004167"},
+          {"CRVAL2", "-5.390829817084"}},
+         square_px,
+         {83.91107212, -5.49635122}},
+        {"axes swapped",
+         {{"CTYPE1", "'DEC--TAN'"}, {"CTYPE2", "'RA---TAN'"}, {"CRVAL1", "-5.4"}, {"CRVAL2", "83.8"}},
+         {{"CD1_1", "0.001388888888888889"}, {"CD2_2", "-0.001388888888888889"}},
+         {83.89697565, -5.51040869}},
+        {"arc seconds",
+         {{"CUNIT1", "'arcsec'"}, {"CUNIT2", "'arcsec'"}, {"CRVAL1", "301680.0"}, {"CRVAL2", "-19440.0"}},
+         {{"CD1_1", "-5.0"}, {"CD2_2", "5.0"}},
+         {83.91092641, -5.49651745}},
+        {"CROTA2", {{"CROTA2", "30.0"}}, scales, {83.94453541, -5.42837000}},
+        {"PC01_01", {}, cases_pc, {83.85085906, -5.53764523}},
+    };
+    for (const Case& c : cases) {
+        const FitsSky sky = sky_with(c.cards, c.pixels);
+        ASSERT_TRUE(sky.grid) << c.what << ": " << sky.unfollowed;
+        std::array places{glm::dvec2(41.0, 31.0)};
+        sky.grid->to_sky(places);
+        constexpr double tolerance = 0.03 * 5.0 / 3600.0;  // of a pixel; 0.1 is asked for
+        EXPECT_NEAR(places[0].x, c.sky.x, tolerance) << c.what;
+        EXPECT_NEAR(places[0].y, c.sky.y, tolerance) << c.what;
+        sky.grid->to_pixels(places);
+        EXPECT_NEAR(places[0].x, 41.0, 1e-3) << c.what;
+        EXPECT_NEAR(places[0].y, 31.0, 1e-3) << c.what;
+        EXPECT_EQ(places[0].x * 4096.0, std::floor(places[0].x * 4096.0)) << "snapped";
+        EXPECT_TRUE(*sky.grid == *sky_with(c.cards, c.pixels).grid) << c.what;
+        EXPECT_FALSE(*sky.grid == *sky_with({{"CRVAL1", "83.9"}}).grid) << c.what;
+    }
 }
 
-TEST(FitsSky, IsUnknownWithoutItsKeywords) {
-    EXPECT_FALSE(sky_with({}));
-    const std::vector<std::pair<const char*, double>> place = {
-        {"CRPIX1", 2.5}, {"CRPIX2", 3.5}, {"CRVAL1", 83.8}, {"CRVAL2", -5.4}};
-    EXPECT_FALSE(sky_with(place));
-    auto flat = place, whole = place;
-    flat.insert(flat.end(), {{"CD1_1", 0.01}, {"CD1_2", 0.01}, {"CD2_1", 0.01}, {"CD2_2", 0.01}});
-    EXPECT_FALSE(sky_with(flat));
-    whole.insert(whole.end(), {{"CDELT1", -0.01}, {"CDELT2", 0.01}});
-    EXPECT_TRUE(sky_with(whole));
-    EXPECT_FALSE(sky_with(whole, "GLON-CAR"));
+TEST(FitsSky, OfRowsFromTheTop) {
+    std::array up{glm::dvec2(3.0, 31.0)}, down{glm::dvec2(3.0, 170.0)};  // of 200 rows
+    const FitsSky turned = sky_with({}, square_px, true);
+    sky_with({}).grid->to_sky(up);
+    turned.grid->to_sky(down);
+    EXPECT_EQ(up[0], down[0]);
+    turned.grid->to_pixels(down);
+    EXPECT_EQ(down[0].y, 170.0);
+    EXPECT_LT(turned.grid->degrees_per_px()[3], 0.0) << "south is up";
+    std::array behind{glm::dvec2(263.8, 5.4)};
+    sky_with({}).grid->to_pixels(behind);
+    EXPECT_TRUE(std::isnan(behind[0].x));
+}
+
+TEST(FitsSky, IsNoneOrSaysWhatIsNotFollowed) {
+    const auto answer = [](const SkyCards& cards, const SkyCards& pixels = square_px) {
+        const FitsSky sky = sky_with(cards, pixels);
+        return sky.grid ? "followed" : sky.unfollowed.empty() ? "none" : sky.unfollowed;
+    };
+    EXPECT_EQ(answer({}), "followed");
+    EXPECT_EQ(answer({}, {}), "none") << "a pixel has no size";
+    EXPECT_EQ(answer({{"CTYPE1", "'X'"}, {"CTYPE2", "'Y'"}}), "none");
+    EXPECT_EQ(answer({{"CTYPE1", "'HPLN-TAN'"}, {"CTYPE2", "'HPLT-TAN'"}}), "the frame HPLN-TAN");
+    EXPECT_EQ(answer({{"RADESYS", "'GAPPT'"}}), "the frame GAPPT");
+    EXPECT_EQ(answer({{"RADESYS", "'FK4'"}, {"EQUINOX", "1900.0"}}), "the frame FK4 of 1900");
+    EXPECT_NE(answer({}, {{"CD1_1", "0.01"}, {"CD1_2", "0.01"}, {"CD2_1", "0.01"}, {"CD2_2", "0.01"}}),
+              "followed");
+    EXPECT_NE(answer({{"CTYPE1", "'RA---XYZ'"}, {"CTYPE2", "'DEC--XYZ'"}}), "followed");
+    const std::vector<std::string> said = warnings_of([&] {
+        EXPECT_EQ(answer({{"CPDIS1", "'LOOKUP'"}, {"DP1", "'EXTVER: 1'"}, {"CPERR1", "0.02"}}), "followed");
+    });
+    ASSERT_EQ(said.size(), 1u);
+    EXPECT_HAS(said[0], "its table of distortions (CPDIS) is not followed");
 }
 
 }  // namespace
