@@ -92,7 +92,7 @@ Report describe_hdu(const FitsHdu& hdu) {
 Report describe_fits_file(const fs::path& file) {
     Report hdus = Report::array();
     for (const FitsHdu& hdu : describe_fits(file)) hdus.push_back(describe_hdu(hdu));
-    return {{"kind", "fits"}, {"hdus", hdus}};
+    return {{"kind", format_of_file(file)->id}, {"hdus", hdus}};
 }
 
 bool is_packed(const std::string& name) { return name == "astrosplat/hashed"; }

@@ -9,10 +9,12 @@
 #include "core/log.h"
 #include "core/text.h"
 #include "exit.h"
+#include "prepare/star_removal.h"
 #include "scene/new_scene.h"
 #include "scene/parameter_key.h"
 #include "scene/save.h"
 #include "source/picture.h"
+#include "source/prepared_picture.h"
 
 namespace astrosplat {
 namespace {
@@ -22,6 +24,7 @@ struct NewOptions {
     std::string object;  // its name, "M 104"; may be empty
     std::string shape;   // of a scene of columns; empty: a scene of bodies
     bool film = false;
+    fs::path starless, stars;  // a picture without its stars, and these
 };
 
 std::optional<SkyObject> object_of(const std::string& as) {
@@ -94,12 +97,12 @@ struct BodiesScene {
     Report report;
 };
 BodiesScene bodies_scene(const fs::path& picture, const fs::path& place, const NewOptions& options,
-                         const SetCache& cache) {
+                         const SetCache& cache, const fs::path& stars) {
     Identification found;
-    PictureScene scene =
-        picture_scene(picture, {object_of(options.as), object_by_name(options.object)}, found);
+    PictureScene scene = picture_scene(
+        picture, {object_of(options.as), object_by_name(options.object), options.starless, stars}, found);
     scene.film = options.film;
-    say(picture, found);
+    say(options.starless.empty() ? picture : options.starless, found);
     BodiesScene made{picture_scene_text(scene, place), to_report(found, scene)};
     if (!options.film) return made;
     Scene film = parse_scene(made.text, place);
@@ -119,17 +122,41 @@ std::string columns_text(const fs::path& picture, const fs::path& place, const N
     return new_scene_text(picture, shape, place, as_large ? scale_text_of(picture) : "");
 }
 
+/// The stars of a pair of pictures, for the scene's second layer.
+void write_star_table(const NewOptions& own, const fs::path& table, Existing existing) {
+    TextureSettings settings;
+    settings.prepare.starless = own.starless;
+    settings.prepare.stars = PrepareParams::Stars::remove;
+    const PreparedPicture prepared = prepare_picture({own.stars}, settings, stoppable());
+    write_file_atomically(table, star_table(prepared.stars, prepared.image.width, prepared.image.height),
+                          existing);
+}
+
 int run_new(const CommandOptions& options, const NewOptions& own) {
-    const fs::path& picture = options.input;
-    const fs::path scene = options.output.value_or(picture.stem().string() + ".toml");
+    const bool pair = !own.starless.empty() || !own.stars.empty();
+    if (pair && (own.starless.empty() || own.stars.empty() || !options.input.empty()))
+        throw InputError("new: expected IMAGE, or --starless A and --stars B, found a part of both");
+    if (!pair && options.input.empty())
+        throw InputError("new: expected IMAGE, or --starless A and --stars B");
+    const fs::path& picture = pair ? own.stars : options.input;
+    const fs::path scene = options.output.value_or((pair ? own.starless : picture).stem().string() + ".toml");
     require_picture(picture);  // a scene around something else would fail at its first frame
     if (kind_of(format_by_name(scene)) != FileKind::scene)
         bad_input(scene.string(), "", "a name ending in .toml", "'" + scene.extension().string() + "'");
     const bool columns = !own.shape.empty() || own.as == "plane";
-    const BodiesScene made = columns ? BodiesScene{columns_text(picture, scene, own), Report::object()}
-                                     : bodies_scene(picture, scene, own, options.cache);
+    if (pair && columns)
+        throw InputError("--starless: expected a scene of bodies, found --shape or --as plane");
     refuse_to_overwrite(scene, options.overwrite);
     prove_writable(folder_of(scene));
+    fs::path table;
+    if (pair) {
+        require_picture(own.starless);
+        table = folder_of(scene) / (scene.stem().string() + "_stars.csv");
+        refuse_to_overwrite(table, options.overwrite);
+        write_star_table(own, table, existing_of(options));
+    }
+    const BodiesScene made = columns ? BodiesScene{columns_text(picture, scene, own), Report::object()}
+                                     : bodies_scene(picture, scene, own, options.cache, table);
     write_file_atomically(scene, made.text, existing_of(options));
     if (options.json) {
         Report report{{"scene", scene.string()}};
@@ -146,7 +173,12 @@ int run_new(const CommandOptions& options, const NewOptions& own) {
 void add_new(CLI::App& app, Invocation& call) {
     const std::string kinds = fmt::format("{}|plane", fmt::join(all_names<SkyObject>(), "|"));
     auto [command, own] = add_command(app, call, "new", "Writes a scene for a picture", run_new);
-    add_input(command, call.options, "IMAGE", "The picture");
+    add_value(command, "IMAGE", call.options.input, "IMAGE", "The picture");
+    add_value(
+        command, "--starless", own.starless, "A",
+        "In place of IMAGE, with --stars: a picture without its stars, as StarNet, StarXTerminator or Siril "
+        "part them; the sum of both is the picture");
+    add_value(command, "--stars", own.stars, "B", "The stars alone");
     add_output(command, call.options, "SCENE",
                "The scene file to write (default: the picture's name with .toml, in this folder)")
         ->required(false);

@@ -205,8 +205,8 @@ void print_summary(const fs::path& folder, const std::vector<fs::path>& files, c
 
 /// Of all input files, before any of the work.
 void require_inputs(const fs::path& image, const PrepareOptions& own, const PrepareParams& params) {
-    for (const fs::path& file : {image, own.red, own.green, own.blue, params.align, params.fill, params.mask,
-                                 own.split.value_or(fs::path())})
+    for (const fs::path& file : {image, own.red, own.green, own.blue, params.align, params.starless,
+                                 params.fill, params.mask, own.split.value_or(fs::path())})
         if (!file.empty()) require_picture(file);
     if (own.settings.contains("stretch") && !image.empty() && !is_fits(image))
         bad_input("--stretch", "", "a FITS picture", "'" + image.string() + "'");

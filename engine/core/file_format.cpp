@@ -22,6 +22,7 @@ std::span<const FileFormat> file_formats() {
          picture,
          {".fits", ".fit", ".fts", ".fits.gz", ".fit.gz", ".fts.gz", ".fits.fz"},
          {"SIMPLE  ="}},
+        {"xisf", "XISF", picture, {".xisf"}, {"XISF0100"}},
         {"hdr", "Radiance HDR", picture, {".hdr"}, {"#?RADIANCE", "#?RGBE"}},
         {"dpx", "DPX", picture, {".dpx"}, {"SDPX", "XPDS"}},
         {"webp", "WebP", picture, {".webp"}, {"RIFF????WEBP"}},

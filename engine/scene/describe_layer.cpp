@@ -365,6 +365,10 @@ void describe_fits(const Describer& d, TextureSettings& t) {
 void describe_prepare(const Describer& d, PrepareParams& p) {
     d(p.align, "align", "Align with", "",
       "FITS picture of the same field: this one is put on its grid of the sky.");
+    d(p.starless, "starless", "Starless", "",
+      "The same picture without its stars, as StarNet, StarXTerminator and Siril make it; the picture itself "
+      "then "
+      "shows the stars alone. Their sum is the picture; stars are measured where they are alone.");
     d(p.fill, "fill", "Fill", "",
       "Picture of the same size: what is not black in it is filled from its surroundings.");
     d(p.stars, "stars", "Stars", "", "Kept, or removed: what they hid is filled from around them.");

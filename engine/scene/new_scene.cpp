@@ -167,7 +167,7 @@ structure = {{ kind = {kind}, {galaxies}clumps = {clumps}, {extent}, {opacity}, 
 stretch   = "auto"                # from data values to display values: asinh for FITS; or linear, asinh, log
 black     = "auto"                # data value shown as black
 white     = "auto"                # data value shown as white
-
+{prepare}
 [layer.look]
 density  = 1.0                    # share of the splats that is kept
 grade    = {{ gain = 1.0, tint = [1.0, 1.0, 1.0], saturation = 1.0, gamma = 1.0 }}
@@ -519,16 +519,23 @@ void take_stars(PictureScene& scene, const fs::path& table, const Progress& prog
 PictureScene picture_scene(const fs::path& image, const PictureRequest& request, Identification& found,
                            const Progress& progress) {
     constexpr std::int64_t most_texels = 4096 * 4096;  // more do not change what is seen in it
-    const Texture texture =
-        load_texture({image}, {}, TextureSettings::Wrap::clamp, progress, {make_prepared, {}, most_texels});
+    TextureSettings settings;
+    settings.prepare.starless = request.starless;
+    if (!request.starless.empty()) settings.prepare.stars = PrepareParams::Stars::remove;
+    const Texture texture = load_texture({image}, settings, TextureSettings::Wrap::clamp, progress,
+                                         {make_prepared, {}, most_texels});
     const bool reduced = texture.file_width > 0;
     PictureScene scene{image, reduced ? texture.file_width : texture.image.width,
                        reduced ? texture.file_height : texture.image.height};
     const Image light = picture_light(texture, 0.0).light;
+    scene.starless = request.starless;
     scene.lit_rim = lit_share_of_rim(light);
-    find_stars(scene, progress);
+    if (request.stars.empty())
+        find_stars(scene, progress);
+    else
+        take_stars(scene, request.stars, progress);
     scene.mean_light = mean_light(light);
-    ObjectClues clues = clues_of(image);
+    ObjectClues clues = clues_of(request.starless.empty() ? image : request.starless);
     clues.named = request.named;
     found = identify(clues, light, request.as);
     scene.structure = found.structure;
@@ -542,7 +549,8 @@ PictureScene picture_scene(const fs::path& image, const PictureRequest& request,
 }
 
 std::string picture_scene_text(const PictureScene& scene, const fs::path& file) {
-    const std::string name = layer_name_of(scene.image.stem().string(), "picture");
+    const fs::path& named = scene.starless.empty() ? scene.image : scene.starless;
+    const std::string name = layer_name_of(named.stem().string(), "picture");
     const std::int64_t longest = std::max(scene.width_px, scene.height_px);
     const double height = longest_side * double(scene.height_px) / double(longest);
     const double fov = is_deep(scene) ? field_of_view_of_deep : field_of_view;
@@ -570,7 +578,13 @@ std::string picture_scene_text(const PictureScene& scene, const fs::path& file) 
         fmt::arg("edges", margin > 0.0 ? fmt::format("margin = {}", margin) : "border = 0.03"),
         fmt::arg("stars", scene.stars.empty() ? "" : ", stars = false"), fmt::arg("extent", extent_of(scene)),
         fmt::arg("clumps", scene.object == SkyObject::thin ? "0.0" : "1.0"),
-        fmt::arg("opacity", opacity_of(scene.structure)));
+        fmt::arg("opacity", opacity_of(scene.structure)),
+        fmt::arg("prepare",
+                 scene.starless.empty()
+                     ? std::string()
+                     : fmt::format("prepare   = {{ starless = {}, stars = \"remove\" }}  # without the stars "
+                                   "that the texture shows\n",
+                                   to_toml(picture_path(scene.starless, file)))));
     if (!scene.stars.empty()) {
         const double frame_px = double(side_px(longest, longest));
         text += stars_text(scene, name, frame_px / double(longest), file);

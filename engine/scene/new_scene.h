@@ -39,14 +39,17 @@ struct PictureScene {
     bool film = false;                // with a camera move of ten seconds
     /// That it passes close by, from the top left corner in shares of width and height.
     glm::dvec2 subject{0.5};
-    fs::path stars = {};   // the table of those that `prepare` took away; empty: there is none
-    double star_px = 1.0;  // standard deviation of their images, px of the picture
+    fs::path stars = {};     // the table of those that `prepare` took away; empty: there is none
+    double star_px = 1.0;    // standard deviation of their images, px of the picture
+    fs::path starless = {};  // of PictureRequest
 };
 
 /// A person's words on a picture.
 struct PictureRequest {
     std::optional<SkyObject> as;             // what it is to be taken for
     const CatalogueObject* named = nullptr;  // the object that it shows
+    fs::path starless = {};                  // the same without stars: then the picture shows them alone
+    fs::path stars = {};  // the table of those; empty: what stars.csv beside the picture says
 };
 
 /// Reads the picture and what its file says, for its size and to choose a structure for it; `found`: what it

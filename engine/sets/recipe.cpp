@@ -100,11 +100,12 @@ std::string rework_lines(const TextureSettings& settings, const Progress& progre
 
 // Nothing where nothing is prepared, likewise.
 std::string prepare_lines(const PrepareParams& params, const Progress& progress) {
-    const auto& [align, fill, stars, threshold, saturation, background, lupton, q, lupton_stretch, ellipse,
-                 turn, feather, mask, alpha] = params;
+    const auto& [align, starless, fill, stars, threshold, saturation, background, lupton, q, lupton_stretch,
+                 ellipse, turn, feather, mask, alpha] = params;
     if (!prepares(params)) return "";
     std::string text = line("prepare", prepare_version);
     if (!align.empty()) text += file_line("align", align, progress);
+    if (!starless.empty()) text += file_line("starless", starless, progress);
     if (!fill.empty()) text += file_line("fill", fill, progress);
     if (stars == PrepareParams::Stars::remove) text += line("stars removed", threshold, saturation);
     text += line("background", background);

@@ -10,9 +10,10 @@
 #include "core/file_format.h"
 #include "core/log.h"
 #include "core/memory.h"
-#include "core/parallel.h"
 #include "core/real.h"
 #include "core/text.h"
+#include "source/value_layout.h"
+#include "source/xisf.h"
 
 namespace astrosplat {
 namespace {
@@ -280,12 +281,6 @@ FitsHdu find_hdu(const fs::path& file, fitsfile* in, const std::string& wanted, 
     bad_input(file, fmt::format("an HDU named '{}'", wanted), fmt::format("none in {} HDUs", count));
 }
 
-// A plane's rows lie from its lowest one on.
-void swap_rows(std::int64_t width, std::int64_t rows, double* values) {
-    for (std::int64_t y = 0; y < rows / 2; ++y)
-        std::swap_ranges(values + y * width, values + (y + 1) * width, values + (rows - 1 - y) * width);
-}
-
 // Of the current HDU, as cards of 80 characters; of compressed pictures what they were.
 std::string cards_of(const fs::path& file, fitsfile* in) {
     char* cards = nullptr;
@@ -296,17 +291,6 @@ std::string cards_of(const fs::path& file, fitsfile* in) {
     fits_free_memory(cards, &status);
     return text;
 }
-
-// Where a picture's values are in its HDU.
-struct FitsLayout {
-    enum class Values { plane, planes, by_pixel, bayer } values = Values::plane;
-    std::int64_t width = 0, height = 0;
-    std::int64_t first = 0;      // value of the HDU that is the picture's
-    std::int64_t stride = 1;     // of one channel's values
-    bool top_down = false;       // the first row is on top
-    std::array<int, 4> pattern;  // Bayer's: channels of the lower left 2 x 2 of the file
-    std::string what;
-};
 
 // Means of neighbours cannot be taken of planes that are no colours of one another.
 bool is_of_colors(fitsfile* in, std::size_t axis) {
@@ -319,27 +303,17 @@ bool is_of_colors(fitsfile* in, std::size_t axis) {
 // The letters belong to a picture as a camera stores it, from its top on. What says that it was turned over
 // begins with the other row; of what says nothing the rows are as the camera's.
 std::optional<std::array<int, 4>> bayer_pattern(fitsfile* in, bool bottom_up) {
-    const std::string letters = text_keyword(in, "BAYERPAT");
     int x = 0, y = 0;
     read_keyword(in, TINT, "XBAYROFF", &x);
     read_keyword(in, TINT, "YBAYROFF", &y);
-    if (bottom_up) ++y;
-    std::array<int, 4> pattern{};
-    if (letters.size() != 4) return {};
-    for (std::size_t i = 0; i < 4; ++i) {
-        const char letter = letters[((i / 2 + std::size_t(y & 1)) % 2) * 2 + (i + std::size_t(x & 1)) % 2];
-        const std::size_t channel = std::string_view("RGB").find(letter);
-        if (channel == std::string_view::npos) return {};
-        pattern[i] = int(channel);
-    }
-    return pattern;
+    return bayer_channels(text_keyword(in, "BAYERPAT"), x, bottom_up ? y + 1 : y);
 }
 
-FitsLayout layout_of(const fs::path& file, fitsfile* in, const FitsHdu& hdu, std::optional<int> plane,
-                     const Progress& progress) {
+ValueLayout layout_of(const fs::path& file, fitsfile* in, const FitsHdu& hdu, std::optional<int> plane,
+                      const Progress& progress) {
     const std::vector<std::int64_t> axes = picture_axes(hdu.axes);
-    FitsLayout layout;
-    using Values = FitsLayout::Values;
+    ValueLayout layout;
+    using Values = ValueLayout::Values;
     const std::string order = text_keyword(in, "ROWORDER");
     layout.top_down = order == "TOP-DOWN";
     if (!order.empty() && !layout.top_down && order != "BOTTOM-UP")
@@ -387,73 +361,21 @@ FitsLayout layout_of(const fs::path& file, fitsfile* in, const FitsHdu& hdu, std
     return layout;
 }
 
-// Rows of the file, from `first` on, as red, green and blue: what a pixel has not is the mean of those of its
-// 3 x 3 neighbours that have it.
-void demosaic(const FitsLayout& layout, std::int64_t first, std::int64_t rows, const double* mosaic,
-              std::int64_t mosaic_first, std::int64_t mosaic_rows, double* rgb) {
-    parallel_each(rows, 16, [&](std::int64_t row) {
-        const std::int64_t y = first + row;
-        for (std::int64_t x = 0; x < layout.width; ++x) {
-            double sum[3] = {}, count[3] = {};
-            const auto channel = [&](std::int64_t px, std::int64_t py) {
-                return layout.pattern[std::size_t(2 * (py & 1) + (px & 1))];
-            };
-            const auto value = [&](std::int64_t px, std::int64_t py) {
-                return mosaic[(py - mosaic_first) * layout.width + px];
-            };
-            for (std::int64_t py = std::max(y - 1, mosaic_first);
-                 py <= y + 1 && py < mosaic_first + mosaic_rows; ++py)
-                for (std::int64_t px = std::max<std::int64_t>(x - 1, 0); px <= x + 1 && px < layout.width;
-                     ++px) {
-                    sum[channel(px, py)] += value(px, py);
-                    count[channel(px, py)] += 1.0;
-                }
-            double* const to = rgb + 3 * (row * layout.width + x);
-            for (int c = 0; c < 3; ++c) to[c] = sum[c] / count[c];
-            to[channel(x, y)] = value(x, y);
-        }
-    });
-}
-
-// Rows [begin, end) of the file, channel by channel of each pixel.
-void read_file_rows(const fs::path& file, fitsfile* in, const FitsLayout& layout, std::int64_t begin,
-                    std::int64_t end, const Progress& progress, double* values) {
-    using Values = FitsLayout::Values;
-    const std::int64_t width = layout.width, count = (end - begin) * width;
-    if (layout.values == Values::plane && layout.stride == 1)
-        return read_into(file, in, layout.first + begin * width, count, progress, values);
-    if (layout.values == Values::by_pixel)
-        return read_into(file, in, 3 * begin * width, 3 * count, progress, values);
-    if (layout.values == Values::bayer) {
-        const std::int64_t first = std::max<std::int64_t>(begin - 1, 0),
-                           last = std::min(end + 1, layout.height);
-        Buffer<double> mosaic(std::size_t((last - first) * width));
-        read_into(file, in, first * width, std::ssize(mosaic), progress, mosaic.data());
-        return demosaic(layout, begin, end - begin, mosaic.data(), first, last - first, values);
-    }
-    const bool planes = layout.values == Values::planes;
-    Buffer<double> some(std::size_t(planes ? count : 3 * count));
-    for (std::int64_t c = 0; c < (planes ? 3 : 1); ++c) {
-        const std::int64_t from = planes ? c * width * layout.height + begin * width : 3 * begin * width;
-        read_into(file, in, from, std::ssize(some), progress, some.data());
-        for (std::int64_t i = 0; i < count; ++i)
-            planes ? values[3 * i + c] = some[i] : values[i] = some[3 * i + layout.first];
-    }
-}
-
 }  // namespace
 
 bool is_fits(const fs::path& file) {
     const FileFormat* const format = format_of_file(file);
-    return format && format->id == "fits";
+    return format && (format->id == "fits" || format->id == "xisf");
 }
 
 void require_fits_picture(const fs::path& file) {
+    if (is_xisf(file)) return void(open_xisf_rows(file, "auto", {}, {}));
     const Handle in = open_fits(file);
     find_hdu(file, in.get(), "auto", {});
 }
 
 std::vector<FitsHdu> describe_fits(const fs::path& file, const Progress& progress) {
+    if (is_xisf(file)) return describe_xisf(file, progress);
     const Handle in = open_fits(file);
     std::vector<FitsHdu> hdus;
     const int count = hdu_count(file, in.get());
@@ -473,15 +395,16 @@ std::vector<FitsHdu> describe_fits(const fs::path& file, const Progress& progres
 
 FitsRows open_fits_rows(const fs::path& file, const std::string& hdu, std::optional<int> plane,
                         const Progress& progress) {
+    if (is_xisf(file)) return open_xisf_rows(file, hdu, plane, progress);
     const std::shared_ptr<fitsfile> in(open_fits(file));
     const FitsHdu found = find_hdu(file, in.get(), hdu, progress);
     check_tiles(file, in.get());
-    const FitsLayout layout = layout_of(file, in.get(), found, plane, progress);
+    const ValueLayout layout = layout_of(file, in.get(), found, plane, progress);
     FitsRows rows;
     FitsPlane& picture = rows.plane;
     picture.width = layout.width;
     picture.height = layout.height;
-    picture.channels = layout.values == FitsLayout::Values::plane ? 1 : 3;
+    picture.channels = layout.channels();
     picture.hdu = found.number;
     picture.name = found.name;
     picture.what = layout.what;
@@ -490,12 +413,9 @@ FitsRows open_fits_rows(const fs::path& file, const std::string& hdu, std::optio
     picture.object = text_keyword(in.get(), "OBJECT");
     picture.distance_ly = distance_ly_of(in.get());
     picture.sky = read_fits_sky(file, cards_of(file, in.get()), layout.height, layout.top_down);
-    rows.read = [=, channels = picture.channels](std::int64_t begin, std::int64_t end, double* values) {
-        const bool down = layout.top_down;
-        read_file_rows(file, in.get(), layout, down ? begin : layout.height - end,
-                       down ? end : layout.height - begin, progress, values);
-        if (!down) swap_rows(layout.width * channels, end - begin, values);
-    };
+    rows.read = rows_of_values(layout, [=](std::int64_t first, std::int64_t count, double* values) {
+        read_into(file, in.get(), first, count, progress, values);
+    });
     return rows;
 }
 

@@ -5,6 +5,7 @@
 
 #include "core/buffer.h"
 #include "core/progress.h"
+#include "source/color_encoding.h"
 #include "source/sky_grid.h"
 #include "source/source.h"
 
@@ -55,7 +56,8 @@ class StretchCurve {
 /// to CFITSIO.
 void check_fits_headers(const fs::path& file);
 
-/// By content, or a gzip file by its name.
+/// By content, or a gzip file by its name. XISF, which holds the same (source/xisf.h), is FITS to all that
+/// follows.
 bool is_fits(const fs::path& file);
 
 struct FitsHdu {
@@ -86,6 +88,8 @@ struct FitsPlane {
     std::string object;                 // OBJECT; may be empty
     std::optional<double> distance_ly;  // DISTANCE, where its comment tells the unit
     FitsSky sky;
+    std::shared_ptr<const ColorEncoding>
+        colors;  // of a profile, for values that are not stretched; null: none
 };
 
 /// A plane that is handed out by rows.

@@ -34,10 +34,7 @@ struct PrepareInput {
 
 constexpr double saturated_integer = 0.98;  // of linear light, in pictures of integers
 
-PrepareInput read_fits_input(const fs::path& file, const TextureSettings& settings,
-                             const Progress& progress) {
-    const FitsPlane plane = read_fits(file, settings.hdu, settings.plane, progress);
-    const Limits limits = choose_limits(value_range(plane.values), settings, file.string());
+PrepareInput input_of(const FitsPlane& plane, const Limits& limits, const TextureSettings& settings) {
     PrepareInput input;
     input.image = make_image(plane.width, plane.height, 4);
     input.empty = make_mask(plane.width, plane.height);
@@ -60,9 +57,7 @@ PrepareInput read_fits_input(const fs::path& file, const TextureSettings& settin
     return input;
 }
 
-PrepareInput read_picture_input(const fs::path& file, const TextureSettings& settings,
-                                const Progress& progress) {
-    Stored stored = read_stored(file, settings, progress);
+PrepareInput input_of(Stored stored, const TextureSettings& settings) {
     PrepareInput input;
     const bool integers = stored.picture.max_integer > 0.0;
     input.saturation = integers ? saturated_integer : std::numeric_limits<double>::infinity();
@@ -143,11 +138,62 @@ void put_channel(const PrepareInput& filter, int channel, PrepareInput& rgb) {
 // Throws InputError, Cancelled.
 PrepareInput read_prepare_input(const fs::path& file, const TextureSettings& settings,
                                 const Progress& progress) {
-    PrepareInput input = is_fits(file) ? read_fits_input(file, settings, progress)
-                                       : read_picture_input(file, settings, progress);
+    PrepareInput input;
+    if (is_fits(file)) {
+        const FitsPlane plane = read_fits(file, settings.hdu, settings.plane, progress);
+        input = input_of(plane, choose_limits(value_range(plane.values), settings, file.string()), settings);
+    } else {
+        input = input_of(read_stored(file, settings, progress), settings);
+    }
     fill(input.image, input.empty, FillKind::membrane, progress);
     input.name = file.string();
     return input;
+}
+
+// What the picture of the stars has more than none, added as it is stored: so the two were parted.
+void add_values(const FitsPlane& starless, FitsPlane& stars) {
+    for (std::size_t i = 0; i < stars.values.size(); ++i) stars.values[i] += starless.values[i];
+}
+void add_values(const Image& starless, Image& stars) {
+    for (std::size_t i = 0; i < stars.pixels.size(); ++i)
+        if (i % std::size_t(stars.channels) < 3) stars.pixels[i] += starless.pixels[i];
+}
+
+// A picture that two files make: their sum, and in `starless` what it is without stars. Throws InputError
+// where they do not fit together, Cancelled.
+PrepareInput read_pair(const fs::path& file, const TextureSettings& settings, PrepareInput& starless,
+                       const Progress& progress) {
+    const fs::path& other = settings.prepare.starless;
+    const auto require_same = [&](const auto& stars, const auto& sky) {
+        if (stars.width != sky.width || stars.height != sky.height || stars.channels != sky.channels)
+            bad_input(other,
+                      fmt::format("{}x{} px of {} channels like {}", stars.width, stars.height,
+                                  stars.channels, file.string()),
+                      fmt::format("{}x{} px of {}", sky.width, sky.height, sky.channels));
+    };
+    PrepareInput whole;
+    if (is_fits(file) && is_fits(other)) {
+        FitsPlane sum = read_fits(file, settings.hdu, settings.plane, progress);
+        const FitsPlane sky = read_fits(other, settings.hdu, settings.plane, progress);
+        require_same(sum, sky);
+        add_values(sky, sum);
+        const Limits limits = choose_limits(value_range(sum.values), settings, file.string());
+        whole = input_of(sum, limits, settings);
+        starless = input_of(sky, limits, settings);
+    } else {
+        if (is_fits(file) || is_fits(other))
+            bad_input(other, fmt::format("a file of the kind of {}", file.string()), "another");
+        Stored sum = read_stored(file, settings, progress), sky = read_stored(other, settings, progress);
+        require_same(sum.picture.image, sky.picture.image);
+        add_values(sky.picture.image, sum.picture.image);
+        whole = input_of(std::move(sum), settings);
+        starless = input_of(std::move(sky), settings);
+    }
+    for (PrepareInput* const input : {&whole, &starless}) {
+        fill(input->image, input->empty, FillKind::membrane, progress);
+        input->name = file.string();
+    }
+    return whole;
 }
 
 // Three filters as red, green and blue. Green and blue are sampled on red's grid where headers tell the sky,
@@ -207,6 +253,7 @@ struct Preparation {
     PrepareInput input;
     const TextureSettings& settings;
     const Progress& progress;
+    Image starless = {};  // where another file shows it
     const PrepareParams& params = settings.prepare;
     Image full = {input.image.width, input.image.height, 4, {}};  // of the size of masks; without pixels
     int halvings = 0;
@@ -214,6 +261,7 @@ struct Preparation {
     void halve_to(std::int64_t most_px) {
         while (most_px > 0 && std::max(input.image.width, input.image.height) > most_px) {
             input.image = halved(input.image);
+            if (starless.width > 0) starless = halved(starless);
             ++halvings;
         }
         if (halvings > 0) input.empty = empty_pixels(input.image);
@@ -253,9 +301,13 @@ struct Preparation {
 
     void take_stars_away(PreparedPicture& result) {
         claim_memory(star_removal_bytes(input.image), "star removal");
+        if (starless.width > 0)  // what it has more are the stars alone
+            for_each_pixel(input.image, [&](std::int64_t x, std::int64_t y) {
+                for (int c = 0; c < 3; ++c) input.image.at(x, y)[c] -= starless.at(x, y)[c];
+            });
         StarRemoval removal = remove_stars(
             input.image, {params.threshold, params.saturation.value_or(input.saturation)}, progress);
-        input.image = std::move(removal.starless);
+        input.image = starless.width > 0 ? std::move(starless) : std::move(removal.starless);
         result.stars = std::move(removal.stars);
     }
 
@@ -276,11 +328,19 @@ struct Preparation {
 
 PreparedPicture prepare_picture(const std::vector<fs::path>& files, const TextureSettings& settings,
                                 const Progress& progress, std::int64_t most_px) {
-    PrepareInput input = files.size() == 1
+    const bool pair = !settings.prepare.starless.empty();
+    if (pair && files.size() != 1)
+        throw InputError(fmt::format("starless: expected one picture, of the stars, found {}", files.size()));
+    PrepareInput starless;
+    PrepareInput input = pair ? read_pair(files[0], settings, starless, progress)
+                         : files.size() == 1
                              ? read_prepare_input(files[0], settings, progress)
                              : read_three_filters({files[0], files[1], files[2]}, settings, progress);
-    if (!settings.prepare.align.empty()) align_to(settings.prepare.align, settings, input, progress);
-    Preparation preparation{std::move(input), settings, progress};
+    if (!settings.prepare.align.empty()) {
+        if (pair) align_to(settings.prepare.align, settings, starless, progress);
+        align_to(settings.prepare.align, settings, input, progress);
+    }
+    Preparation preparation{std::move(input), settings, progress, std::move(starless.image)};
     preparation.halve_to(most_px);
     return preparation.run();
 }

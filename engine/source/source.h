@@ -46,8 +46,9 @@ struct PrepareParams {
     friend constexpr auto names_of(Background) {
         return names_up_to<Background::curved>("keep", "level", "plane", "curved");
     }
-    fs::path align;  // FITS picture on whose grid of the sky it is put; empty: as it is
-    fs::path fill;   // picture of its size: what is not black is filled from around it
+    fs::path align;     // FITS picture on whose grid of the sky it is put; empty: as it is
+    fs::path starless;  // picture of its size: the same without stars, and it is the stars alone
+    fs::path fill;      // picture of its size: what is not black is filled from around it
     Stars stars = Stars::keep;
     double threshold = 5.0;            // least height of a star over the local noise
     std::optional<double> saturation;  // linear light; empty: 0.98 of pictures of integers, none of others
@@ -65,9 +66,9 @@ struct PrepareParams {
 
 /// Whether any of it is asked for.
 inline bool prepares(const PrepareParams& p) {
-    return !p.align.empty() || !p.fill.empty() || p.stars == PrepareParams::Stars::remove ||
-           p.background != PrepareParams::Background::keep || p.lupton || p.ellipse || !p.mask.empty() ||
-           p.alpha;
+    return !p.align.empty() || !p.starless.empty() || !p.fill.empty() ||
+           p.stars == PrepareParams::Stars::remove || p.background != PrepareParams::Background::keep ||
+           p.lupton || p.ellipse || !p.mask.empty() || p.alpha;
 }
 
 /// How a picture file becomes linear, premultiplied colour.

@@ -16,6 +16,7 @@ Stored stored_without_pixels(const FitsPlane& plane, const Limits& limits, Setti
     Stored stored;
     stored.display_values = stretch != Settings::Stretch::linear;
     stored.picture.credit = plane.credit;
+    if (!stored.display_values) stored.picture.colors = plane.colors;
     stored.picture.image = {plane.width, plane.height, 3, {}};
     stored.picture.summary =
         fmt::format("{}x{} px, HDU {}{}{}{}{}, {} stretch, black {:.6g}, white {:.6g}", plane.width,

@@ -57,6 +57,46 @@ TEST_F(PrepareCommand, WritesAPictureAndATableOfItsStars) {
     expect_success(run({"new", "ready/picture.exr", "-o", "ready.toml"}));
 }
 
+// As StarNet and its kin part a picture: what the stars add to the values that are stored.
+TEST_F(PrepareCommand, APairIsTheSumAndStarsAreMeasuredAlone) {
+    const auto sky = [](int x, int y, int c) {
+        return 30 + x + y / 2 + 10 * c + (x / 3 % 2 && y / 3 % 2 ? 60 : 0);
+    };
+    const auto star = [](int x, int y) {
+        const double u = std::fmod(x, 32.0) - 16.0, v = std::fmod(y, 21.0) - 10.0;
+        return int(50.0 * std::exp(-(u * u + v * v) / 3.0) + 0.5);
+    };
+    write_text(folder / "sky.ppm", pixmap(96, 64, sky));
+    write_text(folder / "own.ppm", pixmap(96, 64, [&](int x, int y, int) { return star(x, y); }));
+    write_text(folder / "sum.ppm",
+               pixmap(96, 64, [&](int x, int y, int c) { return sky(x, y, c) + star(x, y); }));
+    const auto pair = [&](const char* stars) {
+        expect_success(run({"prepare", "own.ppm", "--starless", "sky.ppm", "--stars", stars, "-o", stars}));
+        return load_linear_image(folder / stars / "picture.exr").pixels;
+    };
+    EXPECT_EQ(pair("remove"), load_linear_image(folder / "sky.ppm").pixels);
+    EXPECT_EQ(lines("remove/stars.csv"), 11u) << "nine, though the squares of the sky are brighter";
+    EXPECT_EQ(pair("keep"), load_linear_image(folder / "sum.ppm").pixels);
+    expect_success(run({"new", "--starless", "sky.ppm", "--stars", "own.ppm", "-o", "pair.toml"}));
+    EXPECT_EQ(lines("pair_stars.csv"), 11u);
+    EXPECT_HAS(text_of(folder / "pair.toml"), "prepare   = { starless = \"sky.ppm\", stars = \"remove\" }");
+    expect_success(run({"--batch", "pair.toml", "-f", "1", "--dry-run"}));
+    expect_one_line(run({"new", "--starless", "sky.ppm", "--stars", "own.ppm", "-o", "pair.toml"}), 2,
+                    "pair.toml");
+    expect_one_line(run({"new", "--starless", "sky.ppm"}), 2,
+                    "expected IMAGE, or --starless A and --stars B");
+    expect_one_line(run({"new"}), 2, "expected IMAGE, or --starless A and --stars B");
+    write_text(folder / "small.ppm", pixmap(9, 9, sky));
+    expect_one_line(run({"prepare", "own.ppm", "--starless", "small.ppm", "-o", "x", "--progress", "none"}),
+                    2, "small.ppm: expected 96x64 px of 3 channels like own.ppm, found 9x9 px of 3");
+    write_text(folder / "sky.fits", fits_file(96, 64, "", [&](int x, int y) { return sky(x, 63 - y, 0); }));
+    write_text(folder / "own.fits", fits_file(96, 64, "", [&](int x, int y) { return star(x, 63 - y); }));
+    expect_success(run({"prepare", "own.fits", "--starless", "sky.fits", "--stars", "remove", "--black", "0",
+                        "--white", "100", "--stretch", "linear", "-o", "fits"}));
+    EXPECT_FLOAT_EQ(load_linear_image(folder / "fits/picture.exr").at(5, 7)[0], float(sky(5, 7, 0)) / 100.0f);
+    EXPECT_EQ(lines("fits/stars.csv"), 11u);
+}
+
 TEST_F(PrepareCommand, KeepsWhatIsNotAsked) {
     expect_success(prepare({"-o", "kept", "--stars", "keep"}));
     EXPECT_FALSE(fs::exists(folder / "kept/stars.csv"));

@@ -86,15 +86,18 @@ std::size_t read_obj_bytes(std::string_view bytes) {
     return mesh.triangles.size();
 }
 
-std::size_t read_fits_bytes(std::string_view bytes) {
+std::size_t read_picture_bytes(std::string_view bytes, const std::string& ending) {
     const Texture texture =
-        load_texture({TemporaryFile(bytes, ".fits").path}, TextureSettings{}, TextureSettings::Wrap::clamp);
+        load_texture({TemporaryFile(bytes, ending).path}, TextureSettings{}, TextureSettings::Wrap::clamp);
     const Image& image = texture.image;
     demand(image.width > 0 && image.height > 0 && image.channels == 4, "an RGBA picture");
     demand(image.pixels.size() == std::size_t(image.width * image.height * 4), "all its pixels");
     for (const float value : image.pixels) demand(finite(value), "finite pixels");
     return image.pixels.size();
 }
+
+std::size_t read_fits_bytes(std::string_view bytes) { return read_picture_bytes(bytes, ".fits"); }
+std::size_t read_xisf_bytes(std::string_view bytes) { return read_picture_bytes(bytes, ".xisf"); }
 
 // ---- seeds
 
@@ -113,6 +116,20 @@ SplatSet small_set() {
     }
     set.credit = "somebody";
     return set;
+}
+
+/// 2 x 2 grey pixels, plain and stored in the header, and compressed by zlib.
+std::vector<std::string> xisf_seeds() {
+    const auto file = [](const std::string& attributes, const std::string& text) {
+        const std::string header =
+            "<?xml version=\"1.0\"?><xisf version=\"1.0\"><Image geometry=\"2:2:1\" "
+            "sampleFormat=\"UInt8\" colorSpace=\"Gray\" location=\"inline:hex\" " +
+            attributes + ">" + text + "</Image></xisf>";
+        return std::string("XISF0100") + char(header.size() & 255U) + char(header.size() >> 8U) +
+               std::string(6, '\0') + header;
+    };
+    return {file("", "01020304"), file("compression=\"zlib:4\"", "789c6364626601000018000b"),
+            file("subblocks=\"2,2:2,2\" compression=\"lz4:4\" checksum=\"sha-1:00\"", "01020304")};
 }
 
 std::string written(void (*write)(const WriteTarget&, const SplatSet&, const Progress&),
@@ -191,6 +208,7 @@ const std::vector<Target>& targets() {
          read_native_bytes},
         {"obj", [] { return Seeds{obj}; }, read_obj_bytes},
         {"fits", fits_seeds, read_fits_bytes},
+        {"xisf", xisf_seeds, read_xisf_bytes},
         {"stars", catalogue_seeds, read_catalogue_bytes},
         {"cameras", camera_seeds, read_camera_bytes},
         {"gaussian_ply", gaussian_ply_seeds, read_gaussian_ply_bytes},
