@@ -243,10 +243,10 @@ float expected_dust_splats(float transmittance, double amount) {
 namespace {
 
 // The far half and the sides of a galaxy that is seen from its edge, which no picture shows, have the dust of
-// the near side (INCLINED 4): what lies within 55 degrees of the direction to it, turned about the normal.
+// the near side (INCLINED 4): what lies within 60 degrees of the direction to it, turned about the normal.
 void turn_dust(const GalaxyBody& galaxy, const Placement& placement, std::int64_t begin, PictureSplats& out) {
-    constexpr double turns_deg[] = {110.0, 220.0};
-    constexpr float along_near = 0.57357644f;  // cosine of 55 degrees
+    constexpr double turns_deg[] = {120.0, 240.0};
+    constexpr float along_near = 0.5f;  // cosine of 60 degrees: a third of the ring
     const std::int64_t end = out.splats.size();
     std::vector<std::int64_t> near;
     const auto in_disk = [&](std::int64_t i) {

@@ -103,6 +103,15 @@ float sum_there(const std::vector<LineGaussian>& gaussians, glm::vec2 uv) {
 // Of deviation 1.
 float spread_of(float u) { return near_logistic(u) / logistic_deviation; }
 
+// A Gaussian's quantile within .03 (Shore 1982, Applied Statistics 31, 108). A spheroid's must end where its
+// light does: cut as spread_of() is, at 2.3 deviations in every line of sight, it had straight sides.
+float gaussian_spread_of(float u) {
+    constexpr float outermost = 5e-4f, steep = 0.1186f, far = 5.5556f;
+    const float side = std::clamp(std::min(u, 1.0f - u), outermost, 0.5f);
+    const float away = far * (1.0f - as_exp(steep * as_log(side / (1.0f - side))));
+    return u < 0.5f ? -away : away;
+}
+
 }  // namespace
 
 float GalaxyBody::value_at(const Image& field, float x, float y) const {
@@ -230,7 +239,7 @@ float depth_of(const GalaxyBody& body, GalaxyPart part, float x, float y, float 
     for (const LineGaussian& g : gaussians) {
         const float light = light_there(g, uv);
         if (before < light || &g == &gaussians.back())
-            return uv.y * g.slope + g.deviation * spread_of(before / std::max(light, 1e-30f));
+            return uv.y * g.slope + g.deviation * gaussian_spread_of(before / std::max(light, 1e-30f));
         before -= light;
     }
     return 0.0f;

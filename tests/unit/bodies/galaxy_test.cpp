@@ -1,6 +1,7 @@
 // Galaxies: how one lies in its picture, and the body that it becomes.
 #include "bodies/galaxy_body.h"
 
+#include "bodies/dust.h"
 #include "bodies/galaxies.h"
 #include "bodies/galaxy_fit.h"
 #include "bodies/picture_splats.h"
@@ -62,6 +63,21 @@ TEST(GalaxyBody, DepthsAreThoseOfGaussiansInSpace) {
             EXPECT_NEAR(v * double(g.slope), mean, 1e-3 * std::fabs(mean) + 1e-3);
             EXPECT_NEAR(g.deviation, std::sqrt(square / all - mean * mean), 2e-3 * g.deviation);
         }
+    }
+}
+
+// Cut nearer than its light ends, a spheroid has straight sides.
+TEST(GalaxyBody, ASpheroidEndsAsAGaussianDoes) {
+    const GalaxyBody body = body_of(70.0);
+    const LineGaussian g = body.parts[std::size_t(GalaxyPart::spheroid)].at(0);
+    const auto off = [&](float share) {
+        return depth_of(body, GalaxyPart::spheroid, body.center.x, body.center.y, share) / g.deviation;
+    };
+    constexpr std::pair<float, float> quantiles[] = {
+        {0.5f, 0.0f}, {0.8413447f, 1.0f}, {0.9772499f, 2.0f}, {0.9986501f, 3.0f}};
+    for (const auto& [share, deviations] : quantiles) {
+        EXPECT_NEAR(off(share), deviations, 0.03f);
+        EXPECT_NEAR(off(1.0f - share), -deviations, 0.03f);
     }
 }
 
@@ -145,6 +161,24 @@ TEST(GalaxyFamilies, ASpheroidIsRoundAndADiskFlat) {
     EXPECT_LT(flatness(GalaxyFamily::disk), 0.3);
     EXPECT_GT(flatness(GalaxyFamily::spheroid), 0.4);
     EXPECT_LT(flatness(GalaxyFamily::spheroid), 1.1);
+}
+
+// What no picture shows of a lane is the near side's dust, turned: no gap is left between the turns.
+TEST(GalaxyFamilies, ALaneGoesAllAround) {
+    const Image light = painted::tilted_galaxy(320, 200, {85.0, 20.0, true, 6.0, 0.0});
+    Placement placement = make_placement(light, galaxy_params(85.0), 32.0, true, 1u);
+    GalaxyBody& body = placement.galaxies.at(0);
+    body.ring = 60.0f;
+    PictureSplats set;
+    add_dust(make_image(320, 200, 1, 0.2f), 1.0, dust_exponents, placement, set);
+    std::array<int, 24> each{};
+    for (const glm::vec3& p : set.splats.position) {
+        const glm::vec3 q = body.in_disk(p.x + 160.0f, 100.0f - p.y, p.z);
+        if (const float r = std::hypot(q.x, q.y); r > 40.0f && r < 70.0f)
+            ++each[std::size_t(std::clamp(12.0f * (1.0f + std::atan2(q.y, q.x) / 3.1415927f), 0.0f, 23.0f))];
+    }
+    const auto [least, most] = std::ranges::minmax(each);
+    EXPECT_GT(least, most / 3);
 }
 
 // A globular cluster is a spheroid, and its stars are points.
