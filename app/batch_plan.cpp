@@ -13,6 +13,7 @@
 #include "output/write.h"
 #include "pipeline.h"
 #include "scene/animate.h"
+#include "scene/camera_file.h"
 #include "scene/check.h"
 #include "scene/frames.h"
 #include "scene/layer_setup.h"
@@ -97,6 +98,7 @@ Scene batch_scene(const CommandOptions& options) {
     if (options.frames) scene.output.frames = *options.frames;
     if (options.output) scene.output.path = options.output->string();
     if (options.resolution) apply_resolution(scene.output, *options.resolution);
+    refresh_camera_file(scene, "");  // a lens shift depends on the frame's shape
     if (options.layers) apply_layers(scene, *options.layers);
     check_renderable(scene, places);
     check_output(scene.output, places);
@@ -211,7 +213,10 @@ BatchPlan plan_scene(const CommandOptions& options) {
 BatchPlan plan_frames(const CommandOptions& options) {
     BatchPlan plan = plan_scene(options);
     const std::vector<Eye> eyes = eyes_of(plan.output, plan.scene.camera);
-    for (const std::int64_t frame : frame_numbers(plan, options.frames.has_value()))
+    const std::vector<std::int64_t> numbers = frame_numbers(plan, options.frames.has_value());
+    if (const std::string missed = missed_camera_frames(plan.scene, numbers); !missed.empty())
+        log_warning(missed);
+    for (const std::int64_t frame : numbers)
         for (const Eye eye : eyes) {
             const FrameScene now = frame_scene(plan.scene, static_cast<double>(frame), eye);
             plan.frames.push_back({frame, eye, plan.output.resolve(frame, eye), plan.hasher.frame_hash(now)});

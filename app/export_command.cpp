@@ -104,6 +104,7 @@ int run_camera(const CommandOptions& options) {
                        : parse_frames(scene.output.frames, scene.file.string() + ": output.frames");
     const fs::path& file = *options.output;
     refuse_to_overwrite(file, options.overwrite);
+    if (const std::string missed = missed_camera_frames(scene, frames); !missed.empty()) log_warning(missed);
     write_file_atomically(file, camera_text(camera_track(scene, frames), scene, file), existing_of(options));
     fmt::print("{}: {}\n", printable(file.string()), counted(std::ssize(frames), "frame"));
     return exit_done;

@@ -18,6 +18,8 @@ bool normalise(glm::dvec3& v) {
     return true;
 }
 
+bool is_mirrored(const glm::dmat3& m) { return glm::dot(glm::cross(m[2], m[0]), m[1]) < 0.0; }
+
 // The largest of the four numbers first, so that nothing is divided by a small one.
 glm::dvec4 quaternion_of(const glm::dmat3& m) {
     const double trace = m[0][0] + m[1][1] + m[2][2];
@@ -52,9 +54,17 @@ ReadTrack reader_of(const fs::path& file) {
 
 }  // namespace
 
+bool set_axes(const glm::dmat3& axes, const std::string& file, TrackSample& sample, CameraTrack& track) {
+    if (track.samples.empty() && is_mirrored(axes))
+        track.warnings.push_back(file +
+                                 ": the camera is mirrored, which no frame is: its up and its view stay");
+    return quaternion_from_axes(axes, sample.rotation);
+}
+
 bool quaternion_from_axes(const glm::dmat3& world_from_camera, glm::dvec4& quaternion) {
     glm::dvec3 x = world_from_camera[0], z = world_from_camera[2];
     if (!normalise(z) || !normalise(x)) return false;
+    if (is_mirrored(world_from_camera)) x = -x;
     x -= z * glm::dot(x, z);
     if (!(glm::length(x) > 1e-9) || !normalise(x)) return false;
     quaternion = quaternion_of(glm::dmat3(x, glm::cross(z, x), z));

@@ -7,6 +7,7 @@
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 
+#include "camera/camera.h"
 #include "core/standard.h"
 
 namespace astrosplat {
@@ -15,19 +16,24 @@ struct TrackSample {
     double frame = 0.0;                       // ascending through a track
     glm::dvec3 eye{0.0};                      // units of the file
     glm::dvec4 rotation{0.0, 0.0, 0.0, 1.0};  // quaternion x y z w, world from camera, length 1
-    double fov_deg = 0.0;                     // vertical; meaningless where the track has none
-    double height = 0.0;                      // units of the file from bottom to top, orthographic tracks
+    double fov_deg = 0.0;   // vertical; of a fisheye its cone; meaningless where the track has none
+    double height = 0.0;    // units of the file from bottom to top, orthographic tracks
+    glm::dvec2 shift{0.0};  // of what a perspective frame shows, its heights to the right and up
 };
 
 enum class FileUp { y, z };
 
 struct CameraTrack {
-    std::vector<TrackSample> samples;   // at least one; between them cameras move in straight lines
-    bool has_fov = false;               // every sample has fov_deg
-    bool orthographic = false;          // every sample has height instead
+    std::vector<TrackSample> samples;  // at least one; between them cameras move in straight lines
+    bool has_fov = false;              // every sample has fov_deg
+    bool has_shift = false;            // some sample has a shift other than 0
+    /// Orthographic: every sample has height instead of fov_deg.
+    Projection projection = Projection::perspective;
     FileUp up = FileUp::y;              // the file's own word, or its format's habit
     double fps = 0.0;                   // as the file says; 0: it does not
     std::vector<std::string> warnings;  // odd but usable: one line each, with the file's name
+
+    bool orthographic() const { return projection == Projection::orthographic; }
 };
 
 /// How frames of a file become frames of the output.
@@ -46,7 +52,8 @@ struct FrameRate {
 inline constexpr std::int64_t most_camera_samples = 6'000'000;
 
 /// Nearest quaternion of axes that are orthogonal but for rounding and scale: the viewing axis (column 2) is
-/// kept, then x. Returns false where they span no space.
+/// kept, then x, which is turned round where the axes are mirrored: up stays up. Returns false where they
+/// span no space.
 bool quaternion_from_axes(const glm::dmat3& world_from_camera, glm::dvec4& quaternion);
 
 /// Looking along `direction` with `up` up. Returns false where the two are parallel or zero.

@@ -9,6 +9,11 @@
 
 namespace astrosplat {
 
+/// Turns the sample, the track's next one, and tells of mirrored axes at the first. Returns false where the
+/// axes span no space.
+bool set_axes(const glm::dmat3& world_from_camera, const std::string& file, TrackSample& sample,
+              CameraTrack& track);
+
 /// .chan, the camera files of Nuke, Maya, Houdini and Blender: one line a frame, "frame tx ty tz rx ry rz
 /// [fov]", angles in degrees applied in the order z, x, y (Nuke's ZXY), fov vertical, y up.
 CameraTrack read_chan(const fs::path& file, const FrameRate& rate);
@@ -16,21 +21,24 @@ CameraTrack read_chan(const fs::path& file, const FrameRate& rate);
 std::string chan_text(const CameraTrack& track);
 
 /// The animated camera of a .gltf or .glb, as Blender and Houdini write them, with the buffers that lie in it
-/// or beside it: the first node with a camera, moved by its own and its parents' transforms and by the first
-/// animation that moves any of them; a second of the file is output_fps frames, from frame 0 on (file_fps is
-/// not used). One sample at every whole frame that the animation touches, one in all where nothing moves.
+/// or beside it: the first node with a camera of the scene that the file shows, moved by its own and its
+/// parents' transforms and by all animations that move any of them or the lens (KHR_animation_pointer); one
+/// that moves again what another moves is told and left out. A second of the file is output_fps frames, from
+/// frame 0 on (file_fps is not used). One sample at every whole frame that the animations touch, one in all
+/// where nothing moves.
 CameraTrack read_gltf(const fs::path& file, const FrameRate& rate);
 /// A .gltf with one animated camera and all its bytes inside. Its field of view or height is that of the
 /// first sample, for glTF moves none; places and turns have a float's precision. `aspect`: width / height;
 /// frames are not negative (InputError).
 std::string gltf_text(const CameraTrack& track, double aspect, double near, double far);
 
-/// The first camera that a .usda or .usd defines, moved by its own and its parents' transforms (xformOps of
-/// every kind, in their order). A time code is a frame of the output, or as many as output_fps is to
-/// file_fps or to the file's own timeCodesPerSecond. One sample at every time code that anything has one at
-/// and at every whole one between, one in all where nothing moves. The field of view is that of focalLength
-/// and verticalAperture; without a focalLength there is none. Places stay in the file's units whatever its
-/// metersPerUnit; up is its upAxis. Nothing that the file refers to is opened.
+/// The first camera that a .usda or .usd defines, in the variants that it selects, moved by its own and its
+/// parents' transforms (xformOps of every kind, in their order). A time code is a frame of the output, or as
+/// many as output_fps is to file_fps or to the file's own timeCodesPerSecond. One sample at every time code
+/// that anything has one at and at every whole one between, one in all where nothing moves. The field of view
+/// and the shift are those of focalLength and the apertures, USD's own where the file says none. Places stay
+/// in the file's units whatever its metersPerUnit; up is its upAxis. Nothing that the file refers to is
+/// opened.
 CameraTrack read_usda(const fs::path& file, const FrameRate& rate);
 /// Values of a camera in USD besides its samples.
 struct UsdLens {
@@ -38,7 +46,8 @@ struct UsdLens {
     double near = 0.01, far = 0.0;  // scene units; far 0: none
 };
 /// A stage with one camera, y up, whose transform, focal length (24 mm of film from bottom to top, as tenths
-/// of scene units) or apertures have a time sample at every frame.
+/// of scene units) or apertures, and offsets of the aperture where it is shifted, have a time sample at every
+/// frame.
 std::string usda_text(const CameraTrack& track, const UsdLens& lens);
 
 /// Gaia Sky's recordings of flights (.gsc): "time x y z, direction, up" in every line, one line a frame from
@@ -53,10 +62,12 @@ CameraTrack read_gaia_sky(const fs::path& file, const FrameRate& rate);
 CameraTrack read_openspace(const fs::path& file, const FrameRate& rate);
 
 /// transforms.json, the cameras of a capture as NeRF and its successors keep them: one sample for each of its
-/// frames, at frames 1, 2, ... in the file's order; z is up. Their transform_matrix is world from camera, its
-/// camera looks along -z. The field of view is that of fl_y and h, or fl_x and w, of the frame or of all;
-/// else camera_angle_y; else camera_angle_x, of square pictures unless w and h are given. Without any of
-/// these there is none.
+/// frames, at frames 1, 2, ... in the order of the last numbers in their files' names, in the file's order
+/// where some have none or the same; z is up. Their transform_matrix is world from camera, its camera looks
+/// along -z. The field of view is that of fl_y and h, or fl_x and w, of the frame or of all; else
+/// camera_angle_y; else camera_angle_x, of square pictures unless w and h are given. Without any of these
+/// there is none. cx and cy shift a perspective frame; OPENCV_FISHEYE is an equidistant fisheye, whose cone
+/// is that of the picture's shorter side. Distortions are told and left out.
 CameraTrack read_transforms_json(const fs::path& file, const FrameRate& rate);
 
 }  // namespace astrosplat

@@ -103,6 +103,8 @@ struct MovedNode {
 
     glm::dmat4 matrix_at(double frame) const {
         GltfNode node = rest;
+        if (std::ranges::any_of(curves, [](const auto& curve) { return curve.has_value(); }))
+            node.matrix.reset();
         const auto& [translation, rotation, scale] = curves;
         if (translation) node.translation = glm::dvec3(value_of(*translation, frame));
         if (rotation) node.rotation = value_of(*rotation, frame);
@@ -112,76 +114,114 @@ struct MovedNode {
     }
 };
 
-/// The node of the camera and its parents, from the root down, as their numbers in the file.
-std::vector<std::int64_t> way_to_camera(const GltfFile& file) {
+/// Its name for a message.
+std::string called(const Json& element, const char* otherwise) {
+    return shown(element.value("name", std::string(otherwise)));
+}
+
+/// The node of the camera and its parents, from the root down, as their numbers in the file: the first camera
+/// whose root the scene that is shown has, else the first of all. `warnings` tell of others.
+std::vector<std::int64_t> way_to_camera(const GltfFile& file, std::vector<std::string>& warnings) {
     const Json nodes = file.json().value("nodes", Json::array());
-    std::vector<std::int64_t> parent(nodes.size(), -1);
-    std::int64_t camera = -1;
+    std::vector<std::int64_t> parent(nodes.size(), -1), cameras;
     for (std::size_t i = 0; i < nodes.size(); ++i) {
-        if (camera < 0 && nodes[i].contains("camera")) camera = std::int64_t(i);
+        if (nodes[i].contains("camera")) cameras.push_back(std::int64_t(i));
         for (const Json& child : nodes[i].value("children", Json::array())) {
             file.element("nodes", child);
             parent[child.get<std::size_t>()] = std::int64_t(i);
         }
     }
-    if (camera < 0) file.fail("a node with a camera", "none");
-    std::vector<std::int64_t> way;
-    for (std::int64_t i = camera; i >= 0; i = parent[i]) {
-        if (way.size() > nodes.size()) file.fail("nodes that are not their own children", "a circle");
-        way.insert(way.begin(), i);
-    }
-    return way;
+    if (cameras.empty()) file.fail("a node with a camera", "none");
+    const auto way_to = [&](std::int64_t camera) {
+        std::vector<std::int64_t> way;
+        for (std::int64_t i = camera; i >= 0; i = parent[i]) {
+            if (way.size() > nodes.size()) file.fail("nodes that are not their own children", "a circle");
+            way.push_back(i);
+        }
+        std::ranges::reverse(way);
+        return way;
+    };
+    Json roots = Json::array();
+    if (file.json().contains("scene"))
+        roots = file.element("scenes", file.json().at("scene")).value("nodes", Json::array());
+    const auto in_scene = [&](std::int64_t i) {
+        return std::ranges::find(roots, Json(way_to(i).front())) != roots.end();
+    };
+    const auto found = std::ranges::find_if(cameras, in_scene);
+    const std::int64_t camera = found == cameras.end() ? cameras.front() : *found;
+    std::erase(cameras, camera);
+    std::string others;
+    for (std::size_t i = 0; i < std::min<std::size_t>(cameras.size(), 3); ++i)
+        others += (i ? ", " : "") + called(nodes[cameras[i]], "a camera without a name");
+    if (!cameras.empty())
+        warnings.push_back(fmt::format("{}: of {} cameras {} is read, not {}{}", file.path().string(),
+                                       cameras.size() + 1, called(nodes[camera], "the first"), others,
+                                       cameras.size() > 3 ? ", ..." : ""));
+    return way_to(camera);
 }
 
-/// Gives the nodes of `way` the curves of the first animation that moves any of them.
-void attach_curves(GltfFile& file, const std::vector<std::int64_t>& way, double fps,
-                   std::vector<MovedNode>& nodes) {
+/// What animations may move, by its JSON pointer, and where its curve goes.
+using CurvePlaces = std::map<std::string, std::optional<GltfCurve>*>;
+
+/// What a channel moves, as animations of the core and of KHR_animation_pointer say it.
+std::string pointer_of(const Json& target) {
+    const std::string path = target.value("path", "");
+    if (path != "pointer") return fmt::format("/nodes/{}/{}", target.value("node", std::int64_t(-1)), path);
+    return target.value("/extensions/KHR_animation_pointer/pointer"_json_pointer, "");
+}
+
+int components_of(const std::string& pointer) {
+    if (pointer.starts_with("/cameras/")) return 1;
+    return pointer.ends_with("/rotation") ? 4 : 3;
+}
+
+/// The curves of all animations; those that move again what one before moves are left out and told.
+void attach_curves(GltfFile& file, double fps, const CurvePlaces& places,
+                   std::vector<std::string>& warnings) {
     for (const Json& animation : file.json().value("animations", Json::array())) {
-        bool moves = false;
-        for (const Json& channel : animation.at("channels")) {
-            const Json& target = channel.at("target");
-            const auto found = std::ranges::find(way, target.value("node", std::int64_t(-1)));
-            const std::string path = target.value("path", "");
-            const auto* const moved = std::ranges::find(moved_paths, path);
-            if (found == way.end() || moved == moved_paths.end()) continue;  // weights, or of an extension
-            MovedNode& node = nodes[found - way.begin()];
-            const auto sampler = channel.at("sampler").get<std::int64_t>();
+        std::vector<std::pair<const Json*, CurvePlaces::const_iterator>> moved;
+        for (const Json& channel : animation.at("channels"))
+            if (const auto place = places.find(pointer_of(channel.at("target"))); place != places.end())
+                moved.emplace_back(&channel, place);
+        if (std::ranges::any_of(moved, [](const auto& move) { return move.second->second->has_value(); })) {
+            warnings.push_back(fmt::format("{}: animation {} moves what one before it moves and is left out",
+                                           file.path().string(), called(animation, "without a name")));
+            continue;
+        }
+        for (const auto& [channel, place] : moved) {
+            const auto sampler = channel->at("sampler").get<std::int64_t>();
             const Json& samplers = animation.at("samplers");
             if (sampler < 0 || sampler >= std::ssize(samplers))
                 file.fail("a number of one of its samplers", std::to_string(sampler));
-            node.curves[moved - moved_paths.begin()] =
-                gltf_curve(file, samplers[sampler], path == "rotation" ? 4 : 3, fps);
-            node.rest.matrix.reset();
-            moves = true;
+            *place->second = gltf_curve(file, samplers[sampler], components_of(place->first), fps);
         }
-        if (moves) return;
     }
 }
 
-/// First and last frame of what moves; nothing where nothing does.
-std::optional<std::pair<double, double>> span_of(const std::vector<MovedNode>& nodes) {
+/// First and last frame of what moves; of frame 0 where nothing does.
+std::pair<double, double> span_of(const CurvePlaces& places) {
     std::optional<std::pair<double, double>> span;
-    for (const MovedNode& node : nodes)
-        for (const std::optional<GltfCurve>& curve : node.curves)
-            if (curve) {
-                const double first = curve->frames.front(), last = curve->frames.back();
-                span = span ? std::pair(std::min(span->first, first), std::max(span->second, last))
-                            : std::pair(first, last);
-            }
-    return span;
+    for (const auto& [pointer, curve] : places)
+        if (*curve) {
+            const double first = (*curve)->frames.front(), last = (*curve)->frames.back();
+            span = span ? std::pair(std::min(span->first, first), std::max(span->second, last))
+                        : std::pair(first, last);
+        }
+    return span.value_or(std::pair(0.0, 0.0));
 }
 
-void set_lens(const GltfFile& file, const Json& camera, CameraTrack& track) {
-    track.orthographic = camera.value("type", "") == "orthographic";
-    const Json& lens = camera.at(track.orthographic ? "orthographic" : "perspective");
-    const double value = lens.at(track.orthographic ? "ymag" : "yfov").get<double>();
-    if (!(value > 0.0 && (track.orthographic || value < real::pi)))
-        file.fail(track.orthographic ? "a ymag above 0" : "a yfov between 0 and pi",
-                  fmt::format("{:.4g}", value));
-    track.has_fov = !track.orthographic;
-    for (TrackSample& sample : track.samples)
-        (track.orthographic ? sample.height : sample.fov_deg) =
-            track.orthographic ? 2.0 * value : real::degrees(value);
+void set_lens(const GltfFile& file, const Json& camera, const std::optional<GltfCurve>& curve,
+              CameraTrack& track) {
+    const bool flat = track.orthographic();
+    const double still =
+        camera.at(flat ? "orthographic" : "perspective").at(flat ? "ymag" : "yfov").get<double>();
+    track.has_fov = !flat;
+    for (TrackSample& sample : track.samples) {
+        const double value = curve ? value_of(*curve, sample.frame).x : still;
+        if (!(value > 0.0 && (flat || value < real::pi)))
+            file.fail(flat ? "a ymag above 0" : "a yfov between 0 and pi", fmt::format("{:.4g}", value));
+        (flat ? sample.height : sample.fov_deg) = flat ? 2.0 * value : real::degrees(value);
+    }
 }
 
 void add_floats(std::string& bytes, std::initializer_list<double> values) {
@@ -197,15 +237,25 @@ void add_floats(std::string& bytes, std::initializer_list<double> values) {
 
 CameraTrack read_gltf(const fs::path& path, const FrameRate& rate) try {
     GltfFile file(path);
-    const std::vector<std::int64_t> way = way_to_camera(file);
+    CameraTrack track;
+    const std::vector<std::int64_t> way = way_to_camera(file, track.warnings);
+    const Json& camera_number = file.element("nodes", way.back()).at("camera");
+    const Json& camera = file.element("cameras", camera_number);
+    if (camera.value("type", "") == "orthographic") track.projection = Projection::orthographic;
     std::vector<MovedNode> nodes;
     for (const std::int64_t i : way) nodes.push_back({node_of(file, file.element("nodes", i))});
-    attach_curves(file, way, rate.output_fps, nodes);
-    const auto span = span_of(nodes).value_or(std::pair(0.0, 0.0));
+    std::optional<GltfCurve> lens;
+    CurvePlaces places;
+    for (std::size_t i = 0; i < way.size(); ++i)
+        for (std::size_t k = 0; k < moved_paths.size(); ++k)
+            places[fmt::format("/nodes/{}/{}", way[i], moved_paths[k])] = &nodes[i].curves[k];
+    places[fmt::format("/cameras/{}/{}", camera_number.get<std::int64_t>(),
+                       track.orthographic() ? "orthographic/ymag" : "perspective/yfov")] = &lens;
+    attach_curves(file, rate.output_fps, places, track.warnings);
+    const auto span = span_of(places);
     const double first = std::floor(span.first), last = std::ceil(span.second);
     if (!(last - first < double(most_camera_samples)) || !(std::fabs(first) < 1e9))
         file.fail(fmt::format("at most {} frames", most_camera_samples), fmt::format("{:.4g}", last - first));
-    CameraTrack track;
     track.fps = rate.output_fps;
     for (double frame = first; frame <= std::max(first, last); frame += 1.0) {
         glm::dmat4 world(1.0);
@@ -213,11 +263,11 @@ CameraTrack read_gltf(const fs::path& path, const FrameRate& rate) try {
         TrackSample sample;
         sample.frame = frame;
         sample.eye = glm::dvec3(world[3]);
-        if (!quaternion_from_axes(glm::dmat3(world), sample.rotation))
+        if (!set_axes(glm::dmat3(world), path.string(), sample, track))
             file.fail("a camera with axes", fmt::format("none at frame {}", frame));
         track.samples.push_back(sample);
     }
-    set_lens(file, file.element("cameras", file.element("nodes", way.back()).at("camera")), track);
+    set_lens(file, camera, lens, track);
     return track;
 } catch (const Json::exception& error) {  // a value of another type than glTF says
     bad_input(path, "a glTF 2.0 file", printable(error.what()));
@@ -236,14 +286,15 @@ std::string gltf_text(const CameraTrack& track, double aspect, double near, doub
     for (const TrackSample& sample : track.samples)
         add_floats(bytes, {sample.rotation.x, sample.rotation.y, sample.rotation.z, sample.rotation.w});
     const std::size_t n = track.samples.size();
-    const Json lens = track.orthographic ? Json{{"xmag", 0.5 * first.height * aspect},
-                                                {"ymag", 0.5 * first.height},
-                                                {"znear", near},
-                                                {"zfar", far > 0.0 ? far : 1e9}}
-                                         : Json{{"yfov", real::radians(track.has_fov ? first.fov_deg : 45.0)},
-                                                {"aspectRatio", aspect},
-                                                {"znear", near}};
-    const char* kind = track.orthographic ? "orthographic" : "perspective";
+    const Json lens = track.orthographic()
+                          ? Json{{"xmag", 0.5 * first.height * aspect},
+                                 {"ymag", 0.5 * first.height},
+                                 {"znear", near},
+                                 {"zfar", far > 0.0 ? far : 1e9}}
+                          : Json{{"yfov", real::radians(track.has_fov ? first.fov_deg : 45.0)},
+                                 {"aspectRatio", aspect},
+                                 {"znear", near}};
+    const char* kind = track.orthographic() ? "orthographic" : "perspective";
     const auto accessor = [&](int view, const char* type) {
         return Json{{"bufferView", view}, {"componentType", 5126}, {"count", n}, {"type", type}};
     };

@@ -18,7 +18,7 @@ namespace {
 // ---- reading
 
 // The schema's fallbacks, tenths of units.
-constexpr double usual_vertical_aperture = 15.2908;
+constexpr double usual_vertical_aperture = 15.2908, usual_focal_length = 50.0;
 
 using Chain = std::vector<const UsdPrim*>;
 
@@ -62,8 +62,9 @@ class CameraReader {
         if (!(track_.fps > 0.0)) track_.fps = number_of(stage, "framesPerSecond");
         if (!(track_.fps > 0.0) || !std::isfinite(track_.fps)) track_.fps = 0.0;
         frames_per_code_ = rate.output_frames(track_.fps);
-        track_.orthographic = camera_.attribute("projection").value.is("orthographic");
-        track_.has_fov = !track_.orthographic && camera_.attributes.count("focalLength") > 0;
+        if (camera_.attribute("projection").value.is("orthographic"))
+            track_.projection = Projection::orthographic;
+        track_.has_fov = !track_.orthographic();
     }
 
     CameraTrack track() {
@@ -84,6 +85,13 @@ class CameraReader {
                   numbers.size() == 1 ? shortest(numbers[0]) : "another value");
     }
 
+    double offset(const char* name, double time) const {
+        const std::vector<double> numbers = numbers_at(camera_, name, time, {0.0});
+        if (numbers.size() == 1 && std::fabs(numbers[0]) <= 1e12) return numbers[0];
+        bad_input(file_, fmt::format("a finite {} at time code {}", name, shortest(time)),
+                  numbers.size() == 1 ? shortest(numbers[0]) : "another value");
+    }
+
     void add_sample(double time) {
         const glm::dmat4 world = world_from_prim(chain_, time, file_);
         TrackSample sample;
@@ -91,17 +99,24 @@ class CameraReader {
         sample.eye = glm::dvec3(world[3]);
         const bool placed =
             std::isfinite(sample.eye.x) && std::isfinite(sample.eye.y) && std::isfinite(sample.eye.z);
-        if (!placed || !quaternion_from_axes(glm::dmat3(world), sample.rotation))
+        if (!placed || !set_axes(glm::dmat3(world), file_, sample, track_))
             bad_input(file_,
                       fmt::format("a place and axes of '{}' at time code {}", printable(camera_.name),
                                   shortest(time)),
                       "none");
-        if (track_.orthographic)
-            sample.height = positive("verticalAperture", time, usual_vertical_aperture) / 10.0;
-        if (track_.has_fov)
-            sample.fov_deg = 2.0 * real::degrees(real::atan2(
-                                       0.5 * positive("verticalAperture", time, usual_vertical_aperture),
-                                       positive("focalLength", time, 50.0)));
+        const double aperture = positive("verticalAperture", time, usual_vertical_aperture);
+        sample.shift = {offset("horizontalApertureOffset", time), offset("verticalApertureOffset", time)};
+        if (track_.orthographic()) {  // parallel rays: the same as a step aside
+            sample.height = aperture / 10.0;
+            const glm::dmat3 axes = rotation_from_quaternion(sample.rotation);
+            sample.eye += (sample.shift.x * axes[0] + sample.shift.y * axes[1]) / 10.0;
+            sample.shift = {0.0, 0.0};
+        } else {
+            const double focal_length = positive("focalLength", time, usual_focal_length);
+            sample.fov_deg = 2.0 * real::degrees(real::atan2(0.5 * aperture, focal_length));
+            sample.shift /= aperture;
+        }
+        track_.has_shift |= sample.shift != glm::dvec2(0.0);
         if (!track_.samples.empty() && !(sample.frame > track_.samples.back().frame)) return;  // rounded
         track_.samples.push_back(sample);
     }
@@ -161,7 +176,7 @@ std::string usda_text(const CameraTrack& track, const UsdLens& lens) {
         shortest(track.samples.front().frame), shortest(track.samples.back().frame), shortest(track.fps));
     text += fmt::format("    float2 clippingRange = ({}, {})\n", shortest(lens.near),
                         shortest(lens.far > 0.0 ? lens.far : farthest));
-    if (track.orthographic) {
+    if (track.orthographic()) {
         text += "    token projection = \"orthographic\"\n";
         for (const bool wide : {true, false})
             text += std::string("    float ") + (wide ? "horizontal" : "vertical") + "Aperture" +
@@ -171,6 +186,12 @@ std::string usda_text(const CameraTrack& track, const UsdLens& lens) {
     } else {
         text += fmt::format("    float horizontalAperture = {}\n    float verticalAperture = {}\n",
                             shortest(film_height * lens.aspect), shortest(film_height));
+        for (const int axis : {0, 1})
+            if (track.has_shift)
+                text += fmt::format("    float {}ApertureOffset", axis == 0 ? "horizontal" : "vertical") +
+                        samples_of(track, [&](const TrackSample& sample) {
+                            return shortest(film_height * sample.shift[axis]);
+                        });
         if (track.has_fov)
             text += "    float focalLength" + samples_of(track, [&](const TrackSample& sample) {
                         return shortest(0.5 * film_height / real::tan(real::radians(0.5 * sample.fov_deg)));

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <charconv>
 #include <cstring>
 
 #include "core/error.h"
@@ -49,6 +50,20 @@ constexpr NumberType number_types[] = {{5120, 1, number_at<std::int8_t>},
 
 std::int64_t count_in(const Json& object, const char* name, std::int64_t otherwise) {
     return object.contains(name) ? object.at(name).get<std::int64_t>() : otherwise;
+}
+
+/// A URI's path with its %XX as bytes (RFC 3986); what is no such code stays.
+std::string decoded(std::string_view uri) {
+    std::string path;
+    for (std::size_t i = 0; i < uri.size(); ++i) {
+        unsigned code = 0;
+        const std::string_view digits = uri.substr(i).starts_with('%') ? uri.substr(i + 1, 2) : "";
+        const char* const end = digits.data() + digits.size();
+        const bool whole = digits.size() == 2 && std::from_chars(digits.data(), end, code, 16).ptr == end;
+        path += whole ? char(code) : uri[i];
+        i += whole ? 2 : 0;
+    }
+    return path;
 }
 
 }  // namespace
@@ -105,8 +120,10 @@ const std::string& GltfFile::buffer(const Json& index) {
             bytes = *read;
         } else {
             // A foreign file may only name files in its own folder.
-            const fs::path name = fs::path(uri).lexically_normal();
-            if (uri.find(':') != std::string::npos || name.is_absolute() || name.string().starts_with(".."))
+            const std::string path = decoded(uri);
+            const fs::path name = fs::path(path).lexically_normal();
+            if (uri.find(':') != uri.npos || path.find('\0') != path.npos || name.is_absolute() ||
+                name.string().starts_with(".."))
                 fail("buffers in or beside the file", "'" + printable(uri) + "'");
             bytes = read_file(file_.parent_path() / name);
         }

@@ -35,14 +35,18 @@ glm::dvec4 y_up(const glm::dvec4& q) {
 struct FilePlacement {
     double scale = 1.0, offset = 0.0;
     bool z_up = false;
+    double aspect = 1.0;  // of the scene's frames
     glm::dvec3 place(const glm::dvec3& v) const { return (z_up ? y_up(v) : v) * scale; }
     glm::dvec4 turn(const glm::dvec4& q) const { return z_up ? y_up(q) : q; }
 };
 
-FilePlacement placement_of(const CameraParams& camera, FileUp of_file) {
+double aspect_of(const Scene& scene) { return double(scene.output.width) / double(scene.output.height); }
+
+FilePlacement placement_of(const Scene& scene, FileUp of_file) {
+    const CameraParams& camera = scene.camera;
     const bool z_up =
         camera.file_up == CameraFileUp::automatic ? of_file == FileUp::z : camera.file_up == CameraFileUp::z;
-    return {camera.file_scale, camera.file_offset, z_up};
+    return {camera.file_scale, camera.file_offset, z_up, aspect_of(scene)};
 }
 
 void add_keyframe(Track& track, double frame, std::vector<double> value) {
@@ -61,28 +65,34 @@ void check_sizes(const std::vector<double>& numbers, const char* key, const fs::
 /// with a keyframe at each sample.
 std::vector<Track> sampled_tracks(const CameraTrack& from, const FilePlacement& placement,
                                   const fs::path& file) {
-    Track position, rotation, lens;
+    Track position, rotation, lens, shift;
     position.key = "camera.position";
     rotation.key = "camera.rotation";
-    lens.key = from.orthographic ? "camera.height" : "camera.fov";
+    shift.key = "camera.shift";
+    lens.key = from.orthographic()                          ? "camera.height"
+               : from.projection == Projection::perspective ? "camera.fov"
+                                                            : "camera.fisheye_fov";
     for (const TrackSample& sample : from.samples) {
         const double frame = sample.frame + placement.offset;
         const glm::dvec3 p = placement.place(sample.eye);
         const glm::dvec4 q = placement.turn(sample.rotation);
         const double height = sample.height * placement.scale;
         check_sizes({p.x, p.y, p.z}, "camera.position", file, frame);
-        if (from.orthographic) check_sizes({height}, "camera.height", file, frame);
+        if (from.orthographic()) check_sizes({height}, "camera.height", file, frame);
+        check_sizes({sample.shift.x, sample.shift.y}, "camera.shift", file, frame);
         add_keyframe(position, frame, {p.x, p.y, p.z});
         add_keyframe(rotation, frame, {q.x, q.y, q.z, q.w});
-        add_keyframe(lens, frame, {from.orthographic ? height : sample.fov_deg});
+        add_keyframe(lens, frame, {from.orthographic() ? height : sample.fov_deg});
+        add_keyframe(shift, frame, {sample.shift.x / placement.aspect, sample.shift.y});
     }
     std::vector<Track> tracks{std::move(position), std::move(rotation)};
-    if (from.has_fov || from.orthographic) tracks.push_back(std::move(lens));
+    if (from.has_fov || from.orthographic()) tracks.push_back(std::move(lens));
+    if (from.has_shift) tracks.push_back(std::move(shift));
     return tracks;
 }
 
-std::vector<Track> tracks_of(const CameraTrack& from, const CameraParams& camera, const fs::path& file) {
-    std::vector<Track> tracks = sampled_tracks(from, placement_of(camera, from.up), file);
+std::vector<Track> tracks_of(const CameraTrack& from, const Scene& scene, const fs::path& file) {
+    std::vector<Track> tracks = sampled_tracks(from, placement_of(scene, from.up), file);
     const auto hold = [&](const char* key, double value) {
         const double first = tracks.front().keyframes.front().frame;
         tracks.emplace_back().key = key;
@@ -90,14 +100,16 @@ std::vector<Track> tracks_of(const CameraTrack& from, const CameraParams& camera
     };
     if (from.has_fov) hold("camera.focal_length", 0.0);  // or it would replace the file's fov
     // A scene that asks for a dome or a panorama gets one along this path too.
-    if (from.orthographic && camera.projection == Projection::perspective)
-        hold("camera.projection", double(Projection::orthographic));
+    if (from.projection != Projection::perspective && scene.camera.projection == Projection::perspective) {
+        hold("camera.projection", double(from.projection));
+        if (from.projection == Projection::equirectangular) hold("camera.panorama_fov", 360.0);
+    }
     return tracks;
 }
 
 /// Tables hold places and turns of the camera under their keys.
-void place_table(std::vector<Track>& tracks, const CameraParams& camera, const fs::path& file) {
-    const FilePlacement placement = placement_of(camera, FileUp::y);
+void place_table(std::vector<Track>& tracks, const Scene& scene, const fs::path& file) {
+    const FilePlacement placement = placement_of(scene, FileUp::y);
     for (Track& track : tracks) {
         const bool place = track.key == "camera.position" || track.key == "camera.target";
         const bool direction = track.key == "camera.up";
@@ -121,7 +133,8 @@ void place_table(std::vector<Track>& tracks, const CameraParams& camera, const f
 
 ImportedCamera::Source source_of(const Scene& scene) {
     const CameraParams& c = scene.camera;
-    return {c.file, c.file_scale, c.file_offset, c.file_fps, c.file_up, scene.output.fps, c.projection};
+    return {c.file,           c.file_scale, c.file_offset,    c.file_fps,
+            aspect_of(scene), c.file_up,    scene.output.fps, c.projection};
 }
 
 /// For a scene that has its keys camera.file_*; its lists grow where a table names their next element.
@@ -129,12 +142,12 @@ std::vector<Track> camera_file_tracks(Scene& scene, const fs::path& file) {
     const FrameRate rate{scene.output.fps, scene.camera.file_fps};
     if (is_table(file)) {
         std::vector<Track> tracks = read_csv_tracks(file, rate, scene);
-        place_table(tracks, scene.camera, file);
+        place_table(tracks, scene, file);
         return tracks;
     }
     const CameraTrack track = read_camera(file, rate);
     for (const std::string& warning : track.warnings) log_warning(warning);
-    return tracks_of(track, scene.camera, file);
+    return tracks_of(track, scene, file);
 }
 
 }  // namespace
@@ -163,9 +176,29 @@ void attach_camera_file(Scene& scene, const std::string& place) {
 }
 
 void refresh_camera_file(Scene& scene, const std::string& place) {
-    const bool has = scene.imported.camera != nullptr;
-    if (scene.camera.file.empty() ? !has : has && scene.imported.camera->source == source_of(scene)) return;
+    const auto& camera = scene.imported.camera;
+    ImportedCamera::Source wanted = source_of(scene);
+    if (camera &&
+        std::ranges::find(camera->tracks, ParameterKey("camera.shift"), &Track::key) == camera->tracks.end())
+        wanted.aspect = camera->source.aspect;  // only shifts depend on it
+    if (scene.camera.file.empty() ? !camera : camera && camera->source == wanted) return;
     attach_camera_file(scene, place);
+}
+
+std::string missed_camera_frames(const Scene& scene, std::span<const std::int64_t> frames) {
+    if (!scene.imported.camera || frames.empty()) return {};
+    double first = 0.0, last = 0.0;
+    for (const Track& track : scene.imported.camera->tracks)
+        if (track.keyframes.size() > 1)
+            first = track.keyframes.front().frame, last = track.keyframes.back().frame;
+    const auto [from, to] = std::ranges::minmax(frames);
+    if (!(first < last) || (first <= double(to) && double(from) <= last)) return {};
+    return fmt::format(
+        "{}: its camera stands still, for it moves at frames {} to {}, outside of {} to {}; "
+        "camera.file_offset "
+        "= {} would fit",
+        printable(scene.camera.file.string()), shortest(first), shortest(last), from, to,
+        shortest(scene.camera.file_offset + double(from) - first));
 }
 
 CameraTrack camera_track(const Scene& scene, std::span<const std::int64_t> frames) {
@@ -192,6 +225,9 @@ CameraTrack camera_track(const Scene& scene, std::span<const std::int64_t> frame
             sample.rotation = -sample.rotation;
         if (params.projection == Projection::perspective) {
             sample.fov_deg = real::degrees(2.0 * real::atan2(0.5 * height, camera.focal_px));
+            sample.shift = {(0.5 * width - camera.center_x_px) / height,
+                            (camera.center_y_px - 0.5 * height) / height};
+            track.has_shift |= params.shift != glm::dvec2(0.0);
             ++perspective;
         }
         if (params.projection == Projection::orthographic) {
@@ -201,8 +237,8 @@ CameraTrack camera_track(const Scene& scene, std::span<const std::int64_t> frame
         track.samples.push_back(sample);
     }
     track.has_fov = perspective == frames.size();
-    track.orthographic = orthographic == frames.size();
-    if (perspective + orthographic > 0 && !track.has_fov && !track.orthographic)
+    if (orthographic == frames.size()) track.projection = Projection::orthographic;
+    if (perspective + orthographic > 0 && !track.has_fov && !track.orthographic())
         throw InputError(
             fmt::format("{}: camera.projection: expected one projection at all frames, found several",
                         scene.file.string()));
@@ -212,8 +248,14 @@ CameraTrack camera_track(const Scene& scene, std::span<const std::int64_t> frame
 std::string camera_text(const CameraTrack& track, const Scene& scene, const fs::path& file) {
     const FileFormat* const format = format_by_name(file, FileUse::camera_written);
     const std::string_view id = format ? format->id : "";
-    if (id == "table") return csv_text(sampled_tracks(track, {}, file));
-    const double aspect = double(scene.output.width) / double(scene.output.height);
+    const double aspect = aspect_of(scene);
+    if (!id.empty() && !track.has_fov && !track.orthographic())
+        log_warning(fmt::format("{}: places and turns alone are written: the camera is no perspective one",
+                                printable(file.string())));
+    if (id == "table") return csv_text(sampled_tracks(track, {.aspect = aspect}, file));
+    if (track.has_shift && (id == "gltf" || id == "chan"))
+        log_warning(fmt::format("{}: camera.shift is left out, for {} cannot say it",
+                                printable(file.string()), id == "gltf" ? "glTF" : ".chan"));
     if (id == "usda") return usda_text(track, {aspect, scene.camera.near, scene.camera.far});
     if (id == "gltf") {
         const auto other_lens = [&](const TrackSample& sample) {
@@ -224,7 +266,7 @@ std::string camera_text(const CameraTrack& track, const Scene& scene, const fs::
                                     printable(file.string()), shortest(track.samples[0].frame)));
         return gltf_text(track, aspect, scene.camera.near, scene.camera.far);
     }
-    if (id == "chan" && track.orthographic)
+    if (id == "chan" && track.orthographic())
         throw InputError(
             fmt::format("{}: expected a perspective camera, for .chan has no other, found orthographic",
                         printable(file.string())));

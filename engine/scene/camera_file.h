@@ -16,6 +16,10 @@ void attach_camera_file(Scene& scene, const std::string& place);
 /// The same where the scene's keys ask for other tracks than those it has.
 void refresh_camera_file(Scene& scene, const std::string& place);
 
+/// A line that tells where the camera file's frames meet none of `frames`, and the camera.file_offset that
+/// would fit; empty where they do, or nothing moves.
+std::string missed_camera_frames(const Scene& scene, std::span<const std::int64_t> frames);
+
 /// One linear track per key, in the order of the header; booleans, choices and whole numbers step. Columns
 /// are separated by commas, semicolons or tabs, numbers have decimal points. Lists of the scene grow where a
 /// key names their next element. Throws InputError for keys that cannot be animated, values out of range and
@@ -32,7 +36,8 @@ std::string csv_text(const std::vector<Track>& tracks);
 CameraTrack camera_track(const Scene& scene, std::span<const std::int64_t> frames);
 
 /// The text of a file whose name ends in .chan, .csv, .gltf or .usda. camera.file reads .chan and .csv
-/// back within 1e-6, .gltf within a float's precision. Throws InputError for other names.
+/// back within 1e-6, .gltf within a float's precision; warnings tell of lenses that a format cannot hold.
+/// Throws InputError for other names.
 std::string camera_text(const CameraTrack& track, const Scene& scene, const fs::path& file);
 
 }  // namespace astrosplat

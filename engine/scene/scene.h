@@ -111,7 +111,7 @@ struct Track {
 struct ImportedCamera {
     struct Source {
         fs::path file;
-        double scale = 1.0, offset = 0.0, file_fps = 0.0;
+        double scale = 1.0, offset = 0.0, file_fps = 0.0, aspect = 1.0;
         CameraFileUp up = CameraFileUp::automatic;
         double output_fps = 24.0;
         Projection projection = Projection::perspective;

@@ -147,7 +147,12 @@ class UsdScanner {
 void UsdScanner::skip_line() { at_ = std::min(text_.find('\n', at_), text_.size()); }
 
 bool is_kept(std::string_view name) {
-    constexpr std::array others{"focalLength", "horizontalAperture", "verticalAperture", "projection",
+    constexpr std::array others{"focalLength",
+                                "horizontalAperture",
+                                "verticalAperture",
+                                "horizontalApertureOffset",
+                                "verticalApertureOffset",
+                                "projection",
                                 "radiance:sphericalHarmonicsDegree"};
     return name.starts_with("xformOp") || std::ranges::find(others, name) != others.end();
 }
@@ -267,6 +272,10 @@ class Parser {
             if (scan_.peek() == ')') continue;
             if (name == "references" || name == "payload" || name == "subLayers")
                 stage_.refers_elsewhere = true;
+            if (name == "variants" && scan_.peek() == '{') {
+                kept[name].words = selections();
+                continue;
+            }
             constexpr std::array wanted{"upAxis", "timeCodesPerSecond", "framesPerSecond", "active"};
             const bool is_wanted = std::ranges::find(wanted, name) != wanted.end();
             UsdValue value;
@@ -274,6 +283,86 @@ class Parser {
             if (scan_.peek() == '<') scan_.skip_path();         // within the file before it
             while (scan_.peek() == '(') scan_.skip_brackets();  // a layer's offset
             if (is_wanted) kept[name] = std::move(value);
+        }
+    }
+
+    // { string SET = "VARIANT" ... } as SET, VARIANT, ...
+    std::vector<std::string> selections() {
+        std::vector<std::string> words;
+        scan_.require('{');
+        while (!scan_.take('}')) {
+            scan_.next_word();  // the type
+            words.push_back(name_or_string());
+            scan_.require('=');
+            words.push_back(name_or_string());
+        }
+        return words;
+    }
+
+    std::string name_or_string() {
+        const char c = scan_.peek();
+        std::string word = c == '"' || c == '\'' ? scan_.quoted(c) : scan_.next_word();
+        if (word.empty()) scan_.fail("a name");
+        return word;
+    }
+
+    // What the file selects of "SET" = { "VARIANT" (...) { ... } ... }.
+    void variant_set(UsdPrim& prim, int depth) {
+        if (depth > deepest_usd) scan_.fail(fmt::format("at most {} prims within each other", deepest_usd));
+        const auto chosen = prim.variants.find(name_or_string());
+        scan_.require('=');
+        scan_.require('{');
+        while (!scan_.take('}')) {
+            const bool selected = name_or_string() == (chosen == prim.variants.end() ? "" : chosen->second);
+            std::map<std::string, UsdValue> own;
+            if (scan_.peek() == '(') metadata(own);
+            if (!selected) {
+                stage_.has_unselected |= chosen == prim.variants.end();
+                if (scan_.peek() != '{') scan_.fail("'{'");
+                scan_.skip_brackets();
+                continue;
+            }
+            UsdPrim inside;
+            inside.type = prim.type;
+            inside.variants = prim.variants;
+            add_selections(own, inside);
+            body(inside, depth);
+            add_weaker(prim, std::move(inside));
+        }
+    }
+
+    // From { to }; variants last, for they are weaker than the prim's own.
+    void body(UsdPrim& prim, int depth) {
+        scan_.require('{');
+        std::vector<std::size_t> sets;
+        std::swap(sets, variant_sets_);
+        while (!scan_.take('}')) statement(prim, depth);
+        std::swap(sets, variant_sets_);
+        const std::size_t end = scan_.place();
+        for (const std::size_t at : sets) {
+            scan_.go_back(at);
+            variant_set(prim, depth + 1);
+        }
+        scan_.go_back(end);
+    }
+
+    static void add_selections(std::map<std::string, UsdValue>& metadata, UsdPrim& prim) {
+        const std::vector<std::string>& words = metadata["variants"].words;
+        for (std::size_t i = 0; i + 1 < words.size(); i += 2)
+            prim.variants.try_emplace(words[i], words[i + 1]);
+    }
+
+    static void add_weaker(UsdPrim& prim, UsdPrim weaker) {
+        if (prim.type.empty()) prim.type = weaker.type;
+        prim.attributes.merge(weaker.attributes);
+        for (UsdPrim& child : weaker.children) {
+            const auto same = std::ranges::find(prim.children, child.name, &UsdPrim::name);
+            if (same == prim.children.end()) {
+                prim.children.push_back(std::move(child));
+            } else {
+                same->defined = same->defined || child.defined;
+                add_weaker(*same, std::move(child));
+            }
         }
     }
 
@@ -288,9 +377,9 @@ class Parser {
             std::map<std::string, UsdValue> own;
             metadata(own);
             if (own["active"].is("false")) prim.defined = false;
+            add_selections(own, prim);
         }
-        scan_.require('{');
-        while (!scan_.take('}')) statement(prim, depth);
+        body(prim, depth);
         return prim;
     }
 
@@ -306,6 +395,7 @@ class Parser {
             prim.children.push_back(this->prim(word, depth + 1));
             return;
         }
+        if (word == "variantSet") variant_sets_.push_back(scan_.place());
         if (word == "variantSet" || word == "reorder") return scan_.skip_statement();
         std::string name;
         while (true) {  // words up to the = or the line's end; the last is the name
@@ -351,6 +441,7 @@ class Parser {
     static constexpr std::size_t most_numbers = 1024;
 
     UsdScanner scan_;
+    std::vector<std::size_t> variant_sets_;  // where those of the prim that is read begin
     bool is_usda_;
     UsdStage stage_;
 };
@@ -369,7 +460,9 @@ bool UsdStage::is_z_up() const {
 }
 
 std::string UsdStage::none_found() const {
-    return refers_elsewhere ? "none but what other files may hold, which are not opened" : "none";
+    return refers_elsewhere ? "none but what other files may hold, which are not opened"
+           : has_unselected ? "none but what variants may hold of which the file selects none"
+                            : "none";
 }
 
 UsdStage parse_usda(std::string_view text, const std::string& file) {

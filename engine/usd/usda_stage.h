@@ -32,7 +32,8 @@ struct UsdPrim {
     std::string type, name;
     bool defined = true;                             // def; else over or class, which alone make nothing
     std::map<std::string, UsdAttribute> attributes;  // as usda_stage.cpp has them
-    std::vector<UsdPrim> children;
+    std::map<std::string, std::string> variants;     // that are selected, by their sets
+    std::vector<UsdPrim> children;                   // those of selected variants among them
 
     /// An empty one where it has none of the name.
     const UsdAttribute& attribute(const std::string& name) const;
@@ -42,6 +43,7 @@ struct UsdStage {
     std::map<std::string, UsdValue> metadata;  // upAxis, timeCodesPerSecond, ...
     std::vector<UsdPrim> prims;
     bool refers_elsewhere = false;  // to layers, references or payloads
+    bool has_unselected = false;    // variants of which none is selected
 
     bool is_z_up() const;
     /// For a message: what was found where nothing was.

@@ -79,6 +79,9 @@ TEST_F(Gltf, BinaryFilesAndBuffersBesideAreReadAlike) {
     const CameraTrack expected = read(moving("LINEAR", values));
     put("buffer ö.bin", floats({0.0f, 2.0f}) + floats(values));
     test::expect_same_way(read(moving("LINEAR", values, "translation", "buffer ö.bin")), expected);
+    test::expect_same_way(read(moving("LINEAR", values, "translation", "buffer%20%c3%B6.bin")), expected);
+    put("50%.bin", floats({0.0f, 2.0f}) + floats(values));
+    test::expect_same_way(read(moving("LINEAR", values, "translation", "50%.bin")), expected);
     std::string json = test::replaced(moving("LINEAR", values, "translation", "x"), R"(,"uri":"x")", "");
     while (json.size() % 4) json += ' ';
     const std::string binary = floats({0.0f, 2.0f}) + floats(values);
@@ -100,8 +103,84 @@ TEST_F(Gltf, AStillCameraIsOneSample) {
         R"("cameras":[{"type":"orthographic","orthographic":{"xmag":3,"ymag":2.5,"znear":0,"zfar":9}}]})");
     ASSERT_EQ(track.samples.size(), 1u);
     EXPECT_EQ(track.samples[0].eye, glm::dvec3(3, 4, 5));
-    EXPECT_TRUE(track.orthographic);
+    EXPECT_TRUE(track.orthographic());
     EXPECT_EQ(track.samples[0].height, 5.0);
+}
+
+/// A camera under an empty, and what moves: pairs of a target and its two values, an animation each.
+std::string animated(const std::vector<std::pair<std::string, std::vector<float>>>& moves,
+                     const std::string& more = "") {
+    std::string bytes = floats({0.0f, 1.0f}), animations, views = R"({"buffer":0,"byteLength":8})",
+                accessors = R"({"bufferView":0,"componentType":5126,"count":2})";
+    for (std::size_t i = 0; i < moves.size(); ++i) {
+        const auto& [target, values] = moves[i];
+        views += R"(,{"buffer":0,"byteOffset":)" + std::to_string(bytes.size()) + R"(,"byteLength":)" +
+                 std::to_string(4 * values.size()) + "}";
+        bytes += floats(values);
+        accessors += R"(,{"bufferView":)" + std::to_string(i + 1) + R"(,"componentType":5126,"count":2})";
+        animations += std::string(i ? "," : "") + R"({"name":"take )" + std::to_string(i) +
+                      R"(","samplers":[{"input":0,"output":)" + std::to_string(i + 1) +
+                      R"(}],"channels":[{"sampler":0,"target":)" + target + "}]}";
+    }
+    return R"({"asset":{"version":"2.0"},"nodes":[{"children":[1]},{"name":"hero","camera":0,)"
+           R"("translation":[0,0,10]},{"name":"spare","camera":0}],"animations":[)" +
+           animations +
+           R"(],"cameras":[{"type":"perspective","perspective":{"yfov":0.5,"znear":0.1}}],"accessors":[)" +
+           accessors + R"(],"bufferViews":[)" + views + R"(],"buffers":[{"byteLength":)" +
+           std::to_string(bytes.size()) + R"(,"uri":"data:application/octet-stream;base64,)" + base64(bytes) +
+           "\"}]" + more + "}";
+}
+
+TEST_F(Gltf, EveryObjectsAnimationMovesTheCamera) {
+    const std::string of_camera = R"({"node":1,"path":"translation"})";
+    const CameraTrack track = read(animated({{of_camera, {0, 0, 10, 0, 0, 20}},
+                                             {R"({"node":2,"path":"translation"})", {9, 9, 9, 9, 9, 9}},
+                                             {R"({"node":0,"path":"translation"})", {0, 0, 0, 6, 0, 0}},
+                                             {of_camera, {7, 7, 7, 7, 7, 7}}}));
+    ASSERT_EQ(track.samples.size(), 11u);
+    EXPECT_LT(glm::distance(track.samples[5].eye, glm::dvec3(3, 0, 15)), 1e-6);
+    ASSERT_EQ(track.warnings.size(), 2u);
+    EXPECT_HAS(track.warnings[1],
+               "a.gltf: animation 'take 3' moves what one before it moves and is left out");
+}
+
+TEST_F(Gltf, PointersMoveLensesAndNodes) {
+    const auto pointer = [](const std::string& to) {
+        return R"({"path":"pointer","extensions":{"KHR_animation_pointer":{"pointer":")" + to + "\"}}}";
+    };
+    const CameraTrack track = read(animated({{pointer("/cameras/0/perspective/yfov"), {0.5f, 0.25f}},
+                                             {pointer("/nodes/0/translation"), {0, 0, 0, 0, 4, 0}},
+                                             {pointer("/materials/0/alphaCutoff"), {0, 1}}}));
+    ASSERT_EQ(track.samples.size(), 11u);
+    EXPECT_NEAR(track.samples[0].fov_deg, 28.6478897565, 1e-9);
+    EXPECT_NEAR(track.samples[4].fov_deg, 0.4 * 180.0 / 3.14159265358979324, 1e-9);
+    EXPECT_NEAR(track.samples[5].eye.y, 2.0, 1e-6);
+    EXPECT_EQ(
+        refusal("a.gltf", animated({{pointer("/cameras/0/perspective/yfov"), {0.5f, 4.0f}}}), read_gltf),
+        "a.gltf: expected a yfov between 0 and pi, found 3.271");
+}
+
+TEST_F(Gltf, TheSceneThatIsShownChoosesTheCamera) {
+    const auto chosen = [&](const std::string& more) {
+        const CameraTrack track = read(animated({}, more));
+        EXPECT_EQ(track.warnings.size(), 1u);
+        return without_folder(track.warnings.at(0));
+    };
+    EXPECT_EQ(chosen(R"(,"scene":1,"scenes":[{"nodes":[0]},{"nodes":[2]}])"),
+              "a.gltf: of 2 cameras 'spare' is read, not 'hero'");
+    EXPECT_EQ(chosen(R"(,"scene":0,"scenes":[{"nodes":[0]},{"nodes":[2]}])"),
+              "a.gltf: of 2 cameras 'hero' is read, not 'spare'");
+    EXPECT_EQ(chosen(""), "a.gltf: of 2 cameras 'hero' is read, not 'spare'");
+    EXPECT_EQ(refusal("a.gltf", animated({}, R"(,"scene":3,"scenes":[])"), read_gltf),
+              "a.gltf: expected a number of one of its scenes, found 3");
+}
+
+TEST_F(Gltf, AMirroredParentKeepsTheCameraUpright) {
+    const CameraTrack track =
+        read(test::replaced(animated({}), R"({"children":[1]})", R"({"children":[1],"scale":[-2,2,2]})"));
+    EXPECT_LT(glm::distance(track.samples[0].rotation, glm::dvec4(0, 0, 0, 1)), 1e-12);
+    ASSERT_EQ(track.warnings.size(), 2u);
+    EXPECT_HAS(track.warnings[1], "a.gltf: the camera is mirrored");
 }
 
 TEST_F(Gltf, OursComesBack) {
@@ -145,7 +224,8 @@ TEST_F(Gltf, OddFilesEndInOneLine) {
               "a.gltf: expected base64 in a buffer's data:, found something else");
     EXPECT_EQ(with("\"yfov\":0.5", "\"yfov\":-1"), "a.gltf: expected a yfov between 0 and pi, found -1");
     EXPECT_HAS(with("\"yfov\":0.5", "\"yfov\":[]"), "a.gltf: expected a glTF 2.0 file, found");
-    for (const char* uri : {"../secret.bin", "/etc/passwd", "file:///etc/passwd", "a/../../b.bin"})
+    for (const char* uri : {"../secret.bin", "/etc/passwd", "file:///etc/passwd", "a/../../b.bin",
+                            "%2e%2e/secret.bin", "%2Fetc/passwd", "a%00.bin"})
         EXPECT_HAS(message(moving("LINEAR", {0, 0, 0, 8, 0, 4}, "translation", uri)),
                    "buffers in or beside the file")
             << uri;
@@ -199,12 +279,16 @@ TEST_F(Usda, OwnFilesComeBack) {
     EXPECT_EQ(back.up, FileUp::y);
     EXPECT_EQ(back.fps, 24.0);
     EXPECT_TRUE(back.warnings.empty());
-    track.has_fov = false;
-    test::expect_same_way(track, read(usda_text(track, {})));
-    track.orthographic = true;
+    track.has_shift = true;
+    for (TrackSample& sample : track.samples) sample.shift = {0.01 * sample.frame, -0.25};
+    const CameraTrack shifted = read(usda_text(track, {1.5, 0.01, 0.0}));
+    EXPECT_TRUE(shifted.has_shift);
+    for (std::size_t i = 0; i < track.samples.size(); ++i)
+        EXPECT_LT(glm::distance(shifted.samples.at(i).shift, track.samples[i].shift), 1e-9);
+    track.projection = Projection::orthographic;
     for (TrackSample& sample : track.samples) sample.height = 3.0 + 0.1 * sample.frame;
     const CameraTrack parallel = read(usda_text(track, {1.5, 0.01, 0.0}));
-    EXPECT_TRUE(parallel.orthographic);
+    EXPECT_TRUE(parallel.orthographic());
     for (std::size_t i = 0; i < track.samples.size(); ++i)
         EXPECT_NEAR(parallel.samples.at(i).height, track.samples[i].height, 1e-9);
 }
@@ -272,6 +356,69 @@ TEST_F(Usda, SamplesAreLinearAndHeldOutside) {
     EXPECT_NEAR(track.samples[0].fov_deg, 90.0, 1e-12);
     EXPECT_NEAR(track.samples[4].fov_deg, 2.0 * std::atan(12.0 / 18.0) * 180.0 / 3.14159265358979324, 1e-9);
     EXPECT_EQ(track.samples[4].frame, 4.0);
+}
+
+// UsdGeomCamera: focalLength 50, apertures 20.955 x 15.2908, offsets as parts of the apertures.
+TEST_F(Usda, LensesAreThoseOfTheSchemaWhereTheFileSaysNone) {
+    const CameraTrack none = read(camera(""));
+    EXPECT_TRUE(none.has_fov);
+    EXPECT_NEAR(none.samples.at(0).fov_deg, 2.0 * std::atan(0.152908) * 180.0 / 3.14159265358979324, 1e-9);
+    EXPECT_FALSE(none.has_shift);
+    const std::string film =
+        "float horizontalAperture = 36\nfloat verticalAperture = 20\n"
+        "float horizontalApertureOffset = 9\nfloat verticalApertureOffset = -4\n";
+    const CameraTrack shifted = read(camera(film));
+    EXPECT_TRUE(shifted.has_shift);
+    EXPECT_LT(glm::distance(shifted.samples.at(0).shift, glm::dvec2(0.45, -0.2)), 1e-12) << "in heights";
+    const CameraTrack flat = read(camera(film + "token projection = \"orthographic\"\n"));
+    EXPECT_FALSE(flat.has_shift);
+    EXPECT_LT(glm::distance(flat.samples.at(0).eye, glm::dvec3(0.9, -0.4, 0.0)), 1e-12) << "a step aside";
+    EXPECT_EQ(refusal("shot.usda", camera("float verticalApertureOffset = inf\n"), read_usda),
+              "shot.usda: expected a finite verticalApertureOffset at time code 0, found inf");
+}
+
+TEST_F(Usda, AMirroredParentKeepsTheCameraUpright) {
+    const CameraTrack track = read(moved("float3", "scale", "(-1, 1, 1)"));
+    EXPECT_LT(glm::distance(track.samples.at(0).rotation, glm::dvec4(0, 0, 0, 1)), 1e-12);
+    ASSERT_EQ(track.warnings.size(), 1u);
+    EXPECT_HAS(track.warnings[0], "shot.usda: the camera is mirrored");
+}
+
+TEST_F(Usda, TheSelectedVariantIsReadAndIsWeakerThanThePrim) {
+    const auto rig = [](const std::string& head) {
+        return "#usda 1.0\ndef Xform \"rig\" (" + head + R"()
+{
+    variantSet "lens" = {
+        "wide" ( doc = "x" ) {
+            over "cam" { float focalLength = 20
+                         float verticalAperture.timeSamples = { 0: 99, 1: 98 } }
+            variantSet "place" = { "far" { def Camera "far" { } } "near" { } }
+        }
+        "long" { over "cam" { float focalLength = 100 } }
+    }
+    variantSet "which" = { "a" { def Camera "a" { } } "b" { } }
+    def Camera "cam" { float verticalAperture = 20 }
+}
+)";
+    };
+    const auto fov = [&](const std::string& head) { return read(rig(head)).samples.at(0).fov_deg; };
+    const auto expected = [](double focal) {
+        return 2.0 * std::atan(10.0 / focal) * 180.0 / 3.14159265358979324;
+    };
+    EXPECT_NEAR(fov("variants = { string lens = \"long\" }"), expected(100), 1e-9);
+    EXPECT_NEAR(fov("variants = { string lens = \"none\" }"), expected(50), 1e-9);
+    EXPECT_NEAR(fov("prepend variantSets = \"lens\""), expected(50), 1e-9);
+    const CameraTrack wide =
+        read(rig("variants = {\n string lens = \"wide\"\n string place = \"far\" string which = \"b\" }"));
+    ASSERT_EQ(wide.samples.size(), 1u) << "the prim's own aperture stands still";
+    EXPECT_NEAR(wide.samples[0].fov_deg, expected(20), 1e-9);
+    ASSERT_EQ(wide.warnings.size(), 1u);
+    EXPECT_HAS(wide.warnings[0], "of 2 cameras 'cam' is read");
+    EXPECT_EQ(
+        refusal("shot.usda",
+                "#usda 1.0\ndef \"r\" { variantSet \"v\" = { \"a\" { def Camera \"c\" { } } } }\n",
+                read_usda),
+        "shot.usda: expected a camera, found none but what variants may hold of which the file selects none");
 }
 
 TEST_F(Usda, TimeCodesBecomeFrames) {

@@ -210,6 +210,46 @@ TEST_F(TransformsJson, FieldsOfViewAreVertical) {
     EXPECT_NEAR(fov(R"("camera_angle_x":1.5707963267948966,"w":200,"h":100,)"), 53.13010235415598, 1e-9);
 }
 
+TEST_F(TransformsJson, TheMiddleShiftsTheFrameAndDistortionsAreTold) {
+    const CameraTrack track =
+        read(two(R"("w":1920,"h":1000,"fl_x":500,"fl_y":510,"cx":1200,"cy":450,"k1":-0.1,"p2":0.5,)"));
+    EXPECT_TRUE(track.has_shift);
+    expect_near(track.samples[1].shift, {-0.24, -0.05});
+    ASSERT_EQ(track.warnings.size(), 2u);
+    EXPECT_HAS(track.warnings[0], "transforms.json: k1 = -0.1, p2 = 0.5: distortions are left out");
+    EXPECT_HAS(track.warnings[1], "fl_x = 500, fl_y = 510: pixels are taken for square ones");
+    EXPECT_FALSE(read(two(R"("w":1920,"h":1000,"fl_x":500,"cx":960,"cy":500,)")).has_shift);
+}
+
+TEST_F(TransformsJson, ModelsAreProjections) {
+    const std::string size = R"("w":1920,"h":1000,"fl_x":500,"cx":960,"cy":500,)";
+    const CameraTrack fisheye = read(two(size + R"("camera_model":"OPENCV_FISHEYE",)"));
+    EXPECT_EQ(fisheye.projection, Projection::fisheye);
+    EXPECT_NEAR(fisheye.samples[1].fov_deg, 2.0 * 180.0 / 3.14159265358979324, 1e-9)
+        << "1000 px of 1/500 rad";
+    EXPECT_EQ(read(two(size + R"("is_fisheye":true,)")).projection, Projection::fisheye);
+    const CameraTrack round = read(two(size + R"("camera_model":"EQUIRECTANGULAR",)"));
+    EXPECT_EQ(round.projection, Projection::equirectangular);
+    EXPECT_FALSE(round.has_fov);
+    EXPECT_TRUE(round.warnings.empty());
+    EXPECT_EQ(read(two(size + R"("camera_model":"OPENCV",)")).projection, Projection::perspective);
+    const CameraTrack other = read(two(size + R"("camera_model":"FISHEYE624",)"));
+    ASSERT_EQ(other.warnings.size(), 1u);
+    EXPECT_HAS(other.warnings[0], "camera_model 'FISHEYE624' is not known, a perspective one is taken");
+}
+
+TEST_F(TransformsJson, FramesComeInTheOrderOfTheirNumbers) {
+    const auto last = [&](const std::string& first_name, const std::string& second_name) {
+        return read(test::replaced(test::replaced(two(""), "\"a\"", first_name), "\"b\"", second_name))
+            .samples[1]
+            .eye.x;
+    };
+    EXPECT_EQ(last(R"("images/cam2_10.v.png")", R"("images/cam2_9.png")"), 1.0) << "9 comes before 10";
+    EXPECT_EQ(last(R"("images/9.png")", R"("images/10.png")"), 4.0);
+    EXPECT_EQ(last(R"("a/2.png")", R"("b/2.png")"), 4.0) << "the file's order";
+    EXPECT_EQ(last(R"("2.png")", R"("x.png")"), 4.0) << "the file's order";
+}
+
 TEST_F(TransformsJson, OddFilesEndInOneLine) {
     const auto message = [&](const std::string& text) {
         return refusal("transforms.json", text, read_transforms_json);

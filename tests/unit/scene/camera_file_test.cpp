@@ -133,6 +133,46 @@ TEST_F(CameraFile, IsReadAgainWhereItsKeysAskForOtherTracks) {
     EXPECT_EQ(s.imported.camera, nullptr);
 }
 
+TEST_F(CameraFile, ProjectionsAndShiftsOfTheFile) {
+    const auto json = [&](const std::string& lens) {
+        put("a.json", "{" + lens +
+                          R"("w":1920,"h":1000,"fl_x":500,"cx":1460,"cy":500,"frames":[)"
+                          R"({"transform_matrix":[[1,0,0,0],[0,1,0,0],[0,0,1,0]]}]})");
+        const Said said;
+        Scene s = scene("file = \"a.json\"\n", "[output]\nresolution = [300, 100]\n");
+        return s;
+    };
+    Scene flat = json("");
+    EXPECT_LT(glm::distance(scene_at(flat, 1).camera.shift, glm::dvec2(-0.5 / 3.0, 0.0)), 1e-12);
+    flat.output.width = 100;
+    refresh_camera_file(flat, "");
+    EXPECT_LT(glm::distance(scene_at(flat, 1).camera.shift, glm::dvec2(-0.5, 0.0)), 1e-12);
+    const CameraParams fisheye = scene_at(json(R"("camera_model":"OPENCV_FISHEYE",)"), 1).camera;
+    EXPECT_EQ(fisheye.projection, Projection::fisheye);
+    EXPECT_NEAR(fisheye.fisheye_fov, 2.0 * 180.0 / 3.14159265358979324, 1e-9);
+    const CameraParams round = scene_at(json(R"("camera_model":"EQUIRECTANGULAR",)"), 1).camera;
+    EXPECT_EQ(round.projection, Projection::equirectangular);
+    EXPECT_EQ(round.panorama_fov, 360.0);
+}
+
+TEST_F(CameraFile, FramesThatDoNotMeetTheScenesAreTold) {
+    put("cam.chan", two_frames);
+    const Scene s = scene("file = \"cam.chan\"\nfile_offset = 2\n");
+    const auto missed = [&](std::vector<std::int64_t> frames) {
+        return without_folder(missed_camera_frames(s, frames));
+    };
+    EXPECT_EQ(missed({1, 2, 5}),
+              "cam.chan: its camera stands still, for it moves at frames 12 to 22, outside of 1 "
+              "to 5; camera.file_offset = -9 would fit");
+    EXPECT_EQ(missed({30}),
+              "cam.chan: its camera stands still, for it moves at frames 12 to 22, outside of 30 to "
+              "30; camera.file_offset = 20 would fit");
+    EXPECT_EQ(missed({1, 12}), "");
+    put("cam.chan", "1001 0 0 0 0 0 0\n");
+    const Scene still = scene("file = \"cam.chan\"\n");
+    EXPECT_EQ(missed_camera_frames(still, std::vector<std::int64_t>{1}), "") << "nothing moves";
+}
+
 TEST_F(CameraFile, TablesSetAnyKeyThatCanBeAnimated) {
     put("move.csv",
         "frame,camera.position.x,camera.position.y,camera.position.z,layer.stars.look.density,"
@@ -240,7 +280,9 @@ class ExportCamera : public test::CameraFileTest {
         put(name, camera_text(track, original, name));
         const CameraTrack back = camera_track(scene(camera + "file = \"" + name + "\"\n", ""), frames);
         test::expect_same_way(track, back);
-        EXPECT_EQ(track.orthographic, back.orthographic);
+        EXPECT_EQ(track.projection, back.projection);
+        for (std::size_t i = 0; i < frames.size(); ++i)
+            EXPECT_LT(glm::distance(track.samples[i].shift, back.samples[i].shift), 1e-9);
         for (std::size_t i = 0; i < frames.size(); ++i)
             EXPECT_NEAR(track.samples[i].height, back.samples[i].height, 1e-6);
     }
@@ -252,6 +294,16 @@ TEST_F(ExportCamera, ComesBackFromEveryFormat) {
     expect_back(original, "a.chan");
     expect_back(original, "a.csv");
     expect_back(scene("focal_length = 50.0"), "b.chan");
+    const Scene shifted = scene("shift = [0.25, -0.5]");
+    const std::vector<std::int64_t> first{1};
+    expect_near(camera_track(shifted, first).samples[0].shift, {0.75, -0.5});
+    expect_back(shifted, "s.csv");
+    expect_back(shifted, "s.usda");
+    const Said said;
+    for (const char* name : {"s.chan", "s.gltf"}) camera_text(camera_track(shifted, first), shifted, name);
+    ASSERT_EQ(said.warnings.size(), 2u);
+    EXPECT_EQ(said.warnings[0], "s.chan: camera.shift is left out, for .chan cannot say it");
+    EXPECT_EQ(said.warnings[1], "s.gltf: camera.shift is left out, for glTF cannot say it");
     expect_back(scene("projection = \"fisheye\"\nfisheye_tilt = 30.0"), "c.chan",
                 "projection = \"fisheye\"\nfisheye_tilt = 30.0\n");
     expect_back(scene("eye = \"left\"\neye_separation = 3.0"), "d.csv", "eye = \"right\"\n");
