@@ -29,8 +29,9 @@ void write_pda(const WriteTarget& target, const SplatSet& set, const Progress& p
 /// present, red green blue alpha (float 0..1, linear; uchar and ushort: sRGB colour, linear alpha), radius,
 /// distance, id (with id_high for its upper 32 bits, as PLY has no 64-bit numbers), mesh, s t are read, or
 /// Gaussians as 3D Gaussian Splatting stores them: x y z, f_dc_*, f_rest_* of degree 1 to 3 (all red, all
-/// green, all blue), opacity (a logit), scale_* (logarithms), rot_* (w first). All else is skipped. Missing
-/// colour is white, missing alpha 1, missing distance 0.
+/// green, all blue), opacity (a logit), scale_* (logarithms), rot_* (w first); instead of f_dc_* red green
+/// blue (display values, floats or codes), and Mip-Splatting's filter_3D, which widens them. All else is
+/// skipped. Missing colour is white, missing alpha 1, missing distance 0.
 SplatSet read_ply(const fs::path& file, const Progress& progress = {});
 SplatColumns ply_columns(const fs::path& file);
 std::int64_t ply_splat_count(const fs::path& file);

@@ -98,6 +98,16 @@ bool finish_row(SplatSet& set, const GaussianNumbers& numbers, std::size_t i) {
         for (int k = 0; k < 3; ++k) scale[k] = float(real::exp(scale[k]));
         alpha = float(1.0 / (1.0 + real::exp(-double(alpha))));
     }
+    if (numbers.filtered) {  // Yu et al. 2024, "Mip-Splatting", as its save_fused_ply() has it
+        const double filter = set.radius[i];
+        double kept = 1.0;  // of the opacity: the square root of the determinants' ratio
+        for (int k = 0; k < 3; ++k) {
+            const double own = scale[k], wide = std::sqrt(own * own + filter * filter);
+            kept *= wide > 0.0 ? own / wide : 1.0;
+            scale[k] = float(wide);
+        }
+        alpha = float(alpha * kept);
+    }
     const glm::dvec4 q(rotation);
     const double length = std::sqrt(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w);
     rotation = glm::vec4(q / length);

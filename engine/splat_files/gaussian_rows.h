@@ -40,8 +40,9 @@ bool is_directional(const std::vector<Part>& parts) {
 
 /// How a file stores its numbers.
 struct GaussianNumbers {
-    bool trained = false;  // scales as logarithms, opacities as logits: what training works with
-    bool display = true;   // harmonics give display values (sRGB); else linear light
+    bool trained = false;   // scales as logarithms, opacities as logits: what training works with
+    bool display = true;    // harmonics give display values (sRGB); else linear light
+    bool filtered = false;  // trained, and radius is Mip-Splatting's filter_3D, which widens each
 };
 
 /// `set` has position, alpha, scale, rotation of any length, id, distance, and harmonics or, where the file

@@ -8,11 +8,13 @@
 
 #include "core/color.h"
 #include "core/error.h"
+#include "core/log.h"
 #include "core/text.h"
 #include "splat_files/file_bytes.h"
 #include "splat_files/gaussian_rows.h"
 #include "splat_files/ply_bytes.h"
 #include "splat_files/splat_table.h"
+#include "splats/harmonics.h"
 
 namespace astrosplat {
 namespace {
@@ -120,6 +122,8 @@ constexpr KnownProperty gaussian_properties[] = {
     {"rot_1", {SplatColumn::rotation, 0}}, {"rot_2", {SplatColumn::rotation, 1}},
     {"rot_3", {SplatColumn::rotation, 2}},
 };
+/// Mip-Splatting's smallest size of each, which finish_gaussians() takes as the radius.
+constexpr KnownProperty filter_property = {"filter_3D", {SplatColumn::radius}};
 constexpr std::string_view mean_names[] = {"f_dc_0", "f_dc_1", "f_dc_2"};
 constexpr std::string_view rest_prefix = "f_rest_";
 
@@ -137,14 +141,20 @@ int rest_count(const PlyElement& vertex, const fs::path& file) {
 }
 
 /// `rest`: coefficients beyond degree 0 that the vertex has a channel.
-void assign_gaussian(Column& column, int rest) {
+void assign_gaussian(Column& column, const PlyElement& vertex, int rest, const fs::path& file) {
     if (column.list) return;
+    if (!has_scalar(vertex, mean_names[0])) {  // colours, as floats or codes of them
+        assign_field(column, vertex, file);
+        if (!column.field || column.field->column != SplatColumn::color) column.field.reset();
+        if (!column.codes.empty()) column.codes = codes_for(SplatColumn::alpha, column.type);
+    }
     const auto set = [&](const Field& field) {
         column.field = field;
         column.any_number = true;
     };
     for (const auto& [name, field] : gaussian_properties)
         if (column.name == name) set(field);
+    if (column.name == filter_property.name) set(filter_property.field);
     for (int k = 0; k < 3; ++k)
         if (column.name == mean_names[k]) set({rest == 0 ? SplatColumn::color : SplatColumn::harmonics, k});
     if (!column.name.starts_with(rest_prefix)) return;
@@ -152,10 +162,12 @@ void assign_gaussian(Column& column, int rest) {
     set({SplatColumn::harmonics, 3 * (1 + number % rest) + number / rest});
 }
 
-/// Whether the vertices are Gaussians as training stores them.
+/// Whether the vertices are Gaussians as training stores them: colours of degree 0 and some of the rest, or
+/// all of the rest, which mean nothing else.
 bool holds_gaussians(const PlyElement& vertex) {
-    return has_scalar(vertex, mean_names[0]) &&
-           (has_scalar(vertex, "scale_0") || has_scalar(vertex, "rot_0"));
+    const auto has = [&](std::string_view name) { return has_scalar(vertex, name); };
+    if (has(mean_names[0])) return has("scale_0") || has("rot_0");
+    return std::ranges::all_of(gaussian_properties, has, &KnownProperty::name);
 }
 
 /// The columns of such a vertex. Throws InputError where some of them are missing.
@@ -166,10 +178,14 @@ std::vector<Column> gaussian_columns(const PlyElement& vertex, const fs::path& f
                       fmt::format("no {}", name));
     };
     for (const auto& [name, field] : gaussian_properties) require(name);
-    for (const std::string_view name : mean_names) require(name);
+    const bool has_colors =
+        std::ranges::any_of(color_groups, [&](const auto& colors) { return has_all(vertex, colors); });
+    if (has_scalar(vertex, mean_names[0]) || !has_colors)
+        for (const std::string_view name : mean_names) require(name);
     const int rest = rest_count(vertex, file);
+    if (rest > 0) require(mean_names[0]);
     std::vector<Column> columns = vertex.properties;
-    for (Column& column : columns) assign_gaussian(column, rest);
+    for (Column& column : columns) assign_gaussian(column, vertex, rest, file);
     return columns;
 }
 
@@ -256,12 +272,15 @@ SplatSet read_ply_bytes(const fs::path& file, std::string_view bytes, const Prog
         read_ascii(header, vertex, table, file, progress);
     else
         read_binary_rows(header, vertex, table, file, progress);
-    const bool gaussians = table.has(SplatColumn::scale);
+    const bool gaussians = table.has(SplatColumn::scale), filtered = table.has(SplatColumn::radius);
     SplatSet set = finish_table(table, file);
     set.credit = header.credit;
     set.origin = header.origin;
-    return gaussians ? finish_gaussians(std::move(set), {.trained = true, .display = true}, file)
-                     : std::move(set);
+    if (set.size() == 0) log_warning(file.string() + ": holds no splats");
+    if (!gaussians) return set;
+    if (!has_scalar(header.elements[vertex], mean_names[0]))
+        for (glm::vec3& color : set.color) color = mean_coefficient(color);
+    return finish_gaussians(std::move(set), {.trained = true, .display = true, .filtered = filtered}, file);
 }
 
 }  // namespace

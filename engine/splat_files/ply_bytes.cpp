@@ -103,15 +103,22 @@ bool has_property(const PlyElement& element, std::string_view name) {
     return std::ranges::any_of(element.properties, [&](const Column& column) { return column.name == name; });
 }
 
+/// The next line that is not empty or a comment; of those it takes what the header keeps.
+std::string_view next_line(HeaderReader& reader, PlyHeader& header) {
+    while (true) {
+        const std::string_view line = reader.next();
+        const auto words = words_of(line);
+        if (line.starts_with(credit_begins)) header.credit = trim(line.substr(credit_begins.size()));
+        if (line.starts_with(origin_begins)) header.origin = trim(line.substr(origin_begins.size()));
+        if (!words.empty() && words[0] != "comment" && words[0] != "obj_info") return line;
+    }
+}
+
 /// Takes one line behind "format"; false at end_header.
 bool read_line(HeaderReader& reader, PlyHeader& header) {
-    const std::string_view line = reader.next();
+    const std::string_view line = next_line(reader, header);
     const auto words = words_of(line);
-    if (words.empty()) return true;
     if (words[0] == "end_header") return false;
-    if (line.starts_with(credit_begins)) header.credit = trim(line.substr(credit_begins.size()));
-    if (line.starts_with(origin_begins)) header.origin = trim(line.substr(origin_begins.size()));
-    if (words[0] == "comment" || words[0] == "obj_info") return true;
     if (words[0] == "element") {
         header.elements.push_back(read_element(reader, words, line));
     } else if (words[0] == "property" && !header.elements.empty()) {
@@ -143,7 +150,7 @@ PlyHeader read_ply_header(const fs::path& file, std::string_view bytes) {
     if (bytes.substr(0, 3) != "ply") bad_input(reader.file, "1", "'ply'", quoted(bytes.substr(0, 3)));
     const std::string_view magic = reader.next();
     if (trim(magic) != "ply") reader.fail("'ply'", magic);
-    header.format = read_format(reader, reader.next());
+    header.format = read_format(reader, next_line(reader, header));
     while (read_line(reader, header)) {
     }
     header.data = reader.rest;

@@ -71,6 +71,65 @@ TEST_F(GaussianFiles, PlyOfEveryDegree) {
     EXPECT_EQ(splat_attributes(path("a.ply")), columns);
 }
 
+/// One Gaussian as text: some properties before those that all have, with their values.
+std::string one_gaussian(const std::string& properties, const std::string& values) {
+    std::string text = "ply\ncomment made by hand\n\nformat ascii 1.0\nelement vertex 1\n";
+    std::istringstream types(properties);
+    for (std::string type, name; types >> type >> name;) text += "property " + type + " " + name + "\n";
+    for (const char* name :
+         {"x", "y", "z", "opacity", "scale_0", "scale_1", "scale_2", "rot_0", "rot_1", "rot_2", "rot_3"})
+        text += std::string("property float ") + name + "\n";
+    return text + "end_header\n" + values + " 1 2 3 0 0 -1 1 1 0 0 0\n";
+}
+
+// nerfstudio's ns-export --ply-color-mode rgb, and others that write colours.
+TEST_F(GaussianFiles, PlyWithColoursInsteadOfHarmonics) {
+    for (const auto& [type, values] : std::vector<std::pair<std::string, std::string>>{
+             {"uchar", "255 51 0"}, {"ushort", "65535 13107 0"}, {"float", "1 0.2 0"}}) {
+        SCOPED_TRACE(type);
+        const SplatSet set = read(one_gaussian(type + " red " + type + " green " + type + " blue", values));
+        ASSERT_EQ(set.size(), 1);
+        EXPECT_NEAR(set.color[0].x, 1.0, 1e-6);
+        EXPECT_NEAR(set.color[0].y, real::srgb_to_linear(0.2), 1e-6);
+        EXPECT_NEAR(set.color[0].z, 0.0, 1e-6);
+        EXPECT_EQ(set.alpha[0], 0.5f);
+        EXPECT_NEAR(set.scale[0].y, std::exp(-1.0), 1e-7);
+        EXPECT_TRUE(set.harmonics.empty());
+        std::vector<std::string> without = columns;
+        without.pop_back();
+        EXPECT_EQ(splat_attributes(path("a.ply")), without);
+    }
+    EXPECT_HAS(error(one_gaussian("", "")), "rot_0 to 3, found no f_dc_0");
+    EXPECT_HAS(error(one_gaussian("uchar red uchar green", "1 2")), "rot_0 to 3, found no f_dc_0");
+}
+
+// scale'^2 = scale^2 + filter^2; opacity' = opacity sqrt(det / det').
+TEST_F(GaussianFiles, PlyOfMipSplattingIsWidened) {
+    const std::string dc = "float f_dc_0 float f_dc_1 float f_dc_2 float filter_3D";
+    const SplatSet set = read(one_gaussian(dc, "0 0 0 0.75"));
+    ASSERT_EQ(set.size(), 1);
+    double kept = 1.0;
+    for (int k = 0; k < 3; ++k) {
+        const double own = std::exp(std::array{0.0, -1.0, 1.0}[std::size_t(k)]), wide = std::hypot(own, 0.75);
+        EXPECT_NEAR(set.scale[0][k], wide, 1e-6) << k;
+        kept *= own / wide;
+    }
+    EXPECT_NEAR(set.alpha[0], 0.5 * kept, 1e-6);
+    EXPECT_EQ(set.radius[0], gaussian_radius(set.scale[0]));
+    const SplatSet same = read(one_gaussian(dc, "0 0 0 0"));
+    EXPECT_NEAR(same.scale[0].y, std::exp(-1.0), 1e-7);
+    EXPECT_EQ(same.alpha[0], 0.5f);
+}
+
+TEST_F(GaussianFiles, PlyWithoutSplatsIsTold) {
+    const Said said;
+    const std::string text = replaced(one_gaussian("", ""), "vertex 1", "vertex 0");
+    read(text.substr(0, text.find("end_header")) +
+         "property float f_dc_0\nproperty float f_dc_1\nproperty "
+         "float f_dc_2\nend_header\n");
+    EXPECT_HAS(said.one_warning(), "a.ply: holds no splats");
+}
+
 TEST_F(GaussianFiles, PlyInAnyOrderAsTextAndWithStrangers) {
     std::string text =
         "ply\nformat ascii 1.0\nelement vertex 1\nproperty float rot_3\nproperty float rot_2\nproperty float "
