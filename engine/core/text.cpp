@@ -158,7 +158,7 @@ std::optional<std::string> bytes_of_base64(std::string_view text) {
 
 char separator_of(std::string_view line) {
     char best = ',';
-    for (const char c : {';', '\t'})
+    for (const char c : {';', '\t', '|'})
         if (std::ranges::count(line, c) > std::ranges::count(line, best)) best = c;
     return line.find(best) == line.npos ? ' ' : best;
 }
@@ -166,12 +166,12 @@ char separator_of(std::string_view line) {
 bool read_number(std::string_view field, std::optional<double>& number) {
     number.reset();
     field = trim(field);
-    if (field.empty() || field == "-" || field == "~") return true;
+    if (field.find_first_not_of("-") == field.npos || field == "~") return true;
     number = parse_double(field);
     if (number && std::isfinite(*number)) return true;
     number.reset();
     const std::string word = lower_case(std::string(field));
-    return word == "null" || word == "nan";
+    return word == "null" || word == "nan" || word == "n/a" || word == "na" || word == "none";
 }
 
 bool TextRows::next() {

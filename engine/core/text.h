@@ -91,10 +91,10 @@ std::vector<std::string> all_names() {
 // Rows of text: lines that hold anything, their fields, and tables whose first row names the columns. In: a
 // file's text. Out: one row after the other, which knows its line for every message. Rows are not kept.
 
-/// Of comma, semicolon and tab the one that a line holds most of; ' ' where it has none of them.
+/// Of comma, semicolon, tab and | the one that a line holds most of; ' ' where it has none of them.
 char separator_of(std::string_view line);
 
-/// Whether a field is a finite number, or says that there is none: nothing, "-", "~", "null", "nan".
+/// Whether a field is a finite number, or says that there is none: nothing, "--", "~", "null", "nan", "n/a".
 bool read_number(std::string_view field, std::optional<double>& number);
 
 /// Goes from line to line; skips empty ones, comments (a '#' at the beginning) and a byte order mark.

@@ -7,8 +7,11 @@
 
 #include "core/error.h"
 #include "core/file.h"
+#include "core/log.h"
 #include "core/memory.h"
+#include "core/real.h"
 #include "core/text.h"
+#include "stars/star_set.h"
 
 namespace astrosplat {
 
@@ -55,8 +58,34 @@ enum class RowUnits { degrees, hours };  // of right ascension
 
 /// The fields as they stand; empty ones are missing.
 struct StarFields {
-    std::string_view ra, dec, magnitude, distance, parallax, color_index;
+    std::string_view ra, dec, magnitude, distance, parallax, color_index, blue = {}, bp_rp = {};
 };
+
+/// Of dwarfs of the Sun's metals: Mucciarelli, Bellazzini & Massari 2021 (A&A 653, A90), table 1. It holds
+/// from 0.39 to 1.50; beyond, where it stays within 3 % of the dwarfs of Pecaut & Mamajek 2013 down to 3100
+/// K, it still tells blue stars from red ones.
+double temperature_of_bp_rp(double bp_rp) {
+    const double c = std::clamp(bp_rp, -0.5, 5.0);
+    return 5040.0 / (0.4929 + 0.5092 * c - 0.0353 * c * c);
+}
+
+/// "00 00 12.80", "-16:42:58.0" as one number; nothing where it is no such text.
+std::optional<double> sexagesimal(std::string_view text) {
+    text = trim(text);
+    const bool negative = text.starts_with('-');
+    if (negative || text.starts_with('+')) text.remove_prefix(1);
+    double value = 0.0, share = 1.0;
+    for (int part = 0; part < 3; ++part, share /= 60.0) {
+        text = trim(text);
+        const std::size_t end = std::min(text.find_first_of(" :"), text.size());
+        const std::optional<double> number = parse_double(text.substr(0, end));
+        if (!number || !(*number >= 0.0 && *number <= 360.0)) return std::nullopt;
+        value += *number * share;
+        text.remove_prefix(std::min(end + 1, text.size()));
+    }
+    if (!trim(text).empty()) return std::nullopt;
+    return negative ? -value : value;
+}
 
 /// Their numbers; what is missing has none.
 struct StarRow {
@@ -64,13 +93,22 @@ struct StarRow {
 
     /// The first field that is no number, as "expected ..., found ..."; empty where all are.
     std::string read(const StarFields& fields, RowUnits units) {
-        if (!read_number(fields.ra, ra_deg)) return no_number("right ascension", fields.ra);
-        if (ra_deg && units == RowUnits::hours) *ra_deg *= 15.0;
-        if (!read_number(fields.dec, dec_deg)) return no_number("declination", fields.dec);
+        const bool clock = !read_number(fields.ra, ra_deg);
+        if (clock) ra_deg = sexagesimal(fields.ra);
+        if (clock && !ra_deg) return no_number("right ascension", fields.ra);
+        if (ra_deg && (clock || units == RowUnits::hours)) *ra_deg *= 15.0;
+        const bool dial = !read_number(fields.dec, dec_deg);
+        if (dial) dec_deg = sexagesimal(fields.dec);
+        if (dial && !dec_deg) return no_number("declination", fields.dec);
         if (!read_number(fields.magnitude, magnitude)) return no_number("the magnitude", fields.magnitude);
         if (!read_number(fields.distance, distance_pc)) return no_number("the distance", fields.distance);
         if (!read_number(fields.parallax, parallax_mas)) return no_number("the parallax", fields.parallax);
         if (!read_number(fields.color_index, color_index)) return no_number("B-V", fields.color_index);
+        std::optional<double> other;
+        if (!read_number(fields.blue, other)) return no_number("B", fields.blue);
+        if (!color_index && other && magnitude) color_index = *other - *magnitude;
+        if (!read_number(fields.bp_rp, other)) return no_number("BP-RP", fields.bp_rp);
+        if (!color_index && other) color_index = color_index_of(temperature_of_bp_rp(*other));
         return {};
     }
 
@@ -107,24 +145,6 @@ enum HipparcosField {
     fields
 };
 
-// "00 00 12.80", "-16 42 58.0" as one number; nothing where it is no such text.
-std::optional<double> sexagesimal(std::string_view text) {
-    text = trim(text);
-    const bool negative = text.starts_with('-');
-    if (negative || text.starts_with('+')) text.remove_prefix(1);
-    double value = 0.0, share = 1.0;
-    for (int part = 0; part < 3; ++part, share /= 60.0) {
-        text = trim(text);
-        const std::size_t end = std::min(text.find(' '), text.size());
-        const std::optional<double> number = parse_double(text.substr(0, end));
-        if (!number || !(*number >= 0.0 && *number <= 360.0)) return std::nullopt;
-        value += *number * share;
-        text.remove_prefix(end);
-    }
-    if (!text.empty()) return std::nullopt;
-    return negative ? -value : value;
-}
-
 std::string read_row(const std::vector<std::string_view>& field, CatalogueStar& star) {
     if (field.size() < fields) return fmt::format("expected {} fields, found {}", +fields, field.size());
     StarRow row;
@@ -153,47 +173,121 @@ StarCatalogue parse_hipparcos(std::string_view text, const Progress& progress) {
 constexpr double hyg_unknown_pc = 100000.0;  // how HYG writes that it knows no distance
 constexpr std::size_t most_shown = 60;       // characters of a line in a message
 
+/// By what Gaia's archive, VizieR, SIMBAD, HYG and people call them; the first that a table has.
 struct Columns {
     explicit Columns(const TextTable& table)
-        : ra(table.column({"ra"})),
-          dec(table.column({"dec"})),
-          magnitude(table.column({"mag", "vmag"})),
+        : ra(table.column({"ra", "ra_d", "_raj2000", "raj2000", "ra_icrs", "_ra.icrs", "_ra", "ra_deg",
+                           "radeg", "raicrs", "rarad"})),
+          dec(table.column({"dec", "dec_d", "_dej2000", "dej2000", "de_icrs", "_de.icrs", "_de", "dec_deg",
+                            "dedeg", "deicrs", "derad", "de"})),
+          magnitude(
+              table.column({"mag", "vmag", "v", "flux_v", "phot_g_mean_mag", "gmag", "hpmag", "vtmag"})),
           distance(table.column({"dist", "distance"})),
-          parallax(table.column({"parallax", "plx"})),
-          color_index(table.column({"bv", "b_v", "b-v", "ci"})) {
+          parallax(table.column({"parallax", "plx", "plx_value"})),
+          color_index(table.column({"bv", "b_v", "b-v", "ci"})),
+          bp_rp(table.column({"bp_rp", "bp-rp"})) {
         hyg = true;
         for (const char* const name : {"hip", "hd", "hr", "gl", "proper"})
             hyg = hyg && table.column({name}) != TextTable::none;
+        from_hyg =
+            hyg || (table.column({"proper"}) != TextTable::none && table.column({"ci"}) != TextTable::none);
+        constexpr std::pair<const char*, const char*> pairs[] = {
+            {"v", "b"}, {"vmag", "bmag"}, {"flux_v", "flux_b"}};
+        for (const auto& [v, b] : pairs)
+            if (magnitude == table.column({v}) && blue == TextTable::none) blue = table.column({b});
+        may_be_hours = !hyg && ra == table.column({"ra"});
+        may_be_radians = ra == table.column({"rarad"}) && dec == table.column({"derad"});
     }
 
     bool complete() const { return std::ranges::min({ra, dec, magnitude}) != TextTable::none; }
+    /// Of ra, dec and mag those that it lacks.
+    std::string missing() const {
+        std::string names;
+        for (const auto& [column, name] :
+             {std::pair(ra, "ra"), std::pair(dec, "dec"), std::pair(magnitude, "mag")})
+            if (column == TextTable::none) names += fmt::format("{}{}", names.empty() ? "" : ", ", name);
+        return names;
+    }
 
-    int ra, dec, magnitude, distance, parallax, color_index;
-    bool hyg;
+    int ra, dec, magnitude, distance, parallax, color_index, bp_rp, blue = TextTable::none;
+    bool hyg, from_hyg, may_be_hours, may_be_radians;
 };
 
 std::string read_table_row(const TextTable& table, const Columns& columns, CatalogueStar& star) {
     StarRow row;
-    std::string problem = row.read(
-        {table.field(columns.ra), table.field(columns.dec), table.field(columns.magnitude),
-         table.field(columns.distance), table.field(columns.parallax), table.field(columns.color_index)},
-        columns.hyg ? RowUnits::hours : RowUnits::degrees);
-    if (columns.hyg && row.distance_pc && *row.distance_pc >= hyg_unknown_pc) row.distance_pc.reset();
+    std::string problem =
+        row.read({table.field(columns.ra), table.field(columns.dec), table.field(columns.magnitude),
+                  table.field(columns.distance), table.field(columns.parallax),
+                  table.field(columns.color_index), table.field(columns.blue), table.field(columns.bp_rp)},
+                 columns.hyg ? RowUnits::hours : RowUnits::degrees);
+    if (columns.from_hyg && row.distance_pc && *row.distance_pc >= hyg_unknown_pc) row.distance_pc.reset();
     return problem.empty() ? row.to_star(star) : problem;
 }
 
+/// Right ascensions that no sky in degrees has are hours, or radians; `name` begins the warning.
+void set_units(StarCatalogue& catalogue, const Columns& columns, const std::string& name) {
+    std::vector<CatalogueStar>& stars = catalogue.stars;
+    if (stars.empty()) return;
+    const auto [first, last] = std::ranges::minmax(stars, {}, &CatalogueStar::ra_deg);
+    const auto [south, north] = std::ranges::minmax(stars, {}, &CatalogueStar::dec_deg);
+    constexpr std::size_t a_few = 8;  // of which none of a sky in degrees lies beyond 24 once in 10^9
+    const bool whole_sky = stars.size() >= a_few && north.dec_deg - south.dec_deg > 90.0;
+    const bool radians = columns.may_be_radians && last.ra_deg <= 2.0 * real::pi + 1e-6 &&
+                         std::fmax(-south.dec_deg, north.dec_deg) <= 0.5 * real::pi + 1e-6;
+    const bool hours =
+        columns.may_be_hours && first.ra_deg >= 0.0 && last.ra_deg <= 24.0 && (whole_sky || columns.from_hyg);
+    if (!radians && !hours) return;
+    for (CatalogueStar& star : stars) {
+        star.ra_deg = radians ? real::degrees(star.ra_deg) : 15.0 * star.ra_deg;
+        if (radians) star.dec_deg = real::degrees(star.dec_deg);
+    }
+    log_warning(fmt::format("{}: {} at most: taken for {}", printable(name),
+                            radians ? "RArad and DErad are 2 pi and pi / 2" : "its ra is 24",
+                            radians ? "radians" : "hours"));
+}
+
+/// The text from its line of names on: the first line, or a comment above it where that has them and it has
+/// not.
+std::string_view from_header(std::string_view text) {
+    TextRows rows(text);
+    rows.next();
+    if (Columns(TextTable(rows.text())).complete()) return text;
+    for (std::size_t at = 0; at < text.size(); at = std::min(text.find('\n', at), text.size() - 1) + 1) {
+        const std::string_view rest = text.substr(at);
+        const std::string_view line = rest.substr(0, rest.find('\n'));
+        if (rest.data() >= rows.text().data()) break;
+        if (line.starts_with('#') && Columns(TextTable(line.substr(1))).complete()) return rest.substr(1);
+    }
+    return text;
+}
+
+/// Units or dashes, as VizieR has them below the names.
+bool is_below_header(const TextTable& table, const Columns& columns) {
+    return std::ranges::none_of(std::array{columns.ra, columns.dec, columns.magnitude},
+                                [&](int column) {
+                                    return table.field(column).find_first_of("0123456789") !=
+                                           std::string_view::npos;
+                                }) &&
+           !table.field(columns.ra).empty();
+}
+
 /// Throws InputError where the columns of ra, dec or mag are missing; Cancelled.
-StarCatalogue parse_columns(std::string_view text, const std::string& name, const Progress& progress) {
+StarCatalogue parse_columns(std::string_view all, const std::string& name, const Progress& progress) {
+    const std::string_view text = from_header(all);
+    const auto above = std::count(all.begin(), all.begin() + (text.data() - all.data()), '\n');
     TextTable table(text);
     const Columns columns(table);
     if (!columns.complete())
-        bad_input(name, fmt::format("line {}", table.line()),
-                  "a Hipparcos catalogue, or names of columns with ra, dec and mag among them",
-                  fmt::format("'{}'", printable(table.header().substr(0, most_shown))));
+        bad_input(
+            name, fmt::format("line {}", table.line()),
+            "a Hipparcos catalogue, or names of columns with ra, dec and mag among them",
+            fmt::format("no {} in '{}'", columns.missing(), printable(table.header().substr(0, most_shown))));
     StarCatalogue catalogue;
     while (table.next())
-        catalogue.add(table.line(), progress,
-                      [&](CatalogueStar& star) { return read_table_row(table, columns, star); });
+        if (catalogue.rows > 0 || !is_below_header(table, columns))
+            catalogue.add(table.line() + above, progress,
+                          [&](CatalogueStar& star) { return read_table_row(table, columns, star); });
+    set_units(catalogue, columns, name);
     return catalogue;
 }
 
@@ -262,8 +356,9 @@ class Inflater {
 
 }  // namespace
 
-bool is_catalogue(std::string_view first_line) {
-    return is_hipparcos(first_line) || Columns(TextTable(first_line)).complete();
+bool is_catalogue(std::string_view text) {
+    TextRows rows(text);
+    return rows.next() && (is_hipparcos(rows.text()) || Columns(TextTable(from_header(text))).complete());
 }
 
 StarCatalogue parse_catalogue(std::string_view text, const std::string& name, const Progress& progress) {

@@ -54,19 +54,22 @@ struct StarRows {
 };
 using StarCatalogue = StarRows<CatalogueStar>;
 
-/// Tables name their columns, in capitals or not, in any order: ra and dec (degrees; HYG's ra, known by its
-/// columns hip, hd, hr, gl and proper, in hours), mag or vmag, and where there are such dist or distance
-/// (parsec) or parallax or plx (milliarcseconds), and bv, b_v, b-v or ci. No distance is known where it or
-/// the parallax is missing, 0 or below, and in HYG from 100000 pc on. What is brighter than magnitude -20 is
-/// the Sun: where it lacks a distance, that is 1 au, for which its magnitude holds. Throws InputError where
-/// no row can be used; Cancelled.
+/// Tables name their columns as Gaia, VizieR, SIMBAD and HYG do (the lists are in catalogue.cpp), in capitals
+/// or not, in any order: ra and dec (degrees, or hours, minutes and seconds), a magnitude, and where there
+/// are such a distance (parsec) or parallax (milliarcseconds), and B-V, B beside V, or Gaia's bp_rp, which
+/// becomes B-V of the same temperature. HYG's ra, known by its columns hip, hd, hr, gl and proper, is in
+/// hours; so is what goes to 24 at most where dec spans the sky or columns are HYG's, and radians are what
+/// hip2's RArad and DErad may be: both are told. A header may be a comment; rows of units below it are
+/// skipped. No distance is known where it or the parallax is missing, 0 or below, and in HYG from 100000 pc
+/// on. What is brighter than magnitude -20 is the Sun: where it lacks a distance, that is 1 au, for which its
+/// magnitude holds. Throws InputError where no row can be used; Cancelled.
 StarCatalogue read_catalogue(const fs::path& file, const Progress& progress = {});
 
 /// The same of its text; `name` begins messages.
 StarCatalogue parse_catalogue(std::string_view text, const std::string& name, const Progress& progress = {});
 
-/// Whether a first line is that of a catalogue which read_catalogue() takes.
-bool is_catalogue(std::string_view first_line);
+/// Whether a text begins as a catalogue does which read_catalogue() takes.
+bool is_catalogue(std::string_view text);
 
 /// The text of a file, gzip-compressed or not, whatever its name. Throws InputError for files that cannot be
 /// read, damaged gzip data and text larger than the memory left; Cancelled.

@@ -52,7 +52,7 @@ std::string read_star(const TextTable& table, const TableColumns& columns, Table
 
 bool is_picture_table(std::string_view first_line) { return TableColumns(TextTable(first_line)).complete(); }
 
-constexpr std::size_t beginning_bytes = 8192;
+constexpr std::size_t beginning_bytes = 1 << 16;  // VizieR writes pages of comments first
 
 std::string beginning_of(const fs::path& file) {
     const std::string bytes = read_beginning(file, beginning_bytes);
@@ -92,7 +92,7 @@ CatalogueKind kind_of_catalogue(const fs::path& file) {
     TextRows rows(text);
     if (!rows.next()) return CatalogueKind::none;
     if (is_picture_table(rows.text())) return CatalogueKind::picture;
-    return is_catalogue(rows.text()) ? CatalogueKind::sky : CatalogueKind::none;
+    return is_catalogue(text) ? CatalogueKind::sky : CatalogueKind::none;
 }
 
 }  // namespace astrosplat

@@ -15,12 +15,6 @@ constexpr std::int64_t stars_per_task = 4096;
 
 double log10_of(double x) { return real::log(x) / ln10; }
 
-// B-V of a temperature: star_temperature's formula, solved.
-double color_index_of(double kelvin) {
-    const double t = kelvin / 4600.0, b = 2.32 * t - 2.0, c = 1.054 * t - 2.32;
-    return (std::sqrt(b * b - 4.0 * t * c) - b) / (2.0 * t) / 0.92;
-}
-
 StarKind main_sequence_star(double mass) {
     const double temperature = 5772.0 * real::pow(mass, (3.5 - 2.0 * 0.8) / 4.0);
     return {4.83 - 2.5 * 3.5 * log10_of(mass), color_index_of(temperature)};

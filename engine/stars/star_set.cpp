@@ -57,6 +57,11 @@ double star_temperature(double color_index) {
     return 4600.0 * (1.0 / (0.92 * color_index + 1.7) + 1.0 / (0.92 * color_index + 0.62));
 }
 
+double color_index_of(double kelvin) {
+    const double t = kelvin / 4600.0, b = 2.32 * t - 2.0, c = 1.054 * t - 2.32;
+    return (std::sqrt(b * b - 4.0 * t * c) - b) / (2.0 * t) / 0.92;
+}
+
 glm::dvec3 black_body_color(double kelvin) {
     glm::dvec3 xyz(0.0);
     static const MatchingTable matching = make_matching_table();

@@ -17,6 +17,8 @@ inline constexpr double ln10 = 2.302585092994046;
 /// Kelvin, of a star of that B-V: F. J. Ballesteros, "New insights into black bodies", EPL 97 (2012) 34008,
 /// eq. 14. Falls with B-V; for B-V above -0.67.
 double star_temperature(double color_index);
+/// B-V of a temperature, K: the same formula, solved.
+double color_index_of(double kelvin);
 
 /// Linear Rec. 709 of a black body's light, for temperatures above 0: Planck's law weighed with the colour
 /// matching functions of CIE 1931 as C. Wyman, P.-P. Sloan and P. Shirley fit them ("Simple analytic

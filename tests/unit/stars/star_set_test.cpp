@@ -379,6 +379,74 @@ TEST(NamedColumns, EveryNameIsKnown) {
     EXPECT_EQ(parse("ra,dec,Vmag\n1,2,3\n").stars[0].magnitude, 3.0);
 }
 
+// Gaia's archive, VizieR, SIMBAD and Hipparcos-2 (I/311), a row of each.
+TEST(NamedColumns, ArchivesAreRead) {
+    const StarCatalogue gaia = parse(
+        "solution_id,DESIGNATION,ra,ra_error,dec,dec_error,parallax,phot_g_mean_mag,bp_rp,l,b\n"
+        "1,\"Gaia DR3 1\",94.25,0.1,51.5,0.1,20,5.898,0.82,7,8\n");
+    expect_star(gaia.stars.at(0), 94.25, 51.5, 50, 5.898);
+    // 5040 / (0.4929 + 0.5092 C - 0.0353 C^2), Mucciarelli et al. 2021.
+    EXPECT_NEAR(star_temperature(gaia.stars[0].color_index.value()),
+                5040.0 / (0.4929 + 0.417544 - 0.02373572), 1e-6);
+    expect_star(parse("#Title: x\n#Column _RAJ2000\n\n_RAJ2000\tRAJ2000\t_DEJ2000\tVmag\tPlx\tB-V\n"
+                      "deg\t\"h:m:s\"\tdeg\tmag\tmas\tmag\n-----\t---\t---\t----\t---\t---\n"
+                      "94.25\t06 17 00\t-51.5\t5.5\t20\t0.5\n")
+                    .stars.at(0),
+                94.25, -51.5, 50, 5.5);
+    const StarCatalogue clock =
+        parse("MAIN_ID|RA|DEC|FLUX_B|FLUX_V|PLX_VALUE\n* alf CMa|06 45 08.4|-16:42:36|-1.46|-1.5|400\n");
+    expect_star(clock.stars.at(0), 15.0 * (6.0 + 45.0 / 60.0 + 8.4 / 3600.0), -16.71, 2.5, -1.5);
+    EXPECT_NEAR(clock.stars[0].color_index.value(), 0.04, 1e-12);
+    EXPECT_EQ(clock.bad.count, 0);
+    expect_star(parse("ra_d;dec_d;V;B\n10;20;3;4\n").stars.at(0), 10, 20, 0, 3);
+    EXPECT_EQ(parse("ra,dec,mag,b\n10,20,3,80\n").stars.at(0).color_index, std::nullopt)
+        << "a galactic latitude";
+    const Said said;
+    const double radian = 180.0 / 3.14159265358979324;
+    expect_star(parse("HIP;RArad;DErad;Plx;Hpmag;B-V\n1;1.5;-0.5;4;9.25;0.4\n2;0;0;4;9;0.4\n").stars.at(0),
+                1.5 * radian, -0.5 * radian, 250, 9.25);
+    EXPECT_EQ(said.one_warning(), "stars: RArad and DErad are 2 pi and pi / 2 at most: taken for radians");
+    expect_star(parse("RArad;DErad;Hpmag\n1.5;-0.5;9\n200;0;9\n").stars.at(0), 1.5, -0.5, 0, 9);
+}
+
+TEST(NamedColumns, HoursAreKnownByTheirRange) {
+    std::string sky = "ra,dec,mag\n";
+    for (int i = 0; i < 8; ++i) sky += fmt::format("{},{},3\n", 3 * i, 15 * i - 60);
+    const Said said;
+    expect_star(parse(sky).stars.at(7), 315, 45, 0, 3);
+    EXPECT_EQ(said.one_warning(), "stars: its ra is 24 at most: taken for hours");
+    expect_star(parse(sky + "25,0,3\n").stars.at(7), 21, 45, 0, 3);
+    expect_star(parse("ra,dec,mag\n3,0,3\n6,80,3\n").stars.at(1), 6, 80, 0, 3);
+    // HYG as a spreadsheet leaves it.
+    const std::string hyg =
+        "id,proper,ra,dec,dist,mag,ci\n0,Sirius,6.75,-16.75,2.5,-1.5,0\n1,,20,1,100000,9,1\n";
+    expect_star(parse(hyg).stars.at(0), 101.25, -16.75, 2.5, -1.5);
+    expect_star(parse(hyg).stars.at(1), 300, 1, 0, 9);
+    EXPECT_EQ(said.warnings.size(), 1u) << "the same words once";
+    expect_star(parse(hyg + "2,,200,0,1,1,1\n").stars.at(0), 6.75, -16.75, 2.5, -1.5);
+}
+
+TEST(NamedColumns, WhatIsNotKnownCostsNoStar) {
+    for (const char* none : {"", "--", "---", "N/A", "n/a", "NA", "null", "NULL", "None", "\"\"", "~"}) {
+        const StarCatalogue read =
+            parse(fmt::format("ra,dec,mag,plx,bv,bp_rp\n1,2,3,{0},{0},{0}\n1,2,3,10,0.5,0.5\n", none));
+        ASSERT_EQ(read.stars.size(), 2u) << none;
+        expect_star(read.stars[0], 1, 2, 0, 3);
+        EXPECT_FALSE(read.stars[0].color_index.has_value());
+    }
+}
+
+TEST(NamedColumns, AHeaderMayBeAComment) {
+    const StarCatalogue read = parse("# stars\n#ra,dec,mag\n10,20,3\n1,2,x\n");
+    expect_star(read.stars.at(0), 10, 20, 0, 3);
+    EXPECT_EQ(read.bad.lines, (std::vector<std::int64_t>{4}));
+    expect_star(parse("#ra,dec,mag\nmag,dec,ra\n3,20,10\n").stars.at(0), 10, 20, 0, 3);
+    EXPECT_THAT(error_of("# stars\n10,20,3\n"), HasSubstr("line 2: expected"));
+    const TempFolder folder;
+    EXPECT_EQ(kind_of_catalogue(folder.file("a.csv", "#ra,dec,mag\n10,20,3\n")), CatalogueKind::sky);
+    EXPECT_EQ(kind_of_catalogue(folder.file("b.csv", "#ra,dec\n10,20,3\n")), CatalogueKind::none);
+}
+
 TEST(NamedColumns, ParallaxServesWhereTheDistanceIsMissing) {
     const StarCatalogue read = parse("ra,dec,mag,dist,plx\n1,2,3,20,10\n1,2,3,,10\n1,2,3,0,-10\n1,2,3,-4,\n");
     ASSERT_EQ(read.stars.size(), 4u);
@@ -433,8 +501,9 @@ TEST(Catalogue, WhatIsNoCatalogueIsSaidInOneLine) {
     EXPECT_EQ(
         error_of("hello\n"),
         "stars:line 1: expected a Hipparcos catalogue, or names of columns with ra, dec and mag among them, "
-        "found 'hello'");
-    EXPECT_THAT(error_of(std::string("\x01\x02\n\x03", 4)), HasSubstr("found '\\x01\\x02'"));
+        "found no ra, dec, mag in 'hello'");
+    EXPECT_THAT(error_of("id,ra,Dec,flux\n1,2,3,4\n"), HasSubstr("found no mag in 'id,ra,Dec,flux'"));
+    EXPECT_THAT(error_of(std::string("\x01\x02\n\x03", 4)), HasSubstr("in '\\x01\\x02'"));
     EXPECT_EQ(error_of("ra,dec,mag\n"), "stars: expected at least one star, found none");
     EXPECT_EQ(error_of("ra,dec,mag\n1,x,2\n"),
               "stars: expected at least one star, found none: 1 of 1 row cannot be used, at line 2 (line 2: "
