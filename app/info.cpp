@@ -6,12 +6,16 @@
 #include <nlohmann/json.hpp>
 #include <variant>
 
+#include "camera_files/camera_track.h"
 #include "command.h"
+#include "core/error.h"
 #include "core/file.h"
 #include "core/file_format.h"
+#include "core/log.h"
 #include "core/text.h"
 #include "exit.h"
 #include "output/metadata.h"
+#include "scene/camera_file.h"
 #include "scene/check.h"
 #include "scene/describe.h"
 #include "scene/frames.h"
@@ -201,10 +205,62 @@ Report describe_scene(const fs::path& file) {
     return report;
 }
 
+/// Of another program's camera.
+Report describe_camera(const fs::path& file) {
+    const CameraTrack track = read_camera(file, {});
+    for (const std::string& warning : track.warnings) log_warning(warning);
+    Bounds places;
+    std::vector<double> lenses;
+    for (const TrackSample& sample : track.samples) {
+        places.add(sample.eye);
+        lenses.push_back(track.orthographic() ? sample.height : sample.fov_deg);
+    }
+    Report report = {{"kind", "camera"},
+                     {"projection", name_of(track.projection)},
+                     {"samples", track.samples.size()},
+                     {"frames", {track.samples.front().frame, track.samples.back().frame}},
+                     {"places", to_report(places)},
+                     {"up", track.up == FileUp::z ? "z" : "y"}};
+    if (track.has_fov || track.orthographic())
+        report[track.orthographic() ? "height" : "fov_deg"] = extremes(lenses);
+    report["shifted"] = track.has_shift;
+    if (track.fps > 0.0) report["fps"] = track.fps;
+    return report;
+}
+
+bool is_keyframe_table(const fs::path& file) {
+    const FileFormat* const format = format_by_name(file);
+    return format && format->id == "table" && TextTable(read_file(file)).column({"frame"}) != TextTable::none;
+}
+
+Report describe_keyframes(const fs::path& file) {
+    Scene scene = parse_unchecked("astrosplat = 1\n", file);
+    const std::vector<Track> tracks = read_csv_tracks(file, {}, scene);
+    Report keys = Report::array();
+    for (const Track& track : tracks) keys.push_back(track.key.text());
+    const auto& rows = tracks.front().keyframes;
+    return {{"kind", "keyframes"},
+            {"samples", rows.size()},
+            {"frames", {rows.front().frame, rows.back().frame}},
+            {"keys", keys}};
+}
+
+/// Files of formats that hold both are splats where they hold any.
+Report describe_splats_or_camera(const fs::path& file) try {
+    return describe_splats(file);
+} catch (const InputError&) {
+    if (!is_camera_file(file)) throw;
+    try {
+        return describe_camera(file);
+    } catch (const InputError&) {
+    }
+    throw;
+}
+
 Report describe(const fs::path& file) {
     switch (kind_of(format_of_file(file))) {
         case FileKind::splats:
-            return describe_splats(file);
+            return describe_splats_or_camera(file);
         case FileKind::scene:
             return describe_scene(file);
         case FileKind::mesh:
@@ -212,6 +268,8 @@ Report describe(const fs::path& file) {
         default:
             if (const CatalogueKind kind = kind_of_catalogue(file); kind != CatalogueKind::none)
                 return kind == CatalogueKind::sky ? describe_catalogue(file) : describe_picture_table(file);
+            if (is_camera_file(file)) return describe_camera(file);
+            if (is_keyframe_table(file)) return describe_keyframes(file);
             return is_fits(file) ? describe_fits_file(file) : describe_image(file);
     }
 }
@@ -229,7 +287,7 @@ int run_info(const CommandOptions& options) {
 
 void add_info(CLI::App& app, Invocation& call) {
     CLI::App& command = add_command(app, call, "info", "Describes any file the program reads", run_info);
-    add_input(command, call.options, "FILE", "Scene, mesh, picture, frame or splat file");
+    add_input(command, call.options, "FILE", "Scene, mesh, picture, frame, splat, star or camera file");
     add_json(command, call.options);
 }
 

@@ -259,6 +259,12 @@ int main(int argc, char** argv) {
         log_error("not enough memory");
         return exit_not_started;
     } catch (const std::system_error& error) {
+        std::error_code gone;
+        static_cast<void>(std::filesystem::current_path(gone));
+        if (gone) {
+            log_error("the working folder is not there any more: change to one that is");
+            return exit_not_started;
+        }
         const bool busy = error.code() == std::errc::resource_unavailable_try_again;  // no thread to be had
         log_error((busy ? "the system gives no more threads: " : "internal error: ") +
                   std::string(error.what()));

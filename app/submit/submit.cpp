@@ -233,6 +233,22 @@ std::vector<std::string> chunks_of(const Frames& frames, std::size_t size) {
     return chunks;
 }
 
+/// Throws InputError where Slurm says that it takes no array of so many tasks; it counts them from 0.
+void check_array_size(std::size_t tasks, std::size_t frames, std::size_t chunk) {
+    const std::optional<ToolResult> config = run_tool({"scontrol", "show", "config"});
+    if (!config || config->code != 0) return;  // sbatch will say
+    for (TextRows rows(config->out); rows.next();) {
+        const auto words = rows.fields();
+        const auto most =
+            words.size() == 3 && words[0] == "MaxArraySize" ? parse_int64(words[2]) : std::nullopt;
+        if (most && *most > 0 && tasks > std::size_t(*most))
+            bad_input("--chunk", "",
+                      fmt::format("{} or more, for Slurm's MaxArraySize is {} tasks",
+                                  (frames + std::size_t(*most) - 1) / std::size_t(*most), *most),
+                      fmt::format("{}, which makes {} tasks", chunk, tasks));
+    }
+}
+
 /// The options that decide frames but for their numbers, as words of --batch. With = so that a value may
 /// begin with a minus.
 std::vector<std::string> frame_options(const BatchPlan& plan, const CommandOptions& batch) {
@@ -341,6 +357,7 @@ int run_submit(const SubmitOptions& options, const CommandOptions& given) {
         fmt::print("{}\n{}", scripts.sets, scripts.frames);
         return exit_done;
     }
+    check_array_size(submission.chunks.size(), frames.size(), chunk);
     defer_interrupts();
     DraftFolder folder(parent);
     submission.folder = folder.path();

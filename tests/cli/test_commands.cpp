@@ -305,8 +305,34 @@ TEST_F(Commands, InfoDescribesEveryKind) {
     EXPECT_EQ(mesh.at("vertices"), 4);
     EXPECT_DOUBLE_EQ(mesh.at("area").get<double>(), 2.0);
     EXPECT_HAS(run({"info", "square.obj"}).out, "triangles: 2");
+    write_text(folder / "cam.chan", "1 0 0 5 0 0 0 30\n4 1 0 5 0 0 0 40\n");
+    const nlohmann::json camera = info("cam.chan");
+    EXPECT_EQ(camera.at("kind"), "camera");
+    EXPECT_EQ(camera.at("samples"), 2);
+    EXPECT_EQ(camera.at("frames"), nlohmann::json({1.0, 4.0}));
+    EXPECT_EQ(camera.at("fov_deg"), nlohmann::json({30.0, 40.0}));
+    write_text(folder / "cam.usda", "#usda 1.0\ndef Camera \"c\" { float horizontalApertureOffset = 1 }\n");
+    EXPECT_EQ(info("cam.usda").at("projection"), "perspective");
+    EXPECT_EQ(info("cam.usda").at("shifted"), true);
+    write_text(folder / "none.usda", "#usda 1.0\n");
+    expect_one_line(run({"info", "none.usda"}), 2, "expected Gaussians");
+    write_text(folder / "a.json", "[]");
+    expect_one_line(run({"info", "a.json"}), 2, "expected a transforms.json");
+    write_text(folder / "move.csv", "frame,camera.fov\n2,30\n9,40\n");
+    EXPECT_EQ(info("move.csv").at("kind"), "keyframes");
+    EXPECT_EQ(info("move.csv").at("frames"), nlohmann::json({2.0, 9.0}));
+    EXPECT_EQ(info("move.csv").at("keys"), nlohmann::json({"camera.fov"}));
     write_text(folder / "noise.bin", "nothing known");
     EXPECT_EQ(run({"info", "noise.bin"}).code, 2);
+}
+
+TEST_F(Commands, AWorkingFolderThatIsGoneIsNoFaultOfOurs) {
+    const RunResult result =
+        run_program({"/bin/bash", "-c",
+                     "mkdir gone; cd gone; rmdir ../gone; exec \"$0\" --batch \"$1\" -f 1 -o x.####.exr -q",
+                     ASTROSPLAT_PROGRAM, (folder / "scene.toml").string()},
+                    {.folder = folder});
+    expect_one_line(result, 2, "the working folder is not there any more");
 }
 
 TEST_F(Commands, CompareFindsTheDifference) {

@@ -76,6 +76,18 @@ TEST_F(Submit, ADryRunPrintsBothScriptsAndDoesNothing) {
     EXPECT_LT(mebibytes, 512);
 }
 
+TEST_F(Submit, ArraysThatSlurmDoesNotTakeAreAnsweredWithAChunkThatFits) {
+    write_program(
+        folder / "bin/scontrol",
+        "[ \"$*\" = \"show config\" ] && printf 'MaxArraySize            = 3\\nMaxJobCount = 9\\n'\n");
+    expect_nothing_submitted(
+        submit({"-f", "1-10", "--chunk", "2"}),
+        "--chunk: expected 4 or more, for Slurm's MaxArraySize is 3 tasks, found 2, which "
+        "makes 5 tasks");
+    expect_success(submit({"-f", "1-10", "--chunk", "4", "-q"}));
+    EXPECT_EQ(chunks(script("frames.sh")), "1-4\n5-8\n9-10");
+}
+
 TEST_F(Submit, TheArrayWaitsForTheSets) {
     const RunResult result = expect_success(submit({"-q"}));
     EXPECT_HAS(result.out, "3 frames in 1 task submitted as job 2, which waits for the sets of job 1\n");
