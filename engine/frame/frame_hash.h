@@ -13,7 +13,7 @@
 namespace astrosplat {
 
 /// Raised whenever the program's own arithmetic changes a pixel of any scene.
-inline constexpr int pixel_version = 4;
+inline constexpr int pixel_version = 5;
 
 /// Input files as they were when they were hashed.
 struct HashedFile {

@@ -590,7 +590,7 @@ TEST_F(FrameHashTest, TheRegionCounts) {
 
 TEST_F(FrameHashTest, CanonicalTextShowsWhatIsHashed) {
     const std::string text = this->text(scene());
-    EXPECT_EQ(text.rfind("pixels = 4\n", 0), 0u);
+    EXPECT_EQ(text.rfind("pixels = 5\n", 0), 0u);
     EXPECT_HAS(text, "\ncamera.position = [0.0, 0.0, 30.0]\n");
     EXPECT_HAS(text, "\nlayer.stars.source.meshes.0.mesh = \"plane\"\n");
     EXPECT_EQ(text.find(folder_.path().string()), std::string::npos) << text;
