@@ -13,7 +13,7 @@ namespace astrosplat {
 inline constexpr int set_version = 42;
 
 /// The same of the preparation of pictures.
-inline constexpr int prepare_version = 3;
+inline constexpr int prepare_version = 4;
 
 /// The hashed text, line by line: versions, the bytes of meshes and pictures (of a mesh without a named
 /// picture also its material libraries and their pictures), and the parameters in use, with the seed
@@ -23,7 +23,7 @@ std::string recipe_text(const SourceParams& source, const std::string& layer_nam
                         const Progress& progress = {});
 
 /// The same of skies of cut-outs (source/tiled_sky.h).
-inline constexpr int sky_version = 1;
+inline constexpr int sky_version = 2;
 std::string sky_recipe_text(const fs::path& file, const SkyTiling& tiling, const Progress& progress = {});
 
 /// The same of one prepared picture: its files, how they are read and settings.prepare.
