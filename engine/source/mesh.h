@@ -19,11 +19,13 @@ struct Mesh {
     };
     static constexpr std::uint32_t no_uv = 0xffffffffu;
 
-    std::vector<glm::vec3> positions;  // scene units
-    std::vector<glm::vec2> uvs;        // v = 0 is the bottom row
+    std::vector<glm::vec3> positions;      // scene units
+    std::vector<glm::vec3> vertex_colors;  // sRGB, 0..1, of each position, where the file has any
+    std::vector<glm::vec2> uvs;            // v = 0 is the bottom row
     std::vector<Triangle> triangles;
     std::vector<fs::path> maps;  // map_Kd of each material (empty path: none), resolved to the MTL's folder
-    std::string name;            // the file, for messages
+    std::vector<std::optional<glm::vec3>> colors;  // Kd of each, linear, as many as maps
+    std::string name;                              // the file, for messages
 };
 
 /// Bounds of all vertices (also of those no face uses).
@@ -64,9 +66,9 @@ inline constexpr std::size_t max_concave_corners = 4096;
 /// corners. Empty when it is concave and has more than max_concave_corners.
 std::vector<std::array<std::uint32_t, 3>> triangulate(std::span<const glm::vec3> corners);
 
-/// Reads an OBJ: several objects, quads and polygons, negative indices, map_Kd. Faces keep the file's order.
-/// A missing MTL is a warning. Throws InputError (file, line where known) for unreadable, truncated or empty
-/// files, indices out of range, coordinates that are not finite; Cancelled.
+/// Reads an OBJ: several objects, quads and polygons, negative indices, map_Kd, Kd, colours of vertices.
+/// Faces keep the file's order. A missing MTL is a warning. Throws InputError (file, line where known) for
+/// unreadable, truncated or empty files, indices out of range, coordinates that are not finite; Cancelled.
 Mesh load_obj(const fs::path& file, const Progress& progress = {});
 
 /// The files besides the OBJ itself that its map_Kd pictures come from: the material libraries that it names

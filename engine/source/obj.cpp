@@ -44,15 +44,20 @@ struct Highest {
     }
 };
 
+struct Material {
+    fs::path map;                    // map_Kd
+    std::optional<glm::vec3> color;  // Kd, linear
+};
+
 struct Reader {
     fs::path file;
     Mesh mesh;
     std::int64_t line = 0;
     std::vector<Polygon> polygons;  // those with more than three corners
     Highest position, uv;
-    std::map<std::string, fs::path> material_maps;  // material -> map_Kd
-    std::vector<fs::path> libraries;                // the MTL files read
-    std::map<fs::path, std::uint32_t> map_index;    // map -> place in mesh.maps
+    std::map<std::string, Material> materials;
+    std::vector<fs::path> libraries;                                           // the MTL files read
+    std::map<std::tuple<fs::path, float, float, float>, std::uint32_t> index;  // in mesh.maps
     std::uint32_t material = 0;
     bool material_chosen = false;
 };
@@ -79,6 +84,9 @@ float coordinate(const Reader& r, std::string_view word) {
 void read_position(Reader& r, const Words& words) {
     if (words.size() < 4) bad_line(r, "three coordinates after 'v'", fmt::format("{}", words.size() - 1));
     r.mesh.positions.emplace_back(coordinate(r, words[1]), coordinate(r, words[2]), coordinate(r, words[3]));
+    if (words.size() < 7) return;
+    r.mesh.vertex_colors.resize(r.mesh.positions.size(), glm::vec3(1.0f));
+    for (int c = 0; c < 3; ++c) r.mesh.vertex_colors.back()[c] = coordinate(r, words[4 + std::size_t(c)]);
 }
 
 void read_uv(Reader& r, const Words& words) {
@@ -127,9 +135,14 @@ Mesh::Triangle triangle_of(const Reader& r, const Corner& a, const Corner& b, co
     return {{position(a), position(b), position(c)}, {uv(a), uv(b), uv(c)}, r.material};
 }
 
-std::uint32_t index_of_map(Reader& r, const fs::path& map) {
-    const auto [found, fresh] = r.map_index.try_emplace(map, std::uint32_t(r.mesh.maps.size()));
-    if (fresh) r.mesh.maps.push_back(map);
+std::uint32_t index_of(Reader& r, const Material& material) {
+    const glm::vec3 color = material.color.value_or(glm::vec3(-1.0f));
+    const auto [found, fresh] =
+        r.index.try_emplace({material.map, color.x, color.y, color.z}, std::uint32_t(r.mesh.maps.size()));
+    if (fresh) {
+        r.mesh.maps.push_back(material.map);
+        r.mesh.colors.push_back(material.color);
+    }
     return found->second;
 }
 
@@ -142,7 +155,7 @@ void read_face(Reader& r, const Words& words) {
         if ((corner.uv < 0) != (corners[0].uv < 0))
             bad_line(r, "texture coordinates at all corners of a face or at none", "a mixture");
     if (!r.material_chosen) {
-        r.material = index_of_map(r, {});
+        r.material = index_of(r, {});
         r.material_chosen = true;
     }
     const std::size_t first = r.mesh.triangles.size();
@@ -159,6 +172,46 @@ std::string rest_of(std::string_view text, const Words& words) {
 fs::path native(std::string name) {
     std::ranges::replace(name, '\\', '/');
     return name;
+}
+
+// One logical line: a backslash at the end continues it on the next. Advances `text` and the line count.
+std::string_view next_line(std::string_view& text, std::string& joined, std::int64_t& lines) {
+    joined.clear();
+    for (;;) {
+        const std::size_t end = std::min(text.find('\n'), text.size());
+        std::string_view line = text.substr(0, end);
+        text.remove_prefix(std::min(end + 1, text.size()));
+        ++lines;
+        if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
+        const bool continued = !line.empty() && line.back() == '\\' && !text.empty();
+        if (!continued && joined.empty()) return line;
+        joined.append(line.substr(0, line.size() - (continued ? 1 : 0)));
+        if (!continued) return joined;
+        joined.push_back(' ');
+    }
+}
+
+// The Kd of each material: tinyobjloader does not tell those that are not there.
+void read_material_colors(Reader& r, const fs::path& file, std::string_view content) {
+    Words words;
+    std::string name, joined;
+    for (std::int64_t lines = 0; !content.empty();) {
+        const std::string_view text = next_line(content, joined, lines);
+        split(text, words);
+        if (!words.empty() && words[0] == "newmtl") name = rest_of(text, words);
+        if (words.size() < 2 || words[0] != "Kd") continue;
+        glm::vec3 color;
+        bool whole = words.size() == 2 || words.size() >= 4;
+        for (int c = 0; whole && c < 3; ++c) {
+            const auto value = parse_double(words[words.size() == 2 ? 1 : std::size_t(c) + 1]);
+            whole = value && std::isfinite(float(*value)) && *value >= 0.0;
+            if (whole) color[c] = float(*value);
+        }
+        if (whole)
+            r.materials[name].color = color;
+        else
+            log_warning(fmt::format("{}:{}: '{}' is not followed", file.string(), lines, trim(text)));
+    }
 }
 
 // False where there is no such file.
@@ -178,8 +231,9 @@ bool load_materials(Reader& r, const std::string& name) {
     r.libraries.push_back(file);
     for (const auto& [material, id] : ids) {
         const std::string& map = materials[id].diffuse_texname;
-        r.material_maps[material] = map.empty() ? fs::path() : file.parent_path() / native(map);
+        r.materials[material] = {map.empty() ? fs::path() : file.parent_path() / native(map), {}};
     }
+    read_material_colors(r, file, content);
     return true;
 }
 
@@ -195,8 +249,8 @@ void read_mtllib(Reader& r, std::string_view text, const Words& words) {
 }
 
 void use_material(Reader& r, const std::string& name) {
-    const auto found = r.material_maps.find(name);
-    r.material = index_of_map(r, found == r.material_maps.end() ? fs::path() : found->second);
+    const auto found = r.materials.find(name);
+    r.material = index_of(r, found == r.materials.end() ? Material{} : found->second);
     r.material_chosen = true;
 }
 
@@ -208,23 +262,6 @@ void read_line(Reader& r, std::string_view text, Words& words) {
     if (words[0] == "f") read_face(r, words);
     if (words[0] == "mtllib") read_mtllib(r, text, words);
     if (words[0] == "usemtl") use_material(r, rest_of(text, words));
-}
-
-// One logical line: a backslash at the end continues it on the next. Advances `text` and the line count.
-std::string_view next_line(std::string_view& text, std::string& joined, std::int64_t& lines) {
-    joined.clear();
-    for (;;) {
-        const std::size_t end = std::min(text.find('\n'), text.size());
-        std::string_view line = text.substr(0, end);
-        text.remove_prefix(std::min(end + 1, text.size()));
-        ++lines;
-        if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
-        const bool continued = !line.empty() && line.back() == '\\' && !text.empty();
-        if (!continued && joined.empty()) return line;
-        joined.append(line.substr(0, line.size() - (continued ? 1 : 0)));
-        if (!continued) return joined;
-        joined.push_back(' ');
-    }
 }
 
 void check_range(Reader& r, const Highest& highest, std::size_t count, const char* what) {
@@ -294,7 +331,11 @@ Mesh load_obj(const fs::path& file, const Progress& progress) {
     for_each_line(r, content, progress, [&](std::string_view line) { read_line(r, line, words); });
     check_whole(r);
     triangulate_polygons(r);
-    if (r.mesh.maps.size() == 1 && r.mesh.maps[0].empty()) r.mesh.maps.clear();
+    if (r.mesh.maps.size() == 1 && r.mesh.maps[0].empty() && !r.mesh.colors[0]) {
+        r.mesh.maps.clear();
+        r.mesh.colors.clear();
+    }
+    if (!r.mesh.vertex_colors.empty()) r.mesh.vertex_colors.resize(r.mesh.positions.size(), glm::vec3(1.0f));
     return std::move(r.mesh);
 }
 
@@ -309,7 +350,7 @@ std::vector<fs::path> obj_materials(const fs::path& file, const Progress& progre
         if (words[0] == "mtllib") read_mtllib(r, line, words);
     });
     std::vector<fs::path> files = r.libraries;
-    for (const auto& [material, map] : r.material_maps) files.push_back(map);
+    for (const auto& [name, material] : r.materials) files.push_back(material.map);
     std::error_code ignored;
     std::erase_if(files, [&](const fs::path& each) { return !fs::is_regular_file(each, ignored); });
     return files;

@@ -1,6 +1,8 @@
 // Projections are in double; a face's coordinates are affine in the picture, not on the face.
 #include "source/textured_mesh.h"
 
+#include <fmt/format.h>
+
 #include <glm/matrix.hpp>
 
 #include "camera/projection.h"
@@ -8,6 +10,7 @@
 #include "core/log.h"
 #include "core/real.h"
 #include "core/shared_maths.h"
+#include "image/channels.h"
 
 namespace astrosplat {
 namespace {
@@ -148,7 +151,8 @@ namespace {
 
 using Wrap = TextureSettings::Wrap;
 
-constexpr const char* neutral_summary = "neutral grey";
+constexpr const char *neutral_summary = "neutral grey", *plain_summary = "the colour of its material",
+                     *painted_summary = "the colours of its vertices";
 
 // Beyond a picture of a given width lies nothing; one that is stretched over the mesh has no beyond.
 Wrap default_wrap(const SourceParams& source, Wrap of_own_uv) {
@@ -190,18 +194,19 @@ std::vector<fs::path> map_of(const Mesh& mesh, std::size_t material) {
     return {mesh.maps[material]};
 }
 
-// Stands for the picture that a mesh has not.
-Texture neutral_grey() {
-    constexpr float grey = 0.18f;  // as reflective as the world is on average
+Texture plain_texture(const glm::vec3& color, const char* summary) {
     Texture texture;
-    texture.image = make_image(16, 16, 4);
-    for (std::size_t i = 0; i < texture.image.pixels.size(); ++i)
-        texture.image.pixels[i] = i % 4 == 3 ? 1.0f : grey;
-    texture.summary = neutral_summary;
+    texture.image = make_image(16, 16, 4, 1.0f);
+    change_pixels(texture.image, [&](float* p) { std::copy_n(&color[0], 3, p); });
+    texture.summary = summary;
     return texture;
 }
 
+// Stands for the picture that a mesh has not: as reflective as the world is on average.
+Texture neutral_grey() { return plain_texture(glm::vec3(0.18f), neutral_summary); }
+
 bool is_neutral(const Texture& texture) { return texture.summary == neutral_summary; }
+bool is_plain(const Texture& texture) { return is_neutral(texture) || texture.summary == plain_summary; }
 
 // The picture of a mesh as its source wants it read.
 Texture load_picture(const std::vector<fs::path>& files, const SourceParams& source, Wrap wrap,
@@ -210,13 +215,67 @@ Texture load_picture(const std::vector<fs::path>& files, const SourceParams& sou
     return load_texture(files, source.texture, wrap, progress, readers);
 }
 
+// A material's picture times its colour; either alone. Exporters write black for a picture that they do not
+// mean to be black.
+Texture texture_of(const Mesh& mesh, std::size_t material, Wrap wrap, const PictureLoader& load) {
+    const std::vector<fs::path> map = map_of(mesh, material);
+    const std::optional<glm::vec3> color =
+        material < mesh.colors.size() ? mesh.colors[material] : std::nullopt;
+    if (map.empty() && color) return plain_texture(*color, plain_summary);
+    Texture texture = load(map, wrap);
+    if (color && *color != glm::vec3(0.0f) && *color != glm::vec3(1.0f))
+        change_pixels(texture.image, [&](float* p) {
+            for (int c = 0; c < 3; ++c) p[c] *= (*color)[c];
+        });
+    return texture;
+}
+
+// Faces without a picture whose vertices have colours: each gets a texel of their mean, in a picture of a
+// material of its own.
+Texture paint_faces(Mesh& mesh) {
+    if (mesh.maps.empty()) mesh.maps.emplace_back();
+    mesh.colors.resize(mesh.maps.size());
+    const auto painted = std::uint32_t(mesh.maps.size());
+    const auto side = std::int64_t(std::ceil(std::sqrt(double(mesh.triangles.size()))));
+    Texture texture = plain_texture(glm::vec3(1.0f), painted_summary);
+    texture.image = make_image(side, side, 4, 1.0f);
+    texture.filter = TextureSettings::Filter::nearest;
+    for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+        Mesh::Triangle& face = mesh.triangles[i];
+        if (!mesh.maps[face.material].empty()) continue;
+        const std::int64_t x = std::int64_t(i) % side, y = std::int64_t(i) / side;
+        for (int c = 0; c < 3; ++c) {
+            double sum = 0.0;
+            for (const std::uint32_t corner : face.position)
+                sum += real::srgb_to_linear(std::max(0.0, double(mesh.vertex_colors[corner][c])));
+            texture.image.at(x, y)[c] = float(sum / 3.0);
+        }
+        face.material = painted;
+        face.uv.fill(std::uint32_t(mesh.uvs.size()));
+        mesh.uvs.emplace_back((double(x) + 0.5) / double(side), 1.0 - (double(y) + 0.5) / double(side));
+    }
+    mesh.maps.emplace_back();
+    mesh.colors.emplace_back();
+    return texture;
+}
+
+// A colour alone needs no place in a picture.
+void place_plain_faces(TexturedMesh& loaded) {
+    const auto middle = std::uint32_t(loaded.mesh.uvs.size());
+    loaded.mesh.uvs.emplace_back(0.5f, 0.5f);
+    for (Mesh::Triangle& face : loaded.mesh.triangles)
+        if (face.uv[0] == Mesh::no_uv &&
+            is_plain(loaded.textures[loaded.textures.size() == 1 ? 0 : face.material]))
+            face.uv.fill(middle);
+}
+
 // One picture per material that a face uses; others get an empty one, so that indices stay.
 std::vector<Texture> load_maps(const Mesh& mesh, Wrap wrap, const PictureLoader& load) {
     std::vector<bool> used(std::max<std::size_t>(1, mesh.maps.size()), false);
     for (const Mesh::Triangle& face : mesh.triangles) used[mesh.maps.empty() ? 0 : face.material] = true;
     std::vector<Texture> textures(used.size());
     for (std::size_t i = 0; i < used.size(); ++i)
-        if (used[i]) textures[i] = load(map_of(mesh, i), wrap);
+        if (used[i]) textures[i] = texture_of(mesh, i, wrap, load);
     return textures;
 }
 
@@ -225,10 +284,22 @@ TexturedMesh load_file(const MeshInput& input, const SourceParams& source, const
     const Wrap wrap = default_wrap(source, own_wrap(input));
     TexturedMesh loaded;
     loaded.mesh = load_obj(input.mesh, progress);
+    // Bodies lie on places of a picture that a mesh without one has not.
+    const bool places = source.uv == UvMode::mesh && source.structure.kind == StructureKind::columns;
+    const bool colored = input.texture.empty() && !loaded.mesh.vertex_colors.empty();
+    Texture painted = colored && places ? paint_faces(loaded.mesh) : Texture{};
     if (input.texture.empty())
         loaded.textures = load_maps(loaded.mesh, wrap, load);
     else
         loaded.textures.push_back(load(input.texture, wrap));
+    const auto is_picture = [](const fs::path& map) { return !map.empty(); };
+    if (colored && (!places || std::ranges::any_of(loaded.mesh.maps, is_picture)))
+        log_warning(
+            fmt::format("{}: the colours of its vertices are used in columns, with uv = \"mesh\" and "
+                        "without a picture alone",
+                        input.mesh.string()));
+    if (colored && places) loaded.textures.back() = std::move(painted);
+    if (places) place_plain_faces(loaded);
     return loaded;
 }
 
@@ -274,8 +345,13 @@ void reload_pictures(const SourceParams& source, std::vector<TexturedMesh>& mesh
         for (std::size_t i = 0; i < meshes[m].textures.size(); ++i) {
             Texture& texture = meshes[m].textures[i];
             if (texture.image.width == 0) continue;  // no face uses it
-            const auto files = input.texture.empty() ? map_of(meshes[m].mesh, i) : input.texture;
-            texture = load_picture(files, source, default_wrap(source, own_wrap(input)), progress, readers);
+            if (texture.summary == painted_summary) continue;
+            const PictureLoader load = [&](const std::vector<fs::path>& files, Wrap wrap) {
+                return load_picture(files, source, wrap, progress, readers);
+            };
+            const Wrap wrap = default_wrap(source, own_wrap(input));
+            texture =
+                input.texture.empty() ? texture_of(meshes[m].mesh, i, wrap, load) : load(input.texture, wrap);
             apply_mask(texture);
         }
     }
