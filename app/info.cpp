@@ -19,9 +19,11 @@
 #include "scene/check.h"
 #include "scene/describe.h"
 #include "scene/frames.h"
+#include "sets/load_source.h"
 #include "source/fits.h"
 #include "source/mesh.h"
 #include "source/origin.h"
+#include "source/texture.h"
 #include "splat_files/splat_file.h"
 #include "stars/catalogue.h"
 
@@ -45,6 +47,7 @@ Report extremes(const Values& values) {
 
 Report describe_splats(const fs::path& file) {
     const SplatSet set = read_splats(file);
+    warn_of_no_splats(set, file.string());
     const std::vector<std::string> attributes = splat_attributes(file);
     Report report = {{"kind", "splats"},
                      {"splats", set.size()},
@@ -78,6 +81,12 @@ Report describe_mesh(const fs::path& file) {
             {"maps", maps}};
 }
 
+/// Warns where it shows nothing. What cannot be read as a picture has headers all the same.
+void look_at_picture(const fs::path& file) try {
+    load_texture({file}, {}, TextureSettings::Wrap::clamp, {}, {make_prepared, {}, texels_read_whole});
+} catch (const InputError&) {
+}
+
 Report describe_hdu(const FitsHdu& hdu) {
     Report report = {{"number", hdu.number}, {"kind", hdu.kind}};
     if (!hdu.name.empty()) report["name"] = hdu.name;
@@ -94,6 +103,7 @@ Report describe_hdu(const FitsHdu& hdu) {
 }
 
 Report describe_fits_file(const fs::path& file) {
+    look_at_picture(file);
     Report hdus = Report::array();
     for (const FitsHdu& hdu : describe_fits(file)) hdus.push_back(describe_hdu(hdu));
     return {{"kind", format_of_file(file)->id}, {"hdus", hdus}};
@@ -124,7 +134,9 @@ Report describe_image(const fs::path& file) {
     }
     if (!info.parts.empty()) report["pictures"] = info.parts;
     const FrameHeader header = read_frame_header(file);
-    if (!header.frame_hash.empty()) {
+    if (header.frame_hash.empty()) {
+        look_at_picture(file);
+    } else {
         report["frame_hash"] = header.frame_hash;
         report["pixel_hash"] = header.pixel_hash;
         report["whole"] = frame_is_whole(file);

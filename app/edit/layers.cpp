@@ -15,6 +15,7 @@
 #include "scene/load.h"
 #include "scene/new_scene.h"
 #include "scene/parameter.h"
+#include "sets/load_source.h"
 #include "source/mesh.h"
 #include "source/picture.h"
 #include "splat_files/splat_file.h"
@@ -259,6 +260,7 @@ std::string camera_lines(const Bounds& box) {
 /// Captures are mixed as they were trained.
 std::string capture_scene_text(const fs::path& file, const std::string& source) {
     const SplatSet set = read_splats(file);
+    warn_of_no_splats(set, file.string());
     std::string layer = source +
                         "\n[layer.transform]\nrotate = [0.0, 0.0, 0.0]  # captures often have y down: "
                         "[0.0, 0.0, 180.0] turns them\n\n[layer.render]\nisolate = true\n";

@@ -42,7 +42,8 @@ void describe_shape(const Describer& d, ShapeParams& s) {
       of("spheroid"), never_with("shells", {std::int64_t(1)}));
     d(s.tube, "tube", "Tube", "of the radius", "Radius of the ring's tube.", range(0.001, 0.5), of("ring"));
     d(s.depth_map, "depth_map", "Depth map", "",
-      "Grey picture of depths, black farthest; empty: the picture's brightness.", of("sheet"));
+      "Grey picture of depths, black farthest, or an EXR's distances (Z); empty: the picture's brightness.",
+      of("sheet"));
     d(s.depth, "depth", "Depth", "of the width", "From the farthest to the nearest place.", within(0, 1e6),
       slider(0, 1), of("sheet"));
     d(s.blur, "blur", "Blur", "of the longer side", "Smooths the depths; standard deviation.", range(0, 0.2),

@@ -273,6 +273,10 @@ SplatSet load_source(const SourceParams& source, const std::string& layer_name, 
     }
 }
 
+void warn_of_no_splats(const SplatSet& set, const std::string& name) {
+    if (set.size() == 0) log_warning(name + ": nothing to see: it has no splats");
+}
+
 AutomaticValues automatic_values(const SourceParams& source, const Progress& progress) {
     AutomaticValues values;
     if (source.kind != SourceKind::mesh || !(has_automatic_height(source) || has_automatic_width(source)))

@@ -24,6 +24,9 @@ class KeptWatcher;
 SplatSet load_source(const SourceParams& source, const std::string& layer_name, const Progress& progress = {},
                      KeptWatcher* watcher = nullptr, const PictureMaker& prepared = make_prepared);
 
+/// A warning where a set has no splats. `name` is of its file or its layer.
+void warn_of_no_splats(const SplatSet& set, const std::string& name);
+
 /// Whether a source is made into columns.
 inline bool makes_columns(const SourceParams& source) {
     return source.kind == SourceKind::mesh && source.structure.kind == StructureKind::columns;

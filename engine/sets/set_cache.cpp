@@ -147,6 +147,8 @@ struct CachedLoad {
 LoadedSet load_source(const SetCache& cache, const SourceParams& source, const std::string& layer_name,
                       const Progress& progress, KeptWatcher* watcher, const OptionalColumns& wanted) {
     LoadedSet loaded = CachedLoad{cache, source, layer_name, progress, watcher, wanted}.load();
+    warn_of_no_splats(loaded.set, source.kind == SourceKind::splats ? source.file.string()
+                                                                    : fmt::format("layer '{}'", layer_name));
     drop_columns(loaded.set, wanted);
     return loaded;
 }

@@ -170,7 +170,7 @@ class Terms {
           turn_{real::cos(real::radians(terms.turn)), real::sin(real::radians(terms.turn))} {
         if (terms.derive != Derived::none) derived_ = derived_picture(light, terms.derive);
         if (terms.image.empty()) return;
-        picture_.image = opaque(load_raw_image(terms.image));
+        picture_.image = opaque(load_mask(terms.image));
     }
 
     bool inverts() const { return terms_.invert; }

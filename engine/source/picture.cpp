@@ -3,6 +3,11 @@
 // (This line keeps clang-format from sorting the two.)
 #include "source/open_picture.h"
 
+#include <tiffio.h>
+
+#include <fstream>
+#include <sstream>
+
 #include "core/color.h"
 #include "core/error.h"
 #include "core/log.h"
@@ -33,8 +38,22 @@ int find_channel(const ImageSpec& spec, const char* name) {
     return -1;
 }
 
-Channels choose_channels(const ImageSpec& spec) {
+// Blender's layers have names before it; with an X beside it, Z is a place or a direction.
+int depth_channel(const ImageSpec& spec) {
+    const int z = find_channel(spec, "Z");
+    if (z >= 0 && find_channel(spec, "X") < 0) return z;
+    for (int c = 0; c < spec.nchannels; ++c)
+        if (OIIO::Strutil::iends_with(spec.channel_name(c), "depth.Z")) return c;
+    return -1;
+}
+
+Channels choose_channels(const ImageSpec& spec, Wanted wanted) {
     Channels c;
+    const int depth = depth_channel(spec);
+    if (wanted == Wanted::depths && depth >= 0) {
+        c.color = {depth, depth, depth};
+        return c;
+    }
     // OpenImageIO's GIF reader names a channel beyond the last one.
     const bool named = spec.alpha_channel >= 0 && spec.alpha_channel < spec.nchannels;
     c.alpha = named ? spec.alpha_channel : find_channel(spec, "A");
@@ -240,6 +259,81 @@ Image turned(const Image& image, int orientation) {
     return result;
 }
 
+// Pixels that are not square become more along their longer side, between them linear.
+void make_square(const fs::path& file, const ImageSpec& spec, ImageRows& rows) {
+    constexpr float most_times = 4.0f, same_within = 0.01f;
+    const float aspect = spec.get_float_attribute("PixelAspectRatio", 1.0f);  // width / height
+    if (std::fabs(aspect - 1.0f) <= same_within || is_cube_map(spec)) return;
+    if (!(aspect >= 1.0f / most_times && aspect <= most_times))
+        return log_warning(
+            fmt::format("{}: its PixelAspectRatio {:g} is not followed; its pixels are taken as square",
+                        file.string(), aspect));
+    const bool wide = aspect > 1.0f;
+    const std::int64_t side = wide ? rows.width : rows.height;
+    const std::int64_t longer = std::llround(double(side) * double(wide ? aspect : 1.0f / aspect));
+    const Image image = all_rows(rows, file);
+    Image square = unfilled_image(wide ? longer : rows.width, wide ? rows.height : longer, rows.channels);
+    for_each_pixel(square, [&](std::int64_t x, std::int64_t y) {
+        const double place = (double(wide ? x : y) + 0.5) * double(side) / double(longer) - 0.5;
+        const double at = std::clamp(place, 0.0, double(side - 1));
+        const auto first = std::int64_t(at), next = std::min(first + 1, side - 1);
+        const auto share = float(at - double(first));
+        const float *const p = wide ? image.at(first, y) : image.at(x, first), *const q =
+                                                                                   wide ? image.at(next, y)
+                                                                                        : image.at(x, next);
+        for (int c = 0; c < image.channels; ++c)
+            square.at(x, y)[c] = share > 0.0f ? p[c] * (1.0f - share) + q[c] * share : p[c];
+    });
+    log_info(fmt::format("{}: read as {}x{} px, as its pixels are {:g} times as wide as high", file.string(),
+                         square.width, square.height, aspect));
+    rows = rows_of(std::move(square));
+}
+
+// By what a Radiance file's values have to be divided to be radiances (its format's EXPOSURE and COLORCORR,
+// both cumulative), which OpenImageIO leaves to others.
+std::array<float, 3> radiance_factors(const fs::path& file) {
+    std::array<double, 3> factors{1.0, 1.0, 1.0};
+    std::ifstream in(file, std::ios::binary);
+    for (std::string line; std::getline(in, line) && !trim(line).empty();) {
+        const std::size_t equals = line.find('=');
+        const std::string_view key = trim(std::string_view(line).substr(0, equals));
+        const bool corrects = key == "COLORCORR", exposes = key == "EXPOSURE";
+        std::istringstream words(equals == std::string::npos ? "" : line.substr(equals + 1));
+        std::array<double, 3> values{};
+        std::size_t count = 0;
+        for (std::string word; count < (corrects ? 3u : 1u) && words >> word; ++count)
+            values[count] = parse_double(word).value_or(0.0);
+        const bool whole =
+            std::all_of(values.begin(), values.begin() + count, [](double v) { return v > 0.0; });
+        if ((corrects && count == 3 && whole) || (exposes && count == 1 && whole))
+            for (std::size_t c = 0; c < 3; ++c) factors[c] *= values[corrects ? c : 0];
+        else if (corrects || exposes || key == "PRIMARIES" || line.find("_xyze") != std::string::npos ||
+                 (key == "PIXASPECT" && values[0] != 1.0))
+            log_warning(fmt::format("{}: its {} is not followed", file.string(), trim(line)));
+    }
+    return {float(factors[0]), float(factors[1]), float(factors[2])};
+}
+
+void divide_by(const std::array<float, 3>& factors, ImageRows& rows) {
+    if (factors == std::array{1.0f, 1.0f, 1.0f}) return;
+    rows.read = [=, width = rows.width * rows.channels, channels = rows.channels, read = rows.read](
+                    std::int64_t begin, std::int64_t end, float* values) {
+        read(begin, end, values);
+        for (float* p = values; p < values + (end - begin) * width; p += channels)
+            for (int c = 0; c < 3; ++c) p[c] /= factors[c];
+    };
+}
+
+// Where a TIFF does not say its bits they are one, and OpenImageIO reads eight.
+void require_bits(const fs::path& file, int page) {
+    const QuietStderr quiet;
+    const std::unique_ptr<TIFF, void (*)(TIFF*)> tiff(TIFFOpen(file.c_str(), "r"), TIFFClose);
+    std::uint16_t bits = 0;
+    if (tiff && TIFFSetDirectory(tiff.get(), static_cast<tdir_t>(page)) &&
+        TIFFGetField(tiff.get(), TIFFTAG_BITSPERSAMPLE, &bits) != 1)
+        fail_picture(file, "it does not say how many bits a value has (BitsPerSample); save it with 8");
+}
+
 double largest_integer(const ImageSpec& spec) {
     if (spec.format.is_floating_point()) return 0.0;
     return spec.format.size() == 1 ? 255.0 : spec.format.size() == 2 ? 65535.0 : 4294967295.0;
@@ -322,9 +416,12 @@ int named_part(const fs::path& file, const std::vector<ImageSpec>& parts, const 
     bad_input(file, fmt::format("a picture of {}", fmt::join(names, ", ")), "hdu = " + wanted);
 }
 
-PartChoice choose_part(const fs::path& file, ImageInput& in, const std::string& wanted) {
+PartChoice choose_part(const fs::path& file, ImageInput& in, const std::string& part,
+                       Wanted wanted = Wanted::colors) {
     const std::vector<ImageSpec> parts = parts_of(in);
-    if (wanted != "auto") return {named_part(file, parts, wanted)};
+    if (part != "auto") return {named_part(file, parts, part)};
+    for (int i = 0; wanted == Wanted::depths && i < int(parts.size()); ++i)
+        if (depth_channel(parts[i]) >= 0) return {i};
     const std::string_view format = in.format_name();
     if (parts.size() < 2 || (format != "openexr" && format != "tiff")) return {};
     if (format == "tiff" && are_channels(parts)) return {0, true};
@@ -336,7 +433,7 @@ PartChoice choose_part(const fs::path& file, ImageInput& in, const std::string& 
             std::ranges::count_if(parts, [](const ImageSpec& page) { return !is_lesser_page(page); });
     } else {
         candidates = std::ranges::count_if(parts, has_colors);
-        const auto has_light = [](const ImageSpec& part) { return find_channel(part, "Y") >= 0; };
+        const auto has_light = [](const ImageSpec& spec) { return find_channel(spec, "Y") >= 0; };
         auto best = std::ranges::find_if(parts, has_colors);
         if (best == parts.end()) best = std::ranges::find_if(parts, has_light);
         if (best != parts.end()) choice.first = int(best - parts.begin());
@@ -405,14 +502,16 @@ std::string find_credit(const fs::path& file, const ImageSpec& spec) {
 
 }  // namespace
 
-PictureRows open_picture_rows(const fs::path& file, const Progress& progress, const std::string& part) {
+PictureRows open_picture_rows(const fs::path& file, const Progress& progress, const std::string& part,
+                              Wanted wanted) {
     std::unique_ptr<ImageInput> in = open_picture(file);
-    const PartChoice choice = choose_part(file, *in, part);
+    const PartChoice choice = choose_part(file, *in, part, wanted);
     const ImageSpec spec = in->spec(choice.first);
     check_spec(file, spec);
-    if (std::string_view(in->format_name()) == "jpeg" && !jpeg_is_whole(file))
-        fail_picture(file, "the file ends before the picture does");
-    const Channels channels = choose_channels(spec);
+    const std::string format = in->format_name();
+    if (format == "jpeg" && !jpeg_is_whole(file)) fail_picture(file, "the file ends before the picture does");
+    if (format == "tiff") require_bits(file, choice.first);
+    const Channels channels = choose_channels(spec, wanted);
     PictureRows result;
     Picture& picture = result.picture;
     picture.colors = encoding_of(file, *in, spec);
@@ -424,6 +523,8 @@ PictureRows open_picture_rows(const fs::path& file, const Progress& progress, co
                                        rows_of_part(open_picture(file), 1), rows_of_part(std::move(in), 2)});
     else
         result.rows = rows_of_part(std::move(in), choice.first);
+    if (format == "hdr") divide_by(radiance_factors(file), result.rows);
+    make_square(file, spec, result.rows);
     if (const int orientation = orientation_of(spec); orientation != 1) {
         result.rows = rows_of(turned(all_rows(result.rows, file), orientation));
         log_info(fmt::format("{}: {}, as its orientation {} says", file.string(), orientations[orientation],
@@ -432,6 +533,7 @@ PictureRows open_picture_rows(const fs::path& file, const Progress& progress, co
     picture.image = {result.rows.width, result.rows.height, result.rows.channels, {}};
     picture.max_integer = largest_integer(spec);
     picture.associated = channels.alpha >= 0 && spec.get_int_attribute("oiio:UnassociatedAlpha", 0) == 0;
+    picture.distances = wanted == Wanted::depths && depth_channel(spec) >= 0;
     picture.cube = is_cube_map(spec);
     picture.credit = find_credit(file, spec);
     picture.summary =
@@ -439,8 +541,8 @@ PictureRows open_picture_rows(const fs::path& file, const Progress& progress, co
     return result;
 }
 
-Picture read_picture(const fs::path& file, const Progress& progress, const std::string& part) {
-    PictureRows rows = open_picture_rows(file, progress, part);
+Picture read_picture(const fs::path& file, const Progress& progress, const std::string& part, Wanted wanted) {
+    PictureRows rows = open_picture_rows(file, progress, part, wanted);
     rows.picture.image = all_rows(rows.rows, file);
     return std::move(rows.picture);
 }

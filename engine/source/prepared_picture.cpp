@@ -66,6 +66,11 @@ PrepareInput input_of(Stored stored, const TextureSettings& settings) {
     input.empty = make_mask(input.image.width, input.image.height);
     for (std::size_t i = 0; i < input.empty.pixels.size(); ++i) {
         float* const p = input.image.pixels.data() + 4 * i;
+        for (float* c = p; c < p + 3; ++c) {
+            if (!(std::isinf(*c) && *c > 0.0f)) continue;
+            *c = half_max;
+            input.saturation = std::min(input.saturation, double(half_max));
+        }
         const bool finite = std::all_of(p, p + 4, [](float value) { return std::isfinite(value); });
         input.empty.pixels[i] = finite && p[3] > 0.0f ? 0 : 1;
         if (!finite) std::fill_n(p, 4, 0.0f);
@@ -281,6 +286,8 @@ struct Preparation {
         else
             apply_stretch(input.image, input.stretch, settings.softening);
         cut();
+        warn_of_nothing(input.image, std::ranges::find(input.empty.pixels, 0) == input.empty.pixels.end(),
+                        input.name);
         result.image = std::move(input.image);
         result.credit = std::move(input.credit);
         return result;
@@ -360,7 +367,7 @@ Image without_plain_alpha(Image image) {
 }
 
 Image read_mask_like(const Image& like, const std::string& option, const fs::path& file) {
-    Image mask = load_raw_image(file);
+    Image mask = load_mask(file);
     if (mask.width != like.width || mask.height != like.height)
         bad_input(option, file.string(), fmt::format("{}x{} px like the picture", like.width, like.height),
                   fmt::format("{}x{} px", mask.width, mask.height));

@@ -267,11 +267,13 @@ Mesh lifted_plane(const Grid& grid, const Height& height) {
     return mesh;
 }
 
-// The mean of a map's channels at every vertex, each averaging the texels of one cell.
+// A map's depths at every vertex, each averaging the texels of one cell.
 Heights map_values(const fs::path& file, const Grid& grid) {
     Texture grey;
-    grey.image = opaque(load_raw_image(file));
-    change_pixels(grey.image, [](float* p) { std::fill_n(p, 3, (p[0] + p[1] + p[2]) / 3.0f); });
+    grey.image = made_by_pixel(load_depths(file), 4, [](const float* in, float* out) {
+        std::fill_n(out, 3, *in);
+        out[3] = 1.0f;
+    });
     return sampled(grey, grid.columns, grid.rows, [](const TextureSample& s) { return s.color.x; });
 }
 

@@ -127,7 +127,7 @@ struct ShapeParams {
     int shells = 1;                  // spheroid: how many are nested
     double concentration = 3.0;      // spheroid: their number per length falls as e^(-this r / R)
     double tube = 0.2;               // ring: radius of the tube, of the whole
-    fs::path depth_map;              // sheet: grey picture, black farthest; empty: the picture's brightness
+    fs::path depth_map;              // sheet: grey, black farthest, or distances (Z); empty: the brightness
     double depth = 0.15;             // sheet: from farthest to nearest, of the width
     double blur = 0.01;              // sheet: standard deviation, of the longer side
     bool operator==(const ShapeParams&) const = default;

@@ -10,8 +10,10 @@
 #include "core/log.h"
 #include "core/memory.h"
 #include "core/parallel.h"
+#include "core/text.h"
 #include "image/blur.h"
 #include "image/channels.h"
+#include "prepare/stages.h"
 #include "source/fits.h"
 #include "source/picture.h"
 
@@ -21,7 +23,6 @@ namespace {
 using Settings = TextureSettings;
 
 constexpr std::int64_t rows_per_chunk = 32;
-constexpr float half_max = 65504.0f;  // what an infinite pixel becomes: it overflowed a half float
 
 // Red of the first, green of the second, blue of the third.
 StoredRows combine(const std::vector<fs::path>& files,
@@ -115,9 +116,9 @@ std::int64_t apply_alpha(const Image& stored, Settings::Alpha alpha, bool premul
 }
 
 // The picture as premultiplied RGBA of linear light, on `size`, which is no larger than it is. Strip by
-// strip: only what comes out is held as a whole.
+// strip: only what comes out is held as a whole. `undefined`: none of its pixels has a value.
 Image linear_picture(const StoredRows& from, const Settings& settings, Settings::Alpha alpha,
-                     bool premultiplied, const ImageSize& size) {
+                     bool premultiplied, const ImageSize& size, bool& undefined) {
     std::int64_t empty = 0;
     const ImageRows rgba{
         from.rows.width, from.rows.height, 4, [&](std::int64_t begin, std::int64_t end, float* rows) {
@@ -129,6 +130,7 @@ Image linear_picture(const StoredRows& from, const Settings& settings, Settings:
         }};
     const bool whole = size.width == rgba.width && size.height == rgba.height;
     Image image = whole ? read_whole(rgba) : reduced_by_area(rgba, size.width, size.height);
+    undefined = empty == rgba.width * rgba.height;
     if (empty > 0) log_detail(fmt::format("{} pixels without a value (NaN) are empty", empty));
     return image;
 }
@@ -182,6 +184,12 @@ void rework(Texture& texture, const Settings& settings, Settings::Alpha alpha) {
 constexpr const char* alpha_names[] = {"", "the file's alpha", "alpha from luminance",
                                        "alpha from the brightest channel", "no alpha"};
 
+std::string joined_names(const std::vector<fs::path>& files) {
+    std::string names = files[0].string();
+    for (std::size_t i = 1; i < files.size(); ++i) names += ", " + files[i].string();
+    return names;
+}
+
 // A prepared picture as if it came from a file of linear light.
 Stored as_stored(PreparedPicture prepared) {
     Stored stored;
@@ -228,8 +236,10 @@ Texture load_texture(const std::vector<fs::path>& files, const TextureSettings& 
     }
     claim_memory(std::int64_t(std::min(16.0 * double(size.width) * double(size.height), 9e18)),
                  fmt::format("reading {}", files[0].string()));
-    texture.image = linear_picture(rows, settings, alpha, premultiplied, size);
+    bool undefined = false;
+    texture.image = linear_picture(rows, settings, alpha, premultiplied, size, undefined);
     rows = {};
+    if (!is_prepared) warn_of_nothing(texture.image, undefined, joined_names(files));
     texture.filter = settings.filter;
     texture.wrap = settings.wrap == Settings::Wrap::automatic ? default_wrap : settings.wrap;
     texture.divided = premultiplied;
@@ -241,6 +251,55 @@ Texture load_texture(const std::vector<fs::path>& files, const TextureSettings& 
     return texture;
 }
 
+void warn_of_nothing(const Image& image, bool undefined, const std::string& name) {
+    bool dark = true;
+    for (std::size_t i = 0; dark && i < image.pixels.size(); i += 4) {
+        const float* const p = image.pixels.data() + i;
+        dark = !(std::max({p[0], p[1], p[2]}) > 0.0f);
+    }
+    if (dark)
+        log_warning(fmt::format(
+            "{}: nothing to see: {}", name,
+            undefined ? "every pixel is undefined (NaN)" : "all pixels are equal, black or transparent"));
+}
+
+void fill_values(std::span<Image> pictures, int border, const fs::path& file, const Progress& progress) {
+    std::atomic<std::int64_t> absent{0}, infinite{0};
+    for (Image& picture : pictures) {
+        PixelMask holes = make_mask(picture.width - 2 * border, picture.height - 2 * border);
+        std::atomic<bool> has_holes{false};
+        for_each_pixel({holes.width, holes.height, 0, {}}, [&](std::int64_t x, std::int64_t y) {
+            float* const p = picture.at(x + border, y + border);
+            if (std::any_of(p, p + picture.channels, [](float v) { return std::isinf(v); })) ++infinite;
+            if (make_sane(p, picture.channels)) return;
+            holes.at(x, y) = 1;
+            has_holes = true;
+            ++absent;
+        });
+        if (!has_holes) continue;
+        claim_memory(std::int64_t{20} * picture.channels * holes.width * holes.height,
+                     fmt::format("filling {}", file.string()));
+        Image inner = unfilled_image(holes.width, holes.height, picture.channels);
+        const auto copy_rows = [&](Image& to, std::int64_t to_border, const Image& from,
+                                   std::int64_t from_border) {
+            for (std::int64_t y = 0; y < holes.height; ++y)
+                std::copy_n(from.at(from_border, y + from_border), holes.width * picture.channels,
+                            to.at(to_border, y + to_border));
+        };
+        copy_rows(inner, 0, picture, border);
+        fill(inner, holes, FillKind::membrane, progress);
+        copy_rows(picture, border, inner, 0);
+    }
+    std::vector<std::string> said;
+    if (absent > 0)
+        said.push_back(fmt::format("{} without a value (NaN) {} filled from around", counted(absent, "pixel"),
+                                   absent == 1 ? "is" : "are"));
+    if (infinite > 0)
+        said.push_back(fmt::format("{} {} as {:.0f}", counted(infinite, "infinite pixel"),
+                                   infinite == 1 ? "counts" : "count", half_max));
+    if (!said.empty()) log_warning(fmt::format("{}: {}", file.string(), fmt::join(said, ", ")));
+}
+
 void apply_mask(Texture& texture) {
     if (texture.mask.pixels.empty()) return;
     const std::int64_t pixels = texture.image.width * texture.image.height;
@@ -250,35 +309,8 @@ void apply_mask(Texture& texture) {
     texture.mask = {};
 }
 
-Image load_raw_image(const fs::path& file) {
-    Image image;
-    if (is_fits(file)) {
-        const FitsPlane plane = read_fits(file, "auto", {});
-        image = make_image(plane.width, plane.height, 3);
-        const std::size_t copies = plane.channels == 1 ? 3 : 1;
-        for (std::size_t i = 0; i < image.pixels.size(); ++i) {
-            const double value = plane.values[i / copies];
-            image.pixels[i] = std::isnan(value) ? 0.0f : float(value);
-        }
-        return image;
-    }
-    const Image stored = read_picture(file).image;
-    image = make_image(stored.width, stored.height, 3);
-    for_each_pixel(image,
-                   [&](std::int64_t x, std::int64_t y) { std::copy_n(stored.at(x, y), 3, image.at(x, y)); });
-    return image;
-}
-
 Image load_linear_image(const fs::path& file, const Progress& progress) {
     return linear_image(read_stored(file, Settings{}, progress), {});
-}
-
-Image load_map(const fs::path& file, Derived derive) {
-    if (derive == Derived::none) return load_raw_image(file);
-    const Image map = derived_picture(load_linear_image(file), derive);
-    Image grey = make_image(map.width, map.height, 3);
-    for (std::size_t i = 0; i < grey.pixels.size(); ++i) grey.pixels[i] = map.pixels[i / 3];
-    return grey;
 }
 
 // Strip by strip: only what comes out is held as a whole.
@@ -312,6 +344,7 @@ std::vector<Image> load_environment_pictures(const fs::path& file, int border, c
             }
         });
     }
+    fill_values(pictures, border, file, progress);
     return pictures;
 }
 

@@ -17,6 +17,9 @@
 
 namespace astrosplat {
 
+/// What an infinite pixel becomes: it overflowed a half float.
+inline constexpr float half_max = 65504.0f;
+
 /// So many are never reduced while they are read: pictures that are small enough to be enlarged.
 inline constexpr std::int64_t texels_read_whole = 1024 * 1024;
 
@@ -52,9 +55,24 @@ Texture load_texture(const std::vector<fs::path>& files, const TextureSettings& 
 /// Multiplies the picture by its mask, and forgets the mask.
 void apply_mask(Texture& texture);
 
+/// A warning where a picture (RGBA, premultiplied) shows nothing, as none of its pixels had a value or for
+/// another reason.
+void warn_of_nothing(const Image& image, bool undefined, const std::string& name);
+
+/// Linear light that shows everywhere, but for `border` texels around each picture: negative values become 0,
+/// infinite ones half_max, and pixels without a value are filled from around, or 0 where a picture has no
+/// other. A warning says of how many. Throws Cancelled.
+void fill_values(std::span<Image> pictures, int border, const fs::path& file, const Progress& progress);
+
 /// Reads a picture without any colour or alpha treatment, for thickness maps: RGB as stored (0..1 for
-/// integers), row 0 on top. Throws InputError.
+/// integers; 0 where there is no value, half_max where it is infinite), row 0 on top. Throws InputError.
 Image load_raw_image(const fs::path& file);
+/// The same of a mask: where it has one colour and is painted in its alpha, that alpha.
+Image load_mask(const fs::path& file);
+/// One channel that grows towards the nearest: the depths of a channel Z, turned about, or else the mean of
+/// the colours. What is no number, 1e9 and more, and in files of floats a largest value more than 100 times
+/// as far as all others is sky, which is as far as the farthest. Says the range. Throws InputError.
+Image load_depths(const fs::path& file);
 /// load_raw_image(), or in its place the map made of the picture's light (derived_picture), grey.
 Image load_map(const fs::path& file, Derived derive);
 
@@ -62,8 +80,8 @@ Image load_map(const fs::path& file, Derived derive);
 Image load_linear_image(const fs::path& file, const Progress& progress = {});
 
 /// Reads a picture for an environment, as linear light over black: RGB, with room for a border of so many
-/// texels around it. One picture, or the six faces (+x -x +y -y +z -z) of an OpenEXR cube map. Claims the
-/// memory of mip levels too. Throws InputError, Cancelled.
+/// texels around it, as fill_values() leaves it. One picture, or the six faces (+x -x +y -y +z -z) of an
+/// OpenEXR cube map. Claims the memory of mip levels too. Throws InputError, Cancelled.
 std::vector<Image> load_environment_pictures(const fs::path& file, int border, const Progress& progress = {});
 
 /// Straight colour and alpha at one place of a picture.

@@ -311,7 +311,9 @@ std::array<Image, 6> tiled_sky(const Image& picture, const SkyTiling& tiling, co
 }
 
 std::array<Image, 6> tiled_sky_of(const fs::path& file, const SkyTiling& tiling, const Progress& progress) {
-    return tiled_sky(load_linear_image(file, progress), tiling, progress);
+    Image picture = load_linear_image(file, progress);
+    fill_values(std::span(&picture, 1), 0, file, progress);
+    return tiled_sky(picture, tiling, progress);
 }
 
 }  // namespace astrosplat

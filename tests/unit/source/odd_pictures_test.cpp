@@ -1,0 +1,273 @@
+// What a file says and few files do: values that are none, nothing to see, depths, masks in alpha, pixels
+// that are not square, Radiance's exposure, meshes without a picture.
+#include "support/test.h"
+// its fmt first: OpenImageIO's copy would turn exceptions off
+#include <OpenImageIO/imageio.h>
+
+#include "source/picture.h"
+#include "source/prepared_picture.h"
+#include "source/texture.h"
+#include "source/tiled_sky.h"
+#include "support/fits_text.h"
+#include "support/quiet.h"
+
+namespace astrosplat {
+namespace {
+
+constexpr float no_value = std::numeric_limits<float>::quiet_NaN(),
+                overflowed = std::numeric_limits<float>::infinity();
+
+// value(x, y, channel) of each pixel; `names` such as "RGB", one letter a channel.
+template <class Value>
+fs::path write_odd(const fs::path& file, int width, int height, const std::string& names, const Value& value,
+                   OIIO::TypeDesc type = OIIO::TypeFloat, float aspect = 1.0f) {
+    OIIO::ImageSpec spec(width, height, int(names.size()), type);
+    spec.channelnames.clear();
+    for (const char name : names) spec.channelnames.emplace_back(1, name);
+    spec.alpha_channel = names.find('A') == std::string::npos ? -1 : int(names.find('A'));
+    spec.attribute("oiio:UnassociatedAlpha", 1);
+    spec.attribute("PixelAspectRatio", aspect);
+    std::vector<float> values;
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x)
+            for (int c = 0; c < int(names.size()); ++c) values.push_back(float(value(x, y, c)));
+    const auto out = OIIO::ImageOutput::create(file.string());
+    EXPECT_TRUE(out && out->open(file.string(), spec) && out->write_image(OIIO::TypeFloat, values.data()) &&
+                out->close());
+    return file;
+}
+
+Texture odd_texture(const fs::path& file, const TextureSettings& settings = {}) {
+    return load_texture({file}, settings, TextureSettings::Wrap::clamp);
+}
+
+class OddPictures : public testing::Test {
+  protected:
+    const TempFolder folder;
+};
+
+// ---- an environment shows everywhere
+
+TEST_F(OddPictures, AnEnvironmentIsFilledWhereItHasNoValueAndNowhereInfinite) {
+    const fs::path file = write_odd(folder / "sky.exr", 8, 4, "RGB", [](int x, int y, int c) {
+        if (x == 2 && y == 1) return c == 1 ? no_value : 9.0f;
+        return x == 6 && y == 3 ? overflowed : 0.5f;
+    });
+    std::vector<Image> pictures;
+    const std::vector<std::string> warnings =
+        warnings_of([&] { pictures = load_environment_pictures(file, 1); });
+    const Image& sky = pictures.at(0);
+    for (int c = 0; c < 3; ++c) {
+        EXPECT_NEAR(sky.at(3, 2)[c], 0.5f, 1e-4f);
+        EXPECT_EQ(sky.at(7, 4)[c], 65504.0f);
+        EXPECT_EQ(sky.at(1, 1)[c], 0.5f);
+    }
+    ASSERT_EQ(warnings.size(), 1u);
+    EXPECT_EQ(warnings[0], file.string() +
+                               ": 1 pixel without a value (NaN) is filled from around, 1 infinite "
+                               "pixel counts as 65504");
+}
+
+TEST_F(OddPictures, AnEnvironmentWithoutAnyValueIsBlack) {
+    const fs::path file = write_odd(folder / "sky.exr", 8, 4, "RGB", [](int, int, int) { return no_value; });
+    const Said said;
+    const std::vector<Image> pictures = load_environment_pictures(file, 0);
+    for (const float value : pictures.at(0).pixels) EXPECT_EQ(value, 0.0f);
+    EXPECT_HAS(said.one_warning(), "32 pixels without a value");
+}
+
+TEST_F(OddPictures, ATiledSkyIsFilledToo) {
+    const fs::path file = write_odd(folder / "tile.exr", 64, 64, "RGB", [](int x, int y, int) {
+        return x < 3 && y < 3 ? no_value : x == 40 && y == 40 ? overflowed : 0.25f + 0.001f * float(x);
+    });
+    SkyTiling tiling;
+    tiling.face_px = 16;
+    const Said said;
+    for (const Image& face : tiled_sky_of(file, tiling))
+        for (const float value : face.pixels) ASSERT_TRUE(std::isfinite(value));
+    EXPECT_HAS(said.one_warning(), "9 pixels without a value (NaN) are filled from around, 1 infinite");
+}
+
+// ---- nothing to see
+
+TEST_F(OddPictures, NothingToSeeIsSaid) {
+    const fs::path none = folder.file("none.fits", fits_file(8, 8, "", [](int, int) { return no_value; })),
+                   even = folder.file("even.fits", fits_file(8, 8, "", [](int, int) { return 7.0f; })),
+                   clear = write_odd(folder / "clear.exr", 4, 4, "RGBA", [](int, int, int) { return 0.0f; }),
+                   black = write_odd(folder / "black.png", 4, 4, "RGB", [](int, int, int) { return 0.0f; }),
+                   white = write_odd(folder / "white.png", 4, 4, "RGB", [](int, int, int) { return 1.0f; });
+    const auto said_of = [](const fs::path& file) {
+        const Said said;
+        odd_texture(file);
+        return said.one_warning();
+    };
+    EXPECT_EQ(said_of(none), none.string() + ": nothing to see: every pixel is undefined (NaN)");
+    EXPECT_EQ(said_of(even), even.string() + ": nothing to see: all pixels are equal, black or transparent");
+    EXPECT_EQ(said_of(black),
+              black.string() + ": nothing to see: all pixels are equal, black or transparent");
+    EXPECT_EQ(said_of(clear),
+              clear.string() + ": nothing to see: all pixels are equal, black or transparent");
+    EXPECT_EQ(said_of(white), "0 warnings") << "a colour is something";
+    TextureSettings filled;
+    filled.prepare.fill = white;
+    const fs::path light =
+        write_odd(folder / "light.exr", 4, 4, "RGB", [](int x, int, int) { return float(x); });
+    const Said said;
+    prepare_picture({light}, filled);
+    EXPECT_EQ(said.one_warning(),
+              light.string() + ": nothing to see: all pixels are equal, black or transparent");
+}
+
+// ---- depths
+
+// Of a sheet of 64 x 64 places whose map is depth(x), at the places x of the map's pixels.
+template <class Depth>
+std::vector<float> heights_of(const TempFolder& folder, const std::string& channels, const Depth& depth,
+                              std::vector<std::string>* lines = nullptr) {
+    ShapeParams shape;
+    shape.depth_map = write_odd(folder / "depth.exr", 64, 64, channels, [&](int x, int, int c) {
+        return c + 1 < int(channels.size()) ? 3 : depth(x);
+    });
+    shape.depth = 0.2;
+    shape.blur = 0.0;
+    Texture texture;
+    texture.image = make_image(8, 8, 4, 1.0f);
+    const Said said;
+    const Mesh sheet = sheet_mesh(texture, shape);
+    if (lines) *lines = said.lines;
+    std::vector<float> heights(64);
+    for (const glm::vec3& p : sheet.positions)
+        heights[std::size_t(std::clamp((double(p.x) + 5.0) * 6.4, 0.0, 63.0))] = p.y;
+    return heights;
+}
+
+TEST_F(OddPictures, WhatIsFarBeyondAllDepthsIsSky) {
+    const auto with_sky = [&](float sky) {
+        std::vector<std::string> lines;
+        const std::vector<float> heights = heights_of(
+            folder, "Z", [&](int x) { return x >= 48 ? sky : 1.0f + 0.1f * float(x); }, &lines);
+        EXPECT_NEAR(heights[0], 1.0f, 0.05f) << sky << ": the nearest";
+        EXPECT_NEAR(heights[24], 0.0f, 0.05f) << sky;
+        EXPECT_NEAR(heights[60], -1.0f, 1e-3f) << sky << ": the sky is as far as the farthest";
+        EXPECT_EQ(lines, (std::vector<std::string>{(folder / "depth.exr").string() +
+                                                   ": distances from 1 to 5.7; 1024 pixels are sky"}));
+    };
+    for (const float sky : {1e10f, 65504.0f, overflowed, no_value}) with_sky(sky);
+}
+
+TEST_F(OddPictures, OfDepthsWithColoursZIsTaken) {
+    const std::vector<float> near_left =
+        heights_of(folder, "RGBAZ", [](int x) { return 1.0f + 0.1f * float(x); });
+    EXPECT_NEAR(near_left[0], 1.0f, 0.05f);
+    EXPECT_NEAR(near_left[63], -1.0f, 0.05f);
+    const std::vector<float> white_right = heights_of(folder, "Y", [](int x) { return 0.1f * float(x); });
+    EXPECT_NEAR(white_right[0], -1.0f, 0.05f) << "of greys, black is the farthest";
+}
+
+TEST_F(OddPictures, DepthsThatAreAllSkyAreFlat) {
+    std::vector<std::string> lines;
+    for (const float height : heights_of(
+             folder, "Z", [](int) { return no_value; }, &lines))
+        EXPECT_EQ(height, 0.0f);
+    ASSERT_EQ(lines.size(), 1u);
+    EXPECT_HAS(lines[0], "no depths: every pixel is undefined or sky");
+}
+
+// ---- masks, half floats, shapes of pixels
+
+TEST_F(OddPictures, AMaskPaintedInAlphaIsThatAlpha) {
+    const auto mask = [&](float color) {
+        return write_odd(
+            folder / "m.png", 4, 1, "RGBA",
+            [&](int x, int, int c) { return c == 3 ? float(x) / 3.0f : color; }, OIIO::TypeUInt8);
+    };
+    const Image like = make_image(4, 1, 3), light = make_image(4, 1, 4, 1.0f);
+    for (const float color : {0.0f, 1.0f}) {
+        const fs::path file = mask(color);
+        const Image read = read_mask_like(like, "--mask", file);
+        EXPECT_NEAR(read.at(0, 0)[0], 0.0f, 1e-6f);
+        EXPECT_NEAR(read.at(1, 0)[1], 1.0f / 3.0f, 1e-6f);
+        EXPECT_EQ(bright_pixels(read).pixels[0], 0);
+        EXPECT_EQ(bright_pixels(read).pixels[3], 1);
+        MaskParams params;
+        params.image = file;
+        EXPECT_NEAR(*mask_weights(light, std::span(&params, 1)).at(1, 0), 1.0f / 3.0f, 1e-6f);
+    }
+    const fs::path painted = write_odd(
+        folder / "p.png", 4, 1, "RGBA", [](int x, int, int c) { return c == 3 ? 0.5f : float(x) / 3.0f; },
+        OIIO::TypeUInt8);
+    EXPECT_NEAR(read_mask_like(like, "--mask", painted).at(1, 0)[0], 1.0f / 3.0f, 1e-6f);
+}
+
+TEST_F(OddPictures, AMaskHasNoValueThatIsNone) {
+    const fs::path file = write_odd(folder / "m.exr", 2, 1, "RGB",
+                                    [](int x, int, int) { return x == 0 ? no_value : overflowed; });
+    const Image mask = load_raw_image(file);
+    EXPECT_EQ(mask.at(0, 0)[0], 0.0f);
+    EXPECT_EQ(mask.at(1, 0)[0], 65504.0f);
+}
+
+TEST_F(OddPictures, PreparationKeepsWhatOverflowedAHalf) {
+    const fs::path file = write_odd(
+        folder / "h.exr", 8, 8, "RGB", [](int x, int y, int) { return x == 4 && y == 4 ? 1e6f : 0.25f; },
+        OIIO::TypeHalf);
+    const PreparedPicture prepared = prepare_picture({file}, {});
+    EXPECT_EQ(prepared.image.at(4, 4)[0], 65504.0f);
+    EXPECT_EQ(prepared.image.at(4, 4)[3], 1.0f);
+}
+
+TEST_F(OddPictures, PixelsThatAreNotSquareAreMadeSo) {
+    const auto ramp = [](int x, int y, int c) { return c == 0 ? float(x) : float(y); };
+    const fs::path wide = write_odd(folder / "w.exr", 8, 4, "RGB", ramp, OIIO::TypeFloat, 2.0f),
+                   high = write_odd(folder / "h.exr", 8, 4, "RGB", ramp, OIIO::TypeFloat, 0.5f),
+                   odd = write_odd(folder / "o.exr", 8, 4, "RGB", ramp, OIIO::TypeFloat, 40.0f);
+    {
+        const Said said;
+        const Image image = read_picture(wide).image;
+        ASSERT_EQ(image.width, 16);
+        ASSERT_EQ(image.height, 4);
+        EXPECT_FLOAT_EQ(image.at(5, 2)[0], 2.25f) << "between the second and the third";
+        EXPECT_FLOAT_EQ(image.at(15, 2)[0], 7.0f);
+        EXPECT_EQ(image.at(5, 2)[1], 2.0f);
+        EXPECT_EQ(said.text(),
+                  wide.string() + ": read as 16x4 px, as its pixels are 2 times as wide as high\n");
+    }
+    const Said said;
+    EXPECT_EQ(read_picture(high).image.height, 8);
+    EXPECT_EQ(read_picture(odd).image.width, 8);
+    EXPECT_HAS(said.one_warning(), "PixelAspectRatio 40 is not followed");
+}
+
+TEST_F(OddPictures, RadianceIsDividedByItsExposure) {
+    const auto radiance = [&](const std::string& lines) {
+        std::string text = "#?RADIANCE\n" + lines + "FORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 1\n";
+        text += std::string("\x80\x40\x20\x81", 4);  // 1, 0.5, 0.25 (+ half a step)
+        const Image image = read_picture(folder.file("a.hdr", text)).image;
+        return glm::vec3(image.at(0, 0)[0], image.at(0, 0)[1], image.at(0, 0)[2]);
+    };
+    const glm::vec3 plain = radiance("");
+    EXPECT_NEAR(plain.x, 1.0f, 0.01f);
+    EXPECT_EQ(radiance("EXPOSURE=2\nEXPOSURE= 4.0\n"), plain / 8.0f);
+    EXPECT_EQ(radiance("EXPOSURE=0.5\nCOLORCORR= 1 2 4\n"), plain * 2.0f / glm::vec3(1.0f, 2.0f, 4.0f));
+    const Said said;
+    EXPECT_EQ(radiance("EXPOSURE=0\n"), plain);
+    EXPECT_HAS(said.one_warning(), "its EXPOSURE=0 is not followed");
+}
+
+TEST_F(OddPictures, ATiffThatDoesNotSayItsBitsIsRefused) {
+    std::string tiff("II*\0\x0a\0\0\0\xaa\x55", 10);  // two rows of eight pixels
+    const std::vector<std::pair<int, int>> tags = {{256, 8}, {257, 2}, {259, 1}, {262, 1},
+                                                   {273, 8}, {278, 2}, {279, 2}};
+    tiff += std::string("\x07\0", 2);
+    for (const auto& [tag, value] : tags)
+        tiff += std::string{char(tag & 255), char(tag >> 8), 3, 0, 1, 0, 0, 0, char(value), 0, 0, 0};
+    tiff += std::string(4, '\0');
+    const fs::path file = folder.file("one.tif", tiff);
+    EXPECT_EQ(ERROR_OF(read_picture(file)),
+              file.string() +
+                  ": cannot be read as a picture: it does not say how many bits a value has "
+                  "(BitsPerSample); save it with 8");
+}
+
+}  // namespace
+}  // namespace astrosplat
