@@ -106,7 +106,8 @@ std::vector<DetailPart> add_splats(const PictureLight& picture, const UvSurface&
         add_dust(transmittance_of(without_stars, emission, picture.alpha), dust,
                  dust_exponents_of(picture.light), placement, set);
     add_picture_stars(stars, placement, opacity, set);
-    add_spikes(spikes, picture.times, placement, opacity, set);
+    add_spikes(spikes.light, places_of(spikes.stars), 0, picture.times, placement, opacity, set);
+    add_spikes(stars.rest, places_of(stars.all), 1, 1, placement, opacity, set);
     if (spikes.arms > 0)
         log_detail(fmt::format("layer '{}': {} with {} spikes each, at {:.1f} degrees; {} splats",
                                task.layer_name, counted(std::ssize(spikes.stars), "star"), spikes.arms,

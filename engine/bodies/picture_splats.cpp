@@ -227,19 +227,19 @@ void add_picture_stars(const PictureStars& stars, const Placement& placement, co
     }
 }
 
-void add_spikes(const Spikes& spikes, int times, const Placement& placement, const Opacity& opacity,
-                PictureSplats& out) {
-    if (spikes.light.empty()) return;
+void add_spikes(std::span<const SpikeLight> spikes, std::span<const glm::vec2> places, int part, int times,
+                const Placement& placement, const Opacity& opacity, PictureSplats& out) {
+    if (spikes.empty()) return;
     constexpr float sigma = 0.45f;  // texels, as of the finest band: one range with its splats
     constexpr float footprint = footprint_share * float(2.0 * real::pi) * sigma * sigma;
     std::vector<float> heights;
-    for (const RoundStar& star : spikes.stars) heights.push_back(star_height(placement, {star.x, star.y}));
+    for (const glm::vec2& place : places) heights.push_back(star_height(placement, {place.x, place.y}));
     const auto begin = std::size_t(out.splats.size());
-    resize_splats(out, std::int64_t(begin + spikes.light.size()));
+    resize_splats(out, std::int64_t(begin + spikes.size()));
     const std::int64_t columns = placement.picture_width / times + 1;
-    parallel_each(spikes.light.size(), 4096, [&](std::size_t i) {
-        const SpikeLight& spike = spikes.light[i];
-        const RoundStar& star = spikes.stars[std::size_t(spike.star)];
+    parallel_each(spikes.size(), 4096, [&](std::size_t i) {
+        const SpikeLight& spike = spikes[i];
+        const glm::vec2& star = places[std::size_t(spike.star)];
         const float height = heights[std::size_t(spike.star)];
         const float most = std::max({spike.light.x, spike.light.y, spike.light.z});
         const float alpha = std::clamp(star_opacity * opacity.depth_of(most, 1.0f) / footprint, 1e-3f, 1.0f);
@@ -249,7 +249,8 @@ void add_spikes(const Spikes& spikes, int times, const Placement& placement, con
         out.splats.color[begin + i] = spike.light / (alpha * footprint);
         out.splats.alpha[begin + i] = alpha;
         out.splats.radius[begin + i] = radius_sigmas * sigma * float(times);
-        out.splats.id[begin + i] = spike_band << 48 | std::uint64_t(spike.row * columns + spike.column);
+        out.splats.id[begin + i] =
+            spike_band << 48 | std::uint64_t(part) << 40 | std::uint64_t(spike.row * columns + spike.column);
         out.distance[begin + i] = std::fabs(height);
     });
     out.ranges.push_back(

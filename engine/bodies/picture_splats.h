@@ -75,9 +75,10 @@ SplatRange add_band(const BandLight& band, const BandSplats& splats, const Image
 void add_picture_stars(const PictureStars& stars, const Placement& placement, const Opacity& opacity,
                        PictureSplats& out);
 
-/// Adds the light of spikes: one splat a texel, in a plane at the depth of their star.
-void add_spikes(const Spikes& spikes, int times, const Placement& placement, const Opacity& opacity,
-                PictureSplats& out);
+/// Adds the light of spikes, and of stars beside their Gaussians: one splat a texel, in a plane at the depth
+/// of their star. `places`: of the stars; `part`: 0 or 1, in ids.
+void add_spikes(std::span<const SpikeLight> spikes, std::span<const glm::vec2> places, int part, int times,
+                const Placement& placement, const Opacity& opacity, PictureSplats& out);
 
 struct LatticeCell {
     std::int64_t column, row;

@@ -101,7 +101,8 @@ void set_knot_depths(Placement& placement, std::span<const Star> stars) {
             if (!placement.galaxies.empty() &&
                 is_off_disk(placement, block.x[i], block.y[i], block.random[i]))
                 block.z[i] =
-                    star_height(placement, block.x[i], block.y[i], as_uniform(as_mix(block.random[i])));
+                    star_height(placement, block.x[i], block.y[i], as_uniform(as_mix(block.random[i]))) +
+                    middle_plane(placement, block.x[i], block.y[i]);
             placement.knot_z[begin + i] = block.z[i];
         }
     });

@@ -386,38 +386,38 @@ void take_discs(std::span<const RoundStar> stars, double texel, Taking& taking) 
     });
 }
 
-// By texels; what is hardly any goes back.
-std::vector<SpikeLight> by_texels(int times, Taking& taking) {
+}  // namespace
+
+std::vector<SpikeLight> by_squares(int times, const Image& taken, const Buffer<std::int32_t>& star,
+                                   Image& light) {
     constexpr float least = 0.003f, least_share = 0.03f;  // of white, and of what is left there
     std::vector<SpikeLight> found;
-    for (std::int64_t row = 0; row * times < taking.light.height; ++row)
-        for (std::int64_t column = 0; column * times < taking.light.width; ++column) {
+    for (std::int64_t row = 0; row * times < light.height; ++row)
+        for (std::int64_t column = 0; column * times < light.width; ++column) {
             SpikeLight here{column, row, -1};
             float left = 0.0f;
             const auto visit = [&](const auto& use) {
-                for_each_between(taking.light, column * times, row * times, (column + 1) * times - 1,
+                for_each_between(light, column * times, row * times, (column + 1) * times - 1,
                                  (row + 1) * times - 1, [&](std::int64_t x, std::int64_t y) {
-                                     use(taking.taken.at(x, y), taking.light.at(x, y),
-                                         taking.star[std::size_t(y * taking.light.width + x)]);
+                                     use(taken.at(x, y), light.at(x, y),
+                                         star[std::size_t(y * light.width + x)]);
                                  });
             };
-            visit([&](const float* taken, const float* rest, std::int32_t star) {
-                here.star = std::max(here.star, star);
-                here.light += glm::vec3(taken[0], taken[1], taken[2]) / float(times * times);
+            visit([&](const float* own, const float* rest, std::int32_t of) {
+                here.star = std::max(here.star, of);
+                here.light += glm::max(glm::vec3(own[0], own[1], own[2]), 0.0f) / float(times * times);
                 left = std::max({left, rest[0], rest[1], rest[2]});
             });
             if (here.star < 0) continue;
             if (std::max({here.light.x, here.light.y, here.light.z}) >= std::max(least, least_share * left))
                 found.push_back(here);
             else
-                visit([](const float* taken, float* rest, std::int32_t) {
-                    for (int c = 0; c < 3; ++c) rest[c] += taken[c];
+                visit([](const float* own, float* rest, std::int32_t) {
+                    for (int c = 0; c < 3; ++c) rest[c] += std::max(0.0f, own[c]);
                 });
         }
     return found;
 }
-
-}  // namespace
 
 Spikes take_spikes(Image& light, int times) {
     Spikes spikes;
@@ -452,7 +452,7 @@ Spikes take_spikes(Image& light, int times) {
     std::vector<RoundStar> cores = spikes.stars;
     for (RoundStar& core : cores) core.half_width *= core_share;
     spikes.gaussians = take_bright_stars(taking.taken, cores);
-    spikes.light = by_texels(times, taking);
+    spikes.light = by_squares(times, taking.taken, taking.star, light);
     return spikes;
 }
 

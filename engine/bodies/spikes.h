@@ -11,13 +11,6 @@
 
 namespace astrosplat {
 
-/// Light that was taken out of a square of `times` pixels a side.
-struct SpikeLight {
-    std::int64_t column = 0, row = 0;  // of the square
-    std::int32_t star = 0;
-    glm::vec3 light{0.0f};  // mean
-};
-
 struct Spikes {
     std::vector<RoundStar> stars;   // the brightest of their peaks first
     std::vector<SpikeLight> light;  // by rows of squares

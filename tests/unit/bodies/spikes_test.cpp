@@ -191,7 +191,7 @@ TEST(Spikes, AreSplatsInThePlaneOfTheirStar) {
     params.kind = StructureKind::sheet;
     const Placement placement = placement_without_fields(width, height, params, 100.0);
     PictureSplats set;
-    add_spikes(spikes, 1, placement, {}, set);
+    add_spikes(spikes.light, places_of(spikes.stars), 0, 1, placement, {}, set);
     ASSERT_EQ(set.splats.size(), std::ssize(spikes.light));
     std::vector<float> plane(spikes.stars.size(), 1e9f);
     std::set<std::uint64_t> ids(set.splats.id.begin(), set.splats.id.end());
