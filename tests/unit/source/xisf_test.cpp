@@ -14,7 +14,7 @@
 namespace astrosplat {
 namespace {
 
-constexpr int wide = 6, high = 4;
+constexpr int xisf_columns = 6, xisf_rows = 4;
 
 /// Value of a pixel's channel, y from the top.
 double value_of(int x, int y, int c) { return 1.0 + x + 10.0 * y + 50.0 * c; }
@@ -22,10 +22,10 @@ double value_of(int x, int y, int c) { return 1.0 + x + 10.0 * y + 50.0 * c; }
 template <class T>
 std::string values_of_type(int channels, bool by_pixel = false, bool big_endian = false) {
     std::string bytes;
-    for (int i = 0; i < wide * high * channels; ++i) {
-        const int pixel = by_pixel ? i / channels : i % (wide * high),
-                  c = by_pixel ? i % channels : i / (wide * high);
-        const T value = T(value_of(pixel % wide, pixel / wide, c));
+    for (int i = 0; i < xisf_columns * xisf_rows * channels; ++i) {
+        const int pixel = by_pixel ? i / channels : i % (xisf_columns * xisf_rows),
+                  c = by_pixel ? i % channels : i / (xisf_columns * xisf_rows);
+        const T value = T(value_of(pixel % xisf_columns, pixel / xisf_columns, c));
         std::string own(reinterpret_cast<const char*>(&value), sizeof value);
         if (big_endian) std::ranges::reverse(own);
         bytes += own;
@@ -77,7 +77,7 @@ std::string xisf_file(const std::string& attributes, const std::string& block,
 }
 
 std::string geometry(int channels) {
-    return fmt::format(R"(geometry="{}:{}:{}" colorSpace="{}" )", wide, high, channels,
+    return fmt::format(R"(geometry="{}:{}:{}" colorSpace="{}" )", xisf_columns, xisf_rows, channels,
                        channels == 3 ? "RGB" : "Gray");
 }
 
@@ -91,10 +91,10 @@ class XisfTest : public testing::Test {
     void expect_colors(const std::string& bytes, const std::string& what) {
         const FitsPlane plane = read(bytes);
         ASSERT_EQ(plane.channels, 3) << what;
-        for (int y = 0; y < high; ++y)
-            for (int x = 0; x < wide; ++x)
+        for (int y = 0; y < xisf_rows; ++y)
+            for (int x = 0; x < xisf_columns; ++x)
                 for (int c = 0; c < 3; ++c)
-                    ASSERT_EQ(plane.values[3 * (y * wide + x) + c], value_of(x, y, c)) << what;
+                    ASSERT_EQ(plane.values[3 * (y * xisf_columns + x) + c], value_of(x, y, c)) << what;
     }
 };
 
@@ -119,7 +119,7 @@ TEST_F(XisfTest, ValuesOfEveryTypeAndStorage) {
     EXPECT_EQ(read(file, 2).values[1], value_of(1, 0, 2));
     EXPECT_HAS(ERROR_OF(read(file, 3)), "expected a plane from 0 to 2, found plane = 3");
     const fs::path path = folder.file("b.xisf", file);
-    EXPECT_EQ(describe_fits(path)[0].range.max, value_of(wide - 1, high - 1, 2));
+    EXPECT_EQ(describe_fits(path)[0].range.max, value_of(xisf_columns - 1, xisf_rows - 1, 2));
     EXPECT_NO_THROW(require_fits_picture(path));
     EXPECT_EQ(read_stored(path, {}, {}).picture.image.channels, 3);
 }
@@ -179,7 +179,7 @@ TEST_F(XisfTest, KeywordsSkyAndProfiles) {
     const std::string own =
         R"(<Property id="PCL:AstrometricSolution:ProjectionSystem" type="String">Gnomonic</Property>)" +
         numbers("ReferenceCelestialCoordinates", {83.8, -5.4}) +
-        numbers("ReferenceImageCoordinates", {1.5, high - 0.5}) +
+        numbers("ReferenceImageCoordinates", {1.5, xisf_rows - 0.5}) +
         numbers("LinearTransformationMatrix", {-0.01, 0.0, 0.0, -0.01});
     const FitsPlane solved = read(xisf_file(start, values, own));
     ASSERT_TRUE(solved.sky.grid);
@@ -200,7 +200,7 @@ TEST_F(XisfTest, SeveralImages) {
         xisf_file(geometry(1) + R"(sampleFormat="Float32")", values_of_type<float>(1), "", other);
     FitsPlane plane;
     EXPECT_EQ(warnings_of([&] { plane = read(file); }).size(), 1u);
-    EXPECT_EQ(plane.width, wide);
+    EXPECT_EQ(plane.width, xisf_columns);
     EXPECT_EQ(read(file, {}, "second").values[1], 11.0);
     EXPECT_EQ(read(file, {}, "1").width, 2);
     EXPECT_HAS(ERROR_OF(read(file, {}, "third")), "expected one of 2 images, found hdu = third");
