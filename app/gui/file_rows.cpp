@@ -64,6 +64,7 @@ const std::vector<ParameterFile>& parameter_files() {
         {"layer.source.meshes.depth_map", "pictures", pictures},
         {"layer.source.meshes.mesh", "meshes", endings_of({FileKind::mesh})},
         {"layer.source.prepare.align", "pictures", pictures},
+        {"layer.source.prepare.starless", "pictures", pictures},
         {"layer.source.prepare.fill", "pictures", pictures},
         {"layer.source.prepare.mask", "pictures", pictures},
         {"layer.source.mask.image", "pictures", pictures},

@@ -31,6 +31,7 @@ bool shows_a_picture(const SourceParams& source) {
 TextureSettings before_preparation(TextureSettings texture) {
     PrepareParams prepare;
     prepare.align = texture.prepare.align;
+    prepare.starless = texture.prepare.starless;  // else the stars alone would stand before
     texture.prepare = std::move(prepare);
     return texture;
 }

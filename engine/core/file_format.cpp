@@ -37,7 +37,7 @@ std::span<const FileFormat> file_formats() {
          {".ppm", ".pgm", ".pnm", ".pbm", ".pfm"},
          {"P1\n", "P2\n", "P3\n", "P4\n", "P5\n", "P6\n", "PF\n", "Pf\n"}},
         {"heif",
-         "HEIC or AVIF",
+         "HEIF",
          picture,
          {".heic", ".heif", ".avif"},
          {"????ftyphei", "????ftypmif1", "????ftypavi"}},

@@ -10,6 +10,16 @@
 
 namespace astrosplat {
 
+namespace {
+
+std::string hex_of(const unsigned char* bytes, unsigned int size) {
+    std::string text;
+    for (unsigned int i = 0; i < size; ++i) text += fmt::format("{:02x}", bytes[i]);
+    return text;
+}
+
+}  // namespace
+
 struct Sha256::State {
     EVP_MD_CTX* context = EVP_MD_CTX_new();
     ~State() { EVP_MD_CTX_free(context); }
@@ -32,9 +42,15 @@ std::string Sha256::hex() {
     unsigned int size = 0;
     [[maybe_unused]] const int done = EVP_DigestFinal_ex(state_->context, digest, &size);
     assert(done == 1);
-    std::string text;
-    for (unsigned int i = 0; i < size; ++i) text += fmt::format("{:02x}", digest[i]);
-    return text;
+    return hex_of(digest, size);
+}
+
+std::optional<std::string> digest_of(const std::string& method, std::string_view bytes) {
+    const EVP_MD* const known = EVP_get_digestbyname(method.c_str());
+    unsigned char digest[EVP_MAX_MD_SIZE];
+    unsigned int size = 0;
+    if (!known || EVP_Digest(bytes.data(), bytes.size(), digest, &size, known, nullptr) != 1) return {};
+    return hex_of(digest, size);
 }
 
 std::string sha256_of_file(const fs::path& file, const Progress& progress) {

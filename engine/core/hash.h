@@ -28,6 +28,9 @@ class Sha256 {
 /// Hash of a file's bytes. Throws InputError when it cannot be read; Cancelled.
 std::string sha256_of_file(const fs::path& file, const Progress& progress = {});
 
+/// Lower-case hex of bytes by a method of OpenSSL's: "sha1", "sha256", "sha512"; nothing for other names.
+std::optional<std::string> digest_of(const std::string& method, std::string_view bytes);
+
 /// XXH64 of all bytes, with seed 0.
 inline std::uint64_t xxh64(std::string_view bytes) { return XXH64(bytes.data(), bytes.size(), 0); }
 

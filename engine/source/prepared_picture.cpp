@@ -215,16 +215,16 @@ PrepareInput read_three_filters(const std::array<fs::path, 3>& files, const Text
         const auto says = [](const PrepareInput& input) {
             return input.sky.grid || !input.sky.unfollowed.empty();
         };
+        if (!same_size && !(says(filter) && says(first)))
+            bad_input(files[c],
+                      fmt::format("{}x{} px like {}, or where the sky is on both", rgb.image.width,
+                                  rgb.image.height, files[0].string()),
+                      fmt::format("{}x{} px", filter.image.width, filter.image.height));
         if (says(filter) || says(first)) {
             const SkyGrid &grid = required_grid(first.name, first.sky),
                           &own = required_grid(filter.name, filter.sky);
             if (!same_size || !(own == grid))
                 put_on_grid(filter, grid, rgb.image.width, rgb.image.height, first.name);
-        } else if (!same_size) {
-            bad_input(files[c],
-                      fmt::format("{}x{} px like {}, or where the sky is on both", rgb.image.width,
-                                  rgb.image.height, files[0].string()),
-                      fmt::format("{}x{} px", filter.image.width, filter.image.height));
         }
         put_channel(filter, int(c), rgb);
         rgb.credit = joined_once({rgb.credit, filter.credit});

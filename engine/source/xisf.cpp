@@ -4,7 +4,6 @@
 
 #include <fmt/format.h>
 #include <lz4.h>
-#include <openssl/evp.h>
 #include <unistd.h>
 #include <zlib.h>
 #include <zstd.h>
@@ -15,6 +14,7 @@
 #include "core/error.h"
 #include "core/file.h"
 #include "core/file_format.h"
+#include "core/hash.h"
 #include "core/log.h"
 #include "core/memory.h"
 #include "core/text.h"
@@ -118,15 +118,9 @@ void check_sum(const Xisf& xisf, const pugi::xml_node& node, const Bytes& bytes)
     if (sum.size() != 2) return;
     std::string name = sum[0];
     std::erase(name, '-');
-    const EVP_MD* const method = EVP_get_digestbyname(name.c_str());
-    if (!method)
-        return log_warning(fmt::format("{}: checksum {} is not followed", xisf.file.string(), sum[0]));
-    std::array<unsigned char, EVP_MAX_MD_SIZE> digest{};
-    unsigned size = 0;
-    EVP_Digest(bytes.data(), bytes.size(), digest.data(), &size, method, nullptr);
-    std::string hex;
-    for (unsigned i = 0; i < size; ++i) hex += fmt::format("{:02x}", digest[i]);
-    if (hex != lower_case(sum[1])) xisf.fail("data of the " + sum[0] + " that it names", hex);
+    const std::optional<std::string> hex = digest_of(name, {bytes.data(), bytes.size()});
+    if (!hex) return log_warning(fmt::format("{}: checksum {} is not followed", xisf.file.string(), sum[0]));
+    if (*hex != lower_case(sum[1])) xisf.fail("data of the " + sum[0] + " that it names", *hex);
 }
 
 bool decompress(const std::string& codec, std::span<const char> from, std::span<char> to) {

@@ -129,7 +129,8 @@ std::vector<std::string> xisf_seeds() {
                std::string(6, '\0') + header;
     };
     return {file("", "01020304"), file("compression=\"zlib:4\"", "789c6364626601000018000b"),
-            file("subblocks=\"2,2:2,2\" compression=\"lz4:4\" checksum=\"sha-1:00\"", "01020304")};
+            file("subblocks=\"3,2:3,2\" compression=\"lz4:4\"", "200102200304"),
+            file("checksum=\"sha-1:12dada1fff4d4787ade3333147202c3b443e376f\"", "01020304")};
 }
 
 std::string written(void (*write)(const WriteTarget&, const SplatSet&, const Progress&),

@@ -99,8 +99,8 @@ TEST_F(PanelPreparation, ShowsItsRowsAndAsksForAPreviewWhileItIsOpen) {
     EXPECT_FALSE(driver.view.preparation_open) << "it is folded at first";
     driver.show(PanelTab::source);
     EXPECT_TRUE(driver.view.preparation_open);
-    for (const char* key : {"align", "fill", "stars", "threshold", "saturation", "background", "lupton",
-                            "ellipse", "mask", "alpha"})
+    for (const char* key : {"align", "starless", "fill", "stars", "threshold", "saturation", "background",
+                            "lupton", "ellipse", "mask", "alpha"})
         EXPECT_TRUE(driver.has_row(std::string("layer.dust.source.prepare.") + key)) << key;
     EXPECT_FALSE(driver.has_row("layer.dust.source.prepare.q")) << "it does nothing without lupton";
     driver.show(PanelTab::look);

@@ -163,24 +163,6 @@ TEST(GalaxyFamilies, ASpheroidIsRoundAndADiskFlat) {
     EXPECT_LT(flatness(GalaxyFamily::spheroid), 1.1);
 }
 
-// What no picture shows of a lane is the near side's dust, turned: no gap is left between the turns.
-TEST(GalaxyFamilies, ALaneGoesAllAround) {
-    const Image light = painted::tilted_galaxy(320, 200, {85.0, 20.0, true, 6.0, 0.0});
-    Placement placement = make_placement(light, galaxy_params(85.0), 32.0, true, 1u);
-    GalaxyBody& body = placement.galaxies.at(0);
-    body.ring = 60.0f;
-    PictureSplats set;
-    add_dust(make_image(320, 200, 1, 0.2f), 1.0, dust_exponents, placement, set);
-    std::array<int, 24> each{};
-    for (const glm::vec3& p : set.splats.position) {
-        const glm::vec3 q = body.in_disk(p.x + 160.0f, 100.0f - p.y, p.z);
-        if (const float r = std::hypot(q.x, q.y); r > 40.0f && r < 70.0f)
-            ++each[std::size_t(std::clamp(12.0f * (1.0f + std::atan2(q.y, q.x) / 3.1415927f), 0.0f, 23.0f))];
-    }
-    const auto [least, most] = std::ranges::minmax(each);
-    EXPECT_GT(least, most / 3);
-}
-
 // A globular cluster is a spheroid, and its stars are points.
 TEST(GalaxyFamilies, WhatIsSharpIsAsSharpInASpheroid) {
     const Families families;
