@@ -292,7 +292,7 @@ std::string cards_of(const fs::path& file, fitsfile* in) {
     return text;
 }
 
-// Means of neighbours cannot be taken of planes that are no colours of one another.
+// Of an axis of three: not those of a spectrum, of polarisation or of time.
 bool is_of_colors(fitsfile* in, std::size_t axis) {
     const std::string type = lower_case(text_keyword(in, fmt::format("CTYPE{}", axis + 1).c_str()));
     constexpr std::array others{"freq", "velo", "vrad", "vopt", "wave",   "awav", "ener",

@@ -446,19 +446,6 @@ PartChoice choose_part(const fs::path& file, ImageInput& in, const std::string& 
     return choice;
 }
 
-// Rows of three pictures of one channel each.
-ImageRows joined_channels(const std::array<ImageRows, 3>& channels) {
-    const auto read = [channels](std::int64_t begin, std::int64_t end, float* rows) {
-        for (int c = 0; c < 3; ++c) {
-            Image strip = unfilled_image(channels[c].width, end - begin, channels[c].channels);
-            channels[c].read(begin, end, strip.pixels.data());
-            for (std::int64_t i = 0; i < strip.width * strip.height; ++i)
-                rows[3 * i + c] = strip.pixels[i * strip.channels];
-        }
-    };
-    return {channels[0].width, channels[0].height, 3, read};
-}
-
 // ---- colours
 
 std::shared_ptr<const ColorEncoding> encoding_of(const fs::path& file, ImageInput& in,
@@ -501,6 +488,18 @@ std::string find_credit(const fs::path& file, const ImageSpec& spec) {
 }
 
 }  // namespace
+
+ImageRows joined_channels(const std::array<ImageRows, 3>& channels) {
+    const auto read = [channels](std::int64_t begin, std::int64_t end, float* rows) {
+        for (std::size_t c = 0; c < 3; ++c) {
+            Image strip = unfilled_image(channels[c].width, end - begin, channels[c].channels);
+            channels[c].read(begin, end, strip.pixels.data());
+            for (std::int64_t i = 0; i < strip.width * strip.height; ++i)
+                rows[3 * i + std::int64_t(c)] = strip.pixels[i * strip.channels];
+        }
+    };
+    return {channels[0].width, channels[0].height, 3, read};
+}
 
 PictureRows open_picture_rows(const fs::path& file, const Progress& progress, const std::string& part,
                               Wanted wanted) {

@@ -45,6 +45,9 @@ struct PictureRows {
 PictureRows open_picture_rows(const fs::path& file, const Progress& progress = {},
                               const std::string& part = "auto", Wanted wanted = Wanted::colors);
 
+/// The first channels of three pictures of one size as red, green and blue.
+ImageRows joined_channels(const std::array<ImageRows, 3>& channels);
+
 /// All pictures in a file, "0: 60x40 px, 'rgba'", and which of them is taken.
 struct PictureParts {
     std::vector<std::string> parts;

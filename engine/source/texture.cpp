@@ -45,16 +45,7 @@ StoredRows combine(const std::vector<fs::path>& files,
     picture.image.channels = 3;
     picture.max_integer = 0.0;
     picture.associated = false;
-    const auto read = [channels](std::int64_t begin, std::int64_t end, float* rows) {
-        for (std::size_t c = 0; c < 3; ++c) {
-            const ImageRows& from = channels[c];
-            Image strip = unfilled_image(from.width, end - begin, from.channels);
-            from.read(begin, end, strip.pixels.data());
-            for (std::int64_t i = 0; i < strip.width * strip.height; ++i)
-                rows[3 * i + std::int64_t(c)] = strip.pixels[i * strip.channels];
-        }
-    };
-    rgb.rows = {picture.image.width, picture.image.height, 3, read};
+    rgb.rows = joined_channels({channels[0], channels[1], channels[2]});
     return rgb;
 }
 
