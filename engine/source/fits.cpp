@@ -281,11 +281,13 @@ FitsHdu find_hdu(const fs::path& file, fitsfile* in, const std::string& wanted, 
     bad_input(file, fmt::format("an HDU named '{}'", wanted), fmt::format("none in {} HDUs", count));
 }
 
-// Of the current HDU, as cards of 80 characters; of compressed pictures what they were.
+// Of the current HDU, as cards of 80 characters. Of compressed pictures the table's: what lies on the sky it
+// says with the picture's own keywords (FITS 4.0, section 10.1.2). CFITSIO 4.2's conversion of such a header
+// fails where the picture was an extension.
 std::string cards_of(const fs::path& file, fitsfile* in) {
     char* cards = nullptr;
     int count = 0, status = 0;
-    fits_convert_hdr2str(in, 1, nullptr, 0, &cards, &count, &status);
+    fits_hdr2str(in, 1, nullptr, 0, &cards, &count, &status);
     check(file, "reading the header", status);
     std::string text(cards, std::size_t(count) * 80);
     fits_free_memory(cards, &status);
