@@ -1,8 +1,10 @@
 #include "scene/source_metadata.h"
 
-#include <set>
+#include <map>
 
 #include "core/file_format.h"
+#include "core/log.h"
+#include "objects/identify.h"
 #include "scene/layer_setup.h"
 #include "source/picture.h"
 
@@ -17,25 +19,32 @@ bool is_picture(const fs::path& file) {
 
 }  // namespace
 
+// Layers' pictures are not opened by OpenImageIO, which a set from the cache does without: a credit that only
+// it finds, in IPTC or EXIF, is that of the set.
 ObjectMetadata source_metadata(const Scene& scene, const std::vector<const SplatSetFacts*>& sets) {
+    const QuietLog quiet;  // what is taken of a file was said when it was read
     std::vector<ObjectMetadata> all;
-    std::set<fs::path> known;
-    const auto add = [&](const std::vector<fs::path>& files) {
-        for (const fs::path& file : files)
-            if (known.insert(file.lexically_normal()).second && is_picture(file))
-                all.push_back(read_picture_metadata(file));
+    std::map<fs::path, bool> credited;
+    const auto add = [&](const fs::path& file, const auto& read) {
+        const auto [known, is_new] = credited.try_emplace(file.lexically_normal(), true);
+        if (is_new && is_picture(file)) known->second = !all.emplace_back(read(file)).credit.empty();
+        return known->second;
     };
+    const auto quick = [](const fs::path& file) { return clues_of(file).metadata; };
     for (std::size_t i = 0; i < sets.size(); ++i) {
         if (!sets[i]) continue;
         const LayerParams& layer = scene.layers[i];
-        add(all_files(layer.source));
-        if (const LayerParams* const like = like_layer(scene, layer)) add(all_files(like->source));
-        add({layer.look.thickness.map});
-        if (layer.source.kind == SourceKind::splats) all.emplace_back().credit = sets[i]->credit;
+        bool whole = layer.source.kind != SourceKind::splats;
+        for (const fs::path& file : all_files(layer.source)) whole = add(file, quick) && whole;
+        if (const LayerParams* const like = like_layer(scene, layer))
+            for (const fs::path& file : all_files(like->source)) add(file, quick);
+        if (!whole) all.emplace_back().credit = sets[i]->credit;
+        add(layer.look.thickness.map, read_picture_metadata);
     }
-    const EnvironmentParams& sky = scene.environment;
-    if (sky.visible) add(sky.cube);
-    if (sky.visible) add({sky.image, sky.tile});
+    std::vector<fs::path> sky = scene.environment.cube;
+    sky.insert(sky.end(), {scene.environment.image, scene.environment.tile});
+    if (scene.environment.visible)
+        for (const fs::path& file : sky) add(file, read_picture_metadata);
     return merged_metadata(all);
 }
 

@@ -224,7 +224,7 @@ TEST_F(Batch, AFrameThatFailsSparesTheOthers) {
         "\"layer.stars.visible\" = { keys = [[1, false], [2, true], [3, false]] }\n"
         "\"layer.dust.visible\" = { keys = [[1, false]] }\n");
     const RunResult result = [&] {
-        const FileLimit full(3000);
+        const FileLimit full(4000);
         return batch();
     }();
     EXPECT_EQ(result.code, 3) << result.err;

@@ -114,6 +114,22 @@ TEST_F(Provenance, FramesSayTheirSourcesToPyavm) {
     EXPECT_EQ(pyavm({"a.tif", "a.png", "a.exr"}), expected);
 }
 
+/// By EXIF alone, whose readers a set from the cache does without: it has the credit itself.
+TEST_F(Provenance, CreditsOutliveTheCache) {
+    if (!has("convert -version") || !has("exiftool -ver"))
+        GTEST_SKIP() << "imagemagick or exiftool is missing";
+    for (const Words& words : {Words{"convert", "sky.ppm", "third.jpg"},
+                               {"exiftool", "-overwrite_original", "-Artist=By EXIF", "third.jpg"}})
+        expect_success(run_program(joined({"/usr/bin/env"}, words), {.folder = folder}));
+    for (const char* const frame : {"a.exr", "b.exr"}) {
+        expect_success(batch({"-f", "1", "-o", frame, "--set",
+                              "layer.second.source.meshes=[{ mesh = 'plane', texture = 'third.jpg' }]"}));
+        const auto info = nlohmann::json::parse(run({"info", frame, "--json"}).out);
+        EXPECT_EQ(info.at("avm").at("creator").at("credit"), std::string(credit_of_first) + "; By EXIF; Sky")
+            << frame;
+    }
+}
+
 /// What is said changes neither pixels nor hashes, and what the scene says comes first.
 TEST_F(Provenance, WordsReachNoPixel) {
     expect_success(batch({"-f", "1", "-o", "a.exr"}));

@@ -245,7 +245,7 @@ INSTANTIATE_TEST_SUITE_P(
              "6: reference.scale: expected a number from 1e-06 to 1000000, found 0"},
         Case{"[[reference]]\nviw = \"top\"\n", "6: unknown key 'viw'; did you mean 'reference.view'?"},
         Case{"[provenance]\ntype = \"Photo\"\n",
-             "6: provenance.type: expected Artwork or Simulation, found 'Photo'"},
+             "6: provenance.type: expected auto, Artwork or Simulation, found 'Photo'"},
         in("camera", "up = [0, 0, 0]", "up: expected a direction, found 0, 0, 0"),
         in("camera", "rotation = [0, 0, 0, 0]",
            "rotation: expected a quaternion that is not zero, found 0, 0, 0, 0"),
