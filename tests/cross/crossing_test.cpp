@@ -594,7 +594,8 @@ TEST_P(ProgramCrossings, AMovieIsMadeOfTheFramesThatBatchMakes) {
     for (const std::string& word : batch_arguments(task)) words.push_back(word);
     expect_success(run(words, "/"));
     const fs::path movie = render_target(task);
-    const std::set<std::string> frames = files_below(movie_folder(movie));
+    std::set<std::string> frames = files_below(movie_folder(movie));
+    EXPECT_EQ(frames.erase(movie_words(movie).filename()), 1u);
     ASSERT_EQ(frames.size(), frames_of(crossing).size());
     const FrameHeader header = read_frame_header(movie_folder(movie) / *frames.begin());
     EXPECT_EQ(header.pixel_hash, pixel_hash(shot_of(scene, frame(), scene.camera.eye).frame.beauty));
