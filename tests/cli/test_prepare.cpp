@@ -321,6 +321,25 @@ TEST_F(PrepareAlign, AcrossAScaleOfThreeAndARotation) {
     expect_aligned(coarse, fine);
 }
 
+// WCSLIB, ERFA and with them the C library's mathematics say where the pixels of the other lie.
+TEST_F(PrepareAlign, WhateverVariantsTheCLibraryPicks) {
+    const Telescope own{120, 100, 0.00031, 33.0}, reference{150, 140, 0.00045, -20.0};
+    const std::string fk4 = fits_card("RADESYS = 'FK4     '") + fits_card("EQUINOX =               1950.0");
+    const auto light = [](int x, int y) { return (x * 37 + y * 11) % 101; };
+    for (const std::string& frame : {std::string(), fk4}) {
+        write_text(folder / "own.fits", fits_file(own.width, own.height, own.sky() + frame, light));
+        write_text(folder / "reference.fits",
+                   fits_file(reference.width, reference.height, reference.sky() + frame, light));
+        const auto made = [&](const Words& environment) {
+            expect_success(run({"prepare", "own.fits", "--align", "reference.fits", "-o", "out",
+                                "--overwrite", "--stars", "keep"},
+                               {.environment = environment}));
+            return load_linear_image(folder / "out/picture.exr").pixels;
+        };
+        EXPECT_EQ(made({"GLIBC_TUNABLES=glibc.cpu.hwcaps=-AVX2,-FMA"}), made({})) << frame;
+    }
+}
+
 TEST_F(PrepareAlign, WhatTheOtherDoesNotShowIsEmpty) {
     const Telescope small{100, 100, 0.00015, 10.0}, large{300, 300, 0.00015, 0.0};
     write_text(folder / "own.fits", picture_by(small));
