@@ -102,11 +102,25 @@ Report describe_hdu(const FitsHdu& hdu) {
     return report;
 }
 
+/// Of the picture that is taken; empty: its header tells nothing.
+Report describe_sky(const fs::path& file) try {
+    const QuietLog quiet;  // it was said when it was looked at
+    const FitsSky sky = open_fits_rows(file, "auto", {}, {}).plane.sky;
+    if (!sky.grid)
+        return sky.unfollowed.empty() ? Report() : Report(sky.unfollowed + ", which is not followed");
+    const glm::dvec2 reference = sky.grid->reference_deg();
+    return {{"reference_deg", {reference.x, reference.y}}, {"degrees_per_px", sky.grid->degrees_per_px()}};
+} catch (const InputError&) {
+    return {};
+}
+
 Report describe_fits_file(const fs::path& file) {
     look_at_picture(file);
-    Report hdus = Report::array();
+    Report report = {{"kind", format_of_file(file)->id}}, hdus = Report::array();
     for (const FitsHdu& hdu : describe_fits(file)) hdus.push_back(describe_hdu(hdu));
-    return {{"kind", format_of_file(file)->id}, {"hdus", hdus}};
+    report["hdus"] = hdus;
+    if (const Report sky = describe_sky(file); !sky.is_null()) report["sky"] = sky;
+    return report;
 }
 
 bool is_packed(const std::string& name) { return name == "astrosplat/hashed"; }

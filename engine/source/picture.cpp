@@ -454,8 +454,8 @@ std::shared_ptr<const ColorEncoding> encoding_of(const fs::path& file, ImageInpu
     std::string problem;
     std::shared_ptr<const ColorEncoding> encoding;
     const bool png = std::string_view(in.format_name()) == "png";
-    if (png) encoding = png_encoding(file, problem);
     const OIIO::ParamValue* const profile = spec.find_attribute("ICCProfile");
+    if (png) encoding = png_encoding(file, profile != nullptr, problem);
     if (!encoding && problem.empty() && profile && profile->type().basetype == OIIO::TypeDesc::UINT8)
         encoding = icc_encoding({static_cast<const std::uint8_t*>(profile->data()),
                                  static_cast<std::size_t>(profile->type().size())},

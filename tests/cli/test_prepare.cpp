@@ -349,6 +349,20 @@ TEST_F(PrepareAlign, WhatTheOtherDoesNotShowIsEmpty) {
     EXPECT_HAS(result.out, "300x300 px, linear light, alpha");
 }
 
+TEST_F(PrepareAlign, InfoSaysWhereTheSkyIs) {
+    const auto info = [&](const std::string& cards) {
+        write_text(folder / "a.fits", fits_file(40, 30, cards, [](int x, int) { return double(x); }));
+        return nlohmann::json::parse(expect_success(run({"info", "a.fits", "--json"})).out);
+    };
+    EXPECT_FALSE(info("").contains("sky"));
+    const std::string sky = fits_sky(20, 15, ra, dec, 0.001, 0.0);
+    EXPECT_NEAR(info(sky).at("sky").at("reference_deg")[0].get<double>(), ra, 1e-9);
+    std::string sun = sky;
+    for (const auto& [from, to] : {std::pair("RA---TAN", "HPLN-TAN"), std::pair("DEC--TAN", "HPLT-TAN")})
+        sun.replace(sun.find(from), 8, to);
+    EXPECT_EQ(info(sun).at("sky"), "the frame HPLN-TAN, which is not followed");
+}
+
 TEST_F(PrepareAlign, NeedsTheSkyOnBoth) {
     const auto dark = [](int, int) { return 1.0; };
     write_text(folder / "plain.fits", fits_file(40, 30, "", dark));

@@ -319,6 +319,11 @@ TEST(FileColors, ChunksOfPng) {
                       srgb_chunk = chunk("sRGB", std::string(1, '\0'));
     const std::string chrm = chunk("cHRM", numbers({31270, 32900, 68000, 32000, 26500, 69000, 15000, 6000}));
     expect_light(with(""), srgb, same, "none");
+    const std::vector<std::string> refused = warnings_of([&] {
+        expect_light(with(chunk("iCCP", std::string("x\0\0no profile", 13)) + gamma), srgb, same, "iCCP");
+    });
+    ASSERT_EQ(refused.size(), 1u);
+    EXPECT_HAS(refused[0], "ICC profile, which libpng refuses, is not followed");
     expect_light(with(gamma), linear, same, "gAMA");
     expect_light(
         with(chunk("gAMA", numbers({50000}))), [](double x) { return x * x; }, same, "gAMA 1/2");
