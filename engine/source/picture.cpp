@@ -423,15 +423,15 @@ PartChoice choose_part(const fs::path& file, ImageInput& in, const std::string& 
     for (int i = 0; wanted == Wanted::depths && i < int(parts.size()); ++i)
         if (depth_channel(parts[i]) >= 0) return {i};
     const std::string_view format = in.format_name();
-    if (parts.size() < 2 || (format != "openexr" && format != "tiff")) return {};
+    if (parts.size() < 2 || format == "psd") return {};  // Photoshop's first is the whole picture
     if (format == "tiff" && are_channels(parts)) return {0, true};
     PartChoice choice;
-    std::int64_t candidates = 0;
+    std::int64_t candidates = std::ssize(parts);  // frames of an animation
     if (format == "tiff") {
         choice.first = best_page(in, parts);
         candidates =
             std::ranges::count_if(parts, [](const ImageSpec& page) { return !is_lesser_page(page); });
-    } else {
+    } else if (format == "openexr") {
         candidates = std::ranges::count_if(parts, has_colors);
         const auto has_light = [](const ImageSpec& spec) { return find_channel(spec, "Y") >= 0; };
         auto best = std::ranges::find_if(parts, has_colors);

@@ -130,6 +130,19 @@ TEST(SeveralPictures, ChannelsOfImageJ) {
     EXPECT_EQ(first_pixel(write_pages(folder / "x.tif", pages))[1], 0.25f);
 }
 
+TEST(SeveralPictures, FramesOfAnAnimation) {
+    const TempFolder folder;
+    std::vector<Page> pages;
+    for (const float v : {1.0f, 0.0f}) pages.push_back(page(4, {"R", "G", "B"}, {v, v, v}, OIIO::TypeUInt8));
+    const fs::path file = write_pages(folder / "x.gif", pages);
+    std::vector<float> first;
+    const std::vector<std::string> said = warnings_of([&] { first = first_pixel(file); });
+    EXPECT_EQ(first[0], 1.0f);
+    ASSERT_EQ(said.size(), 1u);
+    EXPECT_HAS(said[0], "it holds 2 pictures; 0 is taken");
+    EXPECT_EQ(first_pixel(file, "1")[0], 0.0f);
+}
+
 TEST(SeveralPictures, CameraRawIsNotItsThumbnail) {
     const TempFolder folder;
     for (const char* name : {"x.nef", "x.dng"}) {
