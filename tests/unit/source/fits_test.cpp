@@ -465,6 +465,9 @@ TEST(FitsSky, IsNoneOrSaysWhatIsNotFollowed) {
     };
     EXPECT_EQ(answer({}), "followed");
     EXPECT_EQ(answer({}, {}), "none") << "a pixel has no size";
+    EXPECT_EQ(answer({}, {{"CD1_1", "0.0"}, {"CD2_2", "0.0"}}), "none") << "nor has this";
+    EXPECT_EQ(answer({{"CTYPE1", "'RA---TAB'"}, {"CTYPE2", "'DEC--TAB'"}}), "the projection RA---TAB");
+    EXPECT_EQ(answer({{"CRVAL1", "1E300"}}), "a reference at 1e+300 degrees");
     EXPECT_EQ(answer({{"CTYPE1", "'X'"}, {"CTYPE2", "'Y'"}}), "none");
     EXPECT_EQ(answer({{"CTYPE1", "'HPLN-TAN'"}, {"CTYPE2", "'HPLT-TAN'"}}), "the frame HPLN-TAN");
     EXPECT_EQ(answer({{"RADESYS", "'GAPPT'"}}), "the frame GAPPT");
