@@ -56,6 +56,9 @@ std::span<const FileFormat> file_formats() {
         {"ply", "PLY", splats, {{".ply", exported}}, {"ply\n", "ply\r"}, written},
         {"gltf", "glTF", splats, {{".glb", exported}, {".gltf", camera_written}}, {"glTF"}, camera_read},
         {"usda", "USD", splats, {{".usda", exported | camera_written}, ".usd"}, {"#usda"}, camera_read},
+        {"spz", "SPZ", splats, {{".spz", exported}}, {"NGSP"}},  // gzip around older ones is anyone's
+        {"splat", "SPLAT", splats, {".splat"}, {}},
+        {"sog", "SOG", splats, {".sog"}, {}},
         {"splats", "SPLATS", splats, {".splats"}, {"\x89SPLAT\r\n"}, written},
         {"openvdb", "OpenVDB", unknown, {".vdb"}, {}, exported},
         {"movie", "MP4, QuickTime or Matroska", unknown, {".mp4", ".mov", ".mkv"}, {}, movie},
