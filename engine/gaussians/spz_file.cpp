@@ -7,7 +7,7 @@
 #include "core/parallel.h"
 #include "core/real.h"
 #include "gaussians/gaussian_file.h"
-#include "splat_files/spz.h"
+#include "splat_files/spz_numbers.h"
 
 namespace astrosplat {
 namespace {

@@ -40,10 +40,13 @@ SplatSet read_dot_splat(const fs::path& file, const Progress& progress) {
     });
 }
 
-SplatColumns dot_splat_columns(const fs::path&) { return gaussian_set_columns(false); }
-
 std::int64_t dot_splat_splat_count(const fs::path& file) {
     return read_mapped(file, [&](std::string_view bytes) { return dot_splat_count_of(file, bytes); });
+}
+
+SplatColumns dot_splat_columns(const fs::path& file) {
+    dot_splat_splat_count(file);
+    return gaussian_set_columns(false);
 }
 
 }  // namespace astrosplat

@@ -1,7 +1,7 @@
 // SPZ: one gzip stream of all numbers of a kind after the other (versions 1 to 3), or a Zstandard stream for
 // each behind a table of their sizes (4). All sizes follow from the header, and are compared with the file
 // before anything is taken.
-#include "splat_files/spz.h"
+#include "splat_files/spz_numbers.h"
 
 #include <fmt/format.h>
 #include <zstd.h>
