@@ -141,4 +141,9 @@ std::string names_of(FileKind kind, FileUse use) {
     return alternatives(names);
 }
 
+std::string_view conversion_advice(const fs::path& file) {
+    const std::string name = lower_case(file.filename().string());
+    return name.ends_with(".ksplat") || name == "meta.json" ? " (splat-transform makes a .ply of it)" : "";
+}
+
 }  // namespace astrosplat

@@ -42,11 +42,8 @@ const Functions& functions_of(const FileFormat* format, const fs::path& file, Fi
     for (const Functions& each : functions)
         if (format && format->id == each.format && (use == FileUse::read || each.write)) return each;
     const std::string ending = file.extension().string();
-    const bool is_ksplat = ending == ".ksplat" && use == FileUse::read;
     bad_input(file, fmt::format("one of the endings {}", fmt::join(endings_of({FileKind::splats}, use), " ")),
-              ending.empty() ? "none"
-              : is_ksplat    ? ending + " (splat-transform makes a .ply of it)"
-                             : ending);
+              (ending.empty() ? "none" : ending).append(conversion_advice(file)));
 }
 
 }  // namespace

@@ -71,6 +71,12 @@ TEST_F(PackedFiles, SpzOfEveryVersionAndDegree) {
         }
 }
 
+// Version 4 begins with its own name; gzip before it may be anything.
+TEST_F(PackedFiles, SpzIsKnownByItsFirstBytes) {
+    EXPECT_EQ(read("a.bin", spz_of(capture(3, 0), 0, 4)).size(), 3);
+    EXPECT_NE(error("b.bin", spz_of(capture(3, 0), 0, 3)), "");
+}
+
 TEST_F(PackedFiles, SpzWithAnyFractionAndLargePlaces) {
     std::vector<Trained> all = capture(50, 0);
     for (Trained& g : all) g.position *= 1000.0;
@@ -236,6 +242,7 @@ TEST_F(PackedFiles, WrongOthers) {
     EXPECT_EQ(error("a.ksplat", "x"), "a.ksplat: expected one of the endings " +
                                           known_endings(FileUse::read) +
                                           ", found .ksplat (splat-transform makes a .ply of it)");
+    EXPECT_EQ(conversion_advice("a.png"), "");
 }
 
 }  // namespace
