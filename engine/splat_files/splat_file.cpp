@@ -43,7 +43,7 @@ const Functions& functions_of(const FileFormat* format, const fs::path& file, Fi
         if (format && format->id == each.format && (use == FileUse::read || each.write)) return each;
     const std::string ending = file.extension().string();
     bad_input(file, fmt::format("one of the endings {}", fmt::join(endings_of({FileKind::splats}, use), " ")),
-              (ending.empty() ? "none" : ending).append(conversion_advice(file)));
+              (ending.empty() ? "none" : ending) + std::string(conversion_advice(file)));
 }
 
 }  // namespace
