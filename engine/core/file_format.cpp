@@ -56,6 +56,9 @@ std::span<const FileFormat> file_formats() {
         {"ply", "PLY", splats, {{".ply", exported}}, {"ply\n", "ply\r"}, written},
         {"gltf", "glTF", splats, {{".glb", exported}, {".gltf", camera_written}}, {"glTF"}, camera_read},
         {"usda", "USD", splats, {{".usda", exported | camera_written}, ".usd"}, {"#usda"}, camera_read},
+        {"spz", "SPZ", splats, {{".spz", exported}}, {"NGSP"}},  // gzip around older ones is anyone's
+        {"splat", "SPLAT", splats, {".splat"}, {}},
+        {"sog", "SOG", splats, {".sog"}, {}},
         {"splats", "SPLATS", splats, {".splats"}, {"\x89SPLAT\r\n"}, written},
         {"openvdb", "OpenVDB", unknown, {".vdb"}, {}, exported},
         {"movie", "MP4, QuickTime or Matroska", unknown, {".mp4", ".mov", ".mkv"}, {}, movie},
@@ -136,6 +139,11 @@ std::string names_of(FileKind kind, FileUse use) {
         if (format.kind == kind && is_used(format, format.endings.front(), use))
             names.emplace_back(format.name);
     return alternatives(names);
+}
+
+std::string_view conversion_advice(const fs::path& file) {
+    const std::string name = lower_case(file.filename().string());
+    return name.ends_with(".ksplat") || name == "meta.json" ? " (splat-transform makes a .ply of it)" : "";
 }
 
 }  // namespace astrosplat

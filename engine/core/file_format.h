@@ -61,4 +61,8 @@ std::vector<std::string> endings_of(FileUse use);
 /// "PDA, PLY or SPLATS": the names of a kind's formats, for messages.
 std::string names_of(FileKind kind, FileUse use = FileUse::read);
 
+/// What to do with splats that nothing here reads, .ksplat and SOG as a folder, behind "found": "
+/// (splat-transform makes a .ply of it)". Empty for other files.
+std::string_view conversion_advice(const fs::path& file);
+
 }  // namespace astrosplat

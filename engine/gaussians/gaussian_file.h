@@ -1,6 +1,6 @@
 // Gaussians into files that other programs read: the PLY of 3D Gaussian Splatting, binary glTF with
-// KHR_gaussian_splatting, and USD. Atomic, and the same bytes for any thread count. Credit and origin stand
-// in PLY's comments, as glTF's asset.copyright and asset.extras.origin, and in USD's customLayerData.
+// KHR_gaussian_splatting, USD and SPZ. Atomic, and the same bytes for any thread count. Credit and origin
+// stand in PLY's comments, as glTF's asset.copyright and asset.extras.origin, and in USD's customLayerData.
 #pragma once
 
 #include "core/atomic_file.h"
@@ -27,5 +27,12 @@ void write_gaussian_glb(const WriteTarget& target, const Gaussians& gaussians, b
 /// OutputError, Cancelled.
 void write_gaussian_usda(const WriteTarget& target, const Gaussians& gaussians,
                          const Progress& progress = {});
+
+/// SPZ of version 4 (Niantic): positions of 24 bits, scales of 1/16 in their logarithm, quaternions of 10
+/// bits a number, colours and alphas of 8, harmonics of 5 and 4; in streams that Zstandard packs. Y and z
+/// change signs as splat-transform does it with a PLY, so that both lie alike in its readers; colours are
+/// encoded for a display. It has no room for a credit. Throws InputError where the memory for it is not
+/// there, OutputError, Cancelled.
+void write_gaussian_spz(const WriteTarget& target, const Gaussians& gaussians, const Progress& progress = {});
 
 }  // namespace astrosplat

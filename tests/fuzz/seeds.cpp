@@ -12,7 +12,7 @@
 #include "splat_files/formats.h"
 #include "stars/catalogue.h"
 #include "stars/star_set.h"
-#include "support/capture.h"
+#include "support/packed_captures.h"
 #include "unit/stars/catalogues.h"
 
 namespace astrosplat::fuzz {
@@ -218,6 +218,37 @@ std::vector<std::string> usda_seeds() {
                 "        quatf xformOp:orient = (0.8, 0, 0.6, 0)\n        float3 xformOp:scale = (2, 2, 2)\n"
                 "        uniform token[] xformOpOrder = [\"xformOp:orient\", \"xformOp:scale\"]\n",
                 "    upAxis = \"Z\"\n")};
+}
+
+std::vector<std::string> spz_seeds() {
+    using namespace astrosplat::test;
+    const std::string axes = number_bytes(0xadbe0003, 4) + number_bytes(4, 4) + number_bytes(14, 4);
+    return {spz_of(capture(3, 0), 0, 1), spz_of(capture(3, 1), 1, 2), spz_of(capture(3, 3), 3, 3, axes),
+            spz_of(capture(3, 0), 0, 4), spz_of(capture(2, 1), 1, 4, axes)};
+}
+
+std::vector<std::string> compressed_ply_seeds() {
+    using namespace astrosplat::test;
+    return {compressed_ply_of(capture(3, 0), 0, false), compressed_ply_of(capture(2, 1), 1)};
+}
+
+std::vector<std::string> dot_splat_seeds() { return {test::dot_splat_of(test::capture(3, 0))}; }
+
+std::vector<std::string> sog_seeds() {
+    using namespace astrosplat::test;
+    return {sog_of(capture(3, 0), 0), sog_of(capture(2, 1), 1, true)};
+}
+
+std::size_t read_spz_bytes(std::string_view bytes) {
+    return check_capture(read_spz(TemporaryFile(bytes, ".spz").path));
+}
+
+std::size_t read_dot_splat_bytes(std::string_view bytes) {
+    return check_capture(read_dot_splat(TemporaryFile(bytes, ".splat").path));
+}
+
+std::size_t read_sog_bytes(std::string_view bytes) {
+    return check_capture(read_sog(TemporaryFile(bytes, ".sog").path));
 }
 
 std::size_t read_gaussian_ply_bytes(std::string_view bytes) {
