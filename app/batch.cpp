@@ -18,8 +18,10 @@
 #include "estimate.h"
 #include "exit.h"
 #include "generate/generate.h"
+#include "output/metadata.h"
 #include "output/write.h"
 #include "pipeline.h"
+#include "scene/source_metadata.h"
 
 namespace astrosplat {
 namespace {
@@ -168,6 +170,7 @@ void check_writable(const BatchPlan& plan, const CommandOptions& options) {
         if (frame.render) last = folder;
     }
     if (options.stats) prove_writable(folder_of(*options.stats));
+    if (options.ffmetadata) prove_writable(folder_of(*options.ffmetadata));
 }
 
 /// One run over the frames of a plan.
@@ -195,6 +198,7 @@ class BatchRun {
     std::unique_ptr<FrameDevice> device_;
     ProgressReport report_;
     std::unique_ptr<Pipeline> pipeline_;
+    ObjectMetadata sources_;
     std::int64_t renderer_bytes_ = 0;  // limit; 0: none
     RunFigures figures_;
     Clock::time_point start_ = Clock::now();
@@ -213,6 +217,7 @@ void BatchRun::prepare() {
                              fmt::join(job.streamed, ", ")));
     pipeline_ =
         std::make_unique<Pipeline>(plan_.scene, report_.begin_step("preparing"), plan_.cache, job.streamed);
+    sources_ = pipeline_->input_metadata();
     check_unchanged(plan_.hasher.files(), stoppable());
 }
 
@@ -233,8 +238,8 @@ FrameMetadata BatchRun::metadata(const FramePlan& frame, const FrameScene& now,
     metadata.fps = scene.output.fps;
     metadata.frame_hash = frame.hash;
     metadata.hashed_text = hasher_.canonical_text(now);
-    metadata.provenance = scene.provenance;
-    if (metadata.provenance.credit.empty()) metadata.provenance.credit = pipeline_->input_credit();
+    metadata.provenance = resolved(scene.provenance, sources_);
+    metadata.sources = sources_;
     metadata.origin = pipeline_->input_origin();
     if (!scene.layers.empty())
         metadata.seed = resolved_seed(scene.layers.front().source.seed, scene.layers.front().name);
@@ -378,6 +383,8 @@ int run_batch(const CommandOptions& options) {
         failed = run.failed();
     }
     flush_warning_counts();
+    if (options.ffmetadata && failed.empty())
+        write_file_atomically(*options.ffmetadata, movie_metadata(plan.frames.front().file));
     if (failed.empty()) return kept ? exit_done : exit_not_writable;
     report_failures(failed);
     return exit_some_failed;

@@ -30,6 +30,7 @@ struct CommandOptions {
     std::optional<std::string> region;      // "X,Y,W,H" from the top left, px
     std::optional<std::string> memory_gib;  // limit of all that is taken
     std::optional<fs::path> stats;
+    std::optional<fs::path> ffmetadata;  // what a movie of the frames is to say
     SetCache cache;
     ProgressMode progress = ProgressMode::automatic;
     DeviceChoice device = DeviceChoice::automatic;

@@ -24,6 +24,7 @@
 #include "scene/camera_file.h"
 #include "scene/frames.h"
 #include "scene/layer_setup.h"
+#include "scene/source_metadata.h"
 #include "sets/load_source.h"
 #include "splat_files/splat_file.h"
 #include "volumes/openvdb_file.h"
@@ -206,16 +207,15 @@ void report(const WriteTarget& target, const VoxelGrid& grid, const BakeCounts& 
 }
 
 /// Of the scene, or of its files where it gives none.
-std::string credit_of(const FrameScene& frame, const Pipeline& pipeline) {
-    const std::string& credit = frame.scene.provenance.credit;
-    return credit.empty() ? pipeline.input_credit() : credit;
+ProvenanceParams provenance_of(const FrameScene& frame, const Pipeline& pipeline) {
+    return resolved(frame.scene.provenance, pipeline.input_metadata());
 }
 
 VolumeWords words_about(const FrameScene& frame, const Pipeline& pipeline) {
-    const ProvenanceParams& from = frame.scene.provenance;
+    const ProvenanceParams from = provenance_of(frame, pipeline);
     VolumeWords words = {{"creator", std::string("astrosplat ") + ASTROSPLAT_VERSION},
                          {"title", from.title},
-                         {"credit", credit_of(frame, pipeline)},
+                         {"credit", from.credit},
                          {"type", from.type},
                          {"origin", pipeline.input_origin()},
                          {"frame", fmt::format("{}", frame.number)},
@@ -401,7 +401,7 @@ int run_export(const CommandOptions& options, const ExportOptions& own) {
     if (encoded) encode_for_display(baked.gaussians);
     if (encoded && !fits) fit_to_view(baked.gaussians, wanted, camera, settings);
     finish_harmonics(baked.gaussians, camera, encoded);
-    baked.gaussians.credit = credit_of(now, pipeline);
+    baked.gaussians.credit = provenance_of(now, pipeline).credit;
     baked.gaussians.origin = pipeline.input_origin();
     const Progress writing = progress.begin_step("writing");
     if (format == "ply")

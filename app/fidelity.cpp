@@ -159,6 +159,7 @@ Report fidelity_json(const FidelityReport& report, const std::string& scene) {
     json["layer"] = report.layer;
     json["reference"] =
         report.reference.empty() ? "the layer's picture" : report.reference.filename().string();
+    json["credit"] = report.credit;
     json["front"] = front_json(report.front);
     json["full_size"] = front_json(report.full);
     json["tilted"] = {{"mottle", number(report.mottle)}};
@@ -428,12 +429,15 @@ std::string fidelity_page(const FidelityReport& report, const std::string& scene
     const std::string title = "Fidelity of " + escaped(scene);
     const std::string reference =
         report.reference.empty() ? "its own picture" : escaped(report.reference.filename().string());
+    const std::string credit =
+        report.credit.empty() ? "" : "<h2>Credit</h2>\n<p>" + escaped(report.credit) + "</p>\n";
     return "<!doctype html>\n<html lang='en'>\n<head>\n<meta charset='utf-8'>\n"
            "<meta name='viewport' content='width=device-width, initial-scale=1'>\n<title>" +
            title + "</title>\n<style>" + style + "</style>\n</head>\n<body>\n<h1>" + title +
            "</h1>\n<p>Layer " + escaped(report.layer) + " against " + reference + ". <span class='sum'>" +
            summary(rows) + ".</span></p>\n" + table(rows) + front_section(report) + charts_section(report) +
-           side_section(report) + definitions + "<script>" + script + "</script>\n</body>\n</html>\n";
+           side_section(report) + definitions + credit + "<script>" + script +
+           "</script>\n</body>\n</html>\n";
 }
 
 struct FidelityOptions {

@@ -14,6 +14,7 @@
 #include "core/log.h"
 #include "core/text.h"
 #include "exit.h"
+#include "objects/identify.h"
 #include "output/metadata.h"
 #include "scene/camera_file.h"
 #include "scene/check.h"
@@ -23,6 +24,7 @@
 #include "source/fits.h"
 #include "source/mesh.h"
 #include "source/origin.h"
+#include "source/picture.h"
 #include "source/texture.h"
 #include "splat_files/splat_file.h"
 #include "stars/catalogue.h"
@@ -87,6 +89,18 @@ void look_at_picture(const fs::path& file) try {
 } catch (const InputError&) {
 }
 
+/// Groups of names and values in words; nothing where there are no tags.
+void add_tags(Report& report, const std::vector<AvmTag>& tags) {
+    for (const auto& [group, name, values] : tags) {
+        std::vector<std::string> words;
+        for (const std::string& value : values) {
+            const std::string meaning = name == "category" ? words_of_category(value) : "";
+            words.push_back(meaning.empty() ? value : fmt::format("{} ({})", value, meaning));
+        }
+        report["avm"][group][name] = words.size() == 1 ? Report(words[0]) : Report(words);
+    }
+}
+
 Report describe_hdu(const FitsHdu& hdu) {
     Report report = {{"number", hdu.number}, {"kind", hdu.kind}};
     if (!hdu.name.empty()) report["name"] = hdu.name;
@@ -114,20 +128,30 @@ Report describe_sky(const fs::path& file) try {
     return {};
 }
 
+/// What its cards say, as AVM would, of whose version it is not. A file without a picture says nothing.
+std::vector<AvmTag> tags_of_fits(const fs::path& file) try {
+    std::vector<AvmTag> tags = find_avm_tags(xmp_packet(read_picture_metadata(file)));
+    std::erase_if(tags, [](const AvmTag& tag) { return tag.group == "publisher"; });
+    return tags;
+} catch (const InputError&) {
+    return {};
+}
+
 Report describe_fits_file(const fs::path& file) {
     look_at_picture(file);
     Report report = {{"kind", format_of_file(file)->id}}, hdus = Report::array();
     for (const FitsHdu& hdu : describe_fits(file)) hdus.push_back(describe_hdu(hdu));
     report["hdus"] = hdus;
     if (const Report sky = describe_sky(file); !sky.is_null()) report["sky"] = sky;
+    add_tags(report, tags_of_fits(file));
     return report;
 }
 
 bool is_packed(const std::string& name) { return name == "astrosplat/hashed"; }
 
 /// Unreadable values are counted.
-std::string key_count(const std::string& packed) {
-    const std::string text = unpack_hashed_text(packed).value_or("");
+std::string key_count(std::string_view packed) {
+    const std::string text = unpack_hashed_text(std::string(packed)).value_or("");
     return counted(std::count(text.begin(), text.end(), '\n'), "key");
 }
 
@@ -136,7 +160,8 @@ Report describe_image(const fs::path& file) {
     Report channels = Report::array(), metadata = Report::object();
     for (const auto& [name, type] : info.channels) channels.push_back(name + " " + type);
     for (const auto& [name, value] : info.metadata)
-        metadata[name] = is_packed(name) ? key_count(value) : trim(value);  // long texts are padded
+        if (name != "xmp")
+            metadata[name] = is_packed(name) ? key_count(trim(value)) : trim(value);  // long texts are padded
     Report report = {{"kind", "image"},
                      {"format", info.file_format},
                      {"width", info.width},
@@ -155,6 +180,7 @@ Report describe_image(const fs::path& file) {
         report["pixel_hash"] = header.pixel_hash;
         report["whole"] = frame_is_whole(file);
     }
+    add_tags(report, read_avm_tags(file));
     report["metadata"] = metadata;
     return report;
 }

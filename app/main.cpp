@@ -44,6 +44,9 @@ void add_batch(CLI::App& app, Invocation& call) {
     app.add_flag("--dry-run", batch.dry_run, "Tells frames, time, memory and bytes, and does nothing");
     app.add_flag("--sets-only", batch.sets_only, "Generates the sets into the cache, renders nothing");
     add_value(app, "--stats", batch.stats, "FILE.json", "Writes figures as JSON");
+    add_value(app, "--ffmetadata", batch.ffmetadata, "FILE",
+              "Writes title, credit and settings of the frames, for a movie of them by ffmpeg (-i FILE "
+              "-map_metadata 1)");
     add_device_option(app, batch);
     add_progress(app, batch);
 }
@@ -94,9 +97,10 @@ std::string version_text() {
 /// is no cache), OutputError (the cache cannot be written), Cancelled.
 int run_sets_only(const CommandOptions& options) {
     if (options.cache.folder.empty()) bad_input("--sets-only", "", "a cache that keeps them", "none");
-    if (options.dry_run || options.stats)
-        bad_input("--sets-only", "", fmt::format("no {} with it", options.dry_run ? "--dry-run" : "--stats"),
-                  "both");
+    for (const auto& [given, option] : {std::pair(options.dry_run, "--dry-run"),
+                                        {options.stats.has_value(), "--stats"},
+                                        {options.ffmetadata.has_value(), "--ffmetadata"}})
+        if (given) bad_input("--sets-only", "", fmt::format("no {} with it", option), "both");
     const BatchPlan plan = plan_frames(options);
     defer_interrupts();
     prove_writable(options.cache.folder);

@@ -133,9 +133,16 @@ std::vector<fs::path> pictures_of(const fs::path& folder, const PrepareOptions& 
     return files;
 }
 
-/// The first file's words on its object, and on the sky those of the file on whose grid it was put.
-std::string metadata_text(const fs::path& first, const PrepareParams& params, const std::string& credit) {
-    ObjectMetadata said = clues_of(first).metadata;
+/// The first file's words on its object, all files' on how they came about, and on the sky those of the file
+/// on whose grid it was put.
+std::string metadata_text(const std::vector<fs::path>& inputs, const PrepareParams& params,
+                          const std::string& credit) {
+    std::vector<ObjectMetadata> all;
+    for (const fs::path& input : inputs) all.push_back(clues_of(input).metadata);
+    const ObjectMetadata merged = merged_metadata(all);
+    ObjectMetadata said = all.front();
+    said.spectra = merged.spectra;
+    said.urls = merged.urls;
     said.credit = credit;
     if (!params.align.empty()) {
         const ObjectMetadata grid = clues_of(params.align).metadata;
@@ -227,7 +234,7 @@ int run_prepare(const CommandOptions& options, const PrepareOptions& own) {
     if (three_filters) inputs = {own.red, own.green, own.blue};
     const PreparedPicture result = prepare_picture(inputs, settings, progress);
     const Image picture = without_plain_alpha(result.image);
-    const PictureWriter write{folder, result.credit, metadata_text(inputs.front(), params, result.credit),
+    const PictureWriter write{folder, result.credit, metadata_text(inputs, params, result.credit),
                               existing_of(options)};
     if (own.split) write_split(write, *own.split, result.image, progress);
     write_all(write, params, result, picture);

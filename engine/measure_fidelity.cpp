@@ -8,6 +8,8 @@
 #include "pipeline.h"
 #include "scene/animate.h"
 #include "scene/layer_setup.h"
+#include "scene/source_metadata.h"
+#include "source/picture.h"
 #include "source/texture.h"
 
 namespace astrosplat {
@@ -41,6 +43,17 @@ void require_proportions(const FidelityReference& reference) {
 }
 
 using LayerSets = std::vector<std::shared_ptr<const SplatSet>>;
+
+// Of all that the views show, of the layer with the picture also where it is not seen, and of the reference.
+std::string credit_of(const Scene& now, const LayerSets& sets, const FidelityReference& reference) {
+    const SplatSetFacts unseen;
+    std::vector<const SplatSetFacts*> facts;
+    for (std::size_t i = 0; i < sets.size(); ++i)
+        facts.push_back(sets[i] ? sets[i].get() : now.layers[i].name == reference.layer ? &unseen : nullptr);
+    const std::string credit = resolved(now.provenance, source_metadata(now, facts)).credit;
+    if (reference.file.empty()) return credit;
+    return joined_once({credit, utf8_line(read_picture_metadata(reference.file).credit)});
+}
 
 LayerSets load_sets(const Scene& now, const SetCache& cache, const Progress& progress) {
     LayerSets sets;
@@ -151,8 +164,10 @@ FidelityReport measure_fidelity(const Scene& now, const FidelityReference& refer
     const auto step = [&](const std::string& name) {
         return settings.begin_step ? settings.begin_step(name) : Progress{};
     };
-    FidelityViews views(now, load_sets(now, settings.cache, step("preparing")));
+    LayerSets sets = load_sets(now, settings.cache, step("preparing"));
     FidelityReport report;
+    report.credit = credit_of(now, sets, reference);
+    FidelityViews views(now, std::move(sets));
     report.layer = reference.layer;
     report.reference = reference.file;
     report.disk = reference.disk;

@@ -43,6 +43,7 @@ inline constexpr std::int64_t aside_width_px = 800;
 struct FidelityReport {
     std::string layer;
     fs::path reference;
+    std::string credit;         // of all sources and of the reference
     FrontFidelity front, full;  // at FidelitySettings::width_px and at the picture's own width
     Needles needles;            // from 60 degrees
     Needles flat_needles;       // of the picture, without any depth

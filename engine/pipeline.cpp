@@ -14,6 +14,7 @@
 #include "render/device.h"
 #include "scene/animate.h"
 #include "scene/layer_setup.h"
+#include "scene/source_metadata.h"
 #include "source/origin.h"
 #include "source/texture.h"
 #include "streamed/streamed_set.h"
@@ -433,11 +434,11 @@ std::vector<std::string> Pipeline::layer_names(const FrameScene& frame) const {
     return names;
 }
 
-std::string Pipeline::input_credit() const {
-    std::vector<std::string> credits;
+ObjectMetadata Pipeline::input_metadata() const {
+    std::vector<const SplatSetFacts*> sets;
     for (const LayerState& layer : state_->layers)
-        if (layer.set || layer.streamed) credits.push_back(facts_of(layer).credit);
-    return joined_once(credits);
+        sets.push_back(layer.set || layer.streamed ? &facts_of(layer) : nullptr);
+    return source_metadata(state_->scene, sets);
 }
 
 std::string Pipeline::input_origin() const {

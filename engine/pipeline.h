@@ -6,6 +6,7 @@
 #include "render/render.h"
 #include "scene/scene.h"
 #include "sets/kept.h"
+#include "source/object_metadata.h"
 #include "splats/splat_set.h"
 
 namespace astrosplat {
@@ -65,8 +66,8 @@ class Pipeline {
     const std::vector<LayerStatistics>& statistics() const;
     /// Names of the layers drawn at some moment of a frame, in file order: those of RenderedFrame::layers.
     std::vector<std::string> layer_names(const FrameScene& frame) const;
-    /// Credits of all pictures and splat files in use, each once, joined with "; ".
-    std::string input_credit() const;
+    /// What all pictures and splat files in use say of themselves. Throws InputError.
+    ObjectMetadata input_metadata() const;
     /// Which parts of each layer in use are measured and which invented, "NAME: ..." joined with " | ".
     std::string input_origin() const;
 

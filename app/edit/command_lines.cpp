@@ -118,15 +118,19 @@ std::vector<std::string> batch_arguments(const RenderTask& task, const MachineLi
     const bool refuse = task.existing == ExistingFrames::refuse && task.kind != RenderKind::movie;
     if (task.existing != ExistingFrames::replace && !refuse) words.push_back("--resume");
     if (!refuse) words.push_back("--overwrite");
-    if (task.kind == RenderKind::movie)
+    if (task.kind == RenderKind::movie) {
+        words.push_back("--ffmetadata=" + movie_words(render_target(task)).string());
         for (const char* const key : {"aovs=[]", "depth=auto", "compression=auto", "alpha=auto"})
             words.insert(words.end(), {"--set", std::string("output.") + key});
+    }
     const std::vector<std::string> limited = limit_arguments(limits);
     words.insert(words.end(), limited.begin(), limited.end());
     return words;
 }
 
 fs::path movie_folder(const fs::path& movie) { return movie.string() + ".frames"; }
+
+fs::path movie_words(const fs::path& movie) { return movie_folder(movie) / "movie.ffmetadata"; }
 
 fs::path render_files(const RenderTask& task) {
     const fs::path target = render_target(task);
@@ -138,6 +142,7 @@ std::vector<std::string> movie_command(const fs::path& movie, double fps) {
     words.push_back(fmt::format("{}", fps));
     words.insert(words.end(), {"-pattern_type", "glob", "-i"});
     words.push_back(with_backslashes(movie_folder(movie).string(), "*?[]{}\\") + "/frame.*.png");
+    words.insert(words.end(), {"-f", "ffmetadata", "-i", movie_words(movie).string(), "-map_metadata", "1"});
     words.insert(words.end(), {"-c:v", "libx264", "-crf", "16", "-preset", "slow", "-pix_fmt", "yuv420p"});
     words.insert(words.end(), {"-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2", "-movflags", "+faststart"});
     words.push_back(movie.string());

@@ -53,6 +53,9 @@ fs::path render_files(const RenderTask& task);
 /// Where a movie's frames wait until it is written: beside it, so that what was cancelled can go on.
 fs::path movie_folder(const fs::path& movie);
 
+/// Among them, what the movie says of itself.
+fs::path movie_words(const fs::path& movie);
+
 /// Words that decide frames and their files, as --batch and `status` have them.
 std::vector<std::string> frame_arguments(const RenderTask& task);
 

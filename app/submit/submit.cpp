@@ -194,6 +194,7 @@ constexpr const char *sets_name = "sets.sh", *frames_name = "frames.sh";
 
 void check_options(const SubmitOptions& options, const CommandOptions& batch) {
     if (options.system != "slurm") bad_input("--submit", "", "slurm", "'" + options.system + "'");
+    if (batch.ffmetadata) bad_input("--ffmetadata", "", "no --submit with it", "both");
     if (batch.stats) bad_input("--stats", "", "no --submit with it, whose tasks would all write it", "both");
     if (batch.sets_only)
         bad_input("--sets-only", "", "no --submit with it, whose first job does that", "both");

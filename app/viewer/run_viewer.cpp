@@ -21,6 +21,7 @@
 #include "gui/widgets.h"
 #include "output/write.h"
 #include "scene/check.h"
+#include "scene/source_metadata.h"
 #include "source/write_image.h"
 #include "viewer/session.h"
 #include "viewer/window.h"
@@ -240,7 +241,8 @@ void write_exr(const ScreenshotOptions& options, glm::ivec2 size, Session& sessi
     metadata.frame = static_cast<std::int64_t>(session.view.frame);
     metadata.fps = output.fps;
     metadata.pixel_hash = pixel_hash(frame.beauty);
-    metadata.provenance = session.document.scene().provenance;
+    metadata.sources = source_metadata(session);
+    metadata.provenance = resolved(session.document.scene().provenance, metadata.sources);
     write_frame({options.output, output, size.x, size.y}, frame, metadata);
 }
 
@@ -248,7 +250,7 @@ void write_exr(const ScreenshotOptions& options, glm::ivec2 size, Session& sessi
 void take_viewport(const ScreenshotOptions& options, glm::ivec2 size, bool exr, Session& session) {
     wait_for_frame(session, options.settled, [&](double now) { draw_viewport(session, size, now, true); });
     if (exr) return write_exr(options, size, session);
-    write_image(options.output, size.x, size.y, session.display.read());
+    write_image(options.output, size.x, size.y, session.display.read(), credit_of(session));
 }
 
 /// The window with its panels.
@@ -271,7 +273,7 @@ void take_window(const ScreenshotOptions& options, glm::ivec2 size, Session& ses
         advance(session, seconds_now());
         draw_frame(seconds_now());
     }
-    write_image(options.output, size.x, size.y, target.read());
+    write_image(options.output, size.x, size.y, target.read(), credit_of(session));
 }
 
 void take(const ScreenshotOptions& options, const GlInfo& gl) {

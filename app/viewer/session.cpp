@@ -10,6 +10,7 @@
 #include "edit/edits.h"
 #include "edit/layers.h"
 #include "scene/camera_file.h"
+#include "scene/source_metadata.h"
 #include "source/write_image.h"
 
 namespace astrosplat {
@@ -315,9 +316,23 @@ void prepare_screenshot(Session& session, bool with_panels) {
 void save_screenshot(Session& session, const fs::path& file, int width, int height,
                      const std::vector<unsigned char>& rgba) {
     attempt(session.status, [&] {
-        write_image(file, width, height, rgba);
+        write_image(file, width, height, rgba, credit_of(session));
         say(session.status, "Saved " + file.string());
     });
+}
+
+ObjectMetadata source_metadata(const Session& session) {
+    std::vector<const SplatSetFacts*> sets;
+    std::vector<std::shared_ptr<const LoadedLayer>> held;
+    for (const LayerParams& layer : session.document.scene().layers) {
+        held.push_back(layer.visible ? session.sets.layer(layer) : nullptr);
+        sets.push_back(held.back() && held.back()->set ? held.back()->set.get() : nullptr);
+    }
+    return source_metadata(session.document.scene(), sets);
+}
+
+std::string credit_of(const Session& session) {
+    return resolved(session.document.scene().provenance, source_metadata(session)).credit;
 }
 
 void interrupt(Session& session) {

@@ -131,6 +131,11 @@ void prepare_screenshot(Session& session, bool with_panels);
 void save_screenshot(Session& session, const fs::path& file, int width, int height,
                      const std::vector<unsigned char>& rgba);
 
+/// What the files of the layers that are loaded and of the sky say of themselves. Throws InputError.
+ObjectMetadata source_metadata(const Session& session);
+/// Of the scene, else of those files.
+std::string credit_of(const Session& session);
+
 /// For SIGTERM: writes an autosave, which stays, and throws Cancelled.
 [[noreturn]] void interrupt(Session& session);
 /// A clean end: autosaves of this session are removed, preferences written.

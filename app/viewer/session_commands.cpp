@@ -165,7 +165,7 @@ void save_view(State& s, const Command& c) {
         const auto row = all.begin() + 4 * (std::ptrdiff_t{y} * s.viewport_px.x + x0);
         part.insert(part.end(), row, row + 4 * std::ptrdiff_t{x1 - x0});
     }
-    write_image(c.path, x1 - x0, y1 - y0, part);
+    write_image(c.path, x1 - x0, y1 - y0, part, credit_of(s));
     say(s.status, "Saved " + c.path.string());
 }
 

@@ -82,6 +82,43 @@ std::string printable(std::string_view text) {
     return shown;
 }
 
+namespace {
+
+// Bytes of the character at the beginning of a text; 0: none of UTF-8 (RFC 3629).
+std::size_t utf8_bytes(std::string_view text) {
+    const auto byte = [&](std::size_t i) {
+        return i < text.size() ? static_cast<unsigned char>(text[i]) : 0;
+    };
+    const int lead = byte(0), second = byte(1);
+    if (lead < 0x80) return 1;
+    const std::size_t bytes = lead < 0xe0 ? 2 : lead < 0xf0 ? 3 : 4;
+    for (std::size_t i = 1; i < bytes; ++i)
+        if ((byte(i) & 0xc0) != 0x80) return 0;
+    const bool too_long = lead < 0xc2 || (lead == 0xe0 && second < 0xa0) || (lead == 0xf0 && second < 0x90);
+    const bool no_character =
+        (lead == 0xed && second > 0x9f) || lead > 0xf4 || (lead == 0xf4 && second > 0x8f);
+    return too_long || no_character ? 0 : bytes;
+}
+
+}  // namespace
+
+std::string utf8_line(std::string_view text, std::size_t most) {
+    std::string line;
+    while (!text.empty()) {
+        std::string character(text.substr(0, utf8_bytes(text)));
+        const auto first = static_cast<unsigned char>(text[0]);
+        text.remove_prefix(std::max<std::size_t>(1, character.size()));
+        if (character.empty() && first >= 0xa0)
+            character = {static_cast<char>(0xc0 | first >> 6), static_cast<char>(0x80 | (first & 0x3f))};
+        else if (character.empty() || first < 0x20 || character == "\xef\xbf\xbe" ||
+                 character == "\xef\xbf\xbf")
+            character = " ";
+        if (line.size() + character.size() > most) break;
+        line += character;
+    }
+    return line;
+}
+
 std::string counted(std::int64_t count, std::string_view noun) {
     return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
 }

@@ -15,6 +15,10 @@ std::string_view trim(std::string_view text);
 /// `text` fit for one line of a terminal: control characters, as of file names, as "\\n", "\\x1b".
 std::string printable(std::string_view text);
 
+/// `text` as one line of UTF-8 that XML can hold: bytes that are none are taken for Latin 1, control
+/// characters become blanks; what is longer than `most` bytes is cut off behind a character.
+std::string utf8_line(std::string_view text, std::size_t most = std::string_view::npos);
+
 /// "1 frame", "12 frames", of a noun that takes an s.
 std::string counted(std::int64_t count, std::string_view noun);
 

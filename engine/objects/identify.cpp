@@ -217,6 +217,11 @@ std::vector<SkyObject> objects_of_category(std::string_view category) {
     return known ? known->objects : SkyObjects{};
 }
 
+std::string words_of_category(std::string_view category) {
+    const Category* const known = find_category(category);
+    return known ? known->meaning : "";
+}
+
 Identification said_of(const ObjectClues& clues) {
     Identification found;
     found.metadata = clues.metadata;

@@ -55,5 +55,7 @@ std::optional<double> light_years_per_px(const Identification& found, double wid
 /// The kinds that a category of AVM means, by its taxonomy ("C.5.1.4": an elliptical galaxy); none for
 /// instruments, people and the like.
 std::vector<SkyObject> objects_of_category(std::string_view category);
+/// "spiral galaxy"; empty where it means none of them.
+std::string words_of_category(std::string_view category);
 
 }  // namespace astrosplat

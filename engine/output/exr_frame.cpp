@@ -199,7 +199,8 @@ void set_text(Imf::Header& header, const FrameMetadata& metadata) {
     };
     for (const auto& [name, value] : metadata_entries(metadata)) set(name, value);
     if (!metadata.provenance.credit.empty()) set("owner", metadata.provenance.credit);
-    set("capDate", "");  // no clock
+    set("xmp", frame_xmp(metadata));  // as OpenImageIO names it
+    set("capDate", "");               // no clock
     if (metadata.eye != Eye::centre) set("view", std::string(name_of(metadata.eye)));
 }
 

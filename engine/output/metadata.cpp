@@ -37,13 +37,6 @@ std::vector<KeyLine> key_lines(std::string_view text, std::string_view between) 
     return lines;
 }
 
-// The value on one line, so that it cannot be mistaken for the next entry.
-std::string one_line(std::string text) {
-    for (char& c : text)
-        if (static_cast<unsigned char>(c) < 0x20) c = ' ';
-    return text;
-}
-
 constexpr std::size_t longest_text = std::size_t{64} << 20;  // bytes; of a damaged file's promises
 
 std::vector<KeyLine> hashed_lines(std::string_view text) {
@@ -107,6 +100,12 @@ const FrameFileFormat* frame_file_format(const fs::path& file) {
     return found == std::end(frame_file_formats) ? nullptr : found;
 }
 
+/// Nothing where it is no frame.
+std::optional<StoredHeader> stored_header(const fs::path& file) {
+    const FrameFileFormat* const format = frame_file_format(file);
+    return format ? format->read_header(file) : std::nullopt;
+}
+
 /// Any picture, also in forms that no frame is written in.
 bool picture_is_whole(const fs::path& file) try {
     const auto in = open_picture(file);
@@ -132,7 +131,8 @@ MetadataEntries metadata_entries(const FrameMetadata& metadata) {
         {"astrosplat/fps", shortest(metadata.fps)},
     };
     auto add = [&](const char* name, const std::string& value) {
-        if (!value.empty()) entries.emplace_back(name, one_line(value));
+        // On one line, so that it cannot be mistaken for the next entry.
+        if (!value.empty()) entries.emplace_back(name, utf8_line(value));
     };
     if (!metadata.hashed_text.empty())
         entries.emplace_back("astrosplat/hashed", pack_hashed_text(metadata.hashed_text));
@@ -141,6 +141,46 @@ MetadataEntries metadata_entries(const FrameMetadata& metadata) {
     add("astrosplat/type", metadata.provenance.type);
     add("astrosplat/origin", metadata.origin);
     return entries;
+}
+
+std::string frame_xmp(const FrameMetadata& metadata) {
+    ObjectMetadata said = metadata.sources;
+    said.id = metadata.frame_hash;
+    said.title = metadata.provenance.title;
+    said.credit = metadata.provenance.credit;
+    said.type = metadata.provenance.type;
+    // Seen from elsewhere, in perspective: no place, scale or north of the sky holds over such a frame.
+    said.degrees_per_px.reset();
+    said.north_angle.reset();
+    said.sky_position.reset();
+    said.reference_px = {};
+    return xmp_packet(said);
+}
+
+std::string movie_metadata(const fs::path& frame) {
+    std::map<std::string, std::string> texts = stored_header(frame).value_or(StoredHeader{}).texts;
+    std::erase_if(texts, [](const auto& text) { return !text.first.starts_with("astrosplat/"); });
+    std::string lines = ";FFMETADATA1\n";
+    const auto add = [&](const char* key, const std::string& value) {
+        if (value.empty()) return;
+        lines += fmt::format("{}=", key);
+        for (const char c : value)
+            lines += (std::string_view("=;#\\\n").find(c) != std::string_view::npos ? "\\" : "") +
+                     std::string(1, c);
+        lines += "\n";
+    };
+    const std::string credit = texts["astrosplat/credit"];
+    add("title", texts["astrosplat/title"]);
+    add("artist", credit);
+    add("copyright", credit);
+    std::string comment;
+    for (const auto& [group, name, values] : read_avm_tags(frame))
+        if (name != "title" && name != "credit")
+            comment += fmt::format("{} {}: {}\n", group, name, fmt::join(values, ", "));
+    texts.erase("astrosplat/title");
+    texts.erase("astrosplat/credit");
+    add("comment", comment + metadata_lines({texts.begin(), texts.end()}));
+    return lines;
 }
 
 std::string metadata_lines(const MetadataEntries& entries) {
@@ -228,8 +268,7 @@ ImageInfo read_image_info(const fs::path& file) {
 }
 
 FrameHeader read_frame_header(const fs::path& file) {
-    const FrameFileFormat* const format = frame_file_format(file);
-    const std::optional<StoredHeader> stored = format ? format->read_header(file) : std::nullopt;
+    const std::optional<StoredHeader> stored = stored_header(file);
     if (!stored) return {};
     const auto text_of = [&](const char* name) {
         const auto found = stored->texts.find(name);

@@ -17,6 +17,14 @@ using MetadataEntries = std::vector<std::pair<std::string, std::string>>;
 /// "/hashed" (deflate_text), "/title", "/credit", "/type", "/origin".
 MetadataEntries metadata_entries(const FrameMetadata& metadata);
 
+/// The same for programs that read AVM, with what the sources say of object and colours: an XMP packet. Its
+/// ID is the frame hash.
+std::string frame_xmp(const FrameMetadata& metadata);
+
+/// What a frame's file says, for a movie of it and others: a file of metadata for ffmpeg, with title, artist
+/// and copyright (the credit), and all the rest in words as comment.
+std::string movie_metadata(const fs::path& frame);
+
 /// The entries as lines "name=value" (line breaks in values become spaces): TIFF's ImageDescription.
 std::string metadata_lines(const MetadataEntries& entries);
 /// Such lines by name; the first of those with one name.

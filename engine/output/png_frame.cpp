@@ -139,6 +139,7 @@ void write_png(const FrameFile& target, const FrameFormat& format, const Rendere
                const FrameMetadata& metadata) {
     MetadataEntries entries = metadata_entries(metadata);
     if (!metadata.provenance.credit.empty()) entries.emplace_back("Copyright", metadata.provenance.credit);
+    entries.emplace_back("XML:com.adobe.xmp", frame_xmp(metadata));  // iTXt: its mark of order is not ASCII
     std::vector<png_text> texts;
     for (const auto& [name, value] : entries) texts.push_back(text_of(name, value));
     PngFrame png{

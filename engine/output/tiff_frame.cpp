@@ -174,6 +174,8 @@ void set_tags(TIFF* tiff, const FrameFormat& format, const Samples& samples, con
         TIFFSetField(tiff, TIFFTAG_EXTRASAMPLES, 1, &kind);
     }
     TIFFSetField(tiff, TIFFTAG_IMAGEDESCRIPTION, metadata_lines(metadata_entries(metadata)).c_str());
+    const std::string xmp = frame_xmp(metadata);
+    TIFFSetField(tiff, TIFFTAG_XMLPACKET, std::uint32_t(xmp.size()), xmp.data());
     if (!metadata.provenance.credit.empty())
         TIFFSetField(tiff, TIFFTAG_COPYRIGHT, metadata.provenance.credit.c_str());
 }

@@ -7,6 +7,7 @@
 #include "core/image.h"
 #include "render/frame.h"
 #include "scene/scene.h"
+#include "source/object_metadata.h"
 
 namespace astrosplat {
 
@@ -19,8 +20,9 @@ struct FrameMetadata {
     std::string pixel_hash;   // hex
     std::string hashed_text;  // what frame_hash was made of (frame_hash.h)
     std::uint32_t seed = 0;
-    ProvenanceParams provenance;
-    std::string origin;  // what of its layers is measured and what is invented
+    ProvenanceParams provenance;  // as resolved() has it
+    ObjectMetadata sources;       // merged
+    std::string origin;           // what of its layers is measured and what is invented
     std::optional<ExrMatrices> matrices;
 };
 

@@ -202,9 +202,12 @@ void describe_tiling(const Describer& d, EnvironmentParams& e) {
 }
 
 void describe_provenance(const Describer& d, ProvenanceParams& p) {
-    d(p.title, "title", "Title", "", "Written into every frame.");
+    d(p.title, "title", "Title", "", "Written into every frame; empty: from the inputs' own metadata.");
     d(p.credit, "credit", "Credit", "", "Written into every frame; empty: from the inputs' own metadata.");
-    d(p.type, "type", "Type", "", "What the pictures are.", one_of({"Artwork", "Simulation"}));
+    d(p.type, "type", "Type", "",
+      "What the frames are, in AVM's words; auto: a simulation where all inputs say that they are, else "
+      "artwork.",
+      one_of({"auto", "Artwork", "Simulation"}));
 }
 
 void describe_scale(const Describer& d, Scene& scene) {

@@ -170,7 +170,7 @@ std::vector<fs::path> named_files(const SourceParams& source) {
         files.push_back(input.shape.depth_map);
     }
     const PrepareParams& prepare = source.texture.prepare;
-    files.insert(files.end(), {prepare.align, prepare.fill, prepare.mask});
+    files.insert(files.end(), {prepare.align, prepare.starless, prepare.fill, prepare.mask});
     for (const MaskParams& mask : source.texture.mask) {
         files.push_back(mask.image);
         for (const MaskTerms& terms : mask.any) files.push_back(terms.image);

@@ -56,7 +56,7 @@ struct OutputParams {
 };
 
 struct ProvenanceParams {
-    std::string title, credit, type = "Artwork";
+    std::string title, credit, type = "auto";  // "auto": as the sources are
     bool operator==(const ProvenanceParams&) const = default;
 };
 

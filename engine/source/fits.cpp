@@ -413,6 +413,12 @@ FitsRows open_fits_rows(const fs::path& file, const std::string& hdu, std::optio
     picture.credit = text_keyword(in.get(), "AUTHOR");
     if (picture.credit.empty()) picture.credit = text_keyword(in.get(), "ORIGIN");
     picture.object = text_keyword(in.get(), "OBJECT");
+    picture.exposure = {text_keyword(in.get(), "TELESCOP"),
+                        text_keyword(in.get(), "INSTRUME"),
+                        "",
+                        "",
+                        text_keyword(in.get(), "FILTER"),
+                        ""};
     picture.distance_ly = distance_ly_of(in.get());
     picture.sky = read_fits_sky(file, cards_of(file, in.get()), layout.height, layout.top_down);
     rows.read = rows_of_values(layout, [=](std::int64_t first, std::int64_t count, double* values) {

@@ -6,6 +6,7 @@
 #include "core/buffer.h"
 #include "core/progress.h"
 #include "source/color_encoding.h"
+#include "source/object_metadata.h"
 #include "source/sky_grid.h"
 #include "source/source.h"
 
@@ -86,6 +87,7 @@ struct FitsPlane {
     std::string what;                   // "plane 1 of 4", "3 planes as red, green and blue"; may be empty
     std::string credit;                 // AUTHOR or ORIGIN
     std::string object;                 // OBJECT; may be empty
+    SpectralBlock exposure;             // TELESCOP, INSTRUME and FILTER
     std::optional<double> distance_ly;  // DISTANCE, where its comment tells the unit
     FitsSky sky;
     std::shared_ptr<const ColorEncoding>

@@ -479,12 +479,9 @@ std::shared_ptr<const ColorEncoding> encoding_of(const fs::path& file, ImageInpu
 
 std::string find_credit(const fs::path& file, const ImageSpec& spec) {
     std::string credit = read_xmp_metadata(file).credit;
-    if (!credit.empty()) return credit;
-    for (const char* name : {"IPTC:Provider", "Artist", "Exif:Artist", "IPTC:Creator", "Copyright"}) {
-        credit = trim(spec.get_string_attribute(name));
-        if (!credit.empty()) return credit;
-    }
-    return {};
+    for (const char* name : {"IPTC:Provider", "Artist", "Exif:Artist", "IPTC:Creator", "Copyright"})
+        if (credit.empty()) credit = trim(spec.get_string_attribute(name));
+    return credit;
 }
 
 }  // namespace
@@ -558,6 +555,16 @@ PictureParts describe_parts(const fs::path& file) {
                         name.empty() ? "" : ", '" + name + "'"));
     }
     found.taken = choose_part(file, *in, "auto").first;
+    return found;
+}
+
+ObjectMetadata read_picture_metadata(const fs::path& file) {
+    const QuietLog quiet;  // what is taken is said when it is read
+    if (is_fits(file)) return read_fits_metadata(file);
+    ObjectMetadata found = read_xmp_metadata(file);
+    if (!found.credit.empty()) return found;  // before OpenImageIO has to start
+    const std::unique_ptr<ImageInput> in = open_picture(file);
+    found.credit = find_credit(file, in->spec(choose_part(file, *in, "auto").first));
     return found;
 }
 

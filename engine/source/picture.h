@@ -5,6 +5,7 @@
 #include "core/progress.h"
 #include "image/resample.h"
 #include "source/color_encoding.h"
+#include "source/object_metadata.h"
 
 namespace astrosplat {
 
@@ -54,6 +55,9 @@ struct PictureParts {
     int taken = 0;
 };
 PictureParts describe_parts(const fs::path& file);
+
+/// By XMP or the cards of FITS; a credit also by IPTC or EXIF. Throws InputError.
+ObjectMetadata read_picture_metadata(const fs::path& file);
 
 /// Throws InputError unless the file's headers promise a picture, also in FITS.
 void require_picture(const fs::path& file);

@@ -77,10 +77,11 @@ class PictureFile {
 }  // namespace
 
 void write_image(const fs::path& file, std::int64_t width, std::int64_t height,
-                 std::span<const unsigned char> rgba) {
+                 std::span<const unsigned char> rgba, const std::string& credit) {
     assert(std::int64_t(rgba.size()) == width * height * 4);
     OIIO::ImageSpec spec(int(width), int(height), 3, OIIO::TypeDesc::UINT8);
     spec.attribute("DateTime", "");  // OpenImageIO would write the time
+    if (!credit.empty()) spec.attribute("Copyright", credit);
     PictureFile picture(file, file.string(), spec);
     picture.write_all(OIIO::TypeDesc::UINT8, rgba.data(), 4);
     picture.commit();

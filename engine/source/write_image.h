@@ -7,9 +7,9 @@
 namespace astrosplat {
 
 /// Writes width x height px of RGBA bytes, top row first, atomically; the ending chooses the format. The
-/// colour is written, alpha is left out. Throws OutputError.
+/// colour is written, alpha is left out; a credit goes into the header. Throws OutputError.
 void write_image(const fs::path& file, std::int64_t width, std::int64_t height,
-                 std::span<const unsigned char> rgba);
+                 std::span<const unsigned char> rgba, const std::string& credit = "");
 
 /// Writes linear light of 3 channels, or 4 with a premultiplied alpha, as an EXR file of 32-bit floats,
 /// atomically. `credit`, and metadata as a packet (xmp_packet), go into its header where there are any.

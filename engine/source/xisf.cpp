@@ -418,6 +418,8 @@ FitsRows open_xisf_rows(const fs::path& file, const std::string& hdu, std::optio
     picture.what = layout.what;
     picture.credit = keyword(image, "AUTHOR");
     picture.object = keyword(image, "OBJECT");
+    picture.exposure = {
+        keyword(image, "TELESCOP"), keyword(image, "INSTRUME"), "", "", keyword(image, "FILTER"), ""};
     if (picture.object.empty()) {
         const pugi::xml_node object =
             image.node.find_child_by_attribute("Property", "id", "Observation:Object:Name");

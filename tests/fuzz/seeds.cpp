@@ -45,7 +45,8 @@ std::size_t check(const ObjectMetadata& found) {
         demand(!degrees || (*degrees >= 0.0 && *degrees * std::max(width, height) <= 360.0),
                "a part of the sky");
     }
-    for (const auto& list : {found.categories, found.names})
+    demand(find_xmp_metadata(xmp_packet(found)).names.size() == found.names.size(), "the names again");
+    for (const auto& list : {found.categories, found.names, found.urls})
         for (const std::string& text : list) demand(!text.empty() && text != "-", "words");
     return found.categories.size() + found.names.size() + found.title.size() + found.credit.size() +
            found.type.size() + found.distance_ly.has_value() + found.degrees_per_px.has_value() +
@@ -296,6 +297,7 @@ std::vector<std::string> xmp_seeds() {
 }
 
 std::size_t read_xmp_bytes(std::string_view bytes) {
+    for (const AvmTag& tag : find_avm_tags(bytes)) demand(!tag.values.empty(), "values of a tag");
     return check(read_xmp_metadata(TemporaryFile(bytes, ".jpg").path));
 }
 

@@ -88,6 +88,19 @@ TEST(Text, ControlCharactersAreShownAsText) {
                         "2J \xc2\xa0"),
               "\\x9b2J \xc2\xa0");  // CSI as one character; a hard space stays
     EXPECT_EQ(printable("\xc2"), "\xc2");
+    EXPECT_EQ(utf8_line("Größe ☆ \xf0\x9f\x8c\x8c"), "Größe ☆ \xf0\x9f\x8c\x8c");
+    EXPECT_EQ(utf8_line("Gr\xf6\xdf"
+                        "e \xc3"),
+              "Größe Ã")
+        << "Latin 1";
+    EXPECT_EQ(utf8_line("a\nb\tc\x1b"
+                        "d\x7f"),
+              "a b c d\x7f");
+    EXPECT_EQ(utf8_line("\xed\xa0\x80|\xc0\xaf|\xe0\x80\xaf|\xf4\x90\x80\x80|\xef\xbf\xbf"),
+              "í\u00a0 |À¯|à ¯|ô   | ")
+        << "surrogates, longer than needed, beyond Unicode, none of XML";
+    EXPECT_EQ(utf8_line("Größe", 4), "Grö");
+    EXPECT_EQ(utf8_line("Größe", 3), "Gr");
 }
 
 TEST(Text, LightYearsHaveThreeDigitsAndAUnit) {

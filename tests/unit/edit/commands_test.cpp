@@ -273,6 +273,8 @@ TEST(RenderTask, AMoviesFramesLieBesideIt) {
     const std::vector<std::string> words = movie_command(render_target(task), 23.976);
     EXPECT_TRUE(has(words, "/films/\\[one\\]\\*/a.mp4.frames/frame.*.png")) << "a pattern of ffmpeg";
     EXPECT_TRUE(has(words, "23.976"));
+    EXPECT_TRUE(has(words, movie_words(render_target(task)).string()));
+    EXPECT_TRUE(has(batch_arguments(task), "--ffmetadata=" + movie_words(render_target(task)).string()));
     EXPECT_EQ(words.back(), "/films/[one]*/a.mp4");
     EXPECT_TRUE(has(batch_arguments(task), "output.aovs=[]")) << "which PNG files cannot hold";
     EXPECT_FALSE(has(batch_arguments(task_of(RenderKind::range, "a.####.exr")), "output.aovs=[]"));

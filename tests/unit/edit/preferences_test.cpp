@@ -236,6 +236,9 @@ TEST_F(WatchedFilesTest, FilesOfAScene) {
     EXPECT_EQ(named_files(source), Paths{folder / "m.obj"});
     source.kind = SourceKind::mesh;
     EXPECT_EQ(named_files(source), (Paths{a, folder / "m.obj"}));
+    source.texture.prepare.starless = b;
+    EXPECT_EQ(named_files(source), (Paths{a, folder / "m.obj", b}));
+    source.texture.prepare = {};
     folder.file("m.obj", "mtllib m.mtl\nv 0 0 0\n");
     folder.file("m.mtl", "newmtl one\nmap_Kd b.png\n");
     Paths all = all_files(source);

@@ -376,6 +376,23 @@ TEST_F(WriteTest, TextsBeyondAsciiAreKept) {
     EXPECT_HAS(png, "tEXtastrosplat/frame");
 }
 
+TEST_F(WriteTest, EveryFormatHoldsAPacket) {
+    metadata_.sources.names = {"M 51"};
+    metadata_.sources.degrees_per_px = 1e-5;
+    metadata_.sources.north_angle = 12.0;
+    metadata_.sources.sky_position = {1.0, 2.0};
+    for (const char* name : {"a.exr", "a.tif", "a.png"}) {
+        const fs::path file = write(name, {}, soft_frame(5, 3));
+        const ObjectMetadata said = read_xmp_metadata(file);
+        EXPECT_EQ(said.names, metadata_.sources.names) << name;
+        EXPECT_EQ(said.title, "Orion from the side");
+        EXPECT_EQ(said.credit, "NASA/ESA");
+        EXPECT_EQ(said.type, "Artwork");
+        EXPECT_FALSE(said.degrees_per_px || said.north_angle || said.sky_position);
+    }
+    EXPECT_HAS(bytes_of(folder_ / "a.png"), std::string("iTXtXML:com.adobe.xmp\0\0\0\0\0<?xpacket", 35));
+}
+
 TEST_F(WriteTest, TruncatedFilesAreNotWhole) {
     const RenderedFrame frame = noisy_frame(64);
     for (const char* name : {"a.exr", "a.tif", "a.png"}) {

@@ -58,6 +58,8 @@ TEST(XmpMetadata, APacketSaysAllOfItAgain) {
     said.title = "A \"spiral\"";
     said.credit = "Größe";
     said.type = "Observation";
+    said.spectra = {{"HST", "ACS", "Red", "Optical", "R", "850"}, {"HST", "", "Blue", "Optical", "", "435"}};
+    said.urls = {"http://a.org/1", "http://a.org/2"};
     said.distance_ly = 2.6e7;
     said.degrees_per_px = 0.25e-4;
     said.north_angle = 0.0;
@@ -70,6 +72,95 @@ TEST(XmpMetadata, APacketSaysAllOfItAgain) {
         EXPECT_DOUBLE_EQ(*found.north_angle, turn);
         EXPECT_DOUBLE_EQ(*found.degrees_per_px, 0.25e-4);
     }
+}
+
+/// None of it breaks the XML that other programs have to read.
+TEST(XmpMetadata, TextsOfAnyBytesGiveAPacket) {
+    ObjectMetadata said;
+    said.credit =
+        "]]> <b> & \"q\" 'a' \x01\x0b\n Gr\xf6\xdf"
+        "e \xef\xbf\xbe |";
+    said.id = "abc";
+    const std::string packet = xmp_packet(said);
+    EXPECT_EQ(find_xmp_metadata(packet).credit, "]]> <b> & \"q\" 'a' Größe |");
+    EXPECT_TRUE(packet.starts_with("<?xpacket begin=\"\xef\xbb\xbf\""));
+    EXPECT_TRUE(std::ranges::none_of(packet, [](unsigned char c) { return c < 0x20; }));
+    EXPECT_EQ(packet.find("]]>"), std::string::npos);
+    EXPECT_HAS(packet, "<avm:ID>abc</avm:ID>");
+    EXPECT_HAS(packet, "<avm:MetadataVersion>1.2</avm:MetadataVersion>");
+}
+
+TEST(MergedMetadata, SaysOfEachSourceWhatItSays) {
+    ObjectMetadata a, b;
+    a.title = "A spiral";
+    a.credit = "NASA; ESA";
+    a.names = {"M 51", "Whirlpool"};
+    a.categories = {"C.5.1.1"};
+    a.type = b.type = "Simulation";
+    a.spectra = {{"HST", "ACS", "Red", "Optical", "R", "850"}};
+    a.urls = {"http://a.org/1"};
+    a.distance_ly = 3e7;
+    a.degrees_per_px = 1e-5;
+    a.sky_position = {1.0, 2.0};
+    b.credit =
+        "Gr\xf6\xdf"
+        "e";
+    b.names = {"NGC 1", "M 51"};
+    b.spectra = {{"", "", "Blue", "", "B", ""}, a.spectra[0]};
+    const ObjectMetadata all = merged_metadata(std::array{a, b, a});
+    EXPECT_EQ(all.title, "A spiral");
+    EXPECT_EQ(all.credit, "NASA; ESA; Größe");
+    EXPECT_EQ(all.names, (Texts{"M 51", "Whirlpool", "NGC 1"}));
+    EXPECT_EQ(all.categories, Texts{"C.5.1.1"});
+    EXPECT_EQ(all.spectra, (std::vector{a.spectra[0], b.spectra[0]}));
+    EXPECT_EQ(all.urls, Texts{"http://a.org/1"});
+    EXPECT_EQ(all.distance_ly, 3e7);
+    EXPECT_EQ(all.type, "Simulation");
+    EXPECT_FALSE(all.degrees_per_px || all.sky_position || all.north_angle) << "which hold for no other view";
+    b.distance_ly = 3.1e7;
+    b.type = "Observation";
+    EXPECT_FALSE(merged_metadata(std::array{a, b}).distance_ly);
+    EXPECT_EQ(merged_metadata(std::array{a, b}).type, "Artwork");
+    EXPECT_EQ(merged_metadata({}).type, "Artwork");
+}
+
+TEST(MergedMetadata, HundredsOfSourcesStaySmall) {
+    std::vector<ObjectMetadata> many(500);
+    for (std::size_t i = 0; i < many.size(); ++i) {
+        many[i].title = "T" + std::to_string(i);
+        many[i].credit = "C" + std::to_string(i) + std::string(100000, 'x');
+        many[i].names = {"N" + std::to_string(i)};
+    }
+    const ObjectMetadata all = merged_metadata(many);
+    EXPECT_EQ(all.title, "T0; T1; T2; T3; T4; T5; T6; T7");
+    EXPECT_EQ(all.names.size(), 256u);
+    EXPECT_HAS(all.credit, "; C499x");
+    EXPECT_LT(all.credit.size(), 500u * 4100u);
+}
+
+using Listed = std::vector<std::pair<std::string, Texts>>;
+Listed listed(const std::vector<AvmTag>& tags) {
+    Listed list;
+    for (const AvmTag& tag : tags) list.emplace_back(tag.group + " " + tag.name, tag.values);
+    return list;
+}
+
+TEST(AvmTags, AllOfThemInWordsInTheStandardsOrder) {
+    const std::string text = packet(
+        "avm:New.Thing='x' avm:Publisher='P' avm:Type='Chart' avm:Spatial.Notes='-'",
+        "<avm:Facility><rdf:Seq><rdf:li>A</rdf:li><rdf:li>B</rdf:li></rdf:Seq></avm:Facility>"
+        "<i:CreatorContactInfo xmlns:i='http://iptc.org/std/Iptc4xmpCore/1.0/xmlns/' i:CiAdrCity='Garching'>"
+        "<rdf:Description><i:CiUrlWork>http://a.org</i:CiUrlWork></rdf:Description></i:CreatorContactInfo>");
+    EXPECT_EQ(listed(find_avm_tags(text)), (Listed{{"creator contact", {"Garching", "http://a.org"}},
+                                                   {"image type", {"Chart"}},
+                                                   {"observation facility", {"A", "B"}},
+                                                   {"publisher name", {"P"}},
+                                                   {"other New.Thing", {"x"}}}));
+    EXPECT_TRUE(find_avm_tags("nothing").empty());
+    std::string deep;
+    for (int i = 0; i < 200000; ++i) deep += "<avm:Type>";
+    for (int i = 0; i < 200000; ++i) deep += "</avm:Type>";
+    EXPECT_TRUE(find_avm_tags(packet("", deep)).empty()) << "and no overflow of the stack";
 }
 
 TEST(XmpMetadata, PrefixesAreThoseThatThePacketDeclares) {
@@ -276,6 +367,13 @@ TEST(XmpMetadata, OfAPublishedPicture) {
     EXPECT_EQ(found.names, Texts{"NGC 2841"});
     EXPECT_EQ(found.title, "Flocculent spiral NGC 2841");
     EXPECT_NEAR(*degrees_per_px_of(found, 1920, 1200), 1.10356023779e-05 * 3897 / 1920, 1e-12);
+    EXPECT_EQ(found.urls, Texts{"http://www.spacetelescope.org/images/heic1104a/"});
+    ASSERT_EQ(found.spectra.size(), 4u);
+    EXPECT_EQ(found.spectra[2],
+              (SpectralBlock{"Hubble Space Telescope", "WFC3", "Orange", "Optical", "H-alpha", "657"}));
+    EXPECT_EQ(find_xmp_metadata(xmp_packet(found)).spectra, found.spectra);
+    const Listed tags = listed(read_avm_tags(images / "heic1104a.jpg"));
+    EXPECT_EQ(tags.size(), 34u) << "two of its notes are empty";
 }
 
 // The words on a layer's origin, kind by kind.
