@@ -233,6 +233,14 @@ TEST(FileColors, ProfilesOfMatrixAndCurves) {
         check("adobe.tif", type, profile_of(adobe, gamma_of(2.19921875)), gamma_22, adobe);
         check("table.tif", type, profile_of(p3, table_of_squares()), squares, p3);
     }
+    // ICC.1:2022, table 68, functions 2 and 4 (lcms counts from 1): with an offset, and with a line below.
+    const cmsFloat64Number offset[] = {2.0, 0.8, 0.1, 0.05}, line[] = {2.0, 0.9, 0.1, 0.5, 0.3, 0.02, 0.01};
+    check(
+        "offset.tif", OIIO::TypeFloat, profile_of(p3, cmsBuildParametricToneCurve(nullptr, 3, offset)),
+        [](double x) { return (0.8 * x + 0.1) * (0.8 * x + 0.1) + 0.05; }, p3);
+    check(
+        "line.tif", OIIO::TypeFloat, profile_of(p3, cmsBuildParametricToneCurve(nullptr, 5, line)),
+        [](double x) { return x < 0.3 ? 0.5 * x + 0.01 : (0.9 * x + 0.1) * (0.9 * x + 0.1) + 0.02; }, p3);
     check("srgb.tif", OIIO::TypeFloat, profile_of(rec709_chromaticities, srgb_curve()), srgb,
           rec709_chromaticities);
     check("linear.tif", OIIO::TypeFloat, profile_of(p3, gamma_of(1.0)), linear, p3);
