@@ -41,6 +41,13 @@ std::span<const FileFormat> file_formats() {
          picture,
          {".heic", ".heif", ".avif"},
          {"????ftyphei", "????ftypmif1", "????ftypavi"}},
+        {"jpegxl",
+         "JPEG XL",
+         picture,
+         {".jxl"},
+         {"\xff\x0a", "\0\0\0\x0cJXL \r\n"sv},
+         read,
+         "djxl FILE.jxl FILE.png, of the package libjxl-tools, makes a PNG of it"},
         {"raw",
          "camera raw",
          picture,
@@ -133,7 +140,7 @@ std::vector<std::string> endings_of(FileUse use) {
 std::string names_of(FileKind kind, FileUse use) {
     std::vector<std::string> names;
     for (const FileFormat& format : file_formats())
-        if (format.kind == kind && is_used(format, format.endings.front(), use))
+        if (format.kind == kind && format.converter.empty() && is_used(format, format.endings.front(), use))
             names.emplace_back(format.name);
     return alternatives(names);
 }
