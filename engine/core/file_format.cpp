@@ -20,7 +20,8 @@ std::span<const FileFormat> file_formats() {
         {"fits",
          "FITS",
          picture,
-         {".fits", ".fit", ".fts", ".fits.gz", ".fit.gz", ".fts.gz", ".fits.fz"},
+         {".fits", ".fit", ".fts", ".fits.gz", ".fit.gz", ".fts.gz", ".fits.bz2", ".fit.bz2", ".fts.bz2",
+          ".fits.fz"},
          {"SIMPLE  ="}},
         {"xisf", "XISF", picture, {".xisf"}, {"XISF0100"}},
         {"hdr", "Radiance HDR", picture, {".hdr"}, {"#?RADIANCE", "#?RGBE"}},
@@ -41,6 +42,13 @@ std::span<const FileFormat> file_formats() {
          picture,
          {".heic", ".heif", ".avif"},
          {"????ftyphei", "????ftypmif1", "????ftypavi"}},
+        {"jpegxl",
+         "JPEG XL",
+         picture,
+         {".jxl"},
+         {"\xff\x0a", "\0\0\0\x0cJXL \r\n"sv},
+         read,
+         "djxl FILE.jxl FILE.png, of the package libjxl-tools, makes a PNG of it"},
         {"raw",
          "camera raw",
          picture,
@@ -136,7 +144,7 @@ std::vector<std::string> endings_of(FileUse use) {
 std::string names_of(FileKind kind, FileUse use) {
     std::vector<std::string> names;
     for (const FileFormat& format : file_formats())
-        if (format.kind == kind && is_used(format, format.endings.front(), use))
+        if (format.kind == kind && format.converter.empty() && is_used(format, format.endings.front(), use))
             names.emplace_back(format.name);
     return alternatives(names);
 }

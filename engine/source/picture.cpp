@@ -528,7 +528,9 @@ PictureRows open_picture_rows(const fs::path& file, const Progress& progress, co
     }
     picture.image = {result.rows.width, result.rows.height, result.rows.channels, {}};
     picture.max_integer = largest_integer(spec);
-    picture.associated = channels.alpha >= 0 && spec.get_int_attribute("oiio:UnassociatedAlpha", 0) == 0;
+    // The reader of JPEG 2000 heeds the wish for it without a word.
+    picture.associated = channels.alpha >= 0 && format != "jpeg2000" &&
+                         spec.get_int_attribute("oiio:UnassociatedAlpha", 0) == 0;
     picture.distances = wanted == Wanted::depths && depth_channel(spec) >= 0;
     picture.cube = is_cube_map(spec);
     picture.credit = find_credit(file, spec);

@@ -14,7 +14,9 @@ std::vector<std::string> camera_seeds();
 /// By the reader that the bytes look most like: elsewhere a format is recognised by its name's ending.
 std::size_t read_camera_bytes(std::string_view bytes);
 
-/// Hipparcos, HYG, a table with names, gzip-compressed, a picture's table.
+std::string bzipped(std::string text);
+
+/// Hipparcos, HYG, a table with names, packed by gzip and bzip2, a picture's table, VOTables, FITS tables.
 std::vector<std::string> catalogue_seeds();
 std::size_t read_catalogue_bytes(std::string_view bytes);
 

@@ -180,7 +180,10 @@ std::string compressed_fits(int compression) {
 }
 
 std::vector<std::string> fits_seeds() {
-    return {compressed_fits(RICE_1), compressed_fits(HCOMPRESS_1), compressed_fits(GZIP_1),
+    return {bzipped(compressed_fits(RICE_1)),
+            compressed_fits(RICE_1),
+            compressed_fits(HCOMPRESS_1),
+            compressed_fits(GZIP_1),
             compressed_fits(GZIP_2),
             fits({"SIMPLE  =                    T", "BITPIX  =                   16",
                   "NAXIS   =                    2", "NAXIS1  =                    4",
