@@ -32,7 +32,7 @@ struct Bzip2 {
 };
 
 constexpr std::size_t least_block = std::size_t{1} << 22, largest_block = std::size_t{1} << 28;
-constexpr std::size_t most_times = 200, free_bytes = std::size_t{1} << 28;
+constexpr std::size_t most_times = 200, free_bytes = std::size_t{1} << 26;
 
 template <class Codec>
 std::string unpack(std::string_view packed, const std::string& name, const Progress& progress) {
