@@ -217,16 +217,18 @@ TEST(FileFormat, RowsDoNotContradictEachOther) {
 
 TEST(FileFormat, ListsForDialogsAndMessages) {
     EXPECT_EQ(endings_of({FileKind::splats}),
-              (std::vector<std::string>{".pda", ".ply", ".glb", ".gltf", ".usda", ".usd", ".splats"}));
+              (std::vector<std::string>{".pda", ".ply", ".glb", ".gltf", ".usda", ".usd", ".spz", ".splat",
+                                        ".sog", ".splats"}));
     EXPECT_EQ(endings_of({FileKind::splats}, FileUse::written),
               (std::vector<std::string>{".pda", ".ply", ".splats"}));
     EXPECT_EQ(endings_of({FileKind::picture}, FileUse::written),
               (std::vector<std::string>{".exr", ".tif", ".tiff", ".png"}));
     EXPECT_EQ(endings_of(FileUse::camera_written),
               (std::vector<std::string>{".chan", ".csv", ".gltf", ".usda"}));
-    EXPECT_EQ(endings_of(FileUse::exported), (std::vector<std::string>{".ply", ".glb", ".usda", ".vdb"}));
+    EXPECT_EQ(endings_of(FileUse::exported),
+              (std::vector<std::string>{".ply", ".glb", ".usda", ".spz", ".vdb"}));
     EXPECT_EQ(endings_of(FileUse::movie).front(), ".mp4");
-    EXPECT_EQ(names_of(FileKind::splats), "PDA, PLY, glTF, USD or SPLATS");
+    EXPECT_EQ(names_of(FileKind::splats), "PDA, PLY, glTF, USD, SPZ, SPLAT, SOG or SPLATS");
     EXPECT_EQ(names_of(FileKind::mesh), "OBJ");
 }
 
