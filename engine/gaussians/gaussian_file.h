@@ -28,11 +28,9 @@ void write_gaussian_glb(const WriteTarget& target, const Gaussians& gaussians, b
 void write_gaussian_usda(const WriteTarget& target, const Gaussians& gaussians,
                          const Progress& progress = {});
 
-/// SPZ of version 4 (Niantic): positions of 24 bits, scales of 1/16 in their logarithm, quaternions of 10
-/// bits a number, colours and alphas of 8, harmonics of 5 and 4; in streams that Zstandard packs. Y and z
-/// change signs as splat-transform does it with a PLY, so that both lie alike in its readers; colours are
-/// encoded for a display. It has no room for a credit. Throws InputError where the memory for it is not
-/// there, OutputError, Cancelled.
+/// SPZ of version 4: positions of 24 bits, scales of 1/16 in their logarithm, quaternions of 10 bits a
+/// number, colours and alphas of 8, harmonics of 5 and 4. Y and z change signs, so that it lies as the PLY
+/// does. Encoded for a display; no credit. Throws InputError (memory), OutputError, Cancelled.
 void write_gaussian_spz(const WriteTarget& target, const Gaussians& gaussians, const Progress& progress = {});
 
 }  // namespace astrosplat

@@ -1,8 +1,6 @@
 // SPZ, version 4, of the precision and the compression that its own library takes by default.
-#include <fmt/format.h>
 #include <zstd.h>
 
-#include "core/log.h"
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "core/real.h"

@@ -92,7 +92,6 @@ CompressedPly compressed_ply(const PlyHeader& header, const fs::path& file) {
     return ply;
 }
 
-/// 0..1 from `bits` bits that begin at `first`.
 double part_of(std::uint32_t word, int first, int bits) {
     const std::uint32_t most = (1u << bits) - 1;
     return double(word >> first & most) / double(most);

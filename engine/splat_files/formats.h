@@ -58,10 +58,9 @@ SplatSet read_usda_splats(const fs::path& file, const Progress& progress = {});
 SplatColumns usda_splat_columns(const fs::path& file);
 std::int64_t usda_splat_count(const fs::path& file);
 
-/// Niantic's SPZ (.spz), versions 1 to 4. Its axes lead right, up and back, PLY's right, down and front: y
-/// and z change signs, so that a capture lies as its PLY does (SPZ_ADOBE_coordinate_system is followed; other
-/// extensions are skipped with a warning). Whether it was trained antialiased, as we draw, makes no
-/// difference; harmonics of degree 4 are left out.
+/// Niantic's SPZ (.spz), versions 1 to 4. Y and z change signs, so that a capture lies as its PLY does;
+/// SPZ_ADOBE_coordinate_system is followed, other extensions are skipped with a warning. Trained antialiased,
+/// as we draw, or not makes no difference; harmonics of degree 4 are left out.
 SplatSet read_spz(const fs::path& file, const Progress& progress = {});
 SplatColumns spz_columns(const fs::path& file);
 std::int64_t spz_splat_count(const fs::path& file);
