@@ -337,12 +337,11 @@ TEST_F(OddPictures, AlphaOfJpeg2000IsNotMultipliedIntoItsColours) {
 
 TEST_F(OddPictures, JpegXlSaysWhatReadsIt) {
     const fs::path file = folder.file("a.jxl", "\xff\x0a\x05\x08\x08");
-    const std::string reason = ERROR_OF(require_picture(file));
-    const bool is_read = OIIO::ImageInput::create("jpegxl") != nullptr;
-    if (!is_read)
-        EXPECT_EQ(reason, file.string() +
-                              ": cannot be read as a picture: this OpenImageIO reads no JPEG XL; djxl "
-                              "FILE.jxl FILE.png, of the package libjxl-tools, makes a PNG of it");
+    if (OIIO::ImageInput::create("jpegxl")) GTEST_SKIP() << "this OpenImageIO reads JPEG XL";
+    EXPECT_EQ(ERROR_OF(require_picture(file)),
+              file.string() +
+                  ": cannot be read as a picture: this OpenImageIO reads no JPEG XL; djxl "
+                  "FILE.jxl FILE.png, of the package libjxl-tools, makes a PNG of it");
 }
 
 }  // namespace
