@@ -1,6 +1,6 @@
 // generate, convert, camera and export: splats and cameras into files, without rendering. export writes the
-// shaded splats of one frame, baked, as Gaussians (.ply, .glb, .usda) or as an OpenVDB volume (.vdb). One
-// line about the file goes to stdout.
+// shaded splats of one frame, baked, as Gaussians (.ply, .glb, .usda, .spz) or as an OpenVDB volume (.vdb).
+// One line about the file goes to stdout.
 #include <fmt/format.h>
 
 #include <glm/common.hpp>
@@ -251,7 +251,7 @@ struct ExportOptions {
     std::optional<std::string> frame, layer, count, space, voxel_size;
 };
 
-/// One of the table of formats: "ply", "gltf", "usda" or "openvdb".
+/// One of the table of formats: "ply", "gltf", "usda", "spz" or "openvdb".
 std::string_view format_of_output(const fs::path& file) {
     if (const FileFormat* const format = format_by_name(file, FileUse::exported)) return format->id;
     bad_input(file.string(), "", "a name ending in " + alternatives(endings_of(FileUse::exported)),
@@ -269,7 +269,7 @@ bool has_display_values(const ExportOptions& options, std::string_view format) {
     if (space == "display" && is_volume(format))
         bad_input("--space", "", "linear for .vdb, which holds light", "'display'");
     if (space == "linear" && !linear)
-        bad_input("--space", "", "display for .ply and .usda, whose readers know no other", "'linear'");
+        bad_input("--space", "", "display for .ply, .usda and .spz, whose readers know no other", "'linear'");
     return space == "display";
 }
 
@@ -408,6 +408,8 @@ int run_export(const CommandOptions& options, const ExportOptions& own) {
         write_gaussian_ply(target, baked.gaussians, writing);
     else if (format == "usda")
         write_gaussian_usda(target, baked.gaussians, writing);
+    else if (format == "spz")
+        write_gaussian_spz(target, baked.gaussians, writing);
     else
         write_gaussian_glb(target, baked.gaussians, encoded, writing);
     report(target.file, baked);
@@ -417,7 +419,7 @@ int run_export(const CommandOptions& options, const ExportOptions& own) {
 /// With all that is approximated.
 constexpr const char* export_help =
     "Writes the scene's splats for other programs, with the look and the exposure of one frame: as "
-    "Gaussians (3D Gaussian Splatting) in .ply, .glb and .usda, as a volume in .vdb (OpenVDB). "
+    "Gaussians (3D Gaussian Splatting) in .ply, .glb, .usda and .spz, as a volume in .vdb (OpenVDB). "
     "Approximated: other falloffs by the nearest Gaussian of the same integral; screen and hybrid by what "
     "they hide (hybrid as seen from that frame's camera); dust by grey; Gaussians that were read keep "
     "their shapes, and their harmonics up to the degree of their file: exact in the direction of that "
@@ -435,12 +437,12 @@ constexpr const char* export_help =
 void add_export(CLI::App& app, Invocation& call) {
     auto [command, own] = add_command(app, call, "export", export_help, run_export);
     add_input(command, call.options, "SCENE", "The scene");
-    add_output(command, call.options, "FILE.(ply|glb|usda|vdb)", "The file to write");
+    add_output(command, call.options, "FILE.(ply|glb|usda|spz|vdb)", "The file to write");
     add_value(command, "--frame", own.frame, "N", "The frame (default: the scene's first)");
     add_value(command, "--layer", own.layer, "NAME", "Only this layer (default: all that are visible)");
     add_value(command, "--count", own.count, "N", "Merges splats until so many are left");
     add_value(command, "--space", own.space, "display|linear",
-              "Of colours (default: display in .ply and .usda, linear in .glb and .vdb)");
+              "Of colours (default: display in .ply, .usda and .spz, linear in .glb and .vdb)");
     add_value(command, "--voxel-size", own.voxel_size, "X",
               "Side of the voxels of a .vdb, scene units (default: as the splats are wide, 128 to 512 along "
               "the longest side)");

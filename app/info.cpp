@@ -116,6 +116,18 @@ Report describe_hdu(const FitsHdu& hdu) {
     return report;
 }
 
+/// Of the picture that is taken; empty: its header tells nothing.
+Report describe_sky(const fs::path& file) try {
+    const QuietLog quiet;  // it was said when it was looked at
+    const FitsSky sky = open_fits_rows(file, "auto", {}, {}).plane.sky;
+    if (!sky.grid)
+        return sky.unfollowed.empty() ? Report() : Report(sky.unfollowed + ", which is not followed");
+    const glm::dvec2 reference = sky.grid->reference_deg();
+    return {{"reference_deg", {reference.x, reference.y}}, {"degrees_per_px", sky.grid->degrees_per_px()}};
+} catch (const InputError&) {
+    return {};
+}
+
 /// What its cards say, as AVM would, of whose version it is not. A file without a picture says nothing.
 std::vector<AvmTag> tags_of_fits(const fs::path& file) try {
     std::vector<AvmTag> tags = find_avm_tags(xmp_packet(read_picture_metadata(file)));
@@ -127,9 +139,10 @@ std::vector<AvmTag> tags_of_fits(const fs::path& file) try {
 
 Report describe_fits_file(const fs::path& file) {
     look_at_picture(file);
-    Report hdus = Report::array();
+    Report report = {{"kind", format_of_file(file)->id}}, hdus = Report::array();
     for (const FitsHdu& hdu : describe_fits(file)) hdus.push_back(describe_hdu(hdu));
-    Report report = {{"kind", format_of_file(file)->id}, {"hdus", hdus}};
+    report["hdus"] = hdus;
+    if (const Report sky = describe_sky(file); !sky.is_null()) report["sky"] = sky;
     add_tags(report, tags_of_fits(file));
     return report;
 }

@@ -362,7 +362,8 @@ std::string shape_scene_text(const std::string& shape) {
 
 std::string scene_text_for(const fs::path& file, const fs::path& place) {
     require_readable(file);
-    switch (kind_of_file(file)) {
+    const FileKind kind = kind_of_file(file);
+    switch (kind == FileKind::picture && is_fits_catalogue(file) ? FileKind::unknown : kind) {
         case FileKind::picture:
             return picture_scene_text(scene_of_picture(file), place);
         case FileKind::mesh:
@@ -373,8 +374,8 @@ std::string scene_text_for(const fs::path& file, const fs::path& place) {
             bad_input(file.string(), "", "a scene with at least one [[layer]]",
                       "a look, which File > Apply look gives to a layer");
         default:
-            if (const CatalogueKind kind = kind_of_catalogue(file); kind != CatalogueKind::none)
-                return catalogue_scene_text(file, kind, place);
+            if (const CatalogueKind stars = kind_of_catalogue(file); stars != CatalogueKind::none)
+                return catalogue_scene_text(file, stars, place);
             bad_input(file.string(), "",
                       fmt::format("a picture ({}), a mesh ({}), splats ({}) or a star catalogue",
                                   names_of(FileKind::picture), names_of(FileKind::mesh),

@@ -9,6 +9,7 @@
 #include "core/text.h"
 #include "edit/edits.h"
 #include "edit/layers.h"
+#include "scene/camera_file.h"
 #include "scene/source_metadata.h"
 #include "source/write_image.h"
 
@@ -80,6 +81,17 @@ void want_sets(Session& session, double now) {
     if (!session.sets.due(session.document, now)) return;
     watch_files(session);  // before they are read, so that no change after that is missed
     session.sets.want(session.document);
+}
+
+/// Once for each: a camera made for other frames than the scene's stands still.
+void say_missed_frames(Session& session) {
+    const Scene& scene = session.document.scene();
+    if (!scene.imported.camera && session.missed_frames.empty()) return;
+    const FrameRange range = frame_range(scene.output);
+    std::string missed =
+        missed_camera_frames(scene, std::array{std::int64_t(range.first), std::int64_t(range.last)});
+    if (missed != session.missed_frames && !missed.empty()) say(session.status, missed, true);
+    session.missed_frames = std::move(missed);
 }
 
 void open_snapshots(Session& session) {
@@ -236,6 +248,7 @@ void advance(Session& session, double now) {
     session.sets.follow(session.document.scene());
     if (!for_screenshot) session.sets.show_growth(now);
     check_disk(session, now);
+    say_missed_frames(session);
     count_memory(session, now);
     attempt(session.status, [&] { show_renderings(session, now); });
     attempt(session.status, [&] { take_alignment(session); });

@@ -88,6 +88,7 @@ struct Session {
     MessageAge message_age;
     double memory_counted_at = -1e9;    // s
     std::set<std::string> said_errors;  // of the frame and the layers, that still hold
+    std::string missed_frames;          // what was said of the camera's
     Commands dropped;  // from files, to be shown to the widgets, which ask about unsaved changes
 
     // Of the last draw_viewport():

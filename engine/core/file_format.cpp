@@ -20,7 +20,8 @@ std::span<const FileFormat> file_formats() {
         {"fits",
          "FITS",
          picture,
-         {".fits", ".fit", ".fts", ".fits.gz", ".fit.gz", ".fts.gz", ".fits.fz"},
+         {".fits", ".fit", ".fts", ".fits.gz", ".fit.gz", ".fts.gz", ".fits.bz2", ".fit.bz2", ".fts.bz2",
+          ".fits.fz"},
          {"SIMPLE  ="}},
         {"xisf", "XISF", picture, {".xisf"}, {"XISF0100"}},
         {"hdr", "Radiance HDR", picture, {".hdr"}, {"#?RADIANCE", "#?RGBE"}},
@@ -41,6 +42,13 @@ std::span<const FileFormat> file_formats() {
          picture,
          {".heic", ".heif", ".avif"},
          {"????ftyphei", "????ftypmif1", "????ftypavi"}},
+        {"jpegxl",
+         "JPEG XL",
+         picture,
+         {".jxl"},
+         {"\xff\x0a", "\0\0\0\x0cJXL \r\n"sv},
+         read,
+         "djxl FILE.jxl FILE.png, of the package libjxl-tools, makes a PNG of it"},
         {"raw",
          "camera raw",
          picture,
@@ -56,6 +64,9 @@ std::span<const FileFormat> file_formats() {
         {"ply", "PLY", splats, {{".ply", exported}}, {"ply\n", "ply\r"}, written},
         {"gltf", "glTF", splats, {{".glb", exported}, {".gltf", camera_written}}, {"glTF"}, camera_read},
         {"usda", "USD", splats, {{".usda", exported | camera_written}, ".usd"}, {"#usda"}, camera_read},
+        {"spz", "SPZ", splats, {{".spz", exported}}, {"NGSP"}},  // gzip around older ones is anyone's
+        {"splat", "SPLAT", splats, {".splat"}, {}},
+        {"sog", "SOG", splats, {".sog"}, {}},
         {"splats", "SPLATS", splats, {".splats"}, {"\x89SPLAT\r\n"}, written},
         {"openvdb", "OpenVDB", unknown, {".vdb"}, {}, exported},
         {"movie", "MP4, QuickTime or Matroska", unknown, {".mp4", ".mov", ".mkv"}, {}, movie},
@@ -133,9 +144,14 @@ std::vector<std::string> endings_of(FileUse use) {
 std::string names_of(FileKind kind, FileUse use) {
     std::vector<std::string> names;
     for (const FileFormat& format : file_formats())
-        if (format.kind == kind && is_used(format, format.endings.front(), use))
+        if (format.kind == kind && format.converter.empty() && is_used(format, format.endings.front(), use))
             names.emplace_back(format.name);
     return alternatives(names);
+}
+
+std::string_view conversion_advice(const fs::path& file) {
+    const std::string name = lower_case(file.filename().string());
+    return name.ends_with(".ksplat") || name == "meta.json" ? " (splat-transform makes a .ply of it)" : "";
 }
 
 }  // namespace astrosplat

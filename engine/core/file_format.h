@@ -39,6 +39,7 @@ struct FileFormat {
     std::vector<FileEnding> endings;      // the usual one first
     std::vector<std::string_view> magic;  // how such files begin, '?' for any byte; none: text of any kind
     FileUse uses = FileUse::read;         // of all its endings
+    std::string_view converter = {};      // pictures that few OpenImageIO read: what makes others of them
 };
 
 std::span<const FileFormat> file_formats();
@@ -58,7 +59,11 @@ FileKind kind_of(const FileFormat* format);
 std::vector<std::string> endings_of(std::initializer_list<FileKind> kinds, FileUse use = FileUse::read);
 std::vector<std::string> endings_of(FileUse use);
 
-/// "PDA, PLY or SPLATS": the names of a kind's formats, for messages.
+/// "PDA, PLY or SPLATS": the names of a kind's formats, for messages; without those that need a converter.
 std::string names_of(FileKind kind, FileUse use = FileUse::read);
+
+/// What to do with splats that nothing here reads, .ksplat and SOG as a folder, behind "found": "
+/// (splat-transform makes a .ply of it)". Empty for other files.
+std::string_view conversion_advice(const fs::path& file);
 
 }  // namespace astrosplat

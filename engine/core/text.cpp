@@ -240,19 +240,19 @@ void TextRows::fail(const std::string& expected, const std::string& found) const
     bad_input(file_, std::to_string(line_), expected, found);
 }
 
+int RowTable::column(std::initializer_list<std::string_view> names) const {
+    for (const std::string_view name : names)
+        if (const auto found = std::ranges::find(columns_, name, &NamedColumn::name); found != columns_.end())
+            return int(found - columns_.begin());
+    return none;
+}
+
 TextTable::TextTable(std::string_view text) : rows_(text) {
     if (!rows_.next()) return;
     header_ = rows_.text();
     separator_ = separator_of(header_);
     for (const std::string_view name : rows_.fields(separator_))
-        names_.push_back(lower_case(std::string(name)));
-}
-
-int TextTable::column(std::initializer_list<std::string_view> names) const {
-    for (const std::string_view name : names)
-        if (const auto found = std::ranges::find(names_, name); found != names_.end())
-            return int(found - names_.begin());
-    return none;
+        columns_.push_back({lower_case(std::string(name))});
 }
 
 bool TextTable::next() {
@@ -264,6 +264,11 @@ bool TextTable::next() {
 std::string_view TextTable::field(int column) const {
     const auto index = std::size_t(column);
     return column >= 0 && index < fields_.size() ? fields_[index] : std::string_view();
+}
+
+void TextTable::take_units() {
+    for (std::size_t i = 0; i < std::min(columns_.size(), fields_.size()); ++i)
+        if (fields_[i].find_first_not_of('-') != fields_[i].npos) columns_[i].unit = fields_[i];
 }
 
 }  // namespace astrosplat

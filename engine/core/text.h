@@ -127,27 +127,47 @@ class TextRows {
     std::vector<std::string_view> fields_;
 };
 
-class TextTable {
+struct NamedColumn {
+    std::string name;       // in lower case; empty: of what is no single number or text
+    std::string unit = {};  // as it stands; empty: not said
+    std::string ucd = {};   // what it holds, in the words of the Virtual Observatory, in lower case
+};
+
+/// A table of any format, one row after the other.
+class RowTable {
   public:
     static constexpr int none = -1;
 
+    virtual ~RowTable() = default;
+    const std::vector<NamedColumn>& columns() const { return columns_; }
+    /// The first column with one of these names, in lower case; capitals do not matter.
+    int column(std::initializer_list<std::string_view> names) const;
+    /// To the next row, the first at first; false at the end.
+    virtual bool next() = 0;
+    virtual std::int64_t line() const = 0;  // of a text the line, else the row, from 1
+    /// Of this row, until the next; empty for `none` and where there is nothing.
+    virtual std::string_view field(int column) const = 0;
+
+  protected:
+    std::vector<NamedColumn> columns_;
+};
+
+class TextTable final : public RowTable {
+  public:
     /// Reads the row of names. `text` outlives the table.
     explicit TextTable(std::string_view text);
     /// The names as they stand, for messages.
     std::string_view header() const { return header_; }
-    /// The first column with one of these names, in lower case; capitals do not matter.
-    int column(std::initializer_list<std::string_view> names) const;
-    /// To the next row, the first at first; false at the end.
-    bool next();
-    std::int64_t line() const { return rows_.line(); }
-    /// Of this row; empty for `none` and where the row is too short.
-    std::string_view field(int column) const;
+    bool next() override;
+    std::int64_t line() const override { return rows_.line(); }
+    std::string_view field(int column) const override;
+    /// This row tells the units; dashes are none.
+    void take_units();
 
   private:
     TextRows rows_;
     std::string_view header_;
     char separator_ = ',';
-    std::vector<std::string> names_;
     std::vector<std::string_view> fields_;  // of this row
 };
 

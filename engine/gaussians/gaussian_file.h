@@ -1,6 +1,6 @@
 // Gaussians into files that other programs read: the PLY of 3D Gaussian Splatting, binary glTF with
-// KHR_gaussian_splatting, and USD. Atomic, and the same bytes for any thread count. Credit and origin stand
-// in PLY's comments, as glTF's asset.copyright and asset.extras.origin, and in USD's customLayerData.
+// KHR_gaussian_splatting, USD and SPZ. Atomic, and the same bytes for any thread count. Credit and origin
+// stand in PLY's comments, as glTF's asset.copyright and asset.extras.origin, and in USD's customLayerData.
 #pragma once
 
 #include "core/atomic_file.h"
@@ -27,5 +27,10 @@ void write_gaussian_glb(const WriteTarget& target, const Gaussians& gaussians, b
 /// OutputError, Cancelled.
 void write_gaussian_usda(const WriteTarget& target, const Gaussians& gaussians,
                          const Progress& progress = {});
+
+/// SPZ of version 4: positions of 24 bits, scales of 1/16 in their logarithm, quaternions of 10 bits a
+/// number, colours and alphas of 8, harmonics of 5 and 4. Y and z change signs, so that it lies as the PLY
+/// does. Encoded for a display; no credit. Throws InputError (memory), OutputError, Cancelled.
+void write_gaussian_spz(const WriteTarget& target, const Gaussians& gaussians, const Progress& progress = {});
 
 }  // namespace astrosplat

@@ -44,6 +44,12 @@ std::string one_line(std::string text) {
 
 /// Throws InputError.
 ocio::ConstConfigRcPtr load_config(const fs::path& file) {
+    // "ocio://default" and its like; a scene's path to it lies in the scene's folder. Frames are named by the
+    // bytes of a file, which these are not, and Debian 12's OpenColorIO 2.1 has none.
+    if (std::ranges::find(file, fs::path("ocio:")) != file.end())
+        bad_input(fmt::format("ocio://{}", file.filename().string()), "a configuration's file",
+                  "one of those inside OpenColorIO 2.2 and newer, which are not read (they are published as "
+                  "files, too)");
     require_readable(file);
     ocio::SetLoggingLevel(ocio::LOGGING_LEVEL_NONE);
     ocio::ClearAllCaches();  // of tables that may have been written anew

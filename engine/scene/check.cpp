@@ -210,7 +210,7 @@ void check_renderable(const Scene& scene, const Places& places) {
             source.kind != SourceKind::splats || kind_of(format_of_file(source.file)) == FileKind::splats,
             {at / "file"},
             "expected a file ending in " + alternatives(endings_of({FileKind::splats})) + ", found '" +
-                source.file.string() + "'");
+                source.file.string() + "'" + std::string(conversion_advice(source.file)));
     }
 }
 

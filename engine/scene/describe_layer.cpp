@@ -123,8 +123,8 @@ void describe_buffer(const Describer& d, std::optional<glm::dvec3>& buffer) {
 
 void describe_stars(const Describer& d, StarsParams& stars) {
     d(stars.catalogue, "catalogue", "Catalogue", "",
-      "Stars: Hipparcos (hip_main.dat), HYG, or a table with ra, dec and mag; or with like the stars.csv of "
-      "a prepared picture; .gz too.");
+      "Stars: Hipparcos (hip_main.dat), HYG, or a table (CSV, VOTable, FITS) with ra, dec and mag; or with "
+      "like the stars.csv of a prepared picture; .gz and .bz2 too.");
     d(stars.like, "like", "Stars of", "",
       "The layer whose picture the catalogue's stars were found in (prepare's stars.csv): its surface, "
       "camera, depths and transform are theirs, and from that camera they look as in the picture.");

@@ -243,13 +243,15 @@ std::shared_ptr<const ColorEncoding> chromaticity_encoding(std::span<const float
     return encoding_of(set, curve, std::move(name));
 }
 
-std::shared_ptr<const ColorEncoding> png_encoding(const fs::path& file, std::string& problem) {
+std::shared_ptr<const ColorEncoding> png_encoding(const fs::path& file, bool has_profile,
+                                                  std::string& problem) {
     const auto chunks = png_chunks(file);
     const auto chunk = [&](std::string_view name, std::size_t size) -> std::string_view {
         const auto found = chunks.find(name);
         return found != chunks.end() && found->second.size() == size ? found->second : std::string_view();
     };
     if (const std::string_view code = chunk("cICP", 4); !code.empty()) return cicp_encoding(code, problem);
+    if (chunks.contains("iCCP") && !has_profile) problem = "ICC profile, which libpng refuses,";
     if (chunks.contains("iCCP") || !chunk("sRGB", 1).empty()) return {};
     const std::string_view gamma = chunk("gAMA", 4), primaries = chunk("cHRM", 32);
     if (gamma.empty() && primaries.empty()) return {};

@@ -39,8 +39,10 @@ std::shared_ptr<const ColorEncoding> chromaticity_encoding(std::span<const float
                                                            std::string name);
 
 /// Of the chunks cICP, sRGB, gAMA and cHRM of a PNG file, by their order of precedence (PNG 3, 4.3); where it
-/// has a profile, that comes before the last three and is not looked at here. Null: none says anything.
-std::shared_ptr<const ColorEncoding> png_encoding(const fs::path& file, std::string& problem);
+/// has a profile, that comes before the last three and is not looked at here: libpng reads it, or has not,
+/// which is a problem. Null: none says anything.
+std::shared_ptr<const ColorEncoding> png_encoding(const fs::path& file, bool has_profile,
+                                                  std::string& problem);
 
 /// The same with its tables, for a picture's integers up to `max_integer` (255, 65535; else without).
 std::shared_ptr<const ColorEncoding> with_tables(std::shared_ptr<const ColorEncoding> encoding,

@@ -1,7 +1,6 @@
 // CFITSIO calls, each checked, behind two functions.
 #include "source/fits.h"
 
-#include <fitsio.h>
 #include <fmt/format.h>
 #include <zlib.h>
 
@@ -10,54 +9,15 @@
 #include "core/file_format.h"
 #include "core/log.h"
 #include "core/memory.h"
+#include "core/packed_file.h"
 #include "core/real.h"
 #include "core/text.h"
+#include "source/fits_file.h"
 #include "source/value_layout.h"
 #include "source/xisf.h"
 
 namespace astrosplat {
 namespace {
-
-struct Close {
-    void operator()(fitsfile* file) const {
-        int status = 0;
-        fits_close_file(file, &status);
-    }
-};
-using Handle = std::unique_ptr<fitsfile, Close>;
-
-// Throws where CFITSIO did not succeed.
-void check(const fs::path& file, std::string_view doing, int status) {
-    if (status == 0) return;
-    std::array<char, FLEN_ERRMSG> reason{};
-    fits_get_errstatus(status, reason.data());
-    fits_clear_errmsg();
-    throw InputError(fmt::format("{}: FITS {} failed: {}", file.string(), doing, reason.data()));
-}
-
-// The plain name: brackets and blanks in it mean nothing special.
-Handle open_fits(const fs::path& file) {
-    require_readable(file);
-    check_fits_headers(file);
-    fitsfile* handle = nullptr;
-    int status = 0;
-    fits_open_diskfile(&handle, file.c_str(), READONLY, &status);
-    check(file, "opening", status);
-    return Handle(handle);
-}
-
-// False where the header has none.
-bool read_keyword(fitsfile* in, int type, const char* keyword, void* value) {
-    int status = 0;
-    fits_read_key(in, type, keyword, value, nullptr, &status);
-    fits_clear_errmsg();
-    return status == 0;
-}
-
-std::string text_keyword(fitsfile* in, const char* keyword) {
-    std::array<char, FLEN_VALUE> value{};
-    return read_keyword(in, TSTRING, keyword, value.data()) ? std::string(trim(value.data())) : "";
-}
 
 // DISTANCE with its unit in brackets at the beginning of the comment (FITS 4.0, section 4.3): light years.
 // Without one, or with another, it could be anything.
@@ -79,13 +39,6 @@ std::optional<double> distance_ly_of(fitsfile* in) {
     return value * unit->second;
 }
 
-int hdu_count(const fs::path& file, fitsfile* in) {
-    int count = 0, status = 0;
-    fits_get_num_hdus(in, &count, &status);
-    check(file, "reading the headers", status);
-    return count;
-}
-
 // Axes as they matter for pictures: those of length 1 dropped while more than two are left.
 std::vector<std::int64_t> picture_axes(std::vector<std::int64_t> axes) {
     for (std::size_t i = axes.size(); i-- > 0 && axes.size() > 2;)
@@ -99,14 +52,14 @@ FitsHdu go_to_hdu(const fs::path& file, fitsfile* in, int number) {
     hdu.number = number;
     int type = 0, status = 0;
     fits_movabs_hdu(in, number + 1, &type, &status);
-    check(file, fmt::format("moving to HDU {}", number), status);
-    hdu.name = text_keyword(in, "EXTNAME");
+    check_fits(file, fmt::format("moving to HDU {}", number), status);
+    hdu.name = fits_text(in, "EXTNAME");
     hdu.kind = "table";
     if (type != IMAGE_HDU) return hdu;
     int naxis = 0;
     std::array<LONGLONG, 99> axes{};
     fits_get_img_paramll(in, int(axes.size()), &hdu.bitpix, &naxis, axes.data(), &status);
-    check(file, fmt::format("reading the header of HDU {}", number), status);
+    check_fits(file, fmt::format("reading the header of HDU {}", number), status);
     hdu.axes.assign(axes.begin(), axes.begin() + naxis);
     const bool empty = naxis == 0 || std::ranges::find(hdu.axes, 0) != hdu.axes.end();
     int ignored = 0;
@@ -134,7 +87,7 @@ void read_into(const fs::path& file, fitsfile* in, std::int64_t first, std::int6
         fits_read_img(in, TDOUBLE, first + done + 1, std::min(portion, count - done), &undefined,
                       values + done, &any_undefined, &status);
     }
-    check(file, "reading the pixels", status);
+    check_fits(file, "reading the pixels", status);
 }
 
 constexpr std::int64_t most_bytes_a_pixel = 8;
@@ -142,12 +95,12 @@ constexpr std::int64_t most_bytes_a_pixel = 8;
 // Of one tile, as the header says.
 std::int64_t tile_pixels(fitsfile* in) {
     int axes = 0;
-    read_keyword(in, TINT, "ZNAXIS", &axes);
+    read_fits_keyword(in, TINT, "ZNAXIS", &axes);
     std::int64_t pixels = 1;
     for (int i = 1; i <= axes; ++i) {
         LONGLONG side = 1;
-        const bool tiled = read_keyword(in, TLONGLONG, fmt::format("ZTILE{}", i).c_str(), &side);
-        if (!tiled && i == 1) read_keyword(in, TLONGLONG, "ZNAXIS1", &side);  // rows of the picture
+        const bool tiled = read_fits_keyword(in, TLONGLONG, fmt::format("ZTILE{}", i).c_str(), &side);
+        if (!tiled && i == 1) read_fits_keyword(in, TLONGLONG, "ZNAXIS1", &side);  // rows of the picture
         pixels *= side;
     }
     return pixels;
@@ -199,7 +152,7 @@ void check_column(const fs::path& file, fitsfile* in, const char* name, std::int
 // else or more than its pixels. Pictures compressed otherwise pass.
 void check_gzip_tiles(const fs::path& file, fitsfile* in) {
     const std::int64_t most = most_bytes_a_pixel * tile_pixels(in);
-    if (text_keyword(in, "ZCMPTYPE").starts_with("GZIP")) check_column(file, in, "COMPRESSED_DATA", most);
+    if (fits_text(in, "ZCMPTYPE").starts_with("GZIP")) check_column(file, in, "COMPRESSED_DATA", most);
     check_column(file, in, "GZIP_COMPRESSED_DATA", most);  // where another method would have lost something
 }
 
@@ -267,7 +220,7 @@ FitsHdu automatic_hdu(const fs::path& file, fitsfile* in, int count, const Progr
 }
 
 FitsHdu find_hdu(const fs::path& file, fitsfile* in, const std::string& wanted, const Progress& progress) {
-    const int count = hdu_count(file, in);
+    const int count = fits_hdu_count(file, in);
     if (wanted == "auto") return automatic_hdu(file, in, count, progress);
     const std::optional<std::int64_t> number = parse_int64(wanted);
     if (number && (*number < 0 || *number >= count))
@@ -288,7 +241,7 @@ std::string cards_of(const fs::path& file, fitsfile* in) {
     char* cards = nullptr;
     int count = 0, status = 0;
     fits_hdr2str(in, 1, nullptr, 0, &cards, &count, &status);
-    check(file, "reading the header", status);
+    check_fits(file, "reading the header", status);
     std::string text(cards, std::size_t(count) * 80);
     fits_free_memory(cards, &status);
     return text;
@@ -296,7 +249,7 @@ std::string cards_of(const fs::path& file, fitsfile* in) {
 
 // Of an axis of three: not those of a spectrum, of polarisation or of time.
 bool is_of_colors(fitsfile* in, std::size_t axis) {
-    const std::string type = lower_case(text_keyword(in, fmt::format("CTYPE{}", axis + 1).c_str()));
+    const std::string type = lower_case(fits_text(in, fmt::format("CTYPE{}", axis + 1).c_str()));
     constexpr std::array others{"freq", "velo", "vrad", "vopt", "wave",   "awav", "ener",
                                 "wavn", "zopt", "beta", "felo", "stokes", "time", "utc"};
     return std::ranges::none_of(others, [&](const char* other) { return type.starts_with(other); });
@@ -306,9 +259,9 @@ bool is_of_colors(fitsfile* in, std::size_t axis) {
 // begins with the other row; of what says nothing the rows are as the camera's.
 std::optional<std::array<int, 4>> bayer_pattern(fitsfile* in, bool bottom_up) {
     int x = 0, y = 0;
-    read_keyword(in, TINT, "XBAYROFF", &x);
-    read_keyword(in, TINT, "YBAYROFF", &y);
-    return bayer_channels(text_keyword(in, "BAYERPAT"), x, bottom_up ? y + 1 : y);
+    read_fits_keyword(in, TINT, "XBAYROFF", &x);
+    read_fits_keyword(in, TINT, "YBAYROFF", &y);
+    return bayer_channels(fits_text(in, "BAYERPAT"), x, bottom_up ? y + 1 : y);
 }
 
 ValueLayout layout_of(const fs::path& file, fitsfile* in, const FitsHdu& hdu, std::optional<int> plane,
@@ -316,7 +269,7 @@ ValueLayout layout_of(const fs::path& file, fitsfile* in, const FitsHdu& hdu, st
     const std::vector<std::int64_t> axes = picture_axes(hdu.axes);
     ValueLayout layout;
     using Values = ValueLayout::Values;
-    const std::string order = text_keyword(in, "ROWORDER");
+    const std::string order = fits_text(in, "ROWORDER");
     layout.top_down = order == "TOP-DOWN";
     if (!order.empty() && !layout.top_down && order != "BOTTOM-UP")
         log_warning(fmt::format("{}: ROWORDER = '{}' is not followed: the first row is the lowest",
@@ -337,10 +290,10 @@ ValueLayout layout_of(const fs::path& file, fitsfile* in, const FitsHdu& hdu, st
         if (pattern && layout.width > 1 && layout.height > 1) {
             layout.values = Values::bayer;
             layout.pattern = *pattern;
-            layout.what = fmt::format("Bayer's mosaic {}", text_keyword(in, "BAYERPAT"));
-        } else if (!plane && !text_keyword(in, "BAYERPAT").empty()) {
+            layout.what = fmt::format("Bayer's mosaic {}", fits_text(in, "BAYERPAT"));
+        } else if (!plane && !fits_text(in, "BAYERPAT").empty()) {
             log_warning(fmt::format("{}: BAYERPAT = '{}' is not followed: the picture stays grey",
-                                    file.string(), text_keyword(in, "BAYERPAT")));
+                                    file.string(), fits_text(in, "BAYERPAT")));
         }
         return layout;
     }
@@ -365,22 +318,83 @@ ValueLayout layout_of(const fs::path& file, fitsfile* in, const FitsHdu& hdu, st
 
 }  // namespace
 
+void check_fits(const fs::path& file, std::string_view doing, int status) {
+    if (status == 0) return;
+    std::array<char, FLEN_ERRMSG> reason{};
+    fits_get_errstatus(status, reason.data());
+    fits_clear_errmsg();
+    throw InputError(fmt::format("{}: FITS {} failed: {}", file.string(), doing, reason.data()));
+}
+
+void FitsClose::operator()(fitsfile* file) const {
+    int status = 0;
+    fits_close_file(file, &status);
+}
+
+FitsFile open_fits(const fs::path& file, const Progress& progress) {
+    require_readable(file);
+    fitsfile* handle = nullptr;
+    int status = 0;
+    if (!is_packed(read_beginning(file, 4))) {
+        check_fits_headers(file);
+        fits_open_diskfile(&handle, file.c_str(), READONLY, &status);
+        check_fits(file, "opening", status);
+        return FitsFile(handle);
+    }
+    FitsClose close{std::make_unique<FitsClose::Memory>()};
+    FitsClose::Memory& memory = *close.memory;
+    memory.bytes = read_unpacked(file, progress);
+    check_fits_headers(file, &memory.bytes);
+    memory.begin = memory.bytes.data();
+    memory.size = memory.bytes.size();
+    fits_open_memfile(&handle, "unpacked", READONLY, &memory.begin, &memory.size, 0, nullptr, &status);
+    check_fits(file, "opening", status);
+    return FitsFile(handle, std::move(close));
+}
+
+bool read_fits_keyword(fitsfile* in, int type, const char* keyword, void* value) {
+    int status = 0;
+    fits_read_key(in, type, keyword, value, nullptr, &status);
+    fits_clear_errmsg();
+    return status == 0;
+}
+
+std::string fits_text(fitsfile* in, const char* keyword) {
+    std::array<char, FLEN_VALUE> value{};
+    return read_fits_keyword(in, TSTRING, keyword, value.data()) ? std::string(trim(value.data())) : "";
+}
+
+int fits_hdu_count(const fs::path& file, fitsfile* in) {
+    int count = 0, status = 0;
+    fits_get_num_hdus(in, &count, &status);
+    check_fits(file, "reading the headers", status);
+    return count;
+}
+
 bool is_fits(const fs::path& file) {
     const FileFormat* const format = format_of_file(file);
     return format && (format->id == "fits" || format->id == "xisf");
 }
 
+bool has_fits_picture(const fs::path& file) {
+    const FitsFile in = open_fits(file);
+    const int count = fits_hdu_count(file, in.get());
+    for (int i = 0; i < count; ++i)
+        if (go_to_hdu(file, in.get(), i).picture) return true;
+    return false;
+}
+
 void require_fits_picture(const fs::path& file) {
     if (is_xisf(file)) return void(open_xisf_rows(file, "auto", {}, {}));
-    const Handle in = open_fits(file);
+    const FitsFile in = open_fits(file);
     find_hdu(file, in.get(), "auto", {});
 }
 
 std::vector<FitsHdu> describe_fits(const fs::path& file, const Progress& progress) {
     if (is_xisf(file)) return describe_xisf(file, progress);
-    const Handle in = open_fits(file);
+    const FitsFile in = open_fits(file, progress);
     std::vector<FitsHdu> hdus;
-    const int count = hdu_count(file, in.get());
+    const int count = fits_hdu_count(file, in.get());
     for (int i = 0; i < count; ++i) {
         FitsHdu hdu = go_to_hdu(file, in.get(), i);
         if (hdu.kind == "image" || hdu.kind == "compressed image") {
@@ -398,7 +412,7 @@ std::vector<FitsHdu> describe_fits(const fs::path& file, const Progress& progres
 FitsRows open_fits_rows(const fs::path& file, const std::string& hdu, std::optional<int> plane,
                         const Progress& progress) {
     if (is_xisf(file)) return open_xisf_rows(file, hdu, plane, progress);
-    const std::shared_ptr<fitsfile> in(open_fits(file));
+    const std::shared_ptr<fitsfile> in(open_fits(file, progress));
     const FitsHdu found = find_hdu(file, in.get(), hdu, progress);
     check_tiles(file, in.get());
     const ValueLayout layout = layout_of(file, in.get(), found, plane, progress);
@@ -410,14 +424,14 @@ FitsRows open_fits_rows(const fs::path& file, const std::string& hdu, std::optio
     picture.hdu = found.number;
     picture.name = found.name;
     picture.what = layout.what;
-    picture.credit = text_keyword(in.get(), "AUTHOR");
-    if (picture.credit.empty()) picture.credit = text_keyword(in.get(), "ORIGIN");
-    picture.object = text_keyword(in.get(), "OBJECT");
-    picture.exposure = {text_keyword(in.get(), "TELESCOP"),
-                        text_keyword(in.get(), "INSTRUME"),
+    picture.credit = fits_text(in.get(), "AUTHOR");
+    if (picture.credit.empty()) picture.credit = fits_text(in.get(), "ORIGIN");
+    picture.object = fits_text(in.get(), "OBJECT");
+    picture.exposure = {fits_text(in.get(), "TELESCOP"),
+                        fits_text(in.get(), "INSTRUME"),
                         "",
                         "",
-                        text_keyword(in.get(), "FILTER"),
+                        fits_text(in.get(), "FILTER"),
                         ""};
     picture.distance_ly = distance_ly_of(in.get());
     picture.sky = read_fits_sky(file, cards_of(file, in.get()), layout.height, layout.top_down);

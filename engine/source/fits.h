@@ -51,13 +51,13 @@ class StretchCurve {
     double of_white_ = 1.0;  // what the curve makes of 1 before it is scaled
 };
 
-/// A look at a file before CFITSIO sees it, which trusts what is checked here: all HDUs, also of a gzip file,
-/// the cards of the tile compression convention (FITS 4.0, section 10.1) and the sizes of tables. Throws
-/// InputError "FILE:HDU n: expected ..." for one that cannot be. Headers that are damaged otherwise are left
-/// to CFITSIO.
-void check_fits_headers(const fs::path& file);
+/// A look at a file, or at what it was unpacked to, before CFITSIO sees it, which trusts what is checked
+/// here: of all HDUs the cards of the tile compression convention (FITS 4.0, section 10.1) and the sizes of
+/// tables. Throws InputError "FILE:HDU n: expected ..." for one that cannot be. Headers that are damaged
+/// otherwise are left to CFITSIO.
+void check_fits_headers(const fs::path& file, const std::string* unpacked = nullptr);
 
-/// By content, or a gzip file by its name. XISF, which holds the same (source/xisf.h), is FITS to all that
+/// By content, or a packed file by its name. XISF, which holds the same (source/xisf.h), is FITS to all that
 /// follows.
 bool is_fits(const fs::path& file);
 
@@ -74,6 +74,9 @@ struct FitsHdu {
 
 /// All HDUs with their statistics. Throws InputError, Cancelled.
 std::vector<FitsHdu> describe_fits(const fs::path& file, const Progress& progress = {});
+
+/// Whether an HDU holds a picture. Throws InputError.
+bool has_fits_picture(const fs::path& file);
 
 /// Throws InputError unless one of the HDUs holds a picture.
 void require_fits_picture(const fs::path& file);

@@ -1,13 +1,13 @@
 // CFITSIO 4.2 trusts the cards that describe a tile-compressed image: with one wrong byte in them it divides
 // by zero, writes out of bounds or aborts. Of a table whose sizes it cannot read it takes memory for any
-// number of columns. Cards have 80 characters, "KEYWORD = value / comment", in blocks of 2880 bytes; zlib
-// reads plain files too.
+// number of columns. Cards have 80 characters, "KEYWORD = value / comment", in blocks of 2880 bytes.
 #include <fmt/format.h>
-#include <zlib.h>
+#include <unistd.h>
 
 #include <map>
 
 #include "core/error.h"
+#include "core/file.h"
 #include "core/text.h"
 #include "source/fits.h"
 
@@ -16,7 +16,20 @@ namespace {
 
 constexpr std::size_t card_size = 80, block_size = 2880;
 using Cards = std::map<std::string, std::string, std::less<>>;  // keyword -> value as written
-using Stream = std::unique_ptr<gzFile_s, int (*)(gzFile)>;
+
+// The blocks of a file, or of what it was unpacked to, one after the other.
+struct Blocks {
+    const InputFile& in;
+    const std::string* unpacked;
+    std::int64_t at = 0;
+
+    bool next(char* block) {
+        const std::int64_t from = std::exchange(at, at + std::int64_t(block_size));
+        if (!unpacked) return ::pread(in.descriptor(), block, block_size, from) == ssize_t(block_size);
+        return from <= std::ssize(*unpacked) &&
+               unpacked->copy(block, block_size, std::size_t(from)) == block_size;
+    }
+};
 
 // The text between "= " and the comment.
 std::string value_text(std::string_view card) {
@@ -27,10 +40,10 @@ std::string value_text(std::string_view card) {
 }
 
 // False at the end of the file.
-bool read_header(gzFile in, Cards& cards) {
+bool read_header(Blocks& in, Cards& cards) {
     std::array<char, block_size> block{};
     cards.clear();
-    while (gzread(in, block.data(), block_size) == int(block_size)) {
+    while (in.next(block.data())) {
         for (std::size_t at = 0; at < block_size; at += card_size) {
             const std::string_view card(block.data() + at, card_size);
             const std::string_view keyword = trim(card.substr(0, 8));
@@ -178,18 +191,19 @@ struct Checker {
 
 }  // namespace
 
-void check_fits_headers(const fs::path& file) {
-    const Stream in(gzopen(file.c_str(), "rb"), gzclose);
-    if (!in) return;
+void check_fits_headers(const fs::path& file, const std::string* unpacked) {
+    const InputFile open(file);
+    Blocks in{open, unpacked};
     Cards cards;
-    for (int hdu = 0; read_header(in.get(), cards); ++hdu) {
+    for (int hdu = 0; read_header(in, cards); ++hdu) {
         const Checker checker{file.string(), fmt::format("HDU {}", hdu), cards};
         const auto image = cards.find("ZIMAGE"), extension = cards.find("XTENSION");
         if (extension != cards.end() && extension->second.find("TABLE") != std::string::npos)
             checker.check_table();
         if (image != cards.end() && image->second != "F") checker.check_compressed_image();
         const std::optional<std::int64_t> bytes = data_bytes(cards);
-        if (!bytes || gzseek(in.get(), *bytes, SEEK_CUR) < 0) return;
+        if (!bytes || *bytes > INT64_MAX - in.at - 2 * std::int64_t(block_size)) return;
+        in.at += *bytes;
     }
 }
 

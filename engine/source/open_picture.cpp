@@ -12,6 +12,7 @@
 #include "core/error.h"
 #include "core/file.h"
 #include "core/file_format.h"
+#include "core/memory.h"
 #include "core/text.h"
 
 namespace astrosplat {
@@ -54,6 +55,33 @@ std::size_t next_marker(std::string_view bytes, std::size_t at) {
     return std::string_view::npos;
 }
 
+// OpenJPEG decodes a picture where its file is opened, four bytes a value, and tries to hold any size. The
+// marker SIZ (ISO/IEC 15444-1, A.5.1) has it.
+void claim_jpeg2000(const fs::path& file) {
+    const std::string bytes = read_beginning(file, std::size_t{1} << 16);
+    const std::size_t at = bytes.find("\xff\x4f\xff\x51");
+    constexpr std::size_t sides = 8, origins = 16, channels = 40, end = 42;
+    if (at == bytes.npos || bytes.size() < at + end) return;
+    const auto number = [&](std::size_t from, std::size_t size) {
+        double value = 0.0;
+        for (std::size_t i = 0; i < size; ++i) value = 256.0 * value + byte_at(bytes, at + from + i);
+        return value;
+    };
+    double size = 4.0 * number(channels, 2);
+    for (const std::size_t side : {0, 4})
+        size *= std::fmax(0.0, number(sides + side, 4) - number(origins + side, 4));
+    claim_memory(std::int64_t(std::fmin(size, 9e18)), fmt::format("reading {}", file.string()));
+}
+
+// Values that OpenImageIO 2.4 scales beyond 31 bits come out wrong.
+void check_largest_of_pnm(const fs::path& file) {
+    int width = 0, height = 0, largest = 0;
+    std::sscanf(read_beginning(file, 64).c_str(), "P%*1[2356]%9d%9d%9d", &width, &height, &largest);
+    if (largest > 32768 && largest < 65535)
+        fail_picture(
+            file, fmt::format("its largest value is {}; save it with at most 32768, or with 65535", largest));
+}
+
 }  // namespace
 
 QuietStderr::QuietStderr() { ++quiet_depth; }
@@ -69,8 +97,10 @@ bool read_rows(OIIO::ImageInput& picture, int begin, int end, OIIO::TypeDesc for
 }
 
 void fail_picture(const fs::path& file, const std::string& reason) {
-    throw InputError(fmt::format("{}: cannot be read as a picture: {}", file.string(),
-                                 trim(reason.substr(0, reason.find('\n')))));
+    const std::string_view line = trim(std::string_view(reason).substr(0, reason.find('\n')));
+    throw InputError(
+        fmt::format("{}: cannot be read as a picture: {}", file.string(),
+                    line.empty() ? "its pixels end early, or are not as its header has them" : line));
 }
 
 std::unique_ptr<OIIO::ImageInput> open_picture(const fs::path& file) {
@@ -80,7 +110,14 @@ std::unique_ptr<OIIO::ImageInput> open_picture(const fs::path& file) {
         fail_picture(file, fmt::format("it is not {}", names_of(FileKind::picture)));
     const QuietStderr quiet;
     std::unique_ptr<OIIO::ImageInput> in = OIIO::ImageInput::create(std::string(format->id));
-    if (!in) fail_picture(file, OIIO::geterror());
+    if (!in) {
+        const std::string reason = OIIO::geterror();
+        fail_picture(file, fmt::format("this OpenImageIO reads no {}{}", format->name,
+                                       format->converter.empty() ? ": " + reason
+                                                                 : fmt::format("; {}", format->converter)));
+    }
+    if (format->id == "jpeg2000") claim_jpeg2000(file);
+    if (format->id == "pnm") check_largest_of_pnm(file);
     OIIO::ImageSpec spec, wish;
     wish.attribute("oiio:UnassociatedAlpha", 1);
     if (in->open(file.string(), spec, wish)) return in;

@@ -423,15 +423,15 @@ PartChoice choose_part(const fs::path& file, ImageInput& in, const std::string& 
     for (int i = 0; wanted == Wanted::depths && i < int(parts.size()); ++i)
         if (depth_channel(parts[i]) >= 0) return {i};
     const std::string_view format = in.format_name();
-    if (parts.size() < 2 || (format != "openexr" && format != "tiff")) return {};
+    if (parts.size() < 2 || format == "psd") return {};  // Photoshop's first is the whole picture
     if (format == "tiff" && are_channels(parts)) return {0, true};
     PartChoice choice;
-    std::int64_t candidates = 0;
+    std::int64_t candidates = std::ssize(parts);  // frames of an animation
     if (format == "tiff") {
         choice.first = best_page(in, parts);
         candidates =
             std::ranges::count_if(parts, [](const ImageSpec& page) { return !is_lesser_page(page); });
-    } else {
+    } else if (format == "openexr") {
         candidates = std::ranges::count_if(parts, has_colors);
         const auto has_light = [](const ImageSpec& spec) { return find_channel(spec, "Y") >= 0; };
         auto best = std::ranges::find_if(parts, has_colors);
@@ -454,8 +454,8 @@ std::shared_ptr<const ColorEncoding> encoding_of(const fs::path& file, ImageInpu
     std::string problem;
     std::shared_ptr<const ColorEncoding> encoding;
     const bool png = std::string_view(in.format_name()) == "png";
-    if (png) encoding = png_encoding(file, problem);
     const OIIO::ParamValue* const profile = spec.find_attribute("ICCProfile");
+    if (png) encoding = png_encoding(file, profile != nullptr, problem);
     if (!encoding && problem.empty() && profile && profile->type().basetype == OIIO::TypeDesc::UINT8)
         encoding = icc_encoding({static_cast<const std::uint8_t*>(profile->data()),
                                  static_cast<std::size_t>(profile->type().size())},
@@ -528,7 +528,9 @@ PictureRows open_picture_rows(const fs::path& file, const Progress& progress, co
     }
     picture.image = {result.rows.width, result.rows.height, result.rows.channels, {}};
     picture.max_integer = largest_integer(spec);
-    picture.associated = channels.alpha >= 0 && spec.get_int_attribute("oiio:UnassociatedAlpha", 0) == 0;
+    // The reader of JPEG 2000 heeds the wish for it without a word.
+    picture.associated = channels.alpha >= 0 && format != "jpeg2000" &&
+                         spec.get_int_attribute("oiio:UnassociatedAlpha", 0) == 0;
     picture.distances = wanted == Wanted::depths && depth_channel(spec) >= 0;
     picture.cube = is_cube_map(spec);
     picture.credit = find_credit(file, spec);

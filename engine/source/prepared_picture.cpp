@@ -34,7 +34,8 @@ struct PrepareInput {
 
 constexpr double saturated_integer = 0.98;  // of linear light, in pictures of integers
 
-PrepareInput input_of(const FitsPlane& plane, const Limits& limits, const TextureSettings& settings) {
+PrepareInput input_of(const FitsPlane& plane, const Limits& limits, const TextureSettings& settings,
+                      const fs::path& file) {
     PrepareInput input;
     input.image = make_image(plane.width, plane.height, 4);
     input.empty = make_mask(plane.width, plane.height);
@@ -51,6 +52,8 @@ PrepareInput input_of(const FitsPlane& plane, const Limits& limits, const Textur
         if (p[3] == 0.0f) std::fill_n(p, 3, 0.0f);
     }
     input.stretch = stretch_of(settings);
+    if (const auto colors = followed_colors(plane, input.stretch, file))
+        decode_colors(input.image, *colors, false);
     input.saturation = std::numeric_limits<double>::infinity();
     input.credit = plane.credit;
     input.sky = plane.sky;
@@ -146,7 +149,8 @@ PrepareInput read_prepare_input(const fs::path& file, const TextureSettings& set
     PrepareInput input;
     if (is_fits(file)) {
         const FitsPlane plane = read_fits(file, settings.hdu, settings.plane, progress);
-        input = input_of(plane, choose_limits(value_range(plane.values), settings, file.string()), settings);
+        input = input_of(plane, choose_limits(value_range(plane.values), settings, file.string()), settings,
+                         file);
     } else {
         input = input_of(read_stored(file, settings, progress), settings);
     }
@@ -183,8 +187,8 @@ PrepareInput read_pair(const fs::path& file, const TextureSettings& settings, Pr
         require_same(sum, sky);
         add_values(sky, sum);
         const Limits limits = choose_limits(value_range(sum.values), settings, file.string());
-        whole = input_of(sum, limits, settings);
-        starless = input_of(sky, limits, settings);
+        whole = input_of(sum, limits, settings, file);
+        starless = input_of(sky, limits, settings, file);
     } else {
         if (is_fits(file) || is_fits(other))
             bad_input(other, fmt::format("a file of the kind of {}", file.string()), "another");

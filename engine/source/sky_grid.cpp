@@ -18,6 +18,7 @@ namespace astrosplat {
 namespace {
 
 constexpr std::size_t card_length = 80;
+constexpr double most_degrees = 1e4;  // no header that means something goes around more often
 constexpr double nowhere = std::numeric_limits<double>::quiet_NaN();
 
 struct FreeWcs {
@@ -56,6 +57,10 @@ Wcs celestial_axes(wcsprm& all, std::string& problem) {
         return {};
     }
     if (all.lng < 0 || all.lat < 0) return {};
+    for (const int axis : {all.lng, all.lat})
+        if (!(std::fabs(all.crval[axis]) <= most_degrees))
+            problem = fmt::format("a reference at {} degrees", all.crval[axis]);
+    if (!problem.empty()) return {};
     int status = wcssub(1, &all, &count, axes, wcs.get());
     if (status == 0) status = wcsset(wcs.get());
     if (status != 0 || wcs->naxis != 2) problem = reason(*wcs, status);
@@ -67,6 +72,9 @@ struct Card {
     std::string_view keyword() const { return trim(std::string_view(text).substr(0, 8)); }
     bool is(std::string_view name) const { return keyword().starts_with(name); }
     bool says(std::string_view value) const { return text.find(value, 9) != std::string::npos; }
+    bool is_zero() const {
+        return text.find_first_of("123456789", 9) >= std::min(text.find('/'), text.size());
+    }
     /// Of PVi_m.
     int parameter() const {
         const std::string_view name = keyword();
@@ -88,7 +96,8 @@ std::string plain_cards(const fs::path& file, const std::string& all) {
     for (std::size_t at = 0; at + card_length <= all.size(); at += card_length)
         cards.push_back({all.substr(at, card_length)});
     const auto any = [&](const auto& wanted) { return std::ranges::any_of(cards, wanted); };
-    if (!any([](const Card& card) { return card.is("CD") || card.is("PC"); })) return {};
+    // WCSLIB takes a matrix of zeros for none.
+    if (!any([](const Card& card) { return (card.is("CD") || card.is("PC")) && !card.is_zero(); })) return {};
     for (Card& card : cards)
         if (card.is("CTYPE") || card.is("CPDIS") || card.is("CQDIS")) card.to_capitals();
     const bool sip = any([](const Card& card) { return card.is("CTYPE") && card.says("-SIP"); });
@@ -114,6 +123,17 @@ std::string plain_cards(const fs::path& file, const std::string& all) {
     std::string plain;
     for (const Card& card : cards) plain += card.text;
     return plain;
+}
+
+/// Of cards of which WCSLIB makes no sky: "the projection RA---TAB", where they mean one; or nothing.
+std::string celestial_type(const std::string& cards) {
+    for (std::size_t at = 0; at + card_length <= cards.size(); at += card_length) {
+        const Card card{cards.substr(at, card_length)};
+        if (!card.is("CTYPE") || !(card.says("'RA--") || card.says("LON-"))) continue;
+        const std::size_t begin = card.text.find('\'') + 1;
+        return "the projection " + card.text.substr(begin, card.text.find_first_of("' ", begin) - begin);
+    }
+    return {};
 }
 
 constexpr double j2000 = 2451545.0, julian_year = 365.25;
@@ -185,8 +205,9 @@ FitsSky read_fits_sky(const fs::path& file, std::string cards, std::int64_t heig
     } parsed;
     const int status = wcspih(cards.data(), int(cards.size() / card_length), WCSHDR_all, 0, &parsed.rejected,
                               &parsed.count, &parsed.wcs);
-    if (status != 0 || parsed.count < 1) return sky;
-    Wcs wcs = celestial_axes(parsed.wcs[0], sky.unfollowed);
+    Wcs wcs;
+    if (status == 0 && parsed.count > 0) wcs = celestial_axes(parsed.wcs[0], sky.unfollowed);
+    if (!wcs && sky.unfollowed.empty()) sky.unfollowed = celestial_type(cards);
     if (!wcs || !sky.unfollowed.empty()) return sky;
     auto grid = std::make_shared<SkyGrid>();
     grid->frame_ = frame_of(*wcs, grid->equinox_, sky.unfollowed);

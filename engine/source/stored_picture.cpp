@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "core/color.h"
+#include "core/log.h"
 #include "core/parallel.h"
 #include "image/channels.h"
 
@@ -11,12 +12,28 @@ namespace {
 
 using Settings = TextureSettings;
 
+}  // namespace
+
+std::shared_ptr<const ColorEncoding> followed_colors(const FitsPlane& plane, Settings::Stretch stretch,
+                                                     const fs::path& file) {
+    if (stretch == Settings::Stretch::linear) return plane.colors;
+    if (plane.colors && !plane.colors->is_rec709(TransferCurve::Kind::srgb))
+        log_warning(
+            fmt::format("{}: its {} is not followed: the stretch makes colours of sRGB "
+                        "(stretch = linear follows it)",
+                        file.string(), plane.colors->name));
+    return nullptr;
+}
+
+namespace {
+
 // Facts about a plane's picture, known before its pixels.
-Stored stored_without_pixels(const FitsPlane& plane, const Limits& limits, Settings::Stretch stretch) {
+Stored stored_without_pixels(const FitsPlane& plane, const Limits& limits, Settings::Stretch stretch,
+                             const fs::path& file) {
     Stored stored;
     stored.display_values = stretch != Settings::Stretch::linear;
     stored.picture.credit = plane.credit;
-    if (!stored.display_values) stored.picture.colors = plane.colors;
+    stored.picture.colors = followed_colors(plane, stretch, file);
     stored.picture.image = {plane.width, plane.height, 3, {}};
     stored.picture.summary =
         fmt::format("{}x{} px, HDU {}{}{}{}{}, {} stretch, black {:.6g}, white {:.6g}", plane.width,
@@ -35,7 +52,7 @@ void stretch_values(std::span<const double> values, int channels, const StretchC
 Stored stretched_plane(const FitsPlane& plane, const ValueRange& range, const Settings& settings,
                        const fs::path& file) {
     const Limits limits = choose_limits(range, settings, file.string());
-    Stored stored = stored_without_pixels(plane, limits, stretch_of(settings));
+    Stored stored = stored_without_pixels(plane, limits, stretch_of(settings), file);
     Image& image = stored.picture.image;
     image = unfilled_image(plane.width, plane.height, 3);
     stretch_values(plane.values, plane.channels,
@@ -63,7 +80,7 @@ StoredRows stretched_rows(const FitsRows& plane, const Settings& settings, const
     const Limits limits = choose_limits(range, settings, file.string());
     const StretchCurve curve(limits, stretch_of(settings), settings.softening);
     StoredRows result;
-    result.stored = stored_without_pixels(plane.plane, limits, stretch_of(settings));
+    result.stored = stored_without_pixels(plane.plane, limits, stretch_of(settings), file);
     result.rows = {plane.plane.width, plane.plane.height, 3,
                    [=](std::int64_t begin, std::int64_t end, float* rgb) {
                        const int channels = plane.plane.channels;

@@ -32,6 +32,11 @@ struct Stored {
 /// The meaning of automatic: asinh.
 TextureSettings::Stretch stretch_of(const TextureSettings& settings);
 
+/// The colours that a plane's profile names, where they are followed; stretched values are sRGB's, and a
+/// profile of others is a warning. Null: none.
+std::shared_ptr<const ColorEncoding> followed_colors(const FitsPlane& plane, TextureSettings::Stretch stretch,
+                                                     const fs::path& file);
+
 /// FITS is stretched between its limits. Throws InputError, which names `file`.
 Stored stored_of(RawPicture raw, const TextureSettings& settings, const fs::path& file);
 

@@ -31,7 +31,8 @@ void write_pda(const WriteTarget& target, const SplatSet& set, const Progress& p
 /// Gaussians as 3D Gaussian Splatting stores them: x y z, f_dc_*, f_rest_* of degree 1 to 3 (all red, all
 /// green, all blue), opacity (a logit), scale_* (logarithms), rot_* (w first); instead of f_dc_* red green
 /// blue (display values, floats or codes), and Mip-Splatting's filter_3D, which widens them. All else is
-/// skipped. Missing colour is white, missing alpha 1, missing distance 0.
+/// skipped. Missing colour is white, missing alpha 1, missing distance 0. SuperSplat's compressed Gaussians
+/// (vertices of packed_position and others, with an element chunk) are read, too.
 SplatSet read_ply(const fs::path& file, const Progress& progress = {});
 SplatColumns ply_columns(const fs::path& file);
 std::int64_t ply_splat_count(const fs::path& file);
@@ -56,5 +57,22 @@ SplatColumns gltf_splat_columns(const fs::path& file);
 SplatSet read_usda_splats(const fs::path& file, const Progress& progress = {});
 SplatColumns usda_splat_columns(const fs::path& file);
 std::int64_t usda_splat_count(const fs::path& file);
+
+/// Niantic's SPZ (.spz), versions 1 to 4. Y and z change signs, so that a capture lies as its PLY does;
+/// SPZ_ADOBE_coordinate_system is followed, other extensions are skipped with a warning. Trained antialiased,
+/// as we draw, or not makes no difference; harmonics of degree 4 are left out.
+SplatSet read_spz(const fs::path& file, const Progress& progress = {});
+SplatColumns spz_columns(const fs::path& file);
+std::int64_t spz_splat_count(const fs::path& file);
+
+/// antimatter15's .splat.
+SplatSet read_dot_splat(const fs::path& file, const Progress& progress = {});
+SplatColumns dot_splat_columns(const fs::path& file);
+std::int64_t dot_splat_splat_count(const fs::path& file);
+
+/// PlayCanvas' SOG of version 2, bundled (.sog).
+SplatSet read_sog(const fs::path& file, const Progress& progress = {});
+SplatColumns sog_columns(const fs::path& file);
+std::int64_t sog_splat_count(const fs::path& file);
 
 }  // namespace astrosplat

@@ -193,8 +193,6 @@ std::vector<Column> gaussian_columns(const PlyElement& vertex, const fs::path& f
 
 std::vector<Column> columns_of(const PlyElement& vertex, const fs::path& file) {
     if (holds_gaussians(vertex)) return gaussian_columns(vertex, file);
-    if (has_scalar(vertex, "packed_position"))
-        bad_input(file, "Gaussians that are not compressed", "packed_position and others");
     for (const std::string_view name : {"x", "y", "z"})
         if (!has_scalar(vertex, name))
             bad_input(file, "vertex properties x, y and z", "no " + std::string(name));
@@ -263,24 +261,32 @@ std::string header_text(const SplatSet& set, bool wide_ids) {
     return text + "end_header\n";
 }
 
-SplatSet read_ply_bytes(const fs::path& file, std::string_view bytes, const Progress& progress) {
-    const PlyHeader header = read_ply_header(file, bytes);
-    const std::size_t vertex = find_vertex(header, file);
+SplatSet read_vertices(const PlyHeader& header, std::size_t vertex, const fs::path& file,
+                       const Progress& progress) {
+    const PlyElement& element = header.elements[vertex];
     SplatTable table;
-    table.columns = columns_of(header.elements[vertex], file);
+    table.columns = columns_of(element, file);
     if (header.format == PlyFormat::ascii)
         read_ascii(header, vertex, table, file, progress);
     else
         read_binary_rows(header, vertex, table, file, progress);
     const bool gaussians = table.has(SplatColumn::scale), filtered = table.has(SplatColumn::radius);
     SplatSet set = finish_table(table, file);
-    set.credit = header.credit;
-    set.origin = header.origin;
-    if (set.size() == 0) log_warning(file.string() + ": holds no splats");
     if (!gaussians) return set;
-    if (!has_scalar(header.elements[vertex], mean_names[0]))
+    if (!has_scalar(element, mean_names[0]))
         for (glm::vec3& color : set.color) color = mean_coefficient(color);
     return finish_gaussians(std::move(set), {.trained = true, .display = true, .filtered = filtered}, file);
+}
+
+SplatSet read_ply_bytes(const fs::path& file, std::string_view bytes, const Progress& progress) {
+    const PlyHeader header = read_ply_header(file, bytes);
+    const std::size_t vertex = find_vertex(header, file);
+    SplatSet set = is_compressed_ply(header.elements[vertex]) ? read_compressed_ply(header, file, progress)
+                                                              : read_vertices(header, vertex, file, progress);
+    set.credit = header.credit;
+    set.origin = header.origin;
+    if (header.elements[vertex].count == 0) log_warning(file.string() + ": holds no splats");
+    return set;
 }
 
 }  // namespace
@@ -289,6 +295,7 @@ SplatColumns ply_columns(const fs::path& file) {
     return read_mapped(file, [&](std::string_view bytes) {
         const PlyHeader header = read_ply_header(file, bytes);
         const PlyElement& vertex = header.elements[find_vertex(header, file)];
+        if (is_compressed_ply(vertex)) return compressed_ply_columns(header, file);
         const SplatColumns columns = columns_held(columns_of(vertex, file));
         return holds_gaussians(vertex) ? columns | gaussian_set_columns(false) : columns;
     });

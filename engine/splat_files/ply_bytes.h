@@ -34,4 +34,10 @@ PlyHeader read_ply_header(const fs::path& file, std::string_view bytes);
 void read_binary_rows(const PlyHeader& header, std::size_t vertex, SplatTable& table, const fs::path& file,
                       const Progress& progress);
 
+/// SuperSplat's compressed Gaussians, whose vertices are four packed numbers, between the bounds of an
+/// element chunk, and an element sh. Throw InputError.
+bool is_compressed_ply(const PlyElement& vertex);
+SplatColumns compressed_ply_columns(const PlyHeader& header, const fs::path& file);
+SplatSet read_compressed_ply(const PlyHeader& header, const fs::path& file, const Progress& progress);
+
 }  // namespace astrosplat

@@ -30,6 +30,9 @@ constexpr Functions functions[] = {
     {"ply", read_ply, write_ply, ply_columns, ply_splat_count, ""},
     {"gltf", read_gltf_splats, nullptr, gltf_splat_columns, nullptr, gltf_gaussians},
     {"usda", read_usda_splats, nullptr, usda_splat_columns, usda_splat_count, usd_gaussians},
+    {"spz", read_spz, nullptr, spz_columns, spz_splat_count, ""},
+    {"splat", read_dot_splat, nullptr, dot_splat_columns, dot_splat_splat_count, ""},
+    {"sog", read_sog, nullptr, sog_columns, sog_splat_count, ""},
     {"splats", [](const auto& file, const auto& progress) { return read_native(file, progress); },
      [](const auto& file, const auto& set, const auto& progress) { write_native(file, set, progress); },
      native_columns, native_splat_count, "", true},
@@ -40,7 +43,7 @@ const Functions& functions_of(const FileFormat* format, const fs::path& file, Fi
         if (format && format->id == each.format && (use == FileUse::read || each.write)) return each;
     const std::string ending = file.extension().string();
     bad_input(file, fmt::format("one of the endings {}", fmt::join(endings_of({FileKind::splats}, use), " ")),
-              ending.empty() ? "none" : ending);
+              (ending.empty() ? "none" : ending) + std::string(conversion_advice(file)));
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
-// Splat files of any format: .pda (Maya ASCII particles), .ply, .splats (native), glTF and USD (read only).
+// Splat files of any format: .pda (Maya ASCII particles), .ply, .splats (native); and read only glTF, USD,
+// .spz, .splat and .sog.
 // This is the front door; formats.h and native.h have the readers and writers.
 #pragma once
 
@@ -16,7 +17,7 @@ SplatSet read_splats(const fs::path& file, const Progress& progress = {});
 /// normal, mesh, scale, rotation, harmonics, id. Throws InputError.
 std::vector<std::string> splat_attributes(const fs::path& file);
 
-/// How many splats a PDA, PLY, USD or native file says that it holds. Throws InputError.
+/// How many splats a file, but glTF, says that it holds. Throws InputError.
 std::int64_t splat_count(const fs::path& file);
 
 /// Whether a file is of such a format, and no glTF or USD that at its beginning does not speak of Gaussians:

@@ -3,14 +3,15 @@
 #include "stars/catalogue.h"
 
 #include <fmt/format.h>
-#include <zlib.h>
 
 #include "core/error.h"
-#include "core/file.h"
 #include "core/log.h"
-#include "core/memory.h"
+#include "core/packed_file.h"
 #include "core/real.h"
 #include "core/text.h"
+#include "source/file_tables.h"
+#include "source/fits.h"
+#include "source/xisf.h"
 #include "stars/star_set.h"
 
 namespace astrosplat {
@@ -26,9 +27,9 @@ std::string BadRows::text(std::int64_t rows) const {
     for (std::size_t i = 0; i < lines.size(); ++i)
         where += (i == 0 ? "" : i + 1 == lines.size() ? " and " : ", ") + fmt::format("{}", lines[i]);
     const bool more = count > std::int64_t(lines.size());
-    return fmt::format("{} of {} cannot be used, {} line{} {} (line {}: {})", count, counted(rows, "row"),
-                       more ? "first at" : "at", lines.size() == 1 ? "" : "s", where, lines.front(),
-                       printable(problem));
+    return fmt::format("{} of {} cannot be used, {} {}{} {} ({} {}: {})", count, counted(rows, "row"),
+                       more ? "first at" : "at", place, lines.size() == 1 ? "" : "s", where, place,
+                       lines.front(), printable(problem));
 }
 
 namespace {
@@ -54,11 +55,15 @@ bool within(const std::optional<double>& number, double lo, double hi) {
 
 bool usable(const std::optional<double>& number) { return number && *number > 0.0; }
 
-enum class RowUnits { degrees, hours };  // of right ascension
-
 /// The fields as they stand; empty ones are missing.
 struct StarFields {
     std::string_view ra, dec, magnitude, distance, parallax, color_index, blue = {}, bp_rp = {};
+};
+
+/// What the numbers of a table are multiplied by, and what its magnitudes are.
+struct RowUnits {
+    double ra = 1.0, ra_clock = 15.0, dec = 1.0, distance = 1.0, parallax = 1.0;
+    bool gaia_g = false;
 };
 
 /// Of dwarfs of the Sun's metals: Mucciarelli, Bellazzini & Massari 2021 (A&A 653, A90), table 1. It holds
@@ -67,6 +72,13 @@ struct StarFields {
 double temperature_of_bp_rp(double bp_rp) {
     const double c = std::clamp(bp_rp, -0.5, 5.0);
     return 5040.0 / (0.4929 + 0.5092 * c - 0.0353 * c * c);
+}
+
+/// Gaia DR3's documentation, section 5.5.1, table 5.9 (Riello et al. 2021, A&A 649, A3, appendix C): it holds
+/// from -0.5 to 5.
+std::optional<double> v_minus_g(double bp_rp) {
+    if (!(bp_rp >= -0.5 && bp_rp <= 5.0)) return {};
+    return 0.02704 - bp_rp * (0.01424 - bp_rp * (0.2156 - bp_rp * 0.01426));
 }
 
 /// "00 00 12.80", "-16:42:58.0" as one number; nothing where it is no such text.
@@ -92,23 +104,27 @@ struct StarRow {
     std::optional<double> ra_deg, dec_deg, magnitude, distance_pc, parallax_mas, color_index;
 
     /// The first field that is no number, as "expected ..., found ..."; empty where all are.
-    std::string read(const StarFields& fields, RowUnits units) {
+    std::string read(const StarFields& fields, const RowUnits& units) {
         const bool clock = !read_number(fields.ra, ra_deg);
         if (clock) ra_deg = sexagesimal(fields.ra);
         if (clock && !ra_deg) return no_number("right ascension", fields.ra);
-        if (ra_deg && (clock || units == RowUnits::hours)) *ra_deg *= 15.0;
+        if (ra_deg) *ra_deg *= clock ? units.ra_clock : units.ra;
         const bool dial = !read_number(fields.dec, dec_deg);
         if (dial) dec_deg = sexagesimal(fields.dec);
         if (dial && !dec_deg) return no_number("declination", fields.dec);
+        if (dec_deg && !dial) *dec_deg *= units.dec;
         if (!read_number(fields.magnitude, magnitude)) return no_number("the magnitude", fields.magnitude);
         if (!read_number(fields.distance, distance_pc)) return no_number("the distance", fields.distance);
         if (!read_number(fields.parallax, parallax_mas)) return no_number("the parallax", fields.parallax);
+        if (distance_pc) *distance_pc *= units.distance;
+        if (parallax_mas) *parallax_mas *= units.parallax;
         if (!read_number(fields.color_index, color_index)) return no_number("B-V", fields.color_index);
         std::optional<double> other;
         if (!read_number(fields.blue, other)) return no_number("B", fields.blue);
         if (!color_index && other && magnitude) color_index = *other - *magnitude;
         if (!read_number(fields.bp_rp, other)) return no_number("BP-RP", fields.bp_rp);
         if (!color_index && other) color_index = color_index_of(temperature_of_bp_rp(*other));
+        if (units.gaia_g && magnitude && other) *magnitude += v_minus_g(*other).value_or(0.0);
         return {};
     }
 
@@ -148,8 +164,8 @@ enum HipparcosField {
 std::string read_row(const std::vector<std::string_view>& field, CatalogueStar& star) {
     if (field.size() < fields) return fmt::format("expected {} fields, found {}", +fields, field.size());
     StarRow row;
-    std::string problem = row.read(
-        {field[ra], field[dec], field[v_magnitude], "", field[parallax], field[b_v]}, RowUnits::degrees);
+    std::string problem =
+        row.read({field[ra], field[dec], field[v_magnitude], "", field[parallax], field[b_v]}, {});
     if (!row.ra_deg && !row.dec_deg) {
         row.ra_deg = sexagesimal(field[ra_hms]);
         if (row.ra_deg) *row.ra_deg *= 15.0;
@@ -173,53 +189,149 @@ StarCatalogue parse_hipparcos(std::string_view text, const Progress& progress) {
 constexpr double hyg_unknown_pc = 100000.0;  // how HYG writes that it knows no distance
 constexpr std::size_t most_shown = 60;       // characters of a line in a message
 
-/// By what Gaia's archive, VizieR, SIMBAD, HYG and people call them; the first that a table has.
+struct Unit {
+    double factor;
+    std::string_view names;
+};
+
+constexpr double degrees_a_radian = 180.0 / real::pi, parsec_a_ly = 1.0 / 3.261563777;
+constexpr Unit angles[] = {{1.0, "deg degree degrees d:m:s"},
+                           {15.0, "h hr hour hours hourangle h:m:s hms"},
+                           {degrees_a_radian, "rad radian radians"},
+                           {1.0 / 3600.0, "arcsec"}};
+constexpr Unit magnitudes[] = {{1.0, "mag magnitude"}};
+constexpr Unit distances[] = {
+    {1.0, "pc"}, {1e3, "kpc"}, {1e6, "mpc"}, {parsec_a_ly, "ly lyr"}, {au_pc, "au"}};
+constexpr Unit parallaxes[] = {{1.0, "mas"}, {1e3, "arcsec"}, {1e-3, "uas"}, {3.6e6, "deg"}};
+
+/// What a star needs: the columns that hold it, by what Gaia's archive, VizieR, SIMBAD, HYG and people call
+/// them, else by how their UCDs begin (IVOA UCD1+ 1.5, and those of before), the best first.
+struct Quantity {
+    std::string_view name, names, ucds;
+    std::span<const Unit> units;
+};
+enum QuantityId { of_ra, of_dec, of_magnitude, of_distance, of_parallax, of_color_index, of_bp_rp };
+constexpr Quantity quantities[] = {
+    {"ra", "ra ra_d _raj2000 raj2000 ra_icrs _ra.icrs _ra ra_deg radeg raicrs rarad",
+     "pos.eq.ra;meta.main pos.eq.ra pos_eq_ra_main", angles},
+    {"dec", "dec dec_d _dej2000 dej2000 de_icrs _de.icrs _de dec_deg dedeg deicrs derad de",
+     "pos.eq.dec;meta.main pos.eq.dec pos_eq_dec_main", angles},
+    {"mag", "mag vmag v flux_v phot_g_mean_mag gmag hpmag vtmag",
+     "phot.mag;em.opt.v phot_jhn_v phot.mag;em.opt phot.mag", magnitudes},
+    {"distance", "dist distance", "pos.distance", distances},
+    {"parallax", "parallax plx plx_value", "pos.parallax pos_parlx_trig", parallaxes},
+    {"B-V", "bv b_v b-v ci", "phot.color;em.opt.b;em.opt.v", magnitudes},
+    {"BP-RP", "bp_rp bp-rp", "", magnitudes}};
+
+std::vector<std::string_view> words_of(std::string_view text) {
+    TextRows rows(text);
+    return rows.next() ? rows.fields() : std::vector<std::string_view>();
+}
+
+struct Column {
+    int index = RowTable::none;
+    double factor = 1.0;
+    std::string unit;    // as the table says it, in lower case; empty: it does not
+    std::string by_ucd;  // "k (phot.mag;em.ir.k)"; empty: its name says it
+    std::string wrong;   // where there is one but of a unit of something else: "Vmag in 'Jy'"
+
+    Column(const RowTable& table, const Quantity& quantity) {
+        std::vector<int> found;
+        for (const std::string_view name : words_of(quantity.names))
+            if (const int i = table.column({name}); i != RowTable::none) found.push_back(i);
+        const std::size_t named = found.size();
+        for (const std::string_view ucd : words_of(quantity.ucds))
+            for (int i = 0; i < int(table.columns().size()); ++i)
+                if (const NamedColumn& c = table.columns()[std::size_t(i)];
+                    !c.name.empty() && c.ucd.starts_with(ucd) &&
+                    std::string_view(";.").find((c.ucd + ";")[ucd.size()]) != std::string_view::npos)
+                    found.push_back(i);
+        for (std::size_t k = 0; k < found.size() && index == RowTable::none; ++k) {
+            const NamedColumn& column = table.columns()[std::size_t(found[k])];
+            std::string said = lower_case(column.unit);
+            std::erase_if(said, [](char c) { return c == '"' || c == ' ' || c == '[' || c == ']'; });
+            const auto known = std::ranges::find_if(quantity.units, [&](const Unit& u) {
+                return std::ranges::count(words_of(u.names), said) > 0;
+            });
+            if (!said.empty() && known == quantity.units.end()) {
+                if (wrong.empty())
+                    wrong = fmt::format("{} in {}", printable(column.name), shown(column.unit));
+                continue;
+            }
+            index = found[k];
+            if (k >= named) by_ucd = fmt::format("{} ({})", printable(column.name), printable(column.ucd));
+            factor = said.empty() ? 1.0 : known->factor;
+            unit = std::move(said);
+        }
+    }
+};
+
+/// The first column for each quantity.
 struct Columns {
-    explicit Columns(const TextTable& table)
-        : ra(table.column({"ra", "ra_d", "_raj2000", "raj2000", "ra_icrs", "_ra.icrs", "_ra", "ra_deg",
-                           "radeg", "raicrs", "rarad"})),
-          dec(table.column({"dec", "dec_d", "_dej2000", "dej2000", "de_icrs", "_de.icrs", "_de", "dec_deg",
-                            "dedeg", "deicrs", "derad", "de"})),
-          magnitude(
-              table.column({"mag", "vmag", "v", "flux_v", "phot_g_mean_mag", "gmag", "hpmag", "vtmag"})),
-          distance(table.column({"dist", "distance"})),
-          parallax(table.column({"parallax", "plx", "plx_value"})),
-          color_index(table.column({"bv", "b_v", "b-v", "ci"})),
-          bp_rp(table.column({"bp_rp", "bp-rp"})) {
-        hyg = true;
+    explicit Columns(const RowTable& table) {
+        for (const Quantity& quantity : quantities) all.emplace_back(table, quantity);
+        const auto is_one_of = [&](const Column& column, std::initializer_list<std::string_view> names) {
+            return std::ranges::any_of(names, [&](std::string_view name) {
+                return column.index != RowTable::none && column.index == table.column({name});
+            });
+        };
+        bool hyg = true;
         for (const char* const name : {"hip", "hd", "hr", "gl", "proper"})
-            hyg = hyg && table.column({name}) != TextTable::none;
+            hyg = hyg && table.column({name}) != RowTable::none;
         from_hyg =
-            hyg || (table.column({"proper"}) != TextTable::none && table.column({"ci"}) != TextTable::none);
+            hyg || (table.column({"proper"}) != RowTable::none && table.column({"ci"}) != RowTable::none);
         constexpr std::pair<const char*, const char*> pairs[] = {
             {"v", "b"}, {"vmag", "bmag"}, {"flux_v", "flux_b"}};
         for (const auto& [v, b] : pairs)
-            if (magnitude == table.column({v}) && blue == TextTable::none) blue = table.column({b});
-        may_be_hours = !hyg && ra == table.column({"ra"});
-        may_be_radians = ra == table.column({"rarad"}) && dec == table.column({"derad"});
+            if (is_one_of(magnitude(), {v}) && blue == RowTable::none) blue = table.column({b});
+        may_be_hours = !hyg && ra().unit.empty() && is_one_of(ra(), {"ra"});
+        may_be_radians = ra().unit.empty() && dec().unit.empty() && is_one_of(ra(), {"rarad"}) &&
+                         is_one_of(dec(), {"derad"});
+        units = {hyg && ra().unit.empty() ? 15.0 : ra().factor,
+                 ra().unit.starts_with("d:") ? 1.0 : 15.0,
+                 dec().factor,
+                 all[of_distance].factor,
+                 all[of_parallax].factor,
+                 is_one_of(magnitude(), {"phot_g_mean_mag", "gmag"})};
     }
 
-    bool complete() const { return std::ranges::min({ra, dec, magnitude}) != TextTable::none; }
-    /// Of ra, dec and mag those that it lacks.
+    const Column& ra() const { return all[of_ra]; }
+    const Column& dec() const { return all[of_dec]; }
+    const Column& magnitude() const { return all[of_magnitude]; }
+
+    bool complete() const { return missing().empty(); }
+    /// Of ra, dec and mag those that it lacks, with what is there in their place.
     std::string missing() const {
         std::string names;
-        for (const auto& [column, name] :
-             {std::pair(ra, "ra"), std::pair(dec, "dec"), std::pair(magnitude, "mag")})
-            if (column == TextTable::none) names += fmt::format("{}{}", names.empty() ? "" : ", ", name);
+        for (std::size_t i = 0; i < 3; ++i)
+            if (all[i].index == RowTable::none)
+                names += fmt::format("{}{}{}", names.empty() ? "" : ", ", quantities[i].name,
+                                     all[i].wrong.empty() ? "" : " (but " + all[i].wrong + ")");
         return names;
     }
+    void warn_of_others(const std::string& name) const {
+        if (const std::string& taken = magnitude().by_ucd;
+            !taken.empty() && taken.find("em.opt.v") == taken.npos && taken.find("jhn_v") == taken.npos)
+            log_warning(fmt::format("{}: {} is taken for the magnitude", printable(name), taken));
+        for (std::size_t i = 3; i < all.size(); ++i)
+            if (all[i].index == RowTable::none && !all[i].wrong.empty())
+                log_warning(fmt::format("{}: {} is not followed as {}", printable(name), all[i].wrong,
+                                        quantities[i].name));
+    }
 
-    int ra, dec, magnitude, distance, parallax, color_index, bp_rp, blue = TextTable::none;
-    bool hyg, from_hyg, may_be_hours, may_be_radians;
+    std::vector<Column> all;
+    RowUnits units;
+    int blue = RowTable::none;
+    bool from_hyg = false, may_be_hours = false, may_be_radians = false;
 };
 
-std::string read_table_row(const TextTable& table, const Columns& columns, CatalogueStar& star) {
+std::string read_table_row(const RowTable& table, const Columns& columns, CatalogueStar& star) {
     StarRow row;
+    const auto field = [&](QuantityId id) { return table.field(columns.all[id].index); };
     std::string problem =
-        row.read({table.field(columns.ra), table.field(columns.dec), table.field(columns.magnitude),
-                  table.field(columns.distance), table.field(columns.parallax),
-                  table.field(columns.color_index), table.field(columns.blue), table.field(columns.bp_rp)},
-                 columns.hyg ? RowUnits::hours : RowUnits::degrees);
+        row.read({field(of_ra), field(of_dec), field(of_magnitude), field(of_distance), field(of_parallax),
+                  field(of_color_index), table.field(columns.blue), field(of_bp_rp)},
+                 columns.units);
     if (columns.from_hyg && row.distance_pc && *row.distance_pc >= hyg_unknown_pc) row.distance_pc.reset();
     return problem.empty() ? row.to_star(star) : problem;
 }
@@ -263,12 +375,21 @@ std::string_view from_header(std::string_view text) {
 
 /// Units or dashes, as VizieR has them below the names.
 bool is_below_header(const TextTable& table, const Columns& columns) {
-    return std::ranges::none_of(std::array{columns.ra, columns.dec, columns.magnitude},
-                                [&](int column) {
-                                    return table.field(column).find_first_of("0123456789") !=
-                                           std::string_view::npos;
-                                }) &&
-           !table.field(columns.ra).empty();
+    return std::ranges::none_of(
+               std::array{columns.ra().index, columns.dec().index, columns.magnitude().index},
+               [&](int column) {
+                   return table.field(column).find_first_of("0123456789") != std::string_view::npos;
+               }) &&
+           !table.field(columns.ra().index).empty();
+}
+
+/// From the present row on, `above` lines below the first. Throws Cancelled.
+void add_rows(StarCatalogue& catalogue, RowTable& table, const Columns& columns, std::int64_t above,
+              const Progress& progress) {
+    do {
+        catalogue.add(table.line() + above, progress,
+                      [&](CatalogueStar& star) { return read_table_row(table, columns, star); });
+    } while (table.next());
 }
 
 /// Throws InputError where the columns of ra, dec or mag are missing; Cancelled.
@@ -276,17 +397,46 @@ StarCatalogue parse_columns(std::string_view all, const std::string& name, const
     const std::string_view text = from_header(all);
     const auto above = std::count(all.begin(), all.begin() + (text.data() - all.data()), '\n');
     TextTable table(text);
-    const Columns columns(table);
-    if (!columns.complete())
-        bad_input(
-            name, fmt::format("line {}", table.line()),
-            "a Hipparcos catalogue, or names of columns with ra, dec and mag among them",
-            fmt::format("no {} in '{}'", columns.missing(), printable(table.header().substr(0, most_shown))));
+    Columns columns(table);
+    const auto require = [&] {
+        if (!columns.complete())
+            bad_input(name, fmt::format("line {}", table.line()),
+                      "a Hipparcos catalogue, or names of columns with ra, dec and mag among them",
+                      fmt::format("no {} in '{}'", columns.missing(),
+                                  printable(table.header().substr(0, most_shown))));
+    };
+    require();
     StarCatalogue catalogue;
-    while (table.next())
-        if (catalogue.rows > 0 || !is_below_header(table, columns))
-            catalogue.add(table.line() + above, progress,
-                          [&](CatalogueStar& star) { return read_table_row(table, columns, star); });
+    bool more = table.next();
+    for (; more && is_below_header(table, columns); more = table.next()) {
+        table.take_units();
+        columns = Columns(table);
+        require();
+    }
+    columns.warn_of_others(name);
+    if (more) add_rows(catalogue, table, columns, above, progress);
+    set_units(catalogue, columns, name);
+    return catalogue;
+}
+
+/// Of the first table that has stars. Throws InputError where none has; Cancelled.
+StarCatalogue parse_tables(const std::vector<FileTable>& tables, const std::string& name,
+                           const Progress& progress) {
+    const auto is_complete = [](const FileTable& table) { return Columns(*table.rows).complete(); };
+    const auto taken = std::ranges::find_if(tables, is_complete);
+    if (taken == tables.end())
+        bad_input(name, "a table with ra, dec and mag among its columns",
+                  tables.size() == 1 ? "no " + Columns(*tables[0].rows).missing()
+                                     : fmt::format("none in {}", counted(std::ssize(tables), "table")));
+    if (const auto count = std::ranges::count_if(tables, is_complete); count > 1)
+        log_warning(
+            fmt::format("{}: {} tables hold stars; {} is taken", printable(name), count, taken->title));
+    RowTable& table = *taken->rows;
+    const Columns columns(table);
+    columns.warn_of_others(name);
+    StarCatalogue catalogue;
+    catalogue.bad.place = "row";
+    if (table.next()) add_rows(catalogue, table, columns, 0, progress);
     set_units(catalogue, columns, name);
     return catalogue;
 }
@@ -296,95 +446,41 @@ bool is_hipparcos(std::string_view first_line) {
     return line.starts_with('H') && trim(line.substr(1)).starts_with('|');
 }
 
-// ---- text that may be packed
-
-constexpr std::size_t block_bytes = std::size_t{1} << 22;
-constexpr int any_gzip = 15 + 16;  // zlib: the largest window, and gzip's own header
-
-// A gzip file may be several of them one after the other.
-class Inflater {
-  public:
-    Inflater(std::string_view packed, std::string name) : name_(std::move(name)) {
-        stream_.next_in =
-            reinterpret_cast<Bytef*>(const_cast<char*>(packed.data()));  // which zlib only reads
-        left_ = packed.size();
-    }
-
-    /// Adds the next block to `text`; false at the end. Throws InputError.
-    bool add_block(std::string& text) {
-        if (done_) return false;
-        feed();
-        const std::size_t have = text.size();
-        text.resize(have + block_bytes);
-        stream_.next_out = reinterpret_cast<Bytef*>(text.data() + have);
-        stream_.avail_out = static_cast<uInt>(block_bytes);
-        while (!done_ && stream_.avail_out > 0) step();
-        text.resize(text.size() - stream_.avail_out);
-        return true;
-    }
-
-  private:
-    void feed() {
-        if (stream_.avail_in > 0) return;
-        stream_.avail_in = static_cast<uInt>(std::min<std::size_t>(left_, 1u << 30));
-        left_ -= stream_.avail_in;
-    }
-
-    void step() {
-        if (!open_) {
-            if (inflateInit2(&stream_, any_gzip) != Z_OK) throw std::bad_alloc();
-            open_.reset(&stream_);
-        }
-        feed();
-        const int result = inflate(&stream_, Z_NO_FLUSH);
-        if (result == Z_STREAM_END) {
-            open_.reset();
-            feed();
-            const bool more = stream_.avail_in >= 2 && stream_.next_in[0] == 0x1f;
-            done_ = !more;
-        } else if (result != Z_OK) {
-            bad_input(name_, "a whole gzip file", "damaged data");
-        }
-    }
-
-    std::string name_;
-    z_stream stream_{};
-    std::unique_ptr<z_stream, int (*)(z_stream*)> open_{nullptr, inflateEnd};
-    std::size_t left_ = 0;
-    bool done_ = false;
-};
-
-}  // namespace
-
-bool is_catalogue(std::string_view text) {
-    TextRows rows(text);
-    return rows.next() && (is_hipparcos(rows.text()) || Columns(TextTable(from_header(text))).complete());
-}
-
-StarCatalogue parse_catalogue(std::string_view text, const std::string& name, const Progress& progress) {
-    TextRows first(text);
-    if (!first.next()) bad_input(name, "a star catalogue", "an empty file");
-    StarCatalogue catalogue =
-        is_hipparcos(first.text()) ? parse_hipparcos(text, progress) : parse_columns(text, name, progress);
+StarCatalogue with_stars(StarCatalogue catalogue, const std::string& name) {
     if (catalogue.stars.empty())
         bad_input(name, "at least one star",
                   catalogue.rows == 0 ? "none" : "none: " + catalogue.bad.text(catalogue.rows));
     return catalogue;
 }
 
-std::string read_catalogue_text(const fs::path& file, const Progress& progress) {
-    const std::string bytes = read_file(file, progress);
-    if (!bytes.starts_with("\x1f\x8b")) return bytes;
-    std::string text;
-    for (Inflater inflater(bytes, file.string()); inflater.add_block(text);) {
-        progress.check();
-        claim_memory(std::int64_t(text.size()), fmt::format("reading {}", file.string()));
-    }
-    return text;
+}  // namespace
+
+bool is_catalogue(std::string_view text) {
+    TextRows rows(text);
+    return is_votable(text) ||
+           (rows.next() && (is_hipparcos(rows.text()) || Columns(TextTable(from_header(text))).complete()));
+}
+
+bool is_fits_catalogue(const fs::path& file) {
+    if (!is_fits(file) || is_xisf(file) || has_fits_picture(file)) return false;
+    return std::ranges::any_of(fits_tables(file),
+                               [](const FileTable& table) { return Columns(*table.rows).complete(); });
+}
+
+StarCatalogue parse_catalogue(std::string text, const std::string& name, const Progress& progress) {
+    if (is_votable(text))
+        return with_stars(parse_tables(votables(std::move(text), name, progress), name, progress), name);
+    TextRows first(text);
+    if (!first.next()) bad_input(name, "a star catalogue", "an empty file");
+    return with_stars(
+        is_hipparcos(first.text()) ? parse_hipparcos(text, progress) : parse_columns(text, name, progress),
+        name);
 }
 
 StarCatalogue read_catalogue(const fs::path& file, const Progress& progress) {
-    return parse_catalogue(read_catalogue_text(file, progress), file.string(), progress);
+    if (is_fits(file) && !is_xisf(file))
+        return with_stars(parse_tables(fits_tables(file, progress), file.string(), progress), file.string());
+    return parse_catalogue(read_unpacked(file, progress), file.string(), progress);
 }
 
 }  // namespace astrosplat

@@ -25,6 +25,7 @@ struct CatalogueStar {
 struct BadRows {
     std::int64_t count = 0;
     std::vector<std::int64_t> lines;  // of the first three
+    std::string place = "line";       // what they count
     std::string problem;              // of the first: "expected ..., found ..."
 
     void add(std::int64_t line, const std::string& what);
@@ -66,14 +67,13 @@ using StarCatalogue = StarRows<CatalogueStar>;
 StarCatalogue read_catalogue(const fs::path& file, const Progress& progress = {});
 
 /// The same of its text; `name` begins messages.
-StarCatalogue parse_catalogue(std::string_view text, const std::string& name, const Progress& progress = {});
+StarCatalogue parse_catalogue(std::string text, const std::string& name, const Progress& progress = {});
 
 /// Whether a text begins as a catalogue does which read_catalogue() takes.
 bool is_catalogue(std::string_view text);
 
-/// The text of a file, gzip-compressed or not, whatever its name. Throws InputError for files that cannot be
-/// read, damaged gzip data and text larger than the memory left; Cancelled.
-std::string read_catalogue_text(const fs::path& file, const Progress& progress = {});
+/// Whether a FITS file without a picture has a table which read_catalogue() takes. Throws InputError.
+bool is_fits_catalogue(const fs::path& file);
 
 // ---- the stars of a picture
 

@@ -4,6 +4,7 @@
 
 #include "core/error.h"
 #include "core/file.h"
+#include "core/packed_file.h"
 #include "core/sorting.h"
 #include "core/text.h"
 
@@ -56,7 +57,7 @@ constexpr std::size_t beginning_bytes = 1 << 16;  // VizieR writes pages of comm
 
 std::string beginning_of(const fs::path& file) {
     const std::string bytes = read_beginning(file, beginning_bytes);
-    return bytes.starts_with("\x1f\x8b") ? read_catalogue_text(file).substr(0, beginning_bytes) : bytes;
+    return is_packed(bytes) ? read_unpacked(file).substr(0, beginning_bytes) : bytes;
 }
 
 }  // namespace
@@ -76,7 +77,7 @@ PictureTable parse_picture_table(std::string_view text, const std::string& name,
 }
 
 PictureTable read_picture_table(const fs::path& file, const Progress& progress) {
-    return parse_picture_table(read_catalogue_text(file, progress), file.string(), progress);
+    return parse_picture_table(read_unpacked(file, progress), file.string(), progress);
 }
 
 double median_sigma_px(const PictureTable& table) {
@@ -87,6 +88,7 @@ double median_sigma_px(const PictureTable& table) {
 }
 
 CatalogueKind kind_of_catalogue(const fs::path& file) {
+    if (is_fits_catalogue(file)) return CatalogueKind::sky;
     const std::string text = beginning_of(file);
     if (text.find('\0') != text.npos) return CatalogueKind::none;
     TextRows rows(text);

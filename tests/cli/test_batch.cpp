@@ -522,6 +522,9 @@ TEST_F(ColorConfigBatch, OneLineAndNothingIsStarted) {
     const RunResult none = one("a.png", {"--set", "output.ocio.view=\"Film\""});
     EXPECT_EQ(none.code, 2);
     EXPECT_HAS(none.err, "output.ocio.config: expected a file");
+    for (const RunResult& inside : {one("a.png", {"--set", "output.ocio.config=\"ocio://default\""}),
+                                    one("a.png", {"--set", "output.ocio.view=\"x\""}, "ocio://default")})
+        expect_one_line(inside, 2, "ocio://default: expected a configuration's file");
     EXPECT_FALSE(fs::exists(folder / "a.png"));
 }
 

@@ -167,7 +167,7 @@ TEST_F(Export, CountIsABudgetOfAllLayers) {
 }
 
 TEST_F(Export, RefusesWhatItCannotDo) {
-    expect_one_line(run(arguments("model.obj")), 2, ".ply, .glb, .usda or .vdb");
+    expect_one_line(run(arguments("model.obj")), 2, ".ply, .glb, .usda, .spz or .vdb");
     const auto with = [&](const std::string& option, const std::string& value) {
         Words words = arguments("model.ply");
         return run(joined(words, {option, value}));
@@ -442,6 +442,44 @@ space = "display"
         expect_success(run({"--batch", ending + ".toml", "--progress", "none"}));
     }
     expect_success(run({"compare", "ply.exr", "glb.exr", "--max-difference", "0.001"}));
+}
+
+// SPZ: splat-transform's of the same million splats is no more than 5 % smaller, it reads ours, and all the
+// files that it packs show what its PLY shows.
+TEST_F(ReadersNightly, SpzIsAsSmallAsTheirsAndTheirPackedFilesLookAlike) {
+    if (is_absent("@playcanvas/splat-transform")) GTEST_SKIP() << skipped;
+    write_text(folder / "large.ply", ply_of(capture(1000000, 0, 0.05), 0));
+    write_text(folder / "large.toml",
+               scene_of("large.ply", "render = { isolate = true, space = \"display\" }\n"));
+    for (const std::string file : {"large.ply", "own.spz"})
+        expect_success(run({"export", "large.toml", "-o", file, "--overwrite", "--progress", "none"}));
+    expect_success(transform("large.ply", "theirs.spz"));
+    const auto own = double(fs::file_size(folder / "own.spz")),
+               theirs = double(fs::file_size(folder / "theirs.spz"));
+    EXPECT_NEAR(own / theirs, 1.0, 0.05);
+
+    write_text(folder / "capture.ply", ply_of(capture(500, 2), 2));
+    write_text(folder / "capture.toml",
+               scene_of("capture.ply", "render = { isolate = true, space = \"display\" }\n"));
+    expect_success(run({"export", "capture.toml", "-o", "ours.spz", "--progress", "none"}));
+    expect_success(transform("ours.spz", "ours.ply"));
+    const auto shown = [&](const std::string& file) {
+        const std::string picture = file + ".exr";
+        expect_success(run({"--batch", "capture.toml", "--set", "layer.splats.source.file=" + file, "-o",
+                            picture, "--progress", "none"}));
+        return picture;
+    };
+    expect_success(run({"compare", shown("ours.spz"), shown("ours.ply"), "--max-difference", "0.002"}));
+    for (const Words& arguments : std::initializer_list<Words>{
+             {"v3.spz", "--spz-version", "3"}, {"v4.spz"}, {"a.compressed.ply"}, {"a.sog"}}) {
+        SCOPED_TRACE(arguments[0]);
+        expect_success(run_node(joined({(modules / "@playcanvas/splat-transform/bin/cli.mjs").string(), "-w",
+                                        "-g", "cpu", "capture.ply", arguments[0]},
+                                       Words(arguments.begin() + 1, arguments.end()))));
+        expect_success(transform(arguments[0], "back.ply"));
+        expect_success(run({"compare", shown(arguments[0]), shown("back.ply"), "--max-difference", "0.002"}));
+        fs::remove(folder / "back.ply.exr");
+    }
 }
 
 /// The same view for a page.

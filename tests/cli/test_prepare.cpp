@@ -321,6 +321,25 @@ TEST_F(PrepareAlign, AcrossAScaleOfThreeAndARotation) {
     expect_aligned(coarse, fine);
 }
 
+// WCSLIB, ERFA and with them the C library's mathematics say where the pixels of the other lie.
+TEST_F(PrepareAlign, WhateverVariantsTheCLibraryPicks) {
+    const Telescope own{120, 100, 0.00031, 33.0}, reference{150, 140, 0.00045, -20.0};
+    const std::string fk4 = fits_card("RADESYS = 'FK4     '") + fits_card("EQUINOX =               1950.0");
+    const auto light = [](int x, int y) { return (x * 37 + y * 11) % 101; };
+    for (const std::string& frame : {std::string(), fk4}) {
+        write_text(folder / "own.fits", fits_file(own.width, own.height, own.sky() + frame, light));
+        write_text(folder / "reference.fits",
+                   fits_file(reference.width, reference.height, reference.sky() + frame, light));
+        const auto made = [&](const Words& environment) {
+            expect_success(run({"prepare", "own.fits", "--align", "reference.fits", "-o", "out",
+                                "--overwrite", "--stars", "keep"},
+                               {.environment = environment}));
+            return load_linear_image(folder / "out/picture.exr").pixels;
+        };
+        EXPECT_EQ(made({"GLIBC_TUNABLES=glibc.cpu.hwcaps=-AVX2,-FMA"}), made({})) << frame;
+    }
+}
+
 TEST_F(PrepareAlign, WhatTheOtherDoesNotShowIsEmpty) {
     const Telescope small{100, 100, 0.00015, 10.0}, large{300, 300, 0.00015, 0.0};
     write_text(folder / "own.fits", picture_by(small));
@@ -328,6 +347,20 @@ TEST_F(PrepareAlign, WhatTheOtherDoesNotShowIsEmpty) {
     const RunResult result = expect_success(
         run({"prepare", "own.fits", "--align", "reference.fits", "-o", "out", "--stars", "keep"}));
     EXPECT_HAS(result.out, "300x300 px, linear light, alpha");
+}
+
+TEST_F(PrepareAlign, InfoSaysWhereTheSkyIs) {
+    const auto info = [&](const std::string& cards) {
+        write_text(folder / "a.fits", fits_file(40, 30, cards, [](int x, int) { return double(x); }));
+        return nlohmann::json::parse(expect_success(run({"info", "a.fits", "--json"})).out);
+    };
+    EXPECT_FALSE(info("").contains("sky"));
+    const std::string sky = fits_sky(20, 15, ra, dec, 0.001, 0.0);
+    EXPECT_NEAR(info(sky).at("sky").at("reference_deg")[0].get<double>(), ra, 1e-9);
+    std::string sun = sky;
+    for (const auto& [from, to] : {std::pair("RA---TAN", "HPLN-TAN"), std::pair("DEC--TAN", "HPLT-TAN")})
+        sun.replace(sun.find(from), 8, to);
+    EXPECT_EQ(info(sun).at("sky"), "the frame HPLN-TAN, which is not followed");
 }
 
 TEST_F(PrepareAlign, NeedsTheSkyOnBoth) {

@@ -176,7 +176,9 @@ TEST_F(Provenance, MoviesSayWhatTheirFramesSay) {
         const auto info = nlohmann::json::parse(run({"info", "f.01.png", "--json"}).out);
         EXPECT_HAS(comment, "astrosplat/frameHash=" + info.at("frame_hash").get<std::string>());
         EXPECT_HAS(comment, "astrosplat/hashed=");
-        if (has("exiftool -ver") && movie != "a.mkv") EXPECT_EQ(exif(movie).at("Title"), "A spiral");
+        if (has("exiftool -ver") && movie != "a.mkv") {
+            EXPECT_EQ(exif(movie).at("Title"), "A spiral");
+        }
     }
 }
 

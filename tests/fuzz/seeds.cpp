@@ -1,5 +1,7 @@
 #include "fuzz/seeds.h"
 
+#include <bzlib.h>
+#include <fitsio.h>
 #include <zlib.h>
 
 #include <glm/geometric.hpp>
@@ -12,7 +14,7 @@
 #include "splat_files/formats.h"
 #include "stars/catalogue.h"
 #include "stars/star_set.h"
-#include "support/capture.h"
+#include "support/packed_captures.h"
 #include "unit/stars/catalogues.h"
 
 namespace astrosplat::fuzz {
@@ -139,6 +141,32 @@ std::string text_of_glb(const std::string& glb) {
                                                               base64(glb.substr(binary + 4)) + "\",");
 }
 
+// Two stars: right ascension as a text.
+std::string fits_table(int kind) {
+    const TemporaryFile file("", ".fits");
+    fs::remove(file.path);
+    fitsfile* out = nullptr;
+    int status = 0;
+    const bool ascii = kind == ASCII_TBL;
+    std::string names[] = {"RA", "DEC", "Vmag", "Plx"}, units[] = {"h:m:s", "deg", "mag", "mas"},
+                forms[] = {ascii ? "A8" : "8A", ascii ? "F8.3" : "D", ascii ? "I6" : "I",
+                           ascii ? "E12.4" : "E"};
+    char *name[4], *form[4], *unit[4];
+    for (int i = 0; i < 4; ++i)
+        name[i] = names[i].data(), form[i] = forms[i].data(), unit[i] = units[i].data();
+    std::string clock = "06:45:08";
+    char* clocks[] = {clock.data(), clock.data()};
+    double numbers[] = {3.0, 4.0};
+    fits_create_diskfile(&out, file.path.c_str(), &status);
+    fits_create_tbl(out, kind, 2, 4, name, form, unit, "STARS", &status);
+    fits_write_col(out, TSTRING, 1, 1, 1, 2, clocks, &status);
+    for (int column = 2; column <= 4; ++column)
+        fits_write_col(out, TDOUBLE, column, 1, 1, 2, numbers, &status);
+    fits_close_file(out, &status);
+    demand(status == 0, "a FITS table");
+    return test::bytes_of(file.path);
+}
+
 }  // namespace
 
 std::vector<std::string> camera_seeds() {
@@ -170,6 +198,15 @@ std::size_t read_camera_bytes(std::string_view bytes) {
     return check(read_camera(TemporaryFile(bytes, ending_of(bytes)).path, FrameRate{24.0, 0.0}));
 }
 
+std::string bzipped(std::string text) {
+    unsigned size = unsigned(text.size()) + 1000;
+    std::string packed(size, '\0');
+    demand(
+        BZ2_bzBuffToBuffCompress(packed.data(), &size, text.data(), unsigned(text.size()), 9, 0, 0) == BZ_OK,
+        "a bzip2 file");
+    return packed.substr(0, size);
+}
+
 std::vector<std::string> catalogue_seeds() {
     const std::string hipparcos =
         test::hipparcos_line({}) +
@@ -181,7 +218,26 @@ std::vector<std::string> catalogue_seeds() {
                             "1,2,3,4,\"Gl, 5\",,,6.75,-16.7,100000,0,0,0,-1.44,1.4,A0,0.009,0,0,0\n";
     const std::string picture =
         "x,y,u,v,flux_r,flux_g,flux_b,sigma_px\n1,2,0.1,0.9,1,2,3,1.5\n3,4,.5,.5,-1,0,1e3,2\n";
-    return {hipparcos, table, hyg, gzipped(hipparcos + hipparcos), picture};
+    const auto votable = [](const std::string& data) {
+        return "<VOTABLE><RESOURCE><TABLE><FIELD datatype='double' name='ra' unit='rad'/>"
+               "<FIELD datatype='float' name='d' ucd='pos.eq.dec'/><FIELD datatype='short' "
+               "name='mag'><VALUES null='9'/>"
+               "</FIELD><FIELD datatype='char' arraysize='*' name='plx'/><DATA>" +
+               data + "</DATA></TABLE></RESOURCE></VOTABLE>";
+    };
+    const std::string row = std::string("\x3f\xf0\0\0\0\0\0\0\x40\0\0\0\0\3\0\0\0\2", 18) + "10";
+    return {
+        hipparcos,
+        table,
+        hyg,
+        gzipped(hipparcos + hipparcos),
+        bzipped(table),
+        picture,
+        votable("<TABLEDATA><TR><TD>1</TD><TD>2</TD><TD>3</TD><TD>10</TD></TR></TABLEDATA>"),
+        votable("<BINARY><STREAM>" + base64(row + row) + "</STREAM></BINARY>"),
+        votable("<BINARY2><STREAM encoding='gzip'>" + base64(gzipped('\0' + row)) + "</STREAM></BINARY2>"),
+        fits_table(BINARY_TBL),
+        fits_table(ASCII_TBL)};
 }
 
 std::size_t read_catalogue_bytes(std::string_view bytes) {
@@ -219,6 +275,37 @@ std::vector<std::string> usda_seeds() {
                 "        quatf xformOp:orient = (0.8, 0, 0.6, 0)\n        float3 xformOp:scale = (2, 2, 2)\n"
                 "        uniform token[] xformOpOrder = [\"xformOp:orient\", \"xformOp:scale\"]\n",
                 "    upAxis = \"Z\"\n")};
+}
+
+std::vector<std::string> spz_seeds() {
+    using namespace astrosplat::test;
+    const std::string axes = number_bytes(0xadbe0003, 4) + number_bytes(4, 4) + number_bytes(14, 4);
+    return {spz_of(capture(3, 0), 0, 1), spz_of(capture(3, 1), 1, 2), spz_of(capture(3, 3), 3, 3, axes),
+            spz_of(capture(3, 0), 0, 4), spz_of(capture(2, 1), 1, 4, axes)};
+}
+
+std::vector<std::string> compressed_ply_seeds() {
+    using namespace astrosplat::test;
+    return {compressed_ply_of(capture(3, 0), 0, false), compressed_ply_of(capture(2, 1), 1)};
+}
+
+std::vector<std::string> dot_splat_seeds() { return {test::dot_splat_of(test::capture(3, 0))}; }
+
+std::vector<std::string> sog_seeds() {
+    using namespace astrosplat::test;
+    return {sog_of(capture(3, 0), 0), sog_of(capture(2, 1), 1, true)};
+}
+
+std::size_t read_spz_bytes(std::string_view bytes) {
+    return check_capture(read_spz(TemporaryFile(bytes, ".spz").path));
+}
+
+std::size_t read_dot_splat_bytes(std::string_view bytes) {
+    return check_capture(read_dot_splat(TemporaryFile(bytes, ".splat").path));
+}
+
+std::size_t read_sog_bytes(std::string_view bytes) {
+    return check_capture(read_sog(TemporaryFile(bytes, ".sog").path));
 }
 
 std::size_t read_gaussian_ply_bytes(std::string_view bytes) {

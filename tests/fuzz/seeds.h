@@ -14,7 +14,9 @@ std::vector<std::string> camera_seeds();
 /// By the reader that the bytes look most like: elsewhere a format is recognised by its name's ending.
 std::size_t read_camera_bytes(std::string_view bytes);
 
-/// Hipparcos, HYG, a table with names, gzip-compressed, a picture's table.
+std::string bzipped(std::string text);
+
+/// Hipparcos, HYG, a table with names, packed by gzip and bzip2, a picture's table, VOTables, FITS tables.
 std::vector<std::string> catalogue_seeds();
 std::size_t read_catalogue_bytes(std::string_view bytes);
 
@@ -22,6 +24,14 @@ std::size_t read_catalogue_bytes(std::string_view bytes);
 std::vector<std::string> gaussian_ply_seeds();
 std::vector<std::string> gltf_seeds();
 std::vector<std::string> usda_seeds();
+/// SPZ of every version, with extensions; SuperSplat's compressed PLY; .splat; SOG.
+std::vector<std::string> spz_seeds();
+std::vector<std::string> compressed_ply_seeds();
+std::vector<std::string> dot_splat_seeds();
+std::vector<std::string> sog_seeds();
+std::size_t read_spz_bytes(std::string_view bytes);
+std::size_t read_dot_splat_bytes(std::string_view bytes);
+std::size_t read_sog_bytes(std::string_view bytes);
 std::size_t read_gaussian_ply_bytes(std::string_view bytes);
 std::size_t read_gltf_bytes(std::string_view bytes);
 std::size_t read_usda_bytes(std::string_view bytes);

@@ -180,7 +180,10 @@ std::string compressed_fits(int compression) {
 }
 
 std::vector<std::string> fits_seeds() {
-    return {compressed_fits(RICE_1), compressed_fits(HCOMPRESS_1), compressed_fits(GZIP_1),
+    return {bzipped(compressed_fits(RICE_1)),
+            compressed_fits(RICE_1),
+            compressed_fits(HCOMPRESS_1),
+            compressed_fits(GZIP_1),
             compressed_fits(GZIP_2),
             fits({"SIMPLE  =                    T", "BITPIX  =                   16",
                   "NAXIS   =                    2", "NAXIS1  =                    4",
@@ -213,6 +216,10 @@ const std::vector<Target>& targets() {
         {"stars", catalogue_seeds, read_catalogue_bytes},
         {"cameras", camera_seeds, read_camera_bytes},
         {"gaussian_ply", gaussian_ply_seeds, read_gaussian_ply_bytes},
+        {"spz", spz_seeds, read_spz_bytes},
+        {"compressed_ply", compressed_ply_seeds, read_gaussian_ply_bytes},
+        {"splat", dot_splat_seeds, read_dot_splat_bytes},
+        {"sog", sog_seeds, read_sog_bytes},
         {"gltf", gltf_seeds, read_gltf_bytes},
         {"usda", usda_seeds, read_usda_bytes},
         {"xmp", xmp_seeds, read_xmp_bytes, false},

@@ -1,9 +1,12 @@
 // Files that are whole or absent, and the table of their formats.
+#include <bzlib.h>
+#include <gmock/gmock.h>
 #include <sys/stat.h>
 
 #include "core/atomic_file.h"
 #include "core/file.h"
 #include "core/file_format.h"
+#include "core/packed_file.h"
 #include "support/test.h"
 
 namespace astrosplat {
@@ -135,12 +138,48 @@ TEST_F(AtomicFileTest, MissingFolderAndWrongKindAreOneLine) {
               pipe.string() + ": cannot be written: it is no regular file");
 }
 
+// What gzip and bzip2 packed.
+
+std::string bzipped(std::string text) {
+    unsigned size = unsigned(text.size()) + 1000;
+    std::string packed(size, '\0');
+    BZ2_bzBuffToBuffCompress(packed.data(), &size, text.data(), unsigned(text.size()), 9, 0, 0);
+    packed.resize(size);
+    return packed;
+}
+
+TEST(PackedFile, IsUnpackedWholeOrRefused) {
+    std::string text;  // of more than one block
+    for (int i = 0; text.size() < (std::size_t{9} << 20); ++i) text += std::to_string(i * 7919);
+    const std::string packed = bzipped(text);
+    EXPECT_EQ(unpacked(packed, "a"), text);
+    EXPECT_EQ(unpacked(packed + bzipped("x") + bzipped(""), "a"), text + "x") << "as pbzip2 writes them";
+    EXPECT_EQ(unpacked("BZ", "a"), "BZ");
+    const std::string damaged = "a: expected a whole bzip2 file, found damaged data";
+    EXPECT_EQ(ERROR_OF(unpacked(packed.substr(0, packed.size() / 2), "a")), damaged);
+    EXPECT_EQ(ERROR_OF(unpacked("BZh", "a")), damaged);
+    std::string wrong = packed;
+    wrong[wrong.size() / 2] = char(wrong[wrong.size() / 2] ^ 4);
+    EXPECT_EQ(ERROR_OF(unpacked(wrong, "a")), damaged);
+}
+
+TEST(PackedFile, ABombIsRefused) {
+    const std::string zeros = bzipped(std::string(std::size_t{1} << 25, '\0'));
+    std::string bomb;
+    for (int i = 0; i < 100; ++i) bomb += zeros;
+    EXPECT_EQ(ERROR_OF(unpacked(bomb, "a")),
+              fmt::format("a: expected at most 200 times its {} bytes, found more "
+                          "that bzip2 packed",
+                          bomb.size()));
+}
+
 // The table of file formats: names, contents, and that its rows do not contradict each other.
 
 std::string_view id_of(const FileFormat* format) { return format ? format->id : "none"; }
 
 TEST(FileFormat, NamesInCapitalsOrNot) {
-    for (const char* name : {"a.OBJ", "a.Toml", "A.FITS.GZ", "a.fits.fz", "b.TIF", "b.JPEG", "c.Splats"})
+    for (const char* name :
+         {"a.OBJ", "a.Toml", "A.FITS.GZ", "a.fits.fz", "a.fits.bz2", "b.TIF", "b.JPEG", "c.Splats"})
         EXPECT_NE(format_by_name(name), nullptr) << name;
     EXPECT_EQ(id_of(format_by_name("x.y.FITS.GZ")), "fits");
     EXPECT_EQ(id_of(format_by_name("a b.Exr")), "openexr");
@@ -159,6 +198,8 @@ TEST(FileFormat, ContentCountsMoreThanTheName) {
     EXPECT_EQ(id_of(format_of_file(folder.file("b.tif", std::string("II*\0", 4)))), "tiff");
     EXPECT_EQ(id_of(format_of_file(folder.file("points", "ply\r\nformat"))), "ply");
     EXPECT_EQ(id_of(format_of_file(folder.file("c.png", "v 0 0 0"))), "png");  // whose reader says more
+    EXPECT_EQ(id_of(format_of_file(folder.file("d.png", std::string("\0\0\0\x0cJXL \r\n\x87\n", 12)))),
+              "jpegxl");
     EXPECT_EQ(id_of(format_of_file(folder / "missing.obj")), "obj");
 }
 
@@ -176,16 +217,18 @@ TEST(FileFormat, RowsDoNotContradictEachOther) {
 
 TEST(FileFormat, ListsForDialogsAndMessages) {
     EXPECT_EQ(endings_of({FileKind::splats}),
-              (std::vector<std::string>{".pda", ".ply", ".glb", ".gltf", ".usda", ".usd", ".splats"}));
+              (std::vector<std::string>{".pda", ".ply", ".glb", ".gltf", ".usda", ".usd", ".spz", ".splat",
+                                        ".sog", ".splats"}));
     EXPECT_EQ(endings_of({FileKind::splats}, FileUse::written),
               (std::vector<std::string>{".pda", ".ply", ".splats"}));
     EXPECT_EQ(endings_of({FileKind::picture}, FileUse::written),
               (std::vector<std::string>{".exr", ".tif", ".tiff", ".png"}));
     EXPECT_EQ(endings_of(FileUse::camera_written),
               (std::vector<std::string>{".chan", ".csv", ".gltf", ".usda"}));
-    EXPECT_EQ(endings_of(FileUse::exported), (std::vector<std::string>{".ply", ".glb", ".usda", ".vdb"}));
+    EXPECT_EQ(endings_of(FileUse::exported),
+              (std::vector<std::string>{".ply", ".glb", ".usda", ".spz", ".vdb"}));
     EXPECT_EQ(endings_of(FileUse::movie).front(), ".mp4");
-    EXPECT_EQ(names_of(FileKind::splats), "PDA, PLY, glTF, USD or SPLATS");
+    EXPECT_EQ(names_of(FileKind::splats), "PDA, PLY, glTF, USD, SPZ, SPLAT, SOG or SPLATS");
     EXPECT_EQ(names_of(FileKind::mesh), "OBJ");
 }
 

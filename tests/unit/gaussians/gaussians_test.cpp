@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "core/color.h"
+#include "core/parallel.h"
 #include "core/rotation.h"
 #include "gaussians/gaussian_file.h"
 #include "render/footprint.h"
@@ -293,6 +294,61 @@ TEST(GaussianFile, ThatWereReadComeOutAsTheyAre) {
         EXPECT_NEAR(turned.scale[5][k] / shown.set.scale[5][k], 2.0, 1e-5);
         EXPECT_NEAR(glm::length(found[k] - wanted[k]), 0.0, 1e-5);
     }
+}
+
+Gaussians gaussians_of(const std::vector<Trained>& all, int degree, double size) {
+    Gaussians out;
+    out.degree = degree;
+    for (const Trained& g : all) {
+        Harmonics harmonics{};
+        for (std::size_t j = 0; j < 16; ++j) harmonics.c[j] = glm::vec3(g.harmonics[j]);
+        out.position.push_back(glm::vec3(size * g.position));
+        out.color.push_back(mean_color(harmonics));
+        out.alpha.push_back(float(g.opacity));
+        out.scale.push_back(glm::vec3(g.scale));
+        out.rotation.push_back(glm::vec4(g.rotation));
+        if (degree > 0) out.harmonics.push_back(harmonics);
+    }
+    return out;
+}
+
+// Numbers of SPZ are off by half a step at most, in scenes of any size.
+TEST(GaussianFile, SpzIsReadBackWithinItsSteps) {
+    const TempFolder folder;
+    for (const int degree : {0, 1, 2, 3})
+        for (const auto& [size, step] : std::initializer_list<std::pair<double, double>>{
+                 {1.0, 1.0 / 4096}, {1000.0, 1.0 / 2048}, {0.01, 1.0 / (1 << 17)}}) {
+            const std::vector<Trained> all = capture(200, degree);
+            const Gaussians wanted = gaussians_of(all, degree, size);
+            const fs::path file = folder / "a.spz";
+            write_gaussian_spz(file, wanted);
+            const SplatSet set = read_splats(file);
+            ASSERT_EQ(set.size(), 200);
+            ASSERT_EQ(set.harmonics.empty(), degree == 0);
+            for (std::size_t i = 0; i < 200; ++i) {
+                EXPECT_NEAR(set.alpha[i], wanted.alpha[i], 0.5 / 255 + 1e-6);
+                for (int k = 0; k < 3; ++k) {
+                    EXPECT_NEAR(set.position[i][k], wanted.position[i][k], 0.5 * step + 1e-7 * size) << size;
+                    EXPECT_NEAR(std::log(set.scale[i][k] / wanted.scale[i][k]), 0.0, 0.5 / 16 + 1e-6);
+                    EXPECT_NEAR(real::linear_to_srgb(set.color[i][k]), std::max(wanted.color[i][k], 0.0f),
+                                0.5 / 255 / 0.15 * double(harmonic_0) + 1e-5);
+                    for (std::size_t j = 1; j < harmonics_up_to(degree); ++j)
+                        EXPECT_NEAR(set.harmonics[i].c[j][k], wanted.harmonics[i].c[j][k],
+                                    (j < 4 ? 4.5 : 8.5) / 128 + 1e-6)
+                            << j;
+                }
+                // Three numbers off by half a step of sqrt(1/2) / 511, and the fourth by as much as they.
+                const double cosine = glm::dot(glm::dvec4(set.rotation[i]), all[i].rotation);
+                EXPECT_LT(std::sqrt(std::max(0.0, 1.0 - cosine * cosine)),
+                          2.0 * std::sqrt(3.0) * 0.5 / 511 * std::sqrt(0.5));
+            }
+            const std::string bytes = test::bytes_of(file);
+            set_thread_count(1);
+            write_gaussian_spz(file, wanted);
+            set_thread_count(0);
+            EXPECT_EQ(test::bytes_of(file), bytes);
+            EXPECT_THROW(write_gaussian_spz({file, Existing::keep}, wanted), AlreadyExists);
+        }
 }
 
 ShadedSplats one_of_radius_3() {

@@ -1,6 +1,7 @@
 // FITS headers that cannot be, found before CFITSIO sees them; HDUs by name, credits, files without pictures.
 #include "source/fits.h"
 
+#include <bzlib.h>
 #include <fitsio.h>
 #include <sys/stat.h>
 
@@ -465,6 +466,9 @@ TEST(FitsSky, IsNoneOrSaysWhatIsNotFollowed) {
     };
     EXPECT_EQ(answer({}), "followed");
     EXPECT_EQ(answer({}, {}), "none") << "a pixel has no size";
+    EXPECT_EQ(answer({}, {{"CD1_1", "0.0"}, {"CD2_2", "0.0"}}), "none") << "nor has this";
+    EXPECT_EQ(answer({{"CTYPE1", "'RA---TAB'"}, {"CTYPE2", "'DEC--TAB'"}}), "the projection RA---TAB");
+    EXPECT_EQ(answer({{"CRVAL1", "1E300"}}), "a reference at 1e+300 degrees");
     EXPECT_EQ(answer({{"CTYPE1", "'X'"}, {"CTYPE2", "'Y'"}}), "none");
     EXPECT_EQ(answer({{"CTYPE1", "'HPLN-TAN'"}, {"CTYPE2", "'HPLT-TAN'"}}), "the frame HPLN-TAN");
     EXPECT_EQ(answer({{"RADESYS", "'GAPPT'"}}), "the frame GAPPT");
@@ -477,6 +481,34 @@ TEST(FitsSky, IsNoneOrSaysWhatIsNotFollowed) {
     });
     ASSERT_EQ(said.size(), 1u);
     EXPECT_HAS(said[0], "its table of distortions (CPDIS) is not followed");
+}
+
+// By name, as gzip's; 5 x 4 numbers that count.
+TEST(FitsPacked, Bzip2IsReadAndItsHeadersAreLookedAt) {
+    const TempFolder folder;
+    const std::string plain = fits_file(5, 4, "", [](int x, int y) { return 5 * y + x; });
+    const auto packed = [](std::string bytes) {
+        unsigned size = unsigned(bytes.size()) + 1000;
+        std::string out(size, '\0');
+        BZ2_bzBuffToBuffCompress(out.data(), &size, bytes.data(), unsigned(bytes.size()), 9, 0, 0);
+        return out.substr(0, size);
+    };
+    for (const char* const name : {"a.fits.bz2", "b.FIT.BZ2", "c.fts.bz2"}) {
+        const fs::path file = folder.file(name, packed(plain));
+        require_picture(file);
+        const FitsPlane plane = read_fits(file, "auto", {});
+        ASSERT_EQ(plane.values.size(), 20u);
+        for (int y = 0; y < 4; ++y)
+            for (int x = 0; x < 5; ++x) EXPECT_EQ(plane.values[std::size_t(5 * (3 - y) + x)], 5 * y + x);
+        EXPECT_EQ(describe_fits(file).at(0).range.max, 19.0);
+    }
+    const std::string compressed = bytes_of(write_compressed(folder / "whole.fits", RICE_1));
+    const fs::path bad = folder.file("bad.fits.bz2", packed(with_value(compressed, "ZVAL1", "0")));
+    EXPECT_EQ(ERROR_OF(read_fits(bad, "auto", {})),
+              bad.string() + ":HDU 1: expected ZVAL1 to be 16 or 32 pixels, found 0");
+    const fs::path cut = folder.file("cut.fits.bz2", packed(plain).substr(0, 60));
+    EXPECT_EQ(ERROR_OF(require_picture(cut)),
+              cut.string() + ": expected a whole bzip2 file, found damaged data");
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 // its fmt first: OpenImageIO's copy would turn exceptions off
 #include <OpenImageIO/imageio.h>
 
+#include "core/text.h"
 #include "source/picture.h"
 #include "source/prepared_picture.h"
 #include "source/texture.h"
@@ -267,6 +268,80 @@ TEST_F(OddPictures, ATiffThatDoesNotSayItsBitsIsRefused) {
               file.string() +
                   ": cannot be read as a picture: it does not say how many bits a value has "
                   "(BitsPerSample); save it with 8");
+}
+
+// ---- formats that OpenImageIO reads in its own way
+
+// Rows go up: the lower one is the file's first. A negative scale means that the lowest byte comes first.
+TEST_F(OddPictures, PfmIsReadFromItsLowestRow) {
+    const float values[] = {0.25f, 0.5f, 1.5f, 2.0f};
+    std::string little(reinterpret_cast<const char*>(values), sizeof values), big;
+    for (std::size_t i = 0; i < 16; ++i) big += little[4 * (i / 4) + 3 - i % 4];
+    for (const std::string& bytes : {"Pf\n2 2\n-1\n" + little, "Pf\n2 2\n1\n" + big}) {
+        const Picture picture = read_picture(folder.file("a.pfm", bytes));
+        EXPECT_EQ(picture.image.at(0, 0)[0], 1.5f);
+        EXPECT_EQ(picture.image.at(1, 0)[0], 2.0f);
+        EXPECT_EQ(picture.image.at(0, 1)[0], 0.25f);
+    }
+}
+
+TEST_F(OddPictures, OnesOfAPbmAreBlack) {
+    for (const std::string bytes : {"P1\n2 1\n1 0\n", "P4\n2 1\n\x80"}) {
+        const Picture picture = read_picture(folder.file("a.pbm", bytes));
+        EXPECT_EQ(picture.image.at(0, 0)[0], 0.0f);
+        EXPECT_EQ(picture.image.at(1, 0)[0], 1.0f);
+    }
+    const fs::path tight = folder.file("tight.pbm", "P1\n2 1\n10\n");
+    EXPECT_EQ(ERROR_OF(read_picture(tight)), tight.string() +
+                                                 ": cannot be read as a picture: its pixels end early, "
+                                                 "or are not as its header has them");
+}
+
+TEST_F(OddPictures, ALargestValueThatIsScaledWronglyIsRefused) {
+    const Picture picture = read_picture(folder.file("a.pgm", std::string("P5\n1 1\n4095\n\x08\x00", 15)));
+    EXPECT_NEAR(picture.image.at(0, 0)[0], 2048.0 / 4095.0, 1e-5);
+    const fs::path file = folder.file("b.pgm", "P5\n1 1\n40000\n\x9c\x40");
+    EXPECT_EQ(ERROR_OF(read_picture(file)),
+              file.string() +
+                  ": cannot be read as a picture: its largest value is 40000; save it with at most 32768, or "
+                  "with 65535");
+}
+
+// 40 x 24 px of OpenJPEG by Pillow: 5 columns of alpha 0, 5 of 128, the upper left of (220, 40, 20).
+TEST_F(OddPictures, AlphaOfJpeg2000IsNotMultipliedIntoItsColours) {
+    const std::string bytes = *bytes_of_base64(
+        "AAAADGpQICANCocKAAAAFGZ0eXBqcDIgAAAAAGpwMiAAAAAtanAyaAAAABZpaGRyAAAAGAAAACgABAcHAAAAAAAPY2"
+        "9scgEAAAAAABAAAAKWanAyY/9P/1EAMgAAAAAAKAAAABgAAAAAAAAAAAAAACgAAAAYAAAAAAAAAAAABAcBAQcBAQcB"
+        "AQcBAf9SAAwAAAABAAQEBAAB/1wAEEBASEhQSEhQSEhQSEhQ/2QAJQABQ3JlYXRlZCBieSBPcGVuSlBFRyB2ZXJzaW"
+        "9uIDIuNS4w/5AACgAAAAACDwAB/5P/GEgSlfMnEcBILZ/fgEAS3Uv1e9JOl9+AOAaGaO0AqS/fgDgIEFoHXcHhz8Aa"
+        "fgCx+AIADkCpwhRfDcLLlH8MTfN/x9oLB84OA+QEDQlKR6kOIN8L/cHzhI+0EgHwhA+s0G8I1GVvDC/B84UAAjhIAx"
+        "/H2hUfaHQfUDgYiI7s8v93anDZGRQ3auzgm9R1Kq0XiL8YWkGAa0yAx9oTA+QNAPhEGdVL/GWfOHC/Ho6VIb6/GFTg"
+        "f8D5A0faFwB0MBWXLMLT5x6uQjOTHYA/yskHGDt/x9oQAA8lmZz3Qmrfz8A+fgJR+AQAKMIl/TQMndTxRI6D2QiAKL"
+        "/AngquPr/DWmfrDgYRkz+iKMNuc7Tn4L/H2hsHzioD5Aomj6bwcEh3/sc1IoF/LSPnErsavg2SjyjEjfpvwfOKj7Q6"
+        "AfCGcWK9RMIKgpL/fwcYT4gmKaOx8yBAqDgvKMNGx9oaABfYg4zTA6kQsbKvVCXH2h0faIw+0EBA4Iuf5G9YWxQ3Jt"
+        "jIj3gPDFa+yYlFJNpVqs0iqlqSiPYBGMfaGQfOKgPkCEA0xSJH3GSoi6Vjk4nWgywtYl9bvVaI9mN/wPkEx9opAHRA"
+        "QDTFIkfctFxfd2MRukOjCJ86v+c7QzQ0Yt2lYeeI9f9/x9oyABz5xuEuemru3tsFAWCObc7sZ6jfOKiLvm//2Q==");
+    const fs::path file = folder.file("a.jp2", bytes);
+    const Picture picture = read_picture(file);
+    EXPECT_FALSE(picture.associated);
+    const float* const pixel = picture.image.at(7, 3);
+    EXPECT_NEAR(pixel[0], 220.0 / 255.0, 1e-6);
+    EXPECT_NEAR(pixel[3], 128.0 / 255.0, 1e-6);
+    // Decoded where it is opened: a size of 31 bits is refused before.
+    std::string large = bytes;
+    const std::size_t size = large.find("\xff\x4f\xff\x51") + 8;
+    for (const std::size_t side : {0, 4, 16, 20}) large.replace(size + side, 4, "\x7f\xff\xff\xff");
+    EXPECT_NE(ERROR_OF(require_picture(folder.file("b.jp2", large))).find(" of memory, but only "),
+              std::string::npos);
+}
+
+TEST_F(OddPictures, JpegXlSaysWhatReadsIt) {
+    const fs::path file = folder.file("a.jxl", "\xff\x0a\x05\x08\x08");
+    if (OIIO::ImageInput::create("jpegxl")) GTEST_SKIP() << "this OpenImageIO reads JPEG XL";
+    EXPECT_EQ(ERROR_OF(require_picture(file)),
+              file.string() +
+                  ": cannot be read as a picture: this OpenImageIO reads no JPEG XL; djxl "
+                  "FILE.jxl FILE.png, of the package libjxl-tools, makes a PNG of it");
 }
 
 }  // namespace

@@ -130,6 +130,19 @@ TEST(SeveralPictures, ChannelsOfImageJ) {
     EXPECT_EQ(first_pixel(write_pages(folder / "x.tif", pages))[1], 0.25f);
 }
 
+TEST(SeveralPictures, FramesOfAnAnimation) {
+    const TempFolder folder;
+    std::vector<Page> pages;
+    for (const float v : {1.0f, 0.0f}) pages.push_back(page(4, {"R", "G", "B"}, {v, v, v}, OIIO::TypeUInt8));
+    const fs::path file = write_pages(folder / "x.gif", pages);
+    std::vector<float> first;
+    const std::vector<std::string> said = warnings_of([&] { first = first_pixel(file); });
+    EXPECT_EQ(first[0], 1.0f);
+    ASSERT_EQ(said.size(), 1u);
+    EXPECT_HAS(said[0], "it holds 2 pictures; 0 is taken");
+    EXPECT_EQ(first_pixel(file, "1")[0], 0.0f);
+}
+
 TEST(SeveralPictures, CameraRawIsNotItsThumbnail) {
     const TempFolder folder;
     for (const char* name : {"x.nef", "x.dng"}) {
@@ -220,6 +233,14 @@ TEST(FileColors, ProfilesOfMatrixAndCurves) {
         check("adobe.tif", type, profile_of(adobe, gamma_of(2.19921875)), gamma_22, adobe);
         check("table.tif", type, profile_of(p3, table_of_squares()), squares, p3);
     }
+    // ICC.1:2022, table 68, functions 2 and 4 (lcms counts from 1): with an offset, and with a line below.
+    const cmsFloat64Number offset[] = {2.0, 0.8, 0.1, 0.05}, line[] = {2.0, 0.9, 0.1, 0.5, 0.3, 0.02, 0.01};
+    check(
+        "offset.tif", OIIO::TypeFloat, profile_of(p3, cmsBuildParametricToneCurve(nullptr, 3, offset)),
+        [](double x) { return (0.8 * x + 0.1) * (0.8 * x + 0.1) + 0.05; }, p3);
+    check(
+        "line.tif", OIIO::TypeFloat, profile_of(p3, cmsBuildParametricToneCurve(nullptr, 5, line)),
+        [](double x) { return x < 0.3 ? 0.5 * x + 0.01 : (0.9 * x + 0.1) * (0.9 * x + 0.1) + 0.02; }, p3);
     check("srgb.tif", OIIO::TypeFloat, profile_of(rec709_chromaticities, srgb_curve()), srgb,
           rec709_chromaticities);
     check("linear.tif", OIIO::TypeFloat, profile_of(p3, gamma_of(1.0)), linear, p3);
@@ -319,6 +340,11 @@ TEST(FileColors, ChunksOfPng) {
                       srgb_chunk = chunk("sRGB", std::string(1, '\0'));
     const std::string chrm = chunk("cHRM", numbers({31270, 32900, 68000, 32000, 26500, 69000, 15000, 6000}));
     expect_light(with(""), srgb, same, "none");
+    const std::vector<std::string> refused = warnings_of([&] {
+        expect_light(with(chunk("iCCP", std::string("x\0\0no profile", 13)) + gamma), srgb, same, "iCCP");
+    });
+    ASSERT_EQ(refused.size(), 1u);
+    EXPECT_HAS(refused[0], "ICC profile, which libpng refuses, is not followed");
     expect_light(with(gamma), linear, same, "gAMA");
     expect_light(
         with(chunk("gAMA", numbers({50000}))), [](double x) { return x * x; }, same, "gAMA 1/2");

@@ -1,12 +1,14 @@
 // XISF as PixInsight writes it, in all the ways in which it stores values.
 #include "source/xisf.h"
 
+#include <lcms2.h>
 #include <lz4.h>
 #include <zlib.h>
 #include <zstd.h>
 
 #include "core/text.h"
 #include "source/object_metadata.h"
+#include "source/prepared_picture.h"
 #include "source/stored_picture.h"
 #include "support/quiet.h"
 #include "support/test.h"
@@ -152,7 +154,7 @@ TEST_F(XisfTest, BlocksOfEveryCompression) {
                "expected data of the sha-1 that it names");
 }
 
-TEST_F(XisfTest, KeywordsSkyAndProfiles) {
+TEST_F(XisfTest, KeywordsAndSky) {
     const std::string values = values_of_type<float>(1), start = geometry(1) + R"(sampleFormat="Float32")";
     const auto card = [](const char* name, const std::string& value) {
         return fmt::format(R"(<FITSKeyword name="{}" value="{}" comment=""/>)", name, value);
@@ -191,6 +193,46 @@ TEST_F(XisfTest, KeywordsSkyAndProfiles) {
     });
     ASSERT_EQ(said.size(), 1u);
     EXPECT_HAS(said[0], "its colour filter array 'CMYG' is not followed");
+}
+
+// Of colours that are squares of light: for pictures and for prepared ones, and not where they are stretched.
+TEST_F(XisfTest, Profiles) {
+    const cmsCIExyY white{0.3127, 0.3290, 1.0};
+    const cmsCIExyYTRIPLE primaries{{0.64, 0.33, 1.0}, {0.30, 0.60, 1.0}, {0.15, 0.06, 1.0}};
+    cmsToneCurve* const squares = cmsBuildGamma(nullptr, 2.0);
+    cmsToneCurve* curves[] = {squares, squares, squares};
+    const cmsHPROFILE made = cmsCreateRGBProfile(&white, &primaries, curves);
+    cmsUInt32Number size = 0;
+    cmsSaveProfileToMem(made, nullptr, &size);
+    std::string profile(size, '\0');
+    cmsSaveProfileToMem(made, profile.data(), &size);
+    cmsCloseProfile(made);
+    cmsFreeToneCurve(squares);
+    const fs::path file = folder.file(
+        "a.xisf",
+        xisf_file(geometry(3) + R"(sampleFormat="Float32" bounds="0:200")", values_of_type<float>(3),
+                  fmt::format(R"(<ICCProfile location="inline:base64">{}</ICCProfile>)", base64(profile))));
+    TextureSettings settings;
+    settings.stretch = TextureSettings::Stretch::linear;
+    settings.black = 0.0;
+    settings.white = 200.0;
+    settings.alpha = TextureSettings::Alpha::one;
+    const Image shown = load_texture({file}, settings, Wrap::clamp).image,
+                prepared = prepare_picture({file}, settings, {}).image;
+    for (const Image* image : {&shown, &prepared})
+        for (int c = 0; c < 3; ++c) {
+            const double stored = value_of(5, 3, c) / 200.0;
+            EXPECT_NEAR(image->at(5, 3)[c], stored * stored, 1e-3) << c << (image == &shown);
+        }
+    settings.stretch = TextureSettings::Stretch::asinh;
+    for (const bool prepare : {false, true}) {
+        const std::vector<std::string> said = warnings_of([&] {
+            prepare ? void(prepare_picture({file}, settings, {}))
+                    : void(load_texture({file}, settings, Wrap::clamp));
+        });
+        ASSERT_EQ(said.size(), 1u) << prepare;
+        EXPECT_HAS(said[0], "is not followed: the stretch makes colours of sRGB");
+    }
 }
 
 TEST_F(XisfTest, SeveralImages) {

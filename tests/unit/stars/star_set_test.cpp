@@ -384,7 +384,11 @@ TEST(NamedColumns, ArchivesAreRead) {
     const StarCatalogue gaia = parse(
         "solution_id,DESIGNATION,ra,ra_error,dec,dec_error,parallax,phot_g_mean_mag,bp_rp,l,b\n"
         "1,\"Gaia DR3 1\",94.25,0.1,51.5,0.1,20,5.898,0.82,7,8\n");
-    expect_star(gaia.stars.at(0), 94.25, 51.5, 50, 5.898);
+    // G - V = -0.02704 + 0.01424 C - 0.2156 C^2 + 0.01426 C^3, Riello et al. 2021.
+    expect_star(gaia.stars.at(0), 94.25, 51.5, 50, 5.898 + 0.02704 - 0.0116768 + 0.14496944 - 0.00786250768);
+    for (const char* const far : {"-0.51", "5.01", ""})
+        EXPECT_EQ(parse(fmt::format("ra,dec,phot_g_mean_mag,bp_rp\n1,2,7,{}\n", far)).stars.at(0).magnitude,
+                  7.0);
     // 5040 / (0.4929 + 0.5092 C - 0.0353 C^2), Mucciarelli et al. 2021.
     EXPECT_NEAR(star_temperature(gaia.stars[0].color_index.value()),
                 5040.0 / (0.4929 + 0.417544 - 0.02373572), 1e-6);

@@ -32,6 +32,7 @@ class DiskSession : public GlTest {
   private:
     ViewerOptions options(std::int64_t count) const {
         ViewerOptions options;
+        options.program = "/bin/false";  // no jobs are looked for
         options.input = folder.file(
             "scene.toml", fmt::format("astrosplat = 1\n[camera]\nposition = [0.0, 6.0, 8.0]\n"
                                       "[[layer]]\nname = \"disk\"\n[layer.source]\n"
@@ -73,6 +74,19 @@ TEST_F(Start, APictureIsSeenByItsOwnCamera) {
     ASSERT_TRUE(session.document.scene().camera.position);
     EXPECT_EQ(*session.document.scene().camera.position,
               session.document.scene().layers[0].source.uv_camera.position);
+}
+
+TEST_F(Start, ACameraMadeForOtherFramesIsSaid) {
+    folder.file("move.chan", "1001 0 0 9 0 0 0 40\n1005 1 0 9 0 0 0 40\n");
+    for (const char* frames : {"1001-1005", "1-5"}) {
+        open_file(session, folder.file("film.toml", fmt::format("astrosplat = 1\n[output]\nframes = \"{}\"\n"
+                                                                "[camera]\nfile = \"move.chan\"\n",
+                                                                frames)));
+        draw();
+        const bool said =
+            session.status.message.text.find("camera.file_offset = -1000 would fit") != std::string::npos;
+        EXPECT_EQ(said, frames[1] == '-') << session.status.message.text;
+    }
 }
 
 // By the scene's own camera, as one edit.
