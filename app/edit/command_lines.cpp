@@ -144,7 +144,14 @@ std::vector<std::string> movie_command(const fs::path& movie, double fps) {
     words.push_back(with_backslashes(movie_folder(movie).string(), "*?[]{}\\") + "/frame.*.png");
     words.insert(words.end(), {"-f", "ffmetadata", "-i", movie_words(movie).string(), "-map_metadata", "1"});
     words.insert(words.end(), {"-c:v", "libx264", "-crf", "16", "-preset", "slow", "-pix_fmt", "yuv420p"});
-    words.insert(words.end(), {"-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2", "-movflags", "+faststart"});
+    // Without a matrix ffmpeg takes that of standard definition, which players take for small pictures only;
+    // without tags each guesses.
+    words.insert(words.end(), {"-vf",
+                               "pad=ceil(iw/2)*2:ceil(ih/2)*2,scale=out_color_matrix=bt709:out_range=tv:"
+                               "flags=accurate_rnd+full_chroma_int"});
+    for (const char* const tag : {"-colorspace", "-color_primaries", "-color_trc"})
+        words.insert(words.end(), {tag, "bt709"});
+    words.insert(words.end(), {"-color_range", "tv", "-movflags", "+faststart"});
     words.push_back(movie.string());
     return words;
 }

@@ -69,8 +69,8 @@ bool renders_by_slurm(const RenderTask& task);
 /// Words of --submit slurm behind the scene. Finished frames always stay there, others are replaced.
 std::vector<std::string> submit_arguments(const RenderTask& task);
 
-/// ffmpeg's command, which writes a movie of the frames in its folder. Sides of odd size get a black line
-/// more, as H.264 wants it.
+/// ffmpeg's command, which writes a movie of the frames in its folder, in the colours of BT.709 at any size,
+/// and tagged so. Sides of odd size get a black line more, as H.264 wants it.
 std::vector<std::string> movie_command(const fs::path& movie, double fps);
 
 struct BatchCommandOptions {

@@ -3,6 +3,8 @@
 #include "edit/edits.h"
 #include "edit/layers.h"
 #include "scenes.h"
+#include "source/write_image.h"
+#include "support/run_program.h"
 #include "support/test.h"
 
 namespace astrosplat {
@@ -278,6 +280,44 @@ TEST(RenderTask, AMoviesFramesLieBesideIt) {
     EXPECT_EQ(words.back(), "/films/[one]*/a.mp4");
     EXPECT_TRUE(has(batch_arguments(task), "output.aovs=[]")) << "which PNG files cannot hold";
     EXPECT_FALSE(has(batch_arguments(task_of(RenderKind::range, "a.####.exr")), "output.aovs=[]"));
+}
+
+// As a player decodes it that believes the tags, and one that takes BT.709 for granted.
+TEST(RenderTask, AMoviesColoursAreThoseOfItsFrames) {
+    if (test::run_program({"/bin/sh", "-c", "command -v ffmpeg && command -v ffprobe"}).code != 0)
+        GTEST_SKIP() << "ffmpeg is not installed";
+    const TempFolder folder;
+    for (const auto& [width, height] :
+         {std::pair(641, 479), std::pair(1280, 720), std::pair(1920, 1080), std::pair(3840, 2160)}) {
+        const fs::path movie = folder / fmt::format("{}.mp4", height);
+        fs::create_directory(movie_folder(movie));
+        std::vector<unsigned char> rgba(std::size_t(4 * width * height), 255);
+        for (std::size_t i = 0; i < rgba.size(); i += 4) rgba[i] = 220, rgba[i + 1] = 60, rgba[i + 2] = 90;
+        write_image(movie_folder(movie) / "frame.000001.png", width, height, rgba);
+        test::write_text(movie_words(movie), ";FFMETADATA1\n");
+        std::vector<std::string> writing = movie_command(movie, 24.0);
+        writing.insert(writing.begin(), "/usr/bin/env");
+        const test::RunResult made = test::run_program(writing);
+        ASSERT_EQ(made.code, 0) << made.err;
+        EXPECT_EQ(test::run_program({"/usr/bin/env", "ffprobe", "-v", "error", "-show_entries",
+                                     "stream=color_range,color_space,color_transfer,color_primaries", "-of",
+                                     "csv=p=0", movie.string()})
+                      .out,
+                  "tv,bt709,bt709,bt709\n");
+        for (const char* matrix : {"auto", "bt709"}) {
+            const std::string pixel =
+                test::run_program({"/usr/bin/env", "ffmpeg", "-v", "error", "-i", movie.string(), "-vf",
+                                   fmt::format("scale=in_color_matrix={}:flags=accurate_rnd+full_chroma_int,"
+                                               "crop=2:2:100:100",
+                                               matrix),
+                                   "-frames:v", "1", "-pix_fmt", "rgb24", "-f", "rawvideo", "-"})
+                    .out;
+            ASSERT_EQ(pixel.size(), 12u);
+            constexpr std::array wanted{220, 60, 90};
+            for (std::size_t c = 0; c < 3; ++c)
+                EXPECT_NEAR(int(static_cast<unsigned char>(pixel[c])), wanted[c], 2) << height << matrix << c;
+        }
+    }
 }
 
 TEST(RenderTask, PlacesMayStandInTheNamesOfFolders) {
