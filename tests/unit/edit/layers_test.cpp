@@ -400,10 +400,8 @@ TEST_F(NewFromFile, OtherFilesAreRefused) {
         ERROR_OF(scene_text_for(text, place)),
         text.string() +
             ": expected a picture (OpenEXR, TIFF, PNG, JPEG, FITS, XISF, Radiance HDR, DPX, WebP, JPEG 2000, "
-            "Photoshop, BMP, GIF, TGA, PNM, HEIF or camera raw), a mesh (OBJ), splats (PDA, PLY, glTF, USD "
-            "or SPLATS) or "
-            "a star "
-            "catalogue, found another kind of file");
+            "Photoshop, BMP, GIF, TGA, PNM, HEIF or camera raw), a mesh (OBJ), splats (PDA, PLY, glTF, USD, "
+            "SPZ, SPLAT, SOG or SPLATS) or a star catalogue, found another kind of file");
     EXPECT_EQ(ERROR_OF(scene_text_for(folder / "gone.png", place)),
               (folder / "gone.png").string() + ": cannot be read: No such file or directory");
     EXPECT_EQ(ERROR_OF(scene_text_for(folder.path(), place)),
