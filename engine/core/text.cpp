@@ -271,4 +271,19 @@ void TextTable::take_units() {
         if (fields_[i].find_first_not_of('-') != fields_[i].npos) columns_[i].unit = fields_[i];
 }
 
+void TextTable::take_units(std::string_view comments) {
+    while (comments.starts_with('#')) {
+        const std::string_view line = comments.substr(0, comments.find('\n'));
+        const auto said = [&](std::string_view key) {
+            const std::size_t at = line.find(key);
+            if (at == line.npos) return std::string_view();
+            const std::string_view rest = line.substr(at + key.size());
+            return trim(rest.substr(0, rest.find_first_of(",}")));
+        };
+        for (NamedColumn& column : columns_)
+            if (lower_case(std::string(said("{name: "))) == column.name) column.unit = said("unit: ");
+        comments.remove_prefix(std::min(line.size() + 1, comments.size()));
+    }
+}
+
 }  // namespace astrosplat

@@ -163,6 +163,8 @@ class TextTable final : public RowTable {
     std::string_view field(int column) const override;
     /// This row tells the units; dashes are none.
     void take_units();
+    /// Comments above the names do, as astropy's ECSV has them: "# - {name: ra, unit: rad, ...}".
+    void take_units(std::string_view comments);
 
   private:
     TextRows rows_;

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "core/log.h"
 #include "source/file_tables.h"
 #include "source/fits_file.h"
 
@@ -101,7 +102,10 @@ std::vector<FileTable> fits_tables(const fs::path& file, const Progress& progres
         fits_movabs_hdu(in.get(), hdu + 1, &type, &status);
         check_fits(file, fmt::format("moving to HDU {}", hdu), status);
         if (type == IMAGE_HDU) continue;
-        const std::string name = fits_text(in.get(), "EXTNAME");
+        const std::string name = fits_text(in.get(), "EXTNAME"), frame = fits_text(in.get(), "RADESYS");
+        if (!frame.empty() && frame != "ICRS" && frame != "FK5")
+            log_warning(fmt::format("{}: RADESYS = '{}' is not followed: places are taken for ICRS",
+                                    file.string(), printable(frame)));
         tables.push_back({fmt::format("HDU {}{}{}", hdu, name.empty() ? "" : " ", name),
                           std::make_unique<FitsTable>(file, in)});
     }

@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "core/file.h"
+#include "core/log.h"
 #include "core/real.h"
 #include "core/text.h"
 #include "source/fits.h"
@@ -432,7 +433,14 @@ std::string xmp_packet(const ObjectMetadata& m) {
 
 std::vector<AvmTag> read_avm_tags(const fs::path& file) { return find_avm_tags(read_ends(file)); }
 
-ObjectMetadata read_xmp_metadata(const fs::path& file) { return find_xmp_metadata(read_ends(file)); }
+ObjectMetadata read_xmp_metadata(const fs::path& file) {
+    const std::string bytes = read_ends(file);
+    const pugi::xml_document packet = find_packet(bytes);
+    if (packet.first_child()) return metadata_of(packet);
+    if (bytes.find(packet_begin) != std::string::npos)
+        log_warning(fmt::format("{}: its XMP packet is no XML and is not followed", file.string()));
+    return {};
+}
 
 ObjectMetadata read_fits_metadata(const fs::path& file) {
     const FitsPlane plane = open_fits_rows(file, "auto", {}).plane;

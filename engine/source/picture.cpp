@@ -324,14 +324,33 @@ void divide_by(const std::array<float, 3>& factors, ImageRows& rows) {
     };
 }
 
-// Where a TIFF does not say its bits they are one, and OpenImageIO reads eight.
-void require_bits(const fs::path& file, int page) {
+// Where a TIFF does not say its bits they are one, and OpenImageIO reads eight; where it was cut short,
+// OpenImageIO reads black.
+void check_tiff(const fs::path& file, int page) {
     const QuietStderr quiet;
     const std::unique_ptr<TIFF, void (*)(TIFF*)> tiff(TIFFOpen(file.c_str(), "r"), TIFFClose);
+    if (!tiff || !TIFFSetDirectory(tiff.get(), static_cast<tdir_t>(page))) return;
     std::uint16_t bits = 0;
-    if (tiff && TIFFSetDirectory(tiff.get(), static_cast<tdir_t>(page)) &&
-        TIFFGetField(tiff.get(), TIFFTAG_BITSPERSAMPLE, &bits) != 1)
+    if (TIFFGetField(tiff.get(), TIFFTAG_BITSPERSAMPLE, &bits) != 1)
         fail_picture(file, "it does not say how many bits a value has (BitsPerSample); save it with 8");
+    const std::uint64_t size = fs::file_size(file);
+    const bool tiled = TIFFIsTiled(tiff.get()) != 0;
+    const std::uint32_t parts = tiled ? TIFFNumberOfTiles(tiff.get()) : TIFFNumberOfStrips(tiff.get());
+    for (std::uint32_t i = 0; i < parts; ++i) {
+        const std::uint64_t at = TIFFGetStrileOffset(tiff.get(), i);
+        if (at > size || TIFFGetStrileByteCount(tiff.get(), i) > size - at)
+            fail_picture(file, "the file ends before the picture does");
+    }
+}
+
+// OpenImageIO turns white that is 0 around in 8 bits only, and has nothing below 0.
+void warn_of_values(const fs::path& file, const ImageSpec& spec) {
+    const bool white = spec.get_int_attribute("tiff:PhotometricInterpretation", 1) == 0;
+    if (white && spec.format.size() > 1)
+        log_warning(fmt::format(
+            "{}: that 0 is white (PhotometricInterpretation) is not followed: it is black", file.string()));
+    if (spec.format.is_signed() && !spec.format.is_floating_point())
+        log_warning(fmt::format("{}: its whole numbers have a sign: those below 0 are black", file.string()));
 }
 
 double largest_integer(const ImageSpec& spec) {
@@ -506,7 +525,8 @@ PictureRows open_picture_rows(const fs::path& file, const Progress& progress, co
     check_spec(file, spec);
     const std::string format = in->format_name();
     if (format == "jpeg" && !jpeg_is_whole(file)) fail_picture(file, "the file ends before the picture does");
-    if (format == "tiff") require_bits(file, choice.first);
+    if (format == "tiff") check_tiff(file, choice.first);
+    warn_of_values(file, spec);
     const Channels channels = choose_channels(spec, wanted);
     PictureRows result;
     Picture& picture = result.picture;
@@ -520,6 +540,10 @@ PictureRows open_picture_rows(const fs::path& file, const Progress& progress, co
     else
         result.rows = rows_of_part(std::move(in), choice.first);
     if (format == "hdr") divide_by(radiance_factors(file), result.rows);
+    // OpenEXR's whole numbers are light, as its others are; OpenImageIO makes fractions of them.
+    const bool counts = format == "openexr" && spec.format.basetype == OIIO::TypeDesc::UINT32;
+    constexpr float whole = 1.0f / 4294967295.0f;
+    if (counts) divide_by({whole, whole, whole}, result.rows);
     make_square(file, spec, result.rows);
     if (const int orientation = orientation_of(spec); orientation != 1) {
         result.rows = rows_of(turned(all_rows(result.rows, file), orientation));
@@ -527,7 +551,7 @@ PictureRows open_picture_rows(const fs::path& file, const Progress& progress, co
                              orientation));
     }
     picture.image = {result.rows.width, result.rows.height, result.rows.channels, {}};
-    picture.max_integer = largest_integer(spec);
+    picture.max_integer = counts ? 0.0 : largest_integer(spec);
     // The reader of JPEG 2000 heeds the wish for it without a word.
     picture.associated = channels.alpha >= 0 && format != "jpeg2000" &&
                          spec.get_int_attribute("oiio:UnassociatedAlpha", 0) == 0;

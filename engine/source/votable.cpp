@@ -3,6 +3,7 @@
 #include <pugixml.hpp>
 
 #include "core/error.h"
+#include "core/log.h"
 #include "core/memory.h"
 #include "core/packed_file.h"
 #include "source/file_tables.h"
@@ -192,9 +193,17 @@ class VoTable final : public RowTable {
 
 struct TableFinder : pugi::xml_tree_walker {
     std::vector<pugi::xml_node> tables;
+    std::string unfollowed;
 
     bool for_each(pugi::xml_node& node) override {
+        const auto said = [&](const char* name) { return lower_case(node.attribute(name).value()); };
         if (local_name(node) == "TABLE") tables.push_back(node);
+        if (local_name(node) == "COOSYS" && said("system").find("icrs") == std::string::npos &&
+            !(said("system").ends_with("fk5") && (said("equinox").empty() || said("equinox") == "j2000")))
+            unfollowed = fmt::format("coordinate system {} {} is not followed: places are taken for ICRS",
+                                     shown(said("system")), printable(said("equinox")));
+        if (said("name") == "query_status" && said("value") == "overflow")
+            unfollowed = "QUERY_STATUS is OVERFLOW: rows are missing, the service left them out";
         return true;
     }
 };
@@ -220,6 +229,8 @@ std::vector<FileTable> votables(std::string text, const std::string& name, const
     progress.check();
     TableFinder finder;
     document->xml.traverse(finder);
+    if (!finder.unfollowed.empty())
+        log_warning(fmt::format("{}: its {}", printable(name), finder.unfollowed));
     std::vector<FileTable> tables;
     for (const pugi::xml_node& node : finder.tables)
         tables.push_back({fmt::format("table {}", shown(node.attribute("name").value())),

@@ -17,6 +17,9 @@
 namespace astrosplat {
 namespace {
 
+constexpr std::string_view meta_name = "meta.json";
+constexpr std::size_t most_meta = 1 << 20;  // of four codebooks of 256 numbers, and names
+
 // ---- ZIP archives of less than 4 GB, by the directory at their end (PKWARE's APPNOTE.TXT)
 
 struct ZipEntry {
@@ -60,6 +63,8 @@ Buffer<char> zipped_file(const fs::path& file, std::string_view bytes, std::stri
     const std::size_t at = entry.header_at + local_bytes + number_at<std::uint16_t>(local + 26) +
                            number_at<std::uint16_t>(local + 28);
     const std::string_view packed(zip_bytes_at(file, bytes, at, entry.packed), entry.packed);
+    if (name == meta_name && entry.size > most_meta)
+        bad_input(file, meta_name, fmt::format("at most {} bytes", most_meta), std::to_string(entry.size));
     if (entry.method == 0) return {packed.begin(), packed.end()};
     if (entry.method != 8 || entry.size > packed.size() * most_from_a_byte)
         bad_input(file, printable(name), "a stored or deflated file",
@@ -77,7 +82,6 @@ Buffer<char> zipped_file(const fs::path& file, std::string_view bytes, std::stri
 using Json = nlohmann::json;
 using Codebook = std::array<float, 256>;
 
-constexpr std::string_view meta_name = "meta.json";
 constexpr std::int64_t palette_columns = 64;
 
 /// Red, green, blue and alpha of each pixel.

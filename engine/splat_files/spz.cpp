@@ -120,11 +120,14 @@ struct SpzNumbers {
 
 void read_zipped(const SpzFile& spz, std::size_t size, SpzNumbers& numbers) {
     constexpr std::size_t old_header = 16, most_extensions = 1 << 16;
-    Buffer<char> all(old_header + size + (spz.extended ? most_extensions : 0));
+    Buffer<char> all(old_header + size + (spz.extended ? most_extensions : 1));
     const std::size_t found = inflate_to(spz.bytes, all, gzip_window);
     if (found < old_header + size)
         bad_input(spz.file, "gzip", fmt::format("{} bytes of {} splats", old_header + size, spz.count),
                   std::to_string(found));
+    if (!spz.extended && found > old_header + size)
+        bad_input(spz.file, "gzip", fmt::format("{} bytes of {} splats", old_header + size, spz.count),
+                  "more");
     numbers.extensions = spz_extensions(spz, std::string_view(all.data(), found).substr(old_header + size));
     numbers.bytes = std::move(all);
     numbers.begin[0] = numbers.bytes.data() + old_header;

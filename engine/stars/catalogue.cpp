@@ -397,6 +397,7 @@ StarCatalogue parse_columns(std::string_view all, const std::string& name, const
     const std::string_view text = from_header(all);
     const auto above = std::count(all.begin(), all.begin() + (text.data() - all.data()), '\n');
     TextTable table(text);
+    table.take_units(all);
     Columns columns(table);
     const auto require = [&] {
         if (!columns.complete())

@@ -4,6 +4,7 @@
 #include "source/origin.h"
 #include "source/picture.h"
 #include "support/fits_text.h"
+#include "support/quiet.h"
 #include "support/test.h"
 #include "support/test_data.h"
 
@@ -174,6 +175,11 @@ TEST(XmpMetadata, TheFirstPacketWithAvmElseTheFirst) {
     EXPECT_EQ(find_xmp_metadata(plain + avm).credit, "second");
     EXPECT_EQ(find_xmp_metadata(broken + plain + plain).credit, "first");
     EXPECT_EQ(find_xmp_metadata(broken).credit, "");
+    const TempFolder folder;
+    const fs::path file = folder.file("a.jpg", broken);
+    const Said said;
+    EXPECT_EQ(read_xmp_metadata(file).credit, "");
+    EXPECT_EQ(said.one_warning(), file.string() + ": its XMP packet is no XML and is not followed");
     EXPECT_EQ(find_xmp_metadata("<rdf:RDF> no end").credit, "");
     EXPECT_EQ(find_xmp_metadata("").credit, "");
 }

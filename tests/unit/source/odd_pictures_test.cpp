@@ -270,6 +270,55 @@ TEST_F(OddPictures, ATiffThatDoesNotSayItsBitsIsRefused) {
                   "(BitsPerSample); save it with 8");
 }
 
+// 8x4 px of one channel in one strip behind the directory; little-endian.
+std::string grey_tiff(int bits, int photometric, int sample_format) {
+    const int bytes = 8 * 4 * bits / 8, data_at = 8 + 2 + 10 * 12 + 4;
+    const std::vector<std::pair<int, int>> tags = {
+        {256, 8},       {257, 4}, {258, bits}, {259, 1},     {262, photometric},
+        {273, data_at}, {277, 1}, {278, 4},    {279, bytes}, {339, sample_format}};
+    std::string tiff("II*\0\x08\0\0\0\x0a\0", 10);
+    for (const auto& [tag, value] : tags)
+        tiff += std::string{char(tag & 255), char(tag >> 8), 3, 0, 1, 0, 0, 0, char(value), 0, 0, 0};
+    tiff += std::string(4, '\0');
+    for (int i = 0; i < bytes; ++i) tiff += char(i);
+    return tiff;
+}
+
+// OpenImageIO says nothing, and has black rows.
+TEST_F(OddPictures, ATiffThatEndsEarlyIsRefused) {
+    const std::string whole = grey_tiff(8, 1, 1);
+    EXPECT_NEAR(read_picture(folder.file("a.tif", whole)).image.at(1, 0)[0], 1.0f / 255.0f, 1e-6f);
+    const fs::path cut = folder.file("cut.tif", whole.substr(0, whole.size() - 1));
+    EXPECT_EQ(ERROR_OF(read_picture(cut)),
+              cut.string() + ": cannot be read as a picture: the file ends before the picture does");
+}
+
+TEST_F(OddPictures, ValuesOfATiffThatAreNotFollowedAreSaid) {
+    const auto said_of = [&](int bits, int photometric, int sample_format) {
+        const Said said;
+        read_picture(folder.file("a.tif", grey_tiff(bits, photometric, sample_format)));
+        return said.warnings.empty() ? "" : said.warnings[0];
+    };
+    EXPECT_EQ(said_of(8, 1, 1), "");
+    EXPECT_EQ(said_of(16, 1, 1), "");
+    EXPECT_EQ(said_of(8, 0, 1), "") << "which is";
+    EXPECT_EQ(read_picture(folder / "a.tif").image.at(0, 0)[0], 1.0f);
+    EXPECT_HAS(said_of(16, 0, 1), "that 0 is white (PhotometricInterpretation) is not followed");
+    EXPECT_HAS(said_of(16, 1, 2), "its whole numbers have a sign: those below 0 are black");
+}
+
+TEST_F(OddPictures, WholeNumbersOfAnExrAreLight) {
+    OIIO::ImageSpec spec(2, 1, 3, OIIO::TypeUInt);
+    const std::vector<std::uint32_t> values = {0, 1, 2, 1000, 70000, 5};
+    const fs::path file = folder / "counts.exr";
+    const auto out = OIIO::ImageOutput::create(file.string());
+    ASSERT_TRUE(out->open(file.string(), spec) && out->write_image(OIIO::TypeUInt, values.data()) &&
+                out->close());
+    const Image light = load_linear_image(file);
+    for (std::size_t i = 0; i < 6; ++i)
+        EXPECT_FLOAT_EQ(light.pixels[i / 3 * 4 + i % 3], float(values[i])) << i;
+}
+
 // ---- formats that OpenImageIO reads in its own way
 
 // Rows go up: the lower one is the file's first. A negative scale means that the lowest byte comes first.

@@ -6,6 +6,8 @@
 #include "core/text.h"
 #include "source/file_tables.h"
 #include "stars/catalogue.h"
+#include "support/fits_text.h"
+#include "support/quiet.h"
 #include "support/test.h"
 
 namespace astrosplat {
@@ -225,6 +227,15 @@ TEST(Units, AreFollowedOrSaidOrRefused) {
             "t.tsv")
             .stars.at(0),
         85.94366926962348, -28.64788975654116, 10, 5);
+    // What astropy writes above them.
+    expect_place(
+        parse_catalogue("# %ECSV 1.0\n# ---\n# datatype:\n# - {name: ra, unit: rad, datatype: float64}\n"
+                        "# - {name: dec, datatype: float64, unit: rad}\n# - {name: mag, unit: mag}\n"
+                        "# - {name: parallax, unit: arcsec, datatype: float64}\nra dec mag parallax\n"
+                        "1.5 -0.5 5 .1\n",
+                        "t.ecsv")
+            .stars.at(0),
+        85.94366926962348, -28.64788975654116, 10, 5);
     EXPECT_EQ(ERROR_OF(parse_catalogue("ra,dec,mag\ndeg,deg,Jy\n1,2,3\n", "t.csv")),
               "t.csv:line 2: expected a Hipparcos catalogue, or names of columns with ra, dec and mag among "
               "them, found "
@@ -276,6 +287,49 @@ TEST(VoTable, TheFirstTableWithStarsIsTaken) {
     EXPECT_TRUE(said.warnings.empty());
     parse_vot("<VOTABLE><RESOURCE>" + other + stars + stars + "</RESOURCE></VOTABLE>");
     EXPECT_EQ(said.one_warning(), "t.vot: 2 tables hold stars; table 'a' is taken");
+}
+
+TEST(VoTable, WhatItSaysOfItsPlacesAndRowsIsSaid) {
+    const auto said_of = [&](const std::string& element) {
+        const Said said;
+        std::string text = votable(field("ra") + field("dec") + field("mag"), cells({{"1", "2", "3"}}));
+        parse_vot(text.insert(text.find("<TABLE"), element));
+        return said.warnings.empty() ? "" : said.warnings[0];
+    };
+    EXPECT_EQ(said_of("<COOSYS ID='a' system='ICRS'/><COOSYS ID='b' system='eq_FK5' equinox='J2000'/>"), "");
+    EXPECT_EQ(said_of("<COOSYS ID='a' system='eq_FK4' equinox='B1950'/>"),
+              "t.vot: its coordinate system 'eq_fk4' b1950 is not followed: places are taken for ICRS");
+    EXPECT_HAS(said_of("<COOSYS ID='a' system='galactic'/>"), "coordinate system 'galactic'");
+    EXPECT_HAS(said_of("<INFO name='QUERY_STATUS' value='OVERFLOW'/>"),
+               "QUERY_STATUS is OVERFLOW: rows are missing");
+}
+
+TEST(FitsTables, AFrameThatIsNotFollowedIsSaid) {
+    const TempFolder folder;
+    const auto said_of = [&](const char* frame) {
+        std::string text = fits_card("SIMPLE  =                    T") +
+                           fits_card("BITPIX  =                    8") +
+                           fits_card("NAXIS   =                    0") + fits_card("END");
+        text.resize(2880, ' ');
+        for (const char* card :
+             {"XTENSION= 'TABLE   '", "BITPIX  =                    8", "NAXIS   =                    2",
+              "NAXIS1  =                    6", "NAXIS2  =                    1",
+              "PCOUNT  =                    0", "GCOUNT  =                    1",
+              "TFIELDS =                    3", "TTYPE1  = 'RA      '", "TFORM1  = 'F2.0    '",
+              "TBCOL1  =                    1", "TTYPE2  = 'DEC     '", "TFORM2  = 'F2.0    '",
+              "TBCOL2  =                    3", "TTYPE3  = 'MAG     '", "TFORM3  = 'F2.0    '",
+              "TBCOL3  =                    5"})
+            text += fits_card(card);
+        text += fits_card(std::string("RADESYS = '") + frame + "'") + fits_card("END");
+        text.resize(2 * 2880, ' ');
+        text += " 1 2 3";
+        text.resize(3 * 2880, ' ');
+        const Said said;
+        EXPECT_EQ(read_catalogue(folder.file("a.fits", text)).stars.at(0).magnitude, 3.0);
+        return said.warnings.empty() ? "" : said.warnings[0];
+    };
+    EXPECT_EQ(said_of("ICRS"), "");
+    EXPECT_HAS(said_of("FK4"), "RADESYS = 'FK4' is not followed: places are taken for ICRS");
 }
 
 TEST(FitsTables, AreReadAsAstropyWroteThem) {
