@@ -59,7 +59,7 @@ std::int64_t field(std::string_view text, std::string_view name) {
 }
 
 // Empty where there is none.
-std::string text_of(const fs::path& file) {
+std::string text_of(const std::string& file) {
     std::ifstream in(file);
     return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
 }
@@ -193,10 +193,12 @@ void claim_memory(std::int64_t bytes, const std::string& what) {
 std::vector<std::string> cgroup_values(const std::string& controller, const std::string& file) {
     std::vector<std::string> values;
     for (const Group& group : groups_of(controller)) {
-        for (fs::path path = group.path;; path = path.parent_path()) {
-            std::string text = text_of(group.root / path / file);
+        // As text: where memory ends, libstdc++ 12's paths free theirs twice.
+        std::string path = group.path.string();
+        for (path.insert(0, path.empty() ? "" : "/");; path.resize(path.rfind('/'))) {
+            std::string text = text_of(group.root.string() + path + "/" + file);
             if (!text.empty()) values.push_back(std::move(text));
-            if (path.empty() || path == path.parent_path()) break;
+            if (path.empty()) break;
         }
     }
     return values;
