@@ -12,21 +12,6 @@ namespace {
 
 using Settings = TextureSettings;
 
-}  // namespace
-
-std::shared_ptr<const ColorEncoding> followed_colors(const FitsPlane& plane, Settings::Stretch stretch,
-                                                     const fs::path& file) {
-    if (stretch == Settings::Stretch::linear) return plane.colors;
-    if (plane.colors && !plane.colors->is_rec709(TransferCurve::Kind::srgb))
-        log_warning(
-            fmt::format("{}: its {} is not followed: the stretch makes colours of sRGB "
-                        "(stretch = linear follows it)",
-                        file.string(), plane.colors->name));
-    return nullptr;
-}
-
-namespace {
-
 // Facts about a plane's picture, known before its pixels.
 Stored stored_without_pixels(const FitsPlane& plane, const Limits& limits, Settings::Stretch stretch,
                              const fs::path& file) {
@@ -142,6 +127,17 @@ RawPicture read_raw(const fs::path& file, const std::string& hdu, std::optional<
         raw.picture = read_picture(file, progress, hdu);
     }
     return raw;
+}
+
+std::shared_ptr<const ColorEncoding> followed_colors(const FitsPlane& plane, TextureSettings::Stretch stretch,
+                                                     const fs::path& file) {
+    if (stretch == TextureSettings::Stretch::linear) return plane.colors;
+    if (plane.colors && !plane.colors->is_rec709(TransferCurve::Kind::srgb))
+        log_warning(
+            fmt::format("{}: its {} is not followed: the stretch makes colours of sRGB "
+                        "(stretch = linear follows it)",
+                        file.string(), plane.colors->name));
+    return nullptr;
 }
 
 Stored stored_of(RawPicture raw, const Settings& settings, const fs::path& file) {
