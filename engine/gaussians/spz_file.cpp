@@ -4,6 +4,7 @@
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "core/real.h"
+#include "core/shared_maths.h"
 #include "gaussians/gaussian_file.h"
 #include "splat_files/spz_numbers.h"
 
@@ -52,12 +53,21 @@ char* put_harmonic(char* out, float value, int degree) {
     return put_code(out, std::max(code, 0) / step * step);
 }
 
+/// Of the faintest at random, by its number: bodies are made of many that no step of 255 shows alone, and
+/// rounded to the nearest one all of them would go out, or shine twice as much.
+double alpha_code(float alpha, std::size_t i) {
+    constexpr double faintest = 4.0;  // from here on as many are rounded up as down
+    const double code = 255.0 * double(alpha);
+    if (code >= faintest) return code;
+    return code - 0.5 + double(shared::as_uniform(shared::as_hash_of_id(0u, i, shared::PURPOSE_ROUNDING)));
+}
+
 void pack_row(const Gaussians& g, int bits, SpzStreams& streams, std::size_t i) {
     auto& [positions, alphas, colors, scales, rotations, harmonics] = streams;
     const glm::vec4 q = g.rotation[i];
     const std::uint32_t rotation = packed_rotation({q.x, -q.y, -q.z, q.w});
     for (std::size_t k = 0; k < 4; ++k) rotations[4 * i + k] = char(rotation >> 8 * k & 255u);
-    put_code(&alphas[i], 255.0 * double(g.alpha[i]));
+    put_code(&alphas[i], alpha_code(g.alpha[i], i));
     const glm::vec3 mean = g.degree > 0 ? g.harmonics[i].c[0] : mean_coefficient(g.color[i]);
     for (std::size_t k = 0; k < 3; ++k) {
         const auto axis = int(k);

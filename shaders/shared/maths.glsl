@@ -93,4 +93,5 @@ const uint PURPOSE_SKY_PATCH = 22u;  // of a tiled sky
 const uint PURPOSE_SHEET = 25u;      // depths that dust has in a cell
 const uint PURPOSE_EVEN = 23u;       // depths of bodies
 const uint PURPOSE_DETAIL = 26u;     // noise below a picture's pixels
+const uint PURPOSE_ROUNDING = 28u;      // of what files hold in few steps
 const uint PURPOSE_DETAIL_PATCH = 27u;  // where details are looked for that are copied there

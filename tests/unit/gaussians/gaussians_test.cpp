@@ -312,6 +312,28 @@ Gaussians gaussians_of(const std::vector<Trained>& all, int degree, double size)
     return out;
 }
 
+// A galaxy's halo is made of such.
+TEST(GaussianFile, FaintGaussiansOfSpzShineAsMuchTogether) {
+    const TempFolder folder;
+    constexpr std::size_t count = 40000;
+    for (const double codes : {0.1, 0.4, 1.7}) {
+        Gaussians wanted = gaussians_of(capture(1, 0), 0, 1.0);
+        wanted.position.resize(count, wanted.position[0]);
+        wanted.color.resize(count, wanted.color[0]);
+        wanted.scale.resize(count, wanted.scale[0]);
+        wanted.rotation.resize(count, wanted.rotation[0]);
+        wanted.alpha.assign(count, float(codes / 255.0));
+        write_gaussian_spz({folder / "a.spz", Existing::replace}, wanted);
+        double sum = 0.0;
+        for (const float alpha : read_splats(folder / "a.spz").alpha) {
+            EXPECT_LT(std::fabs(255.0 * alpha - codes), 1.0);
+            sum += 255.0 * alpha;
+        }
+        const double part = codes - std::floor(codes), deviation = std::sqrt(part * (1.0 - part) / count);
+        EXPECT_NEAR(sum / count, codes, 4.0 * deviation);
+    }
+}
+
 // Numbers of SPZ are off by half a step at most, in scenes of any size.
 TEST(GaussianFile, SpzIsReadBackWithinItsSteps) {
     const TempFolder folder;
