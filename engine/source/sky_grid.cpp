@@ -46,6 +46,7 @@ Wcs copied(const wcsprm& from) {
 Wcs celestial_axes(wcsprm& all, std::string& problem) {
     std::array<int, NWCSFIX> fixed{};
     wcsfix(0, nullptr, &all, fixed.data());
+    wcserr_clear(&all.err);  // where set twice, WCSLIB 7.12 loses the first message
     int axes[] = {WCSSUB_CELESTIAL}, count = 1;
     Wcs wcs = new_wcs();
     const auto reason = [](const wcsprm& failed, int status) {
