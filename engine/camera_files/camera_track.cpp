@@ -55,9 +55,15 @@ ReadTrack reader_of(const fs::path& file) {
 }  // namespace
 
 bool set_axes(const glm::dmat3& axes, const std::string& file, TrackSample& sample, CameraTrack& track) {
-    if (track.samples.empty() && is_mirrored(axes))
-        track.warnings.push_back(file +
-                                 ": the camera is mirrored, which no frame is: its up and its view stay");
+    const auto tell = [&](const std::string& what) {
+        const std::string line = file + ": the camera is " + what;
+        if (std::ranges::count(track.warnings, line) == 0) track.warnings.push_back(line);
+    };
+    if (is_mirrored(axes)) tell("mirrored, which no frame is: its up and its view stay");
+    for (int c = 0; c < 3; ++c)
+        if (const glm::dvec3 a = axes[c], b = axes[(c + 1) % 3];
+            std::fabs(glm::dot(a, b)) > 1e-3 * glm::length(a) * glm::length(b))  // beyond what files round
+            tell("sheared, which no frame is: its view stays");
     return quaternion_from_axes(axes, sample.rotation);
 }
 

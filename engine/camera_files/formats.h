@@ -9,8 +9,8 @@
 
 namespace astrosplat {
 
-/// Turns the sample, the track's next one, and tells of mirrored axes at the first. Returns false where the
-/// axes span no space.
+/// Turns the sample, and tells once of mirrored and of sheared axes in the track's warnings. Returns false
+/// where the axes span no space.
 bool set_axes(const glm::dmat3& world_from_camera, const std::string& file, TrackSample& sample,
               CameraTrack& track);
 
@@ -67,7 +67,8 @@ CameraTrack read_openspace(const fs::path& file, const FrameRate& rate);
 /// along -z. The field of view is that of fl_y and h, or fl_x and w, of the frame or of all; else
 /// camera_angle_y; else camera_angle_x, of square pictures unless w and h are given. Without any of these
 /// there is none. cx and cy shift a perspective frame; OPENCV_FISHEYE is an equidistant fisheye, whose cone
-/// is that of the picture's shorter side. Distortions are told and left out.
+/// is that of the picture's shorter side. Distortions, and what scales places or axes, are told and left out;
+/// applied_transform and applied_scale, which the matrices have, change nothing.
 CameraTrack read_transforms_json(const fs::path& file, const FrameRate& rate);
 
 }  // namespace astrosplat

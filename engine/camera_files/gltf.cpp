@@ -237,6 +237,10 @@ void add_floats(std::string& bytes, std::initializer_list<double> values) {
 
 CameraTrack read_gltf(const fs::path& path, const FrameRate& rate) try {
     GltfFile file(path);
+    // Besides what is followed, those of meshes and their surfaces.
+    file.require_only({"KHR_animation_pointer", "KHR_materials_", "KHR_texture_", "EXT_texture_",
+                       "KHR_lights_punctual", "KHR_mesh_quantization", "KHR_draco_mesh_compression",
+                       "KHR_gaussian_"});
     CameraTrack track;
     const std::vector<std::int64_t> way = way_to_camera(file, track.warnings);
     const Json& camera_number = file.element("nodes", way.back()).at("camera");

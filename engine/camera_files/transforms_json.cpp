@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <glm/geometric.hpp>
 #include <map>
 #include <nlohmann/json.hpp>
 
@@ -76,7 +77,7 @@ std::optional<Projection> projection_of(const std::string& model) {
 
 /// What is told of all frames' lenses, each once: where it first holds.
 struct LensWords {
-    std::string distortion, pixels, middle, model;
+    std::string distortion, pixels, middle, model, sizes, axes;
 };
 
 /// Where the middle of a frame lies, and what is told of its lens.
@@ -132,6 +133,10 @@ CameraTrack read_transforms_json(const fs::path& file, const FrameRate&) try {
         words.model = fmt::format("camera_model {} is not known, a perspective one is taken", shown(model));
     else if (projection_of(model) == Projection::fisheye)
         words.model = "of a fisheye the circle within the picture is shown, and not its corners";
+    // instant-ngp's way into its own unit cube, which nothing that it exports lies in.
+    if (const Json none{0.0, 0.0, 0.0};
+        json.value("scale", Json(1.0)) != 1.0 || json.value("offset", none) != none)
+        words.sizes = "scale and offset are left out: places are those of transform_matrix";
     track.projection = projection_of(model).value_or(Projection::perspective);
     const bool fisheye = track.projection == Projection::fisheye;
     for (const Json* const in_order : frames_in_order(frames)) {
@@ -148,6 +153,10 @@ CameraTrack read_transforms_json(const fs::path& file, const FrameRate&) try {
         sample.eye = {rows[0][3], rows[1][3], rows[2][3]};
         if (!set_axes(axes, file.string(), sample, track))
             fail("axes in the transform_matrix of " + place, "none");
+        const glm::dvec3 sizes(glm::length(axes[0]), glm::length(axes[1]), glm::length(axes[2]));
+        if (words.axes.empty() && glm::distance(sizes, glm::dvec3(1.0)) > 1e-3)
+            words.axes = fmt::format("the axes of {} are {:.4g}, {:.4g} and {:.4g} long: taken for 1", place,
+                                     sizes.x, sizes.y, sizes.z);
         read_shift(frame, json, sample, track, words);
         const std::optional<double> fov = track.projection == Projection::equirectangular ? std::nullopt
                                           : fisheye ? fisheye_fov_deg(frame, json)
@@ -160,7 +169,8 @@ CameraTrack read_transforms_json(const fs::path& file, const FrameRate&) try {
         sample.fov_deg = fov.value_or(0.0);
         track.samples.push_back(sample);
     }
-    for (const std::string& word : {words.model, words.distortion, words.pixels, words.middle})
+    for (const std::string& word :
+         {words.model, words.distortion, words.pixels, words.middle, words.sizes, words.axes})
         if (!word.empty()) track.warnings.push_back(fmt::format("{}: {}", file.string(), word));
     return track;
 } catch (const Json::exception& error) {  // a value of another type

@@ -74,6 +74,8 @@ class CameraReader {
             track_.warnings.push_back(fmt::format(
                 "{}: camera '{}' has no verticalAperture; USD's own, {}, is taken for its field of view",
                 file_, printable(camera_.name), usual_vertical_aperture));
+        if (const std::string text = left_out(chain_); !text.empty())
+            track_.warnings.push_back(fmt::format("{}: {}", file_, text));
         return std::move(track_);
     }
 

@@ -93,6 +93,12 @@ void GltfFile::fail(const std::string& expected, const std::string& found) const
     bad_input(file_, expected, found);
 }
 
+void GltfFile::require_only(std::initializer_list<std::string_view> beginnings) const {
+    for (const auto& name : json_.value("extensionsRequired", std::vector<std::string>()))
+        if (std::ranges::none_of(beginnings, [&](std::string_view own) { return name.starts_with(own); }))
+            fail(fmt::format("no required extensions but {}", fmt::join(beginnings, ", ")), printable(name));
+}
+
 const Json& GltfFile::element(const char* name, const Json& index) const {
     const auto list = json_.find(name);
     const std::int64_t i = index.is_number_integer() ? index.get<std::int64_t>() : -1;

@@ -27,6 +27,9 @@ class GltfFile {
     /// Throws InputError.
     std::vector<float> numbers(const nlohmann::json& accessor, int components);
 
+    /// Throws InputError and nlohmann's exceptions where the file requires extensions that begin otherwise.
+    void require_only(std::initializer_list<std::string_view> beginnings) const;
+
     /// Throws InputError with the file.
     [[noreturn]] void fail(const std::string& expected, const std::string& found) const;
 

@@ -102,10 +102,7 @@ std::vector<Json> roots_of(const GltfFile& file) {
 }
 
 std::vector<Part> parts_of(const GltfFile& file) {
-    for (const Json& name : file.json().value("extensionsRequired", Json::array()))
-        if (name != extension && name != "KHR_mesh_quantization")
-            file.fail("no required extensions but " + extension + " and KHR_mesh_quantization",
-                      printable(name.get<std::string>()));
+    file.require_only({extension, "KHR_mesh_quantization"});
     std::vector<Part> parts;
     std::vector<bool> seen(file.json().value("nodes", Json::array()).size(), false);
     for (const Json& root : roots_of(file)) add_parts(file, root, glm::dmat4(1.0), 0, seen, parts);

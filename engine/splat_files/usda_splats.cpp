@@ -5,6 +5,7 @@
 #include <glm/mat4x4.hpp>
 
 #include "core/error.h"
+#include "core/log.h"
 #include "core/text.h"
 #include "splat_files/file_bytes.h"
 #include "splat_files/gaussian_rows.h"
@@ -88,7 +89,10 @@ int degree_of(const UsdText& text, const GaussianPrim& own, std::string_view lis
     return each >= 16 ? 3 : each >= 9 ? 2 : each >= 4 ? 1 : 0;
 }
 
-GaussianPrim prim_of(const UsdText& text, const UsdPrim& prim, const glm::dmat4& world) {
+GaussianPrim prim_of(const UsdText& text, std::span<const UsdPrim* const> chain, const glm::dmat4& world) {
+    const UsdPrim& prim = *chain.back();
+    if (const std::string unread = left_out(chain); !unread.empty())
+        log_warning(fmt::format("{}: {}", text.file, unread));
     GaussianPrim own;
     own.prim = &prim;
     const std::optional<GaussianPlacement> placement = gaussian_placement(world);
@@ -114,7 +118,7 @@ void add_prims(const UsdText& text, const std::vector<UsdPrim>& prims, std::vect
         if (!prim.defined) continue;
         chain.push_back(&prim);
         if (prim.type == usd_gaussians)
-            all.push_back(prim_of(text, prim, above * world_from_prim(chain, 0.0, text.file)));
+            all.push_back(prim_of(text, chain, above * world_from_prim(chain, 0.0, text.file)));
         add_prims(text, prim.children, chain, above, all);
         chain.pop_back();
     }

@@ -270,8 +270,10 @@ class Parser {
                 name = std::move(word);
             }
             if (scan_.peek() == ')') continue;
-            if (name == "references" || name == "payload" || name == "subLayers")
-                stage_.refers_elsewhere = true;
+            constexpr std::array arcs{"references", "payload", "subLayers", "inherits", "specializes"};
+            const auto* const arc = std::ranges::find(arcs, name);
+            stage_.refers_elsewhere |= arc < arcs.begin() + 3;
+            if (arc != arcs.end()) kept["unread"].words.push_back(name);
             if (name == "variants" && scan_.peek() == '{') {
                 kept[name].words = selections();
                 continue;
@@ -325,7 +327,7 @@ class Parser {
             UsdPrim inside;
             inside.type = prim.type;
             inside.variants = prim.variants;
-            add_selections(own, inside);
+            take_metadata(own, inside);
             body(inside, depth);
             add_weaker(prim, std::move(inside));
         }
@@ -346,7 +348,8 @@ class Parser {
         scan_.go_back(end);
     }
 
-    static void add_selections(std::map<std::string, UsdValue>& metadata, UsdPrim& prim) {
+    static void take_metadata(std::map<std::string, UsdValue>& metadata, UsdPrim& prim) {
+        std::ranges::copy(metadata["unread"].words, std::back_inserter(prim.unread));
         const std::vector<std::string>& words = metadata["variants"].words;
         for (std::size_t i = 0; i + 1 < words.size(); i += 2)
             prim.variants.try_emplace(words[i], words[i + 1]);
@@ -354,6 +357,7 @@ class Parser {
 
     static void add_weaker(UsdPrim& prim, UsdPrim weaker) {
         if (prim.type.empty()) prim.type = weaker.type;
+        std::ranges::copy(weaker.unread, std::back_inserter(prim.unread));
         prim.attributes.merge(weaker.attributes);
         for (UsdPrim& child : weaker.children) {
             const auto same = std::ranges::find(prim.children, child.name, &UsdPrim::name);
@@ -373,11 +377,12 @@ class Parser {
         if (scan_.peek() != '"' && scan_.peek() != '\'') prim.type = scan_.next_word();
         if (scan_.peek() != '"' && scan_.peek() != '\'') scan_.fail("the name of a prim");
         prim.name = scan_.quoted(scan_.peek());
+        if (depth == 0) prim.unread = stage_.metadata["unread"].words;
         if (scan_.peek() == '(') {
             std::map<std::string, UsdValue> own;
             metadata(own);
             if (own["active"].is("false")) prim.defined = false;
-            add_selections(own, prim);
+            take_metadata(own, prim);
         }
         body(prim, depth);
         return prim;
@@ -419,7 +424,13 @@ class Parser {
         const bool samples = name.ends_with(sampled);
         if (samples) name.resize(name.size() - sampled.size());
         const bool list = prim.type == usd_gaussians && is_list(name);
-        UsdAttribute* const attribute = is_kept(name) || list ? &prim.attributes[name] : nullptr;
+        constexpr std::array cameras{"fStop",         "focusDistance", "shutter:open",
+                                     "shutter:close", "stereoRole",    "exposure"};
+        const bool camera = std::ranges::find(cameras, name) != cameras.end();
+        UsdAttribute told;  // of a camera, where it is other than USD's own
+        UsdAttribute* const attribute = is_kept(name) || list ? &prim.attributes[name]
+                                        : camera              ? &told
+                                                              : nullptr;
         if (list && !samples && scan_.peek() == '[') {
             attribute->list = scan_.numbers();
         } else if (list) {
@@ -435,6 +446,9 @@ class Parser {
                 attribute->has_value = true;
             }
         }
+        if (!told.samples.empty() ||
+            (told.has_value && told.value.numbers != std::vector{0.0} && !told.value.is("mono")))
+            prim.unread.push_back(name);
         if (scan_.peek() == '(') scan_.skip_brackets();
     }
 
@@ -463,6 +477,15 @@ std::string UsdStage::none_found() const {
     return refers_elsewhere ? "none but what other files may hold, which are not opened"
            : has_unselected ? "none but what variants may hold of which the file selects none"
                             : "none";
+}
+
+std::string left_out(std::span<const UsdPrim* const> prims) {
+    std::string text;
+    for (const UsdPrim* const prim : prims)
+        if (!prim->unread.empty())
+            text += fmt::format("{}{} of '{}'", text.empty() ? "" : ", ", fmt::join(prim->unread, ", "),
+                                printable(prim->name));
+    return text.empty() ? text : text + " are not followed";
 }
 
 UsdStage parse_usda(std::string_view text, const std::string& file) {

@@ -33,6 +33,7 @@ struct UsdPrim {
     bool defined = true;                             // def; else over or class, which alone make nothing
     std::map<std::string, UsdAttribute> attributes;  // as usda_stage.cpp has them
     std::map<std::string, std::string> variants;     // that are selected, by their sets
+    std::vector<std::string> unread;                 // what it has and nothing follows: references, fStop
     std::vector<UsdPrim> children;                   // those of selected variants among them
 
     /// An empty one where it has none of the name.
@@ -52,6 +53,9 @@ struct UsdStage {
 
 /// `text` outlives what its lists are read from. Throws InputError with `file` and the line.
 UsdStage parse_usda(std::string_view text, const std::string& file);
+
+/// "references of 'NAME', fStop of 'LAST' are not followed", of a prim and its parents; empty where all is.
+std::string left_out(std::span<const UsdPrim* const> prims);
 
 // Where a prim stands at a time: matrices and numbers, between samples as USD has them.
 

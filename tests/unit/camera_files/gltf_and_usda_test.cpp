@@ -237,6 +237,17 @@ TEST_F(Gltf, OddFilesEndInOneLine) {
               "a.gltf: expected times that ascend, found others");
 }
 
+TEST_F(Gltf, RequiredExtensionsAreThoseThatLeaveCamerasAlone) {
+    const auto with = [](const std::string& names) {
+        return test::replaced(moving("STEP", {0, 0, 0, 8, 0, 4}), "\"nodes\"",
+                              "\"extensionsRequired\":[" + names + "],\"nodes\"");
+    };
+    EXPECT_TRUE(read(with(R"("KHR_animation_pointer","KHR_materials_unlit","KHR_texture_basisu")")).has_fov);
+    const std::string message = refusal("a.gltf", with(R"("KHR_lights_punctual","FOO_bar")"), read_gltf);
+    EXPECT_HAS(message, "a.gltf: expected no required extensions but KHR_animation_pointer, ");
+    EXPECT_HAS(message, ", found FOO_bar");
+}
+
 TEST(Base64, IsRfc4648) {
     for (const auto& [bytes, text] : std::vector<std::pair<std::string, std::string>>{{"", ""},
                                                                                       {"f", "Zg=="},
@@ -384,6 +395,24 @@ TEST_F(Usda, AMirroredParentKeepsTheCameraUpright) {
     EXPECT_HAS(track.warnings[0], "shot.usda: the camera is mirrored");
 }
 
+TEST_F(Usda, WhatIsNotFollowedIsSaidInOneLine) {
+    const CameraTrack track =
+        read(camera("float fStop = 2.8\nfloat focusDistance.timeSamples = { 0: 1, 9: 2 }\n"
+                    "double shutter:open = -0.25\nuniform token stereoRole = \"left\"\n"
+                    "matrix4d xformOp:transform = ( (1, 0, 0, 0), (0.5, 1, 0, 0), "
+                    "(0, 0, 1, 0), (0, 0, 0, 1) )\n"
+                    "uniform token[] xformOpOrder = [\"xformOp:transform\"]\n",
+                    "subLayers = [@a.usd@]\n"));
+    EXPECT_EQ(track.samples.size(), 1u) << "what is not followed moves nothing";
+    ASSERT_EQ(track.warnings.size(), 2u);
+    EXPECT_HAS(track.warnings[0], "shot.usda: the camera is sheared, which no frame is");
+    EXPECT_HAS(track.warnings[1],
+               "shot.usda: subLayers, fStop, focusDistance, shutter:open, stereoRole of 'cam' "
+               "are not followed");
+    const CameraTrack usual = read(camera("float fStop = 0\ntoken stereoRole = \"mono\"\n"));
+    EXPECT_TRUE(usual.warnings.empty()) << "as the schema has them";
+}
+
 TEST_F(Usda, TheSelectedVariantIsReadAndIsWeakerThanThePrim) {
     const auto rig = [](const std::string& head) {
         return "#usda 1.0\ndef Xform \"rig\" (" + head + R"()
@@ -523,9 +552,10 @@ def "cameras" ( prepend references = @./base.usda@</cameras> (offset = 1) )
     EXPECT_LT(glm::distance(-rotation_from_quaternion(houdini.samples[1].rotation)[2],
                             glm::dvec3(-std::sqrt(0.5), 0.0, -std::sqrt(0.5))),
               1e-9);
-    ASSERT_EQ(houdini.warnings.size(), 2u);
+    ASSERT_EQ(houdini.warnings.size(), 3u);
     EXPECT_HAS(houdini.warnings[0], "has no verticalAperture");
-    EXPECT_HAS(houdini.warnings[1], "of 2 cameras 'camera1' is read");
+    EXPECT_HAS(houdini.warnings[1], "references of 'cameras' are not followed");
+    EXPECT_HAS(houdini.warnings[2], "of 2 cameras 'camera1' is read");
 }
 
 TEST_F(Usda, OddFilesEndInOneLine) {

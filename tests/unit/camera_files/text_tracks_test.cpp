@@ -221,6 +221,22 @@ TEST_F(TransformsJson, TheMiddleShiftsTheFrameAndDistortionsAreTold) {
     EXPECT_FALSE(read(two(R"("w":1920,"h":1000,"fl_x":500,"cx":960,"cy":500,)")).has_shift);
 }
 
+TEST_F(TransformsJson, SizesBesideTheMatricesAreTold) {
+    const std::string applied = R"("applied_transform":[[0,1,0,0],[1,0,0,0],[0,0,-1,0]],"applied_scale":3,)";
+    const CameraTrack plain = read(two(applied + R"("scale":1,"offset":[0,0,0],)"));
+    EXPECT_EQ(plain.samples[0].eye, glm::dvec3(1, 2, 3)) << "the matrices have it";
+    EXPECT_TRUE(plain.warnings.empty());
+    const CameraTrack told =
+        read(test::replaced(two(R"("scale":0.33,"offset":[0.5,0.5,0.5],)"), "0,0,-1,4", "0,0,-2,4"));
+    EXPECT_EQ(told.samples[0].eye, glm::dvec3(1, 2, 3));
+    expect_near(axes(told.samples[1])[2], {-1, 0, 0});
+    ASSERT_EQ(told.warnings.size(), 2u);
+    EXPECT_HAS(told.warnings[0],
+               "transforms.json: scale and offset are left out: places are those of "
+               "transform_matrix");
+    EXPECT_HAS(told.warnings[1], "transforms.json: the axes of frame 2 are 1, 1 and 2 long: taken for 1");
+}
+
 TEST_F(TransformsJson, ModelsAreProjections) {
     const std::string size = R"("w":1920,"h":1000,"fl_x":500,"cx":960,"cy":500,)";
     const CameraTrack fisheye = read(two(size + R"("camera_model":"OPENCV_FISHEYE",)"));
