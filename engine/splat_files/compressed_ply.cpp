@@ -25,7 +25,8 @@ struct PackedRows {
 struct CompressedPly {
     PackedRows chunks, vertices, harmonics;
     bool has_colors = false;
-    int rest = 0;  // harmonics a channel beyond degree 0
+    std::size_t behind = 0;  // bytes after the last element
+    int rest = 0;            // harmonics a channel beyond degree 0
 };
 
 PackedRows take_rows_of(const PlyElement& element, const fs::path& file, std::string_view& data) {
@@ -83,6 +84,7 @@ CompressedPly compressed_ply(const PlyHeader& header, const fs::path& file) {
         }
         if (!known) bad_input(file, "element " + element.name, "properties of compressed splats", "others");
     }
+    ply.behind = data.size();
     const std::uint64_t count = ply.vertices.count, chunks = (count + splats_a_chunk - 1) / splats_a_chunk;
     if (ply.chunks.count != chunks)
         bad_input(file, "element chunk", fmt::format("{} rows for {} splats", chunks, count),
@@ -150,6 +152,7 @@ SplatColumns compressed_ply_columns(const PlyHeader& header, const fs::path& fil
 
 SplatSet read_compressed_ply(const PlyHeader& header, const fs::path& file, const Progress& progress) {
     const CompressedPly ply = compressed_ply(header, file);
+    warn_of_rest(file, ply.behind);
     return packed_gaussians(std::int64_t(ply.vertices.count), ply.rest > 0, file, progress,
                             [&](SplatSet& out, std::size_t i) { put_compressed(ply, out, i); });
 }

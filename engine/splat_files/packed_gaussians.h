@@ -27,14 +27,18 @@ inline float fraction_at(const char* p) { return float(byte_at(p)) / 255.0f; }
 /// negative.
 glm::vec4 quaternion_without(int largest, const glm::vec3& others);
 
-/// Decompresses from the start of `from` until `to` is full or nothing more comes; how many bytes came.
-/// `window_bits` are inflateInit2's: 31 for gzip, -15 for the streams of a ZIP.
-std::size_t inflate_to(std::string_view from, std::span<char> to, int window_bits);
+/// Decompresses what it takes from the start of `from` until `to` is full or nothing more comes; how many
+/// bytes came. `window_bits` are inflateInit2's: 31 for gzip, -15 for the streams of a ZIP.
+std::size_t inflate_to(std::string_view& from, std::span<char> to, int window_bits);
 
 /// Throws InputError where a file of so many bytes cannot hold `count` Gaussians. No byte of zlib's stands
 /// for more than 1032, and no reader of SPZ takes more of Zstandard's; the positions of one take 6 or more.
+/// Beyond two million, which are read within a second, a byte holds two: captures take ten bytes for one.
 std::int64_t demand_plausible_count(const fs::path& file, std::string_view place, std::uint64_t count,
                                     std::size_t bytes);
+
+/// One line where bytes follow that no reader knows.
+void warn_of_rest(const fs::path& file, std::size_t bytes);
 
 /// A set of `count` Gaussians: put(set, i) sets position, scale (no logarithm), rotation, alpha, and
 /// harmonics or, where they are not `directional`, the coefficients of degree 0 in color; display values.

@@ -62,7 +62,7 @@ Buffer<char> zipped_file(const fs::path& file, std::string_view bytes, std::stri
     const char* const local = zip_bytes_at(file, bytes, entry.header_at, local_bytes);
     const std::size_t at = entry.header_at + local_bytes + number_at<std::uint16_t>(local + 26) +
                            number_at<std::uint16_t>(local + 28);
-    const std::string_view packed(zip_bytes_at(file, bytes, at, entry.packed), entry.packed);
+    std::string_view packed(zip_bytes_at(file, bytes, at, entry.packed), entry.packed);
     if (name == meta_name && entry.size > most_meta)
         bad_input(file, meta_name, fmt::format("at most {} bytes", most_meta), std::to_string(entry.size));
     if (entry.method == 0) return {packed.begin(), packed.end()};

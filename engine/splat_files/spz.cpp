@@ -31,11 +31,12 @@ struct SpzFile {
     std::uint32_t version = 0;
     std::int64_t count = 0;
     int degree = 0, fraction_bits = 0;
-    bool extended = false;
+    int flags = 0;                         // 1: trained antialiased
     std::size_t tables = 0, table_at = 0;  // version 4
 
     int position_bytes() const { return version == 1 ? 2 : 3; }  // of a coordinate
     int rotation_bytes() const { return version < 3 ? 3 : 4; }
+    bool extended() const { return (flags & 2) != 0; }
     int harmonic_bytes() const { return 3 * ((degree + 1) * (degree + 1) - 1); }
     /// Bytes of all numbers of a kind.
     std::array<std::size_t, spz::streams> sizes() const {
@@ -48,10 +49,11 @@ struct SpzFile {
 
 SpzFile spz_header_of(const fs::path& file, std::string_view bytes) {
     constexpr std::size_t old_header = 16;
+    std::string_view packed = bytes;
     SpzFile spz{file, bytes, bytes.starts_with("\x1f\x8b")};
     std::array<char, spz::header_bytes> head{};
     const std::size_t wanted = spz.zipped ? old_header : head.size();
-    const std::size_t found = spz.zipped ? inflate_to(bytes, std::span(head).first(wanted), gzip_window)
+    const std::size_t found = spz.zipped ? inflate_to(packed, std::span(head).first(wanted), gzip_window)
                                          : bytes.copy(head.data(), wanted);
     if (found < wanted || !std::string_view(head.data(), head.size()).starts_with(spz::magic))
         bad_input(file, spz_header, "'NGSP', or gzip around it", quoted(bytes.substr(0, spz::magic.size())));
@@ -65,7 +67,7 @@ SpzFile spz_header_of(const fs::path& file, std::string_view bytes) {
     if (spz.degree > 4) bad_input(file, spz_header, "harmonics of degree 0 to 4", std::to_string(spz.degree));
     if (spz.fraction_bits > 30)
         bad_input(file, spz_header, "at most 30 bits of a fraction", std::to_string(spz.fraction_bits));
-    spz.extended = (byte_at(&head[14]) & 2) != 0;
+    spz.flags = byte_at(&head[14]);
     spz.tables = std::size_t(byte_at(&head[15]));
     spz.table_at = number_at<std::uint32_t>(&head[16]);
     return spz;
@@ -120,14 +122,16 @@ struct SpzNumbers {
 
 void read_zipped(const SpzFile& spz, std::size_t size, SpzNumbers& numbers) {
     constexpr std::size_t old_header = 16, most_extensions = 1 << 16;
-    Buffer<char> all(old_header + size + (spz.extended ? most_extensions : 1));
-    const std::size_t found = inflate_to(spz.bytes, all, gzip_window);
+    Buffer<char> all(old_header + size + (spz.extended() ? most_extensions : 1));
+    std::string_view rest = spz.bytes;
+    const std::size_t found = inflate_to(rest, all, gzip_window);
     if (found < old_header + size)
         bad_input(spz.file, "gzip", fmt::format("{} bytes of {} splats", old_header + size, spz.count),
                   std::to_string(found));
-    if (!spz.extended && found > old_header + size)
+    if (!spz.extended() && found > old_header + size)
         bad_input(spz.file, "gzip", fmt::format("{} bytes of {} splats", old_header + size, spz.count),
                   "more");
+    warn_of_rest(spz.file, rest.size());
     numbers.extensions = spz_extensions(spz, std::string_view(all.data(), found).substr(old_header + size));
     numbers.bytes = std::move(all);
     numbers.begin[0] = numbers.bytes.data() + old_header;
@@ -143,7 +147,7 @@ void read_streams(const SpzFile& spz, std::size_t size, const Progress& progress
     if (spz.table_at < spz::header_bytes || spz.table_at > file_size ||
         expected * spz::entry_bytes > file_size - spz.table_at)
         bad_input(spz.file, place, "a table of them within the file", fmt::format("byte {}", spz.table_at));
-    if (spz.extended)
+    if (spz.extended())
         numbers.extensions =
             spz_extensions(spz, spz.bytes.substr(spz::header_bytes, spz.table_at - spz::header_bytes));
     std::array<std::string_view, spz::streams> from;
@@ -157,6 +161,7 @@ void read_streams(const SpzFile& spz, std::size_t size, const Progress& progress
         from[i] = rest.substr(0, packed);
         rest.remove_prefix(packed);
     }
+    warn_of_rest(spz.file, rest.size());
     numbers.bytes.resize(size);
     parallel_parts(expected, progress, [&](std::size_t i) {
         char* const to =
@@ -217,6 +222,8 @@ SplatSet spz_set(const SpzFile& spz, const Progress& progress) {
         scales[i] = float(real::exp(double(i) / spz::log_scale_steps + spz::log_scale_least));
     const std::size_t rest =
         std::min<std::size_t>(std::size_t(spz.harmonic_bytes()) / 3, spz::harmonic_signs.size());
+    if (const int unknown = spz.flags & ~3; unknown != 0)
+        log_warning(fmt::format("{}: its flags {:#x} are not followed", spz.file.string(), unknown));
     if (spz.degree > 3)
         log_warning(fmt::format("{}: its harmonics of degree 4 are left out", spz.file.string()));
     const auto& [positions, alphas, colors, log_scales, rotations, harmonics] = numbers.begin;

@@ -120,6 +120,24 @@ TEST_F(PackedFiles, SpzSaysWhichExtensionItDoesNotFollow) {
     EXPECT_HAS(said.warnings[0], "a.spz: its extension 0x12340001 is not followed");
 }
 
+TEST_F(PackedFiles, WhatNothingReadsIsSaid) {
+    const auto said_of = [&](const std::string& name, const std::string& bytes) {
+        const Said said;
+        EXPECT_EQ(read(name, bytes).size(), 3);
+        return said.one_warning();
+    };
+    const std::string junk(40, 'x');
+    const std::vector<Trained> all = capture(3, 1);
+    for (const int version : {1, 2, 3, 4})
+        EXPECT_HAS(said_of("a.spz", spz_of(all, 1, version) + junk),
+                   "a.spz: 40 bytes after its splats are left out")
+            << version;
+    EXPECT_HAS(said_of("a.ply", compressed_ply_of(all, 1) + junk),
+               "a.ply: 40 bytes after its splats are left out");
+    EXPECT_HAS(said_of("a.spz", spz_of(all, 1, 4).replace(14, 1, "\x84")),
+               "a.spz: its flags 0x84 are not followed");
+}
+
 TEST_F(PackedFiles, CompressedPlyOfEveryDegree) {
     for (const int degree : {0, 1, 2, 3})
         for (const bool colors : {true, false}) {
@@ -190,6 +208,9 @@ TEST_F(PackedFiles, PromisesOfMuchAreNotBelieved) {
     std::string old = "NGSP" + number_bytes(2, 4) + number_bytes(5, 4) + std::string(4, '\0');
     EXPECT_EQ(error("a.spz", deflated(old + std::string(std::size_t{64} << 20, '\0'), 31)),
               "a.spz:gzip: expected 111 bytes of 5 splats, found more");
+    old.replace(8, 4, number_bytes(3'000'000, 4));  // which that many zeros do hold
+    EXPECT_HAS(error("a.spz", deflated(old + std::string(std::size_t{64} << 20, '\0'), 31)),
+               "a.spz:header: expected at most 2000000 splats in 65");
     EXPECT_EQ(error("a.sog", zip_of({{"meta.json", std::string(std::size_t{2} << 20, ' ')}}, true)),
               "a.sog:meta.json: expected at most 1048576 bytes, found 2097152");
     EXPECT_EQ(error("a.ply",
