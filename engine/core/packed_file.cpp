@@ -32,19 +32,21 @@ struct Bzip2 {
 };
 
 constexpr std::size_t least_block = std::size_t{1} << 22, largest_block = std::size_t{1} << 28;
-constexpr std::size_t most_times = 200, free_bytes = std::size_t{1} << 26;
+constexpr std::size_t free_bytes = std::size_t{1} << 26;
 
 template <class Codec>
-std::string unpack(std::string_view packed, const std::string& name, const Progress& progress) {
+std::string unpack(std::string_view packed, const std::string& name, const Progress& progress,
+                   const UnpackBounds& bounds) {
+    const auto [most_times, enough] = bounds;
     const std::size_t packed_size = packed.size(), most = std::max(free_bytes, most_times * packed_size);
     std::string text;
     std::size_t size = 0;
-    while (packed.starts_with(Codec::magic)) {
+    while (packed.starts_with(Codec::magic) && size < enough) {
         typename Codec::Stream stream{};
         if (!Codec::begin(stream)) throw std::bad_alloc();
         const std::unique_ptr<typename Codec::Stream, int (*)(typename Codec::Stream*)> open(&stream,
                                                                                              Codec::end);
-        for (int result = Codec::good; result != Codec::ended;) {
+        for (int result = Codec::good; result != Codec::ended && size < enough;) {
             if (size == text.size()) {
                 progress.check();
                 if (size > most)
@@ -79,14 +81,15 @@ bool is_packed(std::string_view bytes) {
     return bytes.starts_with(Gzip::magic) || bytes.starts_with(Bzip2::magic);
 }
 
-std::string unpacked(std::string bytes, const std::string& name, const Progress& progress) {
-    if (bytes.starts_with(Gzip::magic)) return unpack<Gzip>(bytes, name, progress);
-    if (bytes.starts_with(Bzip2::magic)) return unpack<Bzip2>(bytes, name, progress);
+std::string unpacked(std::string bytes, const std::string& name, const Progress& progress,
+                     const UnpackBounds& bounds) {
+    if (bytes.starts_with(Gzip::magic)) return unpack<Gzip>(bytes, name, progress, bounds);
+    if (bytes.starts_with(Bzip2::magic)) return unpack<Bzip2>(bytes, name, progress, bounds);
     return bytes;
 }
 
-std::string read_unpacked(const fs::path& file, const Progress& progress) {
-    return unpacked(read_file(file, progress), file.string(), progress);
+std::string read_unpacked(const fs::path& file, const Progress& progress, const UnpackBounds& bounds) {
+    return unpacked(read_file(file, progress), file.string(), progress, bounds);
 }
 
 }  // namespace astrosplat

@@ -219,6 +219,8 @@ bool TextRows::next() {
         row_ = trim(whole_row_);
         rest_.remove_prefix(std::min(end + 1, rest_.size()));
         ++line_;
+        if (line_ == 1 && (row_.starts_with("\xff\xfe") || row_.starts_with("\xfe\xff")))
+            fail("text as UTF-8", "UTF-16");
         if (!row_.empty() && row_.front() != '#') return true;
     }
     return false;

@@ -107,7 +107,7 @@ class TextRows {
     /// `text` outlives this; `file` begins messages.
     explicit TextRows(std::string_view text, std::string file = "") : file_(std::move(file)), rest_(text) {}
 
-    /// To the next row, the first at first; false at the end.
+    /// To the next row, the first at first; false at the end. Throws InputError for UTF-16.
     bool next();
     std::int64_t line() const { return line_; }     // from 1, of all lines
     std::string_view text() const { return row_; }  // without blanks at its ends

@@ -284,6 +284,8 @@ struct Columns {
             {"v", "b"}, {"vmag", "bmag"}, {"flux_v", "flux_b"}};
         for (const auto& [v, b] : pairs)
             if (is_one_of(magnitude(), {v}) && blue == RowTable::none) blue = table.column({b});
+        for (const char* const other : {"hpmag", "vtmag", "phot_g_mean_mag", "gmag"})
+            if (is_one_of(magnitude(), {other})) band = other;
         may_be_hours = !hyg && ra().unit.empty() && is_one_of(ra(), {"ra"});
         may_be_radians = ra().unit.empty() && dec().unit.empty() && is_one_of(ra(), {"rarad"}) &&
                          is_one_of(dec(), {"derad"});
@@ -300,6 +302,12 @@ struct Columns {
     const Column& magnitude() const { return all[of_magnitude]; }
 
     bool complete() const { return missing().empty(); }
+    /// The same, or it would be if their units were others.
+    bool named() const {
+        return std::all_of(all.begin(), all.begin() + 3, [](const Column& column) {
+            return column.index != RowTable::none || !column.wrong.empty();
+        });
+    }
     /// Of ra, dec and mag those that it lacks, with what is there in their place.
     std::string missing() const {
         std::string names;
@@ -322,6 +330,7 @@ struct Columns {
     std::vector<Column> all;
     RowUnits units;
     int blue = RowTable::none;
+    std::string band;  // of the magnitude, where it is not V
     bool from_hyg = false, may_be_hours = false, may_be_radians = false;
 };
 
@@ -336,10 +345,19 @@ std::string read_table_row(const RowTable& table, const Columns& columns, Catalo
     return problem.empty() ? row.to_star(star) : problem;
 }
 
-/// Right ascensions that no sky in degrees has are hours, or radians; `name` begins the warning.
+/// Right ascensions that no sky in degrees has are hours, or radians; `name` begins the warnings, of
+/// magnitudes that stay those of another band too.
 void set_units(StarCatalogue& catalogue, const Columns& columns, const std::string& name) {
     std::vector<CatalogueStar>& stars = catalogue.stars;
     if (stars.empty()) return;
+    const bool to_v = columns.units.gaia_g && columns.all[of_bp_rp].index != RowTable::none;
+    const auto others =
+        columns.band.empty() ? 0 : std::ranges::count_if(stars, [&](const CatalogueStar& star) {
+            return !to_v || !star.color_index;
+        });
+    if (others > 0)
+        log_warning(fmt::format("{}: {} is taken for V, of {}", printable(name), columns.band,
+                                counted(others, "star")));
     const auto [first, last] = std::ranges::minmax(stars, {}, &CatalogueStar::ra_deg);
     const auto [south, north] = std::ranges::minmax(stars, {}, &CatalogueStar::dec_deg);
     constexpr std::size_t a_few = 8;  // of which none of a sky in degrees lies beyond 24 once in 10^9
@@ -465,13 +483,13 @@ bool is_catalogue(std::string_view text) {
 bool is_fits_catalogue(const fs::path& file) {
     if (!is_fits(file) || is_xisf(file) || has_fits_picture(file)) return false;
     return std::ranges::any_of(fits_tables(file),
-                               [](const FileTable& table) { return Columns(*table.rows).complete(); });
+                               [](const FileTable& table) { return Columns(*table.rows).named(); });
 }
 
 StarCatalogue parse_catalogue(std::string text, const std::string& name, const Progress& progress) {
     if (is_votable(text))
         return with_stars(parse_tables(votables(std::move(text), name, progress), name, progress), name);
-    TextRows first(text);
+    TextRows first(text, name);
     if (!first.next()) bad_input(name, "a star catalogue", "an empty file");
     return with_stars(
         is_hipparcos(first.text()) ? parse_hipparcos(text, progress) : parse_columns(text, name, progress),
@@ -481,7 +499,7 @@ StarCatalogue parse_catalogue(std::string text, const std::string& name, const P
 StarCatalogue read_catalogue(const fs::path& file, const Progress& progress) {
     if (is_fits(file) && !is_xisf(file))
         return with_stars(parse_tables(fits_tables(file, progress), file.string(), progress), file.string());
-    return parse_catalogue(read_unpacked(file, progress), file.string(), progress);
+    return parse_catalogue(read_unpacked(file, progress, table_bounds), file.string(), progress);
 }
 
 }  // namespace astrosplat

@@ -57,7 +57,7 @@ constexpr std::size_t beginning_bytes = 1 << 16;  // VizieR writes pages of comm
 
 std::string beginning_of(const fs::path& file) {
     const std::string bytes = read_beginning(file, beginning_bytes);
-    return is_packed(bytes) ? read_unpacked(file).substr(0, beginning_bytes) : bytes;
+    return is_packed(bytes) ? read_unpacked(file, {}, {.enough = beginning_bytes}) : bytes;
 }
 
 }  // namespace
@@ -77,7 +77,7 @@ PictureTable parse_picture_table(std::string_view text, const std::string& name,
 }
 
 PictureTable read_picture_table(const fs::path& file, const Progress& progress) {
-    return parse_picture_table(read_unpacked(file, progress), file.string(), progress);
+    return parse_picture_table(read_unpacked(file, progress, table_bounds), file.string(), progress);
 }
 
 double median_sigma_px(const PictureTable& table) {
@@ -90,9 +90,8 @@ double median_sigma_px(const PictureTable& table) {
 CatalogueKind kind_of_catalogue(const fs::path& file) {
     if (is_fits_catalogue(file)) return CatalogueKind::sky;
     const std::string text = beginning_of(file);
-    if (text.find('\0') != text.npos) return CatalogueKind::none;
-    TextRows rows(text);
-    if (!rows.next()) return CatalogueKind::none;
+    TextRows rows(text, file.string());
+    if (!rows.next() || text.find('\0') != text.npos) return CatalogueKind::none;
     if (is_picture_table(rows.text())) return CatalogueKind::picture;
     return is_catalogue(text) ? CatalogueKind::sky : CatalogueKind::none;
 }

@@ -171,6 +171,8 @@ TEST(PackedFile, ABombIsRefused) {
               fmt::format("a: expected at most 200 times its {} bytes, found more "
                           "that bzip2 packed",
                           bomb.size()));
+    EXPECT_HAS(ERROR_OF(unpacked(bomb, "a", {}, {.most_times = 30})), "a: expected at most 30 times its ");
+    EXPECT_EQ(unpacked(bomb, "a", {}, {.enough = 5}).find_first_not_of('\0'), std::string::npos);
 }
 
 // The table of file formats: names, contents, and that its rows do not contradict each other.

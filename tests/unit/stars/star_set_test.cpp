@@ -409,7 +409,9 @@ TEST(NamedColumns, ArchivesAreRead) {
     const double radian = 180.0 / 3.14159265358979324;
     expect_star(parse("HIP;RArad;DErad;Plx;Hpmag;B-V\n1;1.5;-0.5;4;9.25;0.4\n2;0;0;4;9;0.4\n").stars.at(0),
                 1.5 * radian, -0.5 * radian, 250, 9.25);
-    EXPECT_EQ(said.one_warning(), "stars: RArad and DErad are 2 pi and pi / 2 at most: taken for radians");
+    ASSERT_EQ(said.warnings.size(), 2u);
+    EXPECT_EQ(said.warnings[0], "stars: hpmag is taken for V, of 2 stars");
+    EXPECT_EQ(said.warnings[1], "stars: RArad and DErad are 2 pi and pi / 2 at most: taken for radians");
     expect_star(parse("RArad;DErad;Hpmag\n1.5;-0.5;9\n200;0;9\n").stars.at(0), 1.5, -0.5, 0, 9);
 }
 
