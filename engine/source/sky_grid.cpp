@@ -42,16 +42,17 @@ Wcs copied(const wcsprm& from) {
     return wcs;
 }
 
-/// Its celestial axes, ready; the reason in `problem` where they are not followed. Null and no problem: none.
-Wcs celestial_axes(wcsprm& all, std::string& problem) {
+/// Its celestial axes, ready; the reason in `problem` where they are not followed, with their `type` where
+/// WCSLIB refuses them. Null and no problem: none.
+Wcs celestial_axes(wcsprm& all, const std::string& type, std::string& problem) {
     std::array<int, NWCSFIX> fixed{};
     wcsfix(0, nullptr, &all, fixed.data());
     wcserr_clear(&all.err);  // where set twice, WCSLIB 7.12 loses the first message
     int axes[] = {WCSSUB_CELESTIAL}, count = 1;
     Wcs wcs = new_wcs();
-    const auto reason = [](const wcsprm& failed, int status) {
+    const auto reason = [&](const wcsprm& failed, int status) {
         const std::string text = failed.err ? failed.err->msg : wcs_errmsg[status];
-        return text.substr(0, text.find('\n'));
+        return fmt::format("{} ({})", type, text.substr(0, text.find('\n')));
     };
     if (const int status = wcsset(&all); status != 0) {
         problem = reason(all, status);
@@ -207,7 +208,8 @@ FitsSky read_fits_sky(const fs::path& file, std::string cards, std::int64_t heig
     const int status = wcspih(cards.data(), int(cards.size() / card_length), WCSHDR_all, 0, &parsed.rejected,
                               &parsed.count, &parsed.wcs);
     Wcs wcs;
-    if (status == 0 && parsed.count > 0) wcs = celestial_axes(parsed.wcs[0], sky.unfollowed);
+    if (status == 0 && parsed.count > 0)
+        wcs = celestial_axes(parsed.wcs[0], celestial_type(cards), sky.unfollowed);
     if (!wcs && sky.unfollowed.empty()) sky.unfollowed = celestial_type(cards);
     if (!wcs || !sky.unfollowed.empty()) return sky;
     auto grid = std::make_shared<SkyGrid>();
