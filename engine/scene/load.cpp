@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "core/file.h"
+#include "core/file_format.h"
 #include "core/log.h"
 #include "core/text.h"
 #include "scene/camera_file.h"
@@ -321,6 +322,8 @@ Value typed_value(const std::string& text) {
 
 PlacedScene load_placed(const fs::path& file, std::span<const Assignment> assignments) {
     const fs::path found = find_by_name("scenes", file);
+    const FileFormat* const format = format_of_file(found);
+    if (kind_of(format) >= FileKind::picture) bad_input(found, "a scene", std::string(format->name));
     return parse(read_file(found), found, assignments, true);
 }
 

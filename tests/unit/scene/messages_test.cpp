@@ -346,6 +346,9 @@ TEST(Messages, WholeFiles) {
               "scene.toml: expected a scene that begins with 'astrosplat = 1', found an empty file");
     EXPECT_EQ(message("[output]\n"),
               "scene.toml: expected a scene that begins with 'astrosplat = 1', found no such line");
+    const TempFolder folder;
+    const fs::path splats = folder.file("a.ply", "ply\nformat ascii 1.0\n");
+    EXPECT_EQ(ERROR_OF(load_scene(splats)), splats.string() + ": expected a scene, found PLY");
     EXPECT_EQ(message("\nastrosplat = 2\n"),
               "scene.toml:2: astrosplat: expected the format version 1, found 2");
     EXPECT_EQ(message("astrosplat = \"1\"\n"),
