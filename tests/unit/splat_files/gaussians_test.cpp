@@ -284,6 +284,7 @@ TEST_F(GaussianFiles, UsdaOfEveryDegree) {
 
 // Halves, what the schema says of lists that are not there, z up, and two prims after each other.
 TEST_F(GaussianFiles, UsdaAsOthersWriteIt) {
+    const Said said;
     const SplatSet set = read(R"(#usda 1.0
 (
     upAxis = "Z"
@@ -298,7 +299,7 @@ def ParticleField3DGaussianSplat "A"
 class ParticleField3DGaussianSplat "no"
 {
 }
-def Scope "B"
+def Scope "B" ( references = @more.usda@ )
 {
     def ParticleField3DGaussianSplat "C"
     {
@@ -311,6 +312,7 @@ def Scope "B"
 }
 )",
                               "a.usda");
+    EXPECT_HAS(said.one_warning(), "a.usda: references of 'B' are not followed");
     ASSERT_EQ(set.size(), 3);
     EXPECT_EQ(set.position[0], glm::vec3(1.0f, 3.0f, -2.0f));
     EXPECT_EQ(set.position[1], glm::vec3(4.0f, 16.0f, -5.0f));
