@@ -125,12 +125,9 @@ void read_zipped(const SpzFile& spz, std::size_t size, SpzNumbers& numbers) {
     Buffer<char> all(old_header + size + (spz.extended() ? most_extensions : 1));
     std::string_view rest = spz.bytes;
     const std::size_t found = inflate_to(rest, all, gzip_window);
-    if (found < old_header + size)
+    if (found < old_header + size || (!spz.extended() && found > old_header + size))
         bad_input(spz.file, "gzip", fmt::format("{} bytes of {} splats", old_header + size, spz.count),
-                  std::to_string(found));
-    if (!spz.extended() && found > old_header + size)
-        bad_input(spz.file, "gzip", fmt::format("{} bytes of {} splats", old_header + size, spz.count),
-                  "more");
+                  found > old_header + size ? "more" : std::to_string(found));
     warn_of_rest(spz.file, rest.size());
     numbers.extensions = spz_extensions(spz, std::string_view(all.data(), found).substr(old_header + size));
     numbers.bytes = std::move(all);
