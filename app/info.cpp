@@ -86,7 +86,8 @@ Report describe_mesh(const fs::path& file) {
 /// Warns where it shows nothing. What cannot be read as a picture has headers all the same.
 void look_at_picture(const fs::path& file) try {
     load_texture({file}, {}, TextureSettings::Wrap::clamp, {}, {make_prepared, {}, texels_read_whole});
-} catch (const InputError&) {
+} catch (const InputError& error) {
+    log_warning(error.what());
 }
 
 /// Groups of names and values in words; nothing where there are no tags.
@@ -118,7 +119,6 @@ Report describe_hdu(const FitsHdu& hdu) {
 
 /// Of the picture that is taken; empty: its header tells nothing.
 Report describe_sky(const fs::path& file) try {
-    const QuietLog quiet;  // it was said when it was looked at
     const FitsSky sky = open_fits_rows(file, "auto", {}, {}).plane.sky;
     if (!sky.grid)
         return sky.unfollowed.empty() ? Report() : Report(sky.unfollowed + ", which is not followed");
@@ -139,6 +139,7 @@ std::vector<AvmTag> tags_of_fits(const fs::path& file) try {
 
 Report describe_fits_file(const fs::path& file) {
     look_at_picture(file);
+    const QuietLog quiet;  // what is taken was said when it was looked at
     Report report = {{"kind", format_of_file(file)->id}}, hdus = Report::array();
     for (const FitsHdu& hdu : describe_fits(file)) hdus.push_back(describe_hdu(hdu));
     report["hdus"] = hdus;

@@ -54,7 +54,7 @@ endfunction()
 # oiio: OpenImageIO as the engine links it. Loading it with the 250 libraries it needs takes a fifth of a second and 100
 # MB, so it waits for the first picture. Its small companion, libOpenImageIO_Util, is linked as usual.
 lazy_library(oiio OIIO OpenImageIO
-  "^_ZNK?[0-9]+OpenImageIO_v[0-9_]*(10ImageInput|11ImageOutput|9ImageSpec|8geterror|9attribute)")
+  "^_ZNK?[0-9]+OpenImageIO_v[0-9_]*(10ImageInput|11ImageOutput|9ImageSpec|8geterror|9attribute|11decode_exif)")
 get_target_property(linked_oiio oiio ALIASED_TARGET)
 if(NOT linked_oiio)
   find_library(OIIO_UTIL_LIBRARY OpenImageIO_Util HINTS ${OIIO_LIBRARY_DIRS} REQUIRED)

@@ -33,4 +33,19 @@ Image channel_of(const Image& image, int channel) {
     return made_by_pixel(image, 1, [=](const float* in, float* out) { *out = in[channel]; });
 }
 
+Image turned(const Image& image, int orientation) {
+    const bool swaps = orientation >= 5;  // rows become columns
+    const bool from_right = orientation == 2 || orientation == 3 || orientation == 7 || orientation == 8;
+    const bool from_below = orientation == 3 || orientation == 4 || orientation == 6 || orientation == 7;
+    Image result =
+        make_image(swaps ? image.height : image.width, swaps ? image.width : image.height, image.channels);
+    for_each_pixel(result, [&](std::int64_t x, std::int64_t y) {
+        const std::int64_t column = swaps ? y : x, row = swaps ? x : y;
+        std::copy_n(image.at(from_right ? image.width - 1 - column : column,
+                             from_below ? image.height - 1 - row : row),
+                    image.channels, result.at(x, y));
+    });
+    return result;
+}
+
 }  // namespace astrosplat

@@ -32,6 +32,9 @@ Image opaque(const Image& image);
 /// One channel alone.
 Image channel_of(const Image& image, int channel);
 
+/// Seen as one of the eight values of EXIF's and TIFF's tag Orientation, from 1, means it to be.
+Image turned(const Image& image, int orientation);
+
 /// A place (x, y) px from the top left corner in images of the size of `like`: values there are linear
 /// between pixel centres, and beyond the outermost ones the same as these.
 class LinearSample {

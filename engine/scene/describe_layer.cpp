@@ -339,7 +339,7 @@ void describe_layer(const Describer& d, LayerParams& layer) {
 void describe_fits(const Describer& d, TextureSettings& t) {
     d.custom(
         spec("hdu", "Picture in file", "",
-             "Number or name of the FITS HDU, EXR part or TIFF page; auto: the one that shows most.",
+             "Number or name of the FITS HDU, EXR part or layer or TIFF page; auto: the one that shows most.",
              as(Type::text)),
         [&t](const ParameterSpec&) {
             const bool number =

@@ -10,10 +10,10 @@
 namespace astrosplat {
 
 /// Raised whenever generation, or the reading of meshes and pictures, gives other bits than before.
-inline constexpr int set_version = 44;
+inline constexpr int set_version = 45;
 
 /// The same of the preparation of pictures.
-inline constexpr int prepare_version = 5;
+inline constexpr int prepare_version = 6;
 
 /// The hashed text, line by line: versions, the bytes of meshes and pictures (of a mesh without a named
 /// picture also its material libraries and their pictures), and the parameters in use, with the seed

@@ -9,6 +9,7 @@
 
 #include "core/color.h"
 #include "core/file.h"
+#include "core/log.h"
 #include "core/real.h"
 #include "core/text.h"
 #include "image/channels.h"
@@ -231,7 +232,14 @@ std::shared_ptr<const ColorEncoding> icc_encoding(std::span<const std::uint8_t> 
 }
 
 std::shared_ptr<const ColorEncoding> chromaticity_encoding(std::span<const float, 8> xy, TransferCurve curve,
-                                                           std::string name) {
+                                                           std::string name, std::string& problem) {
+    if (std::ranges::equal(xy, xyz_chromaticities)) {
+        // IEC 61966-2-1, by columns.
+        const glm::dmat3 matrix({3.2406, -0.9689, 0.0557}, {-1.5372, 1.8758, -0.2040},
+                                {-0.4986, 0.0415, 1.0570});
+        return std::make_shared<const ColorEncoding>(ColorEncoding{"XYZ", {curve, curve, curve}, matrix, {}});
+    }
+    problem = name;
     const auto at = [&](std::size_t i) { return glm::dvec2(xy[2 * i], xy[2 * i + 1]); };
     const Chromaticities set{at(0), at(1), at(2), at(3)};
     for (const glm::dvec2& c : {set.red, set.green, set.blue, set.white})
@@ -240,6 +248,7 @@ std::shared_ptr<const ColorEncoding> chromaticity_encoding(std::span<const float
     for (int i = 0; i < 3; ++i)
         for (int k = 0; k < 3; ++k)
             if (!(std::fabs(matrix[i][k]) < 1e3)) return {};
+    problem.clear();
     return encoding_of(set, curve, std::move(name));
 }
 
@@ -261,7 +270,15 @@ std::shared_ptr<const ColorEncoding> png_encoding(const fs::path& file, bool has
     std::array<float, 8> xy{};
     constexpr std::array<std::size_t, 8> order{2, 3, 4, 5, 6, 7, 0, 1};  // white comes first there
     for (std::size_t i = 0; i < 8; ++i) xy[i] = float(big_endian(primaries, 4 * order[i])) / 1e5f;
-    return chromaticity_encoding(xy, curve, gamma.empty() ? "cHRM" : "gAMA and cHRM");
+    return chromaticity_encoding(xy, curve, gamma.empty() ? "cHRM" : "gAMA and cHRM", problem);
+}
+
+void warn_of_frames(const fs::path& file) {
+    const auto chunks = png_chunks(file);
+    const auto control = chunks.find("acTL");  // of an animation
+    if (control != chunks.end() && control->second.size() == 8 && big_endian(control->second, 0) > 1)
+        log_warning(fmt::format("{}: it holds {} pictures; 0 is taken, as the others are not followed",
+                                file.string(), big_endian(control->second, 0)));
 }
 
 std::shared_ptr<const ColorEncoding> with_tables(std::shared_ptr<const ColorEncoding> encoding,

@@ -34,15 +34,20 @@ struct ColorEncoding {
 std::shared_ptr<const ColorEncoding> icc_encoding(std::span<const std::uint8_t> profile,
                                                   std::string& problem);
 
-/// Colours of primaries (red, green, blue, white; x and y each) over one curve; null where they are none.
+/// Colours of primaries (red, green, blue, white; x and y each) over one curve; null where they are none,
+/// with `name` in `problem`. XYZ's own, as EXR has them, are not adapted: what is white of D65 is white.
+inline constexpr std::array xyz_chromaticities{1.0f, 0.0f, 0.0f, 1.0f, 0.0f, 0.0f, 1.0f / 3.0f, 1.0f / 3.0f};
 std::shared_ptr<const ColorEncoding> chromaticity_encoding(std::span<const float, 8> xy, TransferCurve curve,
-                                                           std::string name);
+                                                           std::string name, std::string& problem);
 
 /// Of the chunks cICP, sRGB, gAMA and cHRM of a PNG file, by their order of precedence (PNG 3, 4.3); where it
 /// has a profile, that comes before the last three and is not looked at here: libpng reads it, or has not,
 /// which is a problem. Null: none says anything.
 std::shared_ptr<const ColorEncoding> png_encoding(const fs::path& file, bool has_profile,
                                                   std::string& problem);
+
+/// Warns of an animated PNG, whose first picture alone is read.
+void warn_of_frames(const fs::path& file);
 
 /// The same with its tables, for a picture's integers up to `max_integer` (255, 65535; else without).
 std::shared_ptr<const ColorEncoding> with_tables(std::shared_ptr<const ColorEncoding> encoding,

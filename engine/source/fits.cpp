@@ -424,15 +424,11 @@ FitsRows open_fits_rows(const fs::path& file, const std::string& hdu, std::optio
     picture.hdu = found.number;
     picture.name = found.name;
     picture.what = layout.what;
-    picture.credit = fits_text(in.get(), "AUTHOR");
-    if (picture.credit.empty()) picture.credit = fits_text(in.get(), "ORIGIN");
-    picture.object = fits_text(in.get(), "OBJECT");
-    picture.exposure = {fits_text(in.get(), "TELESCOP"),
-                        fits_text(in.get(), "INSTRUME"),
-                        "",
-                        "",
-                        fits_text(in.get(), "FILTER"),
-                        ""};
+    const auto text = [&](const char* keyword) { return fits_text(in.get(), keyword); };
+    picture.credit = text("AUTHOR");
+    if (picture.credit.empty()) picture.credit = text("ORIGIN");
+    picture.object = text("OBJECT");
+    picture.exposure = {text("TELESCOP"), text("INSTRUME"), "", "", text("FILTER"), ""};
     picture.distance_ly = distance_ly_of(in.get());
     picture.sky = read_fits_sky(file, cards_of(file, in.get()), layout.height, layout.top_down);
     rows.read = rows_of_values(layout, [=](std::int64_t first, std::int64_t count, double* values) {
@@ -443,7 +439,10 @@ FitsRows open_fits_rows(const fs::path& file, const std::string& hdu, std::optio
 
 FitsPlane read_fits(const fs::path& file, const std::string& hdu, std::optional<int> plane,
                     const Progress& progress) {
-    FitsRows rows = open_fits_rows(file, hdu, plane, progress);
+    return whole_plane(open_fits_rows(file, hdu, plane, progress), file);
+}
+
+FitsPlane whole_plane(FitsRows rows, const fs::path& file) {
     FitsPlane result = std::move(rows.plane);
     result.values = room_for(file, result.width * result.height * result.channels);
     rows.read(0, result.height, result.values.data());

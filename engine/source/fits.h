@@ -115,5 +115,7 @@ FitsRows open_fits_rows(const fs::path& file, const std::string& hdu, std::optio
                         const Progress& progress = {});
 FitsPlane read_fits(const fs::path& file, const std::string& hdu, std::optional<int> plane,
                     const Progress& progress = {});
+/// All values of what was opened. Throws InputError, Cancelled.
+FitsPlane whole_plane(FitsRows rows, const fs::path& file);
 
 }  // namespace astrosplat

@@ -54,14 +54,11 @@ std::string read_ends(const fs::path& file) {
     return bytes;
 }
 
-// Without blanks at its ends, runs of them inside as one: packets are often indented.
+// As UTF-8, without blanks at its ends, runs of them inside as one: packets are often indented.
 std::string plain(std::string_view text) {
     std::string result;
-    for (const char c : trim(text)) {
-        const bool blank = c == ' ' || c == '\t' || c == '\r' || c == '\n';
-        if (!blank) result += c;
-        if (blank && result.back() != ' ') result += ' ';
-    }
+    for (const char c : utf8_line(trim(text)))
+        if (c != ' ' || result.back() != ' ') result += c;
     return result;
 }
 
@@ -443,6 +440,7 @@ ObjectMetadata read_xmp_metadata(const fs::path& file) {
 }
 
 ObjectMetadata read_fits_metadata(const fs::path& file) {
+    const QuietLog quiet;  // what is taken is said when it is read
     const FitsPlane plane = open_fits_rows(file, "auto", {}).plane;
     ObjectMetadata found;
     if (!plane.object.empty()) found.names.push_back(plane.object);

@@ -5,13 +5,18 @@
 // (This line keeps clang-format from sorting the two.)
 #include "source/open_picture.h"
 
+#include <OpenImageIO/tiffutils.h>
+#include <tiffio.h>
 #include <unistd.h>
 
 #include <cstdio>
+#include <fstream>
+#include <sstream>
 
 #include "core/error.h"
 #include "core/file.h"
 #include "core/file_format.h"
+#include "core/log.h"
 #include "core/memory.h"
 #include "core/text.h"
 
@@ -73,15 +78,6 @@ void claim_jpeg2000(const fs::path& file) {
     claim_memory(std::int64_t(std::fmin(size, 9e18)), fmt::format("reading {}", file.string()));
 }
 
-// Values that OpenImageIO 2.4 scales beyond 31 bits come out wrong.
-void check_largest_of_pnm(const fs::path& file) {
-    int width = 0, height = 0, largest = 0;
-    std::sscanf(read_beginning(file, 64).c_str(), "P%*1[2356]%9d%9d%9d", &width, &height, &largest);
-    if (largest > 32768 && largest < 65535)
-        fail_picture(
-            file, fmt::format("its largest value is {}; save it with at most 32768, or with 65535", largest));
-}
-
 }  // namespace
 
 QuietStderr::QuietStderr() { ++quiet_depth; }
@@ -117,7 +113,7 @@ std::unique_ptr<OIIO::ImageInput> open_picture(const fs::path& file) {
                                                                  : fmt::format("; {}", format->converter)));
     }
     if (format->id == "jpeg2000") claim_jpeg2000(file);
-    if (format->id == "pnm") check_largest_of_pnm(file);
+    if (format->id == "pnm") largest_of_pnm(file);
     OIIO::ImageSpec spec, wish;
     wish.attribute("oiio:UnassociatedAlpha", 1);
     if (in->open(file.string(), spec, wish)) return in;
@@ -139,6 +135,76 @@ bool jpeg_is_whole(const fs::path& file) {
         at += 1 + (std::size_t{byte_at(bytes, at + 1)} << 8U) + byte_at(bytes, at + 2);
     }
     return false;
+}
+
+double largest_of_pnm(const fs::path& file) {
+    std::istringstream in(read_beginning(file, 4096));
+    std::string word;
+    in >> word;
+    if (word.size() != 2 || std::string_view("2356").find(word[1]) == std::string_view::npos) return 0.0;
+    for (int left = 3; left > 0 && in >> word;)
+        if (word[0] == '#')
+            std::getline(in, word);
+        else
+            --left;
+    const std::int64_t largest = parse_int64(word).value_or(0);
+    if (largest < 1 || (largest > 32768 && largest != 65535))
+        fail_picture(
+            file, fmt::format("its largest value is {}; save it with at most 32768, or with 65535", largest));
+    return double(largest);
+}
+
+void add_webp_exif(const fs::path& file, OIIO::ImageSpec& spec) {
+    const std::string text = read_file(file);
+    std::string_view bytes = text;
+    for (bytes.remove_prefix(std::min<std::size_t>(12, bytes.size())); bytes.size() >= 8;) {
+        std::size_t size = 0;
+        for (std::size_t i = 8; i-- > 4;) size = size << 8U | byte_at(bytes, i);
+        std::string_view chunk = bytes.substr(8, size);
+        if (chunk.starts_with(std::string_view("Exif\0\0", 6))) chunk.remove_prefix(6);
+        if (bytes.starts_with("EXIF")) OIIO::decode_exif(OIIO::string_view(chunk.data(), chunk.size()), spec);
+        bytes.remove_prefix(std::min(bytes.size(), 8 + size + size % 2));
+    }
+}
+
+std::array<float, 3> radiance_factors(const fs::path& file) {
+    std::array<double, 3> factors{1.0, 1.0, 1.0};
+    std::ifstream in(file, std::ios::binary);
+    for (std::string line; std::getline(in, line) && !trim(line).empty();) {
+        const std::size_t equals = line.find('=');
+        const std::string_view key = trim(std::string_view(line).substr(0, equals));
+        const bool corrects = key == "COLORCORR", exposes = key == "EXPOSURE";
+        std::istringstream words(equals == std::string::npos ? "" : line.substr(equals + 1));
+        std::array<double, 3> values{};
+        std::size_t count = 0;
+        for (std::string word; count < (corrects ? 3u : 1u) && words >> word; ++count)
+            values[count] = parse_double(word).value_or(0.0);
+        const bool whole =
+            std::all_of(values.begin(), values.begin() + count, [](double v) { return v > 0.0; });
+        if ((corrects && count == 3 && whole) || (exposes && count == 1 && whole))
+            for (std::size_t c = 0; c < 3; ++c) factors[c] *= values[corrects ? c : 0];
+        else if (corrects || exposes || key == "PRIMARIES" || line.find("_xyze") != std::string::npos ||
+                 (key == "PIXASPECT" && values[0] != 1.0))
+            log_warning(fmt::format("{}: its {} is not followed", file.string(), trim(line)));
+    }
+    return {float(factors[0]), float(factors[1]), float(factors[2])};
+}
+
+void check_tiff(const fs::path& file, int page) {
+    const QuietStderr quiet;
+    const std::unique_ptr<TIFF, void (*)(TIFF*)> tiff(TIFFOpen(file.c_str(), "r"), TIFFClose);
+    if (!tiff || !TIFFSetDirectory(tiff.get(), static_cast<tdir_t>(page))) return;
+    std::uint16_t bits = 0;
+    if (TIFFGetField(tiff.get(), TIFFTAG_BITSPERSAMPLE, &bits) != 1)
+        fail_picture(file, "it does not say how many bits a value has (BitsPerSample); save it with 8");
+    const std::uint64_t size = fs::file_size(file);
+    const bool tiled = TIFFIsTiled(tiff.get()) != 0;
+    const std::uint32_t parts = tiled ? TIFFNumberOfTiles(tiff.get()) : TIFFNumberOfStrips(tiff.get());
+    for (std::uint32_t i = 0; i < parts; ++i) {
+        const std::uint64_t at = TIFFGetStrileOffset(tiff.get(), i);
+        if (at > size || TIFFGetStrileByteCount(tiff.get(), i) > size - at)
+            fail_picture(file, "the file ends before the picture does");
+    }
 }
 
 }  // namespace astrosplat

@@ -1,6 +1,6 @@
 // The one place where picture files are opened with OpenImageIO: by a list of formats, each with its own
-// plug-in, and without what libraries print of their own; and what it does not tell of a file:
-// whether a JPEG file is whole. libjpeg fills the missing part of a cut file with grey and says nothing.
+// plug-in, and without what libraries print of their own; and what it does not tell of a file, as
+// whether a JPEG file is whole: libjpeg fills the missing part of a cut file with grey and says nothing.
 // Include in .cpp files only, behind <fmt/format.h>: OpenImageIO's headers are large and bring a copy of fmt
 // with other settings.
 #pragma once
@@ -34,5 +34,20 @@ bool read_rows(OIIO::ImageInput& picture, int begin, int end, OIIO::TypeDesc for
 /// Follows the markers of a JPEG file (ITU-T T.81, B.1.1) to its end-of-image marker; false where the file
 /// ends first. Files of other formats are not judged: true.
 bool jpeg_is_whole(const fs::path& file);
+
+/// Throws InputError where a TIFF does not say its bits: they are one, and OpenImageIO reads eight; and where
+/// it was cut short, as OpenImageIO reads black.
+void check_tiff(const fs::path& file, int page);
+
+/// By what a Radiance file's values have to be divided to be radiances (its format's EXPOSURE and COLORCORR,
+/// both cumulative), which OpenImageIO leaves to others.
+std::array<float, 3> radiance_factors(const fs::path& file);
+
+/// Of netpbm's whole numbers; 0 of bits and floats. Throws InputError where it is none, from 1 to 65535, or
+/// one beyond 15 bits, whose values OpenImageIO 2.4 scales wrongly.
+double largest_of_pnm(const fs::path& file);
+
+/// What a WebP file's chunk EXIF says, which OpenImageIO does not tell.
+void add_webp_exif(const fs::path& file, OIIO::ImageSpec& spec);
 
 }  // namespace astrosplat

@@ -3,11 +3,6 @@
 // (This line keeps clang-format from sorting the two.)
 #include "source/open_picture.h"
 
-#include <tiffio.h>
-
-#include <fstream>
-#include <sstream>
-
 #include "core/color.h"
 #include "core/error.h"
 #include "core/log.h"
@@ -18,6 +13,7 @@
 #include "source/fits.h"
 #include "source/object_metadata.h"
 #include "source/picture.h"
+#include "source/value_layout.h"
 
 namespace astrosplat {
 namespace {
@@ -30,9 +26,10 @@ struct Channels {
     std::array<int, 3> color{};
     int alpha = -1;
     bool luma_chroma = false;  // color is Y, RY, BY
+    bool xyz = false;          // color is X, Y, Z of CIE
 };
 
-int find_channel(const ImageSpec& spec, const char* name) {
+int find_channel(const ImageSpec& spec, const std::string& name) {
     for (int c = 0; c < spec.nchannels; ++c)
         if (OIIO::Strutil::iequals(spec.channel_name(c), name)) return c;
     return -1;
@@ -47,7 +44,31 @@ int depth_channel(const ImageSpec& spec) {
     return -1;
 }
 
-Channels choose_channels(const ImageSpec& spec, Wanted wanted) {
+using Trio = std::array<int, 3>;
+
+Trio find_channels(const ImageSpec& spec, const std::array<std::string, 3>& names) {
+    Trio found{};
+    for (std::size_t i = 0; i < 3; ++i) found[i] = find_channel(spec, names[i]);
+    return found;
+}
+
+Trio colors_of_layer(const ImageSpec& spec, const std::string& layer) {
+    return find_channels(spec, {layer + ".R", layer + ".G", layer + ".B"});
+}
+
+bool is_complete(const Trio& channels) { return *std::ranges::min_element(channels) >= 0; }
+
+// EXR's names before the dots of channels R, G and B.
+std::vector<std::string> layers_of(const ImageSpec& spec) {
+    std::vector<std::string> layers;
+    for (const std::string& name : spec.channelnames)
+        if (name.ends_with(".R") && is_complete(colors_of_layer(spec, name.substr(0, name.size() - 2))))
+            layers.push_back(name.substr(0, name.size() - 2));
+    return layers;
+}
+
+// `layer`: the name of one, or empty.
+Channels choose_channels(const ImageSpec& spec, Wanted wanted, std::string layer) {
     Channels c;
     const int depth = depth_channel(spec);
     if (wanted == Wanted::depths && depth >= 0) {
@@ -57,21 +78,38 @@ Channels choose_channels(const ImageSpec& spec, Wanted wanted) {
     // OpenImageIO's GIF reader names a channel beyond the last one.
     const bool named = spec.alpha_channel >= 0 && spec.alpha_channel < spec.nchannels;
     c.alpha = named ? spec.alpha_channel : find_channel(spec, "A");
-    const std::array<int, 3> rgb{find_channel(spec, "R"), find_channel(spec, "G"), find_channel(spec, "B")};
-    const std::array<int, 3> yc{find_channel(spec, "Y"), find_channel(spec, "RY"), find_channel(spec, "BY")};
-    const auto complete = [](const std::array<int, 3>& set) { return *std::ranges::min_element(set) >= 0; };
-    c.luma_chroma = complete(yc);
-    if (complete(rgb) || c.luma_chroma) {
-        c.color = complete(rgb) ? rgb : yc;
-        c.luma_chroma = !complete(rgb);
+    const std::array sets{find_channels(spec, {"R", "G", "B"}), find_channels(spec, {"Y", "RY", "BY"}),
+                          find_channels(spec, {"X", "Y", "Z"})};
+    const auto plain = std::ranges::find_if(sets, is_complete) - sets.begin();
+    const std::vector<std::string> layers = layers_of(spec);
+    if (layer.empty() && plain == std::ssize(sets) && !layers.empty()) layer = layers[0];
+    if (!layer.empty()) {
+        c.color = colors_of_layer(spec, layer);
+        c.alpha = find_channel(spec, layer + ".A");
+        return c;
+    }
+    c.luma_chroma = plain == 1;
+    c.xyz = plain == 2;
+    if (plain < std::ssize(sets)) {
+        c.color = sets[std::size_t(plain)];
         return c;
     }
     const int first = c.alpha == 0 && spec.nchannels > 1 ? 1 : 0;
     const bool three =
         spec.nchannels - first - (c.alpha > first ? 1 : 0) >= 3 && (c.alpha < first || c.alpha >= first + 3);
-    c.color =
-        three ? std::array<int, 3>{first, first + 1, first + 2} : std::array<int, 3>{first, first, first};
+    c.color = three ? Trio{first, first + 1, first + 2} : Trio{first, first, first};
     return c;
+}
+
+void warn_of_other_channels(const fs::path& file, const ImageSpec& spec, const Channels& channels) {
+    std::vector<std::string> taken, layers;
+    for (int c = 0; c < spec.nchannels; ++c)
+        if (c == channels.alpha || std::ranges::find(channels.color, c) != channels.color.end())
+            taken.push_back(spec.channel_name(c));
+    for (const std::string& layer : layers_of(spec))
+        if (colors_of_layer(spec, layer) != channels.color) layers.push_back(layer);
+    warn_of_channels(file, spec.nchannels - std::ssize(taken), fmt::format("{}", fmt::join(taken, ", ")),
+                     layers.empty() ? "" : fmt::format(" (hdu = {} takes another)", alternatives(layers)));
 }
 
 // How many rows of a file are read at once: whole tiles and strips, of some 32 MiB.
@@ -91,14 +129,15 @@ bool is_cube_map(const ImageSpec& spec) {
            spec.height == 6 * spec.width;
 }
 
+bool windows_meet(const ImageSpec& spec) {
+    return spec.full_x < spec.x + spec.width && spec.x < spec.full_x + spec.full_width &&
+           spec.full_y < spec.y + spec.height && spec.y < spec.full_y + spec.full_height;
+}
+
 // The window the picture shows, in the file's coordinates; the data window where the two do not meet.
 Region display_window(const ImageSpec& spec) {
-    const Region data{spec.x, spec.y, spec.width, spec.height};
-    if (is_cube_map(spec)) return data;
-    const Region display{spec.full_x, spec.full_y, spec.full_width, spec.full_height};
-    const bool meet = display.x < data.x + data.width && data.x < display.x + display.width &&
-                      display.y < data.y + data.height && data.y < display.y + display.height;
-    return meet ? display : data;
+    if (is_cube_map(spec) || !windows_meet(spec)) return {spec.x, spec.y, spec.width, spec.height};
+    return {spec.full_x, spec.full_y, spec.full_width, spec.full_height};
 }
 
 // A window may show much more than the file has pixels for, as that of a cropped frame does; but a few bytes
@@ -185,6 +224,7 @@ void pick_channels(const float* from_row, const ImageSpec& spec, const Channels&
                    const Region& window, float* to_row) {
     const int count = channels.alpha >= 0 ? 4 : 3;
     const std::int64_t shift = window.x - spec.x;
+    std::fill_n(to_row, window.width * count, 0.0f);  // where the file has nothing
     for (std::int64_t x = std::max<std::int64_t>(0, -shift); x < std::min(window.width, spec.width - shift);
          ++x) {
         const float* const from = from_row + (x + shift) * spec.nchannels;
@@ -202,8 +242,9 @@ ImageRows rows_of_file(const std::shared_ptr<Bands>& bands, const Channels& chan
     const auto read = [=](std::int64_t begin, std::int64_t end, float* rows) {
         const ImageSpec& spec = bands->spec();
         const std::int64_t row_floats = window.width * count, up = window.y - spec.y;
-        std::fill_n(rows, (end - begin) * row_floats, 0.0f);  // where the file has nothing
         const std::int64_t last = std::min<std::int64_t>(end + up, spec.height);
+        for (std::int64_t y = begin; y < end; ++y)
+            if (y + up < 0 || y + up >= last) std::fill_n(rows + (y - begin) * row_floats, row_floats, 0.0f);
         for (std::int64_t y = std::max<std::int64_t>(begin + up, 0); y < last;) {
             if (y < bands->begin() || y >= bands->end()) bands->read(y);
             const std::int64_t next = std::min(last, bands->end());
@@ -239,24 +280,12 @@ constexpr std::array orientations = {
     "turned by 90 degrees anticlockwise",
 };
 
-int orientation_of(const ImageSpec& spec) {
+int orientation_of(const fs::path& file, const ImageSpec& spec) {
     const int orientation = spec.get_int_attribute("Orientation", 1);
-    return orientation >= 1 && orientation <= 8 ? orientation : 1;
-}
-
-Image turned(const Image& image, int orientation) {
-    const bool swaps = orientation >= 5;  // rows become columns
-    const bool from_right = orientation == 2 || orientation == 3 || orientation == 7 || orientation == 8;
-    const bool from_below = orientation == 3 || orientation == 4 || orientation == 6 || orientation == 7;
-    Image result =
-        make_image(swaps ? image.height : image.width, swaps ? image.width : image.height, image.channels);
-    for_each_pixel(result, [&](std::int64_t x, std::int64_t y) {
-        const std::int64_t column = swaps ? y : x, row = swaps ? x : y;
-        std::copy_n(image.at(from_right ? image.width - 1 - column : column,
-                             from_below ? image.height - 1 - row : row),
-                    image.channels, result.at(x, y));
-    });
-    return result;
+    if (orientation >= 1 && orientation <= 8) return orientation;
+    log_warning(fmt::format("{}: its orientation {} is none of 1 to 8 and is not followed", file.string(),
+                            orientation));
+    return 1;
 }
 
 // Pixels that are not square become more along their longer side, between them linear.
@@ -278,9 +307,8 @@ void make_square(const fs::path& file, const ImageSpec& spec, ImageRows& rows) {
         const double at = std::clamp(place, 0.0, double(side - 1));
         const auto first = std::int64_t(at), next = std::min(first + 1, side - 1);
         const auto share = float(at - double(first));
-        const float *const p = wide ? image.at(first, y) : image.at(x, first), *const q =
-                                                                                   wide ? image.at(next, y)
-                                                                                        : image.at(x, next);
+        const float* const p = wide ? image.at(first, y) : image.at(x, first);
+        const float* const q = wide ? image.at(next, y) : image.at(x, next);
         for (int c = 0; c < image.channels; ++c)
             square.at(x, y)[c] = share > 0.0f ? p[c] * (1.0f - share) + q[c] * share : p[c];
     });
@@ -289,58 +317,23 @@ void make_square(const fs::path& file, const ImageSpec& spec, ImageRows& rows) {
     rows = rows_of(std::move(square));
 }
 
-// By what a Radiance file's values have to be divided to be radiances (its format's EXPOSURE and COLORCORR,
-// both cumulative), which OpenImageIO leaves to others.
-std::array<float, 3> radiance_factors(const fs::path& file) {
-    std::array<double, 3> factors{1.0, 1.0, 1.0};
-    std::ifstream in(file, std::ios::binary);
-    for (std::string line; std::getline(in, line) && !trim(line).empty();) {
-        const std::size_t equals = line.find('=');
-        const std::string_view key = trim(std::string_view(line).substr(0, equals));
-        const bool corrects = key == "COLORCORR", exposes = key == "EXPOSURE";
-        std::istringstream words(equals == std::string::npos ? "" : line.substr(equals + 1));
-        std::array<double, 3> values{};
-        std::size_t count = 0;
-        for (std::string word; count < (corrects ? 3u : 1u) && words >> word; ++count)
-            values[count] = parse_double(word).value_or(0.0);
-        const bool whole =
-            std::all_of(values.begin(), values.begin() + count, [](double v) { return v > 0.0; });
-        if ((corrects && count == 3 && whole) || (exposes && count == 1 && whole))
-            for (std::size_t c = 0; c < 3; ++c) factors[c] *= values[corrects ? c : 0];
-        else if (corrects || exposes || key == "PRIMARIES" || line.find("_xyze") != std::string::npos ||
-                 (key == "PIXASPECT" && values[0] != 1.0))
-            log_warning(fmt::format("{}: its {} is not followed", file.string(), trim(line)));
-    }
-    return {float(factors[0]), float(factors[1]), float(factors[2])};
-}
-
-void divide_by(const std::array<float, 3>& factors, ImageRows& rows) {
-    if (factors == std::array{1.0f, 1.0f, 1.0f}) return;
+// change(value, channel) of each colour.
+template <class Change>
+void change_colors(ImageRows& rows, const Change& change) {
     rows.read = [=, width = rows.width * rows.channels, channels = rows.channels, read = rows.read](
                     std::int64_t begin, std::int64_t end, float* values) {
         read(begin, end, values);
         for (float* p = values; p < values + (end - begin) * width; p += channels)
-            for (int c = 0; c < 3; ++c) p[c] /= factors[c];
+            for (int c = 0; c < 3; ++c) p[c] = change(p[c], c);
     };
 }
 
-// Where a TIFF does not say its bits they are one, and OpenImageIO reads eight; where it was cut short,
-// OpenImageIO reads black.
-void check_tiff(const fs::path& file, int page) {
-    const QuietStderr quiet;
-    const std::unique_ptr<TIFF, void (*)(TIFF*)> tiff(TIFFOpen(file.c_str(), "r"), TIFFClose);
-    if (!tiff || !TIFFSetDirectory(tiff.get(), static_cast<tdir_t>(page))) return;
-    std::uint16_t bits = 0;
-    if (TIFFGetField(tiff.get(), TIFFTAG_BITSPERSAMPLE, &bits) != 1)
-        fail_picture(file, "it does not say how many bits a value has (BitsPerSample); save it with 8");
-    const std::uint64_t size = fs::file_size(file);
-    const bool tiled = TIFFIsTiled(tiff.get()) != 0;
-    const std::uint32_t parts = tiled ? TIFFNumberOfTiles(tiff.get()) : TIFFNumberOfStrips(tiff.get());
-    for (std::uint32_t i = 0; i < parts; ++i) {
-        const std::uint64_t at = TIFFGetStrileOffset(tiff.get(), i);
-        if (at > size || TIFFGetStrileByteCount(tiff.get(), i) > size - at)
-            fail_picture(file, "the file ends before the picture does");
-    }
+// OpenImageIO scales netpbm's integers to those of 8 or 16 bits, which are `most`, and rounds them down.
+void undo_scaling(ImageRows& rows, double most, double largest) {
+    if (largest != most)
+        change_colors(rows, [=](float value, int) {
+            return float(std::ceil(std::round(value * most) * largest / most) / largest);
+        });
 }
 
 // OpenImageIO turns white that is 0 around in 8 bits only, and has nothing below 0.
@@ -351,6 +344,9 @@ void warn_of_values(const fs::path& file, const ImageSpec& spec) {
             "{}: that 0 is white (PhotometricInterpretation) is not followed: it is black", file.string()));
     if (spec.format.is_signed() && !spec.format.is_floating_point())
         log_warning(fmt::format("{}: its whole numbers have a sign: those below 0 are black", file.string()));
+    if (!is_cube_map(spec) && !windows_meet(spec))
+        log_warning(fmt::format("{}: its display window, which has none of its pixels, is not followed",
+                                file.string()));
 }
 
 double largest_integer(const ImageSpec& spec) {
@@ -360,9 +356,7 @@ double largest_integer(const ImageSpec& spec) {
 
 // ---- several pictures in one file
 
-bool has_colors(const ImageSpec& spec) {
-    return find_channel(spec, "R") >= 0 && find_channel(spec, "G") >= 0 && find_channel(spec, "B") >= 0;
-}
+bool has_colors(const ImageSpec& spec) { return is_complete(find_channels(spec, {"R", "G", "B"})); }
 
 std::string part_name(const ImageSpec& spec) { return spec.get_string_attribute("oiio:subimagename"); }
 
@@ -421,16 +415,21 @@ bool are_channels(const std::vector<ImageSpec>& pages) {
 struct PartChoice {
     int first = 0;
     bool three = false;
+    std::string layer = {};  // of the part; empty: its own colours, else its first
 };
 
-int named_part(const fs::path& file, const std::vector<ImageSpec>& parts, const std::string& wanted) {
+PartChoice named_part(const fs::path& file, const std::vector<ImageSpec>& parts, const std::string& wanted) {
     const std::optional<std::int64_t> number = parse_int64(wanted);
-    if (number && *number >= 0 && *number < std::ssize(parts)) return int(*number);
+    if (number && *number >= 0 && *number < std::ssize(parts)) return {int(*number)};
     std::vector<std::string> names;
     for (std::size_t i = 0; i < parts.size(); ++i) {
         const std::string name = part_name(parts[i]);
-        if (!name.empty() && lower_case(name) == lower_case(wanted)) return int(i);
+        if (!name.empty() && lower_case(name) == lower_case(wanted)) return {int(i)};
         names.push_back(name.empty() ? std::to_string(i) : name);
+        for (const std::string& layer : layers_of(parts[i])) {
+            if (lower_case(layer) == lower_case(wanted)) return {int(i), false, layer};
+            names.push_back(layer);
+        }
     }
     bad_input(file, fmt::format("a picture of {}", fmt::join(names, ", ")), "hdu = " + wanted);
 }
@@ -438,10 +437,11 @@ int named_part(const fs::path& file, const std::vector<ImageSpec>& parts, const 
 PartChoice choose_part(const fs::path& file, ImageInput& in, const std::string& part,
                        Wanted wanted = Wanted::colors) {
     const std::vector<ImageSpec> parts = parts_of(in);
-    if (part != "auto") return {named_part(file, parts, part)};
+    if (part != "auto") return named_part(file, parts, part);
     for (int i = 0; wanted == Wanted::depths && i < int(parts.size()); ++i)
         if (depth_channel(parts[i]) >= 0) return {i};
     const std::string_view format = in.format_name();
+    if (format == "png") warn_of_frames(file);
     if (parts.size() < 2 || format == "psd") return {};  // Photoshop's first is the whole picture
     if (format == "tiff" && are_channels(parts)) return {0, true};
     PartChoice choice;
@@ -482,7 +482,7 @@ std::shared_ptr<const ColorEncoding> encoding_of(const fs::path& file, ImageInpu
     const OIIO::ParamValue* const xy = spec.find_attribute("chromaticities");
     if (!encoding && xy && xy->type().size() == 8 * sizeof(float))
         encoding = chromaticity_encoding(std::span<const float, 8>(static_cast<const float*>(xy->data()), 8),
-                                         {}, "chromaticities");
+                                         {}, "set of chromaticities", problem);
     const std::string space = spec.get_string_attribute("oiio:ColorSpace");
     if (!encoding && problem.empty() && !png && space.starts_with("Gamma")) {
         TransferCurve curve{TransferCurve::Kind::parametric, {1.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0}, {}};
@@ -521,13 +521,17 @@ PictureRows open_picture_rows(const fs::path& file, const Progress& progress, co
                               Wanted wanted) {
     std::unique_ptr<ImageInput> in = open_picture(file);
     const PartChoice choice = choose_part(file, *in, part, wanted);
-    const ImageSpec spec = in->spec(choice.first);
+    ImageSpec spec = in->spec(choice.first);
     check_spec(file, spec);
     const std::string format = in->format_name();
     if (format == "jpeg" && !jpeg_is_whole(file)) fail_picture(file, "the file ends before the picture does");
     if (format == "tiff") check_tiff(file, choice.first);
+    if (format == "webp") add_webp_exif(file, spec);
     warn_of_values(file, spec);
-    const Channels channels = choose_channels(spec, wanted);
+    const Channels channels = choose_channels(spec, wanted, choice.layer);
+    if (wanted == Wanted::colors && !choice.three) warn_of_other_channels(file, spec, channels);
+    if (channels.xyz)
+        spec.attribute("chromaticities", OIIO::TypeDesc(OIIO::TypeDesc::FLOAT, 8), xyz_chromaticities.data());
     PictureRows result;
     Picture& picture = result.picture;
     picture.colors = encoding_of(file, *in, spec);
@@ -539,19 +543,23 @@ PictureRows open_picture_rows(const fs::path& file, const Progress& progress, co
                                        rows_of_part(open_picture(file), 1), rows_of_part(std::move(in), 2)});
     else
         result.rows = rows_of_part(std::move(in), choice.first);
-    if (format == "hdr") divide_by(radiance_factors(file), result.rows);
+    if (format == "hdr")
+        change_colors(result.rows, [factors = radiance_factors(file)](float value, int c) {
+            return value / factors[std::size_t(c)];
+        });
+    picture.max_integer = largest_integer(spec);
+    if (const double largest = format == "pnm" ? largest_of_pnm(file) : 0.0; largest > 0.0)
+        undo_scaling(result.rows, std::exchange(picture.max_integer, largest), largest);
     // OpenEXR's whole numbers are light, as its others are; OpenImageIO makes fractions of them.
-    const bool counts = format == "openexr" && spec.format.basetype == OIIO::TypeDesc::UINT32;
-    constexpr float whole = 1.0f / 4294967295.0f;
-    if (counts) divide_by({whole, whole, whole}, result.rows);
+    if (format == "openexr" && std::exchange(picture.max_integer, 0.0) > 0.0)
+        change_colors(result.rows, [](float value, int) { return value * 4294967295.0f; });
     make_square(file, spec, result.rows);
-    if (const int orientation = orientation_of(spec); orientation != 1) {
+    if (const int orientation = orientation_of(file, spec); orientation != 1) {
         result.rows = rows_of(turned(all_rows(result.rows, file), orientation));
         log_info(fmt::format("{}: {}, as its orientation {} says", file.string(), orientations[orientation],
                              orientation));
     }
     picture.image = {result.rows.width, result.rows.height, result.rows.channels, {}};
-    picture.max_integer = counts ? 0.0 : largest_integer(spec);
     // The reader of JPEG 2000 heeds the wish for it without a word.
     picture.associated = channels.alpha >= 0 && format != "jpeg2000" &&
                          spec.get_int_attribute("oiio:UnassociatedAlpha", 0) == 0;
@@ -595,9 +603,9 @@ ObjectMetadata read_picture_metadata(const fs::path& file) {
 }
 
 void require_picture(const fs::path& file) {
+    const QuietLog quiet;  // what is taken is said when it is read
     if (is_fits(file)) return require_fits_picture(file);
     const std::unique_ptr<ImageInput> in = open_picture(file);
-    const QuietLog quiet;  // what is taken is said when it is read
     check_spec(file, in->spec(choose_part(file, *in, "auto").first));
 }
 

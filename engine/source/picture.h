@@ -11,7 +11,7 @@ namespace astrosplat {
 
 struct Picture {
     Image image;  // 3 channels, or 4 with the file's alpha; integers scaled to 0..1; row 0 on top
-    double max_integer = 0.0;  // largest value of integer files (255, 65535); 0 for float files
+    double max_integer = 0.0;  // largest value of integer files (255, 65535, netpbm's own); 0 for float files
     bool associated = false;   // the colours are already multiplied by the file's alpha
     bool distances = false;    // of a channel of depths: the larger, the farther
     bool cube = false;         // an environment: six square faces +x -x +y -y +z -z one above the other
@@ -28,10 +28,10 @@ struct Picture {
 /// Pixels that are not square become more of them; Radiance's values are divided by its exposure.
 /// Throws InputError, Cancelled.
 ///
-/// `part`: of several pictures in a file the number from 0 or the name of an EXR part, or the number of a
-/// TIFF page; "auto": the first part with red, green and blue, else with luminance; the largest page that is
-/// not reduced and not blank, or three of ImageJ's that are channels. Where several would do, a warning says
-/// which.
+/// `part`: of several pictures in a file the number from 0 or the name of an EXR part or layer, or the
+/// number of a TIFF page; "auto": the first part with red, green and blue, else with luminance; the largest
+/// page that is not reduced and not blank, or three of ImageJ's that are channels. Where several would do, a
+/// warning says which.
 ///
 /// Of depths "auto" is the first part with a channel Z or depth.Z, and that channel is taken.
 enum class Wanted { colors, depths };

@@ -180,6 +180,8 @@ PrepareInput read_pair(const fs::path& file, const TextureSettings& settings, Pr
                                   stars.channels, file.string()),
                       fmt::format("{}x{} px of {}", sky.width, sky.height, sky.channels));
     };
+    if (std::error_code none; fs::equivalent(file, other, none))
+        bad_input(other, "another picture than the one of the stars", "the same");
     PrepareInput whole;
     if (is_fits(file) && is_fits(other)) {
         FitsPlane sum = read_fits(file, settings.hdu, settings.plane, progress);

@@ -164,10 +164,11 @@ StoredRows open_stored(const fs::path& file, const Settings& settings, const Pro
         const bool integers = picture.picture.max_integer > 0.0;
         return {{std::move(picture.picture), integers}, std::move(picture.rows)};
     }
-    const FitsRows plane = open_fits_rows(file, settings.hdu, settings.plane, progress);
+    FitsRows plane = open_fits_rows(file, settings.hdu, settings.plane, progress);
     if (plane.plane.width * plane.plane.height * plane.plane.channels > most_held)
         return stretched_rows(plane, settings, file);
-    return rows_of(read_stored(file, settings, progress));
+    const FitsPlane whole = whole_plane(std::move(plane), file);
+    return rows_of(stretched_plane(whole, value_range(whole.values), settings, file));
 }
 
 Stored read_stored(const fs::path& file, const Settings& settings, const Progress& progress) {

@@ -243,15 +243,14 @@ Texture load_texture(const std::vector<fs::path>& files, const TextureSettings& 
 }
 
 void warn_of_nothing(const Image& image, bool undefined, const std::string& name) {
-    bool dark = true;
-    for (std::size_t i = 0; dark && i < image.pixels.size(); i += 4) {
-        const float* const p = image.pixels.data() + i;
-        dark = !(std::max({p[0], p[1], p[2]}) > 0.0f);
-    }
-    if (dark)
-        log_warning(fmt::format(
-            "{}: nothing to see: {}", name,
-            undefined ? "every pixel is undefined (NaN)" : "all pixels are equal, black or transparent"));
+    constexpr float least = 0.5f / 255.0f / 12.92f;  // less is 0 of 8 bits of sRGB
+    float most = 0.0f;
+    for (std::size_t i = 0; !(most >= least) && i < image.pixels.size(); i += 4)
+        for (std::size_t c = i; c < i + 3; ++c) most = std::max(most, image.pixels[c]);
+    const std::string reason = undefined     ? "every pixel is undefined (NaN)"
+                               : most > 0.0f ? fmt::format("no light is more than {:.2g} of white", most)
+                                             : "all pixels are equal, black or transparent";
+    if (!(most >= least)) log_warning(fmt::format("{}: nothing to see: {}", name, reason));
 }
 
 void fill_values(std::span<Image> pictures, int border, const fs::path& file, const Progress& progress) {

@@ -82,4 +82,11 @@ std::function<void(std::int64_t begin, std::int64_t end, double* values)> rows_o
     };
 }
 
+void warn_of_channels(const fs::path& file, std::int64_t more, std::string_view taken,
+                      std::string_view remedy) {
+    if (more > 0)
+        log_warning(fmt::format("{}: {} more than {} {} not followed{}", file.string(),
+                                counted(more, "channel"), taken, more == 1 ? "is" : "are", remedy));
+}
+
 }  // namespace astrosplat

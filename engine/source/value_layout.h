@@ -29,4 +29,8 @@ using ValueReader = std::function<void(std::int64_t first, std::int64_t count, d
 std::function<void(std::int64_t begin, std::int64_t end, double* values)> rows_of_values(
     const ValueLayout& layout, const ValueReader& read);
 
+/// Warns of `more` channels of a file than those `taken`, where there are any.
+void warn_of_channels(const fs::path& file, std::int64_t more, std::string_view taken,
+                      std::string_view remedy = "");
+
 }  // namespace astrosplat

@@ -277,20 +277,11 @@ ValueReader reader_of(const XisfImage& image, std::shared_ptr<const Bytes> bytes
 
 ValueReader read_values(const Xisf& xisf, const XisfImage& image) {
     const auto bytes = std::make_shared<const Bytes>(block_of(xisf, image.node, image.bytes()));
-    switch (image.bitpix) {
-        case 8:
-            return reader_of<std::uint8_t>(image, bytes);
-        case 16:
-            return reader_of<std::uint16_t>(image, bytes);
-        case 32:
-            return reader_of<std::uint32_t>(image, bytes);
-        case 64:
-            return reader_of<std::uint64_t>(image, bytes);
-        case -32:
-            return reader_of<float>(image, bytes);
-        default:
-            return reader_of<double>(image, bytes);
-    }
+    if (image.bitpix == 8) return reader_of<std::uint8_t>(image, bytes);
+    if (image.bitpix == 16) return reader_of<std::uint16_t>(image, bytes);
+    if (image.bitpix == 32) return reader_of<std::uint32_t>(image, bytes);
+    if (image.bitpix == 64) return reader_of<std::uint64_t>(image, bytes);
+    return image.bitpix == -32 ? reader_of<float>(image, bytes) : reader_of<double>(image, bytes);
 }
 
 /// Numbers of a property, whose vectors are blocks.
@@ -380,10 +371,7 @@ ValueLayout layout_of(const Xisf& xisf, const XisfImage& image, std::optional<in
     const auto pattern = bayer_channels(mosaic.attribute("pattern").value(), 0, 0);
     if (plane) return layout;
     if (image.rgb) layout.values = Values::planes;
-    const std::int64_t more = image.channels - (image.rgb ? 3 : 1);
-    if (more > 0)
-        log_warning(fmt::format("{}: {} more than its colours {} not followed", xisf.file.string(),
-                                counted(more, "channel"), more == 1 ? "is" : "are"));
+    warn_of_channels(xisf.file, image.channels - (image.rgb ? 3 : 1), "its colours");
     if (mosaic && pattern && image.channels == 1 && image.width > 1 && image.height > 1) {
         layout.values = Values::bayer;
         layout.pattern = *pattern;

@@ -60,6 +60,11 @@ TEST_F(Commands, NamesAreShownWithoutControlCharacters) {
     }
 }
 
+TEST_F(Commands, InfoOfAPictureThatCannotBeReadSaysWhy) {
+    write_text(folder / "cut.ppm", small_picture().substr(0, 200));
+    EXPECT_HAS(expect_success(run({"info", "cut.ppm"})).err, "cut.ppm: cannot be read as a picture: ");
+}
+
 TEST_F(Commands, ConvertRefusesWhatItShould) {
     expect_one_line(run({"convert", "stars.pda", "stars.xyz"}), 2, ".splats");
     expect_one_line(run({"convert", "stars.pda", "dust.pda"}), 2, "--overwrite");

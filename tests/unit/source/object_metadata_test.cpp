@@ -182,6 +182,8 @@ TEST(XmpMetadata, TheFirstPacketWithAvmElseTheFirst) {
     EXPECT_EQ(said.one_warning(), file.string() + ": its XMP packet is no XML and is not followed");
     EXPECT_EQ(find_xmp_metadata("<rdf:RDF> no end").credit, "");
     EXPECT_EQ(find_xmp_metadata("").credit, "");
+    EXPECT_EQ(find_avm_tags(packet("photoshop:Credit='Gr\xf6\xdf' ", ""))[0].values[0], "Gr\xc3\xb6\xc3\x9f")
+        << "Latin 1";
 }
 
 TEST(XmpMetadata, FiguresThatSayNothingAreLeftOut) {

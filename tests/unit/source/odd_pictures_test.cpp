@@ -4,6 +4,8 @@
 // its fmt first: OpenImageIO's copy would turn exceptions off
 #include <OpenImageIO/imageio.h>
 
+#include <ctime>
+
 #include "core/text.h"
 #include "source/picture.h"
 #include "source/prepared_picture.h"
@@ -117,6 +119,64 @@ TEST_F(OddPictures, NothingToSeeIsSaid) {
     prepare_picture({light}, filled);
     EXPECT_EQ(said.one_warning(),
               light.string() + ": nothing to see: all pixels are equal, black or transparent");
+}
+
+TEST_F(OddPictures, LightThatNoScreenShowsIsSaid) {
+    const auto said_of = [&](float light) {
+        const Said said;
+        odd_texture(write_odd(folder / "a.tif", 4, 4, "RGB", [=](int, int, int) { return light; }));
+        return said.one_warning();
+    };
+    EXPECT_EQ(said_of(5e-5f),
+              (folder / "a.tif").string() + ": nothing to see: no light is more than 5e-05 of white");
+    EXPECT_EQ(said_of(2e-4f), "0 warnings");
+}
+
+TEST_F(OddPictures, APictureIsNotItsOwnStars) {
+    TextureSettings settings;
+    settings.prepare.starless = write_odd(folder / "a.exr", 4, 4, "RGB", [](int x, int, int) { return x; });
+    EXPECT_EQ(
+        ERROR_OF(prepare_picture({folder / "." / "a.exr"}, settings)),
+        (folder / "a.exr").string() + ": expected another picture than the one of the stars, found the same");
+}
+
+// ---- channels
+
+TEST_F(OddPictures, ChannelsThatAreNotTakenAreSaid) {
+    const auto said_of = [&](const char* name, const std::string& names) {
+        const Said said;
+        read_picture(write_odd(folder / name, 4, 4, names, [](int x, int, int c) { return x + c; }));
+        return said.one_warning();
+    };
+    EXPECT_EQ(said_of("a.exr", "RGBNM"),
+              (folder / "a.exr").string() + ": 2 channels more than R, G, B are not followed");
+    EXPECT_EQ(said_of("b.exr", "RG"),
+              (folder / "b.exr").string() + ": 1 channel more than R is not followed");
+    EXPECT_HAS(said_of("c.tif", "RGBNM"), "2 channels more than R, G, B are not followed");
+    EXPECT_EQ(said_of("d.exr", "RGBA"), "0 warnings");
+}
+
+TEST_F(OddPictures, XyzIsFollowed) {
+    constexpr float white[] = {0.9505f, 1.0f, 1.089f};  // of D65: IEC 61966-2-1
+    const Said said;
+    const Image light = load_linear_image(write_odd(
+        folder / "a.exr", 2, 2, "XYZ", [&](int x, int, int c) { return x == 0 ? white[c] : 0.0f; }));
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(light.at(0, 0)[c], 1.0f, 1e-3f);
+    EXPECT_EQ(said.lines.size(), 0u);
+}
+
+TEST_F(OddPictures, WindowsThatDoNotMeetAreSaid) {
+    OIIO::ImageSpec spec(2, 2, 3, OIIO::TypeFloat);
+    spec.x = spec.y = 100;
+    spec.full_width = spec.full_height = 8;
+    const fs::path file = folder / "a.exr";
+    const std::vector<float> values(12, 0.5f);
+    const auto out = OIIO::ImageOutput::create(file.string());
+    ASSERT_TRUE(out->open(file.string(), spec) && out->write_image(OIIO::TypeFloat, values.data()) &&
+                out->close());
+    const Said said;
+    EXPECT_EQ(read_picture(file).image.at(0, 0)[0], 0.5f);
+    EXPECT_HAS(said.one_warning(), "its display window, which has none of its pixels, is not followed");
 }
 
 // ---- depths
@@ -354,6 +414,42 @@ TEST_F(OddPictures, ALargestValueThatIsScaledWronglyIsRefused) {
               file.string() +
                   ": cannot be read as a picture: its largest value is 40000; save it with at most 32768, or "
                   "with 65535");
+}
+
+TEST_F(OddPictures, NetpbmHasItsOwnLargestValue) {
+    for (const int largest : {31, 100, 254, 1000}) {
+        std::string bytes = fmt::format("P5\n# a comment\n{} 1\n{}\n", largest + 1, largest);
+        for (int i = 0; i <= largest; ++i)
+            bytes += largest < 256 ? std::string(1, char(i)) : std::string{char(i >> 8), char(i & 255)};
+        const Image light = load_linear_image(folder.file("a.pgm", bytes));
+        for (int i = 0; i <= largest; ++i)
+            ASSERT_NEAR(light.at(i, 0)[1], real::srgb_to_linear(double(i) / largest), 1e-6) << largest;
+    }
+    for (const char* largest : {"0", "70000"})
+        EXPECT_HAS(
+            ERROR_OF(read_picture(folder.file("b.pgm", std::string("P5\n1 1\n") + largest + "\nxxxx"))),
+            std::string("its largest value is ") + largest);
+}
+
+// 32 x 24 px by Pillow, with the orientation 6 in its EXIF.
+TEST_F(OddPictures, WebpIsTurnedAsItsExifSays) {
+    const std::string bytes = *bytes_of_base64(
+        "UklGRuIAAABXRUJQVlA4WAoAAAAIAAAAHwAAFwAAVlA4TKEAAAAvH8AFAE0ARNL+3jNE9D91ARCE/28PlRjw/ofAYN"
+        "y2bSC94/0XbnuRbwMhQQppKiAokQTatm0zyGOhQrkCMe6zn5cIE5OgcLSJjhRGm2hQGDHRkcLRJhqUM2ISGWcEbhDu"
+        "PGyz84zAQtFF4Iaii8CiostG22Xp2nZZurZdiq7WpenadeHYzy676tB0kZ+Ejaar3G1991/qu48+9Hc/KNqFAQBFWE"
+        "lGGgAAAE1NACoAAAAIAAEBEgADAAAAAQAGAAAAAAAA");
+    EXPECT_EQ(read_picture(folder.file("a.webp", bytes)).image.width, 24);
+}
+
+// Of a few bytes; OpenImageIO says so at the first rows, before which nothing as large as it is made.
+TEST_F(OddPictures, ALargePictureOfNothingIsRefusedAtOnce) {
+    std::string png = test::bytes_of(write_odd(
+        folder / "a.png", 16384, 1, "RGB", [](int, int, int) { return 0.0f; }, OIIO::TypeUInt8));
+    png.replace(20, 4, std::string("\0\0\x40\0", 4));
+    png.replace(29, 4, "\x26\xaa\x87\xd3");
+    const std::clock_t before = std::clock();
+    EXPECT_HAS(ERROR_OF(read_picture(folder.file("a.png", png))), "cannot be read as a picture");
+    EXPECT_LT(double(std::clock() - before) / CLOCKS_PER_SEC, 1.0);
 }
 
 // 40 x 24 px of OpenJPEG by Pillow: 5 columns of alpha 0, 5 of 128, the upper left of (220, 40, 20).

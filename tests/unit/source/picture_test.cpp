@@ -162,6 +162,11 @@ TEST(Orientation, OfAJpegAndInWords) {
     const Said said;
     EXPECT_EQ(load_linear_image(file).height, 32);
     EXPECT_EQ(said.text(), file.string() + ": turned by 90 degrees clockwise, as its orientation 6 says\n");
+    spec.attribute("Orientation", 9);
+    const std::vector<std::string> warnings = warnings_of(
+        [&] { EXPECT_EQ(read_picture(write_bytes(file, spec, noise(32 * 16 * 3))).image.width, 32); });
+    ASSERT_EQ(warnings.size(), 1u);
+    EXPECT_HAS(warnings[0], "its orientation 9 is none of 1 to 8 and is not followed");
 }
 
 TEST(CubeMap, AllSixFacesOfAnExrAreRead) {

@@ -90,6 +90,20 @@ TEST(SeveralPictures, OfAnExrThePartWithColoursIsTaken) {
     EXPECT_EQ(open_stored(file, settings, {}).stored.picture.image.channels, 3);
 }
 
+TEST(SeveralPictures, OfAnExrTheFirstLayerOrTheNamed) {
+    const TempFolder folder;
+    const fs::path file = write_pages(
+        folder / "a.exr", {page(4, {"gas.R", "gas.G", "gas.B", "stars.R", "stars.G", "stars.B", "stars.A"},
+                                {0.1f, 0.2f, 0.3f, 0.4f, 0.5f, 0.6f, 1.0f}, OIIO::TypeFloat)});
+    std::vector<float> taken;
+    EXPECT_EQ(warnings_of([&] { taken = first_pixel(file); }),
+              std::vector<std::string>{file.string() + ": 4 channels more than gas.R, gas.G, gas.B are not "
+                                                       "followed (hdu = stars takes another)"});
+    EXPECT_EQ(taken, (std::vector<float>{0.1f, 0.2f, 0.3f}));
+    EXPECT_EQ(first_pixel(file, "Stars"), (std::vector<float>{0.4f, 0.5f, 0.6f, 1.0f}));
+    EXPECT_HAS(ERROR_OF(first_pixel(file, "dust")), "gas, stars, found hdu = dust");
+}
+
 TEST(SeveralPictures, OfATiffTheLargestPageThatShows) {
     const TempFolder folder;
     const auto rgb = [](int size, float v) {
@@ -290,7 +304,9 @@ TEST(FileColors, ChromaticitiesOfExr) {
         expect_light(with(set), linear, primaries_matrix(set, rec709_chromaticities), "chromaticities");
     const Image plain = load_linear_image(with(rec709_chromaticities));
     for (std::size_t i = 0; i < 12; ++i) EXPECT_EQ(plain.pixels[i / 3 * 4 + i % 3], some_colors[i]);
+    const Said said;
     expect_light(with({{0, 0}, {0, 0}, {0, 0}, {0, 0}}), linear, glm::dmat3(1.0), "none");
+    EXPECT_HAS(said.one_warning(), "its set of chromaticities is not followed; colours are read as linear");
     TextureSettings settings;
     settings.colorspace = TextureSettings::Colorspace::linear;  // wins
     Stored stored = read_stored(with(p3), settings, {});
@@ -365,6 +381,11 @@ TEST(FileColors, ChunksOfPng) {
         warnings_of([&] { expect_light(with(cicp(2, 2)), srgb, same, "2/2"); });
     ASSERT_EQ(said.size(), 1u);
     EXPECT_HAS(said[0], "its cICP 2/2/0/1 is not followed");
+    const std::vector<std::string> moves = warnings_of([&] {
+        expect_light(with(chunk("acTL", numbers({3, 0}))), srgb, same, "animated");
+    });
+    ASSERT_EQ(moves.size(), 1u);
+    EXPECT_HAS(moves[0], "it holds 3 pictures; 0 is taken, as the others are not followed");
 }
 
 // ITU-R BT.2408-7, table 1: reference white is 203 cd/m^2, 58 % of PQ's and 75 % of HLG's signal.

@@ -8,6 +8,7 @@
 
 #include "core/text.h"
 #include "source/object_metadata.h"
+#include "source/picture.h"
 #include "source/prepared_picture.h"
 #include "source/stored_picture.h"
 #include "support/quiet.h"
@@ -193,6 +194,13 @@ TEST_F(XisfTest, KeywordsAndSky) {
     });
     ASSERT_EQ(said.size(), 1u);
     EXPECT_HAS(said[0], "its colour filter array 'CMYG' is not followed");
+    const Said once;
+    const fs::path more =
+        folder.file("m.xisf", xisf_file(geometry(2) + R"(sampleFormat="Float32")", values_of_type<float>(2)));
+    require_picture(more);
+    open_stored(more, {}, {});
+    flush_warning_counts();
+    EXPECT_HAS(once.one_warning(), "1 channel more than its colours is not followed");
 }
 
 // Of colours that are squares of light: for pictures and for prepared ones, and not where they are stretched.
