@@ -170,6 +170,7 @@ struct Command {
         cancel_render,    // the job that runs
         cancel_job,       // index: number of the job
         remove_job,       // likewise
+        retry_job,        // likewise
         open_folder,      // path: in the desktop's file manager
         save_view,        // path: the frame as it is seen, without the window
         screenshot,       // path

@@ -13,7 +13,8 @@ using JobState = QueuedJob::State;
 constexpr float queue_width = 940, queue_height = 520, list_width = 400, job_height = 76, card_gap = 8;
 
 std::string state_text(const QueuedJob& job) {
-    if (job.state == JobState::waiting) return "Waits";
+    if (job.state == JobState::waiting)
+        return job.held_by == 0 ? "Waits" : "Stopped by what failed: try that again, or take it off";
     if (job.state == JobState::done) return "Done";
     if (job.state == JobState::cancelled) return "Cancelled; finished files are kept";
     const bool is_timed = job.state == JobState::running && job.seconds_left;
@@ -79,11 +80,23 @@ void play(ViewState& view, int count, double fps) {
     view.queue_frame = static_cast<int>(std::fmod(ImGui::GetTime() * fps, static_cast<double>(count)));
 }
 
+// Why it failed, whole, which a card has no room for.
+void draw_failure(GuiFrame& frame, const QueuedJob& job) {
+    ImGui::PushTextWrapPos(0.0f);
+    ImGui::TextColored(color4(color::error), "%s", job.text.c_str());
+    ImGui::PopTextWrapPos();
+    if (dialog_button("Try again", false, 84)) request(frame, Command::Kind::retry_job, job.number);
+    tooltip("Finished frames stay");
+    note_item(frame, "queue/Try again");
+    ImGui::Dummy({0, px(card_gap)});
+}
+
 void draw_frames(GuiFrame& frame, const QueuedJob& job) {
     ViewState& view = frame.view;
     const int count = static_cast<int>(job.files.size());
     const float width = ImGui::GetContentRegionAvail().x;
     const FinishedFrame& finished = frame.status.finished;
+    if (job.state == JobState::failed) draw_failure(frame, job);
     const ImVec2 size{width, ImGui::GetContentRegionAvail().y - px(76)};
     image_box({ImGui::GetCursorScreenPos(), size}, finished.texture, finished.aspect, 3);
     ImGui::Dummy(size);
@@ -126,7 +139,7 @@ void draw_queue(GuiFrame& frame) {
     if (chosen) draw_frames(frame, *chosen);
     ImGui::EndChild();
     ImGui::SetCursorPosY(ImGui::GetWindowHeight() - px(44));
-    const int button = dialog_buttons(frame, "queue", {"Open folder", "Close"}, 1);
+    const int button = dialog_buttons(frame, "queue", {"Show in folder", "Close"}, 1);
     if (button == 0 && chosen) request_path(frame, Command::Kind::open_folder, chosen->target.parent_path());
     if (button == 1) open = frame.view.queue_playing = false;
     end_dialog(!open);

@@ -29,6 +29,13 @@ std::optional<fs::path> file_of_line(const std::string& line) {
     return std::regex_match(line, parts, saved) ? std::optional<fs::path>(parts[1].str()) : std::nullopt;
 }
 
+/// Of "astrosplat: error: frame 3: a.0003.png: cannot be written: No space left on device".
+std::optional<std::string> error_of_line(const std::string& line) {
+    constexpr std::string_view mark = "error: ";
+    const std::string said = without_prefix(line);
+    return said != line && said.starts_with(mark) ? std::optional(said.substr(mark.size())) : std::nullopt;
+}
+
 using JobState = QueuedJob::State;
 
 constexpr const char* cancelled_text = "Cancelled; finished files are kept";
@@ -68,7 +75,11 @@ std::optional<float> share_of_line(const std::string& line) {
 
 RenderJob::RenderJob(JobPlan plan) : plan_(std::move(plan)) {
     try {
-        if (!plan_.folder.empty()) write_file_atomically(plan_.folder / "scene.toml", plan_.scene_text);
+        if (!plan_.folder.empty()) {
+            fs::create_directory(plan_.folder);  // gone with the last try
+            fs::permissions(plan_.folder, fs::perms::owner_all);
+            write_file_atomically(plan_.folder / "scene.toml", plan_.scene_text);
+        }
         begin_step();
     } catch (...) {
         remove_folder(plan_.folder);
@@ -83,12 +94,19 @@ RenderJob::~RenderJob() {
 
 void RenderJob::begin_step() {
     partial_.clear();
+    why_.clear();
     process_.emplace(plan_.steps[step_].arguments);
 }
 
 void RenderJob::take_line(const std::string& line) {
     if (trim(line).empty()) return;
     last_line_ = without_share(without_prefix(line));
+    const bool is_own = step_ == 0;  // ffmpeg says errors only
+    const std::optional<std::string> error = is_own ? error_of_line(line) : last_line_;
+    if (error && why_.empty()) {
+        why_ = *error;
+        if (is_own && why_.starts_with("frame ")) process_->terminate();
+    }
     if (const auto file = file_of_line(last_line_)) saved_.push_back(*file);
     if (const auto share = share_of_line(line)) progress_ = *share;
     // Short frames are saved faster than progress is reported.
@@ -108,6 +126,7 @@ void RenderJob::finish_step(bool good) {
     take_line(partial_);
     process_.reset();
     if (end_ == State::cancelled) return;
+    good = good && (step_ > 0 || why_.empty());
     if (good && ++step_ < plan_.steps.size()) return begin_step();
     end_ = good ? State::done : State::failed;
 }
@@ -125,13 +144,14 @@ void RenderJob::poll() {
     try {
         finish_step(*code == 0);
     } catch (const OutputError& error) {  // the next step did not start
-        last_line_ = error.what();
+        why_ = error.what();
         end_ = State::failed;
     }
 }
 
 std::string RenderJob::text() const {
     if (process_ && step_ > 0) return plan_.steps[step_].name;
+    if (end_ == State::failed && !why_.empty()) return why_;
     return last_line_.empty() ? "Rendering" : last_line_;
 }
 
@@ -259,8 +279,24 @@ void RenderQueue::cancel(std::uint64_t number) {
     remove_folder(job->plan.folder);
 }
 
+void RenderQueue::release(std::uint64_t number) {
+    for (Job& job : jobs_)
+        if (job.held_by == number) job.held_by = 0;
+}
+
+void RenderQueue::retry(std::uint64_t number) {
+    const auto job = std::ranges::find(jobs_, number, &Job::number);
+    if (job == jobs_.end() || job->state != JobState::failed || job->farm) return;
+    release(number);
+    job->state = JobState::waiting;
+    std::vector<std::string>& words = job->plan.steps.front().arguments;
+    if (job->plan.frames > 0 && std::ranges::find(words, "--resume") == words.end())
+        words.push_back("--resume");
+}
+
 void RenderQueue::remove(std::uint64_t number) {
     cancel(number);
+    release(number);
     std::erase_if(jobs_, [&](const Job& job) {
         return job.number == number && job.state != JobState::running && job.state != JobState::submitted;
     });
@@ -276,15 +312,16 @@ void RenderQueue::cancel_running() {
 }
 
 void RenderQueue::begin_next(double now) {
-    const auto next = std::ranges::find(jobs_, JobState::waiting, &Job::state);
+    const auto next = std::ranges::find_if(
+        jobs_, [](const Job& job) { return job.state == JobState::waiting && job.held_by == 0; });
     if (next == jobs_.end()) return;
     next->state = JobState::running;
     began_ = now;
     try {
         next->run = std::make_unique<RenderJob>(next->plan);
     } catch (const std::exception& error) {
-        next->state = JobState::failed;
         next->text = error.what();
+        take_end(*next, JobState::failed);
         throw;
     }
 }
@@ -293,6 +330,9 @@ void RenderQueue::begin_next(double now) {
 std::optional<Message> RenderQueue::take_end(Job& job, JobState end) {
     if (end != JobState::done && end != JobState::failed && end != JobState::cancelled) return std::nullopt;
     job.state = end;
+    for (Job& other : jobs_)  // disks that are full are so for all
+        if (end == JobState::failed && !job.farm && other.state == JobState::waiting && other.held_by == 0)
+            other.held_by = job.number;
     if (end == JobState::failed) return Message{job.text, true};
     return Message{end == JobState::done ? "Saved " + job.target.string() : cancelled_text};
 }

@@ -113,7 +113,7 @@ class RenderJob {
     State state() const { return process_ ? State::running : end_; }
     /// Takes what the process has said since the last call. Cheap; call every frame.
     void poll();
-    std::string text() const;                     // "frame 12 (3/10)", or the last line of a job that failed
+    std::string text() const;                     // "frame 12 (3/10)", or why it failed
     float progress() const { return progress_; }  // 0..1
     /// Frames it has saved, in the order in which they came.
     const std::vector<fs::path>& files() const { return saved_; }
@@ -129,6 +129,7 @@ class RenderJob {
     std::size_t step_ = 0;
     std::optional<ChildProcess> process_;
     std::string partial_, last_line_;
+    std::string why_;  // the first error of the step; of a frame: it ends the job
     float progress_ = 0.0f;
     std::vector<fs::path> saved_;
 };
@@ -153,7 +154,9 @@ class RenderQueue {
     /// A job that waits never begins; one that runs, here or on a farm, ends, and its finished files stay.
     void cancel(std::uint64_t number);
     void cancel_running();
-    /// Takes a job that has ended, or waits, off the list.
+    /// A job that failed waits again, before those that its end holds up; its finished frames stay.
+    void retry(std::uint64_t number);
+    /// Takes a job that has ended, or waits, off the list; those that it held up go on.
     void remove(std::uint64_t number);
     bool running() const;
 
@@ -179,12 +182,13 @@ class RenderQueue {
 
     Job& push(std::string title, fs::path target);
     void begin_next(double now);
-    static std::optional<Message> take_end(Job& job, QueuedJob::State end);
+    std::optional<Message> take_end(Job& job, QueuedJob::State end);
+    void release(std::uint64_t number);
     void add_to_farm(const RenderTask& task, const Document& document);
     Job& add_farm_job(FarmCommands commands, const std::string& title, fs::path target);
     void take_earlier();
     void add_earlier(const SubmittedFrames& submitted, const std::string& output);
-    static std::optional<Message> poll_farm(Job& job, double now);
+    std::optional<Message> poll_farm(Job& job, double now);
 
     SetCache cache_;
     std::string program_;

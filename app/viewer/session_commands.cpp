@@ -305,6 +305,7 @@ constexpr Entry entries[] = {
     {Kind::cancel_render, [](State& s, const Command&) { s.jobs.cancel_running(); }},
     {Kind::cancel_job, [](State& s, const Command& c) { s.jobs.cancel(c.index); }},
     {Kind::remove_job, [](State& s, const Command& c) { s.jobs.remove(c.index); }},
+    {Kind::retry_job, [](State& s, const Command& c) { s.jobs.retry(c.index); }},
     {Kind::open_folder,
      [](State& s, const Command& c) {
          s.file_manager.emplace(std::vector<std::string>{"xdg-open", c.path.string()});

@@ -385,9 +385,22 @@ TEST(Queue, FramesOfTheChosenJobAreFlippedThrough) {
     EXPECT_FALSE(window.view.queue_playing);
 }
 
-TEST(Queue, OpensTheFolderOfTheChosenJob) {
+TEST(Queue, AJobThatFailedSaysWhyAndIsTriedAgain) {
     QueueWindow window;
-    window.click("queue/Open folder");
+    EXPECT_FALSE(window.has("queue/Try again"));
+    window.status.jobs[0].state = QueuedJob::State::failed;
+    window.status.jobs[0].text = "frame 3: /films/two/a.0003.png: cannot be written: No space left on device";
+    window.status.jobs[1].state = QueuedJob::State::waiting;
+    window.status.jobs[1].held_by = 1;
+    window.click("queue/job 1");
+    window.keep_screen("failed_job");
+    window.click("queue/Try again");
+    EXPECT_EQ(window.take_only(Kind::retry_job).index, 1u);
+}
+
+TEST(Queue, ShowsTheChosenJobInItsFolder) {
+    QueueWindow window;
+    window.click("queue/Show in folder");
     EXPECT_EQ(window.take_only(Kind::open_folder).path, "/films/two");
 }
 
