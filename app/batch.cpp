@@ -9,6 +9,7 @@
 #include "batch_plan.h"
 #include "command.h"
 #include "core/error.h"
+#include "core/hash.h"
 #include "core/log.h"
 #include "core/memory.h"
 #include "core/parallel.h"
@@ -17,6 +18,7 @@
 #include "device.h"
 #include "estimate.h"
 #include "exit.h"
+#include "farm/child_process.h"
 #include "generate/generate.h"
 #include "output/metadata.h"
 #include "output/write.h"
@@ -355,11 +357,29 @@ bool keep_stats(const CommandOptions& options, const BatchRun& run) try {
     return false;
 }
 
+/// Of all that a movie of these frames shows.
+std::string movie_hash(const BatchPlan& plan) {
+    Sha256 hash;
+    hash.add(fmt::format("{} fps", plan.scene.output.fps));
+    for (const FramePlan& frame : plan.frames) hash.add(frame.hash);
+    return hash.hex();
+}
+
+/// It is whole, as far as ffmpeg can tell by its head, and says that it was made of these very frames.
+bool is_movie_of(const fs::path& movie, const BatchPlan& plan) {
+    const auto tags = run_tool({"ffmpeg", "-v", "error", "-i", movie.string(), "-f", "ffmetadata", "-"});
+    return tags && tags->code == 0 && tags->out.find(movie_hash(plan)) != std::string::npos;
+}
+
 }  // namespace
 
 int run_batch(const CommandOptions& options) {
     const BatchPlan plan = plan_batch(options);
     defer_interrupts();
+    if (options.movie && options.resume && is_movie_of(*options.movie, plan)) {
+        log_info(fmt::format("kept {}, which was made of these very frames", options.movie->string()));
+        return exit_done;
+    }
     if (options.dry_run) {
         print_plan(plan);
         return exit_done;
@@ -384,7 +404,8 @@ int run_batch(const CommandOptions& options) {
     }
     flush_warning_counts();
     if (options.ffmetadata && failed.empty())
-        write_file_atomically(*options.ffmetadata, movie_metadata(plan.frames.front().file));
+        write_file_atomically(*options.ffmetadata,
+                              movie_metadata(plan.frames.front().file, movie_hash(plan)));
     if (failed.empty()) return kept ? exit_done : exit_not_writable;
     report_failures(failed);
     return exit_some_failed;

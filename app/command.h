@@ -31,6 +31,7 @@ struct CommandOptions {
     std::optional<std::string> memory_gib;  // limit of all that is taken
     std::optional<fs::path> stats;
     std::optional<fs::path> ffmetadata;  // what a movie of the frames is to say
+    std::optional<fs::path> movie;       // that was made so: with `resume` it may stay
     SetCache cache;
     ProgressMode progress = ProgressMode::automatic;
     DeviceChoice device = DeviceChoice::automatic;

@@ -47,6 +47,10 @@ void add_batch(CLI::App& app, Invocation& call) {
     add_value(app, "--ffmetadata", batch.ffmetadata, "FILE",
               "Writes title, credit and settings of the frames, for a movie of them by ffmpeg (-i FILE "
               "-map_metadata 1)");
+    add_value(
+        app, "--movie", batch.movie, "FILE",
+        "With --resume: renders nothing where this movie says (by --ffmetadata) that it was made of these "
+        "very frames");
     add_device_option(app, batch);
     add_progress(app, batch);
 }
@@ -99,7 +103,8 @@ int run_sets_only(const CommandOptions& options) {
     if (options.cache.folder.empty()) bad_input("--sets-only", "", "a cache that keeps them", "none");
     for (const auto& [given, option] : {std::pair(options.dry_run, "--dry-run"),
                                         {options.stats.has_value(), "--stats"},
-                                        {options.ffmetadata.has_value(), "--ffmetadata"}})
+                                        {options.ffmetadata.has_value(), "--ffmetadata"},
+                                        {options.movie.has_value(), "--movie"}})
         if (given) bad_input("--sets-only", "", fmt::format("no {} with it", option), "both");
     const BatchPlan plan = plan_frames(options);
     defer_interrupts();

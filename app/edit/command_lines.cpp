@@ -120,6 +120,8 @@ std::vector<std::string> batch_arguments(const RenderTask& task, const MachineLi
     if (!refuse) words.push_back("--overwrite");
     if (task.kind == RenderKind::movie) {
         words.push_back("--ffmetadata=" + movie_words(render_target(task)).string());
+        if (task.existing == ExistingFrames::resume)
+            words.push_back("--movie=" + render_target(task).string());
         for (const char* const key : {"aovs=[]", "depth=auto", "compression=auto", "alpha=auto"})
             words.insert(words.end(), {"--set", std::string("output.") + key});
     }
@@ -129,6 +131,10 @@ std::vector<std::string> batch_arguments(const RenderTask& task, const MachineLi
 }
 
 fs::path movie_folder(const fs::path& movie) { return movie.string() + ".frames"; }
+
+fs::path movie_part(const fs::path& movie) {
+    return movie_folder(movie) / ("movie" + movie.extension().string());
+}
 
 fs::path movie_words(const fs::path& movie) { return movie_folder(movie) / "movie.ffmetadata"; }
 
@@ -152,7 +158,7 @@ std::vector<std::string> movie_command(const fs::path& movie, double fps) {
     for (const char* const tag : {"-colorspace", "-color_primaries", "-color_trc"})
         words.insert(words.end(), {tag, "bt709"});
     words.insert(words.end(), {"-color_range", "tv", "-movflags", "+faststart"});
-    words.push_back(movie.string());
+    words.push_back(movie_part(movie).string());
     return words;
 }
 
@@ -260,10 +266,14 @@ BatchCommand render_command(const Document& document, const RenderTask& task, co
     BatchCommand command = batch_command(document, options);
     if (command.text.empty() || task.kind != RenderKind::movie) return command;
     const fs::path movie = render_target(task);
-    command.text += " &&";
+    const std::string file = shell_word(movie.string());
+    if (task.existing == ExistingFrames::refuse) command.text = "[ ! -e " + file + " ] && " + command.text;
+    // There are no words of a movie that was kept.
+    command.text += " && if [ -e " + shell_word(movie_words(movie).string()) + " ]; then";
     for (const std::string& word : movie_command(movie, document.scene().output.fps))
         command.text += " " + shell_word(word);
-    command.text += " && rm -r " + shell_word(movie_folder(movie).string());
+    command.text += " && mv " + shell_word(movie_part(movie).string()) + " " + file + " && rm -r " +
+                    shell_word(movie_folder(movie).string()) + "; fi";
     return command;
 }
 

@@ -53,6 +53,8 @@ fs::path render_files(const RenderTask& task);
 /// Where a movie's frames wait until it is written: beside it, so that what was cancelled can go on.
 fs::path movie_folder(const fs::path& movie);
 
+/// Where it is written, among them: it takes its name once it is whole.
+fs::path movie_part(const fs::path& movie);
 /// Among them, what the movie says of itself.
 fs::path movie_words(const fs::path& movie);
 

@@ -130,7 +130,9 @@ struct QueuedJob {
     float progress = 0.0f;  // 0..1
     std::optional<double> seconds_left;
     std::vector<fs::path> files;  // frames that are finished
-    std::uint64_t held_by = 0;    // number of the job that failed while this one waited; 0: none did
+    bool is_movie = false;
+    bool kept = false;          // the movie was there already
+    std::uint64_t held_by = 0;  // number of the job that failed while this one waited; 0: none did
 };
 
 /// The finished frame of a job that is looked at.

@@ -15,7 +15,7 @@ constexpr float queue_width = 940, queue_height = 520, list_width = 400, job_hei
 std::string state_text(const QueuedJob& job) {
     if (job.state == JobState::waiting)
         return job.held_by == 0 ? "Waits" : "Stopped by what failed: try that again, or take it off";
-    if (job.state == JobState::done) return "Done";
+    if (job.state == JobState::done) return job.kept ? "Kept: it was made of these very frames" : "Done";
     if (job.state == JobState::cancelled) return "Cancelled; finished files are kept";
     const bool is_timed = job.state == JobState::running && job.seconds_left;
     return is_timed ? fmt::format("{}, {} left", job.text, duration_text(*job.seconds_left)) : job.text;

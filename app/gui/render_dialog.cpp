@@ -155,13 +155,16 @@ void existing_row(GuiFrame& frame) {
     if (renders_by_slurm(frame.view.render))
         return ImGui::TextColored(color4(color::dim),
                                   "Finished frames of these settings stay, others are replaced");
-    const int clicked = segmented(frame, "render",
-                                  {{"Keep finished",
-                                    "Frames of these settings that are there already stay; "
-                                    "others are replaced"},
-                                   {"Render again", "All frames are rendered, whatever is there"},
-                                   {"Stop", "Nothing is rendered where a file is in the way"}},
-                                  static_cast<int>(frame.view.render.existing), field_height);
+    const bool movie = frame.view.render.kind == RenderKind::movie;
+    const int clicked = segmented(
+        frame, "render",
+        {{"Keep finished", movie ? "A movie of these very frames that is there already stays; another "
+                                   "is replaced once this one is whole"
+                                 : "Frames of these settings that are there already stay; "
+                                   "others are replaced"},
+         {"Render again", "All frames are rendered, whatever is there"},
+         {"Stop", "Nothing is rendered where a file is in the way"}},
+        static_cast<int>(frame.view.render.existing), field_height);
     if (clicked >= 0) frame.view.render.existing = static_cast<ExistingFrames>(clicked);
 }
 

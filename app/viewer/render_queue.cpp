@@ -45,10 +45,9 @@ void remove_folder(const fs::path& folder) {
     if (!folder.empty()) fs::remove_all(folder, ignored);
 }
 
-void expect_no_movie(const RenderTask& task) {
-    const fs::path movie = render_target(task);
-    if (task.kind == RenderKind::movie && task.existing == ExistingFrames::refuse && fs::exists(movie))
-        throw InputError(movie.string() + ": exists already");
+/// Throws InputError.
+void expect_none(const fs::path& movie) {
+    if (fs::exists(movie)) throw InputError(movie.string() + ": exists already");
 }
 
 /// A submission of the window has a scene file of its own.
@@ -101,6 +100,7 @@ void RenderJob::begin_step() {
 void RenderJob::take_line(const std::string& line) {
     if (trim(line).empty()) return;
     last_line_ = without_share(without_prefix(line));
+    kept_ = kept_ || last_line_.starts_with("kept ");
     const bool is_own = step_ == 0;  // ffmpeg says errors only
     const std::optional<std::string> error = is_own ? error_of_line(line) : last_line_;
     if (error && why_.empty()) {
@@ -127,8 +127,15 @@ void RenderJob::finish_step(bool good) {
     process_.reset();
     if (end_ == State::cancelled) return;
     good = good && (step_ > 0 || why_.empty());
-    if (good && ++step_ < plan_.steps.size()) return begin_step();
+    if (good && !kept_ && ++step_ < plan_.steps.size()) return begin_step();
+    if (good && !kept_ && !plan_.movie.empty()) place_movie();
     end_ = good ? State::done : State::failed;
+}
+
+/// Throws InputError where one has come that is not to be replaced, fs::filesystem_error.
+void RenderJob::place_movie() const {
+    if (!plan_.may_replace) expect_none(plan_.movie);
+    fs::rename(movie_part(plan_.movie), plan_.movie);
 }
 
 void RenderJob::cancel() {
@@ -143,7 +150,7 @@ void RenderJob::poll() {
     if (!code) return;
     try {
         finish_step(*code == 0);
-    } catch (const OutputError& error) {  // the next step did not start
+    } catch (const std::exception& error) {  // the next step did not start, or the movie has no place
         why_ = error.what();
         end_ = State::failed;
     }
@@ -235,9 +242,11 @@ void RenderQueue::add(const RenderTask& task, const Document& document) {
     const std::string problem = render_problem(task, document.scene().camera);
     if (!problem.empty()) throw InputError(problem);
     if (renders_by_slurm(task)) return add_to_farm(task, document);
-    expect_no_movie(task);
     const fs::path target = render_target(task);
     JobPlan plan;
+    if (task.kind == RenderKind::movie) plan.movie = target;
+    plan.may_replace = task.existing != ExistingFrames::refuse;
+    if (!plan.movie.empty() && !plan.may_replace) expect_none(target);
     plan.frames = static_cast<std::int64_t>(parse_frames(task.frames, "frames").size());
     plan.folder = make_temporary_folder();
     const fs::path scene = plan.folder / "scene.toml";
@@ -253,7 +262,9 @@ void RenderQueue::add(const RenderTask& task, const Document& document) {
         remove_folder(plan.folder);
         throw;
     }
-    push(document.name() + ": " + render_title(task), target).plan = std::move(plan);
+    Job& job = push(document.name() + ": " + render_title(task), target);
+    job.is_movie = task.kind == RenderKind::movie;
+    job.plan = std::move(plan);
 }
 
 void RenderQueue::add_preparation(const SourceParams& source, const fs::path& folder) {
@@ -334,7 +345,9 @@ std::optional<Message> RenderQueue::take_end(Job& job, JobState end) {
         if (end == JobState::failed && !job.farm && other.state == JobState::waiting && other.held_by == 0)
             other.held_by = job.number;
     if (end == JobState::failed) return Message{job.text, true};
-    return Message{end == JobState::done ? "Saved " + job.target.string() : cancelled_text};
+    if (end == JobState::cancelled) return Message{cancelled_text};
+    return Message{job.kept ? "Kept " + job.target.string() + ", which was made of these very frames"
+                            : "Saved " + job.target.string()};
 }
 
 std::optional<Message> RenderQueue::poll_farm(Job& job, double now) {
@@ -363,6 +376,7 @@ std::optional<Message> RenderQueue::poll(double now) {
     job->text = job->run->text();
     job->progress = job->run->progress();
     job->files = job->run->files();
+    job->kept = job->run->kept();
     job->seconds_left.reset();
     const JobState state = job->run->state();
     if (state == JobState::running) {
@@ -372,7 +386,7 @@ std::optional<Message> RenderQueue::poll(double now) {
     }
     job->run.reset();
     if (state == JobState::done) job->progress = 1.0f;
-    if (state == JobState::done && job->plan.steps.size() > 1) {  // a movie: its frames go
+    if (state == JobState::done && job->is_movie) {  // its frames go
         remove_folder(movie_folder(job->target));
         job->files.clear();
     }

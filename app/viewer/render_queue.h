@@ -92,6 +92,8 @@ struct ProcessStep {
 struct JobPlan {
     std::vector<ProcessStep> steps;  // one after the other
     std::int64_t frames = 0;         // that are saved; 0: none
+    fs::path movie;                  // that is made of them; empty: none
+    bool may_replace = true;         // a movie that is there
     fs::path folder;                 // its own, removed at the end; empty: it needs none
     std::string scene_text;          // which is written there as scene.toml
 };
@@ -117,12 +119,15 @@ class RenderJob {
     float progress() const { return progress_; }  // 0..1
     /// Frames it has saved, in the order in which they came.
     const std::vector<fs::path>& files() const { return saved_; }
+    /// The movie was there already, made of these very frames.
+    bool kept() const { return kept_; }
 
   private:
     void begin_step();
     void take_line(const std::string& line);
     void read_output();
     void finish_step(bool good);
+    void place_movie() const;
 
     JobPlan plan_;
     State end_ = State::running;  // cancelled as soon as that was asked for
@@ -132,6 +137,7 @@ class RenderJob {
     std::string why_;  // the first error of the step; of a frame: it ends the job
     float progress_ = 0.0f;
     std::vector<fs::path> saved_;
+    bool kept_ = false;
 };
 
 class RenderQueue {

@@ -157,7 +157,7 @@ std::string frame_xmp(const FrameMetadata& metadata) {
     return xmp_packet(said);
 }
 
-std::string movie_metadata(const fs::path& frame) {
+std::string movie_metadata(const fs::path& frame, const std::string& movie_hash) {
     std::map<std::string, std::string> texts = stored_header(frame).value_or(StoredHeader{}).texts;
     std::erase_if(texts, [](const auto& text) { return !text.first.starts_with("astrosplat/"); });
     std::string lines = ";FFMETADATA1\n";
@@ -179,6 +179,7 @@ std::string movie_metadata(const fs::path& frame) {
             comment += fmt::format("{} {}: {}\n", group, name, fmt::join(values, ", "));
     texts.erase("astrosplat/title");
     texts.erase("astrosplat/credit");
+    texts["astrosplat/movieHash"] = movie_hash;
     add("comment", comment + metadata_lines({texts.begin(), texts.end()}));
     return lines;
 }

@@ -23,7 +23,8 @@ std::string frame_xmp(const FrameMetadata& metadata);
 
 /// What a frame's file says, for a movie of it and others: a file of metadata for ffmpeg, with title, artist
 /// and copyright (the credit), and all the rest in words as comment.
-std::string movie_metadata(const fs::path& frame);
+/// `movie_hash`: of all frames and their rate.
+std::string movie_metadata(const fs::path& frame, const std::string& movie_hash);
 
 /// The entries as lines "name=value" (line breaks in values become spaces): TIFF's ImageDescription.
 std::string metadata_lines(const MetadataEntries& entries);

@@ -180,6 +180,20 @@ TEST_F(Provenance, MoviesSayWhatTheirFramesSay) {
             EXPECT_EQ(exif(movie).at("Title"), "A spiral");
         }
     }
+    const auto frames_made = [&](const std::vector<std::string>& more) {
+        fs::remove_all(folder / "again");
+        std::vector<std::string> words = {"-o",          "again/f.##.png", "--ffmetadata",
+                                          "again/words", "--movie",        "a.mkv"};
+        words.insert(words.end(), more.begin(), more.end());
+        expect_success(batch(words));
+        return names_in("again").size();
+    };
+    EXPECT_EQ(frames_made({"--resume"}), 0u) << "they would be the same";
+    EXPECT_GT(frames_made({}), 1u);
+    EXPECT_GT(frames_made({"--resume", "--set", "output.exposure=1"}), 1u);
+    EXPECT_GT(frames_made({"--resume", "--set", "output.fps=30"}), 1u);
+    write_text(folder / "a.mkv", "damaged");
+    EXPECT_GT(frames_made({"--resume"}), 1u);
 }
 
 /// Without the sky, which it does not show.

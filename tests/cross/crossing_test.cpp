@@ -605,7 +605,7 @@ TEST_P(ProgramCrossings, AMovieIsMadeOfTheFramesThatBatchMakes) {
     expect_success(run_program(writing));
     const RunResult probed = run_program(
         {"/usr/bin/env", "ffprobe", "-v", "error", "-count_frames", "-select_streams", "v:0", "-show_entries",
-         "stream=width,height,nb_read_frames", "-of", "csv=p=0", movie.string()});
+         "stream=width,height,nb_read_frames", "-of", "csv=p=0", movie_part(movie).string()});
     EXPECT_EQ(probed.out, fmt::format("{},{},{}\n", crossing_width, crossing_height, frames.size()))
         << probed.err;
 }

@@ -277,9 +277,20 @@ TEST(RenderTask, AMoviesFramesLieBesideIt) {
     EXPECT_TRUE(has(words, "23.976"));
     EXPECT_TRUE(has(words, movie_words(render_target(task)).string()));
     EXPECT_TRUE(has(batch_arguments(task), "--ffmetadata=" + movie_words(render_target(task)).string()));
-    EXPECT_EQ(words.back(), "/films/[one]*/a.mp4");
+    EXPECT_EQ(words.back(), movie_part(render_target(task))) << "one that is there stays until this is whole";
+    EXPECT_EQ(movie_part(render_target(task)), "/films/[one]*/a.mp4.frames/movie.mp4");
     EXPECT_TRUE(has(batch_arguments(task), "output.aovs=[]")) << "which PNG files cannot hold";
     EXPECT_FALSE(has(batch_arguments(task_of(RenderKind::range, "a.####.exr")), "output.aovs=[]"));
+}
+
+TEST(RenderTask, TheChoicesForFramesHoldForMovies) {
+    RenderTask task = task_of(RenderKind::movie, "a.mp4");
+    const std::string kept = "--movie=" + render_target(task).string();
+    EXPECT_TRUE(has(batch_arguments(task), kept));
+    for (const ExistingFrames other : {ExistingFrames::replace, ExistingFrames::refuse}) {
+        task.existing = other;
+        EXPECT_FALSE(has(batch_arguments(task), kept));
+    }
 }
 
 // As a player decodes it that believes the tags, and one that takes BT.709 for granted.
@@ -301,12 +312,13 @@ TEST(RenderTask, AMoviesColoursAreThoseOfItsFrames) {
         ASSERT_EQ(made.code, 0) << made.err;
         EXPECT_EQ(test::run_program({"/usr/bin/env", "ffprobe", "-v", "error", "-show_entries",
                                      "stream=color_range,color_space,color_transfer,color_primaries", "-of",
-                                     "csv=p=0", movie.string()})
+                                     "csv=p=0", movie_part(movie).string()})
                       .out,
                   "tv,bt709,bt709,bt709\n");
         for (const char* matrix : {"auto", "bt709"}) {
             const std::string pixel =
-                test::run_program({"/usr/bin/env", "ffmpeg", "-v", "error", "-i", movie.string(), "-vf",
+                test::run_program({"/usr/bin/env", "ffmpeg", "-v", "error", "-i", movie_part(movie).string(),
+                                   "-vf",
                                    fmt::format("scale=in_color_matrix={}:flags=accurate_rnd+full_chroma_int,"
                                                "crop=2:2:100:100",
                                                matrix),

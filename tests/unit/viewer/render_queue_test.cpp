@@ -94,16 +94,60 @@ TEST_F(QueueTest, AProgramThatFailsSaysItsFirstError) {
     EXPECT_EQ(jobs.jobs()[0].text, "scene.toml: camera.fov: expected an angle, found 0");
 }
 
-TEST_F(QueueTest, AMovieThatCannotBeWrittenSaysWhy) {
-    folder.file("ffmpeg",
-                "#!/bin/sh\necho '[mp4 @ 0x5] Error writing: No space left on device'\n"
-                "echo 'Conversion failed!'; exit 1\n");
-    fs::permissions(folder / "ffmpeg", fs::perms::owner_all);
-    const Variable path("PATH", (folder.path().string() + ":" + std::getenv("PATH")).c_str());
-    RenderQueue jobs = queue("exit 0\n");
-    jobs.add(task(RenderKind::movie), document);
-    ASSERT_TRUE(becomes(jobs, 0, State::failed));
-    EXPECT_EQ(jobs.jobs()[0].text, "[mp4 @ 0x5] Error writing: No space left on device");
+/// A film that is there, and an encoder that is a stand-in, too.
+class MovieTest : public QueueTest {
+  protected:
+    void encoder(const std::string& script) {
+        folder.file("ffmpeg", "#!/bin/sh\nfor file; do :; done\n" + script);
+        fs::permissions(folder / "ffmpeg", fs::perms::owner_all);
+    }
+    /// Renders nothing, as the folder of the frames is there, and says `said`.
+    State end_of(ExistingFrames existing, const std::string& said = "") {
+        RenderTask wanted = task(RenderKind::movie);
+        wanted.existing = existing;
+        RenderQueue jobs =
+            queue("mkdir '" + movie_folder(render_target(wanted)).string() + "'; " + said + "\n");
+        jobs.add(wanted, document);
+        comes(jobs,
+              [&] { return jobs.jobs()[0].state == State::done || jobs.jobs()[0].state == State::failed; });
+        last = jobs.jobs()[0];
+        return last.state;
+    }
+    std::string film() const { return test::text_of(folder / "a.mp4"); }
+
+    const Variable path{"PATH", (folder.path().string() + ":" + std::getenv("PATH")).c_str()};
+    QueuedJob last;
+};
+
+TEST_F(MovieTest, AMovieThatCannotBeWrittenSaysWhyAndLeavesTheOneThatIsThere) {
+    folder.file("a.mp4", "old");
+    encoder(
+        "echo half > \"$file\"; echo '[mp4 @ 0x5] Error writing: No space left on device'\n"
+        "echo 'Conversion failed!'; exit 1\n");
+    EXPECT_EQ(end_of(ExistingFrames::replace), State::failed);
+    EXPECT_EQ(last.text, "[mp4 @ 0x5] Error writing: No space left on device");
+    EXPECT_EQ(film(), "old");
+}
+
+TEST_F(MovieTest, OneOfTheseFramesStays) {
+    folder.file("a.mp4", "old");
+    encoder("echo new > \"$file\"\n");
+    EXPECT_EQ(end_of(ExistingFrames::resume, "echo 'astrosplat: kept a.mp4, which was made of these'"),
+              State::done);
+    EXPECT_TRUE(last.kept);
+    EXPECT_EQ(film(), "old");
+    EXPECT_HAS(news_.at(0).text, "Kept ");
+    EXPECT_EQ(end_of(ExistingFrames::resume), State::done) << "it was another's";
+    EXPECT_EQ(film(), "new\n");
+    EXPECT_FALSE(fs::exists(folder / "a.mp4.frames"));
+}
+
+TEST_F(MovieTest, OneInTheWayStopsIt) {
+    encoder("echo new > \"$file\"; echo came > '" + (folder / "a.mp4").string() + "'\n");
+    EXPECT_EQ(end_of(ExistingFrames::refuse), State::failed) << "it came meanwhile";
+    EXPECT_HAS(last.text, "a.mp4: exists already");
+    EXPECT_EQ(film(), "came\n");
+    EXPECT_THROW(end_of(ExistingFrames::refuse), InputError);
 }
 
 }  // namespace
