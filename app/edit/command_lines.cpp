@@ -61,6 +61,35 @@ RenderTask make_render_task(const Document& document, RenderKind kind, double fr
     return task;
 }
 
+namespace {
+
+std::string usual_words(const Document& document, RenderKind kind) {
+    const RenderTask usual = make_render_task(document, kind, 1.0);
+    return render_title(usual) + " " + render_target(usual).string();
+}
+
+}  // namespace
+
+RenderTask kept_render(const std::vector<KeptRender>& kept, const Document& document, RenderKind kind,
+                       double frame) {
+    RenderTask task = make_render_task(document, kind, frame);
+    const auto found = std::ranges::find_if(kept, [&](const KeptRender& k) {
+        return k.scene == document.file() && k.task.kind == kind && k.usual == usual_words(document, kind);
+    });
+    if (found == kept.end()) return task;
+    const std::string now = std::exchange(task, found->task).frames;
+    if (kind == RenderKind::frame) task.frames = now;
+    return task;
+}
+
+void keep_render(std::vector<KeptRender>& kept, const Document& document, const RenderTask& task) {
+    constexpr std::size_t most = 24;
+    std::erase_if(
+        kept, [&](const KeptRender& k) { return k.scene == document.file() && k.task.kind == task.kind; });
+    kept.insert(kept.begin(), {document.file(), usual_words(document, task.kind), task});
+    if (kept.size() > most) kept.pop_back();
+}
+
 fs::path render_target(const RenderTask& task) { return task.folder / task.name; }
 
 std::vector<std::string> render_endings(RenderKind kind) {

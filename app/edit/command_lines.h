@@ -34,6 +34,21 @@ struct RenderTask {
 /// [output]'s value for `kind`; a frame is that of number `frame`, next to the scene's own frames.
 RenderTask make_render_task(const Document& document, RenderKind kind, double frame);
 
+/// What was chosen for a scene, which holds while its [output] says what it said then.
+struct KeptRender {
+    fs::path scene;     // its file; empty: of the scene that has none yet
+    std::string usual;  // in words, what make_render_task() gave
+    RenderTask task;
+    bool operator==(const KeptRender&) const = default;
+};
+
+/// What was last kept for the document and `kind`, else make_render_task(). A frame is always the one of that
+/// number.
+RenderTask kept_render(const std::vector<KeptRender>& kept, const Document& document, RenderKind kind,
+                       double frame);
+/// Keeps a task as the newest of 24, in place of another of the same scene and kind.
+void keep_render(std::vector<KeptRender>& kept, const Document& document, const RenderTask& task);
+
 /// Of the files: a whole path, with the pattern's `#`.
 fs::path render_target(const RenderTask& task);
 

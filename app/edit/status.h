@@ -179,6 +179,7 @@ struct Status {
     FinishedFrame finished;         // of the queue's dialog
     std::string render_command;     // that does what the dialog would
     std::string no_render_command;  // why it cannot be said, one line
+    std::string render_estimate;    // of time and bytes, one line; empty: not known
     Message message;
     std::vector<Message> log;
     std::int64_t memory_bytes = 0;

@@ -57,6 +57,7 @@ struct PanelSizes {
     bool timeline_open = true;
     Settings settings;
     std::vector<fs::path> recent_folders;  // that files were chosen in, newest first
+    std::vector<KeptRender> renders;       // newest first
     bool operator==(const PanelSizes&) const = default;
 };
 
@@ -112,6 +113,7 @@ struct ViewState : PanelSizes {
     bool help_open = false, log_open = false, settings_open = false;
     bool render_open = false;  // the dialog of:
     RenderTask render;
+    bool command_open = false;  // its row with the shell's command is unfolded
     bool queue_open = false;
     std::uint64_t queue_job = 0;  // whose frames are looked at; 0: of the last one
     int queue_frame = -1;         // the finished frame that is seen; -1: the newest

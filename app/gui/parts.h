@@ -49,7 +49,7 @@ void begin_move(GuiFrame& frame, CameraMove move);
 void draw_move_dialog(GuiFrame& frame);
 
 /// The choice of frames to render to files, their size and place: a dialog that edits ViewState::render,
-/// opened with what the scene says.
+/// opened with what was last rendered of the scene, else with what it says.
 void open_render_dialog(const Document& document, ViewState& view, RenderKind kind);
 void draw_render_dialog(GuiFrame& frame);
 

@@ -46,7 +46,7 @@ void kind_row(GuiFrame& frame) {
         static_cast<int>(render.kind), field_height);
     if (clicked < 0 || (clicked == 2 && !frame.status.has_ffmpeg)) return;
     const auto kind = static_cast<RenderKind>(clicked);
-    const RenderTask usual = make_render_task(frame.document, kind, frame.view.frame);
+    const RenderTask usual = kept_render(frame.view.renders, frame.document, kind, frame.view.frame);
     render.kind = kind;
     render.frames = usual.frames;
     render.name = usual.name;
@@ -168,10 +168,35 @@ void existing_row(GuiFrame& frame) {
     if (clicked >= 0) frame.view.render.existing = static_cast<ExistingFrames>(clicked);
 }
 
+std::string problem(const GuiFrame& frame) {
+    const RenderTask& render = frame.view.render;
+    if (render.kind == RenderKind::movie && !frame.status.has_ffmpeg) return "a movie needs ffmpeg";
+    return render_problem(render, frame.document.scene().camera);
+}
+
+void estimate_row(GuiFrame& frame) {
+    label("Takes");
+    const std::string& text = frame.status.render_estimate;
+    const bool known = !text.empty() && problem(frame).empty();
+    const std::string shown = known ? text : "Not known";
+    ImGui::TextColored(color4(known ? color::text : color::dim), "%s",
+                       fitting(shown, ImGui::GetContentRegionAvail().x).c_str());
+    tooltip(
+        (shown + "\nOn this machine, by a sample of the frames and splats, as --dry-run tells it").c_str());
+    note_item(frame, "render/takes");
+}
+
 void command_row(GuiFrame& frame) {
     const Status& status = frame.status;
     const bool known = !status.render_command.empty();
+    bool& open = frame.view.command_open;
     label("Command");
+    if (dialog_button(open ? "Hide" : "Show", false, 64)) open = !open;
+    tooltip("What does the same in a shell");
+    note_item(frame, "render/command");
+    if (!open) return;
+    ImGui::Dummy({0, 0});
+    ImGui::SameLine(px(label_width));
     const float button = px(92), room = ImGui::GetContentRegionAvail().x - button - px(row_gap);
     ImGui::BeginChild("command", {room, px(command_height)}, false);  // as high whatever it says
     ImGui::PushTextWrapPos(0.0f);
@@ -188,16 +213,10 @@ void command_row(GuiFrame& frame) {
     ImGui::EndDisabled();
 }
 
-std::string problem(const GuiFrame& frame) {
-    const RenderTask& render = frame.view.render;
-    if (render.kind == RenderKind::movie && !frame.status.has_ffmpeg) return "a movie needs ffmpeg";
-    return render_problem(render, frame.document.scene().camera);
-}
-
 }  // namespace
 
 void open_render_dialog(const Document& document, ViewState& view, RenderKind kind) {
-    view.render = make_render_task(document, kind, view.frame);
+    view.render = kept_render(view.renders, document, kind, view.frame);
     view.render_open = true;
 }
 
@@ -213,6 +232,7 @@ void draw_render_dialog(GuiFrame& frame) {
     name_row(frame);
     machine_row(frame);
     existing_row(frame);
+    estimate_row(frame);
     command_row(frame);
     const std::string wrong = problem(frame);
     ImGui::TextColored(color4(color::error), "%s", fitting(wrong, ImGui::GetContentRegionAvail().x).c_str());

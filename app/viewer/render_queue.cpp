@@ -100,6 +100,7 @@ void RenderJob::begin_step() {
 void RenderJob::take_line(const std::string& line) {
     if (trim(line).empty()) return;
     last_line_ = without_share(without_prefix(line));
+    if (plan_.keeps_lines) lines_.push_back(last_line_);
     kept_ = kept_ || last_line_.starts_with("kept ");
     const bool is_own = step_ == 0;  // ffmpeg says errors only
     const std::optional<std::string> error = is_own ? error_of_line(line) : last_line_;
@@ -242,6 +243,13 @@ void RenderQueue::add(const RenderTask& task, const Document& document) {
     const std::string problem = render_problem(task, document.scene().camera);
     if (!problem.empty()) throw InputError(problem);
     if (renders_by_slurm(task)) return add_to_farm(task, document);
+    JobPlan plan = plan_of(task, document);
+    Job& job = push(document.name() + ": " + render_title(task), render_target(task));
+    job.is_movie = task.kind == RenderKind::movie;
+    job.plan = std::move(plan);
+}
+
+JobPlan RenderQueue::plan_of(const RenderTask& task, const Document& document) const {
     const fs::path target = render_target(task);
     JobPlan plan;
     if (task.kind == RenderKind::movie) plan.movie = target;
@@ -262,9 +270,7 @@ void RenderQueue::add(const RenderTask& task, const Document& document) {
         remove_folder(plan.folder);
         throw;
     }
-    Job& job = push(document.name() + ": " + render_title(task), target);
-    job.is_movie = task.kind == RenderKind::movie;
-    job.plan = std::move(plan);
+    return plan;
 }
 
 void RenderQueue::add_preparation(const SourceParams& source, const fs::path& folder) {

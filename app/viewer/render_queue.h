@@ -94,6 +94,7 @@ struct JobPlan {
     std::int64_t frames = 0;         // that are saved; 0: none
     fs::path movie;                  // that is made of them; empty: none
     bool may_replace = true;         // a movie that is there
+    bool keeps_lines = false;        // all that is said, for whoever reads it at the end
     fs::path folder;                 // its own, removed at the end; empty: it needs none
     std::string scene_text;          // which is written there as scene.toml
 };
@@ -119,6 +120,8 @@ class RenderJob {
     float progress() const { return progress_; }  // 0..1
     /// Frames it has saved, in the order in which they came.
     const std::vector<fs::path>& files() const { return saved_; }
+    /// All it has said, where the plan wants that.
+    const std::vector<std::string>& lines() const { return lines_; }
     /// The movie was there already, made of these very frames.
     bool kept() const { return kept_; }
 
@@ -137,6 +140,7 @@ class RenderJob {
     std::string why_;  // the first error of the step; of a frame: it ends the job
     float progress_ = 0.0f;
     std::vector<fs::path> saved_;
+    std::vector<std::string> lines_;
     bool kept_ = false;
 };
 
@@ -150,6 +154,8 @@ class RenderQueue {
     /// Renders the scene as it stands, once all before it is done; a farm's job is submitted at once, with a
     /// copy of the scene beside its frames. Throws InputError where the task cannot be rendered, OutputError.
     void add(const RenderTask& task, const Document& document);
+    /// What add() does on this machine; its folder is made. Throws as add() does.
+    JobPlan plan_of(const RenderTask& task, const Document& document) const;
     /// Writes a layer's prepared picture, as the command `prepare` does. Throws InputError.
     void add_preparation(const SourceParams& source, const fs::path& folder);
 

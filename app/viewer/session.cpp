@@ -195,6 +195,7 @@ void forget_old_message(Status& status, MessageAge& age, double now) {
 void take_document(Session& session, Document next) {
     session.document = std::move(next);
     ViewState& view = session.view;
+    std::erase_if(view.renders, [](const KeptRender& kept) { return kept.scene.empty(); });
     view.frame = frame_range(session.document.scene().output).first;
     view.layer = 0;
     view.view = ViewKind::camera;
@@ -296,7 +297,7 @@ double next_due(const Session& session, double now) {
     const SetLoader& loader = session.sets.loader();
     if (!loader.sets_there()) return session.view_frame.status().shown == 0 ? first_frame_s : at_work_s;
     if (session.view.playing) return 0.0;
-    const bool at_work = !loader.idle() || session.jobs.running();
+    const bool at_work = !loader.idle() || session.jobs.running() || session.estimate.working();
     return std::min(at_work ? at_work_s : idle_due_s, due_of_view(session, now));
 }
 

@@ -21,6 +21,7 @@
 #include "output/metadata.h"
 #include "viewer/comparison.h"
 #include "viewer/files.h"
+#include "viewer/render_estimate.h"
 #include "viewer/render_queue.h"
 #include "viewer/set_loader.h"
 #include "viewer/view_frame.h"
@@ -68,6 +69,7 @@ struct Session {
     Playback playback;
     WatchedFiles disk;
     RenderQueue jobs;
+    RenderEstimate estimate;  // of the render dialog
     /// Revision and file of the document, and the task, that the command in the status is of.
     std::optional<std::tuple<std::uint64_t, fs::path, RenderTask>> command_source;
     FinishedFrames finished{finished_frames()};

@@ -141,6 +141,9 @@ void apply_look_file(State& s, const Command& c) {
 
 void render_files(State& s, const Command&) {
     s.jobs.add(s.view.render, s.document);
+    keep_render(s.view.renders, s.document, s.view.render);
+    s.preferences.renders = s.view.renders;
+    save_preferences(s.preferences);
     if (s.jobs.jobs().size() > 1) s.view.queue_open = true;
 }
 

@@ -111,6 +111,14 @@ Image view_pixels(Session& session, unsigned texture) {
     return view;
 }
 
+void fill_estimate(Session& session, double now) {
+    if (session.view.render_open)
+        session.estimate.want(session.jobs, session.view.render, session.document, now);
+    else
+        session.estimate.stop();
+    session.status.render_estimate = session.estimate.working() ? "Working it out" : session.estimate.text();
+}
+
 void fill_command(Session& session) {
     if (!session.view.render_open) return;
     const std::tuple source(session.document.revision(), session.document.file(), session.view.render);
@@ -293,6 +301,7 @@ void show_renderings(Session& session, double now) {
     if (news) say(session.status, news->text, news->error);
     session.status.jobs = session.jobs.jobs();
     fill_command(session);
+    fill_estimate(session, now);
     show_finished_frame(session);
 }
 

@@ -283,6 +283,37 @@ TEST(RenderTask, AMoviesFramesLieBesideIt) {
     EXPECT_FALSE(has(batch_arguments(task_of(RenderKind::range, "a.####.exr")), "output.aovs=[]"));
 }
 
+TEST(RenderTask, IsKeptWithTheSceneWhileItsOutputStays) {
+    const TempFolder folder;
+    const auto open = [&](const std::string& name) {
+        return Document::open(folder.file(name, "astrosplat = 1\n[output]\npath = \"a.####.png\"\n"));
+    };
+    Document document = open("a.toml");
+    std::vector<KeptRender> kept;
+    RenderTask chosen = make_render_task(document, RenderKind::range, 1.0);
+    chosen.frames = "3-9";
+    chosen.width = 320;
+    chosen.name = "b.####.tif";
+    keep_render(kept, document, chosen);
+    EXPECT_EQ(kept_render(kept, document, RenderKind::range, 5.0), chosen);
+    EXPECT_EQ(kept_render(kept, document, RenderKind::movie, 5.0),
+              make_render_task(document, RenderKind::movie, 5.0));
+    const Document other = open("b.toml");
+    EXPECT_EQ(kept_render(kept, other, RenderKind::range, 5.0),
+              make_render_task(other, RenderKind::range, 5.0));
+    document.edit("Fps", [](Scene& scene) { scene.output.fps = 30; });
+    EXPECT_EQ(kept_render(kept, document, RenderKind::range, 5.0), chosen);
+    document.edit("Width", [](Scene& scene) { scene.output.width = 640; });
+    EXPECT_EQ(kept_render(kept, document, RenderKind::range, 5.0).frames, document.scene().output.frames);
+    chosen.kind = RenderKind::frame;
+    chosen.frames = "7";
+    keep_render(kept, document, chosen);
+    EXPECT_EQ(kept_render(kept, document, RenderKind::frame, 5.0).frames, "5");
+    EXPECT_EQ(kept_render(kept, document, RenderKind::frame, 5.0).width, 320);
+    for (int i = 0; i < 40; ++i) keep_render(kept, document, chosen);
+    EXPECT_EQ(kept.size(), 2u);
+}
+
 TEST(RenderTask, TheChoicesForFramesHoldForMovies) {
     RenderTask task = task_of(RenderKind::movie, "a.mp4");
     const std::string kept = "--movie=" + render_target(task).string();

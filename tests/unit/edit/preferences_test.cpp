@@ -6,6 +6,8 @@
 #include "edit/kept_files.h"
 #include "scene/layer_setup.h"
 #include "scenes.h"
+#include "support/bits.h"
+#include "support/run_program.h"
 #include "support/test.h"
 
 namespace astrosplat {
@@ -38,6 +40,9 @@ TEST_F(PreferencesTest, RoundTrip) {
     p.settings.cache_folder = "/gro\xc3\x9f/sets \"1\"";
     add_recent(p, folder.file("a \"b\" ä.toml", "x"));
     add_recent_folder(p, folder.path());
+    RenderTask task{RenderKind::movie,      "1-5", 320, 180,   "/films", "a \"b\".mp4",
+                    ExistingFrames::refuse, true,  5,   "long"};
+    p.renders = {{folder / "a \"b\" ä.toml", "Movie of 1-9", task}};
     const fs::path file = folder / "neu/tiefer/viewer.json";
     EXPECT_TRUE(warnings_of([&] { save_preferences(p, file); }).empty());
     EXPECT_EQ(load_preferences(file), p);
@@ -68,6 +73,22 @@ TEST_F(PreferencesTest, SingleValuesThatAreWrongHaveTheirDefault) {
                     " \"interface_percent\": 7, \"threads\": \"all\", \"engine\": 9, \"autosave_s\": -1,"
                     " \"contrast\": 2, \"memory_gib\": 3, \"cache_folder\": \"sets\"}");
     EXPECT_EQ(load_preferences(file), Preferences{});
+}
+
+TEST_F(PreferencesTest, RendersOfScenesThatAreGoneOrNotToldInFullAreLeftOut) {
+    Preferences p;
+    const fs::path scene = folder.file("a.toml", "x"), file = folder / "viewer.json";
+    p.renders = {{scene, "One", {}}, {folder / "gone.toml", "Two", {}}, {"", "Untitled", {}}};
+    save_preferences(p, file);
+    p.renders.resize(1);
+    EXPECT_EQ(load_preferences(file), p);
+    for (const auto& [part, by] : {std::pair{"\"width\": 0", "\"width\": \"x\""},
+                                   {"\"kind\": 1", "\"kind\": 3"},
+                                   {"\"chunk\"", "\"junk\""}}) {
+        folder.file("viewer.json", test::replaced(test::text_of(file), part, by));
+        EXPECT_TRUE(load_preferences(file).renders.empty()) << by;
+        save_preferences(p, file);
+    }
 }
 
 TEST_F(PreferencesTest, EverySettingHasItsDefaultAmongItsChoices) {

@@ -1,6 +1,6 @@
 // Jobs that fail in the window's queue, and what becomes of those behind them. The program is a stand-in;
 // tests/window has the real one.
-#include "viewer/render_queue.h"
+#include "viewer/render_estimate.h"
 
 #include "support/run_program.h"
 #include "support/test.h"
@@ -92,6 +92,47 @@ TEST_F(QueueTest, AProgramThatFailsSaysItsFirstError) {
     jobs.add(task(), document);
     ASSERT_TRUE(becomes(jobs, 0, State::failed));
     EXPECT_EQ(jobs.jobs()[0].text, "scene.toml: camera.fov: expected an angle, found 0");
+}
+
+TEST(RenderEstimateText, IsWhatTheDryRunSays) {
+    const std::string frames = "frames 240: 228 to render, 12 there already",
+                      time = "time about 0.40 s a frame, 00:01:36 in all",
+                      files = "files about 3.1 MB a frame, 744 MB in all";
+    EXPECT_EQ(estimate_text({"scene /a.toml", frames, "memory about 1 GB, threads 2", time, files}),
+              "About 00:01:36 and 744 MB in all; 12 of 240 frames are there already");
+    EXPECT_EQ(estimate_text({"frames 2: 2 to render, 0 there already", time}), "About 00:01:36 in all");
+    EXPECT_EQ(estimate_text({"frames 2: 0 to render, 2 there already"}), "All frames are there already");
+    EXPECT_EQ(estimate_text({"kept /a.mp4, which was made of these very frames"}),
+              "A movie of these very frames is there already");
+    EXPECT_EQ(estimate_text({}), "");
+}
+
+TEST_F(QueueTest, WhatARenderingTakesIsKnownBeforeItBegins) {
+    const RenderQueue jobs = queue(
+        "echo \"$@\" >> runs\n[ -e bad ] && { echo 'astrosplat: error: no'; exit 2; }\n"
+        "echo 'time about 1 s a frame, 4 s in all'\n");
+    RenderEstimate estimate;
+    double now = 0.0;
+    const auto text = [&](const RenderTask& wanted, double step) {
+        do {
+            estimate.want(jobs, wanted, document, now += step);
+            std::this_thread::sleep_for(std::chrono::milliseconds(5));
+        } while (estimate.working() && now < 2000.0);
+        return estimate.text();
+    };
+    for (int i = 0; i < 10; ++i) estimate.want(jobs, task(), document, now += 0.01);
+    EXPECT_FALSE(fs::exists(folder / "runs")) << "it may still be typed";
+    EXPECT_EQ(text(task(), 1.0), "About 4 s in all");
+    EXPECT_HAS(test::text_of(folder / "runs"), " --dry-run\n");
+    text(task(), 1.0);
+    EXPECT_EQ(std::ranges::count(test::text_of(folder / "runs"), '\n'), 1) << "the same is known";
+    folder.file("bad", "");
+    RenderTask other = task();
+    other.width = 64;
+    EXPECT_EQ(text(other, 1.0), "no");
+    other.width = 0;
+    EXPECT_EQ(text(other, 1.0), "");
+    EXPECT_EQ(std::ranges::count(test::text_of(folder / "runs"), '\n'), 2);
 }
 
 /// A film that is there, and an encoder that is a stand-in, too.
