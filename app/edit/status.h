@@ -194,6 +194,7 @@ struct Status {
 
     double played_fps = 0.0;     // frames a second that playing reaches; 0: not playing
     std::string rendered_frame;  // name of the file shown in place of the preview; empty: none
+    std::string played_movie;    // name of the one that is seen; empty: none
     std::string missing_frame;   // name of the one that is not there, where one is wanted
 
     double viewport_aspect = 0.0;      // width / height; 0: not known

@@ -118,6 +118,7 @@ struct ViewState : PanelSizes {
     std::uint64_t queue_job = 0;  // whose frames are looked at; 0: of the last one
     int queue_frame = -1;         // the finished frame that is seen; -1: the newest
     bool queue_playing = false;
+    fs::path movie;                // plays in place of the frame; empty: none
     bool changed_on_disk = false;  // the line that offers Reload or Keep is shown
     std::string grey_layer;        // whose mesh has no picture: the line that offers to choose one is shown
     std::vector<ListedPicture> listed_pictures;  // rows of the file dialog that are seen; set every frame

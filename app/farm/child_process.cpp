@@ -151,6 +151,20 @@ std::string ChildProcess::output() {
     return text;
 }
 
+bool ChildProcess::read_up_to(std::size_t size, int most_ms, std::string& bytes) {
+    constexpr std::size_t piece = 1 << 16;
+    while (bytes.size() < size) {
+        const std::size_t before = bytes.size();
+        bytes.resize(std::min(size, before + piece));
+        const ssize_t n = read(pipe_, bytes.data() + before, bytes.size() - before);
+        bytes.resize(before + static_cast<std::size_t>(std::max<ssize_t>(n, 0)));
+        if (n == 0) return false;
+        pollfd ready{pipe_, POLLIN, 0};
+        if (n < 0 && (bytes.empty() || poll(&ready, 1, most_ms) <= 0)) return true;
+    }
+    return true;
+}
+
 std::optional<int> ChildProcess::exit_code() {
     int status = 0;
     if (!exit_code_ && waitpid(id_, &status, WNOHANG) == id_) exit_code_ = as_exit_code(status);

@@ -40,6 +40,9 @@ class ChildProcess {
 
     /// Its output since the last call.
     std::string output();
+    /// Appends its output until `bytes` has this size. Once there is some, the rest is waited for, but no
+    /// longer than that between two pieces. False: the output is at its end.
+    bool read_up_to(std::size_t size, int most_ms, std::string& bytes);
     /// Its exit code once it has ended: 128 + signal where a signal ended it. Empty while it runs.
     std::optional<int> exit_code();
     void terminate();

@@ -219,7 +219,9 @@ void move_camera_target(F f) {
 }
 
 void cancel(F f) {
-    if (f.view.help_open || f.view.log_open) {
+    if (!f.view.movie.empty()) {
+        f.view.movie.clear();
+    } else if (f.view.help_open || f.view.log_open) {
         f.view.help_open = f.view.log_open = false;
     } else if (is_placing(f)) {
         toggle_placing(f);

@@ -44,6 +44,7 @@ std::string lacking(const Scene& scene, const Status& status) {
 
 // Words of the button that belongs to the state; nullptr: none.
 const char* button_word(const Status& status) {
+    if (!status.played_movie.empty()) return nullptr;
     if (loads(status)) return "Cancel";
     return status.view_frame.state == ViewFrameState::failed ? "Copy" : nullptr;
 }
@@ -98,6 +99,8 @@ std::optional<SideBadge> side_badge(const Status& status) {
 
 BadgeText badge_text(const Scene& scene, const Status& status) {
     const ViewFrameStatus& shown = status.view_frame;
+    if (!status.played_movie.empty())
+        return {"Movie", status.played_movie + "  (Esc or a click ends it)", color::good};
     if (!status.rendered_frame.empty()) return {"Rendered", status.rendered_frame, color::good};
     if (const std::size_t index = loading_layer(status); index < status.layers.size()) {
         const LayerStatus& layer = status.layers[index];

@@ -97,6 +97,14 @@ void draw_frames(GuiFrame& frame, const QueuedJob& job) {
     const float width = ImGui::GetContentRegionAvail().x;
     const FinishedFrame& finished = frame.status.finished;
     if (job.state == JobState::failed) draw_failure(frame, job);
+    if (job.is_movie && job.state == JobState::done) {
+        if (dialog_button("Play", false, 84)) {
+            view.movie = job.target;
+            view.queue_open = view.queue_playing = false;
+        }
+        tooltip("In the view, over and over; Esc or a click there ends it");
+        return note_item(frame, "queue/Play movie");
+    }
     const ImVec2 size{width, ImGui::GetContentRegionAvail().y - px(76)};
     image_box({ImGui::GetCursorScreenPos(), size}, finished.texture, finished.aspect, 3);
     ImGui::Dummy(size);

@@ -148,7 +148,19 @@ void Viewport::read_mouse(GuiFrame& frame, const Rect& area, const Rect& frame_a
     move_frame(frame, area);
 }
 
+/// In place of all that is drawn and done there: any press ends it.
+void Viewport::draw_movie(GuiFrame& frame, const Rect& area) {
+    input_ = {};
+    ImGui::SetCursorScreenPos(area.corner());
+    ImGui::InvisibleButton("frame in view", {std::max(area.width, 1.0f), std::max(area.height, 1.0f)});
+    note_item(frame, "frame in view");
+    if (ImGui::IsItemActivated()) frame.view.movie.clear();
+    draw_frame_in_view(frame, area);
+    draw_badge(frame, area);
+}
+
 void Viewport::draw(GuiFrame& frame, const Rect& area) {
+    if (!frame.view.movie.empty()) return draw_movie(frame, area);
     const auto place = [&] {
         const ViewFrameStatus& shown = frame.status.view_frame;
         return shown.width > 0 ? place_frame(frame.view, area, shown.width, shown.height) : area;

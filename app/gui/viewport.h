@@ -90,6 +90,7 @@ class Viewport {
     const ViewportInput& input() const { return input_; }
 
   private:
+    void draw_movie(GuiFrame& frame, const Rect& area);
     void read_mouse(GuiFrame& frame, const Rect& area, const Rect& frame_area);
     void begin_drag(GuiFrame& frame, const Rect& area, const Rect& frame_area);
     void move_frame(GuiFrame& frame, const Rect& area);

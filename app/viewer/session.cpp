@@ -201,6 +201,7 @@ void take_document(Session& session, Document next) {
     view.view = ViewKind::camera;
     view.solo.clear();
     view.playing = false;
+    view.movie.clear();
     view.play_first.reset();
     view.play_last.reset();
     view.hint_open = session.fresh_demo = false;
@@ -293,7 +294,8 @@ void drop(Session& session, const std::vector<fs::path>& files) {
 }
 
 double next_due(const Session& session, double now) {
-    constexpr double first_frame_s = 0.02, at_work_s = 0.1;
+    constexpr double first_frame_s = 0.02, at_work_s = 0.1, movie_s = 0.008;
+    if (!session.view.movie.empty()) return movie_s;
     const SetLoader& loader = session.sets.loader();
     if (!loader.sets_there()) return session.view_frame.status().shown == 0 ? first_frame_s : at_work_s;
     if (session.view.playing) return 0.0;

@@ -21,6 +21,7 @@
 #include "output/metadata.h"
 #include "viewer/comparison.h"
 #include "viewer/files.h"
+#include "viewer/movie_player.h"
 #include "viewer/render_estimate.h"
 #include "viewer/render_queue.h"
 #include "viewer/set_loader.h"
@@ -77,6 +78,7 @@ struct Session {
     UploadedImage<FinishedView> finished_image;
     RenderedFrames rendered;
     UploadedImage<PackedImage> rendered_image;
+    MoviePlayer movie;
     Thumbnails thumbnails;
     std::map<ListedPicture, ImageTexture> thumbnail_textures;  // of those that are seen
     std::optional<ChildProcess> file_manager;                  // that a folder was opened with
@@ -190,6 +192,8 @@ void select_layer_at(Session& session, glm::dvec2 mouse_px, bool behind);
 /// the one that is looked at and those after it, and fills Status::rendered_frame and missing_frame. True:
 /// `shown` now shows a file's frame within `place`.
 bool show_rendered_frame(Session& session, const Rect& place, DisplaySettings& shown);
+/// The movie in place of all else (ViewState::movie). True: `shown` now shows a frame of it.
+bool show_movie(Session& session, DisplaySettings& shown);
 /// Compares the front of `now`, the scene as it stands, with its picture while A is at rest, and fills
 /// Status::front; shows the signed difference in place of all else where that is looked at.
 void show_front(Session& session, const Scene& now, DisplaySettings& shown);

@@ -200,6 +200,23 @@ bool show_rendered_frame(Session& session, const Rect& place, DisplaySettings& s
     return true;
 }
 
+bool show_movie(Session& session, DisplaySettings& shown) {
+    fs::path& movie = session.view.movie;
+    session.status.played_movie.clear();
+    try {
+        session.movie.want(movie, session.viewport_px);
+    } catch (const OutputError& error) {
+        say(session.status, error.what(), true);
+        movie.clear();
+    }
+    const UploadedImage<PackedImage>& image = session.movie.image();
+    if (movie.empty() || !image.found()) return false;
+    session.status.played_movie = movie.filename().string();
+    const glm::vec2 port(session.viewport_px);
+    show_alone(image.texture(), true, image.size_px(), {0, 0, port.x, port.y}, shown);
+    return true;
+}
+
 void show_front(Session& session, const Scene& now, DisplaySettings& shown) {
     const std::shared_ptr<const FrontFound> found = check_front(session, now);
     if (!found || session.view.compare != CompareMode::front) return;

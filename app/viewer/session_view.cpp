@@ -205,7 +205,7 @@ Rect place_of_frame(Session& session, const Scene& now) {
 
 /// True: a frame from disk is seen in its place, as `rendered` shows it within `whole`.
 bool draw_a(Session& session, const Rect& whole, const Drawing& how, DisplaySettings& rendered) {
-    const bool from_disk = show_rendered_frame(session, whole, rendered);
+    const bool from_disk = show_movie(session, rendered) || show_rendered_frame(session, whole, rendered);
     const double start = thread_seconds();
     if (!from_disk) session.view_frame.show(session.request, how.choice, how.may_settle, how.now, how.hurry);
     if (how.new_sets) session.sets.drew_new_sets(thread_seconds() - start);
@@ -296,8 +296,9 @@ void draw_viewport(Session& session, glm::ivec2 viewport_px, double now, bool hu
         rendered.a = shown.a;
         shown = rendered;
     }
-    shown.content = 1 + session.rendered_image.version() + session.view_frame.version() +
-                    session.comparison.version() + session.front_difference.version();
+    shown.content = 1 + session.rendered_image.version() + session.movie.image().version() +
+                    session.view_frame.version() + session.comparison.version() +
+                    session.front_difference.version();
     measure_difference(session, shown, now);
     session.displayed = shown;
     session.status.viewport_texture =
@@ -321,7 +322,8 @@ void probe(Session& session, glm::dvec2 mouse_px) {
     const ViewRequest& request = session.request;
     session.status.probe.reset();
     if (request.width <= 0 || session.view_frame.texture() == 0) return;
-    if (!session.status.rendered_frame.empty()) return;  // another frame is seen
+    if (!session.status.rendered_frame.empty() || !session.status.played_movie.empty())
+        return;  // another frame is seen
     const glm::i64vec2 at = frame_pixel(session, mouse_px);
     const Image* pixels = session.view_frame.pixels();
     if (!pixels) return;

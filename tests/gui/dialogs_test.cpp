@@ -416,6 +416,34 @@ TEST(Queue, AJobThatFailedSaysWhyAndIsTriedAgain) {
     EXPECT_EQ(window.take_only(Kind::retry_job).index, 1u);
 }
 
+TEST(Queue, AMoviePlaysInTheView) {
+    QueueWindow window;
+    EXPECT_FALSE(window.has("queue/Play movie"));
+    QueuedJob& job = window.status.jobs[1];
+    job.is_movie = true;
+    job.target = "/films/two/a.mp4";
+    const auto play = [&] {
+        window.view.queue_open = true;
+        window.frame(3);
+        window.click("queue/Play movie");
+        EXPECT_EQ(window.view.movie, "/films/two/a.mp4");
+        EXPECT_FALSE(window.view.queue_open);
+        window.status.played_movie = "a.mp4";
+        window.frame(3);
+    };
+    window.frame(3);
+    window.keep_screen("movie_job");
+    play();
+    window.keep_screen("movie_plays");
+    const FreeCamera before = window.view.free;
+    window.drag(window.at("frame in view"), {80.0f, 0.0f});
+    EXPECT_TRUE(window.view.movie.empty());
+    EXPECT_EQ(window.view.free, before);
+    play();
+    window.tap(key_code::escape);
+    EXPECT_TRUE(window.view.movie.empty());
+}
+
 TEST(Queue, ShowsTheChosenJobInItsFolder) {
     QueueWindow window;
     window.click("queue/Show in folder");

@@ -2,8 +2,11 @@
 // tests/window has the real one.
 #include "viewer/render_estimate.h"
 
+#include "gl/gl_fixture.h"
+#include "source/write_image.h"
 #include "support/run_program.h"
 #include "support/test.h"
+#include "viewer/movie_player.h"
 
 namespace astrosplat {
 namespace {
@@ -189,6 +192,62 @@ TEST_F(MovieTest, OneInTheWayStopsIt) {
     EXPECT_HAS(last.text, "a.mp4: exists already");
     EXPECT_EQ(film(), "came\n");
     EXPECT_THROW(end_of(ExistingFrames::refuse), InputError);
+}
+
+class PlayerTest : public test::GlTest {
+  protected:
+    /// Of so many frames, each of another red.
+    fs::path film(int frames, double fps) const {
+        fs::path movie = folder / "a film.mp4";
+        fs::create_directory(movie_folder(movie));
+        for (int i = 0; i < frames; ++i) {
+            std::vector<unsigned char> rgba(4 * 64 * 32, 255);
+            for (std::size_t p = 0; p < rgba.size(); p += 4)
+                rgba[p] = static_cast<unsigned char>(200 - 50 * i);
+            write_image(movie_folder(movie) / fmt::format("frame.{:06}.png", i), 64, 32, rgba);
+        }
+        test::write_text(movie_words(movie), ";FFMETADATA1\n");
+        std::vector<std::string> writing = movie_command(movie, fps);
+        writing.insert(writing.begin(), "/usr/bin/env");
+        EXPECT_EQ(test::run_program(writing).code, 0);
+        fs::rename(movie_part(movie), movie);
+        return movie;
+    }
+    /// Red of the middle of each frame that is seen for two seconds.
+    std::vector<int> seen(const fs::path& movie) {
+        std::vector<int> reds;
+        std::uint64_t version = player.image().version();
+        for (int i = 0; i < 400; ++i) {
+            player.want(movie, {100, 100});
+            if (player.image().version() != std::exchange(version, player.image().version()))
+                reds.push_back(player.image().found()->codes[3 * (50 * 100 + 50)]);
+            std::this_thread::sleep_for(std::chrono::milliseconds(5));
+        }
+        return reds;
+    }
+
+    const TempFolder folder;
+    MoviePlayer player;
+};
+
+TEST_F(PlayerTest, PlaysAtTheMoviesRateOverAndOver) {
+    if (test::run_program({"/bin/sh", "-c", "command -v ffmpeg"}).code != 0)
+        GTEST_SKIP() << "ffmpeg is not installed";
+    const fs::path movie = film(4, 8.0);
+    const std::vector<int> reds = seen(movie);
+    ASSERT_GE(reds.size(), 6u);
+    EXPECT_LE(reds.size(), 26u) << "8 frames a second, and some more where the machine was busy";
+    for (std::size_t i = 0; i < reds.size(); ++i) EXPECT_NEAR(reds[i], 200 - 50 * int(i % 4), 3) << i;
+    EXPECT_EQ(player.image().found()->codes[3 * 50], 0) << "it is wide, and black above";
+    player.want({}, {100, 100});
+    EXPECT_EQ(player.image().found(), nullptr);
+}
+
+TEST_F(PlayerTest, WhatIsNoMovieIsSaid) {
+    if (test::run_program({"/bin/sh", "-c", "command -v ffmpeg"}).code != 0)
+        GTEST_SKIP() << "ffmpeg is not installed";
+    EXPECT_THROW(seen(folder.file("a.mp4", "no movie")), OutputError);
+    EXPECT_NO_THROW(seen({}));
 }
 
 }  // namespace
