@@ -44,6 +44,11 @@ std::string frame_problem(const RenderTask& task, const CameraParams& camera) {
     return "";
 }
 
+std::string usual_words(const Document& document, RenderKind kind) {
+    const RenderTask usual = make_render_task(document, kind, 1.0);
+    return render_title(usual) + " " + render_target(usual).string();
+}
+
 }  // namespace
 
 RenderTask make_render_task(const Document& document, RenderKind kind, double frame) {
@@ -61,15 +66,6 @@ RenderTask make_render_task(const Document& document, RenderKind kind, double fr
     return task;
 }
 
-namespace {
-
-std::string usual_words(const Document& document, RenderKind kind) {
-    const RenderTask usual = make_render_task(document, kind, 1.0);
-    return render_title(usual) + " " + render_target(usual).string();
-}
-
-}  // namespace
-
 RenderTask kept_render(const std::vector<KeptRender>& kept, const Document& document, RenderKind kind,
                        double frame) {
     RenderTask task = make_render_task(document, kind, frame);
@@ -79,6 +75,7 @@ RenderTask kept_render(const std::vector<KeptRender>& kept, const Document& docu
     if (found == kept.end()) return task;
     const std::string now = std::exchange(task, found->task).frames;
     if (kind == RenderKind::frame) task.frames = now;
+    task.existing = ExistingFrames::resume;
     return task;
 }
 

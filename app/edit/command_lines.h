@@ -43,7 +43,7 @@ struct KeptRender {
 };
 
 /// What was last kept for the document and `kind`, else make_render_task(). A frame is always the one of that
-/// number.
+/// number, and what becomes of files that are there is chosen anew.
 RenderTask kept_render(const std::vector<KeptRender>& kept, const Document& document, RenderKind kind,
                        double frame);
 /// Keeps a task as the newest of 24, in place of another of the same scene and kind.

@@ -11,6 +11,11 @@
 #include "core/log.h"
 
 namespace astrosplat {
+
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(RenderTask, kind, frames, width, height, folder, name, by_slurm, chunk,
+                                   partition)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(KeptRender, scene, usual, task)
+
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -46,32 +51,16 @@ Json json_of(const std::vector<fs::path>& paths) {
     return json;
 }
 
-Json json_of(const KeptRender& kept) {
-    const RenderTask& t = kept.task;
-    return {{"scene", kept.scene.string()}, {"usual", kept.usual}, {"kind", static_cast<int>(t.kind)},
-            {"frames", t.frames},           {"width", t.width},    {"height", t.height},
-            {"folder", t.folder.string()},  {"name", t.name},      {"existing", static_cast<int>(t.existing)},
-            {"by_slurm", t.by_slurm},       {"chunk", t.chunk},    {"partition", t.partition}};
-}
-
-// Of scenes that are there, as long as they are told in full.
-void read_renders(const Json& json, std::vector<KeptRender>& renders) {
-    if (!json.contains("renders") || !json["renders"].is_array()) return;
-    for (const Json& entry : json["renders"]) try {
-            const auto text = [&](const char* name) { return entry.at(name).get<std::string>(); };
-            const auto number = [&](const char* name) { return entry.at(name).get<std::int64_t>(); };
-            const std::int64_t kind = number("kind"), existing = number("existing");
-            KeptRender kept{
-                text("scene"), text("usual"),
-                RenderTask{static_cast<RenderKind>(kind), text("frames"), number("width"), number("height"),
-                           text("folder"), text("name"), static_cast<ExistingFrames>(existing),
-                           entry.at("by_slurm").get<bool>(), number("chunk"), text("partition")}};
-            std::error_code ignored;
-            const bool is_choice = kind >= 0 && kind <= 2 && existing >= 0 && existing <= 2;
-            if (is_choice && fs::exists(kept.scene, ignored)) renders.push_back(std::move(kept));
-        } catch (const nlohmann::json::exception&) {
-            continue;
-        }
+// Of scenes that are there, where all are told in full.
+std::vector<KeptRender> renders_of(const nlohmann::json& json) try {
+    auto renders = json.get<std::vector<KeptRender>>();
+    std::erase_if(renders, [](const KeptRender& kept) {
+        std::error_code ignored;
+        return kept.task.kind > RenderKind::movie || !fs::exists(kept.scene, ignored);
+    });
+    return renders;
+} catch (const nlohmann::json::exception&) {
+    return {};
 }
 
 void add_first(std::vector<fs::path>& paths, const fs::path& path, std::size_t most) {
@@ -100,7 +89,7 @@ Preferences from_json(const Json& json) {
         if (problem_of_cache_folder(folder).empty()) p.settings.cache_folder = folder;
     }
     p.recent = paths_of(json, "recent", Preferences::most_recent_files, fs::is_regular_file);
-    read_renders(json, p.renders);
+    if (json.contains("renders")) p.renders = renders_of(json["renders"]);
     p.recent_folders = paths_of(json, "recent_folders", Preferences::most_recent_folders, fs::is_directory);
     return p;
 }
@@ -115,9 +104,7 @@ Json to_json(const Preferences& p) {
     json["cache_folder"] = p.settings.cache_folder;
     json["recent"] = json_of(p.recent);
     json["recent_folders"] = json_of(p.recent_folders);
-    json["renders"] = Json::array();
-    for (const KeptRender& kept : p.renders)
-        if (!kept.scene.empty()) json["renders"].push_back(json_of(kept));
+    json["renders"] = nlohmann::json(p.renders);
     return json;
 }
 

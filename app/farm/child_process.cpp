@@ -135,19 +135,16 @@ ChildProcess::ChildProcess(const std::vector<std::string>& words) {
 }
 
 ChildProcess::~ChildProcess() {
-    if (!exit_code_) {
-        terminate();
-        int status = 0;
-        waitpid(id_, &status, 0);
-    }
+    constexpr int again_ms = 10;
+    terminate();
+    // One that waits to be read would never end.
+    for (pollfd ready{pipe_, POLLIN, 0}; !exit_code(); poll(&ready, 1, again_ms)) output();
     close(pipe_);
 }
 
 std::string ChildProcess::output() {
     std::string text;
-    char buffer[4096];
-    for (ssize_t n; (n = read(pipe_, buffer, sizeof buffer)) > 0;)
-        text.append(buffer, static_cast<std::size_t>(n));
+    read_up_to(text.max_size(), 0, text);
     return text;
 }
 

@@ -112,7 +112,7 @@ void draw_frames(GuiFrame& frame, const QueuedJob& job) {
     if (count == 0) return ImGui::TextColored(color4(color::dim), "%s", "No frame is finished yet.");
     play(view, count, frame.document.scene().output.fps);
     int shown = view.queue_frame < 0 ? count - 1 : std::min(view.queue_frame, count - 1);
-    if (dialog_button(view.queue_playing ? "Pause" : "Play", false, px(64)))
+    if (dialog_button(view.queue_playing ? "Pause" : "Play", false, 64))
         view.queue_playing = !view.queue_playing;
     note_item(frame, "queue/play");
     ImGui::SameLine(0, px(card_gap));

@@ -68,7 +68,7 @@ void end_dialog(bool closes);
 /// A quiet line below the title, `gap` px at scale 1 above what follows.
 void dialog_note(const char* text, float gap);
 
-/// A button as wide as its text and at least `least` px; the accent for what Enter would do.
+/// A button as wide as its text and at least `least` px at scale 1; the accent for what Enter would do.
 bool dialog_button(const char* label, bool is_default, float least);
 
 /// Escape was pressed in the dialog, with no text field to leave first.

@@ -10,7 +10,8 @@
 namespace astrosplat {
 namespace {
 
-constexpr float render_width = 680, label_width = 92, row_gap = 8, field_height = 26, command_height = 66;
+constexpr float render_width = 680, label_width = 92, side_width = 92, row_gap = 8, field_height = 26,
+                command_height = 66;
 
 void label(const char* text) {
     ImGui::AlignTextToFramePadding();
@@ -79,7 +80,7 @@ void size_row(GuiFrame& frame) {
     side_field(frame, "height", render.height);
     for (const auto& [text, share] : {std::pair{"Scene", 1.0}, {"Half", 0.5}, {"Double", 2.0}}) {
         ImGui::SameLine(0, px(row_gap));
-        if (dialog_button(text, false, px(64))) {
+        if (dialog_button(text, false, 64)) {
             render.width = std::max<std::int64_t>(1, std::llround(share * static_cast<double>(output.width)));
             render.height =
                 std::max<std::int64_t>(1, std::llround(share * static_cast<double>(output.height)));
@@ -91,13 +92,13 @@ void size_row(GuiFrame& frame) {
 void folder_row(GuiFrame& frame) {
     RenderTask& render = frame.view.render;
     label("Folder");
-    const float button = px(92);
+    const float button = px(side_width);
     std::string folder = render.folder.string();
     if (text_field(frame, "folder", folder, ImGui::GetContentRegionAvail().x - button - px(row_gap)))
         render.folder = folder;
     tooltip(folder.c_str());
     ImGui::SameLine(0, px(row_gap));
-    if (dialog_button("Choose...", false, button)) {
+    if (dialog_button("Choose...", false, side_width)) {
         frame.view.render_open = false;  // until the file dialog has the answer
         request(frame, Command::Kind::choose_target);
     }
@@ -107,15 +108,16 @@ void folder_row(GuiFrame& frame) {
 void name_row(GuiFrame& frame) {
     RenderTask& render = frame.view.render;
     label("Name");
-    text_field(frame, "name", render.name, ImGui::GetContentRegionAvail().x - px(92) - px(row_gap));
+    text_field(frame, "name", render.name, ImGui::GetContentRegionAvail().x - px(side_width) - px(row_gap));
     ImGui::SameLine(0, px(row_gap));
     const std::string ending = fs::path(render.name).extension().string();
-    ImGui::SetNextItemWidth(px(92));
+    ImGui::SetNextItemWidth(px(side_width));
     const ImVec2 corner = ImGui::GetCursorScreenPos();
     const bool open = ImGui::BeginCombo("##format", ending.c_str(), ImGuiComboFlags_NoArrowButton);
     if (!open)  // an open list would have it drawn into its own window
         draw_icon(ImGui::GetWindowDrawList(), Icon::chevron_down,
-                  {corner.x + px(92 - 12), corner.y + ImGui::GetFrameHeight() * 0.5f}, px(9), color::dim);
+                  {corner.x + px(side_width - 12), corner.y + ImGui::GetFrameHeight() * 0.5f}, px(9),
+                  color::dim);
     if (open) {
         for (const std::string& other : render_endings(render.kind))
             if (ImGui::Selectable(other.c_str(), other == ending))
@@ -197,7 +199,7 @@ void command_row(GuiFrame& frame) {
     if (!open) return;
     ImGui::Dummy({0, 0});
     ImGui::SameLine(px(label_width));
-    const float button = px(92), room = ImGui::GetContentRegionAvail().x - button - px(row_gap);
+    const float button = px(side_width), room = ImGui::GetContentRegionAvail().x - button - px(row_gap);
     ImGui::BeginChild("command", {room, px(command_height)}, false);  // as high whatever it says
     ImGui::PushTextWrapPos(0.0f);
     ImGui::PushStyleColor(ImGuiCol_Text, color::dim);
@@ -207,7 +209,7 @@ void command_row(GuiFrame& frame) {
     ImGui::EndChild();
     ImGui::SameLine(ImGui::GetContentRegionMax().x - button);
     ImGui::BeginDisabled(!known);
-    if (dialog_button("Copy", false, button))
+    if (dialog_button("Copy", false, side_width))
         request_text(frame, Command::Kind::copy_text, status.render_command);
     note_item(frame, "render/Copy");
     ImGui::EndDisabled();

@@ -127,16 +127,12 @@ void RenderJob::finish_step(bool good) {
     take_line(partial_);
     process_.reset();
     if (end_ == State::cancelled) return;
-    good = good && (step_ > 0 || why_.empty());
     if (good && !kept_ && ++step_ < plan_.steps.size()) return begin_step();
-    if (good && !kept_ && !plan_.movie.empty()) place_movie();
+    if (good && !kept_ && !plan_.movie.empty()) {
+        if (!plan_.may_replace) expect_none(plan_.movie);  // that came meanwhile
+        fs::rename(movie_part(plan_.movie), plan_.movie);
+    }
     end_ = good ? State::done : State::failed;
-}
-
-/// Throws InputError where one has come that is not to be replaced, fs::filesystem_error.
-void RenderJob::place_movie() const {
-    if (!plan_.may_replace) expect_none(plan_.movie);
-    fs::rename(movie_part(plan_.movie), plan_.movie);
 }
 
 void RenderJob::cancel() {
@@ -397,6 +393,51 @@ std::optional<Message> RenderQueue::poll(double now) {
         job->files.clear();
     }
     return take_end(*job, state);
+}
+
+std::string estimate_text(const std::vector<std::string>& lines, bool movie) {
+    static const std::regex frames(R"(frames (\d+): (\d+) to render, (\d+) there already)"),
+        cost("(time|files) about .*, (.*) in all");
+    std::string costs, there;
+    std::smatch parts;
+    for (const std::string& line : lines) {
+        if (line.starts_with("kept ")) return "A movie of these very frames is there already";
+        if (std::regex_match(line, parts, frames)) {
+            if (parts[2] == "0" && !movie) return "All frames are there already";
+            if (parts[3] != "0")
+                there = fmt::format("; {} of {} frames are there already", parts[3].str(), parts[1].str());
+        } else if (std::regex_match(line, parts, cost)) {
+            const bool bytes = parts[1] == "files";
+            costs += bytes ? movie ? ", with " : " and " : "About ";
+            costs += parts[2].str() + (bytes && movie ? " of frames until the movie is written" : "");
+        }
+    }
+    return costs.empty() || movie ? costs + there : costs + " in all" + there;
+}
+
+void RenderEstimate::want(const RenderQueue& jobs, const RenderTask& task, const Document& document,
+                          double now) {
+    constexpr double rest_s = 0.4;  // while a person types
+    if (asked_ != std::pair(document.revision(), task)) {
+        *this = {};
+        asked_ = {document.revision(), task};
+        since_ = now;
+        waits_ = render_problem(task, document.scene().camera).empty() && !renders_by_slurm(task);
+    }
+    if (waits_ && now - since_ >= rest_s) {
+        waits_ = false;
+        JobPlan plan = jobs.plan_of(task, document);
+        plan.steps.resize(1);
+        plan.steps[0].arguments.push_back("--dry-run");
+        movie_ = !std::exchange(plan.movie, {}).empty();
+        plan.keeps_lines = true;
+        run_ = std::make_unique<RenderJob>(std::move(plan));
+    }
+    if (!run_) return;
+    run_->poll();
+    if (run_->state() == RenderJob::State::running) return;
+    text_ = run_->state() == RenderJob::State::done ? estimate_text(run_->lines(), movie_) : run_->text();
+    run_.reset();
 }
 
 }  // namespace astrosplat

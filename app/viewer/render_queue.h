@@ -130,7 +130,6 @@ class RenderJob {
     void take_line(const std::string& line);
     void read_output();
     void finish_step(bool good);
-    void place_movie() const;
 
     JobPlan plan_;
     State end_ = State::running;  // cancelled as soon as that was asked for
@@ -209,6 +208,29 @@ class RenderQueue {
     std::vector<Job> jobs_;
     std::uint64_t last_number_ = 0;
     double began_ = 0.0;  // seconds
+};
+
+/// Of what --dry-run has printed: "About 00:01:36 and 744 MB in all; 12 of 240 frames are there already", of
+/// a movie "About 00:01:36, with 744 MB of frames until the movie is written". Empty where nothing of it can
+/// be read.
+std::string estimate_text(const std::vector<std::string>& lines, bool movie = false);
+
+/// Time and bytes that a rendering will take: the program's own --dry-run of the scene as it stands.
+class RenderEstimate {
+  public:
+    /// Begins once a task and a document have stood for a moment, in place of what was asked before; call it
+    /// every frame. `now` in seconds. Throws OutputError, InputError.
+    void want(const RenderQueue& jobs, const RenderTask& task, const Document& document, double now);
+    bool working() const { return waits_ || run_; }
+    /// One line, also of why it cannot be rendered; empty: nothing is known.
+    const std::string& text() const { return text_; }
+
+  private:
+    std::optional<std::pair<std::uint64_t, RenderTask>> asked_;  // revision of the document
+    bool waits_ = false, movie_ = false;
+    double since_ = 0.0;  // s
+    std::unique_ptr<RenderJob> run_;
+    std::string text_;
 };
 
 }  // namespace astrosplat

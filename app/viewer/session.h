@@ -22,7 +22,6 @@
 #include "viewer/comparison.h"
 #include "viewer/files.h"
 #include "viewer/movie_player.h"
-#include "viewer/render_estimate.h"
 #include "viewer/render_queue.h"
 #include "viewer/set_loader.h"
 #include "viewer/view_frame.h"

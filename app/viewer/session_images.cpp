@@ -115,7 +115,7 @@ void fill_estimate(Session& session, double now) {
     if (session.view.render_open)
         session.estimate.want(session.jobs, session.view.render, session.document, now);
     else
-        session.estimate.stop();
+        session.estimate = {};
     session.status.render_estimate = session.estimate.working() ? "Working it out" : session.estimate.text();
 }
 

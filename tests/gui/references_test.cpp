@@ -93,8 +93,15 @@ TEST_P(References, RenderDialog) {
     window.choose("Render/Frames...");
     window.view.render.folder = "/films/one";
     window.view.render.name = "a.doc";
-    window.status.render_command = "astrosplat --batch /films/whirlpool.toml --frames=1-240";
+    window.status.render_estimate = "About 00:01:36 and 744 MB in all; 12 of 240 frames are there already";
     expect_reference("render", 1);
+}
+TEST_P(References, RenderCommand) {
+    window.choose("Render/Movie...");
+    window.status.render_estimate = "About 00:01:36, with 744 MB of frames until the movie is written";
+    window.status.render_command = "astrosplat --batch /films/whirlpool.toml --frames=1-240";
+    window.click("render/command");
+    expect_inside("render_command");
 }
 TEST_P(References, Queue) {
     QueuedJob done = running_job_of("", 1.0f), failed = done,
@@ -110,6 +117,29 @@ TEST_P(References, Queue) {
     window.status.finished = {window.status.viewport_texture, 1.78f, ""};
     window.view.queue_open = true;
     expect_reference("queue");
+}
+TEST_P(References, JobsThatEnded) {
+    QueuedJob failed = running_job_of("", 0.3f), held = failed, movie = failed;
+    failed.state = QueuedJob::State::failed;
+    failed.text = "frame 12: /films/whirlpool/a.0012.png: cannot be written: No space left on device";
+    failed.files = {"/films/whirlpool/a.0011.png"};
+    held.state = QueuedJob::State::waiting;
+    held.held_by = failed.number;
+    held.number = 2;
+    movie.state = QueuedJob::State::done;
+    movie.is_movie = movie.kept = true;
+    movie.target = "/films/whirlpool.mp4";
+    movie.number = 3;
+    window.status.jobs = {failed, held, movie};
+    window.status.finished = {window.status.viewport_texture, 1.78f, ""};
+    window.view.queue_open = true;
+    expect_inside("queue_movie");
+    window.click("queue/job 1");
+    expect_inside("queue_failed");
+    window.view.queue_open = false;
+    window.view.movie = movie.target;
+    window.status.played_movie = "whirlpool.mp4";
+    expect_inside("movie");
 }
 TEST_P(References, Question) {
     make_edited(window);

@@ -14,12 +14,12 @@ namespace {
 class WindowWaysOut : public WindowTest {
   protected:
     /// In the open dialog, and begins.
-    void name_files(const std::string& name) {
+    void name_files(const std::string& name, const std::string& button = "render/Render") {
         person->double_click(same_widgets().at("render/name"));
         person->press("ctrl+a");
         person->type(name);
-        person->click(same_widgets().at("render/Render"));
-        same_widgets().click("render/Render");
+        person->click(same_widgets().at(button));
+        same_widgets().click(button);
         same_widgets().take_commands();
     }
     /// As the open dialog has it.
@@ -27,6 +27,27 @@ class WindowWaysOut : public WindowTest {
         person->press("Return");
         same_widgets().tap(key_code::enter);
         same_widgets().take_commands();
+    }
+    /// In the queue, until Escape.
+    void look_at_movie(const fs::path& movie) {
+        const Pixels before = settled_frame();
+        same_widgets().status.jobs = {running_job_of("", 1.0f)};
+        QueuedJob& job = same_widgets().status.jobs[0];
+        job.state = QueuedJob::State::done;
+        job.is_movie = true;
+        job.target = movie;
+        same_widgets().frame();
+        choose("Render/Queue...");
+        click_when_shown("queue/Play movie");
+        const auto changes = [&] {
+            const Pixels now = frame_pixels();
+            return comes_true([&] { return frame_pixels() != now; });
+        };
+        EXPECT_TRUE(changes() && changes() && changes() && changes()) << "it plays on";
+        person->press("Escape");
+        same_widgets().tap(key_code::escape);
+        same_widgets().view.movie.clear();
+        expect_settled(before);
     }
     bool comes(const fs::path& file) const {
         return comes_true([&] { return fs::exists(folder / file); });
@@ -151,6 +172,7 @@ TEST_F(WindowWaysOut, AMovieHasTheScenesFramesAndSpeed) {
         ASSERT_TRUE(comes_true([&] { return fs::exists(movie) && names_in(folder / "frames").size() == 1; }))
             << program->err_so_far();
         EXPECT_EQ(facts_of(movie), facts);
+        look_at_movie(movie);
         fs::remove(movie);
         end(SIGTERM);
     }
@@ -163,7 +185,7 @@ TEST_F(WindowWaysOut, JobsWaitForEachOther) {
     ASSERT_TRUE(comes("frames/one.0001.png"));
     same_widgets().status.jobs.push_back(running_job_of("", 0.1f));
     choose("Render/Frames...");
-    render();
+    name_files("shot.####.png", "render/Add to the queue");  // the last one is kept
     ASSERT_TRUE(comes("frames/shot.0024.png"));
     EXPECT_EQ(names_in(folder / "frames").size(), 48u) << "the first was whole before the second began";
 }

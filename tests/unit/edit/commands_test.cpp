@@ -294,7 +294,9 @@ TEST(RenderTask, IsKeptWithTheSceneWhileItsOutputStays) {
     chosen.frames = "3-9";
     chosen.width = 320;
     chosen.name = "b.####.tif";
-    keep_render(kept, document, chosen);
+    RenderTask again = chosen;
+    again.existing = ExistingFrames::replace;
+    keep_render(kept, document, again);
     EXPECT_EQ(kept_render(kept, document, RenderKind::range, 5.0), chosen);
     EXPECT_EQ(kept_render(kept, document, RenderKind::movie, 5.0),
               make_render_task(document, RenderKind::movie, 5.0));

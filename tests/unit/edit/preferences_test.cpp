@@ -41,7 +41,7 @@ TEST_F(PreferencesTest, RoundTrip) {
     add_recent(p, folder.file("a \"b\" ä.toml", "x"));
     add_recent_folder(p, folder.path());
     RenderTask task{RenderKind::movie,      "1-5", 320, 180,   "/films", "a \"b\".mp4",
-                    ExistingFrames::refuse, true,  5,   "long"};
+                    ExistingFrames::resume, true,  5,   "long"};
     p.renders = {{folder / "a \"b\" ä.toml", "Movie of 1-9", task}};
     const fs::path file = folder / "neu/tiefer/viewer.json";
     EXPECT_TRUE(warnings_of([&] { save_preferences(p, file); }).empty());

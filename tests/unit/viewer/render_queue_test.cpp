@@ -1,6 +1,6 @@
 // Jobs that fail in the window's queue, and what becomes of those behind them. The program is a stand-in;
 // tests/window has the real one.
-#include "viewer/render_estimate.h"
+#include "viewer/render_queue.h"
 
 #include "gl/gl_fixture.h"
 #include "source/write_image.h"
@@ -103,6 +103,8 @@ TEST(RenderEstimateText, IsWhatTheDryRunSays) {
                       files = "files about 3.1 MB a frame, 744 MB in all";
     EXPECT_EQ(estimate_text({"scene /a.toml", frames, "memory about 1 GB, threads 2", time, files}),
               "About 00:01:36 and 744 MB in all; 12 of 240 frames are there already");
+    EXPECT_EQ(estimate_text({time, files}, true),
+              "About 00:01:36, with 744 MB of frames until the movie is written");
     EXPECT_EQ(estimate_text({"frames 2: 2 to render, 0 there already", time}), "About 00:01:36 in all");
     EXPECT_EQ(estimate_text({"frames 2: 0 to render, 2 there already"}), "All frames are there already");
     EXPECT_EQ(estimate_text({"kept /a.mp4, which was made of these very frames"}),
@@ -239,6 +241,7 @@ TEST_F(PlayerTest, PlaysAtTheMoviesRateOverAndOver) {
     EXPECT_LE(reds.size(), 26u) << "8 frames a second, and some more where the machine was busy";
     for (std::size_t i = 0; i < reds.size(); ++i) EXPECT_NEAR(reds[i], 200 - 50 * int(i % 4), 3) << i;
     EXPECT_EQ(player.image().found()->codes[3 * 50], 0) << "it is wide, and black above";
+    std::this_thread::sleep_for(std::chrono::seconds(1));  // ffmpeg waits to be read
     player.want({}, {100, 100});
     EXPECT_EQ(player.image().found(), nullptr);
 }
