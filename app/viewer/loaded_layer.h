@@ -1,12 +1,10 @@
-// One layer as the viewer keeps it, from the first sample of a set that is being generated to the whole set
-// with its histograms. In: splats as threads keep them, of which a fair sample is shown that never reaches
-// the set itself; sets and the source they came from. Out: LoadedLayer.
+// One layer as the viewer keeps it, from what stands for a set that is being generated to the whole set with
+// its histograms. In: sets and the source they came from. Out: LoadedLayer.
 #pragma once
 
 #include <atomic>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
-#include <mutex>
 
 #include "core/progress.h"
 #include "edit/status.h"
@@ -14,6 +12,7 @@
 #include "merge/tree.h"
 #include "sets/kept.h"
 #include "sets/load_source.h"
+#include "sets/set_sample.h"
 #include "source/source.h"
 #include "splats/splat_set.h"
 
@@ -25,59 +24,40 @@ struct ColumnSample {
     std::int64_t of = 0;                  // positions that there are
 };
 
-/// A set while it is generated, thinned out.
-class GrowingSet : public KeptWatcher {
+/// How far a set is that is being generated, and some positions of its columns in the end.
+class MadeColumns : public KeptWatcher {
   public:
-    /// A sample has at most `limit` splats, and about a half of that or more once as many are kept; that of
-    /// finished columns at most `column_limit` positions.
-    explicit GrowingSet(std::int64_t limit, std::int64_t column_limit = 0)
-        : limit_(static_cast<std::size_t>(limit)), column_limit_(column_limit) {}
+    /// At most so many positions.
+    explicit MadeColumns(std::int64_t limit) : limit_(limit) {}
 
-    void begins(const SplatSet& empty, const Bounds& box) override;
-    void keeps(std::span<const KeptStore::Run> runs) override;
-    std::int64_t sample_limit() const override { return column_limit_; }
-    void ends(Columns sample, std::int64_t of) override;
+    void keeps(std::span<const KeptStore::Run> runs) override {
+        for (const KeptStore::Run& run : runs) kept_ += std::int64_t(run.lit);
+    }
+    std::int64_t sample_limit() const override { return limit_; }
+    void ends(Columns sample, std::int64_t of) override {
+        columns_ = {std::make_shared<const SplatSet>(std::move(sample.splats)), of};
+    }
 
-    /// Splats kept so far.
+    /// Splats kept so far; from any thread.
     std::int64_t kept() const { return kept_; }
-
-    struct Sample {
-        std::shared_ptr<const SplatSet> set;  // any prefix is a fair sample too, as a preview needs it
-        std::int64_t kept = 0;                // what it is a sample of
-        Bounds box;                           // that the whole set will have, about; layer space
-    };
-    /// Positions of finished columns, spread evenly over them; without a set where there are none.
-    ColumnSample columns() const;
-
-    /// The sample so far; a set of none before the first splat. A splat drawn by chance: the same splats come
-    /// first in every sample, so that frames of one after the other do not flicker.
-    Sample sample() const;
+    /// Spread evenly; without a set where there are none. Once the set is there.
+    const ColumnSample& columns() const { return columns_; }
 
   private:
-    using Ranked = std::pair<std::uint32_t, KeptSplat>;  // by chance; the lowest ranks stay
-
-    void take(const std::vector<Ranked>& found);
-
-    std::size_t limit_;
-    std::int64_t column_limit_;
+    std::int64_t limit_;
     std::atomic<std::int64_t> kept_{0};
-    std::atomic<std::uint32_t> highest_rank_{~std::uint32_t{0}};
-    mutable std::mutex mutex_;  // for all below
-    std::vector<Ranked> splats_;
-    SplatSet empty_;
-    Bounds box_;
     ColumnSample columns_;
 };
 
 struct LoadedLayer {
-    std::shared_ptr<const SplatSet> set;  // for the final frame; null while it grows
+    std::shared_ptr<const SplatSet> set;  // for the final frame; null before it is there
     MergeSource sample;  // of it, for a preview at once; where that suffices, the set itself; stars: no tree
     MergeSource whole;   // for previews at rest; comes a little later, where `sample` is not all
     ColumnSample columns;     // of which set_loader.h makes a preview under other levels
-    std::int64_t splats = 0;  // of the whole set; while it grows those there are so far
+    std::int64_t splats = 0;  // of the whole set, about before it is there
     bool arranged = false;    // nothing of the above is on its way
     std::shared_ptr<const LayerHistograms> histograms;  // come a little later than the rest
-    Bounds box;                                         // layer space; while it grows a guess
+    Bounds box;                                         // layer space; a guess before it is there
     glm::vec3 color{1.0f};                              // mean of the splats, weighted by alpha, linear
     glm::dvec2 radius{0.0};     // smallest and largest, scene units: what look.radius 0, 0 means; 0: unknown
     AutomaticValues automatic;  // come with the histograms
@@ -85,6 +65,7 @@ struct LoadedLayer {
     std::string name;             // which the seed may depend on
     std::vector<fs::path> files;  // it was made of; come with the histograms
     bool outdated = false;        // one of them was changed since
+    bool stands_in = false;       // splats of another set, until it is there
 };
 
 /// A set with its tree, as a sample of so many splats.
@@ -95,9 +76,8 @@ MergeSource source_of(std::shared_ptr<const SplatSet> set, std::int64_t stands_f
 LoadedLayer whole_layer(std::shared_ptr<const SplatSet> set, const SourceParams& source,
                         const std::string& name, std::int64_t sample_limit,
                         const MergeSource* sample = nullptr);
-/// A set that is being generated or read, of which there is a sample.
-LoadedLayer growing_layer(const GrowingSet::Sample& sample, const SourceParams& source,
-                          const std::string& name);
+/// Before the set is there, what stands for it.
+LoadedLayer sampled_layer(SetSample sample, const SourceParams& source, const std::string& name);
 /// The same with the tree of the whole, and a sixteenth of it, taken evenly over space, as the sample.
 LoadedLayer arranged_layer(LoadedLayer layer, std::shared_ptr<const MergeTree> tree);
 /// The same with histograms and files, for which meshes and pictures are read once more.

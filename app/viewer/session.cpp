@@ -243,12 +243,12 @@ Document demo_document(std::span<const Assignment> assignments) {
 }
 
 void advance(Session& session, double now) {
-    const bool for_screenshot = session.fixed_splats > 0;
     session.playback.advance(session.view, session.document.scene().output, now);
     session.status.played_fps = session.playback.shown_fps();
     want_sets(session, now);
-    session.sets.follow(session.document.scene());
-    if (!for_screenshot) session.sets.show_growth(now);
+    session.sets.follow(
+        session.document.scene(), session.view.layer,
+        session.view_frame.status().state == ViewFrameState::final && session.sets.loader().idle());
     check_disk(session, now);
     say_missed_frames(session);
     count_memory(session, now);

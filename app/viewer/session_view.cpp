@@ -135,11 +135,14 @@ Rect crop_to_viewport(ViewRequest& request, const Rect& whole, glm::ivec2 viewpo
             scale * static_cast<float>(part.width), scale * static_cast<float>(part.height)};
 }
 
+bool settles(const Session& session) { return session.view.settle && !session.view.playing; }
+
 PreviewChoice preview_choice(Session& session) {
     PreviewChoice choice;
     choice.device = preview_card(session);
     choice.share = session.view.preview_share;
     choice.splats = session.fixed_splats;
+    choice.steps = settles(session);
     return choice;
 }
 
@@ -180,12 +183,9 @@ std::optional<Camera> camera_in_viewport(const ViewRequest& request, const Rect&
 struct Drawing {
     double now = 0.0;         // s
     bool hurry = false;       // the final frame at once
-    bool new_sets = false;    // since the last one
     bool may_settle = false;  // to the final frame
     PreviewChoice choice;
 };
-
-bool settles(const Session& session) { return session.view.settle && !session.view.playing; }
 
 /// Asks for the frame as the view sees it, with the lines beside it; returns where all of it lies in the
 /// viewport.
@@ -206,9 +206,7 @@ Rect place_of_frame(Session& session, const Scene& now) {
 /// True: a frame from disk is seen in its place, as `rendered` shows it within `whole`.
 bool draw_a(Session& session, const Rect& whole, const Drawing& how, DisplaySettings& rendered) {
     const bool from_disk = show_movie(session, rendered) || show_rendered_frame(session, whole, rendered);
-    const double start = thread_seconds();
     if (!from_disk) session.view_frame.show(session.request, how.choice, how.may_settle, how.now, how.hurry);
-    if (how.new_sets) session.sets.drew_new_sets(thread_seconds() - start);
     session.sets.loader().hold(settles(session) && !from_disk && session.view_frame.final_is_next(how.now));
     return from_disk;
 }
@@ -273,7 +271,8 @@ Rect frame_in_viewport(const Session& session) {
 void draw_viewport(Session& session, glm::ivec2 viewport_px, double now, bool hurry) {
     session.viewport_px = glm::max(viewport_px, glm::ivec2(1));
     const Scene scene = evaluated(session.document.scene(), session.view);
-    Drawing how{now, hurry, session.sets.new_sets(), false, {}};
+    session.sets.see_sets();
+    Drawing how{now, hurry, false, {}};
     const Rect whole = place_of_frame(session, scene);
     const bool one_to_one = session.view.size == SizeMode::one_to_one;
     const Rect place = one_to_one ? crop_to_viewport(session.request, whole, session.viewport_px) : whole;

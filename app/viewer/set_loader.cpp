@@ -15,10 +15,6 @@
 namespace astrosplat {
 namespace {
 
-/// Progress from which a set is wherever it will be: corners, which run through the whole box, come before
-/// centres.
-constexpr float everywhere = 0.5f;
-
 /// All that a set depends on: the source with its seed resolved where one is used.
 SourceParams identity_of(const SourceParams& source, const std::string& name) {
     SourceParams identity = source;
@@ -35,9 +31,6 @@ SourceParams identity_of(const SourceParams& source, const std::string& name) {
 bool satisfies(const LoadedLayer& loaded, const SourceParams& identity) {
     return !loaded.outdated && identity_of(loaded.source, loaded.name) == identity;
 }
-
-/// Splats of a view that is made again and again while everything else should go on.
-std::int64_t growing_limit(std::int64_t sample_limit) { return std::max<std::int64_t>(sample_limit / 4, 1); }
 
 /// A first sample is so many times smaller than those that come with the sets: all layers are to be seen at
 /// once.
@@ -62,14 +55,14 @@ SetList::Layer SetList::find_loaded(const SourceParams& identity) const {
     return nullptr;
 }
 
-void SetList::stop_growing(Entry& entry) {
-    if (entry.growing) ++revision_;
-    entry.growing.reset();
+void SetList::drop_sample(Entry& entry) {
+    if (entry.sampled) ++revision_;
+    entry.sampled.reset();
 }
 
 void SetList::stop(const std::string& name) {
     for (auto& queue : queues_) queue.second.remove(name);
-    if (Entry* const entry = find(name)) stop_growing(*entry);
+    if (Entry* const entry = find(name)) drop_sample(*entry);
     if (job_ && job_->name == name) job_->cancelled = true;
 }
 
@@ -112,8 +105,11 @@ void SetList::want(const Scene& scene) {
     for (const LayerParams& layer : scene.layers)
         if (ever_visible(scene, layer) && want_layer(scene, layer)) changed.push_back(layer.name);
     forget_layers_not_in(scene);  // after that, for a layer may have been renamed
-    for (const std::string& name : changed)
-        if (samples_ && !entries_[name].loaded) queues_[SetTask::sample].push_back(name);
+    for (const std::string& name : changed) {
+        const Entry& entry = entries_[name];
+        const bool followed = entry.loaded && can_follow(entry.loaded->source, entry.source);
+        if (samples_ && !followed) queues_[SetTask::sample].push_back(name);
+    }
     std::list<std::string>& queue = queues_[SetTask::load];
     queue.splice(queue.begin(), changed);
 }
@@ -159,7 +155,7 @@ std::optional<SetTask> SetList::next_task() const {
 std::shared_ptr<SetJob> SetList::begin_next() {
     const SetTask task = next_task().value();
     std::list<std::string>& names = queues_[task];
-    job_ = std::make_shared<SetJob>(growing_limit(sample_limit_), sample_limit_);
+    job_ = std::make_shared<SetJob>(sample_limit_);
     job_->task = task;
     job_->name = names.front();
     names.pop_front();
@@ -167,7 +163,7 @@ std::shared_ptr<SetJob> SetList::begin_next() {
     job_->source = entry.source;
     job_->identity = *entry.identity;
     job_->loaded = entry.loaded;
-    job_->sampled = entry.growing;
+    job_->sampled = entry.sampled;
     if (task == SetTask::load) entry.stage = Stage::loading;
     return job_;
 }
@@ -186,7 +182,7 @@ void SetList::queue_rest(const std::string& name, const LoadedLayer& loaded) {
 
 void SetList::show_sample(const SetJob& finished, Layer sampled) {
     if (!is_wanted(finished)) return;
-    entries_[finished.name].growing = std::move(sampled);
+    entries_[finished.name].sampled = std::move(sampled);
     ++revision_;
 }
 
@@ -194,7 +190,7 @@ SetList::Layer SetList::keep(const SetJob& finished, Layer loaded) {
     if (!is_wanted(finished)) return loaded;
     Entry& entry = entries_[finished.name];
     queue_rest(finished.name, *loaded);
-    stop_growing(entry);
+    drop_sample(entry);
     entry.stage = Stage::ready;
     ++revision_;
     return std::exchange(entry.loaded, std::move(loaded));
@@ -211,33 +207,16 @@ SetList::Layer SetList::replace(const SetJob& finished, Layer loaded) {
 void SetList::fail(const SetJob& finished, const std::string& why) {
     if (!is_wanted(finished)) return;
     Entry& entry = entries_[finished.name];
-    stop_growing(entry);
+    drop_sample(entry);
     entry.stage = Stage::failed;
     entry.error = why;
     ++revision_;
 }
 
-std::shared_ptr<SetJob> SetList::growing_job() const {
-    if (!job_ || job_->task != SetTask::load || !is_wanted(*job_)) return nullptr;
-    const Entry& entry = entries_.at(job_->name);
-    const std::int64_t kept = job_->growing.kept();
-    if (kept == 0 || (entry.growing && entry.growing->splats == kept)) return nullptr;
-    return entry.loaded && job_->progress < everywhere ? nullptr : job_;
-}
-
-bool SetList::grow(const SetJob& job, LoadedLayer grown) {
-    if (job_.get() != &job || !is_wanted(job)) return false;
-    Entry& entry = entries_[job.name];
-    if (entry.loaded) grown.box = entry.loaded->box;  // so that the view does not move
-    entry.growing = std::make_shared<const LoadedLayer>(std::move(grown));
-    ++revision_;
-    return true;
-}
-
 SetList::Layer SetList::shown(const std::string& name) const {
     const auto found = entries_.find(name);
     if (found == entries_.end()) return nullptr;
-    return found->second.growing ? found->second.growing : found->second.loaded;
+    return found->second.sampled ? found->second.sampled : found->second.loaded;
 }
 
 LayerStatus SetList::status(const LayerParams& layer) const {
@@ -254,9 +233,9 @@ LayerStatus SetList::status(const LayerParams& layer) const {
     if (current) status.error = entry.error;
     if (current && entry.stage == Stage::loading && job_ && job_->name == layer.name) {
         status.progress = job_->progress;
-        status.found = job_->growing.kept();
+        status.found = job_->made.kept();
     }
-    const Layer& seen = entry.growing ? entry.growing : entry.loaded;
+    const Layer& seen = entry.sampled ? entry.sampled : entry.loaded;
     if (!seen) return status;
     status.stale = !status.loading && !satisfies(*seen, identity);
     status.splats = seen->splats;
@@ -297,14 +276,14 @@ void SetLoader::work(SetJob& job) {
 
 /// A source that cannot be sampled cannot be read either: load() says why.
 void SetLoader::sample(const SetJob& job) try {
-    std::optional<SetSample> there = sample_set_(job.source, job.name, {{}, &job.cancelled});
-    if (!there || there->set.size() == 0 || there->set.stars) return;
-    GrowingSet::Sample sample;
-    sample.box = bounds(there->set);
-    sample.set = std::make_shared<const SplatSet>(std::move(there->set));
-    sample.kept = there->splats;
-    auto layer = std::make_shared<const LoadedLayer>(growing_layer(sample, job.source, job.name));
-    list()->show_sample(job, std::move(layer));
+    const auto show = [&](SetSample there) {
+        if (there.set.size() == 0 || there.set.stars) return;
+        LoadedLayer layer = sampled_layer(std::move(there), job.source, job.name);
+        if (job.loaded) layer.box = job.loaded->box;  // so that the view does not move
+        list()->show_sample(job, std::make_shared<const LoadedLayer>(std::move(layer)));
+    };
+    sample_set_(job.source, job.name, {sample_limit_ / rows_at_first, !job.loaded, show},
+                {{}, &job.cancelled});
 } catch (const InputError&) {
 } catch (const std::bad_alloc&) {
     // the set may still come without one
@@ -314,11 +293,11 @@ void SetLoader::sample(const SetJob& job) try {
 void SetLoader::load(SetJob& job) {
     const Progress progress{[&](double fraction) { job.progress = static_cast<float>(fraction); },
                             &job.cancelled};
-    auto set = std::make_shared<const SplatSet>(load_set_(job.source, job.name, progress, job.growing));
-    const MergeSource* const sample = job.sampled ? &job.sampled->sample : nullptr;
+    auto set = std::make_shared<const SplatSet>(load_set_(job.source, job.name, progress, job.made));
+    const MergeSource* const sample = job.sampled && !job.sampled->stands_in ? &job.sampled->sample : nullptr;
     auto layer = std::make_shared<LoadedLayer>(
         whole_layer(std::move(set), job.source, job.name, sample_limit_, sample));
-    layer->columns = job.growing.columns();
+    layer->columns = job.made.columns();
     const SetList::Layer old = list()->keep(job, std::move(layer));  // let go after the lock
 }
 
@@ -341,10 +320,8 @@ SetLoader::SetLoader(const SetCache& cache, std::int64_t sample_limit)
     : SetLoader(
           [cache](const SourceParams& source, const std::string& name, const Progress& progress,
                   KeptWatcher& watcher) { return load_source(cache, source, name, progress, &watcher).set; },
-          [cache, rows = sample_limit / rows_at_first](const SourceParams& source, const std::string& name,
-                                                       const Progress& progress) {
-              return sample_there(cache, source, name, rows, progress);
-          },
+          [cache](const SourceParams& source, const std::string& name, const QuickSets& quick,
+                  const Progress& progress) { show_quick_sets(cache, source, name, quick, progress); },
           sample_limit) {
     trees_ = cache;
 }
@@ -355,12 +332,5 @@ SetLoader::SetLoader(Load load, Sample sample, std::int64_t sample_limit)
       list_(sample_limit, sample_set_ != nullptr) {}
 
 SetLoader::~SetLoader() { list()->cancel_job(); }
-
-bool SetLoader::grow() {
-    const std::shared_ptr<SetJob> job = list()->growing_job();
-    if (!job) return false;
-    LoadedLayer grown = growing_layer(job->growing.sample(), job->source, job->name);
-    return list()->grow(*job, std::move(grown));
-}
 
 }  // namespace astrosplat

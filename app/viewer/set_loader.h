@@ -1,10 +1,10 @@
-// Layers' sets, loaded and generated in the background, newest wish first: samples of kept ones first, then
-// the set, its tree for the preview, its histograms. And which sets the scene wants, and when: a source that
-// is being edited waits until the hand has rested; a set that grows is shown as often as takes it a few
-// percent of its time. Meanwhile a preview follows levels, colours and alpha that are dragged: a sample of
-// the layer's splats with new colours, which columns read from the pictures, while structures are multiplied
-// by what became of the picture. In: the document, once a frame. Out: the loader's sets, or a LoadedLayer
-// without a set until that is made again.
+// Layers' sets, loaded and generated in the background, newest wish first: what stands for them first (rows
+// of kept ones, a flat picture and then a quick body), then the set, its tree for the preview, its
+// histograms. And which sets the scene wants, and when: a source that is being edited waits until the hand
+// has rested. Meanwhile a preview follows what is dragged: a sample of the layer's splats, which columns read
+// from the pictures under new levels, while bodies are moved by their new model and multiplied by what became
+// of the picture. In: the document, once a frame. Out: the loader's sets, or a LoadedLayer without a set
+// until that is made again.
 #pragma once
 
 #include <atomic>
@@ -26,7 +26,7 @@ namespace astrosplat {
 /// The tasks for a layer, the first for all layers before the second for any.
 enum class SetTask { sample, load, arrange, describe };
 
-/// One task for one layer. Only the atomics and `growing` change once it has begun.
+/// One task for one layer. Only the atomics and `made` change once it has begun.
 struct SetJob {
     SetTask task = SetTask::load;
     std::string name;
@@ -35,9 +35,9 @@ struct SetJob {
     std::shared_ptr<const LoadedLayer> sampled;  // and a sample of what is being loaded; null: none
     std::atomic<bool> cancelled{false};
     std::atomic<float> progress{0.0f};
-    GrowingSet growing;
+    MadeColumns made;
 
-    SetJob(std::int64_t growing_limit, std::int64_t column_limit) : growing(growing_limit, column_limit) {}
+    explicit SetJob(std::int64_t column_limit) : made(column_limit) {}
 };
 
 /// The sets that the layers of a scene want, those that they have, and the next job. Knows no threads:
@@ -75,7 +75,7 @@ class SetList {
     std::shared_ptr<SetJob> begin_next();
     void end() { job_.reset(); }
 
-    /// A sampling job's result: shown until the layer's set is there, or a part of it.
+    /// A sampling job's result: shown until the next one or the layer's set is there.
     void show_sample(const SetJob& finished, Layer sampled);
     /// A loading job's result. Gives back what it replaces, or itself where it is not wanted any more: large,
     /// to be let go without the lock.
@@ -83,11 +83,6 @@ class SetList {
     /// The same set with more known of it; gives back likewise.
     Layer replace(const SetJob& finished, Layer loaded);
     void fail(const SetJob& finished, const std::string& why);
-
-    /// The job whose set may be shown as far as it is; null: there is none, or nothing new of it.
-    std::shared_ptr<SetJob> growing_job() const;
-    /// Shows it; false: the job is over, or its set is not wanted any more.
-    bool grow(const SetJob& job, LoadedLayer grown);
 
   private:
     enum class Stage { waiting, loading, ready, failed, cancelled };
@@ -98,13 +93,13 @@ class SetList {
         Stage stage = Stage::waiting;
         std::string error;
         Layer loaded;
-        Layer growing;  // shown instead, while the next one is generated or read
+        Layer sampled;  // shown instead, while the next one is generated or read
         std::shared_ptr<const LayerHistograms> histograms;  // the latest: the next ones come late
     };
 
     Entry* find(const std::string& name);  // null: there is none
     Layer find_loaded(const SourceParams& identity) const;
-    void stop_growing(Entry& entry);
+    void drop_sample(Entry& entry);
     void stop(const std::string& name);
     bool want_layer(const Scene& scene, const LayerParams& layer);
     void forget_layers_not_in(const Scene& scene);
@@ -125,9 +120,9 @@ class SetLoader {
     /// Loads or generates a set, as load_source does, and tells the watcher of it.
     using Load = std::function<SplatSet(const SourceParams& source, const std::string& layer_name,
                                         const Progress& progress, KeptWatcher& watcher)>;
-    /// Some rows of a set that is there to be read; nothing where it is not.
-    using Sample = std::function<std::optional<SetSample>(
-        const SourceParams& source, const std::string& layer_name, const Progress& progress)>;
+    /// What is seen of a set before it is there, as show_quick_sets.
+    using Sample = std::function<void(const SourceParams& source, const std::string& layer_name,
+                                      const QuickSets& quick, const Progress& progress)>;
 
     /// `sample_limit`: splats of a layer that is shown before its tree is there.
     SetLoader(const SetCache& cache, std::int64_t sample_limit);
@@ -156,14 +151,10 @@ class SetLoader {
     void cancel(const std::string& layer_name) { list()->cancel(layer_name); }
     /// The same where the next want() is to begin again, whatever it wants.
     void abandon(const std::string& layer_name) { list()->abandon(layer_name); }
-    /// Lets layer() give a fresh sample of the set that is being generated, until it is there. An old set
-    /// stays until the new one is about everywhere it will be. False: there is nothing new to be seen.
-    bool grow();
-
     /// Grows whenever a layer of the wanted scene got its set or its histograms, or failed.
     std::uint64_t revision() const { return list()->revision(); }
-    /// The latest set of a layer, which may be older than its source, or a sample of the one being generated;
-    /// null: none yet.
+    /// The latest set of a layer, which may be older than its source, or what stands for the one being
+    /// generated; null: none yet.
     std::shared_ptr<const LoadedLayer> layer(const std::string& layer_name) const {
         return list()->shown(layer_name);
     }
@@ -209,9 +200,9 @@ class SetLoader {
     Worker worker_{[this] { return next_task(); }};
 };
 
-/// Whether a set of `now` has the geometry of one of `before`: of how pictures are read only that differs
-/// which a preview can follow, and no picture is prepared.
-bool only_texels_differ(const SourceParams& before, const SourceParams& now);
+/// Whether a preview of `now` can be made of the set of `before`: only levels and the like of pictures that
+/// are not prepared differ, and of bodies what moves them.
+bool can_follow(const SourceParams& before, const SourceParams& now);
 
 struct LiveRequest {
     std::shared_ptr<const LoadedLayer> loaded;
@@ -224,23 +215,26 @@ struct LiveFound {
     std::string error;
 };
 
-/// Keeps meshes, thinned pictures and the sample's tree from one drag step to the next. Throws InputError,
-/// Cancelled.
-LatestWork<LiveRequest, LiveFound>::Work live_maker();
+/// Keeps meshes, thinned pictures and models from one drag step to the next. Throws InputError, Cancelled.
+LatestWork<LiveRequest, LiveFound>::Work live_maker(const PictureMaker& prepared = make_prepared);
 
-class LiveTexels {
+class LiveSets {
   public:
+    explicit LiveSets(const PictureMaker& prepared) : work_(live_maker(prepared)) {}
+
     /// Works towards a layer under this source; what is under way is finished first, so that a hand that
     /// never rests sees something. Returns at once.
     void want(const LiveRequest& request);
     /// The latest of that loaded layer, which may lag behind; null: there is none yet.
     std::shared_ptr<const LoadedLayer> layer(const std::shared_ptr<const LoadedLayer>& loaded) const;
+    /// Whether the last request was of that set.
+    bool knows(const LoadedLayer& loaded) const { return asked_.loaded && asked_.loaded->set == loaded.set; }
     /// There may be a newer one soon.
     bool working() const { return work_.working(); }
     void forget();
 
   private:
-    LatestWork<LiveRequest, LiveFound> work_{live_maker()};
+    LatestWork<LiveRequest, LiveFound> work_;
     LiveRequest asked_;
     std::shared_ptr<const LoadedLayer> found_;
     std::shared_ptr<const SplatSet> base_;  // whose preview found_ is
@@ -248,7 +242,8 @@ class LiveTexels {
 
 class SetWishes {
   public:
-    SetWishes(const SetCache& cache, std::int64_t sample_limit) : loader_(cache, sample_limit) {}
+    SetWishes(const SetCache& cache, std::int64_t sample_limit)
+        : loader_(cache, sample_limit), live_(kept_pictures(cache)) {}
 
     /// The document's sources should be wanted now; `now` in seconds.
     bool due(const Document& document, double now);
@@ -259,20 +254,18 @@ class SetWishes {
     /// The sets are wanted as the scene is.
     bool wanted(const Scene& scene) const;
 
-    /// Works towards a preview of what a source is edited to, where that needs no set.
-    void follow(const Scene& scene);
-    bool following() const { return live_.working(); }
+    /// Works towards a preview of what a source is edited to, where that needs no set; else, with time to
+    /// `spare`, gets ready to do so at once for bodies of the layer of that number.
+    void follow(const Scene& scene, std::size_t layer = 0, bool spare = false);
+    bool following() const { return follows_ && live_.working(); }
+    bool prepares() const { return !follows_ && live_.working(); }
     /// The visible state of a layer: the loader's, or a preview under the levels that it has now.
     std::shared_ptr<const LoadedLayer> layer(const LayerParams& layer) const;
 
-    /// Shows the part that there is of a set that is being generated.
-    void show_growth(double now);
-    /// There are other sets than at the last call.
-    bool new_sets();
-    /// Whether they are those that new_sets() saw last.
+    /// The sets that there are are drawn now.
+    void see_sets() { seen_sets_ = loader_.revision(); }
+    /// Whether there are no others since.
     bool same_sets() const { return seen_sets_ == loader_.revision(); }
-    /// Drawing new sets took so much of this thread.
-    void drew_new_sets(double seconds) { new_set_draw_s_ = seconds; }
 
     SetLoader& loader() { return loader_; }
     const SetLoader& loader() const { return loader_; }
@@ -281,16 +274,12 @@ class SetWishes {
     bool abandon_followed(const Scene& scene);
 
     SetLoader loader_;
-    LiveTexels live_;
+    LiveSets live_;
+    bool follows_ = false;
     std::uint64_t wanted_revision_ = 0;  // of the document
     std::vector<SourceParams> wanted_sources_, edited_sources_;
     double source_edited_at_ = -1.0;  // below 0: no source waits to be generated again
-    double grows_at_ = 0.0;           // when a set that is generated may be shown again
-    double new_set_draw_s_ = 0.0;
-    std::uint64_t seen_sets_ = 0;  // revision of the loader
+    std::uint64_t seen_sets_ = 0;     // revision of the loader
 };
-
-/// Processor time of this thread: what work costs the others, however busy the machine is.
-double thread_seconds();
 
 }  // namespace astrosplat

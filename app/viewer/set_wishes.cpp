@@ -1,7 +1,5 @@
 #include "viewer/set_loader.h"
 
-#include <time.h>
-
 #include <tuple>
 
 #include "core/parallel.h"
@@ -16,6 +14,8 @@ namespace {
 
 constexpr std::int64_t most_pixels = 200'000;  // of a picture in a preview: splats hardly lie closer
 constexpr std::int64_t live_rows_at_once = 1 << 13;
+constexpr std::int64_t most_kept_ready =
+    30'000'000;  // splats of bodies whose pictures are read only to be ready
 
 /// Every n-th pixel of every n-th row: values stay, so that levels do to them what they do to all.
 template <class Copy>
@@ -127,20 +127,25 @@ std::vector<SourceParams> sources_of(const Scene& scene) {
 std::shared_ptr<const LoadedLayer> base_of(const SetLoader& loader, const LayerParams& layer) {
     auto loaded = loader.layer(layer.name);
     if (!loaded || !loaded->set || loaded->outdated) return nullptr;
-    return only_texels_differ(loaded->source, layer.source) ? loaded : nullptr;
+    return can_follow(loaded->source, layer.source) ? loaded : nullptr;
 }
 
 /// The inputs of previews of one set, kept from step to step.
 struct LiveSample {
+    explicit LiveSample(PictureMaker maker) : prepared(std::move(maker)) {}
+
+    PictureMaker prepared;
     std::shared_ptr<const SplatSet> set;  // of all below
     ThinnedFiles files;
     std::vector<TexturedMesh> meshes;
     MergeSource sample;
-    std::vector<Image> before;  // of structures: the pictures that the set was made of
+    TextureSettings texture;    // of bodies: that the set was made of
+    std::vector<Image> before;  // and the pictures
+    std::optional<MovedBodies> moved;
 
     void begin(const LoadedLayer& loaded, const Progress& progress);
-    SplatSet columns(const Progress& progress) const;
-    SplatSet structure(const SourceParams& source) const;
+    SplatSet columns(const SourceParams& source, const Progress& progress);
+    SplatSet bodies(const SourceParams& source, const Progress& progress);
     LiveFound under(const LiveRequest& request, const Progress& progress);
 };
 
@@ -148,31 +153,37 @@ void LiveSample::begin(const LoadedLayer& loaded, const Progress& progress) {
     if (set == loaded.set) return;
     set.reset();  // an exception below must not leave half of it
     files = {};
-    meshes = load_meshes(loaded.source, progress, {make_prepared, files.whole_reader()});
+    moved.reset();
     before.clear();
+    meshes = load_meshes(loaded.source, progress, {prepared, files.whole_reader()});
     if (loaded.columns.set) {
         sample = source_of(loaded.columns.set, loaded.columns.of);
     } else {
         sample = loaded.sample;
-        reload_pictures(loaded.source, meshes, progress, {make_prepared, files.reader()});
+        moved.emplace(moved_bodies(loaded.source, std::move(meshes), loaded.name, *sample.set));
+        meshes = load_meshes(loaded.source, progress, {prepared, files.reader()});
         before = blurred_pictures(meshes);
+        texture = loaded.source.texture;
     }
     set = loaded.set;
 }
 
-SplatSet LiveSample::columns(const Progress& progress) const {
+SplatSet LiveSample::columns(const SourceParams& source, const Progress& progress) {
+    reload_pictures(source, meshes, progress, {prepared, files.reader()});
     Columns columns{*sample.set};
     read_texels(meshes, columns, progress);
     return std::move(columns.splats);
 }
 
-SplatSet LiveSample::structure(const SourceParams& source) const {
+SplatSet LiveSample::bodies(const SourceParams& source, const Progress& progress) {
+    SplatSet rows = moved->under(source.structure);
+    if (source.texture == texture) return rows;
+    reload_pictures(source, meshes, progress, {prepared, files.reader()});
     const std::vector<Image> now = blurred_pictures(meshes);
     std::vector<std::size_t> first;  // picture of each mesh
     std::size_t pictures = 0;
     for (const TexturedMesh& m : meshes)
         first.push_back(std::exchange(pictures, pictures + m.textures.size()));
-    SplatSet rows = *sample.set;
     const auto power = static_cast<float>(source.structure.opacity);
     parallel_each(rows.id.size(), live_rows_at_once, [&](std::size_t i) {
         const std::size_t picture = first[rows.mesh[i]];
@@ -185,26 +196,28 @@ SplatSet LiveSample::structure(const SourceParams& source) const {
 
 LiveFound LiveSample::under(const LiveRequest& request, const Progress& progress) {
     begin(*request.loaded, progress);
-    reload_pictures(request.source, meshes, progress, {make_prepared, files.reader()});
     auto layer = std::make_shared<LoadedLayer>(*request.loaded);
     layer->set.reset();
     layer->whole = {};
     layer->sample = sample;
-    layer->sample.set = std::make_shared<const SplatSet>(
-        request.loaded->columns.set ? columns(progress) : structure(request.source));
+    layer->sample.set = std::make_shared<const SplatSet>(moved ? bodies(request.source, progress)
+                                                               : columns(request.source, progress));
     layer->source = request.source;
     return {std::move(layer), {}};
 }
 
 }  // namespace
 
-bool only_texels_differ(const SourceParams& before, const SourceParams& now) {
-    if (now.kind != SourceKind::mesh || prepares(now.texture.prepare) || before == now) return false;
+bool can_follow(const SourceParams& before, const SourceParams& now) {
+    if (now.kind != SourceKind::mesh || before == now) return false;
     SourceParams same = before;
-    same.texture = now.texture;
-    same.texture.hdu = before.texture.hdu;
-    same.texture.plane = before.texture.plane;
-    same.texture.prepare = before.texture.prepare;
+    if (!prepares(now.texture.prepare)) {
+        same.texture = now.texture;
+        same.texture.hdu = before.texture.hdu;
+        same.texture.plane = before.texture.plane;
+        same.texture.prepare = before.texture.prepare;
+    }
+    if (only_moves_bodies(before.structure, now.structure)) same.structure = now.structure;
     return same == now;
 }
 
@@ -213,13 +226,14 @@ bool LiveRequest::operator==(const LiveRequest& other) const {
     return set_of(*this) == set_of(other) && source == other.source;
 }
 
-LatestWork<LiveRequest, LiveFound>::Work live_maker() {
-    return [sample = std::make_shared<LiveSample>()](const LiveRequest& request, const Progress& progress) {
+LatestWork<LiveRequest, LiveFound>::Work live_maker(const PictureMaker& prepared) {
+    return [sample = std::make_shared<LiveSample>(prepared)](const LiveRequest& request,
+                                                             const Progress& progress) {
         return sample->under(request, progress);
     };
 }
 
-void LiveTexels::want(const LiveRequest& request) {
+void LiveSets::want(const LiveRequest& request) {
     if (const auto found = work_.found(asked_)) {
         base_ = asked_.loaded->set;
         found_ = found->layer;
@@ -229,20 +243,14 @@ void LiveTexels::want(const LiveRequest& request) {
     work_.want(request);
 }
 
-std::shared_ptr<const LoadedLayer> LiveTexels::layer(const std::shared_ptr<const LoadedLayer>& loaded) const {
+std::shared_ptr<const LoadedLayer> LiveSets::layer(const std::shared_ptr<const LoadedLayer>& loaded) const {
     return base_ == loaded->set ? found_ : nullptr;
 }
 
-void LiveTexels::forget() {
+void LiveSets::forget() {
     work_.cancel();
     base_.reset();
     found_.reset();
-}
-
-double thread_seconds() {
-    timespec time{};
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-    return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
 bool SetWishes::due(const Document& document, double now) {
@@ -283,9 +291,15 @@ bool SetWishes::abandon_followed(const Scene& scene) {
     return any;
 }
 
-void SetWishes::follow(const Scene& scene) {
-    for (const LayerParams& layer : scene.layers)
-        if (const auto base = base_of(loader_, layer)) return live_.want({base, layer.source});
+void SetWishes::follow(const Scene& scene, std::size_t layer, bool spare) {
+    follows_ = true;
+    for (const LayerParams& edited : scene.layers)
+        if (const auto base = base_of(loader_, edited)) return live_.want({base, edited.source});
+    follows_ = false;
+    const auto loaded = layer < scene.layers.size() ? loader_.layer(scene.layers[layer].name) : nullptr;
+    const bool moves = loaded && loaded->set && !loaded->outdated && loaded->splats <= most_kept_ready &&
+                       loaded->source.kind == SourceKind::mesh && !loaded->columns.set;
+    if (moves && (spare || live_.knows(*loaded))) return live_.want({loaded, loaded->source});
     live_.forget();
 }
 
@@ -293,19 +307,6 @@ std::shared_ptr<const LoadedLayer> SetWishes::layer(const LayerParams& layer) co
     if (const auto base = base_of(loader_, layer))
         if (auto live = live_.layer(base)) return live;
     return loader_.layer(layer.name);
-}
-
-void SetWishes::show_growth(double now) {
-    constexpr double shortest_s = 0.25, longest_s = 1.5, share = 0.03;  // the first drawing is a slow one
-    if (now < grows_at_) return;
-    const double start = thread_seconds();
-    if (!loader_.grow()) return;
-    grows_at_ = now + std::clamp((thread_seconds() - start + new_set_draw_s_) / share, shortest_s, longest_s);
-}
-
-bool SetWishes::new_sets() {
-    const std::uint64_t sets = loader_.revision();
-    return std::exchange(seen_sets_, sets) != sets;
 }
 
 }  // namespace astrosplat

@@ -290,18 +290,24 @@ void ViewFrame::draw_preview(double now) {
     status_.error.clear();
 }
 
+/// As of a long frame where none may begin, for its sets are being made.
+StepPlan ViewFrame::plan() const {
+    constexpr double long_s = 10.0;
+    return plan_steps(waits_ ? long_s : final_s_);
+}
+
 /// Steps of finer previews come before the final frame, where that takes its time.
 bool ViewFrame::takes_steps(bool hurry) const {
-    return !hurry && splats_.whole() && !choice_.device && choice_.share == 0.0f &&
-           step_ < plan_steps(final_s_).count;
+    return !hurry && (splats_.whole() || waits_) && !choice_.device && choice_.share == 0.0f &&
+           step_ < plan().count;
 }
 
 /// Begins the next step, or passes it over where it would show little more. False: none is left.
 bool ViewFrame::step_is_due(double now) {
     if (now - touched_at_ < step_rest_s) return true;
-    const StepPlan plan = plan_steps(final_s_);
-    const double most_s = choice_.splats > 0 ? 0.0 : plan.most_s;
-    for (++step_; step_ <= plan.count; ++step_)
+    const StepPlan steps = plan();
+    const double most_s = choice_.splats > 0 ? 0.0 : steps.most_s;
+    for (++step_; step_ <= steps.count; ++step_)
         if (const std::int64_t n = splats_of_step(step_, status_.total, status_.shown, draw_s_, most_s)) {
             begin_step(n);
             return true;
@@ -411,7 +417,8 @@ void ViewFrame::start_over(double now) {
 void ViewFrame::come_closer(bool settle, double now, bool hurry) {
     if (files_->loading()) return;
     if (stage_ == Stage::finer && !take_step()) return;
-    if (settle && takes_steps(hurry) && step_is_due(now)) return;
+    waits_ = !settle && choice_.steps;
+    if ((settle || waits_) && takes_steps(hurry) && step_is_due(now)) return;
     if (settle && (hurry || now - touched_at_ >= rest_s)) begin_final();
 }
 
@@ -424,6 +431,7 @@ void ViewFrame::show(const ViewRequest& request, const PreviewChoice& choice, bo
     const bool hurries = changed && behind_ && now - followed_at_ < 2.0 * choice.quick_s;
     if (hurries && stage_ == Stage::refining) take_final(now);
     if (hurries && stage_ == Stage::refining) return;
+    choice_.steps = choice.steps;
     const bool refined = request_ && refine(now);
     const bool fuller = !changed && stage_ <= Stage::finer && (refined || previews_arrived(request));
     if (changed || fuller) {

@@ -90,6 +90,7 @@ struct PreviewChoice {
     float share = 0.0f;              // of all splats; 1: every one; 0: sized by the frame rate
     std::int64_t splats = 0;         // with share 0: this many in all, whatever the frame rate; 0: by it
     bool refined = true;             // cuts of whole sets, once there is time to make them; else of samples
+    bool steps = false;              // finer previews at rest though no final frame may begin
     double target_ms = 25.0;         // of one preview
     double quick_s = 0.04;           // a card's final frame within this takes the place of previews
 };
@@ -149,6 +150,7 @@ class ViewFrame {
     bool environment_arrived();
     bool previews_arrived(const ViewRequest& now) const;
     void draw_preview(double now);
+    StepPlan plan() const;
     bool takes_steps(bool hurry) const;
     bool step_is_due(double now);
     void begin_step(std::int64_t splats);
@@ -167,6 +169,7 @@ class ViewFrame {
     PreviewSplats splats_;
     DrawnPreview preview_;
     PreviewBudget budget_;
+    bool waits_ = false;  // at rest, for sets that are being made
     FramePace pace_;
     FinalFrame final_;
     FinerPreview finer_{finer_preview()};

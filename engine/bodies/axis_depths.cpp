@@ -133,9 +133,9 @@ glm::vec3 AxisDepths::tint(float x, float y, float z) const {
     return factor;
 }
 
-AxisDepths make_axis_depths(AxisFit fit, const Image& light) {
+AxisDepths make_axis_depths(AxisFit fit, const Image& light, std::int64_t width) {
     AxisDepths made;
-    made.width = double(light.width);
+    made.width = double(width > 0 ? width : light.width);
     const Image shown = reduced_to_width(light, lines_across);
     const std::int64_t w = shown.width, h = shown.height;
     made.depths = make_image(w, h, AxisDepths::steps + 1);

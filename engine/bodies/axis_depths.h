@@ -28,7 +28,8 @@ struct AxisDepths {
     glm::vec3 tint(float x, float y, float z) const;
 };
 
-/// `light`: RGB, linear, that of the fit. The same bits with any number of threads.
-AxisDepths make_axis_depths(AxisFit fit, const Image& light);
+/// `light`: RGB, linear, that of the fit; of a picture so many texels wide, 0: its own. The same bits with
+/// any number of threads.
+AxisDepths make_axis_depths(AxisFit fit, const Image& light, std::int64_t width = 0);
 
 }  // namespace astrosplat

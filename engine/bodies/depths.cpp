@@ -369,9 +369,9 @@ float depth_of_knots(const Placement& placement, const Knot& knot) {
 void follow_knots(const Placement& placement, const BandSplats& splats, PlacedBlock& block) {
     const bool walls = placement.kind == StructureKind::walls;
     for (int i = 0; i < block.count; ++i) {
-        const auto x = std::min(std::int64_t(block.x[i]), placement.picture_width - 1);
-        const auto y = std::min(std::int64_t(block.y[i]), placement.picture_height - 1);
-        const auto at = std::size_t(y * placement.picture_width + x);
+        const auto x = std::min(std::int64_t(block.x[i] * placement.to_light), placement.knots.width - 1);
+        const auto y = std::min(std::int64_t(block.y[i] * placement.to_light), placement.knots.height - 1);
+        const auto at = std::size_t(y * placement.knots.width + x);
         const std::int32_t owner = placement.knots.owner[at];
         if (owner < 0) continue;
         const Knot& knot = knot_of(placement, owner);

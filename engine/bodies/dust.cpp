@@ -53,7 +53,8 @@ void place_in_galaxy(const Placement& placement, const GalaxyBody& galaxy, Depth
     for (int i = 0; i < block.count; ++i) block.z[i] += before_middle * galaxy.thickness * galaxy.cos_i;
 }
 
-// Fills z from x, y and random, over the middle plane.
+}  // namespace
+
 void place_dust(const Placement& placement, DepthBlock& block) {
     if (!placement.galaxies.empty()) {
         place_by_galaxy(placement, block, [&](const GalaxyBody& galaxy, DepthBlock& own) {
@@ -69,6 +70,8 @@ void place_dust(const Placement& placement, DepthBlock& block) {
     disk_depths(stack(placement, wave, wave, whole_gain * placement.clumps, 1.0), block);
     bend(placement, block);
 }
+
+namespace {
 
 constexpr int depths_a_cell = 8;
 
@@ -144,10 +147,9 @@ struct DustMaker {
     const Placement& placement;
 
     static constexpr float footprint = footprint_share * 6.28318531f * splat_sigma * splat_sigma;
-    static constexpr float spacing = 1.29099445f;  // of splats_each_texel
-    static_assert(spacing * spacing * splats_each_texel > 0.999f &&
-                  spacing * spacing * splats_each_texel < 1.001f);
-    SplatLattice lattice{transmittance.width, transmittance.height, spacing};
+    static_assert(dust_spacing * dust_spacing * splats_each_texel > 0.999f &&
+                  dust_spacing * dust_spacing * splats_each_texel < 1.001f);
+    SplatLattice lattice{transmittance.width, transmittance.height, dust_spacing};
 
     // Of the sheet at a place, that dims what lies behind it so that the whole is dimmed as it is seen.
     float depth_at(float x, float y) const {
@@ -168,8 +170,8 @@ struct DustMaker {
     std::optional<Candidate> candidate_of(const LatticeCell& cell) const {
         Candidate splat;
         splat.id = dust_band << 48 | lattice.number(cell);
-        splat.x = (float(cell.column) + random(splat.id, shared::PURPOSE_JITTER_X)) * spacing;
-        splat.y = (float(cell.row) + random(splat.id, shared::PURPOSE_JITTER_Y)) * spacing;
+        splat.x = (float(cell.column) + random(splat.id, shared::PURPOSE_JITTER_X)) * dust_spacing;
+        splat.y = (float(cell.row) + random(splat.id, shared::PURPOSE_JITTER_Y)) * dust_spacing;
         if (splat.x >= float(transmittance.width) || splat.y >= float(transmittance.height)) return {};
         const float depth = amount * depth_at(splat.x, splat.y), kept = kept_dust(depth);
         if (!(kept > 0.0f) || random(splat.id, shared::PURPOSE_DENSITY) >= kept) return {};

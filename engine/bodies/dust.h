@@ -25,6 +25,12 @@ double dust_of(const StructureParams& params);
 /// Splats a texel where it leaves so much, about.
 float expected_dust_splats(float transmittance, double amount);
 
+/// Texels from one splat of dust to the next.
+inline constexpr float dust_spacing = 1.29099445f;
+
+/// Fills z of dust from x, y, random and even, over the middle plane.
+void place_dust(const Placement& placement, DepthBlock& block);
+
 /// Adds the dust that, with the light of `out` partly before it and partly behind, leaves `transmittance`
 /// of the whole. `amount`: share of its optical depth, 0 to 1; `exponents`: those of the picture.
 void add_dust(const Image& transmittance, double amount, const glm::vec3& exponents,

@@ -24,7 +24,7 @@ glm::vec2 from_middle(const Placement& placement, float x, float y) {
 
 // Of a field of the picture's, at a place of the picture.
 float value_at(const Placement& placement, const Image& field, float x, float y) {
-    const float share = 1.0f / float(1 << placement.field_halvings);
+    const float share = placement.to_light / float(1 << placement.field_halvings);
     return bilinear(field, 0, x * share, y * share);
 }
 
@@ -126,6 +126,21 @@ Image inside_margin(const Image& light, std::int64_t margin_px) {
     return out;
 }
 
+// Lengths in other units; unchanged by 1.
+Image times(Image lengths, double factor) {
+    if (factor != 1.0)
+        for (float& length : lengths.pixels) length *= float(factor);
+    return lengths;
+}
+
+void scale(std::vector<Knot>& knots, float factor) {
+    for (Knot& knot : knots) {
+        knot.x *= factor;
+        knot.y *= factor;
+        knot.sigma *= factor;
+    }
+}
+
 // How many times as thick as by itself the scene wants a disk to be.
 double times_as_thick(const StructureParams& params, double texels_per_unit, const Placement& placement) {
     if (!(params.height > 0.0)) return 1.0;
@@ -160,8 +175,12 @@ Placement placement_without_fields(std::int64_t width, std::int64_t height, cons
 }
 
 Placement make_placement(const Image& light, const StructureParams& params, double texels_per_unit, bool flat,
-                         std::uint32_t seed, std::span<const Star> stars, std::optional<AxisDepths> axis) {
-    Placement placement = placement_without_fields(light.width, light.height, params, texels_per_unit);
+                         std::uint32_t seed, std::span<const Star> stars, std::optional<AxisDepths> axis,
+                         ImageSize size) {
+    if (size.width == 0) size = {light.width, light.height};
+    Placement placement = placement_without_fields(size.width, size.height, params, texels_per_unit);
+    placement.to_light = float(double(light.width) / double(size.width));
+    const double px = double(placement.to_light), texels = 1.0 / px;
     const Image brightest = brightest_channel(light);
     placement.field_halvings = field_halvings(brightest);
     placement.seed = seed;
@@ -169,30 +188,35 @@ Placement make_placement(const Image& light, const StructureParams& params, doub
     const Image mirrored = params.margin > 0.0 ? mirrored_margin(brightest, params.margin) : Image();
     const Image& shown = params.margin > 0.0 ? mirrored : brightest;
     if (params.kind == StructureKind::disk) {
-        placement.warp = params.warp * double(light.width);
-        const auto margin_px =
-            std::llround(double(light.width) * params.margin / (1.0 + 2.0 * params.margin));
+        placement.warp = params.warp * double(size.width);
+        const auto margin_of = [&](std::int64_t width) {
+            return std::llround(double(width) * params.margin / (1.0 + 2.0 * params.margin));
+        };
+        const auto margin_px = margin_of(light.width), margin = margin_of(size.width);
         placement.galaxies = galaxies_of(margin_px > 0 ? inside_margin(light, margin_px) : light, params,
                                          times_as_thick(params, texels_per_unit, placement),
-                                         light.width - 2 * margin_px, margin_px, seed);
+                                         size.width - 2 * margin, margin, seed);
     } else {
-        placement.thickness = thickness_field(shown, placement.height);
+        placement.thickness = times(thickness_field(shown, placement.height * px), texels);
         placement.structure = structure_field(shown);
         if (!axis) stars = {};
     }
     if (params.kind == StructureKind::walls) {
-        placement.relief = shell_field(shown, placement.depth, steepest_wall);
+        placement.relief = times(shell_field(shown, placement.depth * px, steepest_wall), texels);
         placement.filled = find_filled_light(shown);
+        placement.filled.core_reach = times(std::move(placement.filled.core_reach), texels);
     }
     if (params.kind == StructureKind::sheet && flat)
-        placement.relief = relief_field(shown, placement.depth, steepest_relief);
+        placement.relief = times(relief_field(shown, placement.depth * px, steepest_relief), texels);
     for (GalaxyBody& galaxy : placement.galaxies)
         if (galaxy.hidden > 0.0f) set_cloud_depths(placement, galaxy);
-    if (axis) placement.depth = axis->fit.reach * double(light.width);
+    if (axis) placement.depth = axis->fit.reach * double(size.width);
     placement.axis = std::move(axis);
-    const std::vector<Knot> around = around_stars(stars);
+    std::vector<Knot> around = around_stars(stars);
     placement.star_knots = std::int32_t(around.size());
+    scale(around, placement.to_light);
     placement.knots = find_knots(brightest, around);
+    scale(placement.knots.knots, float(texels));
     set_knot_depths(placement, stars);
     return placement;
 }

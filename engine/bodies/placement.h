@@ -16,6 +16,7 @@
 #include "core/image.h"
 #include "core/shared_maths.h"
 #include "detect/peaks.h"
+#include "image/resample.h"
 #include "source/source.h"
 #include "source/texture.h"
 
@@ -51,7 +52,8 @@ struct Placement {
     double warp = 0.0;  // texels, of a disk's plane at its rim
     std::uint32_t seed = 0;
     std::int64_t picture_width = 0, picture_height = 0;  // texels
-    int field_halvings = 0;                              // of the size of the fields:
+    float to_light = 1.0f;                               // px of the light that it was made of, a texel
+    int field_halvings = 0;                              // of the light's size to that of the fields:
     std::vector<GalaxyBody> galaxies;                    // of a disk; else empty
     Image thickness;                                     // H(x, y), texels, of other kinds
     Image structure;                                     // of other kinds, by how much their sheets fold
@@ -84,10 +86,10 @@ struct Placement {
 /// `texels_per_unit`: of the surface that carries the picture; `flat`: it is a plane, so a sheet takes its
 /// relief from the picture instead. What `stars` of a disk leave around themselves stays at their depth: a
 /// profile is never quite that of their Gaussians, and would be a row of splats in depth. `axis`: of the
-/// kind.
+/// kind. `size`: of the picture, where `light` is smaller; 0: as that.
 Placement make_placement(const Image& light, const StructureParams& params, double texels_per_unit, bool flat,
                          std::uint32_t seed, std::span<const Star> stars = {},
-                         std::optional<AxisDepths> axis = {});
+                         std::optional<AxisDepths> axis = {}, ImageSize size = {0, 0});
 
 /// What the number of splats depends on, besides the light: no fields, but the galaxies of a disk.
 Placement placement_to_count(const Texture& texture, const StructureParams& params);

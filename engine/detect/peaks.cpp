@@ -229,7 +229,7 @@ Knots find_knots(const Image& brightest, const std::vector<Knot>& given) {
         sigma *= sigma_ratio;
     }
     std::ranges::stable_sort(peaks_found, std::greater(), &Peak::contrast);
-    Knots result;
+    Knots result{brightest.width, brightest.height, {}, {}, {}};
     const std::int64_t pixels = brightest.width * brightest.height;
     result.owner.assign(pixels, -1);
     result.weight.assign(pixels, 0.0f);

@@ -73,9 +73,10 @@ struct Knot {
 };
 
 struct Knots {
-    std::vector<Knot> knots;     // the most prominent first
-    Buffer<std::int32_t> owner;  // of each pixel: index into knots, or -1
-    Buffer<float> weight;        // of each pixel: share of its fine light that is its owner's, 0..1
+    std::int64_t width = 0, height = 0;  // px
+    std::vector<Knot> knots;             // the most prominent first
+    Buffer<std::int32_t> owner;          // of each pixel: index into knots, or -1
+    Buffer<float> weight;                // of each pixel: share of its fine light that is its owner's, 0..1
 };
 
 /// Peaks of the differences of neighbouring Gaussians (1.6 px and on, each 1.6 times the last) that stand out

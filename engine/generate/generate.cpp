@@ -144,7 +144,6 @@ Columns make_columns(std::span<const TexturedMesh> meshes, const Lattice& lattic
     claim_memory(columns_memory_bytes(meshes, lattice, max_distance), "generating splats");
     Columns columns;
     static_cast<SplatSetFacts&>(columns.splats) = facts_of_columns(meshes, lattice, max_distance);
-    if (watcher) watcher->begins(columns.splats, lattice.box);
     run_cull(LatticeCull(meshes, lattice, {max_distance, jitter, seed}), progress, watcher, columns.splats);
     check_consistent(columns.splats);
     if (watcher) show_end(columns, *watcher);

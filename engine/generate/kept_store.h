@@ -71,9 +71,6 @@ struct Columns;
 class KeptWatcher {
   public:
     virtual ~KeptWatcher() = default;
-    /// Once, before the first splat. `empty` is the set as it will be but without splats; `box` holds the
-    /// lattice, layer space.
-    virtual void begins(const SplatSet& empty, const Bounds& box) = 0;
     /// Each kept position once, those of alpha 0 among them, in runs of ascending ids that come in any order;
     /// from any thread, several at a time. The runs are gone after the call, which keeps the thread from its
     /// work: it is to be short.
@@ -81,7 +78,7 @@ class KeptWatcher {
     /// So many of all positions it wants to see in the end, at most.
     virtual std::int64_t sample_limit() const = 0;
     /// Once, when all are there: `sample` of so many, spread evenly over them. Also for columns that were
-    /// found in a cache, which have no beginning.
+    /// found in a cache.
     virtual void ends(Columns sample, std::int64_t of) = 0;
 };
 

@@ -50,13 +50,6 @@ std::vector<TexturedMesh> load_meshes(const SourceParams& source, const std::str
 bool is_one(const glm::dvec2& times) { return times == glm::dvec2(1.0); }
 
 // From places in the pictures with their margins to places in the pictures, which are 0..1 there.
-void uv_of_pictures(std::span<const glm::dvec2> times, SplatSet& set) {
-    if (std::ranges::all_of(times, is_one)) return;
-    parallel_each(set.uv.size(), rows_per_task, [&](std::size_t i) {
-        set.uv[i] = (set.uv[i] - 0.5f) * glm::vec2(times[set.mesh[i]]) + 0.5f;
-    });
-}
-
 // Of a set whose places are those in the pictures.
 ShareBeyond share_beyond(const SplatSet& set) {
     ShareBeyond beyond;
@@ -77,10 +70,8 @@ ShareBeyond share_beyond(const SplatSet& set) {
 }
 
 SplatSet generate_bodies(const SourceParams& source, const std::string& layer_name, const Progress& progress,
-                         KeptWatcher* watcher, const PictureMaker& prepared) {
-    std::vector<TexturedMesh> meshes = load_meshes(source, layer_name, progress, prepared);
-    if (watcher) show_flat(meshes, *watcher);
-    BodiesPlan plan = plan_bodies(source, std::move(meshes), layer_name);
+                         const PictureMaker& prepared) {
+    BodiesPlan plan = plan_bodies(source, load_meshes(source, layer_name, progress, prepared), layer_name);
     SplatSet set = make_bodies(std::move(plan.meshes), plan.structure, resolved_seed(source.seed, layer_name),
                                layer_name, progress, source.splats);
     uv_of_pictures(plan.times, set);
@@ -151,39 +142,41 @@ std::int64_t step_of(std::span<const TexturedMesh> meshes) {
     return std::max<std::int64_t>(1, std::llround(std::ceil(std::sqrt(texels / most_splats))));
 }
 
-void add_picture(const TexturedMesh& mesh, std::uint32_t material, std::int64_t step, KeptStore& store) {
+void add_picture(const TexturedMesh& mesh, std::uint32_t number, std::uint32_t material, std::int64_t step,
+                 SplatSet& set) {
+    constexpr float radius_steps = 1.04f;  // as of a lattice: .6 diagonals of a cube
     const Texture& texture = mesh.textures[material];
     const Image& image = texture.image;
-    const UvSurface surface(mesh.mesh, material, image.width, image.height,
-                            texture.wrap == TextureSettings::Wrap::repeat,
-                            mesh.camera ? &*mesh.camera : nullptr);
-    std::uint64_t id = std::uint64_t{material} << 32;
+    const UvSurface surface = surface_of(mesh, material);
     for (std::int64_t y = 0; y < image.height; y += step)
-        for (std::int64_t x = 0; x < image.width; x += step, ++id) {
+        for (std::int64_t x = 0; x < image.width; x += step) {
             const glm::vec4 mean = mean_of(image, x, y, step);
             if (!(mean.a > 0.0f)) continue;
             const float half = 0.5f * float(step);
             const glm::vec2 uv((float(x) + half) / float(image.width),
                                1.0f - (float(y) + half) / float(image.height));
             surface.at(uv, [&](const SurfacePlace& place) {
-                store.add(
-                    {place.position, glm::vec3(mean) / mean.a, mean.a, 0.0f, id, uv, place.normal, 0, 0});
+                set.position.push_back(place.position);
+                set.color.push_back(glm::vec3(mean) / mean.a);
+                set.alpha.push_back(mean.a);
+                set.radius.push_back(radius_steps * float(step) * place.units_per_texel);
+                set.distance.push_back(0.0f);
+                set.id.push_back(set.id.size());
+                set.uv.push_back(uv);
+                set.normal.push_back(place.normal);
+                set.mesh.push_back(number);
             });
         }
 }
 
-/// Scene units from one part to the next, where the mesh has the most texels a unit.
-double spacing_of(const TexturedMesh& mesh, std::int64_t step) {
-    double texels_per_unit = 0.0;
-    for (std::uint32_t material = 0; material < mesh.textures.size(); ++material) {
-        const Image& image = mesh.textures[material].image;
-        const UvSurface surface(mesh.mesh, material, image.width, image.height, true);
-        texels_per_unit = std::max(texels_per_unit, surface.texels_per_unit());
-    }
-    return texels_per_unit > 0.0 ? double(step) / texels_per_unit : 0.0;
-}
-
 }  // namespace
+
+void uv_of_pictures(std::span<const glm::dvec2> times, SplatSet& set) {
+    if (std::ranges::all_of(times, is_one)) return;
+    parallel_each(set.uv.size(), rows_per_task, [&](std::size_t i) {
+        set.uv[i] = (set.uv[i] - 0.5f) * glm::vec2(times[set.mesh[i]]) + 0.5f;
+    });
+}
 
 std::int64_t room_for_bodies() { return available_memory_bytes() / 10 * 9; }
 
@@ -262,8 +255,7 @@ SplatSet load_source(const SourceParams& source, const std::string& layer_name, 
         return lit_splats(make_columns(plan_columns(source, layer_name, progress, prepared), layer_name,
                                        progress, watcher));
     try {
-        if (source.kind == SourceKind::mesh)
-            return generate_bodies(source, layer_name, progress, watcher, prepared);
+        if (source.kind == SourceKind::mesh) return generate_bodies(source, layer_name, progress, prepared);
         if (source.kind == SourceKind::splats) return read_source(source, progress);
         return load_stars(source, layer_name, progress, prepared, [&] {
             return load_source(picture_source(source), source.stars.like, progress, nullptr, prepared);
@@ -292,23 +284,21 @@ AutomaticValues automatic_values(const SourceParams& source, const Progress& pro
     return values;
 }
 
-void show_flat(std::span<const TexturedMesh> meshes, KeptWatcher& watcher) {
+SplatSet flat_picture(std::span<const TexturedMesh> meshes) {
     const std::int64_t step = step_of(meshes);
-    double spacing = 0.0;
-    for (const TexturedMesh& mesh : meshes) spacing = std::max(spacing, spacing_of(mesh, step));
-    if (!(spacing > 0.0)) return;
-    SplatSet empty;
-    empty.spacing = glm::dvec3(spacing);
-    empty.max_distance = 0.25 * spacing;  // one layer of a lattice has then as many splats
-    empty.generated = true;
-    watcher.begins(empty, bounds(meshes));
-    for (const TexturedMesh& mesh : meshes)
-        for (std::uint32_t material = 0; material < mesh.textures.size(); ++material) {
-            KeptStore store;
-            store.begin_run();
-            add_picture(mesh, material, step, store);
-            watcher.keeps(store.runs());
-        }
+    SplatSet set;
+    for (std::uint32_t number = 0; number < meshes.size(); ++number)
+        for (std::uint32_t material = 0; material < meshes[number].textures.size(); ++material)
+            add_picture(meshes[number], number, material, step, set);
+    return set;
+}
+
+MovedBodies moved_bodies(const SourceParams& source, std::vector<TexturedMesh> meshes,
+                         const std::string& layer_name, SplatSet rows) {
+    BodiesPlan plan = plan_bodies(source, std::move(meshes), layer_name);
+    for (std::size_t i = 0; i < rows.uv.size(); ++i)
+        rows.uv[i] = (rows.uv[i] - 0.5f) / glm::vec2(plan.times[rows.mesh[i]]) + 0.5f;
+    return {std::move(plan.meshes), plan.structure, resolved_seed(source.seed, layer_name), std::move(rows)};
 }
 
 }  // namespace astrosplat

@@ -4,6 +4,7 @@
 // picture that another layer shows; and the values that keys of 0 (automatic) stand for.
 #pragma once
 
+#include "bodies/moved_bodies.h"
 #include "core/atomic_file.h"
 #include "core/progress.h"
 #include "generate/generate.h"
@@ -54,6 +55,9 @@ std::int64_t room_for_bodies();
 BodiesPlan plan_bodies(const SourceParams& source, std::vector<TexturedMesh> meshes,
                        const std::string& layer_name);
 
+/// Places in the pictures, of those in the pictures with their margins.
+void uv_of_pictures(std::span<const glm::dvec2> times, SplatSet& set);
+
 /// All that columns are made of.
 struct ColumnPlan {
     std::vector<TexturedMesh> meshes;
@@ -86,9 +90,12 @@ struct AutomaticValues {
 /// Reads meshes, and pictures at a small size, where one of them is automatic. Throws InputError, Cancelled.
 AutomaticValues automatic_values(const SourceParams& source, const Progress& progress = {});
 
-/// Shows the watcher about as many splats as it can hold in any case, spread evenly over all pictures, each
-/// with the mean colour of its part.
-void show_flat(std::span<const TexturedMesh> meshes, KeptWatcher& watcher);
+/// All pictures as they lie on their meshes: some 65,000 splats, each with the mean colour of its part.
+SplatSet flat_picture(std::span<const TexturedMesh> meshes);
+
+/// For rows of the set that the source is made into; `meshes`: as they were read for it.
+MovedBodies moved_bodies(const SourceParams& source, std::vector<TexturedMesh> meshes,
+                         const std::string& layer_name, SplatSet rows);
 
 // ---- stars
 

@@ -14,6 +14,8 @@ namespace {
 constexpr double share = 0.01;
 constexpr std::int64_t enough = 100'000;  // splats or texels: of fewer, what does not grow with them is most
 
+constexpr std::int64_t hardly_fewer = 4;  // times: what is so much smaller takes nearly as long
+
 std::int64_t rows_of(std::int64_t all) {
     return std::min(all, std::max(enough, std::int64_t(share * double(all))));
 }
@@ -70,16 +72,19 @@ SetSample sample_bodies(const SetCache& cache, const SourceParams& source, const
     return sample;
 }
 
-/// As many voxels as would keep a part of the positions.
+/// As many voxels as would keep a part of the positions: about `rows`, or as rows_of() has it. Empty where
+/// these were hardly fewer than all.
 SetSample sample_lattice(const SetCache& cache, const SourceParams& source, const std::string& layer_name,
-                         const Progress& progress) {
+                         const Progress& progress, std::int64_t rows = 0) {
     const auto start = Clock::now();
     ColumnPlan plan = plan_columns(source, layer_name, progress, kept_pictures(cache));
     const Lattice whole = plan.lattice;
     SetSample sample;
     sample.splats =
         std::int64_t(std::min(expected_splats(source, whole, plan.meshes, plan.max_distance), 1e15));
-    const double smaller = double(sample.splats) / double(std::max<std::int64_t>(1, rows_of(sample.splats)));
+    if (rows > 0 && sample.splats < hardly_fewer * rows) return sample;
+    const double smaller =
+        double(sample.splats) / double(std::max<std::int64_t>(1, rows > 0 ? rows : rows_of(sample.splats)));
     SourceParams coarse = source;
     coarse.voxels = glm::max(glm::i64vec3(glm::dvec3(whole.n) / std::cbrt(smaller)), glm::i64vec3(1));
     plan.lattice = make_lattice(coarse, plan.meshes, plan.max_distance);
@@ -124,6 +129,35 @@ SetSample sample_set(const SetCache& cache, const SourceParams& source, const st
         return sample_all(load_source(cache, source, layer_name, progress).set);
     return makes_columns(source) ? sample_lattice(cache, source, layer_name, progress)
                                  : sample_bodies(cache, source, layer_name, progress);
+}
+
+void show_quick_sets(const SetCache& cache, const SourceParams& source, const std::string& layer_name,
+                     const QuickSets& quick, const Progress& progress) {
+    constexpr std::int64_t smaller = 16;  // times as few texels, as takes a second of a usual picture
+    constexpr std::int64_t most_texels = 150'000;  // and of a large one
+    if (auto there = sample_there(cache, source, layer_name, quick.rows, progress))
+        return quick.show(std::move(*there));
+    if (source.kind != SourceKind::mesh) return;
+    const auto show = [&](SetSample sample) {
+        sample.stands_in = true;
+        if (sample.splats == 0) sample.splats = sample.set.size();
+        if (sample.set.size() > 0) quick.show(std::move(sample));
+    };
+    if (makes_columns(source)) return show(sample_lattice(cache, source, layer_name, progress, quick.rows));
+    std::vector<TexturedMesh> meshes =
+        load_meshes(cache, source, progress, most_texels_read(source, room_for_bodies()));
+    if (quick.flat) show({flat_picture(meshes)});
+    SourceParams few = source;
+    few.splats = 0;  // a limit of the whole
+    BodiesPlan plan = plan_bodies(few, std::move(meshes), layer_name);
+    const std::int64_t texels = largest_picture(plan.meshes);
+    if (texels < hardly_fewer * most_texels / 2) return;
+    reduce_to(plan.meshes, std::min(texels / smaller + 1, most_texels), layer_name);
+    plan.structure.detail = 0;
+    SplatSet set = make_bodies(std::move(plan.meshes), plan.structure, resolved_seed(source.seed, layer_name),
+                               layer_name, progress);
+    uv_of_pictures(plan.times, set);
+    show({std::move(set)});
 }
 
 }  // namespace astrosplat

@@ -15,6 +15,7 @@ struct SetSample {
     std::int64_t splats = 0;        // of the whole set, about
     double making_seconds = 0.0;    // of the whole set, about; 0: it is there
     std::int64_t making_bytes = 0;  // at most while bodies are made of their pictures; 0: none are
+    bool stands_in = false;         // rows of another set: show_quick_sets()
     /// How many splats a row stands for, at least 1; 0: there are none.
     double each() const { return set.size() > 0 ? double(splats) / double(set.size()) : 0.0; }
 };
@@ -31,5 +32,17 @@ std::optional<SetSample> sample_there(const SetCache& cache, const SourceParams&
 /// Not for stars of a picture (is_like_a_layer). Nothing is kept. Throws as load_source does.
 SetSample sample_set(const SetCache& cache, const SourceParams& source, const std::string& layer_name,
                      const Progress& progress = {});
+
+/// What is to be seen of a set until it is there, each for as long as the next one takes: rows of one that is
+/// kept, about `rows`; else the flat picture, where it is asked for, and then bodies of a smaller picture, or
+/// columns on a coarser lattice, unless the set takes hardly longer. Nothing of splat files of other formats
+/// and of catalogues. Throws Cancelled; InputError where load_source will.
+struct QuickSets {
+    std::int64_t rows = 0;
+    bool flat = true;
+    std::function<void(SetSample)> show;
+};
+void show_quick_sets(const SetCache& cache, const SourceParams& source, const std::string& layer_name,
+                     const QuickSets& quick, const Progress& progress = {});
 
 }  // namespace astrosplat

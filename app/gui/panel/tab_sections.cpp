@@ -237,7 +237,7 @@ void source_state(Context& context) {
     } else {
         const SourceParams& source = context.layer().source;
         const bool live = source.kind == SourceKind::mesh && !prepares(source.texture.prepare);
-        note(live ? "Levels and masks show at once; the rest regenerates."
+        note(live ? "Levels, masks and shape show at once; the rest regenerates."
                   : "Changing these regenerates the splats.");
     }
     // As high whatever it says, or the rows below would move under the mouse that drags one.

@@ -379,26 +379,6 @@ TEST_F(SetSampleTest, NumbersThatAreNoneAreNotThere) {
 
 // Before its bodies are made, a picture is seen as it is: in its place, the right way round, in its colours.
 
-class Watcher : public KeptWatcher {
-  public:
-    void begins(const SplatSet& empty, const Bounds& of) override {
-        set = empty;
-        box = of;
-        ++begun;
-    }
-    void keeps(std::span<const KeptStore::Run> runs) override {
-        for (const KeptStore::Run& run : runs)
-            splats.insert(splats.end(), run.splats, run.splats + run.count);
-    }
-    std::int64_t sample_limit() const override { return 0; }
-    void ends(Columns, std::int64_t) override {}
-
-    SplatSet set;
-    Bounds box;
-    std::vector<KeptSplat> splats;
-    int begun = 0;
-};
-
 class FlatStartTest : public SplatFileTest {
   protected:
     /// The left third is red, the rest blue; the lower half is darker.
@@ -414,50 +394,70 @@ class FlatStartTest : public SplatFileTest {
 };
 
 TEST_F(FlatStartTest, APictureIsSeenInItsPlaceBeforeItsBodiesAre) {
-    Watcher watcher;
-    const SourceParams source = picture(300, 200);
-    const SplatSet set = load_source(source, "gas", {}, &watcher);
-    ASSERT_EQ(watcher.begun, 1);
-    ASSERT_GT(watcher.splats.size(), 20000u);
-    EXPECT_LE(watcher.splats.size(), 1u << 16);
-    EXPECT_GT(watcher.set.spacing.x, 0.0);
-    EXPECT_TRUE(watcher.set.generated);
-    for (std::size_t i = 0; i < watcher.splats.size(); ++i) {
-        const KeptSplat& splat = watcher.splats[i];
-        if (i > 0) {
-            ASSERT_LT(watcher.splats[i - 1].id, splat.id);
-        }
-        ASSERT_NEAR(splat.position.y, 0.0f, 1e-5f);
-        if (std::fabs(splat.uv.x - 1.0f / 3.0f) < 0.01f) continue;
-        const bool red = splat.uv.x < 1.0f / 3.0f;
-        ASSERT_EQ(splat.color.r > 0.5f, red) << "at " << splat.uv.x;
-        ASSERT_EQ(splat.color.b > 0.5f, !red);
-        ASSERT_NEAR(splat.position.x, 10.0f * (splat.uv.x - 0.5f), 1e-3f);
+    const SplatSet flat = flat_picture(load_meshes(picture(300, 200)));
+    ASSERT_GT(flat.size(), 20000);
+    EXPECT_LE(flat.size(), 1 << 16);
+    EXPECT_FALSE(flat.generated) << "which looks take for a lattice";
+    double light[2] = {};
+    for (std::size_t i = 0; i < flat.id.size(); ++i) {
+        ASSERT_EQ(flat.id[i], i);
+        ASSERT_NEAR(flat.position[i].y, 0.0f, 1e-5f);
+        light[flat.uv[i].y > 0.5f ? 1 : 0] += double(flat.alpha[i]);
+        if (std::fabs(flat.uv[i].x - 1.0f / 3.0f) < 0.01f) continue;
+        const bool red = flat.uv[i].x < 1.0f / 3.0f;
+        ASSERT_EQ(flat.color[i].r > 0.5f, red) << "at " << flat.uv[i].x;
+        ASSERT_EQ(flat.color[i].b > 0.5f, !red);
+        ASSERT_NEAR(flat.position[i].x, 10.0f * (flat.uv[i].x - 0.5f), 1e-3f);
     }
-    const auto light_of = [&](bool upper) {
-        double sum = 0.0;
-        for (const KeptSplat& splat : watcher.splats)
-            if ((splat.uv.y > 0.5f) == upper) sum += splat.alpha;
-        return sum;
-    };
-    EXPECT_GT(light_of(true), 2.0 * light_of(false));
+    EXPECT_GT(light[1], 2.0 * light[0]);
 }
 
 TEST_F(FlatStartTest, LargePicturesAreSeenWithAsManySplats) {
-    Watcher watcher;
-    show_flat(load_meshes(picture(1200, 700)), watcher);
-    EXPECT_GT(watcher.splats.size(), 20000u);
-    EXPECT_LE(watcher.splats.size(), 1u << 16);
-    ASSERT_FALSE(watcher.box.empty());
-    EXPECT_NEAR(watcher.box.hi.x, 5.0, 1e-6);
+    const SplatSet flat = flat_picture(load_meshes(picture(1200, 700)));
+    EXPECT_GT(flat.size(), 20000);
+    EXPECT_LE(flat.size(), 1 << 16);
+    EXPECT_NEAR(bounds(flat).hi.x, 5.0, 0.02);
 }
 
-TEST_F(FlatStartTest, TheSetIsTheSameWhoeverWatches) {
-    Watcher watcher;
-    const SourceParams source = picture(60, 40);
-    const SplatSet watched = load_source(source, "gas", {}, &watcher), alone = load_source(source, "gas");
-    EXPECT_EQ(watched.id, alone.id);
-    EXPECT_EQ(watched.position, alone.position);
+/// What is shown of a source, in order.
+std::vector<SetSample> quick_sets(const SetCache& cache, const SourceParams& source, bool flat = true) {
+    std::vector<SetSample> shown;
+    show_quick_sets(cache, source, "gas",
+                    {1000, flat, [&](SetSample sample) { shown.push_back(std::move(sample)); }});
+    return shown;
+}
+
+TEST_F(FlatStartTest, AQuickBodyStandsForTheSetUntilItIsThere) {
+    SourceParams source = picture(900, 600);
+    write("picture.ppm", test::pixmap(900, 600, [](int x, int y, int k) { return (x * (k + 1) ^ y) & 127; }));
+    source.structure.margin = 0.1;
+    const TempFolder folder;
+    const SetCache cache{folder / "sets"};
+    const std::vector<SetSample> shown = quick_sets(cache, source);
+    ASSERT_EQ(shown.size(), 2u);
+    const SplatSet &flat = shown[0].set, &quick = shown[1].set, whole = load_source(cache, source, "gas").set;
+    EXPECT_LT(bounds(flat).extent().y, 1e-4);
+    EXPECT_NEAR(bounds(quick).extent().y, bounds(whole).extent().y, 0.3 * bounds(whole).extent().y);
+    EXPECT_NEAR(bounds(quick).extent().x, bounds(whole).extent().x, 0.1 * bounds(whole).extent().x);
+    EXPECT_LT(3 * quick.size(), whole.size());
+    const auto covers = [](const SplatSet& set) {
+        double area = 0.0;
+        for (std::size_t i = 0; i < set.id.size(); ++i)
+            area += double(set.alpha[i]) * double(set.radius[i]) * double(set.radius[i]);
+        return area;
+    };
+    EXPECT_NEAR(covers(quick) / covers(whole), 1.0, 0.35) << "as wide as few splats must be";
+    EXPECT_EQ(quick_sets({}, source, false).size(), 1u) << "a body before is better than a flat picture";
+    const std::vector<SetSample> kept = quick_sets(cache, source);
+    ASSERT_EQ(kept.size(), 1u);
+    EXPECT_EQ(kept[0].splats, whole.size());
+    source.structure.kind = StructureKind::columns;
+    source.count = 2000000;
+    const std::vector<SetSample> columns = quick_sets({}, source);
+    ASSERT_EQ(columns.size(), 1u);
+    EXPECT_GT(columns[0].each(), 3.0);
+    source.count = 2000;
+    EXPECT_TRUE(quick_sets({}, source).empty()) << "it takes no time";
 }
 
 }  // namespace

@@ -197,11 +197,8 @@ TEST(MeanColor, IsOfSplatsFromEverywhere) {
         set.color[i] = glm::vec3(first ? 1.0f : 0.25f);
         set.alpha[i] = first ? 0.5f : 1.0f;
     }
-    GrowingSet::Sample sample;
-    sample.set = std::make_shared<const SplatSet>(set);
-    EXPECT_EQ(growing_layer(sample, {}, "a").color, glm::vec3(0.5f));
-    sample.set = std::make_shared<const SplatSet>(set_of({}));
-    EXPECT_EQ(growing_layer(sample, {}, "a").color, glm::vec3(1.0f));
+    EXPECT_EQ(sampled_layer({set, 1}, {}, "a").color, glm::vec3(0.5f));
+    EXPECT_EQ(sampled_layer({set_of({}), 1}, {}, "a").color, glm::vec3(1.0f));
 }
 
 // Which layer a click in the picture selects: the brightest at that pixel first, dust by what it hides.

@@ -27,10 +27,10 @@ SourceParams source_of_fits(const TempFolder& folder) {
 /// As the loader makes it, with all positions as the sample.
 std::shared_ptr<const LoadedLayer> loaded_layer(const SourceParams& source) {
     constexpr std::int64_t all = 1 << 20;
-    GrowingSet growing(1, all);
-    auto set = std::make_shared<const SplatSet>(load_source(source, "gas", {}, &growing));
+    MadeColumns made(all);
+    auto set = std::make_shared<const SplatSet>(load_source(source, "gas", {}, &made));
     auto layer = std::make_shared<LoadedLayer>(whole_layer(std::move(set), source, "gas", all));
-    layer->columns = growing.columns();
+    layer->columns = made.columns();
     return layer;
 }
 
@@ -43,6 +43,12 @@ double light(const SplatSet& set) {
     for (std::size_t i = 0; i < set.id.size(); ++i)
         sum += double(set.alpha[i]) * double(set.color[i].x + set.color[i].y + set.color[i].z);
     return sum;
+}
+
+/// Of all that a preview stands for.
+double live_light(const std::shared_ptr<const LoadedLayer>& loaded, const SourceParams& now) {
+    const MergeSource sample = live_maker()({loaded, now}, {}).layer->sample;
+    return light(*sample.set) * double(sample.weight);
 }
 
 class LiveTexelsTest : public testing::Test {
@@ -79,7 +85,7 @@ TEST_F(LiveTexelsTest, WhatNeedsNoOtherPositions) {
              expected ? std::span<const Change>(followed) : std::span<const Change>(others)) {
             SourceParams now = source;
             change(now);
-            EXPECT_EQ(only_texels_differ(source, now), expected);
+            EXPECT_EQ(can_follow(source, now), expected);
         }
 }
 
@@ -97,10 +103,10 @@ TEST_F(LiveTexelsTest, ColumnsReadTheirPicturesAgain) {
 }
 
 TEST_F(LiveTexelsTest, AColumnOfManyStandsForAll) {
-    GrowingSet growing(1, 5000);
-    const SplatSet set = load_source(source, "gas", {}, &growing);
-    EXPECT_EQ(growing.columns().set->size(), 5000);
-    EXPECT_EQ(growing.columns().of, set.size() + set.zero_alpha);
+    MadeColumns made(5000);
+    const SplatSet set = load_source(source, "gas", {}, &made);
+    EXPECT_EQ(made.columns().set->size(), 5000);
+    EXPECT_EQ(made.columns().of, set.size() + set.zero_alpha);
 }
 
 // Shapes whose grid depends on the picture's size have the faces that the set was made with.
@@ -121,9 +127,26 @@ TEST_F(LiveTexelsTest, StructuresFollowTheRatioOfThePictures) {
     ASSERT_FALSE(loaded->columns.set);
     SourceParams now = source;
     now.texture.white = 1200.0;  // half the light
-    EXPECT_NEAR(light(live_set(loaded, now)) / light(*loaded->set), 0.5, 0.02);
+    EXPECT_NEAR(live_light(loaded, now) / light(*loaded->set), 0.5, 0.02);
     now.texture.white = 601.0;
-    EXPECT_NEAR(light(live_set(loaded, now)) / light(*loaded->set), 1.0, 0.01);
+    EXPECT_NEAR(live_light(loaded, now) / light(*loaded->set), 1.0, 0.01);
+}
+
+TEST_F(LiveTexelsTest, BodiesAreMovedByTheirNewModel) {
+    source.structure.kind = StructureKind::sheet;
+    source.structure.margin = 0.1;
+    const auto loaded = loaded_layer(source);
+    SourceParams now = source;
+    now.structure.depth *= 3.0;
+    ASSERT_TRUE(can_follow(source, now));
+    const double wanted = bounds(load_source(now, "gas")).extent().y,
+                 before = bounds(*loaded->set).extent().y, seen = bounds(live_set(loaded, now)).extent().y;
+    EXPECT_GT(wanted, 1.5 * before);
+    EXPECT_NEAR(seen / wanted, 1.0, 0.15);
+    now.texture.white = 1200.0;
+    EXPECT_NEAR(live_light(loaded, now) / light(*loaded->set), 0.5, 0.02) << "levels as well";
+    now.structure.margin = 0.2;
+    EXPECT_FALSE(can_follow(source, now));
 }
 
 TEST_F(LiveTexelsTest, APictureThatIsGoneIsNoPreview) {
@@ -135,7 +158,7 @@ TEST_F(LiveTexelsTest, APictureThatIsGoneIsNoPreview) {
 
 TEST_F(LiveTexelsTest, AHandThatNeverRestsSeesSomething) {
     const auto loaded = loaded_layer(source);
-    LiveTexels live;
+    LiveSets live(make_prepared);
     for (double black = 51.0; !live.layer(loaded); black += 1e-3) {
         source.texture.black = black;
         live.want({loaded, source});
@@ -191,6 +214,27 @@ TEST_F(LiveWishesTest, LevelsAreFollowedAndASetIsMadeOnceTheHandRests) {
     EXPECT_TRUE(shown()->set);
     EXPECT_TRUE(wishes.wanted(document.scene()));
     EXPECT_TRUE(same_bits(shown()->set->color, load_source(document.scene().layers[0].source, "gas").color));
+}
+
+TEST_F(LiveWishesTest, BodiesAreReadyBeforeTheHandMoves) {
+    edit("structure.kind", std::string("sheet"));
+    load();
+    const auto first = shown();
+    ASSERT_TRUE(first && first->set && !first->columns.set);
+    wishes.follow(document.scene());
+    EXPECT_FALSE(wishes.prepares()) << "there is no time to spare";
+    wishes.follow(document.scene(), 0, true);
+    EXPECT_FALSE(wishes.following());
+    while (wishes.prepares()) std::this_thread::yield();
+    EXPECT_EQ(shown(), first);
+    fs::remove(folder / "data.fits");  // which need not be read again
+    edit("structure.depth", 0.4);
+    for (int i = 0; i < 5000 && shown()->source.structure.depth != 0.4; ++i) {
+        wishes.follow(document.scene());
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    EXPECT_EQ(shown()->source.structure.depth, 0.4);
+    EXPECT_FALSE(shown()->set);
 }
 
 TEST_F(LiveWishesTest, UndoneLevelsShowTheSetItself) {

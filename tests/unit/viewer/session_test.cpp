@@ -196,6 +196,23 @@ TEST_F(FinerPreviewSession, EveryStepIsCloserToTheFinalFrame) {
     EXPECT_GE(next_due(session, now), 0.1) << "nothing is left to be done";
 }
 
+/// The hand rests, but no final frame may begin: its set is another one.
+TEST_F(FinerPreviewSession, SetsThatAreMadeDoNotHoldItUp) {
+    for (; !session.sets.loaded(session.document) || !preview_exact(session); now += 0.02) draw();
+    session.view.settle = true;
+    session.document.edit("More", [](Scene& scene) { scene.layers[0].source.count += 1000; });
+    draw();
+    const std::int64_t before = shown();
+    now += 0.1;
+    for (int i = 0; i < 5000 && shown() < 3 * before; ++i) {
+        draw();
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        ASSERT_FALSE(session.sets.wanted(session.document.scene()));
+    }
+    EXPECT_GE(shown(), 3 * before);
+    EXPECT_EQ(session.view_frame.status().state, ViewFrameState::preview);
+}
+
 /// Which the window's own context is: no other card's probe says anything about it.
 TEST_F(FinerPreviewSession, APreviewIsDrawnByTheCardThatIsAskedFor) {
     session.gl = shared_context().context->info();

@@ -6,6 +6,7 @@
 #include "sets/load_source.h"
 #include "splat_files/formats.h"
 #include "support/fits_text.h"
+#include "support/pixmap.h"
 #include "support/small_scene.h"
 #include "support/splats.h"
 #include "support/test.h"
@@ -222,11 +223,11 @@ class HeldGeneration {
     bool held_ = false, may_go_on_ = false;
 };
 
-class GrowingSetsTest : public testing::Test {
+class QuickSetsTest : public testing::Test {
   protected:
     static constexpr std::int64_t limit = 1 << 18;
 
-    GrowingSetsTest() {
+    QuickSetsTest() {
         small.scene.layers.resize(1);
         gas().source.count = 400000;
     }
@@ -235,47 +236,14 @@ class GrowingSetsTest : public testing::Test {
     SmallScene small;
 };
 
-TEST_F(GrowingSetsTest, ASetIsSeenGrowingAndThenWhole) {
-    HeldGeneration held(0.3);
-    SetLoader loader(std::ref(held), limit);
-    EXPECT_FALSE(loader.grow());
-    loader.want(small.scene);
-    held.wait();
-    ASSERT_TRUE(loader.grow());
-    const auto growing = loader.layer("gas");
-    ASSERT_TRUE(growing);
-    const std::uint64_t revision = loader.revision();
-    EXPECT_FALSE(growing->set) << "what is not whole is no final picture";
-    EXPECT_GT(growing->sample.set->size(), 0);
-    EXPECT_GE(growing->splats, growing->sample.set->size());
-    EXPECT_LE(growing->sample.set->size(), limit / 4);
-    EXPECT_TRUE(loader.status(gas()).loading);
-    EXPECT_GE(loader.status(gas()).found, growing->splats);
-    EXPECT_GT(loader.status(gas()).radius_min, 0.0);
-    EXPECT_FALSE(loader.sets_there());
-    held.go_on();
-    loader.wait();
-    const auto whole = loader.layer("gas");
-    EXPECT_GT(loader.revision(), revision);
-    EXPECT_FALSE(loader.grow());
-    ASSERT_TRUE(whole && whole->set);
-    const SplatSet wanted = load_source(gas().source, gas().name);
-    EXPECT_LT(growing->splats, wanted.size());
-    EXPECT_EQ(whole->splats, wanted.size());
-    EXPECT_TRUE(same_bits(wanted.id, whole->set->id));
-    EXPECT_TRUE(same_bits(wanted.position, whole->set->position));
-    EXPECT_NEAR(growing->radius.x, whole->radius.x, 1e-12);
-}
-
-TEST_F(GrowingSetsTest, WhatIsKeptIsSeenBeforeItIsRead) {
+TEST_F(QuickSetsTest, WhatIsKeptIsSeenBeforeItIsRead) {
     const SetCache cache{small.folder / "cache"};
     const SplatSet wanted = load_source(cache, gas().source, gas().name).set;
     HeldGeneration held(0.0);
     SetLoader loader(
         std::ref(held),
-        [&](const SourceParams& source, const std::string& name, const Progress& progress) {
-            return sample_there(cache, source, name, 20000, progress);
-        },
+        [&](const SourceParams& source, const std::string& name, const QuickSets& quick,
+            const Progress& progress) { quick.show(*sample_there(cache, source, name, 20000, progress)); },
         limit / 8);
     loader.want(small.scene);
     held.wait();
@@ -303,11 +271,12 @@ TEST_F(GrowingSetsTest, WhatIsKeptIsSeenBeforeItIsRead) {
     EXPECT_TRUE(loader.layer("gas")->arranged);
 }
 
-TEST_F(GrowingSetsTest, WhatCannotBeSampledIsLoadedAllTheSame) {
+TEST_F(QuickSetsTest, WhatCannotBeSampledIsLoadedAllTheSame) {
     SetLoader loader([](const SourceParams& source, const std::string& name, const Progress& progress,
                         KeptWatcher&) { return load_source(source, name, progress); },
-                     [](const SourceParams&, const std::string&,
-                        const Progress&) -> std::optional<SetSample> { throw InputError("damaged"); },
+                     [](const SourceParams&, const std::string&, const QuickSets&, const Progress&) {
+                         throw InputError("damaged");
+                     },
                      limit);
     loader.want(small.scene);
     loader.wait();
@@ -315,47 +284,84 @@ TEST_F(GrowingSetsTest, WhatCannotBeSampledIsLoadedAllTheSame) {
     EXPECT_EQ(loader.status(gas()).error, "");
 }
 
-TEST_F(GrowingSetsTest, WhatGrewIsGoneWhenCancelled) {
+/// As the program shows them, of a picture as a sheet.
+class QuickBodiesTest : public QuickSetsTest {
+  protected:
+    QuickBodiesTest() {
+        const std::string pixels =
+            test::pixmap(640, 500, [](int x, int y, int k) { return (x * (k + 1) ^ y) & 127; });
+        gas().source.meshes = {{"plane", {small.folder.file("picture.ppm", pixels)}}};
+        gas().source.structure.kind = StructureKind::sheet;
+    }
+
+    /// Of every set that is shown.
+    void show(const SourceParams& source, const std::string& name, const QuickSets& quick,
+              const Progress& progress) {
+        show_quick_sets({}, source, name,
+                        {quick.rows, quick.flat,
+                         [&](SetSample sample) {
+                             thick.push_back(bounds(sample.set).extent().y > 1e-3);
+                             quick.show(std::move(sample));
+                         }},
+                        progress);
+    }
+    SetLoader::Sample shows() {
+        return [this](const auto&... all) { show(all...); };
+    }
+    std::vector<bool> thick;
+};
+
+TEST_F(QuickBodiesTest, APictureIsFlatThenAQuickBodyAndGoneWhenCancelled) {
     HeldGeneration held(0.3);
-    SetLoader loader(std::ref(held), limit);
+    SetLoader loader(std::ref(held), shows(), limit);
     loader.want(small.scene);
     held.wait();
-    ASSERT_TRUE(loader.grow());
-    EXPECT_TRUE(loader.layer("gas"));
+    EXPECT_EQ(thick, (std::vector<bool>{false, true}));
+    const auto quick = loader.layer("gas");
+    ASSERT_TRUE(quick);
+    EXPECT_FALSE(quick->set) << "what is not whole is no final picture";
+    EXPECT_TRUE(loader.status(gas()).loading);
+    EXPECT_GT(loader.status(gas()).radius_min, 0.0);
+    EXPECT_FALSE(loader.sets_there());
     loader.cancel("gas");
-    EXPECT_FALSE(loader.grow());
     EXPECT_FALSE(loader.layer("gas"));
     EXPECT_EQ(loader.status(gas()).splats, 0);
 }
 
-TEST_F(GrowingSetsTest, AnOldSetStaysUntilTheNewOneIsEverywhere) {
-    for (const double mark : {0.3, 0.6}) {
-        HeldGeneration held(mark);
-        bool first_set = true;
-        SetLoader loader(
-            [&](const SourceParams& source, const std::string& name, const Progress& progress,
-                KeptWatcher& watcher) {
-                const bool free = std::exchange(first_set, false);
-                return free ? load_source(source, name, progress, &watcher)
-                            : held(source, name, progress, watcher);
-            },
-            limit);
-        loader.want(small.scene);
-        loader.wait();
-        const auto first = loader.layer("gas");
-        gas().source.count += 400000;
-        loader.want(small.scene);
-        held.wait();
-        EXPECT_EQ(loader.grow(), mark > 0.5);
-        EXPECT_EQ(loader.layer("gas") != first, mark > 0.5);
-        EXPECT_EQ(loader.layer("gas")->box.lo, first->box.lo) << "the picture would move";
-        EXPECT_FALSE(loader.status(gas()).stale);
-        loader.cancel("gas");
-        EXPECT_EQ(loader.layer("gas")->set, first->set);
-    }
+TEST_F(QuickBodiesTest, InPlaceOfABodyThereIsNoFlatPicture) {
+    HeldGeneration held(0.3);
+    bool first_set = true;
+    SetLoader loader(
+        [&](const SourceParams& source, const std::string& name, const Progress& progress,
+            KeptWatcher& watcher) {
+            const bool free = std::exchange(first_set, false);
+            return free ? load_source(source, name, progress, &watcher)
+                        : held(source, name, progress, watcher);
+        },
+        shows(), limit);
+    loader.want(small.scene);
+    loader.wait();
+    const auto first = loader.layer("gas");
+    thick.clear();
+    gas().source.structure.margin = 0.1;
+    loader.want(small.scene);
+    held.wait();
+    EXPECT_EQ(thick, std::vector<bool>{true});
+    EXPECT_NE(loader.layer("gas"), first);
+    EXPECT_EQ(loader.layer("gas")->box.lo, first->box.lo) << "the picture would move";
+    EXPECT_FALSE(loader.status(gas()).stale);
+    loader.cancel("gas");
+    EXPECT_EQ(loader.layer("gas")->set, first->set);
+    thick.clear();
+    gas().source.structure.margin = 0.0;
+    gas().source.structure.depth = 0.3;
+    loader.want(small.scene);
+    held.go_on();
+    loader.wait();
+    EXPECT_TRUE(thick.empty()) << "the old one is moved meanwhile";
 }
 
-TEST_F(GrowingSetsTest, ASetThatIsHalfMadeIsGivenUpWithItsLoader) {
+TEST_F(QuickSetsTest, ASetThatIsHalfMadeIsGivenUpWithItsLoader) {
     HeldGeneration held(0.3);
     bool given_up = false;
     const auto load = [&](const SourceParams& source, const std::string& name, const Progress& progress,
