@@ -180,7 +180,7 @@ void describe_star_image(const Describer& d, StarsParams& stars) {
 void describe_galaxy(const Describer& d, GalaxyParams& g) {
     d(g.inclination, "inclination", "Inclination", "degrees",
       "How far a galaxy's disk is turned from the picture's plane: 0 face-on, 90 edge-on; auto: found.",
-      or_auto(), within(0, 90));
+      or_auto(), range(0, 90));
     d(g.position_angle, "position_angle", "Position angle", "degrees",
       "Of its major axis in the picture, counter-clockwise from right; auto: found.", or_auto(),
       within(-360, 360), slider(0, 180));
@@ -190,7 +190,7 @@ void describe_galaxy(const Describer& d, GalaxyParams& g) {
       "The direction of its nearer side, counter-clockwise from right; auto: where more dust is seen.",
       or_auto(), within(-360, 360), slider(0, 360));
     d(g.bulge, "bulge", "Bulge", "of the light", "Share of its spheroid; 1: no disk; auto: found.", or_auto(),
-      within(0, 1));
+      range(0, 1));
 }
 
 void describe_structure(const Describer& d, StructureParams& s) {
@@ -224,7 +224,7 @@ void describe_structure(const Describer& d, StructureParams& s) {
     axis(s.tilt, "tilt", "Tilt of the axis", "degrees",
          "How far that end of the axis leans out of the picture, towards the viewer where positive; auto: "
          "found.",
-         or_auto(), within(-80, 80));
+         or_auto(), range(-80, 80));
     bodies(s.stars, "stars", "Stars apart", "",
            "Stars are found and become single splats; auto: unless prepare removes them.");
     bodies(s.dust, "dust", "Dust", "",

@@ -279,6 +279,66 @@ TEST_F(PanelRowsTest, AutoIsTypedOverAndTypedBack) {
     EXPECT_EQ(d.value(voxels), typed);
 }
 
+constexpr const char *disk = "structure = { kind = \"disk\" }\n",
+                     *height = "layer.dust.source.structure.height", *splats = "layer.dust.source.splats";
+
+TEST_F(PanelRowsTest, AValueThatIsNotSetIsDraggedFromWhatItShows) {
+    PanelDriver bodies(dust_scene(disk));
+    bodies.status.layers.resize(1);
+    bodies.status.layers[0].body_height = 0.1876543;
+    bodies.status.layers[0].splats = 15'700'000;
+    bodies.show(PanelTab::source);
+    bodies.drag(bodies.row(height).value, {10.0f, 0.0f});
+    EXPECT_NEAR(bodies.value(height).number(), 0.226, 0.003);
+    bodies.drag(bodies.row(splats).value, {-10.0f, 0.0f});
+    EXPECT_NEAR(bodies.value(splats).number(), 14.13e6, 0.1e6);
+}
+
+TEST_F(PanelRowsTest, AValueThatNobodyKnowsIsDraggedFromTheMiddle) {
+    PanelDriver bodies(dust_scene(disk));
+    bodies.show(PanelTab::source);
+    const std::string inclination = "layer.dust.source.structure.inclination",
+                      bulge = "layer.dust.source.structure.bulge", dust = "layer.dust.source.structure.dust";
+    for (const auto& [key, value] : {std::pair(inclination, 45.0), {bulge, 0.5}, {dust, 0.8}}) {
+        bodies.enter(key, "auto");
+        bodies.drag(bodies.row(key).value, {4.0f, 0.0f});
+        ASSERT_TRUE(bodies.value(key).is_number()) << key;
+        EXPECT_NEAR(bodies.value(key).number(), value, 0.05 * value) << key;
+    }
+    d.show(PanelTab::camera);
+    d.drag(d.row("camera.f_number").value, {4.0f, 0.0f});
+    EXPECT_GT(d.value("camera.f_number").number(), 1.0)
+        << "from the middle, not from 0: a blur of everything";
+}
+
+TEST_F(PanelRowsTest, AValueThatIsNotSetIsTypedFromWhatItShows) {
+    PanelDriver bodies(dust_scene(disk));
+    bodies.status.layers.resize(1);
+    bodies.status.layers[0].body_height = 0.1876543;
+    bodies.show(PanelTab::source);
+    bodies.double_click(bodies.row(height).value);
+    bodies.tap(ImGuiKey_End);
+    bodies.type("5");
+    bodies.tap(ImGuiKey_Enter);
+    EXPECT_DOUBLE_EQ(bodies.value(height).number(), 0.187655);
+    bodies.document.undo();
+    bodies.frames();
+    bodies.double_click(bodies.row(height).value);
+    bodies.tap(ImGuiKey_Enter);
+    EXPECT_DOUBLE_EQ(bodies.value(height).number(), 0.0) << "what was not changed stays automatic";
+}
+
+TEST_F(PanelRowsTest, BodiesHaveALimitButNoLattice) {
+    PanelDriver bodies(dust_scene(disk));
+    bodies.show(PanelTab::source);
+    d.show(PanelTab::source);
+    EXPECT_TRUE(bodies.has_row(splats));
+    for (const char* key : {"count", "voxels", "jitter", "max_distance", "buffer"}) {
+        EXPECT_FALSE(bodies.has_row(std::string("layer.dust.source.") + key)) << key;
+        EXPECT_TRUE(d.has_row(std::string("layer.dust.source.") + key)) << key;
+    }
+}
+
 // Numbers and values in words, as the side panel shows them; and how far a pixel of dragging goes.
 
 TEST(PanelWords, FiguresAreThreeAtLeastAndFiveAtMost) {

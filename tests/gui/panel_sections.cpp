@@ -281,7 +281,7 @@ TEST(PanelStates, SayWhatALookDoes) {
 std::string zero_of(const std::string& key, const LayerStatus& layer) {
     Shown shown("", layer);
     Context context = shown.context();
-    return zero_in_words(context, find(context, key)->spec);
+    return unset_in_words(context, find(context, key)->spec, Value(0.0));
 }
 
 TEST(PanelStates, ZerosThatAreNoAmountSayWhatIsUsed) {

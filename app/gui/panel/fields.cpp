@@ -184,16 +184,17 @@ void text_field(Context& context, const Row& row, const Rect& area) {
 
 void number_field(Context& context, const Row& row) {
     const ParameterSpec& spec = row.parameter.spec;
-    if (!row.value.is_number()) return text_field(context, row, row.layout.value);
-    BoxContent content = number_content(spec, row.value.number());
+    const std::string words = unset_in_words(context, spec, row.value);
+    if (words.empty() && !row.value.is_number()) return text_field(context, row, row.layout.value);
+    BoxContent content =
+        number_content(spec, words.empty() ? row.value.number() : first_value(context, spec));
     follow_data(context, spec, content);
     content.unit = spec.unit;
-    const std::string words =
-        row.value.number() == 0.0 && !spec.zero.empty() ? zero_in_words(context, spec) : "";
     if (!words.empty()) {
         content.shown = words;
         content.dimmed = true;
-        if (words == spec.zero) content.unit.clear();
+        content.fill = -1.0f;
+        if (words.back() != ')') content.unit.clear();
     }
     const BoxEvent event = value_box(context, "number", row.layout.value, content);
     if (const auto value = changed_value(event, content, spec, spec.type == Type::integer))

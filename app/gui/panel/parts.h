@@ -35,9 +35,13 @@ bool value_field(Context& context, const Row& row);
 /// A drawing above the row of this parameter; none for most.
 void draw_above(Context& context, const ParameterSpec& spec);
 
-/// The word shown in place of 0 where that is no amount, with the value in use where it is known: "Off",
-/// "Auto (0.0165)". Empty: it is an amount.
-std::string zero_in_words(const Context& context, const ParameterSpec& spec);
+/// The word shown in place of a value that is not set, as 0 where that is no amount, with the value in use
+/// where it is known: "Off", "Auto (0.0165)". Empty: it is set.
+std::string unset_in_words(const Context& context, const ParameterSpec& spec, const Value& value);
+
+/// The number that a value that is not set is dragged or typed from: the one in use as the words show it,
+/// else the middle of the slider's range.
+double first_value(const Context& context, const ParameterSpec& spec);
 
 /// The names that a row of colour management offers besides the empty one; none: it is no such row, or they
 /// are not known.
@@ -74,8 +78,8 @@ std::span<const TabSection> tab_sections();
 std::size_t rank_in(const TabSection& section, const ParameterSpec& spec);
 
 /// Whether a parameter makes sense for the selected layer and the view, where that takes more than other
-/// parameters' values to say (ParameterSpec::conditions): those of FITS files, a density that stops replace,
-/// and references of other views.
+/// parameters' values to say (ParameterSpec::conditions): those of FITS files, a lattice where there are
+/// bodies, a density that stops replace, and references of other views.
 bool suits_layer(const Context& context, const ParameterSpec& spec);
 
 // At the end of sections (section_ends.cpp).

@@ -1,4 +1,5 @@
-// The drawings above rows: levels, profiles, a splat, sectors, a noise; and what 0 stands for.
+// The drawings above rows: levels, profiles, a splat, sectors, a noise; and what stands for a value that is
+// not set.
 #include "gui/panel/parts.h"
 
 #include <fmt/format.h>
@@ -7,11 +8,13 @@
 
 #include "core/color.h"
 #include "core/real.h"
+#include "core/text.h"
 #include "edit/edits.h"
 #include "generate/lattice.h"
 #include "look/prepare.h"
 #include "look/shared_look.h"
 #include "render/footprint.h"
+#include "scene/detail_tiles.h"
 
 namespace astrosplat::panel {
 namespace {
@@ -314,24 +317,60 @@ void draw_above(Context& context, const ParameterSpec& spec) {
         found->second(context, spec);
 }
 
-std::string zero_in_words(const Context& context, const ParameterSpec& spec) {
+namespace {
+
+/// What the program takes in place of a value that is not set, where that is known.
+std::optional<double> value_in_use(const Context& context, const ParameterSpec& spec) {
     const ParameterKey& key = spec.generic_key;
     const LayerStatus& status = context.layer_status();
-    double used = 0.0;
-    if (key.is_below("layer.look.radius")) {
+    const auto known = [](double value) { return value > 0.0 ? std::optional(value) : std::nullopt; };
+    if (key == "layer.look.radius.min") return known(status.radius_min);
+    if (key == "layer.look.radius.max") return known(status.radius_max);
+    if (key == "layer.look.reach" || key == "layer.look.vertical.reach") return known(reach_of(context));
+    if (key == "layer.source.seed") return double(resolved_seed(0, context.layer().name));
+    if (key == "layer.source.structure.dust")
+        return context.layer().source.structure.kind == StructureKind::disk ? 0.8 : 0.0;
+    if (key == "camera.file_fps") return context.scene().output.fps;
+    if (status.stale) return std::nullopt;
+    if (key == "layer.source.splats" && has_bodies(context.layer())) return known(double(status.splats));
+    if (key == "layer.source.structure.height") return known(status.body_height);
+    if (key == "layer.source.uv_width") return known(status.uv_width);
+    if (!status.histograms) return std::nullopt;
+    if (key == "layer.source.max_distance") return known(status.histograms->max_distance);
+    if (status.histograms->values.share.empty()) return std::nullopt;
+    if (key == "layer.source.black") return status.histograms->values.black;
+    if (key == "layer.source.white") return status.histograms->values.white;
+    return std::nullopt;
+}
+
+std::string figures_of(const ParameterSpec& spec, double value) {
+    return spec.type == ParameterType::integer ? figures(std::int64_t(value)) : figures(value);
+}
+
+}  // namespace
+
+std::string unset_in_words(const Context& context, const ParameterSpec& spec, const Value& value) {
+    const bool zero = value.is_number() && value.number() == 0.0 && !spec.zero.empty();
+    if (!zero && (value.is_number() || !(value == spec.nothing))) return "";
+    if (spec.generic_key.is_below("layer.look.radius")) {
         const Radius& radius = context.layer().look.radius;
         if (radius.min != 0.0f || radius.max != 0.0f) return "";  // then 0 is a size
-        used = key == "layer.look.radius.min" ? status.radius_min : status.radius_max;
-    } else if (key == "layer.look.reach" || key == "layer.look.vertical.reach") {
-        used = reach_of(context);
-    } else if (key == "layer.source.seed") {
-        return fmt::format("{} ({})", spec.zero, resolved_seed(0, context.layer().name));
-    } else if (!status.stale) {
-        if (key == "layer.source.max_distance" && status.histograms) used = status.histograms->max_distance;
-        if (key == "layer.source.structure.height") used = status.body_height;
-        if (key == "layer.source.uv_width") used = status.uv_width;
     }
-    return used > 0.0 ? fmt::format("{} ({})", spec.zero, figures(used)) : std::string(spec.zero);
+    const std::optional<double> used = value_in_use(context, spec);
+    std::string word(zero ? spec.zero : "Auto");
+    if (used && spec.generic_key == "layer.source.splats") word = "No limit";
+    return used ? fmt::format("{} ({})", word, figures_of(spec, *used)) : word;
+}
+
+double first_value(const Context& context, const ParameterSpec& spec) {
+    if (const std::optional<double> used = value_in_use(context, spec)) {
+        std::string shown = figures_of(spec, *used);
+        std::erase(shown, ' ');
+        return parse_double(shown).value_or(*used);
+    }
+    const bool magnitudes = spec.scale == Scale::logarithmic && spec.slider_min > 0.0;
+    return magnitudes ? std::sqrt(spec.slider_min * spec.slider_max)
+                      : 0.5 * (spec.slider_min + spec.slider_max);
 }
 
 }  // namespace astrosplat::panel

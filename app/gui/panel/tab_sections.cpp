@@ -6,6 +6,7 @@
 #include "edit/view_camera.h"
 #include "gui/panel/parts.h"
 #include "gui/parts.h"
+#include "scene/detail_tiles.h"
 
 namespace astrosplat::panel {
 namespace {
@@ -59,6 +60,19 @@ std::string splats_state(const Context& context) {
 std::string placement_state(const Context& context) {
     const LayerTransform& transform = context.layer().transform;
     return transform == LayerTransform() ? "as it lies" : fmt::format("x {}", figures(transform.scale));
+}
+
+void splats_note(Context& context) {
+    const std::int64_t splats = context.layer_status().splats;
+    if (splats > 0) note("It has " + splat_count(splats) + ".");
+}
+
+/// Of the lattice of test positions, which bodies do without.
+bool is_of_lattice(const ParameterKey& key) {
+    static constexpr const char* keys[] = {"buffer", "voxels", "voxel_size",
+                                           "count",  "jitter", "max_distance"};
+    return std::ranges::any_of(keys,
+                               [&](const char* own) { return key == ParameterKey("layer.source") / own; });
 }
 
 /// Of a set that is still growing the preview knows too little.
@@ -160,7 +174,9 @@ const TabSection sections[] = {
      "Splats",
      unfolded,
      splats_state,
-     {"layer.source.count", "layer.source.max_distance", "layer.source.voxels", "layer.source.voxel_size"}},
+     {"layer.source.count", "layer.source.splats", "layer.source.max_distance", "layer.source.voxels",
+      "layer.source.voxel_size"},
+     splats_note},
     {"Source", "Placement", nullptr, placement_state, {"layer.transform"}, placement_buttons},
     {"Source", "Layer", nullptr, [](const Context& c) -> std::string { return c.layer().name; }},
     {"Look", "Density with distance", unfolded, kept_state, {"layer.look.pdf"}, kept_note},
@@ -225,6 +241,7 @@ bool suits_layer(const Context& context, const ParameterSpec& spec) {
         return is_fits(context);
     if (spec.generic_key == "layer.source.softening")
         return is_fits(context) || context.layer().source.texture.stretch == TextureSettings::Stretch::asinh;
+    if (is_of_lattice(spec.generic_key)) return !has_bodies(context.layer());
     return suits_colors(context, spec);
 }
 
