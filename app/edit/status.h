@@ -64,11 +64,14 @@ struct ViewFrameStatus {
 
 /// How true the view from the front is to the picture that the splats were made of.
 struct FrontStatus {
-    bool changed_by_look = false;  // then it is not meant to be, and is compared only where that is asked for
+    /// What of the look differs from what shows a picture as it is: "gain, saturation"; not empty: then it is
+    /// not meant to be true, and is compared only where that is asked for.
+    std::string changed_by;
     bool working = false;
     bool measured = false;
+    bool matches = false;  // meets the targets of fidelity/front.h
     double psnr_db = 0.0, ssim = 0.0;
-    double light = 1.0;  // over the picture's
+    double light = 1.0;  // over the picture's; NaN: that has none
     std::string error;   // why there is nothing to compare with, one line
 };
 
@@ -94,7 +97,7 @@ struct ReferenceStatus {
 struct DifferenceStatus {
     double mean = 0.0;     // of display values, 0..1
     double psnr_db = 0.0;  // infinite where both are the same
-    double light = 1.0;    // linear light of the view over the other's
+    double light = 1.0;    // linear light of the view over the other's; not finite: that has none
 };
 
 /// The configuration of OpenColorIO that the scene or the environment names.

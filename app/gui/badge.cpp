@@ -8,7 +8,8 @@
 namespace astrosplat {
 namespace {
 
-constexpr float badge_height = 26, badge_inset = 12, padding = 10, dot_radius = 4, word_gap = 8;
+constexpr float badge_height = 26, badge_inset = 12, padding = 10, dot_radius = 4, word_gap = 8,
+                tick_room = 16;
 
 /// Index of the first; that of none where none is.
 std::size_t loading_layer(const Status& status) {
@@ -61,6 +62,11 @@ std::string signed_percent(double share) {
     return fmt::format("{:+.1f} %", std::round(share * 1000.0) / 10.0 + 0.0);
 }
 
+/// Of light over that of what it is compared with.
+std::string light_text(double ratio) {
+    return std::isfinite(ratio) ? "light " + signed_percent(ratio - 1.0) : "no light to compare with";
+}
+
 /// The plate under a badge, at the bottom of the viewport.
 Rect draw_plate(const Rect& viewport, float x, float width) {
     const Rect plate{x, viewport.end().y - px(badge_inset) - px(badge_height), width, px(badge_height)};
@@ -73,10 +79,9 @@ bool is_hovered(const Rect& plate) { return ImGui::IsMouseHoveringRect(plate.cor
 float text_y(const Rect& plate) { return plate.y + std::floor((plate.height - ImGui::GetFontSize()) * 0.5f); }
 
 struct SideBadge {
-    std::string text;
-    const char* tooltip;
+    std::string text, tooltip;
     ImU32 color;
-    bool may_be_cut = false;
+    bool may_be_cut = false, tick = false;
 };
 
 std::optional<SideBadge> side_badge(const Status& status) {
@@ -88,11 +93,12 @@ std::optional<SideBadge> side_badge(const Status& status) {
             color::text};
     if (!status.front) return std::nullopt;
     const FrontStatus& front = *status.front;
-    return SideBadge{
-        front_text(front),
-        front.changed_by_look ? "The look or the mixing differs from what shows a picture as it is"
-                              : "The view from the front against its picture; D shows where they differ",
-        front.measured && !front.changed_by_look ? color::text : color::dim, !front.error.empty()};
+    const bool changed = !front.changed_by.empty();
+    std::string why = changed ? "The look or the mixing differs from what shows a picture as it is"
+                              : "The view from the front against its picture; D shows where they differ";
+    if (front.measured) why = front_figures(front) + "\n" + why;
+    return SideBadge{front_text(front), why, front.measured && !changed ? color::text : color::dim,
+                     changed || !front.error.empty(), front.measured && front.matches && !changed};
 }
 
 }  // namespace
@@ -166,33 +172,40 @@ float draw_badge(GuiFrame& frame, const Rect& area) {
 }
 
 std::string front_text(const FrontStatus& front) {
-    if (front.measured) {
-        return fmt::format("Front {:.1f} dB, SSIM {:.3f}, light {}", front.psnr_db, front.ssim,
-                           signed_percent(front.light - 1.0));
-    }
     if (!front.error.empty()) return "Front cannot be compared: " + front.error;
-    if (front.working) return "Comparing the front";
-    return front.changed_by_look ? "Front changed by look" : "";
+    if (!front.changed_by.empty()) return "Front changed by look: " + front.changed_by;
+    if (!front.measured) return front.working ? "Comparing the front" : "";
+    if (std::isnan(front.light)) return "The picture has no light to compare with";
+    return front.matches ? "Matches the picture" : "Differs from the picture";
+}
+
+std::string front_figures(const FrontStatus& front) {
+    return fmt::format("Front {:.1f} dB, SSIM {:.3f}, {}", front.psnr_db, front.ssim,
+                       light_text(front.light));
 }
 
 std::string difference_text(const DifferenceStatus& difference) {
     const std::string psnr =
         std::isinf(difference.psnr_db) ? "the same" : fmt::format("{:.1f} dB", difference.psnr_db);
-    return fmt::format("Mean {}, {}, light {}", signed_percent(difference.mean), psnr,
-                       signed_percent(difference.light - 1.0));
+    return fmt::format("Mean {}, {}, {}", signed_percent(difference.mean), psnr,
+                       light_text(difference.light));
 }
 
 void draw_side_badge(GuiFrame& frame, const Rect& area, float left) {
     const std::optional<SideBadge> badge = side_badge(frame.status);
     if (!badge || badge->text.empty()) return;
     ImGui::PushFont(small_font());
-    const float x = left + px(word_gap), room = area.end().x - px(badge_inset) - x - 2 * px(padding);
+    const float x = left + px(word_gap), before = px(padding) + (badge->tick ? px(tick_room) : 0.0f);
+    const float room = area.end().x - px(badge_inset) - x - before - px(padding);
     const std::string text = badge->may_be_cut ? fitting(badge->text, room) : badge->text;
-    const float width = ImGui::CalcTextSize(text.c_str()).x + 2 * px(padding);
-    if (width <= room + 2 * px(padding)) {
-        const Rect plate = draw_plate(area, x, width);
-        draw_text({x + px(padding), text_y(plate)}, badge->color, text);
-        if (is_hovered(plate)) ImGui::SetTooltip("%s\n%s", badge->text.c_str(), badge->tooltip);
+    const float width = ImGui::CalcTextSize(text.c_str()).x;
+    if (width <= room) {
+        const Rect plate = draw_plate(area, x, before + width + px(padding));
+        if (badge->tick)
+            draw_icon(ImGui::GetWindowDrawList(), Icon::tick, {x + px(padding) + px(5), plate.middle().y},
+                      px(10), color::good);
+        draw_text({x + before, text_y(plate)}, badge->color, text);
+        if (is_hovered(plate)) ImGui::SetTooltip("%s\n%s", badge->text.c_str(), badge->tooltip.c_str());
     }
     ImGui::PopFont();
 }

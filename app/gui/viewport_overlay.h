@@ -42,8 +42,10 @@ struct BadgeText {
     unsigned color;  // ImU32
 };
 BadgeText badge_text(const Scene& scene, const Status& status);
-/// "Front 39.6 dB, SSIM 0.976, light +0.3 %".
+/// "Matches the picture", "Front changed by look: gain".
 std::string front_text(const FrontStatus& front);
+/// "Front 39.6 dB, SSIM 0.976, light +0.3 %".
+std::string front_figures(const FrontStatus& front);
 /// "Mean +0.4 %, 31.2 dB, light -3.0 %".
 std::string difference_text(const DifferenceStatus& difference);
 

@@ -434,11 +434,13 @@ void dots(const Pen& pen) {
         pen.list->AddCircleFilled(pen.at(x, 0), 0.18f * pen.half, pen.color);
 }
 
+void tick(const Pen& pen) { pen.path({{-0.75f, 0.05f}, {-0.2f, 0.6f}, {0.75f, -0.55f}}, false); }
+
 using Draw = void (*)(const Pen&);
-constexpr Draw drawings[] = {eye,           eye_closed,   diamond,    diamond_empty, play,  pause,
-                             chevron_right, chevron_down, chevron_up, plus,          cross, ring,
-                             ring_cut,      curve,        warning,    folder,        file,  dots};
-static_assert(std::size(drawings) == static_cast<std::size_t>(Icon::dots) + 1);
+constexpr Draw drawings[] = {eye,          eye_closed, diamond, diamond_empty, play, pause,    chevron_right,
+                             chevron_down, chevron_up, plus,    cross,         ring, ring_cut, curve,
+                             warning,      folder,     file,    dots,          tick};
+static_assert(std::size(drawings) == static_cast<std::size_t>(Icon::tick) + 1);
 
 }  // namespace
 

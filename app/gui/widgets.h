@@ -161,7 +161,8 @@ enum class Icon {
     warning,
     folder,
     file,
-    dots
+    dots,
+    tick
 };
 
 /// Draws an icon in a square of `size` px around `center`.

@@ -1,14 +1,18 @@
 #include "viewer/comparison.h"
 
+#include <fmt/format.h>
+
 #include <iterator>
 
 #include "core/color.h"
 #include "core/error.h"
 #include "core/parallel.h"
+#include "core/text.h"
 #include "fidelity/display.h"
 #include "image/resample.h"
 #include "measure_fidelity.h"
 #include "scene/animate.h"
+#include "scene/describe.h"
 #include "source/prepared_picture.h"
 #include "source/texture.h"
 #include "source/write_image.h"
@@ -75,12 +79,29 @@ bool has_front_picture(const Scene& now) {
         now.layers, [](const LayerParams& layer) { return layer.visible && shows_a_picture(layer.source); });
 }
 
-bool front_changed_by_look(const Scene& now) {
-    return std::ranges::any_of(now.layers, [](const LayerParams& layer) {
-        LayerRender render = layer.render;
-        render.lod = {};
-        return layer.visible && !(layer.look == Look{} && render == LayerRender{});
-    });
+std::string front_changed_by(const Scene& now) {
+    constexpr std::size_t most = 3;
+    std::vector<std::string> changes;
+    for (LayerParams layer : now.layers) {
+        Look look;
+        LayerRender render;
+        render.lod = layer.render.lod;
+        if (!layer.visible || (layer.look == look && layer.render == render)) continue;
+        const Description usual = describe_preset(look, render),
+                          own = describe_preset(layer.look, layer.render);
+        for (const Parameter& parameter : own.parameters) {
+            const Parameter* const standard = find_parameter(usual, parameter.spec.key);
+            if (standard && standard->get() == parameter.get()) continue;
+            const std::string what =
+                lower_case(standard ? parameter.spec.label : std::string(parameter.spec.section));
+            if (std::ranges::find(changes, what) == changes.end()) changes.push_back(what);
+        }
+    }
+    const std::size_t named = std::min(changes.size(), most);
+    std::string text =
+        fmt::format("{}", fmt::join(changes.begin(), changes.begin() + std::ptrdiff_t(named), ", "));
+    if (changes.size() > named) text += fmt::format(" and {} more", changes.size() - named);
+    return text;
 }
 
 FrontCheck::Work front_check(std::int64_t width_px, const SetCache& cache) {

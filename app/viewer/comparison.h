@@ -33,9 +33,9 @@ FrontRequest front_request(Scene now, std::vector<std::shared_ptr<const SplatSet
 
 /// A visible layer has a picture that the front view can be compared with.
 bool has_front_picture(const Scene& now);
-/// A visible layer's look or render settings are not the default ones, which show a picture as it is. Level
-/// of detail does not count.
-bool front_changed_by_look(const Scene& now);
+/// What of the visible layers' look and render settings is not as by default, which shows a picture as it is:
+/// "gain, saturation". Level of detail does not count. Empty: nothing.
+std::string front_changed_by(const Scene& now);
 
 struct FrontFound {
     FrontFidelity fidelity;

@@ -85,8 +85,8 @@ std::shared_ptr<const FrontFound> check_front(Session& session, const Scene& now
         session.front.forget();  // it would keep the sets of scenes that are closed
     if (session.viewport_is_frame || !has_front_picture(now) || !(at_rest || shown)) return {};
     status.emplace();
-    status->changed_by_look = front_changed_by_look(now);
-    if (status->changed_by_look && !shown) return {};
+    status->changed_by = front_changed_by(now);
+    if (!status->changed_by.empty() && !shown) return {};
     const FrontRequest request = front_request(now, sets_of(session, now), session.disk.changes());
     if (at_rest) session.front.want(request);
     const std::shared_ptr<const FrontFound> found = session.front.found(request);
@@ -95,6 +95,7 @@ std::shared_ptr<const FrontFound> check_front(Session& session, const Scene& now
     status->error = found->error;
     if (!found->error.empty()) return {};
     status->measured = true;
+    status->matches = meets(found->fidelity, small_targets);
     status->psnr_db = found->fidelity.psnr_db;
     status->ssim = found->fidelity.ssim;
     status->light = found->fidelity.flux.frame;

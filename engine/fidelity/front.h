@@ -3,6 +3,8 @@
 // Out: numbers.
 #pragma once
 
+#include <cmath>
+
 #include "core/image.h"
 #include "fidelity/display.h"
 
@@ -50,6 +52,18 @@ struct FrontFidelity {
     ColorDifferences ciede2000;
     std::vector<ScalePower> power;
 };
+
+/// Targets for the front view of a good film of a galaxy or a nebula.
+struct FrontTargets {
+    double psnr_db, ssim;
+};
+inline constexpr FrontTargets small_targets{39.0, 0.98};  // at 1280 px
+inline constexpr double most_light_off = 0.005;           // of the light of the whole frame
+
+inline bool meets(const FrontFidelity& front, const FrontTargets& targets) {
+    return front.psnr_db >= targets.psnr_db && front.ssim >= targets.ssim &&
+           std::fabs(front.flux.frame - 1.0) <= most_light_off;
+}
 
 /// `border`: share of the width that is left out along every edge, 0 to below 1/2.
 FrontFidelity front_fidelity(const Image& rendered, const Image& reference, double border = 0.0);

@@ -261,7 +261,7 @@ TEST(PanelReferences, AnglesOfAHybridLayer) {
 TEST(IconReferences, Sheet) {
     TestWindow window(example_document(), 480, 320);
     ImGui::NewFrame();
-    for (int i = 0; i <= int(Icon::dots); ++i) {
+    for (int i = 0; i <= int(Icon::tick); ++i) {
         const ImVec2 center{40.0f + 80.0f * float(i % 6), 40.0f + 80.0f * float(i / 6)};
         draw_icon(ImGui::GetForegroundDrawList(), static_cast<Icon>(i), center, 64.0f, color::text);
     }

@@ -209,6 +209,8 @@ TEST_F(ViewportTest, TheDifferenceIsSaidInNumbers) {
     EXPECT_EQ(difference_text({0.0041, 31.24, 0.9699}), "Mean +0.4 %, 31.2 dB, light -3.0 %");
     EXPECT_EQ(difference_text({-0.0, std::numeric_limits<double>::infinity(), 1.0}),
               "Mean +0.0 %, the same, light +0.0 %");
+    EXPECT_EQ(difference_text({0.5, 3.0, std::numeric_limits<double>::infinity()}),
+              "Mean +50.0 %, 3.0 dB, no light to compare with");
 }
 
 TEST_F(ViewportTest, OneToOneZoomsAboutTheMouseAndMoves) {
@@ -272,15 +274,22 @@ TEST_F(ViewportTest, TheFrontIsMeasuredBesideTheBadge) {
     front.working = true;
     EXPECT_EQ(front_text(front), "Comparing the front");
     front.working = false;
-    front.changed_by_look = true;
-    EXPECT_EQ(front_text(front), "Front changed by look");
+    front.changed_by = "gain, saturation";
+    EXPECT_EQ(front_text(front), "Front changed by look: gain, saturation");
+    front.changed_by.clear();
     front.measured = true;
     front.psnr_db = 39.62;
     front.ssim = 0.9756;
     front.light = 0.9969;
-    EXPECT_EQ(front_text(front), "Front 39.6 dB, SSIM 0.976, light -0.3 %");
+    EXPECT_EQ(front_text(front), "Differs from the picture");
+    front.matches = true;
+    EXPECT_EQ(front_text(front), "Matches the picture");
+    EXPECT_EQ(front_figures(front), "Front 39.6 dB, SSIM 0.976, light -0.3 %");
     front.light = 0.99996;
-    EXPECT_EQ(front_text(front), "Front 39.6 dB, SSIM 0.976, light +0.0 %");
+    EXPECT_EQ(front_figures(front), "Front 39.6 dB, SSIM 0.976, light +0.0 %");
+    front.light = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_EQ(front_text(front), "The picture has no light to compare with");
+    EXPECT_EQ(front_figures(front), "Front 39.6 dB, SSIM 0.976, no light to compare with");
     front = {};
     front.error = "no picture";
     EXPECT_EQ(front_text(front), "Front cannot be compared: no picture");

@@ -336,15 +336,20 @@ TEST_F(FrontCheckTest, KnowsLooksThatChangeTheFront) {
     scene.layers[0].render = {};
     scene.layers[0].render.lod.max_px = 60.0f;
     EXPECT_TRUE(has_front_picture(scene));
-    EXPECT_FALSE(front_changed_by_look(scene));
-    scene.layers[0].look.alpha.power = 2.0f;
-    EXPECT_TRUE(front_changed_by_look(scene));
+    EXPECT_EQ(front_changed_by(scene), "");
+    scene.layers[0].look.grade.gain = 2.0f;
+    scene.layers[0].look.grade.saturation = 0.0f;
+    EXPECT_EQ(front_changed_by(scene), "colour gain, saturation");
+    scene.layers[0].look.noise.resize(2);
+    EXPECT_EQ(front_changed_by(scene), "noise, colour gain, saturation");
+    scene.layers[0].render.opacity = 0.5f;
+    EXPECT_EQ(front_changed_by(scene), "noise, colour gain, saturation and 1 more");
     scene.layers[0].visible = false;
-    EXPECT_FALSE(front_changed_by_look(scene));
+    EXPECT_EQ(front_changed_by(scene), "");
     EXPECT_FALSE(has_front_picture(scene));
     scene.layers[0] = LayerParams{};
     scene.layers[0].render.blend = Blend::add;
-    EXPECT_TRUE(front_changed_by_look(scene));
+    EXPECT_EQ(front_changed_by(scene), "blend");
     scene.layers[0].source.kind = SourceKind::splats;
     EXPECT_FALSE(has_front_picture(scene));
 }
