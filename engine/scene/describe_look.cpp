@@ -115,7 +115,7 @@ void describe_grade(const Describer& d, Grade& g) {
 
 void describe_look(const Describer& d, Look& look) {
     const auto section = [&](const char* title) { return d.shown_in("Look", title); };
-    const Describer density = section("Density with distance"), thickness = section("Thickness map");
+    const Describer density = section("With distance"), thickness = section("Thickness map");
     density(look.density, "density", "Density", "", "Share of the positions that become splats.",
             within(0, 1e6), slider(0, 1));
     density(look.reach, "reach", "Reach", "scene units",
@@ -131,7 +131,7 @@ void describe_look(const Describer& d, Look& look) {
     section("Noise").list("noise", look.noise, describe_noise);
     section("Crop").list("crop", look.crop, describe_crop);
     describe_alpha(section("Opacity at soft edges").in("alpha", true), look.alpha);
-    describe_vertical(section("Opacity with distance").in("vertical", true), look.vertical);
+    describe_vertical(density.in("vertical", true), look.vertical);
     describe_radius(section("Size").in("radius", true), look.radius);
     describe_grade(section("Colour").in("grade", true), look.grade);
 }

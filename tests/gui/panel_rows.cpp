@@ -328,6 +328,24 @@ TEST_F(PanelRowsTest, AValueThatIsNotSetIsTypedFromWhatItShows) {
     EXPECT_DOUBLE_EQ(bodies.value(height).number(), 0.0) << "what was not changed stays automatic";
 }
 
+TEST_F(PanelRowsTest, WhatAPictureNeedsComesFirstAndItsMeshLast) {
+    PanelDriver bodies(dust_scene(disk));
+    const auto order = [](PanelDriver& driver, PanelTab tab, std::vector<std::string> keys) {
+        driver.show(tab);
+        for (std::size_t i = 1; i < keys.size(); ++i)
+            EXPECT_LT(driver.row("layer.dust." + keys[i - 1]).label.y,
+                      driver.row("layer.dust." + keys[i]).label.y)
+                << keys[i];
+    };
+    order(bodies, PanelTab::source,
+          {"source.structure.kind", "source.black", "source.splats", "source.derive", "name", "source.kind"});
+    order(d, PanelTab::source,
+          {"source.kind", "source.black", "source.structure.kind", "source.count", "name"});
+    order(bodies, PanelTab::look, {"look.grade.gain", "look.alpha.power", "look.pdf.shape"});
+    order(d, PanelTab::look,
+          {"look.pdf.shape", "look.density", "look.vertical.shape", "look.alpha.power", "look.grade.gain"});
+}
+
 TEST_F(PanelRowsTest, BodiesHaveALimitButNoLattice) {
     PanelDriver bodies(dust_scene(disk));
     bodies.show(PanelTab::source);

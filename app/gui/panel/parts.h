@@ -74,6 +74,13 @@ struct TabSection {
 /// In the order of the tabs.
 std::span<const TabSection> tab_sections();
 
+/// The place of a section in its tab for the selected layer: of bodies, what a picture needs comes first and
+/// what its files are made of last. Smaller ones come first, equal ones as in tab_sections().
+int order_of(const Context& context, const TabSection& section);
+
+/// The words at its head: the files of bodies are "More".
+const char* head_of(const Context& context, const TabSection& section);
+
 /// The place of a row in its section: smaller ones come first, equal ones as described.
 std::size_t rank_in(const TabSection& section, const ParameterSpec& spec);
 

@@ -260,6 +260,7 @@ void density_plot(Context& context, const ParameterSpec& spec, const DensityCurv
 }
 
 void density_sketch(Context& context, const ParameterSpec& spec) {
+    note("Density with distance");
     density_plot(context, spec, context.layer().look.pdf, reach_of(context));
 }
 
@@ -293,6 +294,7 @@ void alpha_sketch(Context& context, const ParameterSpec&) {
 }
 
 void vertical_sketch(Context& context, const ParameterSpec& spec) {
+    note("Opacity with distance");
     const VerticalAlpha& vertical = context.layer().look.vertical;
     if (vertical.shape == VerticalAlpha::Shape::none) return;
     const double reach = vertical.reach > 0.0f ? widen(vertical.reach) : reach_of(context);

@@ -228,7 +228,7 @@ void draw_lists(Context& context, const TabSection& about, const ParameterKey& a
 }
 
 void draw_section(Context& context, const TabSection& about, Rows rows, const Rows& tab_rows) {
-    if (!section(context, about.title.c_str(), about.state ? about.state(context) : "",
+    if (!section(context, head_of(context, about), about.state ? about.state(context) : "",
                  about.is_open && about.is_open(context)))
         return;
     const auto rank = [&](const Parameter* row) { return rank_in(about, row->spec); };
@@ -264,6 +264,7 @@ void draw_tab(Context& context, std::string_view name) {
         if (std::none_of(sections.begin(), sections.end(), is_its))
             sections.push_back({name, std::string(row->spec.section)});
     }
+    std::ranges::stable_sort(sections, {}, [&](const TabSection& s) { return order_of(context, s); });
     for (const TabSection& section : sections) draw_section(context, section, rows);
 }
 

@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <map>
+
 #include "core/file_format.h"
 #include "core/text.h"
 #include "edit/edits.h"
@@ -92,9 +94,9 @@ std::string alpha_state(const Context& context) {
     return alpha == HorizontalAlpha() ? "off" : "power " + short_number(widen(alpha.power));
 }
 
-std::string vertical_state(const Context& context) {
+std::string distance_state(const Context& context) {
     static constexpr char shape[] = "look.vertical.shape";
-    if (context.layer().look.vertical.shape == VerticalAlpha::Shape::none) return "off";
+    if (context.layer().look.vertical.shape == VerticalAlpha::Shape::none) return kept_state(context);
     return value_of<shape>(context);
 }
 
@@ -158,7 +160,7 @@ std::string format_state(const Context& context) {
 }
 
 const TabSection sections[] = {
-    {"Source", "Files", unfolded, files_state},
+    {"Source", "Files", [](const Context& c) { return !has_bodies(c.layer()); }, files_state},
     {"Source", "Star image", unfolded,
      [](const Context& c) { return fmt::format("{:.3g} px", c.layer().source.stars.psf); }},
     {"Source",
@@ -179,18 +181,22 @@ const TabSection sections[] = {
      splats_note},
     {"Source", "Placement", nullptr, placement_state, {"layer.transform"}, placement_buttons},
     {"Source", "Layer", nullptr, [](const Context& c) -> std::string { return c.layer().name; }},
-    {"Look", "Density with distance", unfolded, kept_state, {"layer.look.pdf"}, kept_note},
+    {"Look",
+     "With distance",
+     [](const Context& c) { return !has_bodies(c.layer()); },
+     distance_state,
+     {"layer.look.pdf", "layer.look.density", "layer.look.reach"},
+     kept_note},
     {"Look",
      "Opacity at soft edges",
      unfolded,
      alpha_state,
      {"layer.look.alpha.power", "layer.look.alpha.threshold", "layer.look.alpha.gain"}},
-    {"Look", "Opacity with distance", nullptr, vertical_state},
     {"Look", "Size", unfolded, size_state},
     {"Look", "Noise", nullptr, length_of<&Look::noise>},
     {"Look", "Thickness map", nullptr, thickness_state},
     {"Look", "Crop", nullptr, length_of<&Look::crop>, {}, crop_buttons},
-    {"Look", "Colour", nullptr, color_state},
+    {"Look", "Colour", [](const Context& c) { return has_bodies(c.layer()); }, color_state},
     {"Look",
      "Whole look",
      nullptr,
@@ -225,6 +231,19 @@ bool covers(const ParameterKey& group, const ParameterSpec& spec) {
 }  // namespace
 
 std::span<const TabSection> tab_sections() { return sections; }
+
+int order_of(const Context& context, const TabSection& section) {
+    static const std::map<std::string, int> of_bodies{{"Structure", -2},    {"Colour", -2},
+                                                      {"Picture", -1},      {"Splats", -1},
+                                                      {"With distance", 1}, {"Files", 1}};
+    const bool bodies = !context.scene().layers.empty() && has_bodies(context.layer());
+    const auto found = of_bodies.find(section.title);
+    return bodies && found != of_bodies.end() ? found->second : 0;
+}
+
+const char* head_of(const Context& context, const TabSection& section) {
+    return section.title == "Files" && has_bodies(context.layer()) ? "More" : section.title.c_str();
+}
 
 std::size_t rank_in(const TabSection& section, const ParameterSpec& spec) {
     const auto found =
