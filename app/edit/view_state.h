@@ -12,6 +12,7 @@
 #include "edit/command_lines.h"
 #include "edit/settings.h"
 #include "edit/status.h"
+#include "objects/identify.h"
 #include "scene/scene.h"
 
 namespace astrosplat {
@@ -59,6 +60,20 @@ struct PanelSizes {
     std::vector<fs::path> recent_folders;  // that files were chosen in, newest first
     std::vector<KeptRender> renders;       // newest first
     bool operator==(const PanelSizes&) const = default;
+};
+
+/// What a picture that was opened was taken for, and how else its scene can be made.
+struct PictureStart {
+    fs::path picture;
+    std::optional<SkyObject> as = {};  // as a person says; none: as was found
+    bool film = false;                 // with a camera move of ten seconds
+    bool parted = false;               // its stars are a layer of their own
+
+    // Filled when the scene is made:
+    SkyObject object = SkyObject::galaxy;
+    std::vector<ObjectGuess> guesses = {};  // of what was found, the likeliest first
+    std::string seen = {};                  // "seen at 62 degrees"; may be empty
+    std::string because = {};
 };
 
 struct ViewState : PanelSizes {
@@ -122,6 +137,7 @@ struct ViewState : PanelSizes {
     bool changed_on_disk = false;  // the line that offers Reload or Keep is shown
     std::string grey_layer;        // whose mesh has no picture: the line that offers to choose one is shown
     std::vector<ListedPicture> listed_pictures;  // rows of the file dialog that are seen; set every frame
+    std::optional<PictureStart> start;           // the card over the view; gone with the first edit
     bool hint_open = false;  // "Drop a picture, mesh or splat file here. F1 shows the keys."
 };
 
@@ -145,6 +161,8 @@ inline void show_reference(ViewState& view) {
 struct Command {
     enum class Kind {
         new_from_file,  // path: picture, mesh or splats become an untitled scene
+        start_again,    // text: a kind of object, "film", "still", "part" or "keep": ViewState::start's
+                        // otherwise
         new_scene,      // text: a built-in shape; empty: a scene without layers
         open,           // path: a scene
         open_demo,

@@ -1,5 +1,6 @@
-// Cards: the jobs of the queue at the left, the newest last, with the finished frames of the chosen one at
-// the right; and a row of snapshots that scrolls sideways, with the button that takes another.
+// Cards: what a picture was taken for, over the frame; the jobs of the queue at the left, the newest last,
+// with the finished frames of the chosen one at the right; and a row of snapshots that scrolls sideways, with
+// the button that takes another.
 #include <fmt/format.h>
 #include <imgui.h>
 #include <imgui_stdlib.h>
@@ -151,6 +152,122 @@ void draw_queue(GuiFrame& frame) {
     if (button == 0 && chosen) request_path(frame, Command::Kind::open_folder, chosen->target.parent_path());
     if (button == 1) open = frame.view.queue_playing = false;
     end_dialog(!open);
+}
+
+namespace {
+
+constexpr float start_width = 430, start_inset = 12, start_padding = 12;
+
+/// Of a SkyObject: after "Taken for", and on a button.
+struct ObjectWords {
+    const char *with_article, *button;
+};
+constexpr ObjectWords object_words[] = {{"a galaxy", "Galaxy"},
+                                        {"an elliptical galaxy", "Elliptical galaxy"},
+                                        {"a nebula", "Nebula"},
+                                        {"a planetary nebula", "Planetary nebula"},
+                                        {"a supernova remnant", "Supernova remnant"},
+                                        {"a field of stars or galaxies", "Field of stars or galaxies"},
+                                        {"a globular cluster", "Globular cluster"},
+                                        {"something flat", "Flat, as a comet"}};
+static_assert(std::size(object_words) == sky_object_count);
+
+const ObjectWords& kind_words(SkyObject object) { return object_words[static_cast<std::size_t>(object)]; }
+
+double share_of(const PictureStart& start, SkyObject object) {
+    const auto guess = std::ranges::find(start.guesses, object, &ObjectGuess::object);
+    return guess == start.guesses.end() ? 0.0 : guess->sure;
+}
+
+/// Beside the last one where there is room, else in a new line.
+bool start_button(GuiFrame& frame, const char* name, const std::string& label, bool chosen,
+                  const char* hint) {
+    const float width = ImGui::CalcTextSize(label.c_str()).x + 2 * px(8);
+    ImGui::SameLine(0, px(6));
+    if (ImGui::GetContentRegionAvail().x < width) ImGui::NewLine();
+    if (chosen) ImGui::PushStyleColor(ImGuiCol_Button, color4(color::selection));
+    const bool clicked = ImGui::Button(label.c_str(), {width, px(24)});
+    if (chosen) ImGui::PopStyleColor();
+    tooltip(hint);
+    note_item(frame, std::string("start/") + name);
+    return clicked && !chosen;
+}
+
+void start_head(GuiFrame& frame, const PictureStart& start, float right) {
+    const double sure = share_of(start, start.object);
+    std::string title = std::string("Taken for ") + kind_words(start.object).with_article;
+    if (!start.as && sure < 0.9) title += fmt::format(" ({:.0f} %)", 100.0 * sure);
+    if (!start.seen.empty()) title += ", " + start.seen;
+    const ImVec2 corner = ImGui::GetCursorScreenPos();
+    ImGui::TextUnformatted(title.c_str());
+    const ImVec2 below = ImGui::GetCursorScreenPos();
+    ImGui::SetCursorScreenPos({right - px(22), corner.y - px(3)});
+    const bool closed = icon_button("close", Icon::cross, {px(22), px(22)}, px(9), color::dim, "Close");
+    note_item(frame, "start/close");
+    ImGui::SetCursorScreenPos(below);
+    ImGui::PushFont(small_font());
+    ImGui::PushTextWrapPos(ImGui::GetCursorPosX() + right - px(12) - below.x);
+    ImGui::TextColored(color4(color::dim), "because %s", start.because.c_str());
+    ImGui::PopTextWrapPos();
+    ImGui::PopFont();
+    if (closed) frame.view.start.reset();
+}
+
+/// What else it may be, the likeliest first.
+void start_kinds(GuiFrame& frame, const PictureStart& start) {
+    std::vector<SkyObject> objects;
+    for (std::size_t i = 0; i < std::size(object_words); ++i) objects.push_back(static_cast<SkyObject>(i));
+    std::ranges::stable_sort(objects, std::ranges::greater(),
+                             [&](SkyObject object) { return share_of(start, object); });
+    row_text("Or is it", px(24), color::dim);
+    for (const SkyObject object : objects) {
+        if (object == start.object) continue;
+        const ObjectWords& words = kind_words(object);
+        const double share = share_of(start, object);
+        const std::string label =
+            share > 0.0 ? fmt::format("{} {:.0f} %", words.button, 100.0 * share) : words.button;
+        if (start_button(frame, words.button, label, false, "Makes the scene again as that"))
+            request_text(frame, Command::Kind::start_again, std::string(name_of(object)));
+    }
+}
+
+void start_choices(GuiFrame& frame, const PictureStart& start) {
+    row_text("Stars", px(24), color::dim);
+    if (start_button(frame, "Keep", "Keep", !start.parted, "They are dots in the depth of the picture"))
+        request_text(frame, Command::Kind::start_again, "keep");
+    if (start_button(frame, "Part", "Part", start.parted,
+                     "They become a layer of their own, and a table beside the picture"))
+        request_text(frame, Command::Kind::start_again, "part");
+    const bool film = start.film;
+    if (start_button(frame, "Make a film", film ? "No film" : "Make a film", false,
+                     film ? "Without the camera's move"
+                          : "A camera move of ten seconds, with detail where it comes close"))
+        request_text(frame, Command::Kind::start_again, film ? "still" : "film");
+}
+
+}  // namespace
+
+void draw_start_card(GuiFrame& frame, const Rect& viewport) {
+    std::optional<PictureStart>& start = frame.view.start;
+    if (start && frame.document.edited()) start.reset();
+    const float width = std::min(px(start_width), viewport.width - 2 * px(start_inset));
+    if (!start || width < px(200)) return;
+    float& height = *ImGui::GetStateStorage()->GetFloatRef(ImGui::GetID("start card"), px(190));
+    ImGui::SetCursorScreenPos({viewport.x + px(start_inset), viewport.y + px(start_inset)});
+    const PictureStart shown = *start;
+    ImGui::PushStyleColor(ImGuiCol_ChildBg, color4(color::with_opacity(color::window, 0.92f)));
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(px(start_padding), px(start_padding)));
+    ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(px(6), px(6)));
+    ImGui::BeginChild("start card", {width, height}, false,
+                      ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse |
+                          ImGuiWindowFlags_AlwaysUseWindowPadding);
+    start_head(frame, shown, ImGui::GetWindowPos().x + width - px(start_padding) + px(4));
+    start_kinds(frame, shown);
+    start_choices(frame, shown);
+    height = ImGui::GetCursorPosY() - px(6) + px(start_padding);
+    ImGui::EndChild();
+    ImGui::PopStyleVar(2);
+    ImGui::PopStyleColor();
 }
 
 namespace {

@@ -180,6 +180,7 @@ void Viewport::draw(GuiFrame& frame, const Rect& area) {
     draw_scale_bar(frame, area, frame_area);
     draw_side_badge(frame, area, draw_badge(frame, area));
     ImGui::PopClipRect();
+    draw_start_card(frame, area);
 }
 
 }  // namespace astrosplat

@@ -290,6 +290,7 @@ void take(const ScreenshotOptions& options, const GlInfo& gl) {
     if (options.frame) session.view.frame = parse_frame(*options.frame);
     session.view.settle = options.settled;
     session.view.hint_open = false;
+    session.view.start.reset();
     prepare_screenshot(session, options.ui);
     options.ui ? take_window(options, size, session) : take_viewport(options, size, exr, session);
 }

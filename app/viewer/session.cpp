@@ -9,6 +9,7 @@
 #include "core/text.h"
 #include "edit/edits.h"
 #include "edit/layers.h"
+#include "edit/picture_start.h"
 #include "scene/camera_file.h"
 #include "scene/source_metadata.h"
 #include "source/write_image.h"
@@ -19,9 +20,20 @@ namespace {
 /// Splats of a layer that previews know until its tree is there.
 constexpr std::int64_t sample_limit = 1 << 18;
 
-/// A scene, or what any other file becomes, untitled. Throws InputError.
-Document document_for(const fs::path& file, std::span<const Assignment> assignments = {}) {
+/// The first scene of a picture, untitled. Throws InputError.
+Document document_of(PictureStart& start, const SetCache& cache,
+                     std::span<const Assignment> assignments = {}) {
+    const fs::path place = fs::absolute(start.picture).replace_extension(".toml");
+    return Document::untitled(picture_start_text(start, place, cache), place, assignments);
+}
+
+/// A scene, or what any other file becomes, untitled; `start`: of a picture. Throws InputError.
+Document document_for(const fs::path& file, std::optional<PictureStart>& start,
+                      std::span<const Assignment> assignments = {}) {
+    start.reset();
     if (kind_of_file(file) == FileKind::scene) return Document::open(file, assignments);
+    require_readable(file);
+    if (is_picture(file)) return document_of(start.emplace(PictureStart{file}), {}, assignments);
     const fs::path place = fs::absolute(file).replace_extension(".toml");
     return Document::untitled(scene_text_for(file, place), place, assignments);
 }
@@ -141,7 +153,7 @@ Session::Session(const ViewerOptions& options, const GlInfo& gl_info)
       card_choice{options.device, options.cache.folder},
       preferences(load_preferences()),
       document(options.input.empty() ? demo_document(options.assignments)
-                                     : document_for(options.input, options.assignments)),
+                                     : document_for(options.input, view.start, options.assignments)),
       cache(options.cache),
       sets(options.cache, sample_limit),
       view_frame(files, card_choice),
@@ -206,6 +218,7 @@ void take_document(Session& session, Document next) {
     view.play_last.reset();
     view.hint_open = session.fresh_demo = false;
     view.grey_layer.clear();
+    view.start.reset();
     show_what_was_made(session);
     session.autosave.remove();
 }
@@ -216,10 +229,20 @@ void note_recent(Session& session, const fs::path& file) {
 }
 
 void open_file(Session& session, const fs::path& file) {
-    take_document(session, document_for(file));
+    std::optional<PictureStart> start;
+    take_document(session, document_for(file, start));
+    session.view.start = std::move(start);
     note_recent(session, file);
     choose_first_view(session.view, session.document, file);
     if (kind_of_file(file) == FileKind::mesh) offer_picture(session, 0);
+}
+
+void start_again(Session& session, const std::string& choice) {
+    if (!session.view.start) return;
+    PictureStart start = chosen_start(*session.view.start, choice);
+    take_document(session, document_of(start, session.cache));
+    choose_first_view(session.view, session.document, start.picture);
+    session.view.start = std::move(start);
 }
 
 void offer_picture(Session& session, std::size_t layer) {

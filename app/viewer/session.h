@@ -44,9 +44,9 @@ struct Session {
     GlInfo gl;
     CardChoice card_choice;
     Preferences preferences;
-    Document document;
     ViewState view;
     Status status;
+    Document document;
 
     SetCache cache;
     SetWishes sets;
@@ -150,6 +150,9 @@ void close(Session& session, int window_width, int window_height);
 void take_document(Session& session, Document next);
 /// The demo as an untitled scene. Throws InputError where it is not installed.
 Document demo_document(std::span<const Assignment> assignments = {});
+/// The scene of the picture that was opened is made again: Command::start_again. Throws InputError,
+/// OutputError.
+void start_again(Session& session, const std::string& choice);
 /// Offers to choose a picture for a layer whose mesh has none; takes an older offer back.
 void offer_picture(Session& session, std::size_t layer);
 /// The first of File > Open recent.

@@ -548,6 +548,18 @@ PictureScene picture_scene(const fs::path& image, const PictureRequest& request,
     return scene;
 }
 
+namespace {
+
+std::string prepare_text(const PictureScene& scene, const fs::path& file) {
+    if (scene.parted) return "prepare   = { stars = \"remove\" }  # they are a layer of their own\n";
+    if (scene.starless.empty()) return "";
+    return fmt::format(
+        "prepare   = {{ starless = {}, stars = \"remove\" }}  # without the stars that the texture shows\n",
+        to_toml(picture_path(scene.starless, file)));
+}
+
+}  // namespace
+
 std::string picture_scene_text(const PictureScene& scene, const fs::path& file) {
     const fs::path& named = scene.starless.empty() ? scene.image : scene.starless;
     const std::string name = layer_name_of(named.stem().string(), "picture");
@@ -578,13 +590,7 @@ std::string picture_scene_text(const PictureScene& scene, const fs::path& file) 
         fmt::arg("edges", margin > 0.0 ? fmt::format("margin = {}", margin) : "border = 0.03"),
         fmt::arg("stars", scene.stars.empty() ? "" : ", stars = false"), fmt::arg("extent", extent_of(scene)),
         fmt::arg("clumps", scene.object == SkyObject::thin ? "0.0" : "1.0"),
-        fmt::arg("opacity", opacity_of(scene.structure)),
-        fmt::arg("prepare",
-                 scene.starless.empty()
-                     ? std::string()
-                     : fmt::format("prepare   = {{ starless = {}, stars = \"remove\" }}  # without the stars "
-                                   "that the texture shows\n",
-                                   to_toml(picture_path(scene.starless, file)))));
+        fmt::arg("opacity", opacity_of(scene.structure)), fmt::arg("prepare", prepare_text(scene, file)));
     if (!scene.stars.empty()) {
         const double frame_px = double(side_px(longest, longest));
         text += stars_text(scene, name, frame_px / double(longest), file);

@@ -42,6 +42,7 @@ struct PictureScene {
     fs::path stars = {};     // the table of those that `prepare` took away; empty: there is none
     double star_px = 1.0;    // standard deviation of their images, px of the picture
     fs::path starless = {};  // of PictureRequest
+    bool parted = false;     // the table's stars are still in the picture, which is to be shown without them
 };
 
 /// A person's words on a picture.

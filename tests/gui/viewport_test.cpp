@@ -295,6 +295,49 @@ TEST_F(ViewportTest, TheFrontIsMeasuredBesideTheBadge) {
     EXPECT_EQ(front_text(front), "Front cannot be compared: no picture");
 }
 
+/// The card of a picture taken for a galaxy, perhaps a nebula.
+PictureStart galaxy_start() {
+    PictureStart start{"m77.jpg"};
+    start.guesses = {{SkyObject::galaxy, 0.72}, {SkyObject::nebula, 0.2}};
+    start.seen = "seen at 40 degrees";
+    start.because = "AVM says C.5.1.1: spiral galaxy";
+    return start;
+}
+
+TEST_F(ViewportTest, APicturesSceneIsMadeAgainAsWhatElseItMayBe) {
+    window.frame();
+    EXPECT_FALSE(window.has("start/Nebula"));
+    window.view.start = galaxy_start();
+    window.frame(2);
+    EXPECT_FALSE(window.has("start/Galaxy")) << "which it is";
+    EXPECT_LT(window.at("start/Nebula").x, window.at("start/Elliptical galaxy").x) << "likelier";
+    const auto choice_of = [&](const char* button) {
+        window.click(button);
+        return window.take_only(Command::Kind::start_again).text;
+    };
+    window.take_commands();
+    EXPECT_EQ(choice_of("start/Nebula"), "nebula");
+    EXPECT_EQ(choice_of("start/Make a film"), "film");
+    EXPECT_EQ(choice_of("start/Part"), "part");
+    window.click("start/Keep");
+    EXPECT_TRUE(window.take_commands().empty()) << "as it is";
+    window.keep_screen("start");
+}
+
+TEST_F(ViewportTest, TheStartOfAPictureClosesByItsCrossAndWithTheFirstEdit) {
+    window.view.start = galaxy_start();
+    window.frame(2);
+    window.click("start/close");
+    EXPECT_FALSE(window.view.start);
+    window.view.start = galaxy_start();
+    window.frame(2);
+    EXPECT_TRUE(window.view.start);
+    make_edited(window);
+    window.frame(2);
+    EXPECT_FALSE(window.view.start);
+    EXPECT_FALSE(window.has("start/Nebula"));
+}
+
 TEST_F(ViewportTest, DShowsWhereTheFrontDiffersIfThereIsAPicture) {
     window.frame();
     window.tap('D');

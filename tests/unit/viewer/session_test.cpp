@@ -76,6 +76,21 @@ TEST_F(Start, APictureIsSeenByItsOwnCamera) {
               session.document.scene().layers[0].source.uv_camera.position);
 }
 
+TEST_F(Start, APictureOpensWithWhatItWasTakenFor) {
+    EXPECT_FALSE(session.view.start);
+    open_file(session, ASTROSPLAT_SOURCE_DIR "/assets/textures/spiral.jpg");
+    ASSERT_TRUE(session.view.start);
+    EXPECT_EQ(session.view.start->object, SkyObject::galaxy);
+    Commands again{{Command::Kind::start_again, {}, "nebula", 0}};
+    carry_out(session, again);
+    ASSERT_TRUE(session.view.start);
+    EXPECT_EQ(session.view.start->object, SkyObject::nebula);
+    EXPECT_NE(session.document.scene().layers[0].source.structure.kind, StructureKind::disk);
+    EXPECT_FALSE(session.document.edited());
+    take_document(session, demo_document());
+    EXPECT_FALSE(session.view.start);
+}
+
 TEST_F(Start, ACameraMadeForOtherFramesIsSaid) {
     folder.file("move.chan", "1001 0 0 9 0 0 0 40\n1005 1 0 9 0 0 0 40\n");
     for (const char* frames : {"1001-1005", "1-5"}) {
