@@ -125,7 +125,7 @@ struct ViewState : PanelSizes {
     std::string typed_name;                  // so far
     std::optional<CameraMove> asked_move;    // the dialog of adding it is open
     LaterKeys later_keys = LaterKeys::keep;  // what that says
-    bool help_open = false, log_open = false, settings_open = false;
+    bool help_open = false, log_open = false, settings_open = false, find_open = false;
     bool render_open = false;  // the dialog of:
     RenderTask render;
     bool command_open = false;  // its row with the shell's command is unfolded

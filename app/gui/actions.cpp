@@ -251,6 +251,12 @@ Action below_line(Action action) {
     return action;
 }
 
+/// Of two shortcuts.
+Action also(Action action, Shortcut other) {
+    action.also = other;
+    return action;
+}
+
 /// Only the shortcut does it; again and again while it is held.
 Action repeated(const char* label, int code, void (*run)(F)) {
     return {.menu = "", .label = label, .shortcut = plain(code), .run = run, .repeats = true};
@@ -352,10 +358,10 @@ const Action table[] = {
     view_from<ViewKind::side>("Side", plain(key_code::n3)),
     view_from<ViewKind::top>("Top", plain(key_code::n7)),
     {"View", "Three-quarter", plain(key_code::n9), three_quarter, has_box},
-    below_line({"View", "Frame layer", plain('F'), ask_for_layer<Kind::frame_layer>, has_layer}),
-    {"View", "Frame all", plain(key_code::home), ask<Kind::frame_all>},
+    below_line({"View", "Frame all", plain('F'), ask<Kind::frame_all>}),
+    {"View", "Frame layer", shift('F'), ask_for_layer<Kind::frame_layer>, has_layer},
     {"View", "Output pixels 1:1", plain('Z'), toggle_one_to_one, nullptr, is_one_to_one},
-    below_line({"View", "Swap A and B", plain(key_code::tab), toggle_compare<CompareMode::other>}),
+    below_line({"View", "Swap A and B", plain('A'), toggle_compare<CompareMode::other>}),
     compare<CompareMode::wipe>("Wipe A | B"),
     {"View", "Blink", plain('X'), toggle_compare<CompareMode::blink>, nullptr,
      compares_by<CompareMode::blink>},
@@ -419,6 +425,7 @@ const Action table[] = {
     {"Render", "Cancel", {}, ask<Kind::cancel_render>, has_job},
     below_line({"Render", "Copy batch command", {}, ask<Kind::copy_batch_command>}),
 
+    flip<&ViewState::find_open>("Help", "Find a command or a value...", ctrl('K')),
     flip<&ViewState::help_open>("Help", "Shortcuts", plain(key_code::f1)),
     flip<&ViewState::log_open>("Help", "Log"),
 
@@ -430,15 +437,18 @@ const Action table[] = {
     {"", "Play from this frame on", plain('I'), set_in_point},
     {"", "Play up to this frame", plain('O'), set_out_point},
     {"", "Play all frames", shift('I'), clear_in_and_out},
-    {"", "First frame", ctrl(key_code::left), first_frame},
-    {"", "Last frame", ctrl(key_code::right), last_frame},
+    also({"", "First frame", plain(key_code::home), first_frame}, ctrl(key_code::left)),
+    also({"", "Last frame", plain(key_code::end), last_frame}, ctrl(key_code::right)),
     {"", "Keyframe of the hovered row, or the camera", plain('K'), set_keyframe_here},
     {"", "Remove that keyframe", shift('K'), remove_keyframe_here},
     {"", "Cancel what runs, close what is open", plain(key_code::escape), cancel},
 };
 
 bool pressed(const Action& action) {
-    return shortcut_pressed(action.shortcut, action.repeats) || shortcut_pressed(action.also, action.repeats);
+    const auto is_pressed = [&](const Shortcut& shortcut) {
+        return shortcut_pressed(shortcut, action.repeats) && (shortcut.ctrl || !takes_key(shortcut.code));
+    };
+    return is_pressed(action.shortcut) || is_pressed(action.also);
 }
 
 }  // namespace

@@ -69,9 +69,11 @@ void draw_submenu(GuiFrame& frame, const std::string& path) {
     ImGui::EndMenu();
 }
 
-void draw_menu(GuiFrame& frame, const char* menu) {
+void draw_menu(GuiFrame& frame, std::size_t index) {
+    const char* const menu = menu_names[index];
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(px(8), px(8)));
     ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(px(12), px(8)));
+    if (opens_menu(menu)) ImGui::OpenPopup(menu);
     const bool open = ImGui::BeginMenu(menu);
     // While it is open the last item is one of the menu's own.
     if (!open) note_item(frame, menu);
@@ -84,6 +86,7 @@ void draw_menu(GuiFrame& frame, const char* menu) {
                 draw_submenu(frame, submenu = path);
         }
         close_on_escape();
+        leave_menu_sideways(index);
         ImGui::EndMenu();
     }
     ImGui::PopStyleVar(2);
@@ -107,8 +110,7 @@ void draw_menu_bar(GuiFrame& frame, const Rect& area) {
     ImGui::SetCursorScreenPos(area.corner());
     ImGui::BeginChild("menu", area.size(), false, ImGuiWindowFlags_MenuBar);
     if (ImGui::BeginMenuBar()) {
-        for (const char* menu : {"File", "Edit", "View", "Layer", "Camera", "Render", "Help"})
-            draw_menu(frame, menu);
+        for (std::size_t menu = 0; menu < menu_names.size(); ++menu) draw_menu(frame, menu);
         draw_title(frame, area);
         ImGui::EndMenuBar();
     }
@@ -353,9 +355,9 @@ void compare_choice(GuiFrame& frame) {
     const char* const both = with_reference ? "A|Ref" : "A|B";
     const int clicked =
         choice(frame, "compare",
-               {{"A", "The look as it is now (Tab)"},
+               {{"A", "The look as it is now (A)"},
                 {both, "Wipe between now and what it is compared with"},
-                {other, "What it is compared with: the stored look, or the reference over the view (Tab)"},
+                {other, "What it is compared with: the stored look, or the reference over the view (A)"},
                 {"Blink", "One after the other (X)"},
                 {"Diff", "Now minus what it is compared with; grey where they are equal"}},
                static_cast<int>(frame.view.compare));

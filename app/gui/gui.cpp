@@ -219,8 +219,9 @@ struct Edge {
 
 // The edge follows the mouse: `size` grows as the mouse goes left or up.
 void draw_splitter(GuiFrame& frame, const Edge& edge, float& size) {
-    if (!begin_part(edge.name, edge.zone, ImGuiWindowFlags_NoBackground | ImGuiWindowFlags_NoScrollbar))
-        return;
+    constexpr ImGuiWindowFlags flags =
+        ImGuiWindowFlags_NoBackground | ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoNav;
+    if (!begin_part(edge.name, edge.zone, flags)) return;
     ImGui::InvisibleButton("edge", edge.zone.size());
     note_item(frame, edge.name);
     const bool active = ImGui::IsItemActive();
@@ -273,7 +274,7 @@ void begin_host() {
     ImGui::Begin("astrosplat", nullptr,
                  ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
                      ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoScrollWithMouse |
-                     ImGuiWindowFlags_NoNav);
+                     ImGuiWindowFlags_NoNavFocus);
     ImGui::PopStyleColor();
     ImGui::PopStyleVar(3);
 }
@@ -296,6 +297,7 @@ struct Gui::State {
     Viewport viewport;
     TimelineState timeline;
     StatusBar status_bar;
+    Finder finder;
     Panel panel;
     CommandFlow flow;
     std::vector<DrawnItem> drawn;
@@ -309,7 +311,7 @@ void Gui::State::draw_parts(GuiFrame& frame, const Layout& layout, Commands& com
     draw_menu_bar(frame, layout.menu);
     draw_tool_row(frame, layout.tools);
     draw_notice(frame, layout.notice);
-    if (begin_part("viewport", layout.viewport, still)) {
+    if (begin_part("viewport", layout.viewport, still | ImGuiWindowFlags_NoNav)) {
         viewport.draw(frame, layout.viewport);
         ImGui::EndChild();
     }
@@ -331,6 +333,7 @@ void Gui::State::draw_parts(GuiFrame& frame, const Layout& layout, Commands& com
     draw_queue(frame);
     draw_move_dialog(frame);
     draw_settings_dialog(frame);
+    finder.draw(frame, panel);
     flow.run(frame, panel, commands);
 }
 
@@ -346,10 +349,12 @@ void Gui::draw(Document& document, ViewState& view, const Status& status, Comman
     view.changed_on_disk = status.changed_on_disk;
     const ImVec2 size = ImGui::GetIO().DisplaySize;
     if (keyboard_is_free()) run_shortcuts(frame);
+    steer_by_keys();
     begin_host();
     const Layout layout = make_layout(view, size.x, size.y, px(1));
     state.draw_parts(frame, layout, commands);
     ImGui::End();
+    draw_ring();
     state.popup = any_popup();
 }
 
@@ -359,7 +364,7 @@ void Gui::ask_to_quit() { state_->flow.ask({Command::Kind::quit, {}, {}, 0}); }
 
 bool Gui::busy() const {
     return ImGui::IsAnyItemActive() || ImGui::GetIO().WantTextInput || state_->popup || state_->flow.busy() ||
-           state_->timeline.drag != TimelineState::Drag::none || state_->panel.busy();
+           state_->timeline.drag != TimelineState::Drag::none || state_->panel.busy() || keys_steer();
 }
 
 bool Gui::opening() const {

@@ -10,6 +10,16 @@
 
 namespace astrosplat {
 
+class Panel;
+
+/// In their order; Alt and the first letter opens one.
+inline constexpr std::array<const char*, 7> menu_names{"File",   "Edit",   "View", "Layer",
+                                                       "Camera", "Render", "Help"};
+
+/// At the end of the open one: Left and Right, where they lead nowhere in it, open its neighbour
+/// (keyboard.cpp).
+void leave_menu_sideways(std::size_t menu);
+
 /// The bar at the top: menus made of the table of actions, the scene's name in the middle.
 void draw_menu_bar(GuiFrame& frame, const Rect& area);
 
@@ -47,6 +57,18 @@ void draw_settings_dialog(GuiFrame& frame);
 /// The sheet of shortcuts (F1) and the log: two dialogs that only show.
 void draw_shortcut_sheet(GuiFrame& frame);
 void draw_log(GuiFrame& frame);
+
+/// Ctrl+K: a dialog, while ViewState::find_open, with a field whose words are looked for in all actions and
+/// in the parameters that the panel shows. Enter runs the action, or shows the parameter and gives it the
+/// ring.
+class Finder {
+  public:
+    void draw(GuiFrame& frame, Panel& panel);
+
+  private:
+    std::string typed_;
+    std::size_t chosen_ = 0;  // row
+};
 
 /// Asks for the move; where keyframes of the camera come later the dialog asks first what becomes of them.
 void begin_move(GuiFrame& frame, CameraMove move);
@@ -101,7 +123,8 @@ struct Action {
 /// In the order of the menus.
 std::span<const Action> actions();
 
-/// Runs the shortcuts pressed this frame. Call it only while no text is typed and nothing is dragged.
+/// Runs the shortcuts pressed this frame but for the keys of the ring. Call it only while no text is typed
+/// and nothing is dragged.
 void run_shortcuts(GuiFrame& frame);
 
 void toggle_one_to_one(GuiFrame& f);

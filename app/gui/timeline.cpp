@@ -317,7 +317,8 @@ void zoom_frames(TimelineState& t, double middle, double factor) {
 }
 
 void draw_timeline(TimelineState& t, GuiFrame& frame, const Rect& area) {
-    constexpr ImGuiWindowFlags still = ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse;
+    constexpr ImGuiWindowFlags still =
+        ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse | ImGuiWindowFlags_NoNav;
     if (!begin_part("timeline", area, still)) return;
     refresh(t, frame.document, frame.view);
     end_drag(t);

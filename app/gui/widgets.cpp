@@ -85,7 +85,7 @@ void set_colors(ImGuiStyle& style) {
          {ImGuiCol_Border, ImGuiCol_Separator, ImGuiCol_TableBorderLight, ImGuiCol_TableBorderStrong})
         set(c, color::line);
     for (const ImGuiCol c : {ImGuiCol_BorderShadow, ImGuiCol_TableRowBg, ImGuiCol_ScrollbarBg, ImGuiCol_Tab,
-                             ImGuiCol_NavWindowingHighlight, ImGuiCol_ResizeGrip})
+                             ImGuiCol_NavWindowingHighlight, ImGuiCol_NavHighlight, ImGuiCol_ResizeGrip})
         set(c, color::none);
     for (const ImGuiCol c : {ImGuiCol_FrameBgHovered, ImGuiCol_ButtonHovered, ImGuiCol_HeaderHovered,
                              ImGuiCol_ScrollbarGrab, ImGuiCol_TabHovered})
@@ -94,7 +94,7 @@ void set_colors(ImGuiStyle& style) {
                              ImGuiCol_HeaderActive, ImGuiCol_TextSelectedBg, ImGuiCol_TabActive})
         set(c, color::selection);
     for (const ImGuiCol c : {ImGuiCol_CheckMark, ImGuiCol_SliderGrab, ImGuiCol_SliderGrabActive,
-                             ImGuiCol_DragDropTarget, ImGuiCol_NavHighlight, ImGuiCol_PlotHistogram})
+                             ImGuiCol_DragDropTarget, ImGuiCol_PlotHistogram})
         set(c, color::accent);
     for (const ImGuiCol c : {ImGuiCol_ScrollbarGrabHovered, ImGuiCol_ScrollbarGrabActive}) set(c, color::dim);
     for (const ImGuiCol c : {ImGuiCol_TitleBg, ImGuiCol_TitleBgActive, ImGuiCol_TitleBgCollapsed})
@@ -159,6 +159,7 @@ void apply_theme(float content_scale, int wanted_contrast) {
     style.ScaleAllSizes(content_scale);
     add_fonts(content_scale);
     ImGui::GetIO().IniFilename = nullptr;
+    hide_ring();
 }
 
 ImFont* medium_font() { return ImGui::GetIO().Fonts->Fonts[1]; }
@@ -184,8 +185,10 @@ bool begin_part(const char* name, const Rect& area, ImGuiWindowFlags flags) {
     if (area.width <= 0 || area.height <= 0) return false;
     ImGui::SetCursorScreenPos(area.corner());
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(0, 0));
-    ImGui::BeginChild(name, area.size(), false, flags);
+    const bool is_flat = (flags & ImGuiWindowFlags_NoNav) == 0;
+    ImGui::BeginChild(name, area.size(), false, is_flat ? flags | ImGuiWindowFlags_NavFlattened : flags);
     ImGui::PopStyleVar();
+    enter_part(name);
     return true;
 }
 
@@ -472,9 +475,9 @@ namespace {
 std::string key_name(int code) {
     using namespace key_code;
     static const std::map<int, std::string> words = {
-        {0, ""},          {space, "Space"}, {escape, "Esc"}, {tab, "Tab"}, {del, "Del"},
-        {right, "Right"}, {left, "Left"},   {down, "Down"},  {up, "Up"},   {home, "Home"},
-        {end, "End"},     {f1, "F1"},       {f11, "F11"},    {f12, "F12"}};
+        {0, ""},        {space, "Space"}, {escape, "Esc"}, {tab, "Tab"},   {del, "Del"}, {right, "Right"},
+        {left, "Left"}, {down, "Down"},   {up, "Up"},      {home, "Home"}, {end, "End"}, {f1, "F1"},
+        {f6, "F6"},     {f10, "F10"},     {f11, "F11"},    {f12, "F12"}};
     if (const auto word = words.find(code); word != words.end()) return word->second;
     return code > 0 && code < 128 ? std::string(1, static_cast<char>(code)) : "";  // letters and digits
 }

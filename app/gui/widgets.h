@@ -87,7 +87,8 @@ inline FrameOnScreen frame_on_screen(const Rect& frame) {
     return {{frame.x + 0.5 * frame.width, frame.y + 0.5 * frame.height}, std::max(1.0f, frame.height)};
 }
 
-/// A child window over `area`, without padding; false (and nothing to end) where there is none.
+/// A child window over `area`, without padding; false (and nothing to end) where there is none. The
+/// keyboard's ring goes through all of them but those with ImGuiWindowFlags_NoNav.
 bool begin_part(const char* name, const Rect& area, ImGuiWindowFlags flags = ImGuiWindowFlags_NoScrollbar);
 
 /// A tooltip of the last item after a short wait.
@@ -106,9 +107,35 @@ void push_field_height(float height);
 /// A menu, a list or a dialog is open.
 bool any_popup();
 
-/// In an open menu: Escape closes it (ImGui does so only with keyboard navigation,
-/// which the arrow keys forbid).
+/// In an open menu: Escape closes it.
 void close_on_escape();
+
+// The keyboard's way through the window (keyboard.cpp): Tab, F6, the arrows, Space and Enter move a ring from
+// control to control and use the one it is on; until there is a ring these keys are the timeline's. Escape or
+// a click takes it away. Alt with a letter and F10 open menus, in which the arrows go on.
+
+/// Takes the keys of this frame: at its beginning.
+void steer_by_keys();
+/// A control has the ring.
+bool ring_shown();
+void hide_ring();
+/// The key is the ring's, and no shortcut.
+bool takes_key(int code);
+/// In a part, before its first control: the ring comes here where the keys ask for this part.
+void enter_part(const char* name);
+/// The keys ask for this menu.
+bool opens_menu(const char* name);
+/// The last item has the ring, and Enter was pressed.
+bool entered_by_key();
+/// What took text in the place of this control is gone: the ring, where there is one, is at the control
+/// again.
+void keep_ring_at(ImGuiID id);
+/// The ring goes to the control that comes next.
+void ring_to_next_item();
+/// The ring is on its way: another frame is needed.
+bool keys_steer();
+/// Over everything: at the end of a frame.
+void draw_ring();
 
 // Drawn into the current window, px. What lies along an axis covers whole pixels at every scale: so it is
 // sharp, and the same whatever rounds edges that lie in the middle of a pixel. Lines are at least
@@ -182,7 +209,7 @@ inline constexpr int space = 32, n0 = 48, n1 = 49, n3 = 51, n7 = 55, n9 = 57;
 inline constexpr int escape = 256, enter = 257, tab = 258, backspace = 259, insert = 260, del = 261;
 inline constexpr int right = 262, left = 263, down = 264, up = 265;
 inline constexpr int page_up = 266, page_down = 267, home = 268, end = 269;
-inline constexpr int f1 = 290, f11 = 300, f12 = 301;
+inline constexpr int f1 = 290, f6 = 295, f10 = 299, f11 = 300, f12 = 301;
 inline constexpr int pad_enter = 335;
 }  // namespace key_code
 

@@ -191,7 +191,7 @@ void store_b(State& s, const Command& c) {
     const std::size_t index = s.snapshots.size();
     say(s.status,
         std::string("B is the look as it is now; ") +
-            (s.view.compare_with == CompareWith::b ? "Tab shows A or B" : "Shift+B compares with it"));
+            (s.view.compare_with == CompareWith::b ? "the key A shows it" : "Shift+B compares with it"));
     try {
         snapshot(s, c);
     } catch (const OutputError& error) {

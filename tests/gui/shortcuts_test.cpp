@@ -124,6 +124,14 @@ TEST_F(ShortcutsTest, FramesAndKeyframes) {
     EXPECT_EQ(window.view.frame, 1.0);
     window.tap(key_code::right, true);
     EXPECT_EQ(window.view.frame, 240.0);
+    window.tap(key_code::home);
+    EXPECT_EQ(window.view.frame, 1.0);
+    window.tap(key_code::end);
+    EXPECT_EQ(window.view.frame, 240.0);
+    EXPECT_TRUE(window.take_commands().empty()) << "the view stays";
+    window.tap('F');
+    window.tap('F', false, true);
+    EXPECT_EQ(kinds(window.take_commands()), (std::vector{Kind::frame_all, Kind::frame_layer}));
     window.tap(key_code::space);
     EXPECT_TRUE(window.view.playing);
     window.tap(key_code::space);
@@ -201,7 +209,7 @@ TEST_F(ShortcutsTest, ViewsAndSwitches) {
     EXPECT_FALSE(window.view.gate);
     window.tap('Z');
     EXPECT_EQ(window.view.size, SizeMode::one_to_one);
-    window.tap(key_code::tab);
+    window.tap('A');
     EXPECT_EQ(window.view.compare, CompareMode::other);
     window.tap('S');
     EXPECT_EQ(window.view.solo.count("dust"), 1U);

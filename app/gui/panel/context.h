@@ -74,6 +74,7 @@ struct Memory {
     float scroll = 0.0f;              // how far the tab can be scrolled
     ParameterKey hovered;             // row under the mouse, and since when: tooltips wait a little
     double hovered_since = 0.0;
+    ParameterKey wanted;                  // its field gets the ring in the next frame
     std::optional<ParameterKey> request;  // whose file is asked for
 };
 

@@ -131,13 +131,18 @@ BoxEvent value_box(Context& context, const char* id, const Rect& area, const Box
         touch.to_next = false;
         begin_entry(touch, own, content.typed);
     }
-    if (touch.entry == own) return type_value(context, id, area);
+    if (touch.entry == own) {
+        const BoxEvent event = type_value(context, id, area);
+        if (touch.entry == 0) keep_ring_at(own);
+        return event;
+    }
     ImGui::SetCursorScreenPos(area.corner());
     ImGui::InvisibleButton(id, area.size());
     const bool hovered = ImGui::IsItemHovered();
     const bool wants_text =
-        hovered && (ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left) ||
-                    (ImGui::IsItemActivated() && (ImGui::GetIO().KeyCtrl || content.step == 0.0)));
+        entered_by_key() ||
+        (hovered && (ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left) ||
+                     (ImGui::IsItemActivated() && (ImGui::GetIO().KeyCtrl || content.step == 0.0))));
     draw_box(area, content, hovered, ImGui::IsItemActive());
     if (wants_text) {
         ImGui::ClearActiveID();

@@ -494,6 +494,7 @@ void parameter_row(Context& context, const Parameter& parameter) {
     ImGui::PushID(row.key().text().c_str());
     draw_label(context, row);
     draw_diamond(context, row);
+    if (context.memory.wanted == row.key()) ring_to_next_item();
     if (!value_field(context, row)) {
         ImGui::SetCursorScreenPos(row.layout.whole.corner());
         ImGui::Dummy({row.layout.whole.width, px(row_height)});

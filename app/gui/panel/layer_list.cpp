@@ -139,7 +139,7 @@ void layer_menu(Context& context, std::size_t i) {
     if (ImGui::MenuItem("Delete"))
         attempt(context, "", [&] { remove_layer(context.document, context.view, i); });
     ImGui::Separator();
-    if (ImGui::MenuItem("Frame", "F")) request(context, Command::Kind::frame_layer, i);
+    if (ImGui::MenuItem("Frame", "Shift+F")) request(context, Command::Kind::frame_layer, i);
     if (ImGui::MenuItem("Regenerate")) request(context, Command::Kind::regenerate, i);
     ImGui::Separator();
     look_menu(context);
@@ -293,7 +293,8 @@ float layer_list_height(const Context& context) {
 
 void layer_list(Context& context, float height) {
     const float width = ImGui::GetContentRegionAvail().x;
-    ImGui::BeginChild("layers", {width, height}, false, ImGuiWindowFlags_NoBackground);
+    ImGui::BeginChild("layers", {width, height}, false,
+                      ImGuiWindowFlags_NoBackground | ImGuiWindowFlags_NavFlattened);
     ImVec2 at = ImGui::GetCursorScreenPos();
     std::vector<Rect> rows;
     if (context.scene().layers.empty()) {

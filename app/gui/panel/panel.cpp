@@ -91,8 +91,8 @@ void tab_body(Context& context) {
              {ImGuiCol_ScrollbarGrab, ImGuiCol_ScrollbarGrabHovered, ImGuiCol_ScrollbarGrabActive})
             ImGui::PushStyleColor(c, color::none);
     }
-    const ImGuiWindowFlags flags =
-        ImGuiWindowFlags_AlwaysUseWindowPadding | ImGuiWindowFlags_AlwaysVerticalScrollbar;
+    const ImGuiWindowFlags flags = ImGuiWindowFlags_AlwaysUseWindowPadding |
+                                   ImGuiWindowFlags_AlwaysVerticalScrollbar | ImGuiWindowFlags_NavFlattened;
     ImGui::BeginChild("tab", {0.0f, 0.0f}, false, flags);
     if (!scrolls) ImGui::PopStyleColor(3);
     tab_content(context);
@@ -122,6 +122,7 @@ void draw_all(Context& context) {
     view.layer = layers > 0 ? std::min(view.layer, layers - 1) : 0;  // a layer was added or taken away
     tab_body(context);
     context.memory.all_open = false;
+    context.memory.wanted = {};
     forget_untouched(context.memory.touch);
 }
 
@@ -143,6 +144,29 @@ void Panel::answer(const ParameterKey& key, const fs::path& file, const GuiFrame
     panel::describe_current(memory_, frame.document, frame.view.frame);
     panel::Context context{frame, memory_};
     panel::set_value(context, key, file.string());
+}
+
+std::vector<const Parameter*> Panel::shown_parameters(const GuiFrame& frame) const {
+    const panel::Context context{frame, const_cast<panel::Memory&>(memory_)};  // only read
+    const ParameterKey layer = context.layer_key();
+    std::vector<const Parameter*> shown;
+    for (const Parameter& parameter : memory_.described.description.parameters) {
+        const ParameterKey& key = parameter.spec.key;
+        if ((!key.is_below("layer") || key.is_below(layer)) && panel::is_shown(context, parameter.spec))
+            shown.push_back(&parameter);
+    }
+    return shown;
+}
+
+void Panel::show(const ParameterKey& key, ViewState& view) {
+    const auto found = memory_.described.by_key.find(key);
+    if (found == memory_.described.by_key.end()) return;
+    const ParameterSpec& spec = found->second->spec;
+    for (const panel::Tab& tab : panel::tabs)
+        if (tab.label == spec.tab) view.tab = tab.tab;
+    view.panels = true;
+    memory_.open[{view.tab, std::string(spec.section)}] = true;
+    memory_.wanted = key;
 }
 
 glm::vec4 Panel::plot_area(const std::string& key) const {

@@ -18,6 +18,11 @@ class Panel {
     /// The dialog's answer: an edit of the document.
     void answer(const ParameterKey& key, const fs::path& file, const GuiFrame& frame);
 
+    /// Those of the scene and of the selected layer that have an effect, as of the last draw().
+    std::vector<const Parameter*> shown_parameters(const GuiFrame& frame) const;
+    /// In the next draw() its tab is there, its section unfolded, and its field has the ring.
+    void show(const ParameterKey& key, ViewState& view);
+
     /// Unfolds every section, as a person could one by one.
     void open_all() { memory_.all_open = true; }
     /// Of the last draw(), top to bottom.

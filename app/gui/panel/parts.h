@@ -59,6 +59,9 @@ std::string colors_state(const Context& context);
 /// The tab `name`, as ParameterSpec::tab has it. Layers' tabs show the selected layer; there must be one.
 void draw_tab(Context& context, std::string_view name);
 
+/// It has an effect now: a row of its tab.
+bool is_shown(const Context& context, const ParameterSpec& spec);
+
 /// The content of a section of a tab besides its parameters: the words at its head, which rows come first,
 /// what follows the last. A section that is not listed has its rows alone.
 struct TabSection {

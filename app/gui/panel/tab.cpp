@@ -170,11 +170,6 @@ Rows rows_of_tab(const Context& context, std::string_view tab) {
     return rows;
 }
 
-bool is_shown(const Context& context, const ParameterSpec& spec) {
-    const auto find_by_key = [&](const ParameterKey& key) { return find(context, key); };
-    return has_effect(spec, find_by_key) && suits_layer(context, spec);
-}
-
 void draw_row(Context& context, const Parameter& parameter) {
     draw_above(context, parameter.spec);
     parameter_row(context, parameter);
@@ -253,6 +248,11 @@ void draw_section(Context& context, const TabSection& about, const Rows& tab_row
 }
 
 }  // namespace
+
+bool is_shown(const Context& context, const ParameterSpec& spec) {
+    const auto find_by_key = [&](const ParameterKey& key) { return find(context, key); };
+    return has_effect(spec, find_by_key) && suits_layer(context, spec);
+}
 
 void draw_tab(Context& context, std::string_view name) {
     const Rows rows = rows_of_tab(context, name);
