@@ -5,6 +5,7 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <map>
+#include <set>
 
 #include "camera/camera.h"
 #include "core/bounds.h"
@@ -184,6 +185,8 @@ struct Status {
     std::string no_render_command;  // why it cannot be said, one line
     std::string render_estimate;    // of time and bytes, one line; empty: not known
     Message message;
+    std::set<std::string> standing_errors;  // of the frame and the layers, said, whose cause is still there
+    std::uint64_t scenes = 0;               // that were opened so far: messages belong to the last one
     std::vector<Message> log;
     std::int64_t memory_bytes = 0;
     int threads = 1;

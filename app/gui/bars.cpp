@@ -264,6 +264,10 @@ float draw_probe(const Status& status, float right, const Rect& area) {
 
 void StatusBar::take_message(const Status& status) {
     const std::string& text = status.message.text;
+    const bool stands = status.standing_errors.count(unread_) > 0;
+    if (status.scenes != scenes_ || (unread_stands_ && !stands)) unread_.clear();
+    unread_stands_ = stands;
+    scenes_ = status.scenes;
     if (text == last_ && status.message.number == number_) return;
     last_ = text;
     number_ = status.message.number;
@@ -277,9 +281,9 @@ void StatusBar::draw(GuiFrame& frame, const Rect& area) {
     right = draw_job(frame, right - px(part_gap), area);
     right = draw_probe(frame.status, right, area);
     const bool error = !unread_.empty();
-    const std::string whole = error                        ? unread_
-                              : frame.status.message.error ? ""  // was read
-                                                           : frame.status.message.text;
+    const std::string said = frame.status.message.error ? "" : frame.status.message.text;
+    const bool news = !said.empty() || !error;  // later than the error, which comes back after it
+    const std::string whole = news ? said : unread_;
     const float room = right - area.x - px(bar_margin);
     const std::string text = fitting(whole, error ? room - px(20) : room);
     ImGui::SetCursorScreenPos({area.x + px(bar_margin), area.y});
@@ -289,10 +293,11 @@ void StatusBar::draw(GuiFrame& frame, const Rect& area) {
                   px(12), color::error);
         ImGui::SetCursorScreenPos({at.x + px(20), area.y});
     }
-    row_text(text, area.height, error ? color::error : color::dim);
+    row_text(text, area.height, news ? color::dim : color::error);
     note_item(frame, "message");
     if (ImGui::IsItemHovered() && error) ImGui::SetMouseCursor(ImGuiMouseCursor_Hand);
-    if (text != whole || error) tooltip((whole + (error ? "\nClick: read" : "")).c_str());
+    if (text != whole || error)
+        tooltip((error ? unread_ + "\nClick to put it away; Help > Log keeps it" : whole).c_str());
     if (error && ImGui::IsItemClicked()) unread_.clear();
     ImGui::PopFont();
 }

@@ -37,17 +37,19 @@ void draw_start_card(GuiFrame& frame, const Rect& viewport);
 /// becomes B.
 void draw_snapshots(GuiFrame& frame, const Rect& area);
 
-/// The bar at the bottom: the last message, the pixel under the mouse, jobs, memory. Errors stay until they
-/// are clicked.
+/// The bar at the bottom: the last message, the pixel under the mouse, jobs, memory. An error stays until it
+/// is clicked, its cause is gone, or another scene is opened; what is said meanwhile is seen in its place.
 class StatusBar {
   public:
     void draw(GuiFrame& frame, const Rect& area);
 
   private:
     void take_message(const Status& status);
-    std::string last_;          // message seen before this frame
-    std::uint64_t number_ = 0;  // of the last message
-    std::string unread_;        // error that waits to be clicked
+    std::string last_;            // message seen before this frame
+    std::uint64_t number_ = 0;    // of the last message
+    std::string unread_;          // error that waits to be clicked
+    bool unread_stands_ = false;  // its cause was there
+    std::uint64_t scenes_ = 0;    // as Status
 };
 
 /// Edit > Settings: one row of choices for every setting of the window, while ViewState::settings_open. Every

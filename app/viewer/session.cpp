@@ -183,7 +183,7 @@ void say(Status& status, const std::string& text, bool error) {
     if (status.log.size() > most) status.log.erase(status.log.begin());
 }
 
-void say_new_errors(Status& status, std::set<std::string>& said) {
+void say_new_errors(Status& status) {
     std::set<std::string> errors;
     if (status.view_frame.state == ViewFrameState::failed) errors.insert(status.view_frame.error);
     for (const LayerStatus& layer : status.layers) errors.insert(layer.error);
@@ -191,8 +191,8 @@ void say_new_errors(Status& status, std::set<std::string>& said) {
     if (status.color) errors.insert(status.color->error);
     errors.erase("");
     for (const std::string& error : errors)
-        if (!said.count(error)) say(status, error, true);
-    said = std::move(errors);
+        if (!status.standing_errors.count(error)) say(status, error, true);
+    status.standing_errors = std::move(errors);
 }
 
 void forget_old_message(Status& status, MessageAge& age, double now) {
@@ -206,6 +206,7 @@ void forget_old_message(Status& status, MessageAge& age, double now) {
 
 void take_document(Session& session, Document next) {
     session.document = std::move(next);
+    ++session.status.scenes;
     ViewState& view = session.view;
     std::erase_if(view.renders, [](const KeptRender& kept) { return kept.scene.empty(); });
     view.frame = frame_range(session.document.scene().output).first;

@@ -89,9 +89,8 @@ struct Session {
     std::optional<fs::path> screenshot;    // asked for: the caller reads the window and saves it
     std::optional<std::string> clipboard;  // text for it
     MessageAge message_age;
-    double memory_counted_at = -1e9;    // s
-    std::set<std::string> said_errors;  // of the frame and the layers, that still hold
-    std::string missed_frames;          // what was said of the camera's
+    double memory_counted_at = -1e9;  // s
+    std::string missed_frames;        // what was said of the camera's
     Commands dropped;  // from files, to be shown to the widgets, which ask about unsaved changes
 
     // Of the last draw_viewport():
@@ -159,8 +158,8 @@ void offer_picture(Session& session, std::size_t layer);
 void note_recent(Session& session, const fs::path& file);
 /// Fills Status::recoveries.
 void find_recoveries(Status& status);
-/// Says in the message line why the frame or a layer failed; `said`: what was said of those that still do.
-void say_new_errors(Status& status, std::set<std::string>& said);
+/// Says in the message line why the frame or a layer failed, once for as long as it does.
+void say_new_errors(Status& status);
 /// Messages that are no errors leave the message line after a while; they stay in the log. `now` in seconds.
 void forget_old_message(Status& status, MessageAge& age, double now);
 

@@ -314,7 +314,7 @@ void fill_status(Session& session) {
     session.snapshots.fill(session.status);
     session.status.blink_shows_other =
         session.view.compare == CompareMode::blink && session.comparison.blink_shows_other();
-    say_new_errors(session.status, session.said_errors);
+    say_new_errors(session.status);
 }
 
 void probe(Session& session, glm::dvec2 mouse_px) {

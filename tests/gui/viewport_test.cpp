@@ -1,6 +1,7 @@
 // The viewport: drags, flying, wipe, 1:1, and the badge.
 #include "gui/viewport.h"
 #include "gui/gui_frame.h"
+#include "gui/panel/panel.h"
 #include "gui/test_window.h"
 #include "gui/viewport_overlay.h"
 #include "gui/widgets.h"
@@ -398,6 +399,56 @@ TEST(MessageBar, AnErrorStaysUntilItIsClicked) {
     EXPECT_TRUE(seen() == error);
     window.click("message");
     EXPECT_TRUE(seen() == empty);
+}
+
+/// Of the status bar, without what lies at its right.
+TEST_F(ViewportTest, AnErrorBelongsToItsSceneAndItsCauseAndHidesNothing) {
+    const Rect bar = make_layout(window.view, 1600.0f, 900.0f, 1.0f).status;
+    std::uint64_t number = 0;
+    const auto say = [&](const char* text, bool error) {
+        window.status.message = {text, error, ++number};
+        window.frame();
+    };
+    const auto is_red = [&] {
+        window.hover({-100.0f, -100.0f});
+        const Picture8 picture = window.picture();
+        for (int y = int(bar.y); y < int(bar.end().y); ++y)
+            for (int x = 30; x < 500; ++x)  // right of the sign
+                if (picture.at(x, y).r > 150 && picture.at(x, y).g < 120) return true;
+        return false;
+    };
+    say("dust.png: expected a picture", true);
+    EXPECT_TRUE(is_red());
+    say("Undone: Opacity of dust", false);
+    EXPECT_FALSE(is_red()) << "what undo says is seen";
+    window.status.message.text.clear();
+    EXPECT_TRUE(is_red()) << "nobody has read it";
+    ++window.status.scenes;
+    EXPECT_FALSE(is_red()) << "it was another scene's";
+    window.status.standing_errors = {"stars.fits: no such file"};
+    say("stars.fits: no such file", true);
+    EXPECT_TRUE(is_red());
+    window.status.standing_errors.clear();
+    EXPECT_FALSE(is_red()) << "its cause is gone";
+}
+
+TEST_F(ViewportTest, ARefusedValueIsExplainedUntilSomethingElseChanges) {
+    const auto refuse = [&] {
+        window.frame(30);  // its clicks are no part of the last double click
+        for (const DrawnRow& row : window.gui.panel().rows())
+            if (row.key == "layer.dust.look.alpha.gain") window.double_click(row.value);
+        window.type("much");
+        window.tap(key_code::enter);
+        EXPECT_NE(window.gui.panel().message(), "");
+    };
+    refuse();
+    make_edited(window);
+    window.frame();
+    EXPECT_EQ(window.gui.panel().message(), "");
+    refuse();
+    window.document = example_document();
+    window.frame();
+    EXPECT_EQ(window.gui.panel().message(), "");
 }
 
 TEST_F(ViewportTest, CountsHaveThreeDigitsAtMost) {

@@ -54,6 +54,7 @@ void attempt(Context& context, const ParameterKey& key, const std::function<void
     } catch (const InputError& error) {
         memory.error_key = key;
         memory.error = error.what();
+        memory.error_revision = context.document.revision();
     }
 }
 

@@ -53,10 +53,11 @@ struct Memory {
     std::vector<DrawnRow> rows;              // of this frame
     std::map<ParameterKey, Value> defaults;  // by generic key
     Touch touch;
-    Gesture gesture = 0;       // of the drag that runs; a new one for every press
-    ParameterKey error_key;    // parameter whose last edit was refused
-    std::string error;         // why
-    bool error_shown = false;  // beside its row, in this frame
+    Gesture gesture = 0;               // of the drag that runs; a new one for every press
+    ParameterKey error_key;            // parameter whose last edit was refused
+    std::string error;                 // why
+    std::uint64_t error_revision = 0;  // of the document: what comes later ends it
+    bool error_shown = false;          // beside its row, in this frame
     std::map<std::pair<PanelTab, std::string>, bool> open;  // sections, by tab and title
     bool all_open = false;                                  // in the next frame every section unfolds
     bool after_open = false;                                // the section above is unfolded: leave some room

@@ -132,6 +132,7 @@ namespace astrosplat {
 
 void Panel::draw(const GuiFrame& frame) {
     panel::describe_current(memory_, frame.document, frame.view.frame);
+    if (memory_.error_revision != frame.document.revision()) memory_.error.clear();
     memory_.rows.clear();
     memory_.plots.clear();
     memory_.touch.seen = false;
