@@ -201,7 +201,15 @@ void tooltip(const char* text) {
         resting = mouse;
         since = ImGui::GetTime();
     }
-    if (ImGui::GetTime() - since >= wait_s) ImGui::SetTooltip("%s", text);
+    if (ImGui::GetTime() - since < wait_s) return;
+    place_tooltip(ImGui::GetItemRectMin().y);
+    ImGui::SetTooltip("%s", text);
+}
+
+void place_tooltip(float y) {
+    const float left = ImGui::GetWindowPos().x, screen = ImGui::GetIO().DisplaySize.x;
+    if (left > 0.4f * screen && !any_popup())  // at most 520 px of at least 900 are the panel's
+        ImGui::SetNextWindowPos({left - px(8), y}, ImGuiCond_Always, {1.0f, 0.0f});
 }
 
 float segmented_width(std::initializer_list<Segment> segments) {

@@ -91,8 +91,11 @@ inline FrameOnScreen frame_on_screen(const Rect& frame) {
 /// keyboard's ring goes through all of them but those with ImGuiWindowFlags_NoNav.
 bool begin_part(const char* name, const Rect& area, ImGuiWindowFlags flags = ImGuiWindowFlags_NoScrollbar);
 
-/// A tooltip of the last item after a short wait.
+/// A tooltip of the last item after a short wait: at the mouse, or beside the panel.
 void tooltip(const char* text);
+/// The next tooltip lies left of the side panel, its top at `y`, where the current window is in there: rows
+/// below stay in sight.
+void place_tooltip(float y);
 
 struct Segment {
     const char* label;

@@ -46,7 +46,7 @@ void describe_output(const Describer& d, OutputParams& o) {
             o.height = size.y;
         });
     frames(o.frames, "frames", "Frames", "", "Frames to render, such as 1-100,120,200-300x2.");
-    frames(o.fps, "fps", "Frames per second", "1/s", "Written into the frames; nothing moves by it.",
+    frames(o.fps, "fps", "Frames per second", "fps", "Written into the frames; nothing moves by it.",
            within(1e-3, 1e6), slider(1, 120));
     frames(o.path, "path", "Frame files", "",
            "Where frames go; #### is the frame, the ending the format: .exr .tif .png.", as(Type::pattern));
@@ -170,7 +170,7 @@ void describe_camera_file(const Describer& d, CameraParams& c) {
          "Its axis that is up; auto: as the file says, or is usual.");
     read(c.file_offset, "file_offset", "Frames added", "frames", "Added to the frames of the camera file.",
          within(-1e9, 1e9), slider(-1000, 1000));
-    read(c.file_fps, "file_fps", "Frame rate of the file", "1/s",
+    read(c.file_fps, "file_fps", "Frame rate of the file", "fps",
          "Frames per second of the camera file; 0: as it says, else output.fps.", within(0, 1e6),
          slider(0, 120), zero_is("As it says"));
 }

@@ -225,7 +225,7 @@ void describe_structure(const Describer& d, StructureParams& s) {
          "How far that end of the axis leans out of the picture, towards the viewer where positive; auto: "
          "found.",
          or_auto(), range(-80, 80));
-    bodies(s.stars, "stars", "Stars apart", "",
+    bodies(s.stars, "stars", "Separate stars", "",
            "Stars are found and become single splats; auto: unless prepare removes them.");
     bodies(s.dust, "dust", "Dust", "",
            "Share of the dark details that becomes dust; auto: four fifths in a disk, else none.", or_auto(),
@@ -233,7 +233,8 @@ void describe_structure(const Describer& d, StructureParams& s) {
     bodies(s.opacity, "opacity", "Opacity power", "",
            "Power of brightness that opacity grows with; low makes dim parts denser.", within(0.01, 10),
            slider(0.2, 1.5));
-    bodies(s.density, "density", "Body density", "", "Opacity of white.", within(0, 1), slider(0.1, 0.98));
+    bodies(s.density, "density", "Opacity of white", "", "How opaque the brightest places become.",
+           within(0, 1), slider(0.1, 0.98));
     bodies(s.border, "border", "Soft border", "of the width",
            "Light fades over this share towards the picture's edges.", within(0, 0.5), slider(0, 0.2));
     bodies(s.margin, "margin", "Picture margin", "of the width",
@@ -258,7 +259,7 @@ void describe_uv_camera(const Describer& d, UvCamera& c) {
       slider(-100, 100));
     d(c.target, "target", "Its target", "scene units", "The point in the middle of the picture.",
       as(Type::position), slider(-100, 100));
-    d(c.up, "up", "Its up", "", "The direction that is up in the picture.", slider(-1, 1));
+    d(c.up, "up", "Its upward direction", "", "The direction that is up in the picture.", slider(-1, 1));
     d(c.fov, "fov", "Its field of view", "degrees", "From the picture's bottom to its top.", at_least(0.001),
       below(180), slider(1, 120), only_with("height", {0.0}));
     d(c.height, "height", "Its height", "scene units",
@@ -291,8 +292,8 @@ void describe_source(const Describer& d, SourceParams& s) {
             "reduced until their bodies are no more.",
             range(0, 1e15), slider(1e4, 1e9), logarithmic(), only_with("voxels", {"auto"}),
             only_with("voxel_size", {0.0}), zero_is("Off"));
-    lattice(s.jitter, "jitter", "Lattice jitter", "of half a voxel", "How far positions leave the lattice.",
-            range(0, 1));
+    lattice(s.jitter, "jitter", "Random offset", "half voxels",
+            "How far positions leave the middle of their voxel.", range(0, 1));
     lattice(s.max_distance, "max_distance", "Largest distance", "scene units",
             "Positions farther from the meshes are dropped; 0: 2 % of the longest side.", at_least(0),
             slider(0, 10), zero_is("Auto"));

@@ -67,7 +67,7 @@ void describe_alpha(const Describer& d, HorizontalAlpha& a) {
     d(a.power, "power", "Opacity at soft edges", "", "Opacity below the threshold is raised to this power.",
       within(0, 1e6), slider(0.1, 10), logarithmic(), shown_as("Power"));
     d(a.threshold, "threshold", "Threshold", "", "Opacity from here on is left alone.", range(0, 1));
-    d(a.unpremultiply, "unpremultiply", "Unpremultiply edges", "",
+    d(a.unpremultiply, "unpremultiply", "Full colour at edges", "",
       "Divides colours below the threshold by their opacity.");
     d(a.gain, "gain", "Opacity gain", "", "Multiplies opacity.", within(0, 1e6), slider(0, 4));
 }

@@ -353,14 +353,14 @@ std::string in_words(const ParameterSpec& spec, const Value& value) {
 }
 
 std::string tooltip_text(const ParameterSpec& spec, const Value& standard) {
-    std::string text = spec.label + ": " + spec.help + "\n" + spec.key.text();
+    std::string text = spec.label + ": " + spec.help;
     text += "\nTakes " + expectation(spec);
     if (!spec.unit.empty()) text += ", " + spec.unit;
     const bool says_nothing = standard.is_number() && standard.number() == 0.0 && !spec.zero.empty();
     text += "; default " +
             (says_nothing ? fmt::format("{} ({})", spec.zero, to_toml(standard)) : to_toml(standard));
     if (spec.animation == Animation::steps) text += "; animated in steps";
-    return text;
+    return text + "\n" + spec.key.text();
 }
 
 std::string set_option(const std::string& key, const Value& value) {

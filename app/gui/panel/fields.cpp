@@ -366,6 +366,7 @@ void show_tooltip(Context& context, const Row& row) {
     if (ImGui::GetTime() - memory.hovered_since < tooltip_delay_s) return;
     std::string text = tooltip_text(row.parameter.spec, default_of(context, row.parameter.spec));
     if (context.document.set_by_command_line(row.key())) text += "\nSet by --set";
+    place_tooltip(row.layout.whole.y);
     ImGui::BeginTooltip();
     ImGui::PushTextWrapPos(px(320));
     ImGui::TextUnformatted(text.c_str());

@@ -58,18 +58,23 @@ ImU32 chip_color(const Context& context, std::size_t i) {
     return IM_COL32(byte(tinted.x), byte(tinted.y), byte(tinted.z), 255);
 }
 
-// A letter or icon that is a switch; quiet while off.
-bool letter(const char* id, const char* text, ImVec2 corner, bool on, const char* tooltip) {
+void switch_ground(ImVec2 corner, const SwitchColors& colors) {
+    const float inset = px(1), height = px(20), top = corner.y + (px(line_height) - height) * 0.5f;
+    fill_rect(Rect{corner.x + inset, top, px(20) - 2.0f * inset, height}, colors.ground, px(3));
+}
+
+// A letter that is a switch; quiet while off.
+bool letter(const char* id, const char* text, ImVec2 corner, bool on, const char* says) {
     const ImVec2 size{px(20), px(line_height)};
     ImGui::SetCursorScreenPos(corner);
     const bool clicked = ImGui::InvisibleButton(id, size);
-    const bool hovered = ImGui::IsItemHovered();
-    if (hovered) ImGui::SetTooltip("%s", tooltip);
+    const SwitchColors colors = switch_colors(on, ImGui::IsItemHovered());
+    tooltip(says);
+    switch_ground(corner, colors);
     ImGui::PushFont(medium_font());
     const ImVec2 extent = ImGui::CalcTextSize(text);
-    const ImU32 quiet = hovered ? color::text : color::with_opacity(color::dim, 0.45f);
-    draw_text({corner.x + (size.x - extent.x) * 0.5f, corner.y + (size.y - extent.y) * 0.5f},
-              on ? color::accent : quiet, text);
+    draw_text({corner.x + (size.x - extent.x) * 0.5f, corner.y + (size.y - extent.y) * 0.5f}, colors.ink,
+              text);
     ImGui::PopFont();
     return clicked;
 }
@@ -86,10 +91,10 @@ void switches(Context& context, std::size_t i, const Rect& row) {
         toggle(context, i, "render.isolate", layer.render.isolate);
     x -= px(20);
     ImGui::SetCursorScreenPos({x, row.y});
-    const ImU32 quiet = color::with_opacity(color::dim, 0.45f);
+    const SwitchColors colors = switch_colors(layer.render.holdout, false);
+    switch_ground({x, row.y}, colors);
     if (icon_button("holdout", layer.render.holdout ? Icon::ring_cut : Icon::ring, {px(20), px(line_height)},
-                    px(11), layer.render.holdout ? color::accent : quiet,
-                    "Holdout: hides what lies behind, shows nothing itself"))
+                    px(11), colors.ink, "Holdout: hides what lies behind, shows nothing itself"))
         toggle(context, i, "render.holdout", layer.render.holdout);
     x -= px(20);
     const bool solo = context.view.solo.count(layer.name) > 0;
@@ -203,7 +208,7 @@ void second_line(Context& context, std::size_t i, const Rect& row) {
     if (!status.error.empty()) {
         clipped_text(line, 0.0f, color::error, status.error);
         ImGui::Dummy(line.size());
-        if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", status.error.c_str());
+        tooltip(status.error.c_str());
     } else {
         load_line(context, i, line.width, fmt::format("{} %", static_cast<int>(status.progress * 100.0f)),
                   "Needs regeneration");
@@ -262,6 +267,11 @@ void scroll_to_selected(Context& context, const std::vector<Rect>& rows) {
 }
 
 }  // namespace
+
+SwitchColors switch_colors(bool on, bool hovered) {
+    if (on) return {color::accent, color::window};
+    return {hovered ? color::text : color::dim, color::none};
+}
 
 void load_line(Context& context, std::size_t i, float width, const std::string& loading,
                const std::string& stale) {

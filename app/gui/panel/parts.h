@@ -114,6 +114,13 @@ void output_buttons(Context& context);
 /// Draws the list of layers over the width of the current window, `height` px at most; longer lists scroll.
 void layer_list(Context& context, float height);
 
+/// Of a switch of a layer: its sign, and what that stands on where it is not the row itself. At least 3 to 1
+/// on every row, also on the selected one.
+struct SwitchColors {
+    ImU32 ink, ground;
+};
+SwitchColors switch_colors(bool on, bool hovered);
+
 /// The plus that adds a layer, with its menu.
 void add_layer_button(Context& context);
 
@@ -220,7 +227,7 @@ std::string choice_label(const std::string& choice);
 /// A value on one line, for tooltips and boxes that take any text: files by their names, nothing as "Auto".
 std::string in_words(const ParameterSpec& spec, const Value& value);
 
-/// Help, range and key: what a row's tooltip says.
+/// Help and range in words, then the key: what a row's tooltip says.
 std::string tooltip_text(const ParameterSpec& spec, const Value& standard);
 
 /// `--set key=value` as one word of a shell.
