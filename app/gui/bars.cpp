@@ -264,14 +264,14 @@ float draw_probe(const Status& status, float right, const Rect& area) {
 
 void StatusBar::take_message(const Status& status) {
     const std::string& text = status.message.text;
-    const bool stands = status.standing_errors.count(unread_) > 0;
-    if (status.scenes != scenes_ || (unread_stands_ && !stands)) unread_.clear();
-    unread_stands_ = stands;
+    const auto stands = [&] { return status.standing_errors.count(unread_) > 0; };
+    if (status.scenes != scenes_ || (unread_stands_ && !stands())) unread_.clear();
     scenes_ = status.scenes;
-    if (text == last_ && status.message.number == number_) return;
+    const bool is_new = text != last_ || status.message.number != number_;
     last_ = text;
     number_ = status.message.number;
-    if (status.message.error) unread_ = text;
+    if (is_new && status.message.error) unread_ = text;
+    unread_stands_ = stands();
 }
 
 void StatusBar::draw(GuiFrame& frame, const Rect& area) {

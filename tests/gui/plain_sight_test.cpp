@@ -54,7 +54,13 @@ TEST(PlainSight, TooltipsOfThePanelLieBesideIt) {
         EXPECT_LE(tip->Pos.x + tip->Size.x, panel);
         EXPECT_NEAR(tip->Pos.y, at.y, 20.0f);
     };
-    expect_beside(window.gui.panel().rows().at(0).label);
+    const DrawnRow row = window.gui.panel().rows().at(1);
+    expect_beside(row.label);
+    window.drag(row.value, {30.0f, 0.0f});
+    window.frame(60);
+    const ImGuiWindow* const tip = ImGui::FindWindowByName("##Tooltip_00");
+    EXPECT_FALSE(tip && tip->Active) << "whoever changes a value looks at the picture";
+    window.hover({500.0f, 400.0f});
     expect_beside(
         {1600.0f - 12.0f - 14.0f, window.at("panel/Layers").y + 34.0f});  // Isolate of the first layer
 }

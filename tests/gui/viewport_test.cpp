@@ -428,6 +428,10 @@ TEST_F(ViewportTest, AnErrorBelongsToItsSceneAndItsCauseAndHidesNothing) {
     window.status.standing_errors = {"stars.fits: no such file"};
     say("stars.fits: no such file", true);
     EXPECT_TRUE(is_red());
+    say("no keyframe without a camera", true);
+    EXPECT_TRUE(is_red()) << "another one after it";
+    say("stars.fits: no such file", true);
+    window.frame();
     window.status.standing_errors.clear();
     EXPECT_FALSE(is_red()) << "its cause is gone";
 }

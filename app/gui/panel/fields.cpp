@@ -355,7 +355,15 @@ void draw_label(Context& context, const Row& row) {
 
 void show_tooltip(Context& context, const Row& row) {
     Memory& memory = context.memory;
-    if (!mouse_over(row.layout.whole) || ImGui::IsAnyItemActive()) {
+    constexpr double never = 1e30;  // until the mouse comes again: who changes a value looks at the picture
+    const Rect& whole = row.layout.whole;
+    if (ImGui::IsAnyItemActive()) {
+        if (!ImGui::IsMouseHoveringRect(whole.corner(), whole.end())) return;
+        memory.hovered = row.key();
+        memory.hovered_since = never;
+        return;
+    }
+    if (!mouse_over(whole)) {
         if (memory.hovered == row.key()) memory.hovered = {};
         return;
     }
