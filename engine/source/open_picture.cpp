@@ -11,6 +11,7 @@
 
 #include <cstdio>
 #include <fstream>
+#include <mutex>
 #include <sstream>
 
 #include "core/error.h"
@@ -116,7 +117,8 @@ std::unique_ptr<OIIO::ImageInput> open_picture(const fs::path& file) {
     if (format->id == "pnm") largest_of_pnm(file);
     OIIO::ImageSpec spec, wish;
     wish.attribute("oiio:UnassociatedAlpha", 1);
-    if (in->open(file.string(), spec, wish)) return in;
+    static std::mutex profiles;  // OpenImageIO 2.4.7 fills a table of theirs as it goes (its issue 3756)
+    if (const std::lock_guard lock(profiles); in->open(file.string(), spec, wish)) return in;
     const std::string reason = in->geterror();
     if (reason.find("Subsampled channels") != std::string::npos)
         fail_picture(

@@ -147,7 +147,7 @@ TEST(Structure, LibrariesStayBehindTheFilesThatWrapThem) {
         {std::regex("^OpenImageIO/"), std::regex("^engine/(source|output)/[^/]*\\.cpp$|"
                                                  "^engine/source/open_picture\\.h$")},
         {std::regex("^png\\.h"), std::regex("^engine/output/png_frame\\.cpp$")},
-        {std::regex("^tiffio"), std::regex("^engine/(output/tiff_frame|source/picture)\\.cpp$")},
+        {std::regex("^tiffio"), std::regex("^engine/(output/tiff_frame|source/open_picture)\\.cpp$")},
         {std::regex("^OpenColorIO/"), std::regex("^engine/ocio/display_transform\\.cpp$")},
         {std::regex("^fitsio"), std::regex("^engine/source/([^/]*\\.cpp|fits_file\\.h)$")},
         {std::regex("^openssl/"), std::regex("^engine/core/hash\\.cpp$")},
