@@ -107,7 +107,7 @@ TEST(Shell, GlowFillsItEvenly) {
 TEST(Shell, OnlyBallsAreKnots) {
     RemnantPlacement remnant;
     Placement& placement = remnant.placement;
-    placement.knots.knots = {{320.0f, 200.0f, 2.0f, 1.0f, 1.0f}};
+    placement.knots = {640, 400, {{320.0f, 200.0f, 2.0f, 1.0f, 1.0f}}, {}, {}};
     placement.knots.owner.resize(640 * 400, 0);
     placement.knots.weight.resize(640 * 400, 1.0f);
     placement.knot_z = {0.0f};

@@ -254,25 +254,24 @@ TEST_F(FinerPreviewSession, APreviewIsDrawnByTheCardThatIsAskedFor) {
 
 TEST(Messages, AFailedPictureAndLayerAreSaidOnce) {
     Status status;
-    std::set<std::string> said;
     status.layers.resize(2);
-    say_new_errors(status, said);
+    say_new_errors(status);
     EXPECT_TRUE(status.log.empty());
     status.view_frame.state = ViewFrameState::failed;
     status.view_frame.error = "s.toml: camera.fov: expected an angle, found 0";
-    say_new_errors(status, said);
+    say_new_errors(status);
     ASSERT_EQ(status.log.size(), 1u);
     EXPECT_TRUE(status.message.error);
     EXPECT_EQ(status.message.text, status.view_frame.error);
     status.layers[1].error = "a.png: expected a picture, found none";
-    say_new_errors(status, said);
-    say_new_errors(status, said);
+    say_new_errors(status);
+    say_new_errors(status);
     ASSERT_EQ(status.log.size(), 2u);
     EXPECT_EQ(status.message.text, status.layers[1].error);
     status.view_frame.state = ViewFrameState::preview;
-    say_new_errors(status, said);
+    say_new_errors(status);
     status.view_frame.state = ViewFrameState::failed;
-    say_new_errors(status, said);
+    say_new_errors(status);
     EXPECT_EQ(status.log.size(), 3u) << "it has failed again";
 }
 
