@@ -47,15 +47,16 @@ Wcs copied(const wcsprm& from) {
 Wcs celestial_axes(wcsprm& all, const std::string& type, std::string& problem) {
     std::array<int, NWCSFIX> fixed{};
     wcsfix(0, nullptr, &all, fixed.data());
-    wcserr_clear(&all.err);  // where set twice, WCSLIB 7.12 loses the first message
     int axes[] = {WCSSUB_CELESTIAL}, count = 1;
     Wcs wcs = new_wcs();
     const auto reason = [&](const wcsprm& failed, int status) {
         const std::string text = failed.err ? failed.err->msg : wcs_errmsg[status];
         return fmt::format("{} ({})", type, text.substr(0, text.find('\n')));
     };
-    if (const int status = wcsset(&all); status != 0) {
-        problem = reason(all, status);
+    // That has called wcsset, which, called once more after a failure, loses the first one's messages (7.12).
+    const int status_of_all = fixed[CELFIX] > 0 ? fixed[CELFIX] : wcsset(&all);
+    if (status_of_all != 0) {
+        problem = reason(all, status_of_all);
         return {};
     }
     if (all.lng < 0 || all.lat < 0) return {};
