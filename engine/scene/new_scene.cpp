@@ -23,6 +23,7 @@
 #include "render/frame.h"
 #include "scene/parameter.h"
 #include "scene/parameter_key.h"
+#include "source/stored_picture.h"
 #include "source/texture.h"
 #include "stars/catalogue.h"
 
@@ -95,7 +96,7 @@ std::string picture_path(const fs::path& image, const fs::path& file) {
 }  // namespace
 
 std::string scale_text_of(const fs::path& image) {
-    const ImageRows rows = open_picture_rows(image).rows;
+    const ImageRows rows = open_stored(image, {}, {}).rows;
     const auto width = double(rows.width), height = double(rows.height);
     return scale_text(light_years_per_px(said_of(clues_of(image)), width, height).value_or(0.0), width,
                       height);

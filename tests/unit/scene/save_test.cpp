@@ -340,5 +340,16 @@ TEST(NewScene, LoadsForEveryShapeAndOddNames) {
     EXPECT_EQ(parse(new_scene_text("a.png", "plane", "a.toml", scale)).light_years_per_unit, 3.5);
 }
 
+// Of a picture that only this program's own reader opens.
+TEST(NewScene, TellsTheScaleOfXisf) {
+    const std::string header =
+        "<xisf version=\"1.0\"><Image geometry=\"2:2:1\" sampleFormat=\"UInt8\" colorSpace=\"Gray\" "
+        "location=\"inline:hex\">01020304</Image></xisf>";
+    const TempFolder folder;
+    EXPECT_EQ(scale_text_of(
+                  folder.file("a.xisf", "XISF0100" + (char(header.size()) + std::string(7, '\0')) + header)),
+              "");
+}
+
 }  // namespace
 }  // namespace astrosplat::test
