@@ -8,13 +8,11 @@
 #include "core/file_format.h"
 #include "core/log.h"
 #include "core/text.h"
+#include "edit/picture_start.h"
 #include "exit.h"
-#include "prepare/star_removal.h"
 #include "scene/new_scene.h"
 #include "scene/parameter_key.h"
-#include "scene/save.h"
 #include "source/picture.h"
-#include "source/prepared_picture.h"
 
 namespace astrosplat {
 namespace {
@@ -105,9 +103,9 @@ BodiesScene bodies_scene(const fs::path& picture, const fs::path& place, const N
     say(options.starless.empty() ? picture : options.starless, found);
     BodiesScene made{picture_scene_text(scene, place), to_report(found, scene)};
     if (!options.film) return made;
-    Scene film = parse_scene(made.text, place);
-    made.report["detail"] = to_report(set_detail(film, double(usual_detail_splats), cache, stoppable()));
-    made.text = save_text(film, made.text, place);
+    FilmText film = with_detail(made.text, place, cache, stoppable());
+    made.report["detail"] = to_report(film.detail);
+    made.text = std::move(film.text);
     return made;
 }
 
@@ -120,16 +118,6 @@ std::string columns_text(const fs::path& picture, const fs::path& place, const N
     const std::string shape = options.shape.empty() ? "plane" : options.shape;
     const bool as_large = shape == "plane" || shape == "relief";  // as the picture in both directions
     return new_scene_text(picture, shape, place, as_large ? scale_text_of(picture) : "");
-}
-
-/// The stars of a pair of pictures, for the scene's second layer.
-void write_star_table(const NewOptions& own, const fs::path& table, Existing existing) {
-    TextureSettings settings;
-    settings.prepare.starless = own.starless;
-    settings.prepare.stars = PrepareParams::Stars::remove;
-    const PreparedPicture prepared = prepare_picture({own.stars}, settings, stoppable());
-    write_file_atomically(table, star_table(prepared.stars, prepared.image.width, prepared.image.height),
-                          existing);
 }
 
 int run_new(const CommandOptions& options, const NewOptions& own) {
@@ -153,7 +141,7 @@ int run_new(const CommandOptions& options, const NewOptions& own) {
         require_picture(own.starless);
         table = folder_of(scene) / (scene.stem().string() + "_stars.csv");
         refuse_to_overwrite(table, options.overwrite);
-        write_star_table(own, table, existing_of(options));
+        write_star_table(own.stars, own.starless, table, existing_of(options), stoppable());
     }
     const BodiesScene made = columns ? BodiesScene{columns_text(picture, scene, own), Report::object()}
                                      : bodies_scene(picture, scene, own, options.cache, table);

@@ -2,12 +2,10 @@
 
 #include <fmt/format.h>
 
-#include "core/atomic_file.h"
 #include "core/error.h"
 #include "core/text.h"
 #include "edit/layers.h"
 #include "prepare/star_removal.h"
-#include "scene/detail_tiles.h"
 #include "scene/load.h"
 #include "scene/new_scene.h"
 #include "scene/save.h"
@@ -22,11 +20,7 @@ fs::path table_of_stars(const fs::path& picture, const fs::path& place) {
     const fs::path table = place.parent_path() / (place.stem().string() + "_stars.csv");
     std::error_code ignored;
     if (fs::exists(table, ignored)) return table;
-    TextureSettings settings;
-    settings.prepare.stars = PrepareParams::Stars::remove;
-    const PreparedPicture prepared = prepare_picture({picture}, settings, {});
-    write_file_atomically(table, star_table(prepared.stars, prepared.image.width, prepared.image.height),
-                          Existing::keep);
+    write_star_table(picture, {}, table, Existing::keep);
     return table;
 }
 
@@ -55,10 +49,26 @@ std::string picture_start_text(PictureStart& start, const fs::path& place, const
     start.seen = seen_in_words(scene);
     start.because = joined_once({start.as ? "you say so" : found.why, scene.lies_by});
     const std::string text = picture_scene_text(scene, place);
-    if (!start.film) return text;
+    return start.film ? with_detail(text, place, cache).text : text;
+}
+
+void write_star_table(const fs::path& picture, const fs::path& starless, const fs::path& table,
+                      Existing existing, const Progress& progress) {
+    TextureSettings settings;
+    settings.prepare.starless = starless;
+    settings.prepare.stars = PrepareParams::Stars::remove;
+    const PreparedPicture prepared = prepare_picture({picture}, settings, progress);
+    write_file_atomically(table, star_table(prepared.stars, prepared.image.width, prepared.image.height),
+                          existing);
+}
+
+FilmText with_detail(const std::string& text, const fs::path& place, const SetCache& cache,
+                     const Progress& progress) {
     Scene film = parse_scene(text, place);
-    set_detail(film, double(usual_detail_splats), cache);
-    return save_text(film, text, place);
+    FilmText made;
+    made.detail = set_detail(film, double(usual_detail_splats), cache, progress);
+    made.text = save_text(film, text, place);
+    return made;
 }
 
 PictureStart chosen_start(PictureStart start, const std::string& choice) {

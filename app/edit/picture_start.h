@@ -1,7 +1,9 @@
 // The first scene of a picture that is opened in the window, and its making again in another way.
 #pragma once
 
+#include "core/atomic_file.h"
 #include "edit/view_state.h"
+#include "scene/detail_tiles.h"
 #include "sets/kept.h"
 
 namespace astrosplat {
@@ -10,6 +12,19 @@ namespace astrosplat {
 /// Stars that are parted go to a table beside `place`, NAME_stars.csv; one that lies there is taken. Reads
 /// the picture, and with a film makes its detail. Throws InputError, OutputError.
 std::string picture_start_text(PictureStart& start, const fs::path& place, const SetCache& cache = {});
+
+/// The stars that are on `picture` alone, or that it has beside `starless`, as a table for a layer of stars.
+/// Throws InputError, OutputError, Cancelled.
+void write_star_table(const fs::path& picture, const fs::path& starless, const fs::path& table,
+                      Existing existing, const Progress& progress = {});
+
+/// The text of a scene with a camera move, with the detail that this one needs. Throws as set_detail does.
+struct FilmText {
+    std::string text;
+    std::vector<LayerDetail> detail;
+};
+FilmText with_detail(const std::string& text, const fs::path& place, const SetCache& cache,
+                     const Progress& progress = {});
 
 /// `start` with the choice of Command::start_again. Throws InputError for another.
 PictureStart chosen_start(PictureStart start, const std::string& choice);

@@ -490,4 +490,10 @@ AxisFit fit_axis(const Image& picture, const GivenAxis& given) {
     return fit;
 }
 
+AxisFit fit_axis(const Image& light, const StructureParams& params) {
+    GivenAxis given{{}, params.tilt};
+    if (params.axis_angle) given.angle = real::radians(*params.axis_angle);
+    return fit_axis(light, given);
+}
+
 }  // namespace astrosplat

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "core/image.h"
+#include "source/source.h"
 
 namespace astrosplat {
 
@@ -44,5 +45,7 @@ std::string symmetry_words(const AxisFit& fit);
 /// Fits rings about one axis to the light (RGB, linear, >= 0) of a picture. The same bits with any number of
 /// threads.
 AxisFit fit_axis(const Image& light, const GivenAxis& given = {});
+/// The same with what the scene says of it.
+AxisFit fit_axis(const Image& light, const StructureParams& params);
 
 }  // namespace astrosplat

@@ -27,7 +27,6 @@
 namespace astrosplat {
 namespace {
 
-constexpr int picture_bit = 56, instance_bit = 42;
 constexpr int most_faces = 64;  // that show one splat: ids hold 6 bits of which
 
 glm::vec2 uv_of(const glm::vec3& texel, const Image& image) {
@@ -53,9 +52,7 @@ struct BodiesTask {
 std::optional<AxisDepths> axis_of(const Image& light, const StructureParams& params,
                                   const std::string& layer_name) {
     if (params.kind != StructureKind::axis) return {};
-    GivenAxis given{{}, params.tilt};
-    if (params.axis_angle) given.angle = real::radians(*params.axis_angle);
-    AxisFit fit = fit_axis(light, given);
+    AxisFit fit = fit_axis(light, params);
     const std::string found = fmt::format("layer '{}': {}", layer_name, symmetry_words(fit));
     if (!is_about_axis(fit)) {
         log_warning(found + ", too little: walls are made instead");

@@ -145,11 +145,10 @@ std::vector<BandSplats> band_splats(const Band& band, bool coarsest, const Place
 
 std::vector<BandSplats> detail_splats(const Band& band, int octaves, const Placement& placement) {
     constexpr double finest_sigma_px = double(least_sigma);
-    constexpr int first_number = 128;              // beyond those of all bands
     const double px = 1.0 / double(1 << octaves);  // texels
     BandSplats splats;
     splats.octaves = octaves;
-    splats.number = first_number + 4 * octaves + band.index;
+    splats.number = first_detail_number + 4 * octaves + band.index;
     splats.sigma = float(finest_sigma_px * px * (1 << band.index));
     splats.spacing = float(std::sqrt(2.0 * real::pi / splats_each[0]) * double(splats.sigma));
     splats.threshold = float(fine_threshold);

@@ -169,7 +169,7 @@ struct DustMaker {
     // A cell's splat, where there is dust and it is not thinned out.
     std::optional<Candidate> candidate_of(const LatticeCell& cell) const {
         Candidate splat;
-        splat.id = dust_band << 48 | lattice.number(cell);
+        splat.id = dust_band << band_bit | lattice.number(cell);
         splat.x = (float(cell.column) + random(splat.id, shared::PURPOSE_JITTER_X)) * dust_spacing;
         splat.y = (float(cell.row) + random(splat.id, shared::PURPOSE_JITTER_Y)) * dust_spacing;
         if (splat.x >= float(transmittance.width) || splat.y >= float(transmittance.height)) return {};
@@ -186,7 +186,7 @@ struct DustMaker {
     }
 
     void make_splats(std::span<const LatticeCell> cells, std::size_t first, PictureSplats& out) const {
-        const std::uint32_t even_key = placement.hash_of(dust_band << 48, shared::PURPOSE_EVEN);
+        const std::uint32_t even_key = placement.hash_of(dust_band << band_bit, shared::PURPOSE_EVEN);
         DepthBlock block;
         block.count = int(cells.size());
         for (std::size_t i = 0; i < cells.size(); ++i) {
@@ -273,7 +273,7 @@ void turn_dust(const GalaxyBody& galaxy, const Placement& placement, std::int64_
         out.splats.color[to] = out.splats.color[from];
         out.splats.alpha[to] = out.splats.alpha[from];
         out.splats.radius[to] = out.splats.radius[from];
-        out.splats.id[to] = out.splats.id[from] | std::uint64_t(1 + k / count) << 40;
+        out.splats.id[to] = out.splats.id[from] | std::uint64_t(1 + k / count) << size_bit;
         out.distance[to] = out.distance[from];
     });
 }

@@ -1,5 +1,5 @@
-// The displacement is taken between two small placements, so that what a small picture lacks (stars taken
-// out, the finest folds) cancels, and nothing jumps where a drag begins.
+// Depths follow the difference of two placements by the picture at a small size, so that nothing jumps where
+// a drag begins, and what such a picture lacks cancels.
 #include "bodies/moved_bodies.h"
 
 #include <map>
@@ -109,19 +109,13 @@ struct MovedBodies::Picture {
         }
     }
 
-    AxisFit fitted(const StructureParams& params) const {
-        GivenAxis given{{}, params.tilt};
-        if (params.axis_angle) given.angle = real::radians(*params.axis_angle);
-        return fit_axis(light, given);
-    }
-
     Placement placement_under(const StructureParams& made, StructureParams now) const {
         std::optional<AxisDepths> about;
         if (now.kind == StructureKind::axis) {
             const bool known = before.picture_width > 0 && made.kind == now.kind && same_axis(made, now);
             if (known) {
                 about = before.axis;
-            } else if (AxisFit fit = fitted(now); is_about_axis(fit)) {
+            } else if (AxisFit fit = fit_axis(light, now); is_about_axis(fit)) {
                 about = make_axis_depths(std::move(fit), light, size.width);
             }
             if (!about) now.kind = StructureKind::walls;
@@ -133,13 +127,12 @@ struct MovedBodies::Picture {
     }
 
     BandSplats splats_of(const Group& group, const Placement& placement) const {
-        constexpr int first_detail = 128;  // detail_splats()
-        const bool is_detail = group.number >= first_detail;
-        const std::size_t index = is_detail ? std::size_t(group.number - first_detail) % 4
-                                            : std::min(std::size_t(group.number), bands.size() - 1);
+        const int detail = group.number - first_detail_number;
+        const std::size_t index =
+            detail >= 0 ? std::size_t(detail) % 4 : std::min(std::size_t(group.number), bands.size() - 1);
         const std::vector<BandSplats> sizes =
-            is_detail ? detail_splats(bands[index], (group.number - first_detail) / 4, placement)
-                      : band_splats(bands[index], index + 1 == bands.size(), placement);
+            detail >= 0 ? detail_splats(bands[index], detail / 4, placement)
+                        : band_splats(bands[index], index + 1 == bands.size(), placement);
         return sizes[std::min(std::size_t(group.size), sizes.size() - 1)];
     }
 
@@ -194,7 +187,6 @@ Depths MovedBodies::Picture::depths(const Placement& placement, const Group& gro
 }
 
 void MovedBodies::Picture::add(const SplatSet& rows, std::uint32_t row, Group& group) const {
-    constexpr float least = 0.2f;  // as along_rays() has it
     const glm::vec2 uv = rows.uv[row];
     std::optional<SurfacePlace> place;
     surface.at(uv, [&](const SurfacePlace& found) {
@@ -208,13 +200,11 @@ void MovedBodies::Picture::add(const SplatSet& rows, std::uint32_t row, Group& g
     group.x.push_back(uv.x * float(size.width));
     group.y.push_back((1.0f - uv.y) * float(size.height));
     group.place.push_back(*place);
-    group.z.push_back(along / std::max(least, 1.0f - place->approach * along));
+    group.z.push_back(along_parallels(*place, along));
 }
 
 /// The random numbers that the splats were made with; of stars the share of those that lie behind them.
 void MovedBodies::Picture::set_randoms(const SplatSet& rows, Group& group) const {
-    constexpr std::uint64_t own_bits = (std::uint64_t{1} << 56) - 1;
-    constexpr std::uint64_t instance_bits = std::uint64_t{63} << 42;
     const std::size_t count = group.row.size();
     group.random.resize(count);
     group.even.resize(count);
@@ -222,11 +212,10 @@ void MovedBodies::Picture::set_randoms(const SplatSet& rows, Group& group) const
     BandSplats splats;
     if (is_band) splats = splats_of(group, before);
     const std::uint64_t of_band = std::uint64_t(group.number) << 8 | std::uint64_t(group.size);
-    const std::uint32_t key = before.hash_of(is_band ? of_band : dust_band << 48, shared::PURPOSE_EVEN);
+    const std::uint32_t key = before.hash_of(is_band ? of_band : dust_band << band_bit, shared::PURPOSE_EVEN);
     parallel_each(count, 4096, [&](std::size_t i) {
         const std::uint32_t row = group.row[i];
-        const std::uint64_t id = rows.id[row] & own_bits & ~instance_bits;
-        group.random[i] = before.hash_of(id, shared::PURPOSE_DEPTH);
+        group.random[i] = before.hash_of(id_in_picture(rows.id[row]), shared::PURPOSE_DEPTH);
         if (!is_band && group.number != int(dust_band)) {
             float low = 0.0f, high = 1.0f;
             for (int step = 0; step < 24; ++step) {
@@ -355,10 +344,9 @@ void MovedBodies::Picture::move(const Group& group, const StructureParams& made,
             const float shines =
                 bilinear(brightest, 0, group.x[i] * before.to_light, group.y[i] * before.to_light);
             const float old_tau = old_opacity.depth_of(shines, 1.0f), tau = opacity.depth_of(shines, 1.0f);
-            const auto boost = [](float t) { return t > 1e-4f ? t / (1.0f - shared::as_exp(-t)) : 1.0f; };
             const float as_made = alpha;
             alpha = std::clamp(alpha * tau / std::max(old_tau, 1e-6f), 1e-6f, 1.0f);
-            rows.color[row] *= as_made / alpha * (is_band ? boost(tau) / boost(old_tau) : 1.0f);
+            rows.color[row] *= as_made / alpha * (is_band ? boost_of(tau) / boost_of(old_tau) : 1.0f);
         }
         if (is_band && placement.axis && before.axis) {
             const glm::vec3 tint = placement.axis->tint(group.x[i], group.y[i], found.z[i]),
@@ -387,17 +375,17 @@ MovedBodies::MovedBodies(std::vector<TexturedMesh> meshes, const StructureParams
                                                      reduced(small_texels), params,
                                                      seed + std::uint32_t(pictures.size())));
     }
-    std::map<std::uint64_t, Group> groups;  // by the upper bits of ids
+    std::map<std::pair<std::uint64_t, std::uint64_t>, Group> groups;  // by picture, band and size
     for (std::size_t row = 0; row < rows_.id.size(); ++row) {
-        const std::uint64_t id = rows_.id[row], picture = id >> 56;
+        const std::uint64_t id = rows_.id[row], picture = id >> picture_bit;
         if (picture >= pictures.size()) continue;
-        Group& group = groups[id >> 40 & ~std::uint64_t{0xfc}];  // without the number among faces
-        group.number = int(id >> 48 & 255);
-        group.size = int(id >> 40 & 3);
+        Group& group = groups[{picture, id_in_picture(id) >> size_bit}];
+        group.number = int(band_of(id));
+        group.size = int(id_in_picture(id) >> size_bit & 3);
         pictures[picture]->add(rows_, std::uint32_t(row), group);
     }
     for (auto& [key, group] : groups) {
-        Picture& picture = *pictures[key >> 16];
+        Picture& picture = *pictures[key.first];
         picture.set_randoms(rows_, group);
         Depths model = picture.depths(picture.before, group);
         group.model_z = std::move(model.z);

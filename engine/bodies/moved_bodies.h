@@ -1,7 +1,7 @@
 // Bodies while their model is changed: some of a set's splats, moved along their lines of sight by as much as
 // depths of the same pictures, at a small size, differ between the model that they were made by and another
 // one. In: splats of make_bodies(), and what they were made of. Out: about where make_bodies() would have
-// them, within tens of milliseconds.
+// them, for a hand that drags.
 #pragma once
 
 #include "source/source.h"

@@ -41,9 +41,8 @@ void shade(const Candidate& splat, float hiding, float footprint, const Opacity&
     const float brightest = std::max(least_brightness, splat.brightest);
     const float tau = hiding * opacity.depth_of(splat.brightest, splat.opacity_limit);
     const float alpha = std::clamp(tau * (splat.amplitude / brightest) / footprint, 1e-6f, 1.0f);
-    const float boost = tau > 1e-4f ? tau / (1.0f - as_exp(-tau)) : 1.0f;  // what lies before it takes away
     out.alpha[at] = alpha;
-    out.color[at] = splat.light * (boost / (alpha * footprint));
+    out.color[at] = splat.light * (boost_of(tau) / (alpha * footprint));
     out.id[at] = splat.id;
 }
 
@@ -59,7 +58,7 @@ struct BandMaker {
     // A cell's splat, where there is light and it is not thinned out.
     std::optional<Candidate> candidate_of(const LatticeCell& cell) const {
         Candidate splat;
-        splat.id = std::uint64_t(splats.number) << 48 | std::uint64_t(splats.size) << 40;
+        splat.id = std::uint64_t(splats.number) << band_bit | std::uint64_t(splats.size) << size_bit;
         splat.id += lattice.number(cell);
         const auto place_in = [&](std::int64_t step, std::uint32_t purpose) {
             const float random = as_uniform(placement.hash_of(splat.id, purpose));
@@ -176,6 +175,8 @@ float Opacity::depth_of(float brightest, float alpha) const {
     return -as_log(1.0f - std::min(hidden, alpha));
 }
 
+float boost_of(float tau) { return tau > 1e-4f ? tau / (1.0f - as_exp(-tau)) : 1.0f; }
+
 SplatRange add_band(const BandLight& band, const BandSplats& splats, const Image& brightest,
                     const Image& alpha, const Placement& placement, const Opacity& opacity,
                     PictureSplats& out) {
@@ -205,7 +206,7 @@ void add_stars(std::span<const Star> stars, std::size_t first_number, const Plac
         out.splats.color[at] = star.peak / alpha;
         out.splats.alpha[at] = alpha;
         out.splats.radius[at] = radius_sigmas * star.sigma;
-        out.splats.id[at] = star_band << 48 | (first_number + i);
+        out.splats.id[at] = star_band << band_bit | (first_number + i);
         out.distance[at] = std::fabs(spread);
         sigmas += double(star.sigma);
     }
@@ -249,8 +250,8 @@ void add_spikes(std::span<const SpikeLight> spikes, std::span<const glm::vec2> p
         out.splats.color[begin + i] = spike.light / (alpha * footprint);
         out.splats.alpha[begin + i] = alpha;
         out.splats.radius[begin + i] = radius_sigmas * sigma * float(times);
-        out.splats.id[begin + i] =
-            spike_band << 48 | std::uint64_t(part) << 40 | std::uint64_t(spike.row * columns + spike.column);
+        out.splats.id[begin + i] = spike_band << band_bit | std::uint64_t(part) << size_bit |
+                                   std::uint64_t(spike.row * columns + spike.column);
         out.distance[begin + i] = std::fabs(height);
     });
     out.ranges.push_back(

@@ -22,8 +22,7 @@ struct SplatRange {
 };
 
 struct PictureSplats {
-    ShadedSplats splats;  // id: band, 253 for spikes, 254 for dust or 255 for stars from bit 48 on, size from
-                          // 40, lattice cell
+    ShadedSplats splats;             // id: splat_set.h's; the place is a lattice cell
     Buffer<float> distance;          // texels from the middle of the layer
     std::vector<SplatRange> ranges;  // of those that shine
     bool absorbs = false;            // there is dust: splats of colours below 0 (blend.glsl)
@@ -41,6 +40,9 @@ struct Opacity {
     /// Optical depth of the column of a pixel.
     float depth_of(float brightest, float alpha) const;
 };
+
+/// By which splats of a column of that optical depth shine more, for what lies before them takes away.
+float boost_of(float tau);
 
 /// Radius of a splat of the default falloff, in its sigmas; the integral of its footprint over 2 pi sigma^2;
 /// and its variance along an axis over sigma^2: both integrals of the Gaussian of sharpness 4.5, cut at 3

@@ -139,6 +139,9 @@ struct BandSplats {
 /// One size; of a galaxy one for its disk and one for its spheroid.
 std::vector<BandSplats> band_splats(const Band& band, bool coarsest, const Placement& placement);
 
+/// Numbers of invented detail in ids, beyond those of all bands: this, four times the octaves and the band.
+inline constexpr int first_detail_number = 128;
+
 /// Those of a band of invented detail, blurs in px of so many octaves below the texels.
 std::vector<BandSplats> detail_splats(const Band& band, int octaves, const Placement& placement);
 

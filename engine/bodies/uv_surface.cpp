@@ -221,9 +221,18 @@ SurfacePlace UvSurface::seen_on(const Face& face, const glm::dvec3& weights) con
     return place;
 }
 
+namespace {
+
+constexpr float nearest = 0.2f;  // to the camera, of the way to it
+
+}  // namespace
+
 float along_rays(const SurfacePlace& place, float z) {
-    constexpr float least = 0.2f;
-    return z / std::max(least, 1.0f + place.approach * z);
+    return z / std::max(nearest, 1.0f + place.approach * z);
+}
+
+float along_parallels(const SurfacePlace& place, float z) {
+    return z / std::max(nearest, 1.0f - place.approach * z);
 }
 
 UvSurface surface_of(const TexturedMesh& mesh, std::uint32_t material) {

@@ -23,6 +23,8 @@ struct SurfacePlace {
 /// Depth along the rays to a camera, of one along parallel rays, texels: the projective map by which what is
 /// plane stays plane; never as far as the camera, and no farther than four times that behind the picture.
 float along_rays(const SurfacePlace& place, float z);
+/// The other way.
+float along_parallels(const SurfacePlace& place, float z);
 
 class UvSurface {
   public:

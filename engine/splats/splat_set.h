@@ -169,11 +169,18 @@ void drop_columns(SplatSet& set, const OptionalColumns& wanted);
 /// Gives back the memory of all splats; what is known of the set as a whole stays.
 void drop_splats(SplatSet& set);
 
-/// Ids of sets that were made of a picture hold the number of their band in bits 48 to 55, above the place
-/// within it; ids of lattices and rows of files do not reach that far.
+/// Ids of sets that were made of pictures: from these bits on the number of the picture, that of the band,
+/// which of the faces that show it, which of the band's sizes; below, the place within the band. Ids of
+/// lattices and rows of files do not reach that far.
+inline constexpr int picture_bit = 56, band_bit = 48, instance_bit = 42, size_bit = 40;
 inline constexpr std::uint64_t star_band = 255, dust_band = 254, spike_band = 253;
 
-constexpr bool is_star(std::uint64_t id) { return (id >> 48 & 255) == star_band; }
+constexpr std::uint64_t band_of(std::uint64_t id) { return id >> band_bit & 255; }
+constexpr bool is_star(std::uint64_t id) { return band_of(id) == star_band; }
+/// As it was before the picture and the face were added.
+constexpr std::uint64_t id_in_picture(std::uint64_t id) {
+    return id & ~(~std::uint64_t{0} << picture_bit | std::uint64_t{63} << instance_bit);
+}
 
 /// Whether the position of a star stands for a direction: it is infinitely far away.
 inline bool is_direction(const glm::vec3& position) {
