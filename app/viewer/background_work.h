@@ -7,7 +7,7 @@
 #include <map>
 
 #include "core/error.h"
-#include "core/progress.h"
+#include "core/parallel.h"
 #include "core/worker.h"
 
 namespace astrosplat {
@@ -17,7 +17,9 @@ template <class Found, class Work>
 std::shared_ptr<Found> found_or_error(const Work& work, const std::atomic<bool>& cancelled) {
     auto found = std::make_shared<Found>();
     try {
-        *found = work(Progress{{}, &cancelled});
+        const Progress progress{{}, &cancelled};
+        const StoppableLoops stops(progress);
+        *found = work(progress);
     } catch (const Cancelled&) {
         return nullptr;
     } catch (const std::exception& error) {

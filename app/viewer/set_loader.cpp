@@ -7,6 +7,7 @@
 #include <new>
 
 #include "core/error.h"
+#include "core/parallel.h"
 #include "generate/lattice.h"
 #include "pipeline.h"
 #include "scene/animate.h"
@@ -263,6 +264,7 @@ Worker::Task SetLoader::next_task() {
 }
 
 void SetLoader::work(SetJob& job) {
+    const StoppableLoops stops({{}, &job.cancelled});
     try {
         if (job.task == SetTask::sample) sample(job);
         if (job.task == SetTask::load) load(job);

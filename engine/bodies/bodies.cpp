@@ -70,7 +70,8 @@ std::vector<DetailPart> add_splats(const PictureLight& picture, const UvSurface&
     StructureParams params = task.params;
     Image rest = copied(picture.light);
     const bool takes_stars = params.stars != StructureParams::Stars::no;
-    Spikes spikes = takes_stars ? take_spikes(rest, picture.times) : Spikes();
+    Spikes spikes = takes_stars ? take_spikes(rest, picture.times, &picture.light) : Spikes();
+    release_spare_pages();  // of finding them
     const PictureStars stars =
         take_picture_stars(rest, params, picture.times > 1, std::move(spikes.gaussians));
     progress.check();

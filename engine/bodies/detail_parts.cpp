@@ -70,13 +70,6 @@ std::vector<Band> bands_of(int octaves) {
 
 }  // namespace
 
-Image part_of(const Image& image, const Region& region) {
-    Image part = unfilled_image(region.width, region.height, image.channels);
-    for (std::int64_t y = 0; y < region.height; ++y)
-        std::copy_n(image.at(region.x, region.y + y), region.width * image.channels, part.at(0, y));
-    return part;
-}
-
 std::vector<DetailPart> add_detail(const Image& with_stars, const Image& light, const Image& finest,
                                    const Image& brightest, const Image& alpha, const StructureParams& params,
                                    const Placement& placement, const Opacity& opacity,

@@ -25,7 +25,4 @@ std::vector<DetailPart> add_detail(const Image& with_stars, const Image& light, 
                                    const Placement& placement, const Opacity& opacity,
                                    const Progress& progress, PictureSplats& out);
 
-/// Part of an image.
-Image part_of(const Image& image, const Region& region);
-
 }  // namespace astrosplat

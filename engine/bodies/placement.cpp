@@ -120,10 +120,7 @@ bool is_central(const Placement& placement, const Star& star) {
 
 // The picture without its margin.
 Image inside_margin(const Image& light, std::int64_t margin_px) {
-    Image out = unfilled_image(light.width - 2 * margin_px, light.height - 2 * margin_px, light.channels);
-    for (std::int64_t y = 0; y < out.height; ++y)
-        std::copy_n(light.at(margin_px, y + margin_px), out.width * out.channels, out.at(0, y));
-    return out;
+    return part_of(light, {margin_px, margin_px, light.width - 2 * margin_px, light.height - 2 * margin_px});
 }
 
 // Lengths in other units; unchanged by 1.

@@ -339,20 +339,30 @@ void take_arm(const CrossedStar& of, const Arm& arm, const Image& before, double
                      std::int64_t(std::max(ray.y, double(to_y)) + pad), take);
 }
 
-// Light as it is around holes (one channel, 1 there), of four channels: blurs of what is known, of the
-// narrowest that knows enough.
-Image filled_from_around(const Image& light, const Image& holes, double texel) {
-    constexpr double blurs[] = {3.0, 6.0, 12.0, 24.0};  // texels
-    constexpr float enough = 0.15f;                     // of a blur's weight
-    Image known = unfilled_image(light.width, light.height, 4);
+// Numbers of pixels that are holes; -1: not one of them.
+struct Holes {
+    std::int64_t width, height;
+    Buffer<std::int32_t> numbers = Buffer<std::int32_t>(std::size_t(width * height), -1);
+    std::int32_t& at(std::int64_t x, std::int64_t y) { return numbers[std::size_t(y * width + x)]; }
+};
+
+constexpr double fill_blurs[] = {3.0, 6.0, 12.0, 24.0};  // texels
+
+// Light of a region as it is around holes, of four channels: blurs of what is known, of the narrowest that
+// knows enough.
+Image filled_from_around(const Image& light, Holes& holes, const Region& region, double texel) {
+    constexpr float enough = 0.15f;  // of a blur's weight
+    Image known = unfilled_image(region.width, region.height, 4);
     for_each_pixel(known, [&](std::int64_t x, std::int64_t y) {
-        const float share = 1.0f - *holes.at(x, y), *const from = light.at(x, y);
+        const float share = holes.at(region.x + x, region.y + y) < 0 ? 1.0f : 0.0f, *const from = light.at(
+                                                                                        region.x + x,
+                                                                                        region.y + y);
         float* const to = known.at(x, y);
         for (int c = 0; c < 3; ++c) to[c] = share * from[c];
         to[3] = share;
     });
-    Image filled = make_image(light.width, light.height, 4);
-    for (const double blur : blurs) {
+    Image filled = make_image(region.width, region.height, 4);
+    for (const double blur : fill_blurs) {
         const Image wide = gaussian_blur(known, blur * texel);
         for_each_pixel(filled, [&](std::int64_t x, std::int64_t y) {
             const float* const from = wide.at(x, y);
@@ -368,21 +378,53 @@ Image filled_from_around(const Image& light, const Image& holes, double texel) {
     return filled;
 }
 
+// The same at the holes, by their numbers: square by square, with all around that their blurs reach, begun
+// where the blurs' halvings begin.
+std::vector<glm::vec3> light_around(const Image& light, Holes& holes, std::int64_t count, double texel) {
+    constexpr std::int64_t side = 512, halvings = 64;              // px; of which no blur halves more often
+    const auto reach = std::int64_t(4.0 * fill_blurs[3] * texel);  // of a Gaussian's weights, and of halvings
+    const std::int64_t about = (reach + 2 * halvings) / halvings * halvings;
+    const std::int64_t columns = (holes.width + side - 1) / side, rows = (holes.height + side - 1) / side;
+    std::vector<glm::vec3> around(std::size_t(count), glm::vec3(0.0f));
+    parallel_for(columns * rows, [&](std::int64_t i, int) {
+        const std::int64_t x = i % columns * side, y = i / columns * side;
+        std::optional<Image> filled;
+        const std::int64_t left = std::max<std::int64_t>(0, x - about),
+                           top = std::max<std::int64_t>(0, y - about);
+        for_each_between(holes, x, y, x + side - 1, y + side - 1, [&](std::int64_t at_x, std::int64_t at_y) {
+            const std::int32_t number = holes.at(at_x, at_y);
+            if (number < 0) return;
+            if (!filled)
+                filled = filled_from_around(light, holes,
+                                            {left, top, std::min(x + side + about, holes.width) - left,
+                                             std::min(y + side + about, holes.height) - top},
+                                            texel);
+            const float* const value = filled->at(at_x - left, at_y - top);
+            around[std::size_t(number)] = {value[0], value[1], value[2]};
+        });
+    });
+    return around;
+}
+
 // What of stars is brighter than what lies around.
 void take_discs(std::span<const RoundStar> stars, double texel, Taking& taking) {
-    Image holes = make_image(taking.light.width, taking.light.height, 1);
+    Holes holes{taking.light.width, taking.light.height};
+    std::int32_t count = 0;
     const auto visit_discs = [&](const auto& visit) {
         for (std::size_t i = 0; i < stars.size(); ++i)
             for_each_within(holes, double(stars[i].x), double(stars[i].y), disc_radius(stars[i], texel),
                             [&](std::int64_t x, std::int64_t y, double, double) { visit(x, y, i); });
     };
-    visit_discs([&](std::int64_t x, std::int64_t y, std::size_t) { *holes.at(x, y) = 1.0f; });
-    const Image filled = filled_from_around(taking.light, holes, texel);
+    visit_discs([&](std::int64_t x, std::int64_t y, std::size_t) {
+        if (holes.at(x, y) < 0) holes.at(x, y) = count++;
+    });
+    const std::vector<glm::vec3> around = light_around(taking.light, holes, count, texel);
     visit_discs([&](std::int64_t x, std::int64_t y, std::size_t i) {
-        if (*std::as_const(holes).at(x, y) == 0.0f) return;
-        *holes.at(x, y) = 0.0f;
-        const float *const here = taking.light.at(x, y), *const around = filled.at(x, y);
-        taking.take(x, y, {here[0] - around[0], here[1] - around[1], here[2] - around[2]}, std::int32_t(i));
+        const std::int32_t number = std::exchange(holes.at(x, y), -1);
+        if (number < 0) return;
+        const float* const here = taking.light.at(x, y);
+        taking.take(x, y, glm::vec3(here[0], here[1], here[2]) - around[std::size_t(number)],
+                    std::int32_t(i));
     });
 }
 
@@ -391,8 +433,10 @@ void take_discs(std::span<const RoundStar> stars, double texel, Taking& taking) 
 std::vector<SpikeLight> by_squares(int times, const Image& taken, const Buffer<std::int32_t>& star,
                                    Image& light) {
     constexpr float least = 0.003f, least_share = 0.03f;  // of white, and of what is left there
-    std::vector<SpikeLight> found;
-    for (std::int64_t row = 0; row * times < light.height; ++row)
+    const std::int64_t rows = (light.height + times - 1) / times;
+    std::vector<std::vector<SpikeLight>> by_rows(static_cast<std::size_t>(rows));
+    parallel_for(rows, [&](std::int64_t row, int) {
+        std::vector<SpikeLight>& found = by_rows[std::size_t(row)];
         for (std::int64_t column = 0; column * times < light.width; ++column) {
             SpikeLight here{column, row, -1};
             float left = 0.0f;
@@ -416,12 +460,15 @@ std::vector<SpikeLight> by_squares(int times, const Image& taken, const Buffer<s
                     for (int c = 0; c < 3; ++c) rest[c] += std::max(0.0f, own[c]);
                 });
         }
+    });
+    std::vector<SpikeLight> found;
+    for (const std::vector<SpikeLight>& row : by_rows) found.insert(found.end(), row.begin(), row.end());
     return found;
 }
 
-Spikes take_spikes(Image& light, int times) {
+Spikes take_spikes(Image& light, int times, const Image* before) {
     Spikes spikes;
-    const Shown shown = shown_of(light, times);
+    Shown shown = shown_of(light, times);
     const std::vector<RoundStar> points = bright_points(shown);
     std::vector<Ridges> voters(std::min(points.size(), most_voters));
     parallel_each(voters.size(), 1, [&](std::size_t i) {
@@ -435,18 +482,20 @@ Spikes take_spikes(Image& light, int times) {
     spikes.angle = 2.0 * real::pi * cross.first / turns;
     std::vector<std::optional<CrossedStar>> found(points.size());
     parallel_each(points.size(), 1, [&](std::size_t i) { found[i] = crossed(shown, points[i], cross); });
+    shown = {};
+    const Image copy = before ? Image() : copied(light);
     Taking taking{light};
-    const Image before = copied(light);
     for (const std::optional<CrossedStar>& each : found) {
         if (!each || std::ranges::any_of(spikes.stars, [&](const RoundStar& other) {
-                return is_within(each->star, other, disc_radius(other, shown.texel));
+                return is_within(each->star, other, disc_radius(other, double(times)));
             }))
             continue;
         for (const Arm& arm : each->arms)
-            take_arm(*each, arm, before, shown.texel, std::int32_t(spikes.stars.size()), taking);
+            take_arm(*each, arm, before ? *before : copy, double(times), std::int32_t(spikes.stars.size()),
+                     taking);
         spikes.stars.push_back(each->star);
     }
-    take_discs(spikes.stars, shown.texel, taking);
+    take_discs(spikes.stars, double(times), taking);
     constexpr float core_share =
         0.5f;  // of half widths: the core of a star is round, its halo lies in the plane
     std::vector<RoundStar> cores = spikes.stars;

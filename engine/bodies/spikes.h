@@ -20,8 +20,8 @@ struct Spikes {
 };
 
 /// Takes spikes and their stars out of `light`. `times`: pixels along a side of each that the picture had
-/// before it was enlarged. The same bits with any number of threads; without crosses the light stays as it
-/// is.
-Spikes take_spikes(Image& light, int times = 1);
+/// before it was enlarged. `before`: another image of that light, where there is one; null: a copy is made.
+/// The same bits with any number of threads; without crosses the light stays as it is.
+Spikes take_spikes(Image& light, int times = 1, const Image* before = nullptr);
 
 }  // namespace astrosplat

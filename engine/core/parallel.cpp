@@ -54,20 +54,26 @@ constexpr std::uint64_t zero_denormals = 0x8040;  // flush to zero, denormals ar
 constexpr std::uint64_t zero_denormals = 1u << 24;  // FZ
 #endif
 
+/// Of a thread, or of the loop that it works for; null: nothing asks it to stop.
+thread_local const std::atomic<bool>* stop_loops = nullptr;
+
 struct Job {
     std::int64_t count;
     std::int64_t chunk;
     const Body& body;
-    std::uint64_t control = float_control();  // its caller's
-    std::atomic<std::int64_t> next{0};        // first item not handed out
-    int helpers = 0;                          // pool threads inside; guarded by the pool's mutex
-    std::exception_ptr error{};               // guarded by the pool's mutex
+    std::uint64_t control = float_control();          // its caller's
+    const std::atomic<bool>* cancelled = stop_loops;  // its caller's
+    std::atomic<std::int64_t> next{0};                // first item not handed out
+    int helpers = 0;                                  // pool threads inside; guarded by the pool's mutex
+    std::exception_ptr error{};                       // guarded by the pool's mutex
 
     bool exhausted() const { return next.load(std::memory_order_relaxed) >= count; }
 };
 
 // The worker number of a thread that is inside a loop, -1 outside.
 thread_local int current_worker = -1;
+
+void check_loop() { Progress{{}, stop_loops}.check(); }
 
 class Pool {
   public:
@@ -146,12 +152,14 @@ class Pool {
 
     void work(Job& job, int worker) {
         const std::uint64_t control = float_control();
+        const auto* const stop = std::exchange(stop_loops, job.cancelled);
         set_float_control(job.control);
         current_worker = worker;
         try {
             for (;;) {
                 const std::int64_t begin = job.next.fetch_add(job.chunk, std::memory_order_relaxed);
                 if (begin >= job.count) break;
+                check_loop();
                 job.body(begin, std::min(begin + job.chunk, job.count), worker);
             }
         } catch (...) {
@@ -160,6 +168,7 @@ class Pool {
             if (!job.error) job.error = std::current_exception();
         }
         current_worker = -1;
+        stop_loops = stop;
         set_float_control(control);
     }
 
@@ -212,8 +221,10 @@ int quota_of_groups(int most) {
 }
 
 void run_alone(std::int64_t count, std::int64_t chunk, const Body& body, int worker) {
-    for (std::int64_t begin = 0; begin < count; begin += chunk)
+    for (std::int64_t begin = 0; begin < count; begin += chunk) {
+        check_loop();
         body(begin, std::min(begin + chunk, count), worker);
+    }
 }
 
 struct Target {
@@ -246,6 +257,10 @@ int available_threads() { return std::max(1, quota_of_groups(std::max(1, affinit
 DenormalsAreZero::DenormalsAreZero() : before_(float_control()) {
     set_float_control(before_ | zero_denormals);
 }
+StoppableLoops::StoppableLoops(const Progress& progress)
+    : before_(std::exchange(stop_loops, progress.cancelled)) {}
+StoppableLoops::~StoppableLoops() { stop_loops = before_; }
+
 DenormalsAreZero::~DenormalsAreZero() { set_float_control(before_); }
 
 void set_thread_count(int threads) { pool().resize(std::max(0, threads)); }

@@ -38,6 +38,19 @@ void parallel_each(Index count, std::int64_t chunk, const Body& body) {
 void parallel_parts(std::size_t count, const Progress& progress,
                     const std::function<void(std::size_t part)>& body);
 
+/// While it lives, the loops that this thread calls throw Cancelled before their next chunk once `progress` is
+/// asked to stop: long work of many short loops need not ask anywhere else.
+class StoppableLoops {
+  public:
+    explicit StoppableLoops(const Progress& progress);
+    ~StoppableLoops();
+    StoppableLoops(const StoppableLoops&) = delete;
+    StoppableLoops& operator=(const StoppableLoops&) = delete;
+
+  private:
+    const std::atomic<bool>* before_;
+};
+
 /// While it lives, numbers too small to be normal count as 0 in this thread and in the loops it calls, as
 /// they do on graphics cards: what is drawn there has the same bits.
 class DenormalsAreZero {

@@ -10,6 +10,14 @@ Image copied(const Image& image) {
     return copy;
 }
 
+Image part_of(const Image& image, const Region& region) {
+    Image part = unfilled_image(region.width, region.height, image.channels);
+    parallel_each(region.height, 64, [&](std::int64_t y) {
+        std::copy_n(image.at(region.x, region.y + y), region.width * image.channels, part.at(0, y));
+    });
+    return part;
+}
+
 Image brightest_channel(const Image& light) {
     if (light.channels < 3) return channel_of(light, 0);
     return made_by_pixel(light, 1, [](const float* in, float* out) {

@@ -20,6 +20,9 @@ Image made_by_pixel(const Image& from, int channels, const PerPixel& make) {
 /// A copy made by all threads: one alone would take as long to fetch its memory as to fill it.
 Image copied(const Image& image);
 
+/// Its pixels in a region that lies within it.
+Image part_of(const Image& image, const Region& region);
+
 /// max(R, G, B) of every pixel.
 Image brightest_channel(const Image& light);
 

@@ -16,6 +16,7 @@
 #include "core/error.h"
 #include "core/file.h"
 #include "core/log.h"
+#include "core/parallel.h"
 #include "core/real.h"
 #include "core/text.h"
 #include "objects/impression.h"
@@ -519,6 +520,7 @@ void take_stars(PictureScene& scene, const fs::path& table, const Progress& prog
 
 PictureScene picture_scene(const fs::path& image, const PictureRequest& request, Identification& found,
                            const Progress& progress) {
+    const StoppableLoops stops(progress);
     constexpr std::int64_t most_texels = 4096 * 4096;  // more do not change what is seen in it
     TextureSettings settings;
     settings.prepare.starless = request.starless;

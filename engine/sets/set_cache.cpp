@@ -12,6 +12,7 @@
 #include "core/file.h"
 #include "core/log.h"
 #include "core/memory.h"
+#include "core/parallel.h"
 #include "generate/kept_store.h"
 #include "sets/load_source.h"
 
@@ -146,6 +147,7 @@ struct CachedLoad {
 
 LoadedSet load_source(const SetCache& cache, const SourceParams& source, const std::string& layer_name,
                       const Progress& progress, KeptWatcher* watcher, const OptionalColumns& wanted) {
+    const StoppableLoops stops(progress);
     LoadedSet loaded = CachedLoad{cache, source, layer_name, progress, watcher, wanted}.load();
     warn_of_no_splats(loaded.set, source.kind == SourceKind::splats ? source.file.string()
                                                                     : fmt::format("layer '{}'", layer_name));

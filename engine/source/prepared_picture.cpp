@@ -8,6 +8,7 @@
 #include "core/error.h"
 #include "core/log.h"
 #include "core/memory.h"
+#include "core/parallel.h"
 #include "core/text.h"
 #include "image/blur.h"
 #include "image/channels.h"
@@ -341,6 +342,7 @@ struct Preparation {
 
 PreparedPicture prepare_picture(const std::vector<fs::path>& files, const TextureSettings& settings,
                                 const Progress& progress, std::int64_t most_px) {
+    const StoppableLoops stops(progress);
     const bool pair = !settings.prepare.starless.empty();
     if (pair && files.size() != 1)
         throw InputError(fmt::format("starless: expected one picture, of the stars, found {}", files.size()));

@@ -83,6 +83,26 @@ TEST_P(Parallel, SeveralThreadsMayCallAtOnce) {
     for (const std::int64_t sum : sums) EXPECT_EQ(sum, 50 * 499500);
 }
 
+// Its loops and those within them, in whatever thread they run; not another caller's, and not later.
+TEST_P(Parallel, StopsWhereItsCallerIsAskedTo) {
+    std::atomic<bool> cancelled{false};
+    std::atomic<int> begun{0}, within{0};
+    const auto stop_at_once = [&] {
+        const StoppableLoops stops({{}, &cancelled});
+        parallel_for(1000, [&](std::int64_t, int) {
+            ++begun;
+            cancelled = true;
+            parallel_for(1000, [&](std::int64_t, int) { ++within; });
+        });
+    };
+    EXPECT_THROW(stop_at_once(), Cancelled);
+    EXPECT_LE(begun, thread_count());
+    EXPECT_EQ(within, 0);
+    std::atomic<int> count{0};
+    parallel_for(100, [&](std::int64_t, int) { ++count; });
+    EXPECT_EQ(count, 100) << "it is over";
+}
+
 TEST_P(Parallel, NothingToDo) {
     parallel_chunks(0, 10, [](std::int64_t, std::int64_t, int) { FAIL(); });
     parallel_chunks(-5, 10, [](std::int64_t, std::int64_t, int) { FAIL(); });
