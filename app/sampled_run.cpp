@@ -62,9 +62,9 @@ SampledRun::SampledRun(const BatchPlan& plan, Layers layers)
         samples.push_back(sample_of(plan, layer, layers));
         if (!samples.back()) continue;
         const SetSample& sample = *samples.back();
-        layers_.push_back({layer.name, sample.splats, sample.making_seconds > 0.0, !sample.set.radius.empty(),
-                           sample.making_bytes});
-        making_seconds_ += sample.making_seconds;
+        layers_.push_back({layer.name, sample.splats, sample.making.seconds > 0.0, !sample.set.radius.empty(),
+                           sample.making.bytes});
+        making_seconds_ += sample.making.seconds;
         each_ = std::max(each_, sample.each());
     }
     std::vector<std::shared_ptr<const SplatSet>> sets(samples.size()), single(samples.size());

@@ -48,7 +48,12 @@ std::string picture_start_text(PictureStart& start, const fs::path& place, const
     if (!start.as) start.guesses = found.guesses;
     start.seen = seen_in_words(scene);
     start.because = joined_once({start.as ? "you say so" : found.why, scene.lies_by});
-    const std::string text = picture_scene_text(scene, place);
+    std::string text = picture_scene_text(scene, place);
+    if (start.most_splats > 0) {
+        Scene limited = parse_scene(text, place);
+        limited.layers.front().source.splats = start.most_splats;
+        text = save_text(limited, text, place);
+    }
     return start.film ? with_detail(text, place, cache).text : text;
 }
 
@@ -76,6 +81,10 @@ PictureStart chosen_start(PictureStart start, const std::string& choice) {
         start.film = choice == "film";
     } else if (choice == "part" || choice == "keep") {
         start.parted = choice == "part";
+    } else if (choice == "whole") {
+        start.most_splats = 0;
+    } else if (choice.starts_with("splats ")) {
+        start.most_splats = parse_int64(choice.substr(7)).value();
     } else {
         const std::vector<std::string> names = all_names<SkyObject>();
         const auto name = std::ranges::find(names, choice);

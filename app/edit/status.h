@@ -10,6 +10,7 @@
 #include "camera/camera.h"
 #include "core/bounds.h"
 #include "scene/scene.h"
+#include "sets/set_sample.h"
 
 namespace astrosplat {
 
@@ -42,6 +43,7 @@ struct LayerStatus {
     bool loading = false;
     float progress = 0.0f;                      // 0..1 while loading
     std::int64_t found = 0;                     // splats so far while loading
+    Making making;                              // what it will take, while loading; without splats: not known
     bool stale = false;                         // the source was changed and not generated again
     std::string error;                          // why it could not be loaded, one line
     double radius_min = 0.0, radius_max = 0.0;  // what radius 0, 0 means for this set, scene units

@@ -68,6 +68,7 @@ struct PictureStart {
     std::optional<SkyObject> as = {};  // as a person says; none: as was found
     bool film = false;                 // with a camera move of ten seconds
     bool parted = false;               // its stars are a layer of their own
+    std::int64_t most_splats = 0;      // source.splats of the picture; 0: any number
 
     // Filled when the scene is made:
     SkyObject object = SkyObject::galaxy;

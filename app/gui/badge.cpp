@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include "core/memory.h"
+#include "gui/parts.h"
 #include "gui/widgets.h"
 
 namespace astrosplat {
@@ -111,8 +113,11 @@ BadgeText badge_text(const Scene& scene, const Status& status) {
     if (const std::size_t index = loading_layer(status); index < status.layers.size()) {
         const LayerStatus& layer = status.layers[index];
         const std::string name = index < scene.layers.size() ? scene.layers[index].name : "layer";
-        return {fmt::format("Generating {} {:.0f} %", name, layer.progress * 100.0f),
-                layer.found > 0 ? splat_count(layer.found) : "", color::accent};
+        std::string more = layer.found > 0 ? splat_count(layer.found) : "";
+        if (const Making& all = layer.making; all.splats > 0)
+            more = fmt::format("{}, {}, {} in all", splat_count(all.splats), human_bytes(double(all.bytes)),
+                               duration_text(all.seconds));
+        return {fmt::format("Generating {} {:.0f} %", name, layer.progress * 100.0f), more, color::accent};
     }
     const std::string total = splat_count(shown.total);
     switch (shown.state) {

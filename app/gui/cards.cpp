@@ -5,6 +5,7 @@
 #include <imgui.h>
 #include <imgui_stdlib.h>
 
+#include "core/memory.h"
 #include "gui/parts.h"
 
 namespace astrosplat {
@@ -245,6 +246,33 @@ void start_choices(GuiFrame& frame, const PictureStart& start) {
         request_text(frame, Command::Kind::start_again, film ? "still" : "film");
 }
 
+/// "61 M splats, 9.9 GiB, 5:20", of so large a share.
+std::string making_text(const Making& making, double share) {
+    return fmt::format("{}, {}, {}", splat_count(std::int64_t(share * double(making.splats))),
+                       human_bytes(share * double(making.bytes)), duration_text(share * making.seconds));
+}
+
+/// What a large picture will take, while it is made; and the same at half its width and height.
+void start_size(GuiFrame& frame, const PictureStart& start) {
+    constexpr double much_seconds = 30.0, much_bytes = 2147483648.0;
+    const auto layer =
+        std::ranges::find_if(frame.status.layers, [](const LayerStatus& l) { return l.making.splats > 0; });
+    const Making making = layer == frame.status.layers.end() ? Making() : layer->making;
+    const bool half = start.most_splats > 0;
+    if (!half && making.seconds < much_seconds && double(making.bytes) < much_bytes) return;
+    const double now = std::max(1.0, double(making.splats)), whole = double(making.whole_splats) / now;
+    const auto label = [&](const char* name, double share) {
+        return making.splats > 0 ? fmt::format("{}: {}", name, making_text(making, share))
+                                 : std::string(name);
+    };
+    row_text("Size", px(24), color::dim);
+    if (start_button(frame, "Whole", label("Whole", whole), !half, "Every pixel of the picture"))
+        request_text(frame, Command::Kind::start_again, "whole");
+    if (start_button(frame, "Half size", label("Half size", half ? 1.0 : 0.25), half,
+                     "The picture at half its width and height: a quarter of the splats, memory and time"))
+        request_text(frame, Command::Kind::start_again, fmt::format("splats {}", making.splats / 4));
+}
+
 }  // namespace
 
 void draw_start_card(GuiFrame& frame, const Rect& viewport) {
@@ -264,6 +292,7 @@ void draw_start_card(GuiFrame& frame, const Rect& viewport) {
     start_head(frame, shown, ImGui::GetWindowPos().x + width - px(start_padding) + px(4));
     start_kinds(frame, shown);
     start_choices(frame, shown);
+    start_size(frame, shown);
     height = ImGui::GetCursorPosY() - px(6) + px(start_padding);
     ImGui::EndChild();
     ImGui::PopStyleVar(2);

@@ -165,6 +165,7 @@ LoadedLayer sampled_layer(SetSample sample, const SourceParams& source, const st
     layer.radius = unset_radius(*set);
     layer.splats = sample.splats;
     layer.stands_in = sample.stands_in;
+    layer.making = sample.making;
     return layer;
 }
 

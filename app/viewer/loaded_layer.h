@@ -66,6 +66,7 @@ struct LoadedLayer {
     std::vector<fs::path> files;  // it was made of; come with the histograms
     bool outdated = false;        // one of them was changed since
     bool stands_in = false;       // splats of another set, until it is there
+    Making making;                // of that
 };
 
 /// A set with its tree, as a sample of so many splats.

@@ -236,6 +236,7 @@ LayerStatus SetList::status(const LayerParams& layer) const {
         status.progress = job_->progress;
         status.found = job_->made.kept();
     }
+    if (status.loading && entry.sampled) status.making = entry.sampled->making;
     const Layer& seen = entry.sampled ? entry.sampled : entry.loaded;
     if (!seen) return status;
     status.stale = !status.loading && !satisfies(*seen, identity);

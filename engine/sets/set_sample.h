@@ -10,12 +10,19 @@
 
 namespace astrosplat {
 
+/// What making a whole set takes, about.
+struct Making {
+    double seconds = 0.0;           // 0: it is there
+    std::int64_t bytes = 0;         // at most, while bodies are made of their pictures; 0: none are
+    std::int64_t splats = 0;        // of bodies
+    std::int64_t whole_splats = 0;  // the same without source.splats
+};
+
 struct SetSample {
     SplatSet set;
-    std::int64_t splats = 0;        // of the whole set, about
-    double making_seconds = 0.0;    // of the whole set, about; 0: it is there
-    std::int64_t making_bytes = 0;  // at most while bodies are made of their pictures; 0: none are
-    bool stands_in = false;         // rows of another set: show_quick_sets()
+    std::int64_t splats = 0;  // of the whole set, about
+    Making making = {};
+    bool stands_in = false;  // rows of another set: show_quick_sets()
     /// How many splats a row stands for, at least 1; 0: there are none.
     double each() const { return set.size() > 0 ? double(splats) / double(set.size()) : 0.0; }
 };

@@ -325,6 +325,30 @@ TEST_F(ViewportTest, APicturesSceneIsMadeAgainAsWhatElseItMayBe) {
     window.keep_screen("start");
 }
 
+TEST_F(ViewportTest, ALargePictureSaysWhatItTakesAndMayBeHalved) {
+    window.view.start = galaxy_start();
+    ASSERT_FALSE(window.status.layers.empty());
+    window.frame(2);
+    EXPECT_FALSE(window.has("start/Half size")) << "nothing is made";
+    Making& making = window.status.layers[0].making;
+    making = {20.0, 1LL << 30, 7'000'000, 7'000'000};
+    window.frame(2);
+    EXPECT_FALSE(window.has("start/Half size")) << "it is not large";
+    making = {300.0, 10LL << 30, 60'000'000, 60'000'000};
+    window.frame(2);
+    window.take_commands();
+    window.click("start/Half size");
+    EXPECT_EQ(window.take_only(Command::Kind::start_again).text, "splats 15000000");
+    window.view.start->most_splats = 15'000'000;
+    making = {75.0, 10LL << 28, 15'000'000, 60'000'000};
+    window.frame(2);
+    window.keep_screen("start half");
+    window.click("start/Whole");
+    EXPECT_EQ(window.take_only(Command::Kind::start_again).text, "whole");
+    window.click("start/Half size");
+    EXPECT_TRUE(window.take_commands().empty()) << "as it is";
+}
+
 TEST_F(ViewportTest, TheStartOfAPictureClosesByItsCrossAndWithTheFirstEdit) {
     window.view.start = galaxy_start();
     window.frame(2);

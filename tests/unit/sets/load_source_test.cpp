@@ -299,7 +299,7 @@ TEST_F(SetSampleTest, OfWhatIsKeptItHoldsRows) {
         ASSERT_GT(whole.size(), 150000);
         const auto sample = sample_there(cache_, source, "a");
         ASSERT_TRUE(sample);
-        EXPECT_EQ(sample->making_seconds, 0.0);
+        EXPECT_EQ(sample->making.seconds, 0.0);
         EXPECT_NEAR(double(sample->splats), double(whole.size()), 0.02 * double(whole.size()));
         EXPECT_LT(sample->set.size(), 0.75 * double(whole.size()));
         EXPECT_NEAR(mean_alpha(sample->set), mean_alpha(whole), 0.02 * mean_alpha(whole));
@@ -331,7 +331,7 @@ TEST_F(SetSampleTest, OfWhatIsNotKeptItIsMadeAsWide) {
         EXPECT_FALSE(fs::exists(cache_.folder));
         const SplatSet whole = load_source(source, "a");
         const auto splats = double(whole.size());
-        EXPECT_GT(sample.making_seconds, 0.0);
+        EXPECT_GT(sample.making.seconds, 0.0);
         EXPECT_NEAR(double(sample.splats), splats, 0.15 * splats);
         EXPECT_GT(sample.each(), 1.3);
         // A smaller picture has fewer sizes of splats; were the rest not made narrower, they would cover 1.5
@@ -341,6 +341,29 @@ TEST_F(SetSampleTest, OfWhatIsNotKeptItIsMadeAsWide) {
         EXPECT_NEAR(glm::length(sample.set.spacing), glm::length(whole.spacing),
                     0.01 * glm::length(whole.spacing));
     }
+}
+
+// While its quick body is seen: of all, and of the limit that it has.
+TEST_F(SetSampleTest, ALargePictureTellsWhatItsBodiesTake) {
+    SourceParams source = bodies_;
+    source.structure.most_texels = 0;
+    const auto told = [&] {
+        Making last;
+        show_quick_sets({}, source, "a",
+                        {1000, true, [&](const SetSample& sample) { last = sample.making; }});
+        return last;
+    };
+    const Making whole = told();
+    const auto splats = double(load_source(source, "a").size());
+    EXPECT_NEAR(double(whole.splats), splats, 0.2 * splats);
+    EXPECT_EQ(whole.whole_splats, whole.splats);
+    EXPECT_GT(whole.seconds, 0.0);
+    EXPECT_GT(whole.bytes, 68 * whole.splats) << "which the set alone takes";
+    source.splats = whole.splats / 4;
+    const Making quarter = told();
+    EXPECT_EQ(quarter.splats, source.splats);
+    EXPECT_EQ(quarter.whole_splats, whole.splats);
+    EXPECT_NEAR(double(quarter.bytes), 0.25 * double(whole.bytes), 1e-5 * double(whole.bytes));
 }
 
 TEST_F(SetSampleTest, OfASplatFileItHoldsRowsWhateverItsFormat) {

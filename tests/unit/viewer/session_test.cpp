@@ -87,6 +87,14 @@ TEST_F(Start, APictureOpensWithWhatItWasTakenFor) {
     EXPECT_EQ(session.view.start->object, SkyObject::nebula);
     EXPECT_NE(session.document.scene().layers[0].source.structure.kind, StructureKind::disk);
     EXPECT_FALSE(session.document.edited());
+    const auto with = [&](const char* choice) {
+        Commands chosen{{Command::Kind::start_again, {}, choice, 0}};
+        carry_out(session, chosen);
+        return session.document.scene().layers[0].source.splats;
+    };
+    EXPECT_EQ(with("splats 20000"), 20000);
+    EXPECT_EQ(with("film"), 20000) << "which stays";
+    EXPECT_EQ(with("whole"), 0);
     take_document(session, demo_document());
     EXPECT_FALSE(session.view.start);
 }
