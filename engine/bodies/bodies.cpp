@@ -72,15 +72,16 @@ std::vector<DetailPart> add_splats(const PictureLight& picture, const UvSurface&
     const bool takes_stars = params.stars != StructureParams::Stars::no;
     Spikes spikes = takes_stars ? take_spikes(rest, picture.times, &picture.light) : Spikes();
     release_spare_pages();  // of finding them
+    progress.at(0.25);
     const PictureStars stars =
         take_picture_stars(rest, params, picture.times > 1, std::move(spikes.gaussians));
-    progress.check();
+    progress.at(0.3);
     std::optional<AxisDepths> axis = axis_of(rest, params, task.layer_name);
     if (params.kind == StructureKind::axis && !axis) params.kind = StructureKind::walls;
-    progress.at(0.1);
     const Image brightest = brightest_channel(picture.light), without_stars = brightest_channel(rest);
     const Placement placement = make_placement(rest, params, surface.texels_per_unit(), surface.flat(),
                                                task.seed, stars.all, std::move(axis));
+    progress.at(0.45);
     const Opacity opacity{float(params.opacity), float(params.density)};
     const std::vector<Band> bands = make_bands(rest.width);
     const double dust = dust_of(params);
@@ -97,8 +98,8 @@ std::vector<DetailPart> add_splats(const PictureLight& picture, const UvSurface&
             add_band(whole_band(light), size, brightest, picture.alpha, placement, opacity, set);
         if (detailed && band.index == 0)
             detail = add_detail(picture.light, all_bands, light, brightest, picture.alpha, params, placement,
-                                opacity, progress.part(0.1, 0.2), set);
-        progress.at(0.2 + 0.7 * (band.index + 1.0) / double(bands.size()));
+                                opacity, progress.part(0.45, 0.55), set);
+        progress.at(0.55 + 0.4 * (band.index + 1.0) / double(bands.size()));
     });
     if (dust > 0.0)
         add_dust(transmittance_of(without_stars, emission, picture.alpha), dust,
@@ -243,7 +244,7 @@ Image smaller(const Image& image, double area) {
 SplatSet bodies_of(const PictureOnMesh& picture, std::size_t number, Texture& texture, double expected,
                    std::int64_t most, BodiesTask task, const Progress& progress) {
     constexpr int most_tries = 8;
-    constexpr double aimed_at = 0.97, made_share = 0.4;  // of the time, that making the splats takes
+    constexpr double aimed_at = 0.97, made_share = 0.45;  // of the time, that making the splats takes
     for (int tries = 1;; ++tries) {
         const UvSurface surface = surface_of(*picture.mesh, picture.material);
         MadeSplats made = made_of(texture, surface, task, expected, most > 0, progress.part(0.0, made_share));

@@ -151,7 +151,7 @@ float clamped(float factor) { return std::clamp(factor, 1.0f / largest_factor, l
 
 // The factor that splats take of a ratio: with `overshoot` its square.
 Image factor_of(const Fraction& fraction, bool overshoot) {
-    Image factor = unfilled_image(fraction.seen.width, fraction.seen.height, 3);
+    Image factor = unfilled_image(fraction.seen.width, fraction.seen.height, 1);
     parallel_each(factor.pixels.size(), 65536, [&](std::size_t i) {
         const float ratio = fraction.wanted.pixels[i] / fraction.seen.pixels[i];
         factor.pixels[i] = clamped(overshoot ? ratio * ratio : ratio);
@@ -161,7 +161,7 @@ Image factor_of(const Fraction& fraction, bool overshoot) {
 
 // The square, and once more what the ratio differs by from that of the pixels `blur_px` around.
 Image sharpening_factor_of(const Fraction& fraction, double blur_px) {
-    Image factor = unfilled_image(fraction.seen.width, fraction.seen.height, 3);
+    Image factor = unfilled_image(fraction.seen.width, fraction.seen.height, 1);
     parallel_each(factor.pixels.size(), 65536, [&](std::size_t i) {
         factor.pixels[i] = fraction.wanted.pixels[i] / fraction.seen.pixels[i];
     });
@@ -283,22 +283,22 @@ bool FlatLight::has_few(const Range& range, const Grid& seen) const {
     return double(splats) < few_share * double(seen.width * seen.height);
 }
 
-void FlatLight::multiply(const Range& range, const Image& factor, double step) {
+void FlatLight::multiply(const Range& range, const Image& factor, int of_factor, int channel, double step) {
     const auto scale = float(1.0 / step);
     parallel_each(range.chunks.size(), 16, [&](std::size_t c) {
         for (std::size_t i = range.chunks[c].begin; i < range.chunks[c].end; ++i) {
             const glm::vec2 at = texel(i) * scale;
-            const LinearSample place(factor, at.x, at.y);
-            set_.splats.color[i] *= glm::vec3(place.of(factor, 0), place.of(factor, 1), place.of(factor, 2));
+            set_.splats.color[i][channel] *= LinearSample(factor, at.x, at.y).of(factor, of_factor);
         }
     });
 }
 
 void FlatLight::multiply(const Image& factor, double step) {
-    for (const Range& range : ranges_) multiply(range, factor, step);
+    for (const Range& range : ranges_)
+        for (int c = 0; c < 3; ++c) multiply(range, factor, c, c, step);
 }
 
-void FlatLight::correct(Fraction fraction, bool overshoot) {
+void FlatLight::correct(Fraction fraction, int channel, bool overshoot) {
     std::size_t grid = 0;
     double variance = 0.0;  // texels^2, of the blur so far
     Image factor;
@@ -308,7 +308,7 @@ void FlatLight::correct(Fraction fraction, bool overshoot) {
         const bool sharpens = overshoot && range.sigma <= fine_sigma;
         const bool there = !factor.pixels.empty() && sharpens == sharpened && grid_for(seen) == grid;
         if (there && has_few(range, grids_[grid])) {
-            multiply(range, factor, grids_[grid].step);
+            multiply(range, factor, 0, channel, grids_[grid].step);
             continue;
         }
         for (const std::size_t to = grid_for(seen); grid < to; ++grid) {
@@ -326,7 +326,7 @@ void FlatLight::correct(Fraction fraction, bool overshoot) {
         factor = sharpens ? sharpening_factor_of(fraction, missing_px(around * seen))
                           : factor_of(fraction, overshoot);
         sharpened = sharpens;
-        multiply(range, factor, step);
+        multiply(range, factor, 0, channel, step);
     }
 }
 

@@ -87,28 +87,35 @@ class Steps {
     /// The ratio of what is wanted to what is seen. A display's values grow by light to the power -.58, so a
     /// step down the square of what differs there weighs the ratio by seen^(1 - 2 * .58): what is dark counts
     /// beside what is bright. What is too bright is weighed so; for what is to be raised less of that is as
-    /// good, and flux is kept. The last step keeps it.
-    Fraction weighted_ratio(Image seen, bool last) {
-        const bool first = momentum_.pixels.empty();
-        if (first) momentum_ = unfilled_image(seen.width, seen.height, 3);
-        Fraction ratio{unfilled_image(seen.width, seen.height, 3), std::move(seen)};
-        parallel_each(ratio.seen.pixels.size(), 65536, [&](std::size_t i) {
-            float& here = ratio.seen.pixels[i];
-            here += sky;
+    /// good, and flux is kept. The last step keeps it. Each step asks for every channel once.
+    Fraction weighted_ratio(const Image& seen, int channel, bool last) {
+        Image& momentum = momentum_[channel];
+        const bool first = momentum.pixels.empty();
+        if (first) momentum = unfilled_image(seen.width, seen.height, 1);
+        Fraction ratio{unfilled_image(seen.width, seen.height, 1),
+                       unfilled_image(seen.width, seen.height, 1)};
+        parallel_each(momentum.pixels.size(), 65536, [&](std::size_t i) {
+            float here = seen.pixels[3 * i + channel] + sky;
             const auto held = [](float r) { return std::clamp(r, 1.0f / largest_ratio, largest_ratio); };
-            const float now = held((target_.pixels[i] + sky) / here);
-            const float step = first ? now : held(now * momentum_.pixels[i]);
-            momentum_.pixels[i] = std::sqrt(step);
+            const float now = held((target_.pixels[3 * i + channel] + sky) / here);
+            const float step = first ? now : held(now * momentum.pixels[i]);
+            momentum.pixels[i] = std::sqrt(step);
             const float root = std::sqrt(std::sqrt(here));
             if (!last) here = step < 1.0f ? 1.0f / root : root;
+            ratio.seen.pixels[i] = here;
             ratio.wanted.pixels[i] = step * here;
         });
         return ratio;
     }
 
+    /// Takes the colours a step on from what is seen.
+    void take(Image seen, FlatLight& flat, bool last) {
+        for (int c = 0; c < 3; ++c) flat.correct(weighted_ratio(seen, c, last), c, !last);
+    }
+
   private:
     const Image& target_;
-    Image momentum_;  // root of the last step's ratio; without pixels before the first step
+    std::array<Image, 3> momentum_;  // root of the last step's ratio; without pixels before the first step
 };
 
 class FittedView {
@@ -134,9 +141,7 @@ class FittedView {
     /// The visible light if the same share of it is hidden as then.
     Image seen() const { return shown(flat_.sum()); }
     /// Takes the colours a step on from what is seen.
-    void step_from(Image seen, bool overshoot) {
-        flat_.correct(steps_.weighted_ratio(std::move(seen), !overshoot), overshoot);
-    }
+    void step_from(Image seen, bool overshoot) { steps_.take(std::move(seen), flat_, !overshoot); }
     /// Takes them to the picture's flux, cell by cell.
     void match_cells(const Image& seen) { flat_.multiply(cell_ratio(target_, seen), double(flux_cell_px)); }
     /// On sRGB values of some rows.
@@ -154,7 +159,7 @@ class FittedView {
     RenderSettings settings_;
     RenderLayer layer_;
     Camera camera_;
-    Image share_;  // of the flat light that reaches the viewer, as smooth as at half the picture's size
+    Image share_;           // of the flat light that reaches the viewer, at half the picture's size
     float highest_ = 0.0f;  // splat, texels
 };
 
@@ -175,7 +180,7 @@ Image FittedView::supposed() {
     share_ = share_of(halved(target_), halved(flat));
     parallel_each(share_.pixels.size(), 65536,
                   [&](std::size_t i) { share_.pixels[i] = std::min(share_.pixels[i], 1.0f); });
-    share_ = doubled(gaussian_blur(share_, share_blur_px), flat.width, flat.height);
+    share_ = gaussian_blur(share_, share_blur_px);
     return shown(std::move(flat));
 }
 
@@ -185,7 +190,7 @@ Image FittedView::rendered(const Progress& progress) {
     release_spare_pages();  // of the steps
     Image beauty = render({&layer_, 1}, camera_, nullptr, settings_, progress).beauty;
     if (beauty.width == flat.width && beauty.height == flat.height) beauty = halved(beauty);
-    share_ = doubled(share_of(beauty, halved(flat)), flat.width, flat.height);
+    share_ = share_of(beauty, halved(flat));
     beauty = {};
     release_spare_pages();
     return shown(std::move(flat));
@@ -198,7 +203,8 @@ Image FittedView::share_by_texel(const Progress& progress) {
 }
 
 Image FittedView::shown(Image flat) const {
-    parallel_each(flat.pixels.size(), 65536, [&](std::size_t i) { flat.pixels[i] *= share_.pixels[i]; });
+    const Image share = doubled(share_, flat.width, flat.height);
+    parallel_each(flat.pixels.size(), 65536, [&](std::size_t i) { flat.pixels[i] *= share.pixels[i]; });
     return flat;
 }
 
@@ -331,7 +337,7 @@ void fit_part(PictureSplats& all, std::span<const DetailPart> parts, std::size_t
             seen.pixels[i] =
                 std::max(0.0f, passes.pixels[i]) * (seen.pixels[i] + std::max(0.0f, below.pixels[i]));
         });
-        flat.correct(steps.weighted_ratio(std::move(seen), step + 1 == count), step + 1 < count);
+        steps.take(std::move(seen), flat, step + 1 == count);
     }
     constexpr int flux_rounds = 5;  // between cells' middles a factor is that of neither
     for (int round = 0; round < flux_rounds; ++round)
@@ -351,9 +357,9 @@ FrontFit fit_front(PictureSplats& set, Image light, bool small, const Progress& 
     for (int step = 0; step < first_steps; ++step) {
         progress.check();
         view.step_from(step == 0 ? std::move(seen) : view.seen(), true);
-        progress.at(0.3 * (step + 1) / first_steps);
+        progress.at(0.55 * (step + 1) / first_steps);
     }
-    seen = view.rendered(progress.part(0.3, 0.7));
+    seen = view.rendered(progress.part(0.55, 0.7));
     for (int step = 0; step < steps_after; ++step) {
         progress.check();
         view.step_from(std::move(seen), step + 1 < steps_after);

@@ -23,7 +23,7 @@ struct FrontFit {
 FrontFit fit_front(PictureSplats& set, Image light, bool small = false, const Progress& progress = {},
                    std::span<const DetailPart> detail = {});
 
-/// The ratio of the wanted light to the visible: three channels each, of one size, > 0.
+/// The ratio of the wanted light to the visible, of one channel: images of one size, > 0.
 struct Fraction {
     Image wanted, seen;
 };
@@ -37,10 +37,11 @@ class FlatLight {
     /// The sum of all splats: three channels, of the picture's size. The same bits for any thread count.
     Image sum() const;
 
-    /// Multiplies every splat's colour by the ratio of the two images of `fraction`, each blurred by half of
-    /// the splat's own footprint, clamped to [1/3, 3]. `overshoot`: by its square, and fine splats once more
-    /// by what it differs from the ratio of the pixels around.
-    void correct(Fraction fraction, bool overshoot);
+    /// Multiplies a channel of every splat's colour by the ratio of the two images of `fraction`, each
+    /// blurred by half of the splat's own footprint, clamped to [1/3, 3]. `overshoot`: by its square, and
+    /// fine splats once more by what it differs from the ratio of the pixels around. A channel at a time:
+    /// pictures are large.
+    void correct(Fraction fraction, int channel, bool overshoot);
 
     /// Multiplies every splat's colour by a value of `factor`, of three channels on steps of so many texels,
     /// linear between them.
@@ -65,7 +66,7 @@ class FlatLight {
     bool has_few(const Range& range, const Grid& seen) const;
     glm::vec2 texel(std::size_t splat) const;
     void spread(const Range& range, double step, Image& sum) const;
-    void multiply(const Range& range, const Image& factor, double step);
+    void multiply(const Range& range, const Image& factor, int of_factor, int channel, double step);
 
     PictureSplats& set_;
     glm::vec2 middle_;           // of the picture, texels

@@ -198,19 +198,16 @@ TEST(FlatLight, OneSplatIsItsFootprint) {
     }
 }
 
-// Of green; the other channels are right.
+// Of green, which is channel 1.
 Fraction fraction_of(float ratio) {
-    Fraction fraction{make_image(width, height, 3, 0.3f), make_image(width, height, 3, 0.3f)};
-    for (std::size_t i = 1; i < fraction.wanted.pixels.size(); i += 3)
-        fraction.wanted.pixels[i] = 0.3f * ratio;
-    return fraction;
+    return {make_image(width, height, 1, 0.3f * ratio), make_image(width, height, 1, 0.3f)};
 }
 
 TEST(FlatLight, AnEvenRatioCorrectsAllThatShines) {
     const PictureSplats before = some_splats();
     const auto corrected = [&](float ratio, bool overshoot) {
         PictureSplats set = before;
-        FlatLight(set, width, height, filter_px).correct(fraction_of(ratio), overshoot);
+        FlatLight(set, width, height, filter_px).correct(fraction_of(ratio), 1, overshoot);
         return set.splats.color;
     };
     const auto plain = corrected(1.5f, false), over = corrected(1.5f, true), most = corrected(2.5f, true);
@@ -227,10 +224,10 @@ TEST(FlatLight, AnEvenRatioCorrectsAllThatShines) {
 // Detail that only fine splats can show is left to them.
 TEST(FlatLight, FineSplatsAreSharpened) {
     Fraction fraction = fraction_of(1.0f);
-    fraction.wanted.at(48, 32)[1] = 0.45f;
+    *fraction.wanted.at(48, 32) = 0.45f;
     const auto factor = [&](float sigma, bool overshoot) {
         PictureSplats set = one_splat(0.5f, -0.5f, sigma);
-        FlatLight(set, width, height, filter_px).correct(fraction, overshoot);
+        FlatLight(set, width, height, filter_px).correct(fraction, 1, overshoot);
         return set.splats.color[0].y / 2.0f;
     };
     const float fine = factor(0.5f, false), coarse = factor(4.0f, false);
@@ -243,14 +240,14 @@ TEST(FlatLight, FineSplatsAreSharpened) {
 // A view of their own would take as long as that of many.
 TEST(FlatLight, FewSplatsSeeWhatTheNextNarrowerOnesDo) {
     Fraction fraction = fraction_of(1.0f);
-    fraction.wanted.at(48, 32)[1] = 0.45f;
+    *fraction.wanted.at(48, 32) = 0.45f;
     // Of a splat of the first size and one of the second, at the same place.
     const auto factors = [&](float second_sigma, int of_second_size) {
         PictureSplats set = one_splat(0.5f, -0.5f, 0.5f);
         for (int i = 0; i < of_second_size; ++i)
             add_splat(set, {0.5f, -0.5f, 0.0f}, {0.0f, 2.0f, 0.0f}, 0.25f, radius_sigmas * second_sigma);
         set.ranges.push_back({1, set.splats.size(), second_sigma});
-        FlatLight(set, width, height, filter_px).correct(fraction, true);
+        FlatLight(set, width, height, filter_px).correct(fraction, 1, true);
         return std::pair(set.splats.color[0].y, set.splats.color.back().y);
     };
     const auto [narrow, few] = factors(0.8f, 61);
