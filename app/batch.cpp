@@ -402,7 +402,6 @@ int run_batch(const CommandOptions& options) {
         keep_figures();
         failed = run.failed();
     }
-    flush_warning_counts();
     if (options.ffmetadata && failed.empty())
         write_file_atomically(*options.ffmetadata,
                               movie_metadata(plan.frames.front().file, movie_hash(plan)));

@@ -252,9 +252,7 @@ int main(int argc, char** argv) {
     install_interrupt_handlers();
     try {
         use_vector_target_of_environment();
-        const int code = run_command_line(argc, argv);
-        flush_warning_counts();
-        return code;
+        return run_command_line(argc, argv);
     } catch (const InputError& error) {
         log_error(error.what());
         return exit_not_started;

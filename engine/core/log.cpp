@@ -1,11 +1,11 @@
-// Messages: a level, a sink and the counts of repeated warnings, behind one mutex.
+// Messages: a level, a sink and the warnings said so far, behind one mutex.
 #include "core/log.h"
 
 #include <fmt/format.h>
 
 #include <cstdio>
-#include <map>
 #include <mutex>
+#include <set>
 
 #include "core/text.h"
 
@@ -17,7 +17,7 @@ struct Log {
     LogLevel level = LogLevel::info;
     std::function<void(LogLevel, const std::string&)> sink;
     std::string (*format)(LogLevel, const std::string&) = nullptr;
-    std::map<std::string, std::int64_t> warnings;  // line -> how often it came
+    std::set<std::string> warnings;  // what was said
 };
 
 thread_local int quiet_depth = 0;
@@ -72,14 +72,12 @@ void log_warning(const std::string& line) {
     if (quiet_depth > 0) return;
     Log& log = the_log();
     const std::lock_guard lock(log.mutex);
-    if (++log.warnings[line] == 1) emit(log, LogLevel::warning, line);
+    if (log.warnings.insert(line).second) emit(log, LogLevel::warning, line);
 }
 
-void flush_warning_counts() {
+void forget_warnings() {
     Log& log = the_log();
     const std::lock_guard lock(log.mutex);
-    for (const auto& [line, count] : log.warnings)
-        if (count > 1) emit(log, LogLevel::warning, fmt::format("{} ({} times)", line, count));
     log.warnings.clear();
 }
 

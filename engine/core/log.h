@@ -28,13 +28,13 @@ void log_error(const std::string& line);
 void log_info(const std::string& line);
 void log_detail(const std::string& line);
 
-/// Odd but usable input. The same line is printed once; `flush_warning_counts` tells how often it came
-/// in all, and starts afresh.
+/// Odd but usable input. The same line is said once, however often a file is opened; `forget_warnings` starts
+/// afresh.
 void log_warning(const std::string& line);
-void flush_warning_counts();
+void forget_warnings();
 
-/// While it lives, nothing that this thread says is heard or counted: it looks at files that were not asked
-/// for yet.
+/// While it lives, nothing that this thread says is heard or remembered: it looks at files that were not
+/// asked for yet.
 class QuietLog {
   public:
     QuietLog();

@@ -18,14 +18,14 @@ struct Said {
     std::vector<std::string> lines, warnings;
 
     Said() {
-        flush_warning_counts();
+        forget_warnings();
         set_log_sink([this](LogLevel level, const std::string& line) {
             lines.push_back(line);
             if (level == LogLevel::warning) warnings.push_back(line);
         });
     }
     ~Said() {
-        flush_warning_counts();
+        forget_warnings();
         set_log_sink(nullptr);
     }
     Said(const Said&) = delete;

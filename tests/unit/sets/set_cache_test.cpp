@@ -363,7 +363,7 @@ TEST_F(SetCacheTest, DamagedEntriesAreMadeAgainWithAWarning) {
             EXPECT_EQ(again.geometry_cached, file == texel_file(source_));
             expect_same_set(again.set, set);
             EXPECT_HAS(said_.one_warning(), "; the set is generated again");
-            flush_warning_counts();
+            forget_warnings();
             EXPECT_EQ(bytes_of(file), whole);
             EXPECT_TRUE(load().cached);
         }
@@ -482,7 +482,7 @@ TEST_F(SetCacheTest, AnEntryOfAnotherSetUnderThisNameIsNotTaken) {
         expect_same_set(again.set, set);
         EXPECT_HAS(said_.one_warning(), "expected that of the set asked for");
         EXPECT_TRUE(again.set.recipe.empty());
-        flush_warning_counts();
+        forget_warnings();
         const LoadedSet repaired = load();
         EXPECT_TRUE(repaired.cached);
         EXPECT_TRUE(repaired.set.recipe.empty());

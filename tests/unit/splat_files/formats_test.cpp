@@ -58,7 +58,7 @@ std::vector<std::string> warnings_of(const SplatSet& set, const std::string& nam
     const TempFolder folder;
     const Said said;
     write_splats({folder / name, Existing::replace}, set);
-    flush_warning_counts();
+    forget_warnings();
     return said.warnings;
 }
 
