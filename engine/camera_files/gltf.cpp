@@ -8,6 +8,7 @@
 
 #include "core/error.h"
 #include "core/real.h"
+#include "core/rotation.h"
 #include "core/text.h"
 #include "gltf/gltf_file.h"
 
@@ -31,15 +32,6 @@ struct GltfCurve {
 double frame_of(double seconds, double fps) {
     const double frame = seconds * fps, whole = std::floor(frame + 0.5);
     return std::fabs(frame - whole) < 1e-3 ? whole : frame;
-}
-
-/// Turns go the short way round, at even speed (glTF 2.0, appendix C.3).
-glm::dvec4 turned_between(const glm::dvec4& a, glm::dvec4 b, double t) {
-    double cosine = glm::dot(a, b);
-    if (cosine < 0.0) b = -b, cosine = -cosine;
-    if (cosine > 1.0 - 1e-9) return glm::normalize(a + t * (b - a));
-    const double angle = real::acos(cosine), sine = real::sin(angle);
-    return (real::sin((1.0 - t) * angle) / sine) * a + (real::sin(t * angle) / sine) * b;
 }
 
 /// Reads a sampler; a second is `fps` frames. Throws InputError and nlohmann's exceptions.
@@ -85,7 +77,8 @@ glm::dvec4 value_of(const GltfCurve& curve, double frame) {
     const double from = curve.frames[next - 1], length = curve.frames[next] - from,
                  t = (frame - from) / length;
     const glm::dvec4 a = value(next - 1, 1), b = value(next, 1);
-    if (!cubic) return turn ? turned_between(unit(a), unit(b), t) : a + t * (b - a);
+    // glTF 2.0, appendix C.3
+    if (!cubic) return turn ? quaternion_between(unit(a), unit(b), t) : a + t * (b - a);
     const glm::dvec4 leaving = length / curve.fps * value(next - 1, 2),
                      arriving = length / curve.fps * value(next, 0);
     const double t2 = t * t, t3 = t2 * t;

@@ -1,5 +1,7 @@
 #include "core/rotation.h"
 
+#include <glm/geometric.hpp>
+
 #include "core/real.h"
 
 namespace astrosplat {
@@ -26,6 +28,14 @@ glm::dvec4 quaternion_of_matrix(const glm::dmat3& m) {
                                   : glm::dvec4(wx, wy, wz, square);
     q /= std::sqrt(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w);
     return q.w < 0.0 ? -q : q;
+}
+
+glm::dvec4 quaternion_between(const glm::dvec4& a, glm::dvec4 b, double t) {
+    double cosine = glm::dot(a, b);
+    if (cosine < 0.0) b = -b, cosine = -cosine;
+    if (cosine > 1.0 - 1e-9) return glm::normalize(a + t * (b - a));
+    const double angle = real::acos(cosine), sine = real::sin(angle);
+    return (real::sin((1.0 - t) * angle) / sine) * a + (real::sin(t * angle) / sine) * b;
 }
 
 glm::dvec4 quaternion_product(const glm::dvec4& a, const glm::dvec4& b) {

@@ -17,6 +17,9 @@ glm::dvec4 quaternion_of_matrix(const glm::dmat3& m);
 /// Turns by b, then by a.
 glm::dvec4 quaternion_product(const glm::dvec4& a, const glm::dvec4& b);
 
+/// From a (t = 0) to b (1), both of length 1, the short way round at even speed.
+glm::dvec4 quaternion_between(const glm::dvec4& a, glm::dvec4 b, double t);
+
 /// Rotation about x, then y, then z.
 glm::dmat3 rotation_from_degrees(const glm::dvec3& degrees);
 

@@ -261,11 +261,29 @@ std::string header_text(const SplatSet& set, bool wide_ids) {
     return text + "end_header\n";
 }
 
+/// Normals, which splats have no use for, pass.
+void warn_of_unread(const PlyHeader& header, const std::vector<Column>& columns, const fs::path& file) {
+    std::vector<std::string> names;
+    for (const Column& column : columns)
+        if (!column.field && column.name != "nx" && column.name != "ny" && column.name != "nz")
+            names.push_back(column.name);
+    for (const PlyElement& element : header.elements)
+        if (element.name != "vertex" && element.count > 0) names.push_back("element " + element.name);
+    constexpr std::size_t most_named = 8;
+    const std::size_t more = names.size() - std::min(names.size(), most_named);
+    names.resize(names.size() - more);
+    if (!names.empty())
+        log_warning(fmt::format("{}: its {}{} {} not followed", file.string(), fmt::join(names, ", "),
+                                more > 0 ? fmt::format(" and {} more", more) : "",
+                                names.size() > 1 ? "are" : "is"));
+}
+
 SplatSet read_vertices(const PlyHeader& header, std::size_t vertex, const fs::path& file,
                        const Progress& progress) {
     const PlyElement& element = header.elements[vertex];
     SplatTable table;
     table.columns = columns_of(element, file);
+    warn_of_unread(header, table.columns, file);
     if (header.format == PlyFormat::ascii)
         read_ascii(header, vertex, table, file, progress);
     else

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <glm/mat4x4.hpp>
+#include <set>
 
 #include "core/error.h"
 #include "core/log.h"
@@ -93,6 +94,11 @@ GaussianPrim prim_of(const UsdText& text, std::span<const UsdPrim* const> chain,
     const UsdPrim& prim = *chain.back();
     if (const std::string unread = left_out(chain); !unread.empty())
         log_warning(fmt::format("{}: {}", text.file, unread));
+    std::set<double> times;
+    for (const UsdPrim* const each : chain) add_times(*each, times);
+    if (!times.empty())
+        log_warning(fmt::format("{}: the motion of '{}' is not followed: it stands as at time code 0",
+                                text.file, printable(prim.name)));
     GaussianPrim own;
     own.prim = &prim;
     const std::optional<GaussianPlacement> placement = gaussian_placement(world);

@@ -427,6 +427,9 @@ class Parser {
         constexpr std::array cameras{"fStop",         "focusDistance", "shutter:open",
                                      "shutter:close", "stereoRole",    "exposure"};
         const bool camera = std::ranges::find(cameras, name) != cameras.end();
+        const std::string base = name.substr(0, name.find('.'));
+        if ((list && samples) || (base != name && (is_kept(base) || is_list(base))))
+            prim.unread.push_back(samples ? name + ".timeSamples" : name);
         UsdAttribute told;  // of a camera, where it is other than USD's own
         UsdAttribute* const attribute = is_kept(name) || list ? &prim.attributes[name]
                                         : camera              ? &told

@@ -127,13 +127,13 @@ std::vector<double> numbers_at(const UsdPrim& prim, const std::string& name, dou
     if (next == samples.end() || next->second.numbers.size() != numbers.size()) return numbers;
     const double t = (time - before) / (next->first - before);
     const std::vector<double>& after = next->second.numbers;
-    double sign = 1.0;  // of two quaternions of one turn the nearer
-    if (name.starts_with("xformOp:orient")) {
-        double dot = 0.0;
-        for (std::size_t i = 0; i < numbers.size(); ++i) dot += numbers[i] * after[i];
-        sign = dot < 0.0 ? -1.0 : 1.0;
+    if (name.starts_with("xformOp:orient") && numbers.size() == 4) {
+        const glm::dvec4 q(numbers[0], numbers[1], numbers[2], numbers[3]),
+            p(after[0], after[1], after[2], after[3]);
+        const glm::dvec4 turn = quaternion_between(glm::normalize(q), glm::normalize(p), t);
+        return {turn[0], turn[1], turn[2], turn[3]};
     }
-    for (std::size_t i = 0; i < numbers.size(); ++i) numbers[i] += t * (sign * after[i] - numbers[i]);
+    for (std::size_t i = 0; i < numbers.size(); ++i) numbers[i] += t * (after[i] - numbers[i]);
     return numbers;
 }
 

@@ -369,6 +369,24 @@ TEST_F(Usda, SamplesAreLinearAndHeldOutside) {
     EXPECT_EQ(track.samples[4].frame, 4.0);
 }
 
+// USD interpolates quaternions along the arc: 40 degrees are a quarter of 160.
+TEST_F(Usda, TurnsGoAtEvenSpeed) {
+    const CameraTrack track = read(camera(R"(
+        quatf xformOp:orient.timeSamples = { 0: (1, 0, 0, 0), 4: (-0.17364818, 0, -0.98480775, 0) }
+        uniform token[] xformOpOrder = ["xformOp:orient"]
+)"));
+    EXPECT_NEAR(track.samples.at(1).rotation.y, 0.3420201433, 1e-7);
+    EXPECT_NEAR(track.samples.at(1).rotation.w, 0.9396926208, 1e-7);
+}
+
+TEST_F(Usda, CurvesAndConnectionsAreSaid) {
+    const CameraTrack track =
+        read(camera("float focalLength.spline = { bezier, 1: 30; pre (0, 0) }\n"
+                    "float verticalAperture.connect = </rig.a>\n"));
+    ASSERT_EQ(track.warnings.size(), 1u);
+    EXPECT_HAS(track.warnings[0], "focalLength.spline, verticalAperture.connect of 'cam' are not followed");
+}
+
 // UsdGeomCamera: focalLength 50, apertures 20.955 x 15.2908, offsets as parts of the apertures.
 TEST_F(Usda, LensesAreThoseOfTheSchemaWhereTheFileSaysNone) {
     const CameraTrack none = read(camera(""));

@@ -141,7 +141,9 @@ TEST_F(GaussianFiles, PlyInAnyOrderAsTextAndWithStrangers) {
         "property float f_dc_2\nproperty float f_dc_1\nproperty float f_dc_0\nproperty list uchar int other\n"
         "property float z\nproperty float y\nproperty float x\nproperty int label\nend_header\n"
         "0 0 2 2 255 0.5 -1 -2 0 9 8 7 6 5 4 3 2 1 0.3 0.2 0.1 2 7 7 3 2 1 42\n";
+    const Said said;
     const SplatSet set = read(text);
+    EXPECT_HAS(said.one_warning(), "a.ply: its red, other, label are not followed");
     ASSERT_EQ(set.size(), 1);
     EXPECT_EQ(set.position[0], glm::vec3(1.0f, 2.0f, 3.0f));
     EXPECT_EQ(set.alpha[0], 0.5f);
@@ -303,7 +305,7 @@ def Scope "B" ( references = @more.usda@ )
 {
     def ParticleField3DGaussianSplat "C"
     {
-        double3 xformOp:translate = (0, 0, 10)
+        double3 xformOp:translate.timeSamples = { 1: (0, 0, 10), 2: (0, 0, 20) }
         uniform token[] xformOpOrder = ["xformOp:translate"]
         point3f[] positions = [(4, 5, 6), (0, 0, 0)]
         half[] opacitiesh = [0.25, 0.5, 0.75]
@@ -312,7 +314,10 @@ def Scope "B" ( references = @more.usda@ )
 }
 )",
                               "a.usda");
-    EXPECT_HAS(said.one_warning(), "a.usda: references of 'B' are not followed");
+    ASSERT_EQ(said.warnings.size(), 3u);
+    EXPECT_HAS(said.warnings[0], "a.usda: positions.timeSamples of 'A' are not followed");
+    EXPECT_HAS(said.warnings[1], "a.usda: references of 'B' are not followed");
+    EXPECT_HAS(said.warnings[2], "a.usda: the motion of 'C' is not followed: it stands as at time code 0");
     ASSERT_EQ(set.size(), 3);
     EXPECT_EQ(set.position[0], glm::vec3(1.0f, 3.0f, -2.0f));
     EXPECT_EQ(set.position[1], glm::vec3(4.0f, 16.0f, -5.0f));
