@@ -323,6 +323,7 @@ Report describe(const fs::path& file) {
                 return kind == CatalogueKind::sky ? describe_catalogue(file) : describe_picture_table(file);
             if (is_camera_file(file)) return describe_camera(file);
             if (is_keyframe_table(file)) return describe_keyframes(file);
+            if (format_of_file(file) && format_of_file(file)->id == "table") return describe_catalogue(file);
             return is_fits(file) ? describe_fits_file(file) : describe_image(file);
     }
 }

@@ -253,8 +253,12 @@ TextTable::TextTable(std::string_view text) : rows_(text) {
     if (!rows_.next()) return;
     header_ = rows_.text();
     separator_ = separator_of(header_);
-    for (const std::string_view name : rows_.fields(separator_))
-        columns_.push_back({lower_case(std::string(name))});
+    for (const std::string_view name : rows_.fields(separator_)) {
+        const std::size_t open = name.find_first_of("[("), close = name.find_last_of(")]");
+        const bool has_unit = open != name.npos && open > 0 && close + 1 == name.size() && close > open;
+        columns_.push_back({lower_case(std::string(trim(name.substr(0, has_unit ? open : name.size())))),
+                            std::string(has_unit ? name.substr(open + 1, close - open - 1) : "")});
+    }
 }
 
 bool TextTable::next() {

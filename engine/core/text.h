@@ -154,7 +154,8 @@ class RowTable {
 
 class TextTable final : public RowTable {
   public:
-    /// Reads the row of names. `text` outlives the table.
+    /// Reads the row of names, which may have units behind them: "ra [deg]", "dist (pc)". `text` outlives the
+    /// table.
     explicit TextTable(std::string_view text);
     /// The names as they stand, for messages.
     std::string_view header() const { return header_; }

@@ -106,6 +106,10 @@ std::vector<FileTable> fits_tables(const fs::path& file, const Progress& progres
         if (!frame.empty() && frame != "ICRS" && frame != "FK5")
             log_warning(fmt::format("{}: RADESYS = '{}' is not followed: places are taken for ICRS",
                                     file.string(), printable(frame)));
+        double equinox = 2000.0;
+        if (frame != "ICRS" && read_fits_keyword(in.get(), TDOUBLE, "EQUINOX", &equinox) && equinox != 2000.0)
+            log_warning(fmt::format("{}: EQUINOX = {} is not followed: places are taken for ICRS",
+                                    file.string(), shortest(equinox)));
         tables.push_back({fmt::format("HDU {}{}{}", hdu, name.empty() ? "" : " ", name),
                           std::make_unique<FitsTable>(file, in)});
     }

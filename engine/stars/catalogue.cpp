@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include <map>
+
 #include "core/error.h"
 #include "core/log.h"
 #include "core/packed_file.h"
@@ -57,7 +59,8 @@ bool usable(const std::optional<double>& number) { return number && *number > 0.
 
 /// The fields as they stand; empty ones are missing.
 struct StarFields {
-    std::string_view ra, dec, magnitude, distance, parallax, color_index, blue = {}, bp_rp = {};
+    std::string_view ra, dec, magnitude, distance, parallax, color_index, blue = {}, bp_rp = {}, bp = {},
+                                                                          rp = {}, kelvin = {};
 };
 
 /// What the numbers of a table are multiplied by, and what its magnitudes are.
@@ -81,7 +84,7 @@ std::optional<double> v_minus_g(double bp_rp) {
     return 0.02704 - bp_rp * (0.01424 - bp_rp * (0.2156 - bp_rp * 0.01426));
 }
 
-/// "00 00 12.80", "-16:42:58.0" as one number; nothing where it is no such text.
+/// "00 00 12.80", "-16:42:58.0", "6h45m08.9s" as one number; nothing where it is no such text.
 std::optional<double> sexagesimal(std::string_view text) {
     text = trim(text);
     const bool negative = text.starts_with('-');
@@ -89,7 +92,7 @@ std::optional<double> sexagesimal(std::string_view text) {
     double value = 0.0, share = 1.0;
     for (int part = 0; part < 3; ++part, share /= 60.0) {
         text = trim(text);
-        const std::size_t end = std::min(text.find_first_of(" :"), text.size());
+        const std::size_t end = std::min(text.find_first_of(" :hdms"), text.size());
         const std::optional<double> number = parse_double(text.substr(0, end));
         if (!number || !(*number >= 0.0 && *number <= 360.0)) return std::nullopt;
         value += *number * share;
@@ -123,7 +126,13 @@ struct StarRow {
         if (!read_number(fields.blue, other)) return no_number("B", fields.blue);
         if (!color_index && other && magnitude) color_index = *other - *magnitude;
         if (!read_number(fields.bp_rp, other)) return no_number("BP-RP", fields.bp_rp);
+        std::optional<double> bp, rp, kelvin;
+        if (!read_number(fields.bp, bp)) return no_number("BP", fields.bp);
+        if (!read_number(fields.rp, rp)) return no_number("RP", fields.rp);
+        if (!read_number(fields.kelvin, kelvin)) return no_number("the temperature", fields.kelvin);
+        if (!other && bp && rp) other = *bp - *rp;
         if (!color_index && other) color_index = color_index_of(temperature_of_bp_rp(*other));
+        if (!color_index && usable(kelvin)) color_index = color_index_of(*kelvin);
         if (units.gaia_g && magnitude && other) *magnitude += v_minus_g(*other).value_or(0.0);
         return {};
     }
@@ -203,6 +212,7 @@ constexpr Unit magnitudes[] = {{1.0, "mag magnitude"}};
 constexpr Unit distances[] = {
     {1.0, "pc"}, {1e3, "kpc"}, {1e6, "mpc"}, {parsec_a_ly, "ly lyr"}, {au_pc, "au"}};
 constexpr Unit parallaxes[] = {{1.0, "mas"}, {1e3, "arcsec"}, {1e-3, "uas"}, {3.6e6, "deg"}};
+constexpr Unit temperatures[] = {{1.0, "k kelvin"}};
 
 /// What a star needs: the columns that hold it, by what Gaia's archive, VizieR, SIMBAD, HYG and people call
 /// them, else by how their UCDs begin (IVOA UCD1+ 1.5, and those of before), the best first.
@@ -210,7 +220,16 @@ struct Quantity {
     std::string_view name, names, ucds;
     std::span<const Unit> units;
 };
-enum QuantityId { of_ra, of_dec, of_magnitude, of_distance, of_parallax, of_color_index, of_bp_rp };
+enum QuantityId {
+    of_ra,
+    of_dec,
+    of_magnitude,
+    of_distance,
+    of_parallax,
+    of_color_index,
+    of_bp_rp,
+    of_kelvin
+};
 constexpr Quantity quantities[] = {
     {"ra", "ra ra_d _raj2000 raj2000 ra_icrs _ra.icrs _ra ra_deg radeg raicrs rarad",
      "pos.eq.ra;meta.main pos.eq.ra pos_eq_ra_main", angles},
@@ -221,7 +240,8 @@ constexpr Quantity quantities[] = {
     {"distance", "dist distance", "pos.distance", distances},
     {"parallax", "parallax plx plx_value", "pos.parallax pos_parlx_trig", parallaxes},
     {"B-V", "bv b_v b-v ci", "phot.color;em.opt.b;em.opt.v", magnitudes},
-    {"BP-RP", "bp_rp bp-rp", "", magnitudes}};
+    {"BP-RP", "bp_rp bp-rp", "", magnitudes},
+    {"the temperature", "teff teff_gspphot teff_val", "", temperatures}};
 
 std::vector<std::string_view> words_of(std::string_view text) {
     TextRows rows(text);
@@ -237,8 +257,15 @@ struct Column {
 
     Column(const RowTable& table, const Quantity& quantity) {
         std::vector<int> found;
-        for (const std::string_view name : words_of(quantity.names))
+        std::map<int, std::string_view> in_name;  // units: "dist_ly"
+        for (const std::string_view name : words_of(quantity.names)) {
             if (const int i = table.column({name}); i != RowTable::none) found.push_back(i);
+            for (const Unit& of : quantity.units)
+                for (const std::string_view word : words_of(of.names))
+                    if (const int i = table.column({fmt::format("{}_{}", name, word)});
+                        i != RowTable::none && in_name.try_emplace(i, word).second)
+                        found.push_back(i);
+        }
         const std::size_t named = found.size();
         for (const std::string_view ucd : words_of(quantity.ucds))
             for (int i = 0; i < int(table.columns().size()); ++i)
@@ -250,6 +277,9 @@ struct Column {
             const NamedColumn& column = table.columns()[std::size_t(found[k])];
             std::string said = lower_case(column.unit);
             std::erase_if(said, [](char c) { return c == '"' || c == ' ' || c == '[' || c == ']'; });
+            if (const auto word = in_name.find(found[k]); said.empty() && word != in_name.end())
+                said = word->second;
+            if (said == "j2000" || said == "icrs") said.clear();  // a frame, and ours
             const auto known = std::ranges::find_if(quantity.units, [&](const Unit& u) {
                 return std::ranges::count(words_of(u.names), said) > 0;
             });
@@ -284,6 +314,8 @@ struct Columns {
             {"v", "b"}, {"vmag", "bmag"}, {"flux_v", "flux_b"}};
         for (const auto& [v, b] : pairs)
             if (is_one_of(magnitude(), {v}) && blue == RowTable::none) blue = table.column({b});
+        bp = table.column({"phot_bp_mean_mag", "bpmag"});
+        rp = table.column({"phot_rp_mean_mag", "rpmag"});
         for (const char* const other : {"hpmag", "vtmag", "phot_g_mean_mag", "gmag"})
             if (is_one_of(magnitude(), {other})) band = other;
         may_be_hours = !hyg && ra().unit.empty() && is_one_of(ra(), {"ra"});
@@ -329,7 +361,7 @@ struct Columns {
 
     std::vector<Column> all;
     RowUnits units;
-    int blue = RowTable::none;
+    int blue = RowTable::none, bp = RowTable::none, rp = RowTable::none;
     std::string band;  // of the magnitude, where it is not V
     bool from_hyg = false, may_be_hours = false, may_be_radians = false;
 };
@@ -339,7 +371,8 @@ std::string read_table_row(const RowTable& table, const Columns& columns, Catalo
     const auto field = [&](QuantityId id) { return table.field(columns.all[id].index); };
     std::string problem =
         row.read({field(of_ra), field(of_dec), field(of_magnitude), field(of_distance), field(of_parallax),
-                  field(of_color_index), table.field(columns.blue), field(of_bp_rp)},
+                  field(of_color_index), table.field(columns.blue), field(of_bp_rp), table.field(columns.bp),
+                  table.field(columns.rp), field(of_kelvin)},
                  columns.units);
     if (columns.from_hyg && row.distance_pc && *row.distance_pc >= hyg_unknown_pc) row.distance_pc.reset();
     return problem.empty() ? row.to_star(star) : problem;
@@ -350,7 +383,8 @@ std::string read_table_row(const RowTable& table, const Columns& columns, Catalo
 void set_units(StarCatalogue& catalogue, const Columns& columns, const std::string& name) {
     std::vector<CatalogueStar>& stars = catalogue.stars;
     if (stars.empty()) return;
-    const bool to_v = columns.units.gaia_g && columns.all[of_bp_rp].index != RowTable::none;
+    const bool to_v = columns.units.gaia_g &&
+                      (columns.all[of_bp_rp].index != RowTable::none || columns.bp != RowTable::none);
     const auto others =
         columns.band.empty() ? 0 : std::ranges::count_if(stars, [&](const CatalogueStar& star) {
             return !to_v || !star.color_index;

@@ -242,6 +242,38 @@ TEST(Units, AreFollowedOrSaidOrRefused) {
               "no mag (but mag in 'Jy') in 'ra,dec,mag'");
 }
 
+// As people name columns; the number is half a year of light in parsecs where it is one of light years.
+TEST(Units, StandInNames) {
+    const auto star = [](const std::string& header, const char* row) {
+        return parse_catalogue(header + "\n" + row + "\n", "t.csv").stars.at(0);
+    };
+    const double ly = 0.30660139378555057;
+    expect_place(star("ra [deg],dec [deg],mag [mag],dist [ly]", "6,5,3,2"), 6, 5, 2 * ly, 3);
+    expect_place(star("RA (h),Dec (deg),Vmag,Distance (kpc)", "6,5,3,2"), 90, 5, 2000, 3);
+    expect_place(star("RA (J2000),Dec (ICRS),mag,dist", "6,5,3,2").ra_deg == 6.0
+                     ? star("ra_hours,dec_deg,v_mag,distance_lyr", "6,5,3,2")
+                     : CatalogueStar{},
+                 90, 5, 2 * ly, 3);
+    expect_place(star("ra,dec,mag,parallax_uas", "6,5,3,2"), 6, 5, 5e5, 3);
+    expect_place(star("ra,dec,mag", "6h30m36s,-5d30m36s,3"), 97.65, -5.51, 0, 3);
+    const Said said;
+    expect_place(star("ra,dec,mag,dist (furlong)", "6,5,3,2"), 6, 5, 0, 3);
+    EXPECT_EQ(said.one_warning(), "t.csv: dist in 'furlong' is not followed as distance");
+}
+
+// BP and RP apart are BP-RP; a temperature is a colour.
+TEST(Tables, ColoursOfOtherColumns) {
+    const auto color = [](const char* text) {
+        return parse_catalogue(text, "t.csv").stars.at(0).color_index;
+    };
+    const auto apart = color("ra,dec,mag,phot_bp_mean_mag,phot_rp_mean_mag\n1,2,3,5.5,4.25\n"),
+               whole = color("ra,dec,mag,bp_rp\n1,2,3,1.25\n"),
+               warm = color("ra,dec,mag,teff_gspphot\n1,2,3,5772\n");
+    ASSERT_TRUE(apart && whole && warm);
+    EXPECT_EQ(*apart, *whole);
+    EXPECT_NEAR(*warm, 0.65, 0.02) << "of the Sun";
+}
+
 TEST(Tables, Utf16IsRefusedByItsName) {
     const TempFolder folder;
     for (const auto& [bytes, name] : {std::pair(std::string("\xff\xfer\0a\0", 6), "little.csv"),
@@ -358,6 +390,8 @@ TEST(FitsTables, AFrameThatIsNotFollowedIsSaid) {
     };
     EXPECT_EQ(said_of("RADESYS = 'ICRS'"), "");
     EXPECT_HAS(said_of("RADESYS = 'FK4'"), "RADESYS = 'FK4' is not followed: places are taken for ICRS");
+    EXPECT_HAS(said_of("EQUINOX =               1950.0"), "EQUINOX = 1950 is not followed");
+    EXPECT_EQ(said_of("EQUINOX =               2000.0"), "");
     const fs::path flux = table_with("TUNIT3  = 'Jy'");
     EXPECT_EQ(kind_of_catalogue(flux), CatalogueKind::sky) << "or info would look for a picture";
     EXPECT_HAS(ERROR_OF(read_catalogue(flux)), "found no mag (but mag in 'Jy')");
