@@ -46,8 +46,26 @@ std::shared_ptr<const ColorEncoding> chromaticity_encoding(std::span<const float
 std::shared_ptr<const ColorEncoding> png_encoding(const fs::path& file, bool has_profile,
                                                   std::string& problem);
 
-/// Warns of an animated PNG, whose first picture alone is read.
-void warn_of_frames(const fs::path& file);
+/// Of an animated PNG; 1 of others.
+std::int64_t png_frames(const fs::path& file);
+
+/// Of cameras' JPEG files that say so without a profile (DCF 2.0, option R03).
+std::shared_ptr<const ColorEncoding> adobe_rgb_encoding();
+
+/// By OpenImageIO's names of a curve over Rec. 709: Linear, Rec709, and Gamma with its number. Null: another.
+std::shared_ptr<const ColorEncoding> named_encoding(std::string_view name, double gamma);
+
+/// By EXR's colorInteropID (Color Interop Forum, "lin_ap1_scene"). Null: it says nothing, or is in `problem`.
+std::shared_ptr<const ColorEncoding> interop_encoding(std::string_view id, std::string& problem);
+
+/// What a TIFF's own tags say (TIFF 6.0, section 20): primaries and white as above; a table each channel.
+struct TiffColors {
+    std::optional<std::array<float, 8>> primaries;
+    std::array<std::vector<float>, 3> transfer;  // of 0 to 1
+};
+/// Where one is missing, sRGB's of integers up to `largest`, else linear light. Null: neither says anything.
+std::shared_ptr<const ColorEncoding> tiff_encoding(const TiffColors& tiff, double largest,
+                                                   std::string& problem);
 
 /// The same with its tables, for a picture's integers up to `max_integer` (255, 65535; else without).
 std::shared_ptr<const ColorEncoding> with_tables(std::shared_ptr<const ColorEncoding> encoding,

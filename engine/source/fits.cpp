@@ -212,7 +212,7 @@ FitsHdu automatic_hdu(const fs::path& file, fitsfile* in, int count, const Progr
     };
     if (!named) taken = std::ranges::find_if(pictures, shows);
     if (taken == pictures.end()) taken = pictures.begin();
-    if (pictures.size() > 1 && !named)
+    if (pictures.size() > 1 && (!named || std::ranges::count_if(pictures, is_science) > 1))
         log_warning(fmt::format(
             "{}: {} HDUs hold pictures; HDU {}{}{} is taken (hdu = NAME or NUMBER takes another)",
             file.string(), pictures.size(), taken->number, taken->name.empty() ? "" : " ", taken->name));
@@ -257,11 +257,17 @@ bool is_of_colors(fitsfile* in, std::size_t axis) {
 
 // The letters belong to a picture as a camera stores it, from its top on. What says that it was turned over
 // begins with the other row; of what says nothing the rows are as the camera's.
-std::optional<std::array<int, 4>> bayer_pattern(fitsfile* in, bool bottom_up) {
+std::optional<std::array<int, 4>> bayer_pattern(fitsfile* in, const std::string& letters, bool bottom_up) {
     int x = 0, y = 0;
     read_fits_keyword(in, TINT, "XBAYROFF", &x);
     read_fits_keyword(in, TINT, "YBAYROFF", &y);
-    return bayer_channels(fits_text(in, "BAYERPAT"), x, bottom_up ? y + 1 : y);
+    return bayer_channels(letters, x, bottom_up ? y + 1 : y);
+}
+
+// As most cameras' programs write it, or MaxIm and those after it, which have other words there too.
+std::string bayer_letters(fitsfile* in) {
+    const std::string letters = fits_text(in, "BAYERPAT"), older = fits_text(in, "COLORTYP");
+    return letters.empty() && bayer_channels(older, 0, 0) ? older : letters;
 }
 
 ValueLayout layout_of(const fs::path& file, fitsfile* in, const FitsHdu& hdu, std::optional<int> plane,
@@ -286,14 +292,15 @@ ValueLayout layout_of(const fs::path& file, fitsfile* in, const FitsHdu& hdu, st
     layout.stride = by_pixel ? 3 : 1;
     if (plane || planes == 1) {
         layout.first = plane.value_or(0) * (by_pixel ? 1 : pixels);
-        const auto pattern = plane ? std::nullopt : bayer_pattern(in, order == "BOTTOM-UP");
+        const std::string letters = bayer_letters(in);
+        const auto pattern = plane ? std::nullopt : bayer_pattern(in, letters, order == "BOTTOM-UP");
         if (pattern && layout.width > 1 && layout.height > 1) {
             layout.values = Values::bayer;
             layout.pattern = *pattern;
-            layout.what = fmt::format("Bayer's mosaic {}", fits_text(in, "BAYERPAT"));
-        } else if (!plane && !fits_text(in, "BAYERPAT").empty()) {
+            layout.what = fmt::format("Bayer's mosaic {}", letters);
+        } else if (!plane && !letters.empty()) {
             log_warning(fmt::format("{}: BAYERPAT = '{}' is not followed: the picture stays grey",
-                                    file.string(), fits_text(in, "BAYERPAT")));
+                                    file.string(), letters));
         }
         return layout;
     }

@@ -108,9 +108,9 @@ struct FitsRows {
 /// one, else the first with a picture that is no mask, weight or error and not blank, and says so where there
 /// are several. `plane` counts from 0 over the axes beyond two (of values that are stored by pixel, over the
 /// first); empty: three of them are a colour picture unless their axis is one of a spectrum or of
-/// polarisation, a plane with BAYERPAT is one as well (its missing values are means of their neighbours'), of
-/// others the first that is not blank is taken, with a warning. ROWORDER is followed. Throws InputError,
-/// Cancelled.
+/// polarisation, a plane with BAYERPAT or COLORTYP is one as well (its missing values are means of their
+/// neighbours'), of others the first that is not blank is taken, with a warning. ROWORDER is followed. Throws
+/// InputError, Cancelled.
 FitsRows open_fits_rows(const fs::path& file, const std::string& hdu, std::optional<int> plane,
                         const Progress& progress = {});
 FitsPlane read_fits(const fs::path& file, const std::string& hdu, std::optional<int> plane,

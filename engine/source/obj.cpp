@@ -60,6 +60,7 @@ struct Reader {
     std::map<std::tuple<fs::path, float, float, float>, std::uint32_t> index;  // in mesh.maps
     std::uint32_t material = 0;
     bool material_chosen = false;
+    std::int64_t others = 0;  // lines, points and free forms
 };
 
 [[noreturn]] void bad_line(const Reader& r, std::string_view expected, std::string_view found) {
@@ -191,6 +192,27 @@ std::string_view next_line(std::string_view& text, std::string& joined, std::int
     }
 }
 
+// Numbers behind words[i] that are other than `usual`.
+bool differs(const Words& words, std::size_t i, double usual) {
+    for (std::optional<double> value; ++i < words.size() && (value = parse_double(words[i]));)
+        if (*value != usual) return true;
+    return false;
+}
+
+// Of a material's line: light of its own, transparency, and where or how a picture lies on it.
+bool is_unfollowed(const Words& words) {
+    const std::string_view key = words[0];
+    if (key == "map_Ke" || key == "map_d") return true;
+    if (key == "Ke" || key == "Tr") return differs(words, 0, 0.0);
+    if (key == "d") return differs(words, 0, 1.0);
+    for (std::size_t i = 1; key == "map_Kd" && i < words.size(); ++i)
+        if ((words[i] == "-s" && differs(words, i, 1.0)) || (words[i] == "-o" && differs(words, i, 0.0)) ||
+            (words[i] == "-t" && differs(words, i, 0.0)) || words[i] == "-mm" ||
+            (words[i] == "-clamp" && i + 1 < words.size() && words[i + 1] == "on"))
+            return true;
+    return false;
+}
+
 // The Kd of each material: tinyobjloader does not tell those that are not there.
 void read_material_colors(Reader& r, const fs::path& file, std::string_view content) {
     Words words;
@@ -199,6 +221,8 @@ void read_material_colors(Reader& r, const fs::path& file, std::string_view cont
         const std::string_view text = next_line(content, joined, lines);
         split(text, words);
         if (!words.empty() && words[0] == "newmtl") name = rest_of(text, words);
+        if (!words.empty() && is_unfollowed(words))
+            log_warning(fmt::format("{}:{}: '{}' is not followed", file.string(), lines, trim(text)));
         if (words.size() < 2 || words[0] != "Kd") continue;
         glm::vec3 color;
         bool whole = words.size() == 2 || words.size() >= 4;
@@ -262,6 +286,7 @@ void read_line(Reader& r, std::string_view text, Words& words) {
     if (words[0] == "f") read_face(r, words);
     if (words[0] == "mtllib") read_mtllib(r, text, words);
     if (words[0] == "usemtl") use_material(r, rest_of(text, words));
+    if (words[0] == "curv" || words[0] == "surf" || words[0] == "l" || words[0] == "p") ++r.others;
 }
 
 void check_range(Reader& r, const Highest& highest, std::size_t count, const char* what) {
@@ -303,6 +328,20 @@ void check_whole(Reader& r) {
     check_range(r, r.uv, r.mesh.uvs.size(), "texture coordinate");
 }
 
+// Some programs write codes of 8 bits: whole numbers, and some beyond 1.
+void scale_vertex_colors(Reader& r) {
+    bool beyond = false, codes = true;
+    for (const glm::vec3& color : r.mesh.vertex_colors)
+        for (int c = 0; c < 3; ++c) {
+            beyond = beyond || color[c] > 1.0f;
+            codes = codes && color[c] == std::floor(color[c]) && color[c] >= 0.0f && color[c] <= 255.0f;
+        }
+    if (!beyond || !codes) return;
+    for (glm::vec3& color : r.mesh.vertex_colors) color /= 255.0f;
+    log_warning(
+        fmt::format("{}: its vertex colours are whole numbers: taken as parts of 255", r.file.string()));
+}
+
 // Calls read(line) for every logical line; r.line is the number of its first.
 template <class Read>
 void for_each_line(Reader& r, std::string_view text, const Progress& progress, Read&& read) {
@@ -335,6 +374,10 @@ Mesh load_obj(const fs::path& file, const Progress& progress) {
         r.mesh.maps.clear();
         r.mesh.colors.clear();
     }
+    if (r.others > 0)
+        log_warning(fmt::format("{}: its {} that are no faces (l, p, curv, surf) are not followed",
+                                file.string(), counted(r.others, "element")));
+    scale_vertex_colors(r);
     if (!r.mesh.vertex_colors.empty()) r.mesh.vertex_colors.resize(r.mesh.positions.size(), glm::vec3(1.0f));
     return std::move(r.mesh);
 }

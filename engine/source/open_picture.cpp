@@ -192,10 +192,10 @@ std::array<float, 3> radiance_factors(const fs::path& file) {
     return {float(factors[0]), float(factors[1]), float(factors[2])};
 }
 
-void check_tiff(const fs::path& file, int page) {
+std::optional<double> check_tiff(const fs::path& file, int page) {
     const QuietStderr quiet;
     const std::unique_ptr<TIFF, void (*)(TIFF*)> tiff(TIFFOpen(file.c_str(), "r"), TIFFClose);
-    if (!tiff || !TIFFSetDirectory(tiff.get(), static_cast<tdir_t>(page))) return;
+    if (!tiff || !TIFFSetDirectory(tiff.get(), static_cast<tdir_t>(page))) return {};
     std::uint16_t bits = 0;
     if (TIFFGetField(tiff.get(), TIFFTAG_BITSPERSAMPLE, &bits) != 1)
         fail_picture(file, "it does not say how many bits a value has (BitsPerSample); save it with 8");
@@ -207,6 +207,29 @@ void check_tiff(const fs::path& file, int page) {
         if (at > size || TIFFGetStrileByteCount(tiff.get(), i) > size - at)
             fail_picture(file, "the file ends before the picture does");
     }
+    constexpr std::uint32_t gdal_no_data = 42113;
+    std::uint32_t size_of_text = 0;
+    const char* text = nullptr;
+    if (TIFFGetField(tiff.get(), gdal_no_data, &size_of_text, &text) != 1 || !text) return {};
+    const std::string_view number = trim(std::string_view(text, ::strnlen(text, size_of_text)));
+    std::uint16_t kind = SAMPLEFORMAT_UINT;
+    TIFFGetFieldDefaulted(tiff.get(), TIFFTAG_SAMPLEFORMAT, &kind);
+    const std::optional<double> value = parse_double(number);
+    if (kind == SAMPLEFORMAT_IEEEFP && value) return value;
+    log_warning(fmt::format("{}: its GDAL_NODATA {} is not followed", file.string(), printable(number)));
+    return {};
+}
+
+bool bmp_has_alpha(const fs::path& file) {
+    const std::string bytes = read_beginning(file, 70);
+    const auto number = [&](std::size_t at) {
+        std::uint32_t value = 0;
+        for (std::size_t i = 4; i-- > 0;) value = value << 8U | byte_at(bytes, at + i);
+        return value;
+    };
+    constexpr std::size_t header_size = 14, compression = 30, alpha_mask = 66;
+    return bytes.size() == 70 && number(header_size) >= 56 && number(compression) != 0 &&
+           number(alpha_mask) != 0;
 }
 
 }  // namespace astrosplat

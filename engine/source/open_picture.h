@@ -8,6 +8,7 @@
 #include <OpenImageIO/imageio.h>
 
 #include "core/standard.h"
+#include "source/color_encoding.h"
 
 namespace astrosplat {
 
@@ -36,8 +37,22 @@ bool read_rows(OIIO::ImageInput& picture, int begin, int end, OIIO::TypeDesc for
 bool jpeg_is_whole(const fs::path& file);
 
 /// Throws InputError where a TIFF does not say its bits: they are one, and OpenImageIO reads eight; and where
-/// it was cut short, as OpenImageIO reads black.
-void check_tiff(const fs::path& file, int page);
+/// it was cut short, as OpenImageIO reads black. What stands for no value in floats (GDAL_NODATA), if
+/// anything.
+std::optional<double> check_tiff(const fs::path& file, int page);
+
+/// False where BMP's fourth byte means nothing: without a mask for it.
+bool bmp_has_alpha(const fs::path& file);
+
+/// Says how many pictures a PNG (frames) or JPEG (CIPA DC-007) holds, of which OpenImageIO has the first.
+void warn_of_hidden_pictures(const fs::path& file, std::string_view format);
+
+/// 255, 65535 or 4294967295; 0 of floats.
+double largest_integer(const OIIO::ImageSpec& spec);
+
+/// What a picture's file says of its colours, or null. What is not followed is said.
+std::shared_ptr<const ColorEncoding> colors_of_picture(const fs::path& file, std::string_view format,
+                                                       const OIIO::ImageSpec& spec, int page);
 
 /// By what a Radiance file's values have to be divided to be radiances (its format's EXPOSURE and COLORCORR,
 /// both cumulative), which OpenImageIO leaves to others.

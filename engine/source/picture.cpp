@@ -35,12 +35,14 @@ int find_channel(const ImageSpec& spec, const std::string& name) {
     return -1;
 }
 
-// Blender's layers have names before it; with an X beside it, Z is a place or a direction.
+// Blender's layers have names before it, since 3.0 of a value; with an X beside it, Z is a place or a
+// direction.
 int depth_channel(const ImageSpec& spec) {
     const int z = find_channel(spec, "Z");
     if (z >= 0 && find_channel(spec, "X") < 0) return z;
-    for (int c = 0; c < spec.nchannels; ++c)
-        if (OIIO::Strutil::iends_with(spec.channel_name(c), "depth.Z")) return c;
+    for (const char* const name : {"depth.Z", "depth.V", "depth"})
+        for (int c = 0; c < spec.nchannels; ++c)
+            if (OIIO::Strutil::iends_with(spec.channel_name(c), name)) return c;
     return -1;
 }
 
@@ -336,22 +338,23 @@ void undo_scaling(ImageRows& rows, double most, double largest) {
         });
 }
 
-// OpenImageIO turns white that is 0 around in 8 bits only, and has nothing below 0.
+// OpenImageIO turns white that is 0 around in 8 bits only, and has nothing below 0. What a TIFF has beside
+// grey, RGB, palettes, CMYK and YCbCr (TIFF 6.0, TIFF/EP and libtiff's LogLuv) it converts roughly or not.
 void warn_of_values(const fs::path& file, const ImageSpec& spec) {
-    const bool white = spec.get_int_attribute("tiff:PhotometricInterpretation", 1) == 0;
-    if (white && spec.format.size() > 1)
-        log_warning(fmt::format(
-            "{}: that 0 is white (PhotometricInterpretation) is not followed: it is black", file.string()));
+    const int meaning = spec.get_int_attribute("tiff:PhotometricInterpretation", 1);
+    const auto warn = [&](std::string_view what) { log_warning(fmt::format("{}: {}", file.string(), what)); };
+    if (meaning == 0 && spec.format.size() > 1)
+        warn("that 0 is white (PhotometricInterpretation) is not followed: it is black");
+    if (meaning == 32803 || meaning == 34892)
+        warn(
+            "that its values are a camera's (PhotometricInterpretation) is not followed: a mosaic stays "
+            "grey");
+    else if (meaning >= 8)
+        warn("its CIELab or LogLuv colours (PhotometricInterpretation) are followed roughly; save it as RGB");
     if (spec.format.is_signed() && !spec.format.is_floating_point())
-        log_warning(fmt::format("{}: its whole numbers have a sign: those below 0 are black", file.string()));
+        warn("its whole numbers have a sign: those below 0 are black");
     if (!is_cube_map(spec) && !windows_meet(spec))
-        log_warning(fmt::format("{}: its display window, which has none of its pixels, is not followed",
-                                file.string()));
-}
-
-double largest_integer(const ImageSpec& spec) {
-    if (spec.format.is_floating_point()) return 0.0;
-    return spec.format.size() == 1 ? 255.0 : spec.format.size() == 2 ? 65535.0 : 4294967295.0;
+        warn("its display window, which has none of its pixels, is not followed");
 }
 
 // ---- several pictures in one file
@@ -441,7 +444,7 @@ PartChoice choose_part(const fs::path& file, ImageInput& in, const std::string& 
     for (int i = 0; wanted == Wanted::depths && i < int(parts.size()); ++i)
         if (depth_channel(parts[i]) >= 0) return {i};
     const std::string_view format = in.format_name();
-    if (format == "png") warn_of_frames(file);
+    warn_of_hidden_pictures(file, format);
     if (parts.size() < 2 || format == "psd") return {};  // Photoshop's first is the whole picture
     if (format == "tiff" && are_channels(parts)) return {0, true};
     PartChoice choice;
@@ -463,37 +466,6 @@ PartChoice choose_part(const fs::path& file, ImageInput& in, const std::string& 
                                 file.string(), parts.size(), choice.first,
                                 name.empty() ? "" : " '" + name + "'", name.empty() ? "" : "NAME or "));
     return choice;
-}
-
-// ---- colours
-
-std::shared_ptr<const ColorEncoding> encoding_of(const fs::path& file, ImageInput& in,
-                                                 const ImageSpec& spec) {
-    const double largest = largest_integer(spec);
-    std::string problem;
-    std::shared_ptr<const ColorEncoding> encoding;
-    const bool png = std::string_view(in.format_name()) == "png";
-    const OIIO::ParamValue* const profile = spec.find_attribute("ICCProfile");
-    if (png) encoding = png_encoding(file, profile != nullptr, problem);
-    if (!encoding && problem.empty() && profile && profile->type().basetype == OIIO::TypeDesc::UINT8)
-        encoding = icc_encoding({static_cast<const std::uint8_t*>(profile->data()),
-                                 static_cast<std::size_t>(profile->type().size())},
-                                problem);
-    const OIIO::ParamValue* const xy = spec.find_attribute("chromaticities");
-    if (!encoding && xy && xy->type().size() == 8 * sizeof(float))
-        encoding = chromaticity_encoding(std::span<const float, 8>(static_cast<const float*>(xy->data()), 8),
-                                         {}, "set of chromaticities", problem);
-    const std::string space = spec.get_string_attribute("oiio:ColorSpace");
-    if (!encoding && problem.empty() && !png && space.starts_with("Gamma")) {
-        TransferCurve curve{TransferCurve::Kind::parametric, {1.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0}, {}};
-        curve.parameters[0] = double(spec.get_float_attribute("oiio:Gamma", 2.2f));
-        encoding = std::make_shared<const ColorEncoding>(ColorEncoding{space, {curve, curve, curve}, {}, {}});
-    }
-    if (problem.empty() && space == "KodakLog") problem = "colour space KodakLog";
-    if (!problem.empty())
-        log_warning(fmt::format("{}: its {} is not followed; colours are read as {}", file.string(), problem,
-                                largest > 0.0 ? "sRGB" : "linear Rec. 709"));
-    return with_tables(encoding, largest);
 }
 
 std::string find_credit(const fs::path& file, const ImageSpec& spec) {
@@ -525,16 +497,16 @@ PictureRows open_picture_rows(const fs::path& file, const Progress& progress, co
     check_spec(file, spec);
     const std::string format = in->format_name();
     if (format == "jpeg" && !jpeg_is_whole(file)) fail_picture(file, "the file ends before the picture does");
-    if (format == "tiff") check_tiff(file, choice.first);
     if (format == "webp") add_webp_exif(file, spec);
     warn_of_values(file, spec);
-    const Channels channels = choose_channels(spec, wanted, choice.layer);
+    Channels channels = choose_channels(spec, wanted, choice.layer);
     if (wanted == Wanted::colors && !choice.three) warn_of_other_channels(file, spec, channels);
+    if (format == "bmp" && !bmp_has_alpha(file)) channels.alpha = -1;
     if (channels.xyz)
         spec.attribute("chromaticities", OIIO::TypeDesc(OIIO::TypeDesc::FLOAT, 8), xyz_chromaticities.data());
     PictureRows result;
     Picture& picture = result.picture;
-    picture.colors = encoding_of(file, *in, spec);
+    picture.colors = colors_of_picture(file, format, spec, choice.first);
     const auto rows_of_part = [&](std::unique_ptr<ImageInput> own, int number) {
         return rows_of_file(std::make_shared<Bands>(file, std::move(own), number, progress), channels);
     };
@@ -543,6 +515,10 @@ PictureRows open_picture_rows(const fs::path& file, const Progress& progress, co
                                        rows_of_part(open_picture(file), 1), rows_of_part(std::move(in), 2)});
     else
         result.rows = rows_of_part(std::move(in), choice.first);
+    if (const auto none = format == "tiff" ? check_tiff(file, choice.first) : std::nullopt)
+        change_colors(result.rows, [none = float(*none)](float value, int) {
+            return value == none ? std::numeric_limits<float>::quiet_NaN() : value;
+        });
     if (format == "hdr")
         change_colors(result.rows, [factors = radiance_factors(file)](float value, int c) {
             return value / factors[std::size_t(c)];
@@ -560,8 +536,8 @@ PictureRows open_picture_rows(const fs::path& file, const Progress& progress, co
                              orientation));
     }
     picture.image = {result.rows.width, result.rows.height, result.rows.channels, {}};
-    // The reader of JPEG 2000 heeds the wish for it without a word.
-    picture.associated = channels.alpha >= 0 && format != "jpeg2000" &&
+    // The reader of JPEG 2000 heeds the wish for it without a word, that of BMP never multiplies.
+    picture.associated = channels.alpha >= 0 && format != "jpeg2000" && format != "bmp" &&
                          spec.get_int_attribute("oiio:UnassociatedAlpha", 0) == 0;
     picture.distances = wanted == Wanted::depths && depth_channel(spec) >= 0;
     picture.cube = is_cube_map(spec);

@@ -14,6 +14,8 @@
 #include "core/real.h"
 #include "core/text.h"
 
+#undef undefined  // a macro of wcsmath.h, and a name in files compiled behind this one
+
 namespace astrosplat {
 namespace {
 
@@ -112,16 +114,16 @@ std::string plain_cards(const fs::path& file, const std::string& all) {
             if (const std::size_t at = card.text.find("-TAN"); card.is("CTYPE") && at != std::string::npos)
                 card.text.replace(at, 4, "-TPV");
     const auto is_table = [](const Card& card) {
-        return (card.is("CPDIS") || card.is("CQDIS")) && card.says("'LOOKUP");
+        return card.is("D2IMDIS") || ((card.is("CPDIS") || card.is("CQDIS")) && card.says("'LOOKUP"));
     };
     if (any(is_table)) {
         // Each axis has its table, and records about it: DP1.EXTVER, or DP1 = 'EXTVER: 1'.
         std::erase_if(cards,
                       [&](const Card& card) { return is_table(card) || card.is("DP") || card.is("DQ"); });
-        log_warning(
-            fmt::format("{}: its table of distortions (CPDIS) is not followed; what the sky shows may lie "
-                        "a part of a pixel off",
-                        file.string()));
+        log_warning(fmt::format(
+            "{}: its table of distortions (CPDIS, D2IM) is not followed; what the sky shows may lie "
+            "a part of a pixel off",
+            file.string()));
     }
     std::string plain;
     for (const Card& card : cards) plain += card.text;

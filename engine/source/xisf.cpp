@@ -350,6 +350,16 @@ std::string cards_of(const Xisf& xisf, const XisfImage& image) {
     return cards;
 }
 
+/// An element in an image, or one of the document to which a Reference in it leads.
+pugi::xml_node element_of(const XisfImage& image, const char* name) {
+    if (const pugi::xml_node own = image.node.child(name)) return own;
+    for (const pugi::xml_node& reference : image.node.children("Reference"))
+        if (const pugi::xml_node shared =
+                image.node.parent().find_child_by_attribute(name, "uid", reference.attribute("ref").value()))
+            return shared;
+    return {};
+}
+
 std::string keyword(const XisfImage& image, const char* name) {
     const pugi::xml_node node = image.node.find_child_by_attribute("FITSKeyword", "name", name);
     std::string value = node.attribute("value").value();
@@ -367,19 +377,20 @@ ValueLayout layout_of(const Xisf& xisf, const XisfImage& image, std::optional<in
         bad_input(xisf.file, fmt::format("a plane from 0 to {}", image.channels - 1),
                   fmt::format("plane = {}", *plane));
     layout.first = plane.value_or(0) * image.width * image.height;
-    const pugi::xml_node mosaic = image.node.child("ColorFilterArray");
-    const auto pattern = bayer_channels(mosaic.attribute("pattern").value(), 0, 0);
+    std::string mosaic = element_of(image, "ColorFilterArray").attribute("pattern").value();
+    if (mosaic.empty() && image.channels == 1) mosaic = keyword(image, "BAYERPAT");
+    const auto pattern = bayer_channels(mosaic, 0, 0);
     if (plane) return layout;
     if (image.rgb) layout.values = Values::planes;
     warn_of_channels(xisf.file, image.channels - (image.rgb ? 3 : 1), "its colours");
-    if (mosaic && pattern && image.channels == 1 && image.width > 1 && image.height > 1) {
+    if (pattern && image.channels == 1 && image.width > 1 && image.height > 1) {
         layout.values = Values::bayer;
         layout.pattern = *pattern;
-        layout.what = fmt::format("Bayer's mosaic {}", mosaic.attribute("pattern").value());
-    } else if (mosaic) {
+        layout.what = "Bayer's mosaic " + mosaic;
+    } else if (!mosaic.empty()) {
         log_warning(
             fmt::format("{}: its colour filter array '{}' is not followed: the picture stays as it is",
-                        xisf.file.string(), mosaic.attribute("pattern").value()));
+                        xisf.file.string(), mosaic));
     }
     return layout;
 }
@@ -414,7 +425,7 @@ FitsRows open_xisf_rows(const fs::path& file, const std::string& hdu, std::optio
         picture.object = trim(std::string_view(object.text().get()));
     }
     picture.sky = read_fits_sky(file, cards_of(xisf, image), image.height, false);
-    if (const pugi::xml_node profile = image.node.child("ICCProfile")) {
+    if (const pugi::xml_node profile = element_of(image, "ICCProfile")) {
         const Bytes bytes = block_of(xisf, profile, 0);
         std::string problem;
         picture.colors =

@@ -166,6 +166,19 @@ TEST(Fits, CreditIsTheAuthorElseTheOrigin) {
     EXPECT_THROW(read_fits(named, "sci", 0), InputError);
 }
 
+// CFITSIO opens it, and writes beyond its own room for them.
+TEST(Fits, MoreAxesThanThereCanBeAreRefused) {
+    const TempFolder folder;
+    std::string text = fits_card("SIMPLE  =                    T") +
+                       fits_card("BITPIX  =                    8") +
+                       fits_card("NAXIS   =                  999");
+    for (int i = 1; i <= 999; ++i) text += fits_card(fmt::format("NAXIS{:<3}=                    1", i));
+    text += fits_card("END");
+    text.resize((text.size() + 2879) / 2880 * 2880 + 2880, ' ');
+    EXPECT_HAS(ERROR_OF(read_fits(folder.file("a.fits", text), "auto", {})),
+               "a.fits:HDU 0: expected NAXIS to be at most 99, found 999");
+}
+
 TEST(Fits, AFileOfTablesIsNoPicture) {
     const TempFolder folder;
     const fs::path file = folder / "table.fits";
@@ -261,6 +274,9 @@ TEST(FitsPictures, WhatIsBlankOrNoPictureIsPassedBy) {
     ASSERT_EQ(said.size(), 1u);
     EXPECT_HAS(said[0], "3 HDUs hold pictures; HDU 2 R is taken");
     EXPECT_EQ(taken(fits_hdu({2, 2}, named("DQ"), some)), 0) << "better than none";
+    EXPECT_EQ(taken(fits_hdu({2, 2}, named("SCI"), some) + fits_hdu({2, 2}, named("SCI"), some, false)), 0);
+    ASSERT_EQ(said.size(), 1u) << "of cameras of two chips";
+    EXPECT_HAS(said[0], "2 HDUs hold pictures; HDU 0 SCI is taken");
 }
 
 TEST(FitsPictures, RowsAndMosaicsOfCameras) {
@@ -285,7 +301,8 @@ TEST(FitsPictures, RowsAndMosaicsOfCameras) {
     };
     for (const char* letters : {"RGGB", "BGGR", "GRBG", "GBRG"})
         for (const bool from_top : {true, false}) {
-            const std::string pattern = fits_card(fmt::format("BAYERPAT= '{}    '", letters));
+            const char* const key = from_top ? "BAYERPAT" : "COLORTYP";
+            const std::string pattern = fits_card(fmt::format("{}= '{}    '", key, letters));
             const FitsPlane plane = read(pattern + (from_top ? down : up), mosaic(letters, from_top), 6, 8);
             ASSERT_EQ(plane.channels, 3);
             for (int y = 1; y < 7; ++y)
@@ -297,6 +314,7 @@ TEST(FitsPictures, RowsAndMosaicsOfCameras) {
                                 fits_card("XBAYROFF=                    1") +
                                 fits_card("YBAYROFF=                    1") + down;
     EXPECT_EQ(read(shifted, mosaic("RGGB", true), 6, 8).values[3 * 7], light(0, 1, 1));
+    EXPECT_EQ(read(fits_card("COLORTYP= 'MONO    '"), {1, 2, 3, 4}, 2, 2).channels, 1);
     const std::vector<std::string> said = warnings_of([&] {
         EXPECT_EQ(read(fits_card("BAYERPAT= 'TRUE    '"), {1, 2, 3, 4}, 2, 2).channels, 1);
     });
@@ -481,7 +499,8 @@ TEST(FitsSky, IsNoneOrSaysWhatIsNotFollowed) {
         EXPECT_EQ(answer({{"CPDIS1", "'LOOKUP'"}, {"DP1", "'EXTVER: 1'"}, {"CPERR1", "0.02"}}), "followed");
     });
     ASSERT_EQ(said.size(), 1u);
-    EXPECT_HAS(said[0], "its table of distortions (CPDIS) is not followed");
+    EXPECT_HAS(said[0], "its table of distortions (CPDIS, D2IM) is not followed");
+    EXPECT_EQ(warnings_of([&] { EXPECT_EQ(answer({{"D2IMDIS1", "'Lookup'"}}), "followed"); }).size(), 1u);
 }
 
 // By name, as gzip's; 5 x 4 numbers that count.

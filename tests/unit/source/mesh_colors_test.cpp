@@ -83,5 +83,35 @@ TEST_F(MeshColors, WhatIsNotUsedIsSaid) {
     EXPECT_EQ(said.one_warning(), (folder / "m.mtl").string() + ":2: 'Kd spectral a.rfl' is not followed");
 }
 
+TEST_F(MeshColors, WhatAMaterialSaysBesideItsColourIsSaid) {
+    const auto said_of = [&](const std::string& line) {
+        folder.file("m.mtl", "newmtl a\n" + line + "\n");
+        const fs::path file = folder.file("o.obj", "mtllib m.mtl\n" + two_triangles + "usemtl a\nf 1 2 3\n");
+        return warnings_of([&] { load_obj(file); });
+    };
+    for (const char* const line :
+         {"Ke 1 0.5 0", "map_Ke a.png", "d 0.5", "Tr 0.25", "map_d a.png", "map_Kd -s 2 2 1 a.png",
+          "map_Kd -o 0.25 0 a.png", "map_Kd -clamp on a.png"}) {
+        ASSERT_EQ(said_of(line).size(), 1u) << line;
+        EXPECT_HAS(said_of(line)[0], fmt::format("m.mtl:2: '{}' is not followed", line));
+    }
+    for (const char* const line :
+         {"Ke 0 0 0", "d 1.0", "Tr 0", "map_Kd -s 1 1 1 -o 0 0 0 -clamp off a.png", "Ns 250", "illum 2"})
+        EXPECT_TRUE(said_of(line).empty()) << line;
+    const fs::path file = folder.file("l.obj", two_triangles + "f 1 2 3\nl 1 2\np 3\n");
+    const Said said;
+    load_obj(file);
+    EXPECT_EQ(said.one_warning(),
+              file.string() + ": its 2 elements that are no faces (l, p, curv, surf) are not followed");
+}
+
+TEST_F(MeshColors, WholeNumbersOfVerticesAreCodes) {
+    const fs::path file =
+        folder.file("v.obj", "v 0 0 0 255 0 51\nv 1 0 0 255 0 51\nv 1 1 0 255 0 51\nf 1 2 3\n");
+    const Said said;
+    EXPECT_EQ(load_obj(file).vertex_colors.at(0), glm::vec3(1.0f, 0.0f, 0.2f));
+    EXPECT_HAS(said.one_warning(), "its vertex colours are whole numbers: taken as parts of 255");
+}
+
 }  // namespace
 }  // namespace astrosplat

@@ -6,6 +6,7 @@
 
 #include <ctime>
 
+#include "core/color.h"
 #include "core/text.h"
 #include "source/picture.h"
 #include "source/prepared_picture.h"
@@ -225,6 +226,21 @@ TEST_F(OddPictures, OfDepthsWithColoursZIsTaken) {
     EXPECT_NEAR(white_right[0], -1.0f, 0.05f) << "of greys, black is the farthest";
 }
 
+TEST_F(OddPictures, DepthsHaveSeveralNames) {
+    for (const char* const name : {"depth", "ViewLayer.Depth.V", "ViewLayer.Depth.Z"}) {
+        OIIO::ImageSpec spec(2, 1, 4, OIIO::TypeFloat);
+        spec.channelnames = {"R", "G", "B", name};
+        const std::vector<float> values{1, 2, 3, 40, 5, 6, 7, 80};
+        const fs::path file = folder / "z.exr";
+        const auto out = OIIO::ImageOutput::create(file.string());
+        EXPECT_TRUE(out->open(file.string(), spec) && out->write_image(OIIO::TypeFloat, values.data()) &&
+                    out->close());
+        const Picture depths = read_picture(file, {}, "auto", Wanted::depths);
+        EXPECT_TRUE(depths.distances) << name;
+        EXPECT_EQ(depths.image.at(1, 0)[0], 80.0f) << name;
+    }
+}
+
 TEST_F(OddPictures, DepthsThatAreAllSkyAreFlat) {
     std::vector<std::string> lines;
     for (const float height : heights_of(
@@ -330,18 +346,47 @@ TEST_F(OddPictures, ATiffThatDoesNotSayItsBitsIsRefused) {
                   "(BitsPerSample); save it with 8");
 }
 
-// 8x4 px of one channel in one strip behind the directory; little-endian.
-std::string grey_tiff(int bits, int photometric, int sample_format) {
-    const int bytes = 8 * 4 * bits / 8, data_at = 8 + 2 + 10 * 12 + 4;
-    const std::vector<std::pair<int, int>> tags = {
-        {256, 8},       {257, 4}, {258, bits}, {259, 1},     {262, photometric},
-        {273, data_at}, {277, 1}, {278, 4},    {279, bytes}, {339, sample_format}};
-    std::string tiff("II*\0\x08\0\0\0\x0a\0", 10);
-    for (const auto& [tag, value] : tags)
-        tiff += std::string{char(tag & 255), char(tag >> 8), 3, 0, 1, 0, 0, 0, char(value), 0, 0, 0};
-    tiff += std::string(4, '\0');
+// A tag's entry in a directory: type 2 of bytes, 3 of 16 bits, 5 of fractions.
+struct TiffTag {
+    int tag, type, count;
+    std::string data;
+};
+
+// 8x4 px of one channel in one strip behind the directory, and the data of `more` behind it; little-endian.
+std::string grey_tiff(int bits, int photometric, int sample_format, const std::vector<TiffTag>& more = {}) {
+    const int bytes = 8 * 4 * bits / 8, data_at = 8 + 2 + (10 + int(more.size())) * 12 + 4;
+    std::vector<TiffTag> tags = more;
+    for (const auto& [tag, value] : std::initializer_list<std::pair<int, int>>{{256, 8},
+                                                                               {257, 4},
+                                                                               {258, bits},
+                                                                               {259, 1},
+                                                                               {262, photometric},
+                                                                               {273, data_at},
+                                                                               {277, 1},
+                                                                               {278, 4},
+                                                                               {279, bytes},
+                                                                               {339, sample_format}})
+        tags.push_back({tag, 3, 1, std::string{char(value & 255), char(value >> 8), 0, 0}});
+    std::ranges::sort(tags, {}, &TiffTag::tag);
+    std::string tiff("II*\0\x08\0\0\0", 8), behind;
+    const auto add = [&](int value, int size) {
+        for (int i = 0; i < size; ++i) tiff += char(value >> 8 * i & 255);
+    };
+    add(int(tags.size()), 2);
+    for (const TiffTag& tag : tags) {
+        add(tag.tag, 2);
+        add(tag.type, 2);
+        add(tag.count, 4);
+        if (tag.data.size() == 4) {
+            tiff += tag.data;
+        } else {
+            add(data_at + bytes + int(behind.size()), 4);
+            behind += tag.data;
+        }
+    }
+    add(0, 4);
     for (int i = 0; i < bytes; ++i) tiff += char(i);
-    return tiff;
+    return tiff + behind;
 }
 
 // OpenImageIO says nothing, and has black rows.
@@ -365,6 +410,55 @@ TEST_F(OddPictures, ValuesOfATiffThatAreNotFollowedAreSaid) {
     EXPECT_EQ(read_picture(folder / "a.tif").image.at(0, 0)[0], 1.0f);
     EXPECT_HAS(said_of(16, 0, 1), "that 0 is white (PhotometricInterpretation) is not followed");
     EXPECT_HAS(said_of(16, 1, 2), "its whole numbers have a sign: those below 0 are black");
+    EXPECT_HAS(said_of(16, 32803, 1), "that its values are a camera's (PhotometricInterpretation) is not");
+}
+
+// TIFF 6.0, section 20: a curve of 256 steps; GDAL's value for none, in floats.
+TEST_F(OddPictures, TagsOfATiffAreFollowed) {
+    std::string line, primaries;
+    for (int i = 0; i < 256; ++i) line += std::string{char(i), char(i)};
+    const Image even = load_linear_image(folder.file("t.tif", grey_tiff(8, 1, 1, {{301, 3, 256, line}})));
+    EXPECT_NEAR(even.at(7, 3)[0], 31.0f / 255.0f, 1e-5f) << "by sRGB 0.0137";
+    for (const int tenths : {7, 3, 2, 8, 1, 1}) primaries += std::string{char(tenths), 0, 0, 0, 10, 0, 0, 0};
+    const Picture wide = read_picture(folder.file("p.tif", grey_tiff(8, 1, 1, {{319, 5, 6, primaries}})));
+    ASSERT_TRUE(wide.colors);
+    const glm::dmat3 wanted = primaries_matrix(
+        {{0.7, 0.3}, {0.2, 0.8}, {0.1, 0.1}, rec709_chromaticities.white}, rec709_chromaticities);
+    EXPECT_NEAR(wide.colors->to_rec709[0][0], wanted[0][0], 1e-5);
+    const std::vector<TiffTag> none{{42113, 2, 15, std::string("3.82047143e-37\0", 15)}};
+    const Image gap = read_picture(folder.file("n.tif", grey_tiff(32, 1, 3, none))).image;
+    EXPECT_TRUE(std::isnan(gap.at(0, 0)[0])) << "bytes 0 1 2 3";
+    EXPECT_FALSE(std::isnan(gap.at(1, 0)[0]));
+    const Said said;
+    read_picture(folder.file("n.tif", grey_tiff(8, 1, 1, {{42113, 2, 2, std::string("0\0\0\0", 4)}})));
+    EXPECT_HAS(said.one_warning(), "n.tif: its GDAL_NODATA 0 is not followed");
+}
+
+// The fourth byte of BMP is alpha where a mask says so, and its colours are not multiplied by it.
+TEST_F(OddPictures, AlphaOfBmp) {
+    const auto bmp = [&](bool masks) {
+        std::string text = "BM";
+        const auto add = [&](std::uint32_t value, int size = 4) {
+            for (int i = 0; i < size; ++i) text += char(value >> 8 * i);
+        };
+        const std::uint32_t header = masks ? 108 : 40;
+        for (const std::uint32_t value : {14 + header + 8, 0u, 14 + header, header, 2u, 1u}) add(value);
+        add(1, 2);
+        add(32, 2);
+        for (const std::uint32_t value : {masks ? 3u : 0u, 8u, 0u, 0u, 0u, 0u}) add(value);
+        if (masks)
+            for (const std::uint32_t value : {0xff0000u, 0xff00u, 0xffu, 0xff000000u}) add(value);
+        text.resize(14 + header, '\0');
+        add(0x40302010);
+        add(0x80706050);
+        return read_picture(folder.file("a.bmp", text));
+    };
+    const Picture plain = bmp(false), masked = bmp(true);
+    EXPECT_EQ(plain.image.channels, 3) << "else it is thin, and often empty";
+    EXPECT_EQ(masked.image.channels, 4);
+    EXPECT_FALSE(masked.associated);
+    for (const Picture* picture : {&plain, &masked})
+        EXPECT_NEAR(picture->image.at(0, 0)[0], 48.0f / 255.0f, 1e-6f);
 }
 
 TEST_F(OddPictures, WholeNumbersOfAnExrAreLight) {

@@ -5,7 +5,10 @@
 #include <lcms2.h>
 #include <zlib.h>
 
+#include <fstream>
+
 #include "core/color.h"
+#include "core/file.h"
 #include "source/color_encoding.h"
 #include "source/picture.h"
 #include "source/stored_picture.h"
@@ -396,6 +399,70 @@ TEST(FileColors, ReferenceWhiteIsOne) {
     EXPECT_EQ(pq(0.0), 0.0);
     EXPECT_EQ(hlg(0.75), 1.0);
     EXPECT_NEAR(hlg(0.5) / hlg(1.0), 1.0 / 12.0, 1e-6);
+}
+
+// DPX and Targa by OpenImageIO's names, EXR by the Color Interop Forum's.
+TEST(FileColors, NamesOfColourSpaces) {
+    const TempFolder folder;
+    const auto check = [&](const char* name, OIIO::TypeDesc type, const char* key, const std::string& space,
+                           const auto& curve, const Chromaticities& set = rec709_chromaticities) {
+        Spec spec(2, 2, 3, type);
+        spec.attribute(key, space);
+        if (space == "Gamma1.8") spec.attribute("oiio:Gamma", 1.8f);
+        expect_light(write_pixels(folder / name, spec, some_colors), curve,
+                     primaries_matrix(set, rec709_chromaticities), name + space);
+    };
+    check("a.dpx", OIIO::TypeUInt16, "oiio:ColorSpace", "Linear", linear);
+    check("a.dpx", OIIO::TypeUInt16, "oiio:ColorSpace", "Rec709",
+          [](double x) { return x < 0.081 ? x / 4.5 : std::pow((x + 0.099) / 1.099, 1.0 / 0.45); });
+    check("a.tga", OIIO::TypeUInt8, "oiio:ColorSpace", "Gamma1.8", [](double x) { return std::pow(x, 1.8); });
+    check("a.exr", OIIO::TypeFloat, "colorInteropID", "lin_p3d65_scene", linear, p3);
+    check("a.exr", OIIO::TypeFloat, "colorInteropID", "srgb_rec709_display", srgb);
+    check("a.exr", OIIO::TypeFloat, "colorInteropID", "data", linear);
+    const std::vector<std::string> said =
+        warnings_of([&] { check("a.exr", OIIO::TypeFloat, "colorInteropID", "lin_mine_scene", linear); });
+    ASSERT_EQ(said.size(), 1u);
+    EXPECT_HAS(said[0], "its colorInteropID lin_mine_scene is not followed; colours are read as linear");
+}
+
+// A JPEG of OpenImageIO's with another segment behind its first two bytes.
+fs::path jpeg_with(const fs::path& file, const std::string& marker, const std::string& segment) {
+    Spec spec(16, 16, 3, OIIO::TypeUInt8);
+    spec.attribute("CompressionQuality", 100);
+    std::vector<float> values;
+    for (int i = 0; i < 256; ++i) values.insert(values.end(), {0.6f, 0.4f, 0.2f});
+    write_pixels(file, spec, values);
+    const std::string bytes = read_file(file);
+    const std::size_t size = segment.size() + 2;
+    std::ofstream(file, std::ios::binary)
+        << bytes.substr(0, 2) << marker << char(size >> 8) << char(size & 255U) << segment << bytes.substr(2);
+    return file;
+}
+
+// DCF 2.0: without a profile, the option file R03 is Adobe RGB. Either byte order.
+TEST(FileColors, CamerasSayAdobeRgbInExif) {
+    const TempFolder folder;
+    const std::string little("Exif\0\0II*\0\x08\0\0\0\x01\0\x01\0\x02\0\x04\0\0\0R03\0\0\0\0\0", 32),
+        big("Exif\0\0MM\0*\0\0\0\x08\0\x01\0\x01\0\x02\0\0\0\x04R03\0\0\0\0\0", 32);
+    for (const std::string& exif : {little, big}) {
+        const Image light = load_linear_image(jpeg_with(folder / "a.jpg", "\xff\xe1", exif));
+        const glm::dvec3 wanted = primaries_matrix(adobe, rec709_chromaticities) *
+                                  glm::dvec3(gamma_22(0.6), gamma_22(0.4), gamma_22(0.2));
+        for (int c = 0; c < 3; ++c) EXPECT_NEAR(light.at(8, 8)[c], wanted[c], 0.01) << c;
+    }
+}
+
+// CIPA DC-007, as phones and stereo cameras write it.
+TEST(SeveralPictures, OthersInAJpegAreSaid) {
+    const TempFolder folder;
+    const auto said_of = [&](char count) {
+        const std::string index("MPF\0MM\0*\0\0\0\x08\0\x01\xb0\x01\0\x04\0\0\0\x01\0\0\0", 25);
+        const fs::path file = jpeg_with(folder / "a.jpg", "\xff\xe2", index + count + std::string(4, '\0'));
+        return warnings_of([&] { read_picture(file); });
+    };
+    EXPECT_TRUE(said_of('\1').empty());
+    ASSERT_EQ(said_of('\3').size(), 1u);
+    EXPECT_HAS(said_of('\3')[0], "a.jpg: it holds 3 pictures; 0 is taken, as the others are not followed");
 }
 
 }  // namespace

@@ -199,7 +199,7 @@ TEST_F(XisfTest, KeywordsAndSky) {
         folder.file("m.xisf", xisf_file(geometry(2) + R"(sampleFormat="Float32")", values_of_type<float>(2)));
     require_picture(more);
     open_stored(more, {}, {});
-    flush_warning_counts();
+    forget_warnings();
     EXPECT_HAS(once.one_warning(), "1 channel more than its colours is not followed");
 }
 
@@ -217,9 +217,10 @@ TEST_F(XisfTest, Profiles) {
     cmsCloseProfile(made);
     cmsFreeToneCurve(squares);
     const fs::path file = folder.file(
-        "a.xisf",
-        xisf_file(geometry(3) + R"(sampleFormat="Float32" bounds="0:200")", values_of_type<float>(3),
-                  fmt::format(R"(<ICCProfile location="inline:base64">{}</ICCProfile>)", base64(profile))));
+        "a.xisf", xisf_file(geometry(3) + R"(sampleFormat="Float32" bounds="0:200")",
+                            values_of_type<float>(3), R"(<Reference ref="other"/><Reference ref="p"/>)",
+                            fmt::format(R"(<ICCProfile uid="p" location="inline:base64">{}</ICCProfile>)",
+                                        base64(profile))));
     TextureSettings settings;
     settings.stretch = TextureSettings::Stretch::linear;
     settings.black = 0.0;
@@ -241,6 +242,14 @@ TEST_F(XisfTest, Profiles) {
         ASSERT_EQ(said.size(), 1u) << prepare;
         EXPECT_HAS(said[0], "is not followed: the stretch makes colours of sRGB");
     }
+}
+
+// As NINA writes it: FITS' keyword alone.
+TEST_F(XisfTest, AMosaicOfAKeywordIsAPictureOfColours) {
+    const std::string grey = geometry(1) + R"(sampleFormat="Float32")", pixels = values_of_type<float>(1);
+    EXPECT_EQ(read(xisf_file(grey, pixels)).channels, 1);
+    EXPECT_EQ(read(xisf_file(grey, pixels, R"(<FITSKeyword name="BAYERPAT" value="'RGGB    '"/>)")).channels,
+              3);
 }
 
 TEST_F(XisfTest, SeveralImages) {

@@ -1,0 +1,121 @@
+// What picture files say of their colours and of pictures beside the first where OpenImageIO does not tell
+// it.
+#include <fmt/format.h>
+// (This line keeps clang-format from sorting the two.)
+#include "source/open_picture.h"
+
+#include <tiffio.h>
+
+#include "core/file.h"
+#include "core/log.h"
+#include "core/text.h"
+
+namespace astrosplat {
+namespace {
+
+constexpr std::array d65_white{0.3127f, 0.3290f};
+constexpr std::size_t most_metadata = std::size_t{1} << 18;  // segments of a JPEG before its pixels
+
+// Whether an IFD in some bytes has an entry, in either byte order: tag, type, count, value.
+std::optional<std::uint32_t> ifd_entry(std::string_view bytes, std::uint16_t tag, std::uint16_t type,
+                                       std::uint32_t count) {
+    for (const bool big : {false, true}) {
+        std::string wanted;
+        const auto add = [&](std::uint32_t number, int size) {
+            for (int i = 0; i < size; ++i) wanted += char(number >> 8 * (big ? size - 1 - i : i));
+        };
+        add(tag, 2);
+        add(type, 2);
+        add(count, 4);
+        const std::size_t at = bytes.find(wanted);
+        if (at == bytes.npos || bytes.size() < at + wanted.size() + 4) continue;
+        std::uint32_t value = 0;
+        for (std::size_t i = 0; i < 4; ++i)
+            value |= std::uint32_t(std::uint8_t(bytes[at + wanted.size() + i])) << 8 * (big ? 3 - i : i);
+        return value;
+    }
+    return {};
+}
+
+// From a marker's name on, as much as a segment can have.
+std::string segment_of(const fs::path& file, std::string_view name) {
+    const std::string bytes = read_beginning(file, most_metadata);
+    const std::size_t at = bytes.find(name);
+    return at == bytes.npos ? "" : bytes.substr(at, std::size_t{1} << 16);
+}
+
+bool is_adobe_rgb(const fs::path& file, const OIIO::ImageSpec& spec) {
+    constexpr std::uint32_t r03 = 0x52303300, r03_reversed = 0x00333052;
+    const auto option = ifd_entry(segment_of(file, std::string_view("Exif\0\0", 6)), 1, 2, 4);
+    return spec.get_int_attribute("Exif:ColorSpace", 1) == 2 || option == r03 || option == r03_reversed;
+}
+
+TiffColors colors_of_tiff(const fs::path& file, int page) {
+    TiffColors found;
+    const QuietStderr quiet;
+    const std::unique_ptr<TIFF, void (*)(TIFF*)> tiff(TIFFOpen(file.c_str(), "r"), TIFFClose);
+    if (!tiff || !TIFFSetDirectory(tiff.get(), static_cast<tdir_t>(page))) return found;
+    const float *primaries = nullptr, *white = nullptr;
+    if (TIFFGetField(tiff.get(), TIFFTAG_PRIMARYCHROMATICITIES, &primaries) == 1) {
+        std::array<float, 8>& all = found.primaries.emplace();
+        std::copy_n(primaries, 6, all.begin());
+        const bool has_white = TIFFGetField(tiff.get(), TIFFTAG_WHITEPOINT, &white) == 1;
+        std::copy_n(has_white ? white : d65_white.data(), 2, all.begin() + 6);
+    }
+    std::array<const std::uint16_t*, 3> curves{};
+    std::uint16_t bits = 0;
+    if (TIFFGetField(tiff.get(), TIFFTAG_BITSPERSAMPLE, &bits) == 1 && bits <= 16 &&
+        TIFFGetField(tiff.get(), TIFFTAG_TRANSFERFUNCTION, &curves[0], &curves[1], &curves[2]) == 1)
+        for (std::size_t c = 0; c < 3; ++c)
+            for (std::size_t i = 0; i < std::size_t{1} << bits; ++i)
+                found.transfer[c].push_back(float((curves[c] ? curves[c] : curves[0])[i]) / 65535.0f);
+    return found;
+}
+
+}  // namespace
+
+double largest_integer(const OIIO::ImageSpec& spec) {
+    if (spec.format.is_floating_point()) return 0.0;
+    return spec.format.size() == 1 ? 255.0 : spec.format.size() == 2 ? 65535.0 : 4294967295.0;
+}
+
+void warn_of_hidden_pictures(const fs::path& file, std::string_view format) {
+    std::int64_t count = format == "png" ? png_frames(file) : 1;
+    if (format == "jpeg")
+        count = ifd_entry(segment_of(file, std::string_view("MPF\0", 4)), 0xb001, 4, 1).value_or(1);
+    if (count > 1)
+        log_warning(fmt::format("{}: it holds {} pictures; 0 is taken, as the others are not followed",
+                                file.string(), count));
+}
+
+std::shared_ptr<const ColorEncoding> colors_of_picture(const fs::path& file, std::string_view format,
+                                                       const OIIO::ImageSpec& spec, int page) {
+    const double largest = largest_integer(spec);
+    std::string problem;
+    std::shared_ptr<const ColorEncoding> encoding;
+    const auto is_open = [&] { return !encoding && problem.empty(); };
+    const OIIO::ParamValue* const profile = spec.find_attribute("ICCProfile");
+    if (format == "png") encoding = png_encoding(file, profile != nullptr, problem);
+    if (is_open() && profile && profile->type().basetype == OIIO::TypeDesc::UINT8)
+        encoding = icc_encoding({static_cast<const std::uint8_t*>(profile->data()),
+                                 static_cast<std::size_t>(profile->type().size())},
+                                problem);
+    if (is_open() && format == "openexr")
+        encoding = interop_encoding(spec.get_string_attribute("colorInteropID"), problem);
+    const OIIO::ParamValue* const xy = spec.find_attribute("chromaticities");
+    if (is_open() && xy && xy->type().size() == 8 * sizeof(float))
+        encoding = chromaticity_encoding(std::span<const float, 8>(static_cast<const float*>(xy->data()), 8),
+                                         {}, "set of chromaticities", problem);
+    if (is_open() && format == "tiff") encoding = tiff_encoding(colors_of_tiff(file, page), largest, problem);
+    if (is_open() && format == "jpeg" && is_adobe_rgb(file, spec)) encoding = adobe_rgb_encoding();
+    const std::string space = spec.get_string_attribute("oiio:ColorSpace");
+    if (is_open() && format != "png" && (format == "dpx" || space.starts_with("Gamma")))
+        encoding = named_encoding(space, double(spec.get_float_attribute("oiio:Gamma", 2.2f)));
+    if (is_open() && space == "KodakLog") problem = "colour space KodakLog";
+    if (!problem.empty())
+        log_warning(fmt::format("{}: its {} is not followed; colours are read as {}", file.string(), problem,
+                                largest > 0.0 ? "sRGB" : "linear Rec. 709"));
+    return with_tables(encoding, largest);
+}
+
+}  // namespace astrosplat
