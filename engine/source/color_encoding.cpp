@@ -97,23 +97,16 @@ std::string description_of(cmsHPROFILE profile) {
     return std::string(trim(text.data()));
 }
 
-constexpr glm::dvec2 d65{0.3127, 0.3290};
-constexpr Chromaticities rec2020{{0.708, 0.292}, {0.170, 0.797}, {0.131, 0.046}, d65},
-    p3_d65{{0.680, 0.320}, {0.265, 0.690}, {0.150, 0.060}, d65},
-    // Adobe RGB (1998), 4.3.1.
-    adobe_rgb{{0.64, 0.33}, {0.21, 0.71}, {0.15, 0.06}, d65},
-    // SMPTE ST 2065-1, table 1.
-    aces_ap0{{0.73470, 0.26530}, {0.0, 1.0}, {0.0001, -0.077}, {0.32168, 0.33767}};
-
 // ITU-T H.273, table 2.
 std::optional<Chromaticities> primaries_of_code(int code) {
+    constexpr glm::dvec2 d65{0.3127, 0.3290};
     if (code == 1) return rec709_chromaticities;
     if (code == 4) return Chromaticities{{0.67, 0.33}, {0.21, 0.71}, {0.14, 0.08}, {0.310, 0.316}};
     if (code == 5) return Chromaticities{{0.64, 0.33}, {0.29, 0.60}, {0.15, 0.06}, d65};
     if (code == 6 || code == 7) return Chromaticities{{0.630, 0.340}, {0.310, 0.595}, {0.155, 0.070}, d65};
-    if (code == 9) return rec2020;
+    if (code == 9) return Chromaticities{{0.708, 0.292}, {0.170, 0.797}, {0.131, 0.046}, d65};
     if (code == 11) return Chromaticities{{0.680, 0.320}, {0.265, 0.690}, {0.150, 0.060}, {0.314, 0.351}};
-    if (code == 12) return p3_d65;
+    if (code == 12) return Chromaticities{{0.680, 0.320}, {0.265, 0.690}, {0.150, 0.060}, d65};
     return {};
 }
 
@@ -260,7 +253,8 @@ std::shared_ptr<const ColorEncoding> chromaticity_encoding(std::span<const float
 }
 
 std::shared_ptr<const ColorEncoding> adobe_rgb_encoding() {
-    return encoding_of(adobe_rgb, gamma_curve(563.0 / 256.0), "Adobe RGB (1998)");
+    return encoding_of({{0.64, 0.33}, {0.21, 0.71}, {0.15, 0.06}, {0.3127, 0.3290}},
+                       gamma_curve(563.0 / 256.0), "Adobe RGB (1998)");
 }
 
 std::shared_ptr<const ColorEncoding> named_encoding(std::string_view name, double gamma) {
@@ -268,35 +262,6 @@ std::shared_ptr<const ColorEncoding> named_encoding(std::string_view name, doubl
     if (name == "Rec709") return encoding_of(rec709_chromaticities, *transfer_of_code(1), "Rec709");
     if (name.starts_with("Gamma") && gamma > 0.01 && gamma < 100.0)
         return encoding_of(rec709_chromaticities, gamma_curve(gamma), std::string(name));
-    return {};
-}
-
-std::shared_ptr<const ColorEncoding> interop_encoding(std::string_view id, std::string& problem) {
-    if (id.empty() || id == "data" || id == "unknown") return {};
-    constexpr std::array<std::pair<std::string_view, Chromaticities>, 6> sets{
-        {{"rec709", rec709_chromaticities},
-         {"rec2020", rec2020},
-         {"p3d65", p3_d65},
-         {"adobergb", adobe_rgb},
-         {"ap0", aces_ap0},
-         {"ap1", acescg_chromaticities}}};
-    const std::array<std::pair<std::string_view, TransferCurve>, 7> curves{{{"lin", {}},
-                                                                            {"srgb", {Kind::srgb, {}, {}}},
-                                                                            {"g18", gamma_curve(1.8)},
-                                                                            {"g22", gamma_curve(2.2)},
-                                                                            {"g24", gamma_curve(2.4)},
-                                                                            {"g26", gamma_curve(2.6)},
-                                                                            {"pq", {Kind::pq, {}, {}}}}};
-    const std::size_t end = std::min(id.find('_'), id.size()),
-                      next = std::min(id.find('_', end + 1), id.size());
-    const auto curve =
-        std::ranges::find(curves, id.substr(0, end), &std::pair<std::string_view, TransferCurve>::first);
-    const auto set =
-        std::ranges::find(sets, id.substr(std::min(end + 1, id.size()), next - std::min(end + 1, next)),
-                          &std::pair<std::string_view, Chromaticities>::first);
-    if (curve != curves.end() && set != sets.end())
-        return encoding_of(set->second, curve->second, std::string(id));
-    problem = fmt::format("colorInteropID {}", printable(id));
     return {};
 }
 

@@ -55,9 +55,6 @@ std::shared_ptr<const ColorEncoding> adobe_rgb_encoding();
 /// By OpenImageIO's names of a curve over Rec. 709: Linear, Rec709, and Gamma with its number. Null: another.
 std::shared_ptr<const ColorEncoding> named_encoding(std::string_view name, double gamma);
 
-/// By EXR's colorInteropID (Color Interop Forum, "lin_ap1_scene"). Null: it says nothing, or is in `problem`.
-std::shared_ptr<const ColorEncoding> interop_encoding(std::string_view id, std::string& problem);
-
 /// What a TIFF's own tags say (TIFF 6.0, section 20): primaries and white as above; a table each channel.
 struct TiffColors {
     std::optional<std::array<float, 8>> primaries;

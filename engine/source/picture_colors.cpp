@@ -14,28 +14,8 @@ namespace astrosplat {
 namespace {
 
 constexpr std::array d65_white{0.3127f, 0.3290f};
+using namespace std::string_literals;
 constexpr std::size_t most_metadata = std::size_t{1} << 18;  // segments of a JPEG before its pixels
-
-// Whether an IFD in some bytes has an entry, in either byte order: tag, type, count, value.
-std::optional<std::uint32_t> ifd_entry(std::string_view bytes, std::uint16_t tag, std::uint16_t type,
-                                       std::uint32_t count) {
-    for (const bool big : {false, true}) {
-        std::string wanted;
-        const auto add = [&](std::uint32_t number, int size) {
-            for (int i = 0; i < size; ++i) wanted += char(number >> 8 * (big ? size - 1 - i : i));
-        };
-        add(tag, 2);
-        add(type, 2);
-        add(count, 4);
-        const std::size_t at = bytes.find(wanted);
-        if (at == bytes.npos || bytes.size() < at + wanted.size() + 4) continue;
-        std::uint32_t value = 0;
-        for (std::size_t i = 0; i < 4; ++i)
-            value |= std::uint32_t(std::uint8_t(bytes[at + wanted.size() + i])) << 8 * (big ? 3 - i : i);
-        return value;
-    }
-    return {};
-}
 
 // From a marker's name on, as much as a segment can have.
 std::string segment_of(const fs::path& file, std::string_view name) {
@@ -44,10 +24,19 @@ std::string segment_of(const fs::path& file, std::string_view name) {
     return at == bytes.npos ? "" : bytes.substr(at, std::size_t{1} << 16);
 }
 
+// By an entry of Exif's directory, in either byte order.
 bool is_adobe_rgb(const fs::path& file, const OIIO::ImageSpec& spec) {
-    constexpr std::uint32_t r03 = 0x52303300, r03_reversed = 0x00333052;
-    const auto option = ifd_entry(segment_of(file, std::string_view("Exif\0\0", 6)), 1, 2, 4);
-    return spec.get_int_attribute("Exif:ColorSpace", 1) == 2 || option == r03 || option == r03_reversed;
+    const std::string exif = segment_of(file, std::string_view("Exif\0\0", 6));
+    return spec.get_int_attribute("Exif:ColorSpace", 1) == 2 ||
+           exif.find("\1\0\2\0\4\0\0\0R03"s) != exif.npos || exif.find("\0\1\0\2\0\0\0\4R03"s) != exif.npos;
+}
+
+// Likewise; there are fewer than 256.
+std::int64_t jpeg_pictures(const fs::path& file) {
+    const std::string index = segment_of(file, std::string_view("MPF\0", 4));
+    const std::size_t little = index.find("\1\xb0\4\0\1\0\0\0"s), big = index.find("\xb0\1\0\4\0\0\0\1"s);
+    const std::size_t at = little != index.npos ? little + 8 : big != index.npos ? big + 11 : index.size();
+    return at < index.size() ? std::uint8_t(index[at]) : 1;
 }
 
 TiffColors colors_of_tiff(const fs::path& file, int page) {
@@ -80,9 +69,9 @@ double largest_integer(const OIIO::ImageSpec& spec) {
 }
 
 void warn_of_hidden_pictures(const fs::path& file, std::string_view format) {
-    std::int64_t count = format == "png" ? png_frames(file) : 1;
-    if (format == "jpeg")
-        count = ifd_entry(segment_of(file, std::string_view("MPF\0", 4)), 0xb001, 4, 1).value_or(1);
+    const std::int64_t count = format == "png"    ? png_frames(file)
+                               : format == "jpeg" ? jpeg_pictures(file)
+                                                  : 1;
     if (count > 1)
         log_warning(fmt::format("{}: it holds {} pictures; 0 is taken, as the others are not followed",
                                 file.string(), count));
@@ -100,12 +89,13 @@ std::shared_ptr<const ColorEncoding> colors_of_picture(const fs::path& file, std
         encoding = icc_encoding({static_cast<const std::uint8_t*>(profile->data()),
                                  static_cast<std::size_t>(profile->type().size())},
                                 problem);
-    if (is_open() && format == "openexr")
-        encoding = interop_encoding(spec.get_string_attribute("colorInteropID"), problem);
     const OIIO::ParamValue* const xy = spec.find_attribute("chromaticities");
     if (is_open() && xy && xy->type().size() == 8 * sizeof(float))
         encoding = chromaticity_encoding(std::span<const float, 8>(static_cast<const float*>(xy->data()), 8),
                                          {}, "set of chromaticities", problem);
+    const std::string id = spec.get_string_attribute("colorInteropID");  // of the Color Interop Forum
+    const bool is_known = id.empty() || id.starts_with(encoding ? "lin_" : "lin_rec709_") || id == "data";
+    if (problem.empty() && format == "openexr" && !is_known) problem = "colorInteropID " + printable(id);
     if (is_open() && format == "tiff") encoding = tiff_encoding(colors_of_tiff(file, page), largest, problem);
     if (is_open() && format == "jpeg" && is_adobe_rgb(file, spec)) encoding = adobe_rgb_encoding();
     const std::string space = spec.get_string_attribute("oiio:ColorSpace");
