@@ -109,6 +109,7 @@ void draw_menu_bar(GuiFrame& frame, const Rect& area) {
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(px(8), 0));
     ImGui::SetCursorScreenPos(area.corner());
     ImGui::BeginChild("menu", area.size(), false, ImGuiWindowFlags_MenuBar);
+    pass_ring_by();
     if (ImGui::BeginMenuBar()) {
         for (std::size_t menu = 0; menu < menu_names.size(); ++menu) draw_menu(frame, menu);
         draw_title(frame, area);
@@ -169,10 +170,8 @@ void draw_hint(GuiFrame& frame, const Rect& area) {
 }  // namespace
 
 void draw_notice(GuiFrame& frame, const Rect& area) {
-    if (area.height <= 0) return;
-    ImGui::SetCursorScreenPos(area.corner());
-    ImGui::PushStyleColor(ImGuiCol_ChildBg, color4(color::window));
-    ImGui::BeginChild("notice", area.size(), false, ImGuiWindowFlags_NoScrollbar);
+    if (!begin_part("notice", area)) return;
+    fill_rect(area, color::window);
     ImGui::SetCursorScreenPos({area.x + px(12), area.y});
     if (frame.view.changed_on_disk)
         draw_disk_notice(frame, area);
@@ -181,7 +180,6 @@ void draw_notice(GuiFrame& frame, const Rect& area) {
     else
         draw_hint(frame, area);
     ImGui::EndChild();
-    ImGui::PopStyleColor();
 }
 
 namespace {

@@ -69,7 +69,7 @@ void draw_job_card(GuiFrame& frame, const QueuedJob& job, bool chosen) {
 }
 
 void draw_list(GuiFrame& frame, const QueuedJob* chosen) {
-    ImGui::BeginChild("jobs", {px(list_width), -px(44)}, false);
+    ImGui::BeginChild("jobs", {px(list_width), -px(44)}, false, ImGuiWindowFlags_NavFlattened);
     if (frame.status.jobs.empty())
         ImGui::TextColored(color4(color::dim), "Nothing was rendered yet: Render > Frames...");
     for (const QueuedJob& job : frame.status.jobs) draw_job_card(frame, job, &job == chosen);
@@ -145,7 +145,8 @@ void draw_queue(GuiFrame& frame) {
     const QueuedJob* const chosen = chosen_job(frame.status, frame.view.queue_job);
     draw_list(frame, chosen);
     ImGui::SameLine(0, px(12));
-    ImGui::BeginChild("frames", {0, -px(44)}, false, ImGuiWindowFlags_NoScrollbar);
+    ImGui::BeginChild("frames", {0, -px(44)}, false,
+                      ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NavFlattened);
     if (chosen) draw_frames(frame, *chosen);
     ImGui::EndChild();
     ImGui::SetCursorPosY(ImGui::GetWindowHeight() - px(44));
@@ -289,6 +290,7 @@ void draw_start_card(GuiFrame& frame, const Rect& viewport) {
     ImGui::BeginChild("start card", {width, height}, false,
                       ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse |
                           ImGuiWindowFlags_AlwaysUseWindowPadding);
+    enter_part("start card");
     start_head(frame, shown, ImGui::GetWindowPos().x + width - px(start_padding) + px(4));
     start_kinds(frame, shown);
     start_choices(frame, shown);

@@ -87,9 +87,7 @@ int dialog_buttons(GuiFrame& frame, const char* id, std::initializer_list<const 
         if (index > 0) ImGui::SameLine(0, px(8));
         if (dialog_button(label, is_default, least_button)) chosen = index;
         note_item(frame, std::string(id) + "/" + label);
-        if (is_default && enter && !ring_shown() &&
-            (pressed(key_code::enter) || pressed(key_code::pad_enter)))
-            chosen = index;
+        if (is_default && enter && enter_answers() && !ImGui::IsWindowAppearing()) chosen = index;
         ++index;
     }
     return chosen;
@@ -171,10 +169,10 @@ const std::vector<Group>& mouse_groups() {
                                              {"Reset, keyframe, copy, paste", "Right click"}}},
                                            {"Keyboard",
                                             {{"Next control, the one before", "Tab, Shift+Tab"},
-                                             {"Panel, tools", "F6"},
+                                             {"Panel, tools, timeline", "F6"},
                                              {"Use, type into", "Space, Enter"},
                                              {"Back to the timeline", "Esc"},
-                                             {"Menus", "F10, Alt+letter"}}},
+                                             {"Menus", "F10, Alt, Alt+letter"}}},
                                            {"Timeline",
                                             {{"Move keyframes", "Drag"},
                                              {"Copy keyframes", "Ctrl+drag"},

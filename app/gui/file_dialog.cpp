@@ -470,13 +470,14 @@ FileDialog::Answer FileDialog::draw(GuiFrame& frame) {
     const float list_height = ImGui::GetContentRegionAvail().y - px(44);
     ImGui::PushStyleColor(ImGuiCol_ChildBg, color4(color::window));
     ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(0, 0));
-    ImGui::BeginChild("places", {px(places_width), list_height});
+    constexpr ImGuiWindowFlags flat = ImGuiWindowFlags_NavFlattened;
+    ImGui::BeginChild("places", {px(places_width), list_height}, false, flat);
     draw_places(frame);
     ImGui::EndChild();
     ImGui::SameLine(0, px(8));
-    ImGui::BeginChild("files", {0, list_height});
+    ImGui::BeginChild("files", {0, list_height}, false, flat);
     if (draw_file_columns(frame, rows_px_, order_, backwards_)) sort_entries(entries_, order_, backwards_);
-    ImGui::BeginChild("entries");
+    ImGui::BeginChild("entries", {0, 0}, false, flat);
     rows_px_ = ImGui::GetContentRegionAvail().x;
     scroll_to_typed();
     const bool chosen = draw_entries(frame);

@@ -190,7 +190,8 @@ FileClick file_row(const char* id, const FileRow& row) {
     const float room = ImGui::GetContentRegionAvail().x;
     FileClick click;
     click.once = ImGui::InvisibleButton(id, {room, height});
-    click.twice = ImGui::IsItemHovered() && ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left);
+    click.twice =
+        entered_by_key() || (ImGui::IsItemHovered() && ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left));
     ImDrawList* list = ImGui::GetWindowDrawList();
     const ImU32 back = row.chosen ? color::selection : ImGui::IsItemHovered() ? color::hover : color::none;
     fill_rect(corner, {corner.x + room, corner.y + height}, back, px(3));

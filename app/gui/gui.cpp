@@ -368,7 +368,7 @@ bool Gui::busy() const {
 }
 
 bool Gui::opening() const {
-    if (state_->flow.awaits_typing()) return true;
+    if (state_->flow.awaits_typing() || keys_steer() || state_->panel.awaits_ring()) return true;
     const bool takes_text = ImGui::GetIO().WantTextInput || ImGui::IsAnyItemActive();
     return !takes_text && (state_->popup || state_->flow.busy() || state_->panel.busy());
 }

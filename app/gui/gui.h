@@ -25,7 +25,8 @@ class Gui {
     void ask_to_quit();
     /// Something moves or waits (a drag, a text cursor, an open dialog): the next frame must be drawn soon.
     bool busy() const;
-    /// An entry, a menu or a dialog is open in which nothing is typed: its focus may be on the way.
+    /// An entry, a menu or a dialog is open in which nothing is typed, or the ring moves: the focus may be on
+    /// the way.
     bool opening() const;
     /// Controls of the last draw(), the rows of the side panel excepted (Panel::rows).
     const std::vector<DrawnItem>& drawn_items() const;

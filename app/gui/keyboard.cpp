@@ -10,16 +10,19 @@
 namespace astrosplat {
 namespace {
 
-constexpr std::array<const char*, 2> parts{"panel", "tools"};  // in which the ring can be
-constexpr std::string_view menu_letters = "FEVLCRH";           // of menu_names
+constexpr std::array<const char*, 4> parts{"start card", "panel", "tools", "timeline"};  // the ring's, by F6
+constexpr std::string_view menu_letters = "FEVLCRH";                                     // of menu_names
 
 // What the keys of this frame ask of parts that are drawn later; there is one window.
 const char* part_to_enter = nullptr;
+std::array<bool, parts.size()> part_drawn{}, part_is_there{};  // in this frame, and in the last
+bool alt_alone = false;                                        // nothing else was pressed since
 const char* menu_to_open = nullptr;
 const char* next_menu = nullptr;  // to be opened in the next frame
 bool ring_wanted = false;         // by the last key or click
 bool mouse_moved = false;         // since that key
 bool ring_was_alive = false;      // its control was drawn in the last frame
+bool text_was_typed = false;      // when this frame began
 
 ImGuiContext& imgui() { return *ImGui::GetCurrentContext(); }
 
@@ -35,6 +38,15 @@ int current_part() {
     for (std::size_t i = 0; i < parts.size(); ++i)
         if (is_within(imgui().NavWindow, parts[i])) return static_cast<int>(i);
     return -1;
+}
+
+/// The one after it, of those that are there.
+const char* part_after(int part) {
+    for (std::size_t i = 1; i <= parts.size(); ++i) {
+        const std::size_t next = static_cast<std::size_t>(part + static_cast<int>(i)) % parts.size();
+        if (part_is_there[next]) return parts[next];
+    }
+    return nullptr;
 }
 
 /// What the ring is on counts as hovered, until the mouse moves.
@@ -81,15 +93,13 @@ bool enter_pressed() { return key_pressed(key_code::enter) || key_pressed(key_co
 
 void steer_ring() {
     const bool popup = any_popup(), ring = ring_shown();
-    const int part = current_part();
-    const char* const next_part = parts[static_cast<std::size_t>(part + 1) % parts.size()];
     if (key_pressed(key_code::tab, true)) {
-        if (popup || ring || part == 0)  // after a click in the panel from there
+        if (popup || ring || is_within(imgui().NavWindow, "panel"))  // after a click in the panel from there
             step(ImGui::GetIO().KeyShift);
         else
-            part_to_enter = next_part;
+            part_to_enter = part_after(-1);
     }
-    if (key_pressed(key_code::f6) && !popup) part_to_enter = next_part;
+    if (key_pressed(key_code::f6) && !popup) part_to_enter = part_after(ring ? current_part() : -1);
     if (!ring && !popup) return;
     constexpr std::pair<int, ImGuiDir> arrows[] = {{key_code::left, ImGuiDir_Left},
                                                    {key_code::right, ImGuiDir_Right},
@@ -101,13 +111,33 @@ void steer_ring() {
     if (key_pressed(key_code::escape) && !popup) hide_ring();
 }
 
-/// Alt and the letter of a menu, F10 for the first.
+/// Alt let go with nothing else pressed meanwhile: with a drag in the view it is another camera.
+bool alt_tapped() {
+    const ImGuiIO& io = ImGui::GetIO();
+    if (key_pressed(key_code::left_alt)) alt_alone = true;
+    for (int code = 0; code < static_cast<int>(std::size(io.KeysDown)); ++code)
+        if (code != key_code::left_alt && key_down(code)) alt_alone = false;
+    if (ImGui::IsAnyMouseDown() || io.MouseWheel != 0.0f) alt_alone = false;
+    return alt_alone && ImGui::IsKeyReleased(static_cast<ImGuiKey>(key_code::left_alt));
+}
+
+/// Alt and the letter of a menu; Alt alone or F10 for the first.
 void steer_menus() {
     const ImGuiIO& io = ImGui::GetIO();
-    if (key_pressed(key_code::f10) && !any_popup()) menu_to_open = menu_names[0];
+    if ((alt_tapped() || key_pressed(key_code::f10)) && !any_popup()) menu_to_open = menu_names[0];
     for (std::size_t i = 0; i < menu_names.size(); ++i)
         if (io.KeyAlt && !io.KeyCtrl && key_pressed(menu_letters[i])) menu_to_open = menu_names[i];
     if (menu_to_open) show_ring();
+}
+
+/// From a text to the control beside it, by F6 where Tab completes it: Dear ImGui's own Tab would stop at
+/// texts alone. In the panel values are typed one after the other.
+void leave_text() {
+    const ImGuiContext& g = imgui();
+    const bool takes_tab = (g.ActiveIdUsingKeyInputMask & (1u << ImGuiKey_Tab)) != 0;
+    const bool leaves = (key_pressed(key_code::tab, true) && !takes_tab) || key_pressed(key_code::f6);
+    if (!leaves || g.IO.KeyCtrl || g.IO.KeyAlt || is_within(g.NavWindow, "panel")) return;
+    if (text_was_typed) step(g.IO.KeyShift);
 }
 
 }  // namespace
@@ -127,7 +157,9 @@ void steer_by_keys() {
     if (ring_wanted) show_ring(!mouse_moved);
     for (const bool clicked : g.IO.MouseClicked)
         if (clicked) hide_ring();
-    if (g.ActiveId != 0) return;
+    text_was_typed = g.ActiveId != 0 && g.ActiveId == g.InputTextState.ID;
+    part_is_there = std::exchange(part_drawn, {});
+    if (g.ActiveId != 0) return leave_text();
     steer_menus();
     if (!g.IO.KeyCtrl && !g.IO.KeyAlt) steer_ring();
 }
@@ -140,10 +172,20 @@ bool takes_key(int code) {
     return code >= '0' && code <= '9';  // a number that was meant for the field is no other view
 }
 
+bool enter_answers() { return enter_pressed() && (text_was_typed || !ring_shown()); }
+
 void enter_part(const char* name) {
+    for (std::size_t i = 0; i < parts.size(); ++i)
+        if (std::strcmp(name, parts[i]) == 0) part_drawn[i] = true;
     if (!part_to_enter || std::strcmp(name, part_to_enter) != 0) return;
     ImGui::SetKeyboardFocusHere();
     show_ring();
+}
+
+void pass_ring_by() {
+    ImGuiWindow* const window = imgui().CurrentWindow;
+    window->DC.NavLayersActiveMask = 0;
+    window->DC.NavHasScroll = false;
 }
 
 void leave_menu_sideways(std::size_t menu) {

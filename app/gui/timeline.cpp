@@ -317,22 +317,24 @@ void zoom_frames(TimelineState& t, double middle, double factor) {
 }
 
 void draw_timeline(TimelineState& t, GuiFrame& frame, const Rect& area) {
-    constexpr ImGuiWindowFlags still =
-        ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse | ImGuiWindowFlags_NoNav;
-    if (!begin_part("timeline", area, still)) return;
+    constexpr ImGuiWindowFlags still = ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse;
+    const float head = std::min(px(header_height), area.height);
+    if (!begin_part("timeline", {area.x, area.y, area.width, head}, still)) return;
     refresh(t, frame.document, frame.view);
     end_drag(t);
     draw_timeline_header(t, frame, area);
-    const Rect ruler{area.x, area.y + px(header_height), area.width, px(ruler_height)};
+    ImGui::EndChild();
+    const Rect ruler{area.x, area.y + head, area.width, px(ruler_height)};
     const float bottom = area.end().y;
-    if (bottom > ruler.end().y) {
-        t.scale.x0 = area.x + names_width(frame.view) + px(timeline_margin);
-        t.scale.x1 = std::max(area.end().x - px(timeline_margin) * 1.5f, t.scale.x0 + 1.0f);
-        draw_ruler(t, frame, ruler);
-        const Rect rows{area.x, ruler.end().y, area.width, bottom - ruler.y - ruler.height};
-        draw_rows(t, frame, rows);
-        draw_playhead(t, frame, ruler);
-    }
+    if (bottom <= ruler.end().y) return;
+    const Rect below{area.x, ruler.y, area.width, bottom - ruler.y};
+    if (!begin_part("keyframes", below, still | ImGuiWindowFlags_NoNav)) return;
+    t.scale.x0 = area.x + names_width(frame.view) + px(timeline_margin);
+    t.scale.x1 = std::max(area.end().x - px(timeline_margin) * 1.5f, t.scale.x0 + 1.0f);
+    draw_ruler(t, frame, ruler);
+    const Rect rows{area.x, ruler.end().y, area.width, bottom - ruler.y - ruler.height};
+    draw_rows(t, frame, rows);
+    draw_playhead(t, frame, ruler);
     ImGui::EndChild();
 }
 

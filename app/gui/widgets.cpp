@@ -188,7 +188,7 @@ bool begin_part(const char* name, const Rect& area, ImGuiWindowFlags flags) {
     const bool is_flat = (flags & ImGuiWindowFlags_NoNav) == 0;
     ImGui::BeginChild(name, area.size(), false, is_flat ? flags | ImGuiWindowFlags_NavFlattened : flags);
     ImGui::PopStyleVar();
-    enter_part(name);
+    is_flat ? enter_part(name) : pass_ring_by();
     return true;
 }
 

@@ -115,7 +115,7 @@ void close_on_escape();
 
 // The keyboard's way through the window (keyboard.cpp): Tab, F6, the arrows, Space and Enter move a ring from
 // control to control and use the one it is on; until there is a ring these keys are the timeline's. Escape or
-// a click takes it away. Alt with a letter and F10 open menus, in which the arrows go on.
+// a click takes it away. Alt, alone or with a letter, and F10 open menus, in which the arrows go on.
 
 /// Takes the keys of this frame: at its beginning.
 void steer_by_keys();
@@ -124,8 +124,12 @@ bool ring_shown();
 void hide_ring();
 /// The key is the ring's, and no shortcut.
 bool takes_key(int code);
+/// Enter is a dialog's answer: it is pressed in a text, or with no control that would use it.
+bool enter_answers();
 /// In a part, before its first control: the ring comes here where the keys ask for this part.
 void enter_part(const char* name);
+/// In a child window that the ring does not enter: it is no control of the window around it, either.
+void pass_ring_by();
 /// The keys ask for this menu.
 bool opens_menu(const char* name);
 /// The last item has the ring, and Enter was pressed.
@@ -213,7 +217,7 @@ inline constexpr int escape = 256, enter = 257, tab = 258, backspace = 259, inse
 inline constexpr int right = 262, left = 263, down = 264, up = 265;
 inline constexpr int page_up = 266, page_down = 267, home = 268, end = 269;
 inline constexpr int f1 = 290, f6 = 295, f10 = 299, f11 = 300, f12 = 301;
-inline constexpr int pad_enter = 335;
+inline constexpr int pad_enter = 335, left_alt = 342;
 }  // namespace key_code
 
 /// Whether the key went down in this frame, also by holding it where that `repeats`; whether it is down.

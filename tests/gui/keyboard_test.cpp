@@ -12,18 +12,9 @@ namespace {
 
 class KeyboardTest : public ExampleWindow {
   protected:
-    /// Middle of the ring, px; the test fails where there is none.
-    glm::vec2 ring() const {
-        const ImGuiContext& g = *ImGui::GetCurrentContext();
-        EXPECT_TRUE(ring_shown());
-        if (!ring_shown()) return {};
-        const ImVec2 in_window = g.NavWindow->NavRectRel[g.NavLayer].GetCenter(),
-                     at = g.NavWindow->DC.CursorStartPos;
-        return {at.x + in_window.x, at.y + in_window.y};
-    }
     bool ring_is_on(const std::string& key) const {
         for (const DrawnRow& row : window.gui.panel().rows())
-            if (row.key == key) return glm::distance(ring(), row.value) < 10.0f;
+            if (row.key == key) return glm::distance(window.ring(), row.value) < 10.0f;
         return false;
     }
     void tab_to(const std::string& key) {
@@ -31,6 +22,141 @@ class KeyboardTest : public ExampleWindow {
         EXPECT_TRUE(ring_is_on(key)) << key;
     }
 };
+
+/// What can be clicked can be reached.
+class ReachTest : public KeyboardTest {
+  protected:
+    /// Of the controls whose names begin so: those that Tab does not come to.
+    std::set<std::string> missed(const std::vector<std::string>& begins) {
+        std::set<std::string> names;
+        for (const DrawnItem& item : window.gui.drawn_items())
+            for (const std::string& begin : begins)
+                if (item.name == begin || (begin.back() == '/' && item.name.starts_with(begin)))
+                    names.insert(item.name);
+        EXPECT_GE(names.size(), begins.size());
+        for (int i = 0; i < 200 && !names.empty(); ++i) {
+            if (ring_shown())
+                std::erase_if(names, [&](const std::string& name) {
+                    return window.has(name) && glm::distance(window.ring(), window.at(name)) < 2.0f;
+                });
+            window.tap(key_code::tab);
+        }
+        return names;
+    }
+    static inline const std::set<std::string> none;
+};
+
+TEST_F(ReachTest, TheRingStopsAtControlsAlone) {
+    for (int i = 0; i < 150; ++i) {
+        window.tap(key_code::tab);
+        const ImRect area = ImGui::GetCurrentContext()->NavWindow->NavRectRel[0];
+        EXPECT_LT(area.GetWidth() * area.GetHeight(), 800.0f * 40.0f) << i;
+    }
+}
+
+TEST_F(ReachTest, ToolsNoticeAndTimelineHeader) {
+    window.view.hint_open = window.view.snapshots_open = true;
+    window.frame(2);
+    window.tap(key_code::f6);
+    EXPECT_EQ(
+        missed({"view/", "size/", "compare/", "display", "exposure", "preview", "engine", "close hint",
+                "take snapshot", "play", "frame", "range", "fps", "playing/", "graph", "fold timeline"}),
+        none);
+}
+
+TEST_F(ReachTest, TheTimelinesHeaderIsFired) {
+    for (int i = 0; i < 3; ++i) window.tap(key_code::f6);  // panel, tools, timeline
+    EXPECT_LT(glm::distance(window.ring(), window.at("play")), 2.0f);
+    window.tap(key_code::space);
+    EXPECT_TRUE(window.view.playing);
+    window.tap(key_code::space);
+    window.tap(key_code::tab);  // to a field: what is typed is its value
+    window.type("7");
+    window.tap(key_code::enter);
+    EXPECT_EQ(window.view.frame, 7.0);
+    window.tap(key_code::f6);
+    EXPECT_GT(window.ring().x, make_layout(window.view, 1600, 900, 1).panel.x) << "and round";
+}
+
+TEST_F(ReachTest, WhatAPictureWasTakenForIsChosenFirst) {
+    window.view.start.emplace(PictureStart{"m51.png"});
+    window.frame(3);
+    window.tap(key_code::tab);
+    EXPECT_EQ(missed({"start/"}), none);
+    for (int i = 0; i < 20 && glm::distance(window.ring(), window.at("start/Make a film")) > 2.0f; ++i)
+        window.tap(key_code::tab);
+    window.tap(key_code::enter);
+    EXPECT_EQ(window.take_only(Command::Kind::start_again).text, "film");
+    window.tap(key_code::f6);
+    EXPECT_GT(window.ring().x, make_layout(window.view, 1600, 900, 1).panel.x);
+}
+
+TEST_F(ReachTest, Dialogs) {
+    window.tap('R', true);
+    EXPECT_EQ(missed({"render/"}), std::set<std::string>{"render/takes"}) << "which is a text";
+    window.tap(key_code::escape);
+    window.view.render_open = false;
+    window.view.settings_open = true;
+    window.frame(3);
+    EXPECT_EQ(missed({"settings/"}), none);
+    window.view.settings_open = false;
+    window.view.queue_open = true;
+    window.status.jobs.push_back(running_job_of("Rendering", 0.5f));
+    window.frame(3);
+    EXPECT_EQ(missed({"queue/"}), none);
+}
+
+TEST_F(ReachTest, EnterInATextAnswersItsDialogWhereverTheRingHasBeen) {
+    window.tap(key_code::tab);
+    window.tap(key_code::f12);
+    window.frame(3);
+    window.type("seen.png");
+    window.tap(key_code::enter);
+    for (int i = 0; i < 100 && window.has("file/Save"); ++i) {
+        usleep(10'000);  // the disk is asked
+        window.frame();
+    }
+    EXPECT_TRUE(window.take_only(Command::Kind::screenshot).path.filename().string().ends_with("seen.png"));
+}
+
+TEST_F(ReachTest, TheFileDialog) {
+    window.tap('O', true);
+    window.frame(3);
+    window.tap(key_code::f6);  // Tab completes the path
+    EXPECT_EQ(
+        missed({"place/", "file/by Name", "file/by Size", "file/All files", "file/Cancel", "file/Open"}),
+        none);
+}
+
+TEST_F(KeyboardTest, AltAloneOpensTheMenusAsF10Does) {
+    const auto alt = [&](const std::function<void()>& meanwhile) {
+        ImGui::GetIO().KeysDown[key_code::left_alt] = true;
+        window.hold(false, false, true);
+        window.frame();
+        meanwhile();
+        ImGui::GetIO().KeysDown[key_code::left_alt] = false;
+        window.hold(false, false, false);
+        window.frame(4);
+    };
+    alt([&] { window.drag({500, 400}, {40, 10}); });
+    EXPECT_FALSE(any_popup()) << "the camera was turned";
+    alt([] {});
+    EXPECT_TRUE(window.has("File/Open..."));
+    EXPECT_TRUE(ring_shown());
+}
+
+TEST_F(KeyboardTest, WhatIsAutomaticIsTypedAnew) {
+    window.tap('K', true);
+    window.frame(3);
+    window.type("source.voxels");
+    window.tap(key_code::enter);
+    ASSERT_TRUE(ring_is_on("layer.dust.source.voxels"));
+    window.tap(key_code::enter);
+    window.tap(key_code::end);
+    window.type("4 5 6");
+    window.tap(key_code::enter);
+    EXPECT_EQ(window.document.scene().layers[0].source.voxels, glm::i64vec3(4, 5, 6));
+}
 
 const std::string alpha_gain = "layer.dust.look.alpha.gain";
 
@@ -40,7 +166,7 @@ TEST_F(KeyboardTest, UntilThereIsARingKeysAreTheTimelines) {
     EXPECT_FALSE(ring_shown());
     window.tap(key_code::tab);
     EXPECT_TRUE(ring_shown());
-    EXPECT_GT(ring().x, make_layout(window.view, 1600, 900, 1).panel.x) << "the panel comes first";
+    EXPECT_GT(window.ring().x, make_layout(window.view, 1600, 900, 1).panel.x) << "the panel comes first";
     window.tap(key_code::right);
     window.tap(key_code::n7);
     EXPECT_EQ(window.view.frame, 2.0);
@@ -87,9 +213,9 @@ TEST_F(KeyboardTest, EnterTypesAValueAndTheRingStays) {
 TEST_F(KeyboardTest, F6GoesToTheToolsAndArrowsAlongThem) {
     window.tap(key_code::f6);
     window.tap(key_code::f6);
-    EXPECT_LT(glm::distance(ring(), window.at("view/Camera")), 4.0f);
+    EXPECT_LT(glm::distance(window.ring(), window.at("view/Camera")), 4.0f);
     window.tap(key_code::right);
-    EXPECT_LT(glm::distance(ring(), window.at("view/Free")), 4.0f);
+    EXPECT_LT(glm::distance(window.ring(), window.at("view/Free")), 4.0f);
     window.tap(key_code::enter);
     EXPECT_EQ(window.view.view, ViewKind::free);
 }
@@ -112,7 +238,7 @@ TEST_F(KeyboardTest, MenusOpenByAltAndF10) {
     window.frame(3);
     ASSERT_TRUE(window.has("Help/Log"));
     EXPECT_TRUE(window.document.scene().layers[0].visible);
-    for (int i = 0; i < 6 && glm::distance(ring(), window.at("Help/Log")) > 4.0f; ++i)
+    for (int i = 0; i < 6 && glm::distance(window.ring(), window.at("Help/Log")) > 4.0f; ++i)
         window.tap(key_code::down);
     window.tap(key_code::enter);
     EXPECT_TRUE(window.view.log_open);
@@ -125,8 +251,8 @@ TEST_F(KeyboardTest, ADialogIsAnsweredByTabAndEnter) {
     make_edited(window);
     window.tap('Q', true);
     ASSERT_TRUE(window.has("unsaved/Cancel"));
-    for (int i = 0; i < 4 && !(ring_shown() && glm::distance(ring(), window.at("unsaved/Cancel")) < 4.0f);
-         ++i)
+    for (int i = 0;
+         i < 4 && !(ring_shown() && glm::distance(window.ring(), window.at("unsaved/Cancel")) < 4.0f); ++i)
         window.tap(key_code::tab);
     window.tap(key_code::enter);
     EXPECT_FALSE(any_popup());

@@ -1,6 +1,8 @@
 // Frames of 1/60 s; every press and every move is seen by at least one of them, as ImGui 1.86 wants it.
 #include "gui/test_window.h"
 
+#include <imgui_internal.h>
+
 #include "gui/key_map.h"
 #include "gui/widgets.h"
 #include "support/test.h"
@@ -124,6 +126,15 @@ bool TestWindow::has(const std::string& name) const {
         if (item.name == name) return true;
     return false;
 }
+glm::vec2 TestWindow::ring() const {
+    const ImGuiContext& g = *ImGui::GetCurrentContext();
+    EXPECT_TRUE(ring_shown());
+    if (!ring_shown()) return {};
+    const ImVec2 in_window = g.NavWindow->NavRectRel[g.NavLayer].GetCenter(),
+                 at = g.NavWindow->DC.CursorStartPos;
+    return {at.x + in_window.x, at.y + in_window.y};
+}
+
 glm::vec2 TestWindow::at(const std::string& name) {
     for (const DrawnItem& item : gui.drawn_items())
         if (item.name == name) return item.middle;

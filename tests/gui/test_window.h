@@ -35,6 +35,8 @@ class TestWindow {
     glm::vec2 at(const std::string& name);
     bool has(const std::string& name) const;
     void click(const std::string& name) { click(at(name)); }
+    /// Middle of the keyboard's ring; fails the test where there is none.
+    glm::vec2 ring() const;
     /// Opens the menus of "File/Open recent/x" one after the other and clicks the last.
     void choose(const std::string& path);
 

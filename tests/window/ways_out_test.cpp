@@ -1,6 +1,7 @@
 // Ways out of the window: files, movies, jobs, a farm.
 
 #include "edit/command_lines.h"
+#include "gui/parts.h"
 #include "gui/widgets.h"
 #include "output/metadata.h"
 #include "source/texture.h"
@@ -48,6 +49,15 @@ class WindowWaysOut : public WindowTest {
         same_widgets().tap(key_code::escape);
         same_widgets().view.movie.clear();
         expect_settled(before);
+    }
+    /// Where the program finds it; false where ffmpeg is not installed.
+    bool link_ffmpeg() const {
+        const RunResult found = run_program({"/bin/sh", "-c", "command -v ffprobe && command -v ffmpeg"});
+        if (found.code != 0) return false;
+        const std::string ffmpeg = found.out.substr(found.out.find('\n') + 1);
+        fs::create_directories(folder / "no programs");
+        fs::create_symlink(ffmpeg.substr(0, ffmpeg.size() - 1), folder / "no programs/ffmpeg");
+        return true;
     }
     bool comes(const fs::path& file) const {
         return comes_true([&] { return fs::exists(folder / file); });
@@ -153,11 +163,7 @@ TEST_F(WindowWaysOut, ARangeGoesOnWhereItEnded) {
 
 /// Sizes odd and even: H.264 wants even ones.
 TEST_F(WindowWaysOut, AMovieHasTheScenesFramesAndSpeed) {
-    const RunResult found = run_program({"/bin/sh", "-c", "command -v ffprobe && command -v ffmpeg"});
-    if (found.code != 0) GTEST_SKIP() << "ffmpeg is not installed";
-    const std::string ffmpeg = found.out.substr(found.out.find('\n') + 1);
-    fs::create_directories(folder / "no programs");
-    fs::create_symlink(ffmpeg.substr(0, ffmpeg.size() - 1), folder / "no programs/ffmpeg");
+    if (!link_ffmpeg()) GTEST_SKIP() << "ffmpeg is not installed";
     const std::string untouched = text_of(scene_file);
     for (const auto& [size, facts] :
          {std::pair{"[320, 180]", "320,180,24/1,24\n"}, {"[161, 91]", "162,92,24/1,24\n"}}) {
@@ -176,6 +182,71 @@ TEST_F(WindowWaysOut, AMovieHasTheScenesFramesAndSpeed) {
         fs::remove(movie);
         end(SIGTERM);
     }
+}
+
+/// From an empty window to a film of a picture, without a mouse.
+TEST_F(WindowWaysOut, ByKeysAloneToAMovie) {
+    if (!link_ffmpeg()) GTEST_SKIP() << "ffmpeg is not installed";
+    start({"--no-cache"});
+    const auto find = [&](const std::string& words) {
+        person->press("ctrl+k");
+        person->type(words);
+        person->press("Return");
+    };
+    ASSERT_TRUE(comes_true([&] { return count_of(pixels_of(&Layout::menu), color::text) > 50; }));
+    person->press("alt");  // File > New > Empty scene
+    person->press("Return");
+    person->press("Return");
+    const auto keyframes = [&] { return count_of(pixels_of(&Layout::timeline), color::attention); };
+    EXPECT_TRUE(comes_true([&] { return keyframes() == 0; })) << "the demo is gone";
+    person->press("ctrl+o");
+    person->type("rings.png");
+    person->press("Return");
+    settled_frame();
+    person->press("Tab");  // what it was taken for; the last of its buttons is for the film
+    person->press("shift+Tab");
+    person->press("space");
+    find("output.exposure");
+    person->press("Return");
+    person->type("0.5");
+    person->press("Return");
+    expect_title("Untitled - edited");
+    person->press("ctrl+s");
+    person->press("ctrl+a");
+    person->type("film.toml");
+    person->press("Return");
+    expect_title("film.toml");
+    const Scene scene = load_scene(folder / "film.toml");
+    EXPECT_EQ(scene.output.exposure, 0.5f);
+    EXPECT_FALSE(scene.animation.empty());
+
+    same_widgets().status.has_ffmpeg = true;  // to know where Tab leads
+    open_render_dialog(same_widgets().document, same_widgets().view, RenderKind::movie);
+    same_widgets().frame(3);
+    person->press("alt+r");
+    person->press_often("Down", 2);  // Frame, Frames, Movie
+    person->press("Return");
+    const auto tab_to = [&](const std::string& name) {
+        const auto there = [&] {
+            return ring_shown() && glm::distance(same_widgets().ring(), same_widgets().at(name)) < 2.0f;
+        };
+        for (int i = 0; i < 40 && !there(); ++i) {
+            same_widgets().tap(key_code::tab);
+            person->press("Tab");
+        }
+        EXPECT_TRUE(there()) << name;
+    };
+    for (const auto& [field, text] :
+         {std::pair{"frames", "1-6"}, {"width", "160"}, {"height", "90"}, {"name", "walk.mp4"}}) {
+        tab_to(std::string("render/") + field);
+        person->press("ctrl+a");
+        person->type(text);
+    }
+    tab_to("render/Render");
+    person->press("Return");
+    const fs::path movie = folder / "frames/walk.mp4";
+    ASSERT_TRUE(comes_true([&] { return fs::exists(movie); })) << program->err_so_far();
+    EXPECT_EQ(facts_of(movie), "160,90,24/1,6\n");
 }
 
 TEST_F(WindowWaysOut, JobsWaitForEachOther) {

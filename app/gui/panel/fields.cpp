@@ -176,7 +176,8 @@ void text_field(Context& context, const Row& row, const Rect& area) {
         content.shown = empty_in_words(context, spec);
     }
     const bool empty = row.value.list() && row.value.list()->empty();
-    content.typed = text ? *text : empty ? "" : to_toml(row.value);
+    const bool unset = content.dimmed || empty;  // what is typed begins anew
+    content.typed = text && !unset ? *text : unset ? "" : to_toml(row.value);
     content.unit = content.dimmed || text ? "" : spec.unit;
     const BoxEvent event = value_box(context, "text", area, content);
     if (const auto value = changed_value(event, content, spec, false)) set_value(context, row.key(), *value);

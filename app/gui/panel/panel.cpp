@@ -178,7 +178,7 @@ glm::vec4 Panel::plot_area(const std::string& key) const {
 
 bool Panel::busy() const {
     return memory_.touch.drag != 0 || memory_.touch.entry != 0 || memory_.dragged_layer >= 0 ||
-           !memory_.renaming.empty();
+           !memory_.renaming.empty() || awaits_ring();
 }
 
 }  // namespace astrosplat

@@ -33,6 +33,8 @@ class Panel {
     const std::string& message() const { return memory_.error; }
     /// A value is being dragged or typed: the next frame must be drawn soon.
     bool busy() const;
+    /// What show() was asked for gets the ring in the next frame.
+    bool awaits_ring() const { return !memory_.wanted.empty(); }
 
   private:
     panel::Memory memory_;
