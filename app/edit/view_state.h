@@ -161,11 +161,10 @@ inline void show_reference(ViewState& view) {
 
 struct Command {
     enum class Kind {
-        new_from_file,  // path: picture, mesh or splats become an untitled scene
-        start_again,    // text: a kind of object, "film", "still", "part" or "keep": ViewState::start's
-                        // otherwise
-        new_scene,      // text: a built-in shape; empty: a scene without layers
-        open,           // path: a scene
+        start_again,  // text: a kind of object, "film", "still", "part" or "keep": ViewState::start's
+                      // otherwise
+        new_scene,    // text: a built-in shape; empty: a scene without layers
+        open,         // path: a scene; a picture, mesh or splats become an untitled one
         open_demo,
         save,
         save_as,  // path

@@ -331,7 +331,6 @@ const Action table[] = {
     shape<Kind::new_scene, 5>("File/New"),
     shape<Kind::new_scene, 6>("File/New"),
     shape<Kind::new_scene, 7>("File/New"),
-    {"File", "New from picture...", {}, ask<Kind::new_from_file>},
     {"File", "Open...", ctrl('O'), ask<Kind::open>},
     {"File", "Open the demo", {}, ask<Kind::open_demo>},
     below_line({"File", "Save", ctrl('S'), ask<Kind::save>}),

@@ -26,8 +26,8 @@ const std::vector<CommandFile>& command_files() {
                             scenes = endings_of({FileKind::scene}),
                             sources = endings_of({FileKind::picture, FileKind::mesh, FileKind::splats});
     static const std::vector<CommandFile> files{
-        {Kind::new_from_file, "New scene from a picture, mesh or splat file", "pictures", sources},
-        {Kind::open, "Open a scene", "scenes", scenes},
+        {Kind::open, "Open a scene, or a picture, mesh or splat file as a new one", "scenes or pictures",
+         endings_of({FileKind::scene, FileKind::picture, FileKind::mesh, FileKind::splats})},
         {Kind::import_file, "Import as a layer", "pictures, meshes or splats", sources},
         {Kind::choose_picture, "Picture on the mesh", "pictures", pictures},
         {Kind::set_reference, "Picture to compare with", "pictures", pictures},

@@ -53,8 +53,8 @@ class CommandFlow {
 using Kind = Command::Kind;
 
 bool replaces_scene(Kind kind) {
-    return kind == Kind::quit || kind == Kind::open || kind == Kind::open_demo ||
-           kind == Kind::new_from_file || kind == Kind::new_scene || kind == Kind::recover;
+    return kind == Kind::quit || kind == Kind::open || kind == Kind::open_demo || kind == Kind::new_scene ||
+           kind == Kind::recover;
 }
 
 // Saving can go where the scene lies; an installed demo's folder is read-only.
@@ -66,7 +66,6 @@ const char* before_what(Kind kind) {
     switch (kind) {
         case Kind::quit:
             return " before leaving?";
-        case Kind::new_from_file:
         case Kind::new_scene:
             return " before making a new scene?";
         default:

@@ -125,7 +125,7 @@ void show_what_was_made(Session& session) {
 Command::Kind command_for(FileKind kind, bool fresh) {
     if (kind == FileKind::scene) return Command::Kind::open;
     if (kind == FileKind::look) return Command::Kind::apply_look;
-    return fresh ? Command::Kind::new_from_file : Command::Kind::import_file;
+    return fresh ? Command::Kind::open : Command::Kind::import_file;
 }
 
 /// Until what is seen, or is worked out of it, may change by itself; idle_due_s: it will not.

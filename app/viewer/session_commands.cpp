@@ -262,7 +262,6 @@ struct Entry {
 };
 
 constexpr Entry entries[] = {
-    {Kind::new_from_file, [](State& s, const Command& c) { open_file(s, c.path); }},
     {Kind::start_again, [](State& s, const Command& c) { start_again(s, c.text); }},
     {Kind::new_scene, new_scene},
     {Kind::open, [](State& s, const Command& c) { open_file(s, c.path); }},

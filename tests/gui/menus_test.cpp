@@ -52,10 +52,9 @@ TEST(MenusOfAnother, ItemsBecomeCommands) {
 
 TEST(MenusOfAnother, ItemsWithoutAFileAskForIt) {
     for (const std::string path :
-         {"File/New from picture...", "File/Open...", "File/Save", "File/Save as...",
-          "File/Import as a layer...", "File/Import camera...", "File/Export camera...",
-          "File/Export look...", "File/Apply look...", "File/Screenshot of the window...",
-          "File/Save the frame as seen...", "View/Load reference..."}) {
+         {"File/Open...", "File/Save", "File/Save as...", "File/Import as a layer...",
+          "File/Import camera...", "File/Export camera...", "File/Export look...", "File/Apply look...",
+          "File/Screenshot of the window...", "File/Save the frame as seen...", "View/Load reference..."}) {
         TestWindow window(example_document());
         window.choose(path);
         EXPECT_TRUE(window.has("file/path")) << path;

@@ -385,7 +385,7 @@ TEST_F(WindowFileDialog, PicturesAreSeenBeforeTheyAreChosen) {
         fs::copy_file(folder / "rings.png", folder / ("pictures/d" + std::to_string(100 + i) + ".png"));
     write_plain("pictures/z last.png", 200, 105, 106);
     start_settled();
-    choose("File/Import as a layer...");
+    person->press("ctrl+o");
     person->type("pictures");
     person->press("Return");
     EXPECT_TRUE(comes_true([&] { return seen(201, 40) && seen(40, 203); }));
