@@ -1,7 +1,7 @@
 // A pixel of an image on the screen: through exposure and view transform, alone, under another one or less another one.
 // The transform is that of engine/output/format.cpp for frames without alpha. What is chosen per image comes as defines
 // (a software rasteriser runs both sides of a branch): VIEW and VIEW_B of the images, TAPS_A and TAPS_B reads per axis,
-// DITHER; OVER lays B over A, DIFFERENCE takes it from A; MASKED: alpha is 1 where B lies, else 0.
+// DITHER; CHANNEL what is seen of a pixel, GAMMA bends it; OVER lays B over A, DIFFERENCE takes it from A; MASKED: alpha is 1 where B lies, else 0.
 
 const int VIEW_LINEAR = 0;
 const int VIEW_SRGB = 1;
@@ -20,17 +20,18 @@ uniform float difference_gain;
 #endif
 uniform vec4 place;  // upper left corner of the image in px from the target's lower left; 1 / size
 uniform float gain;  // 2^exposure
+uniform float bend;  // 1 / gamma
 uniform float codes;  // the target's largest of a channel; 0: it holds numbers
 
 layout(location = 0) out vec4 shown;
 
 // Mean over the pixel of the target, whose upper left corner is uv and whose sides are right and down.
-vec3 read_image(sampler2D image, int taps, vec2 uv, vec2 right, vec2 down) {
-    vec3 sum = vec3(0.0);
+vec4 read_image(sampler2D image, int taps, vec2 uv, vec2 right, vec2 down) {
+    vec4 sum = vec4(0.0);
     for (int j = 0; j < taps; ++j)
         for (int i = 0; i < taps; ++i) {
             vec2 at = (vec2(i, j) + 0.5) / float(taps);
-            sum += textureLod(image, uv + right * at.x + down * at.y, 0.0).rgb;
+            sum += textureLod(image, uv + right * at.x + down * at.y, 0.0);
         }
     return sum / float(taps * taps);
 }
@@ -57,6 +58,32 @@ vec3 apply_view(int view, vec3 light) {
     return view == VIEW_LINEAR ? x : srgb_curve(x);
 }
 
+float luminance(vec3 light) { return dot(light, vec3(0.2126, 0.7152, 0.0722)); }
+
+// CHANNEL as Inspection::Channel.
+vec3 shown_of(int view, vec4 read) {
+#if CHANNEL == 6
+    vec3 light = view != VIEW_NONE ? read.rgb * gain
+                                   : mix(pow((max(read.rgb, 0.0) + 0.055) / 1.055, vec3(2.4)), read.rgb / 12.92,
+                                         lessThanEqual(read.rgb, vec3(0.04045)));
+    return band_color(band_of(luminance(light)));
+#else
+#if CHANNEL == 0
+    vec3 value = apply_view(view, read.rgb);
+#elif CHANNEL == 4
+    vec3 value = vec3(clamp(read.a, 0.0, 1.0));
+#elif CHANNEL == 5
+    vec3 value = apply_view(view, vec3(luminance(read.rgb)));
+#else
+    vec3 value = apply_view(view, vec3(read[CHANNEL - 1]));
+#endif
+#ifdef GAMMA
+    value = pow(value, vec3(bend));
+#endif
+    return value;
+#endif
+}
+
 // As dither() in engine/output/format.cpp, in levels of 8 bits.
 vec3 dither(uvec2 px) {
     uvec3 lattice = uvec3(px.x * 0xC13FA9A9u + px.y * 0x91E10DA5u) + uvec3(0u, 0x9E3779B9u, 0x3C6EF372u);
@@ -68,13 +95,13 @@ vec3 dither(uvec2 px) {
 void main() {
     vec2 px = vec2(gl_FragCoord.x - place.x, place.y - gl_FragCoord.y);
     vec2 uv = (px - 0.5) * place.zw;
-    vec3 color = apply_view(VIEW, read_image(image_a, TAPS_A, uv, vec2(place.z, 0.0), vec2(0.0, place.w)));
+    vec3 color = shown_of(VIEW, read_image(image_a, TAPS_A, uv, vec2(place.z, 0.0), vec2(0.0, place.w)));
     float compared = 1.0;
 #ifdef WITH_B
     vec2 uv_b = b_origin + b_right * (px.x - 0.5) + b_down * (px.y - 0.5);
     vec2 middle_b = uv_b + 0.5 * (b_right + b_down);
     compared = all(greaterThanEqual(middle_b, vec2(0.0))) && all(lessThanEqual(middle_b, vec2(1.0))) ? 1.0 : 0.0;
-    vec3 other = apply_view(VIEW_B, read_image(image_b, TAPS_B, uv_b, b_right, b_down));
+    vec3 other = shown_of(VIEW_B, read_image(image_b, TAPS_B, uv_b, b_right, b_down));
 #endif
 #ifdef OVER
     color = mix(color, other, b_opacity * compared);

@@ -13,6 +13,7 @@
 #include "edit/settings.h"
 #include "edit/status.h"
 #include "objects/identify.h"
+#include "output/inspection.h"
 #include "scene/scene.h"
 
 namespace astrosplat {
@@ -101,7 +102,7 @@ struct ViewState : PanelSizes {
     float blink_hz = 2.0f;  // changes a second
     bool placing = false;   // the mouse in the view places the reference
 
-    float inspect_exposure = 0.0f;                               // stops; shown in amber while not 0
+    Inspection inspection;                                       // shown in amber while it is another
     OutputParams::View display = OutputParams::View::automatic;  // as [output] view has it
     bool gate = true, safe_areas = false, camera_path = true;
     bool selected_box = false, all_boxes = false;  // bounding boxes of layers

@@ -94,6 +94,8 @@ struct DisplayVariant {
     int taps_a = 1, taps_b = 1;
     enum class Mix { alone, over, difference } mix = Mix::alone;
     bool masked = false, dither = false;
+    int channel = 0;  // Inspection::Channel
+    bool gamma = false;
     auto operator<=>(const DisplayVariant&) const = default;
     /// Shows something through OpenColorIO.
     bool managed() const { return view_a == view_ocio || (mix != Mix::alone && view_b == view_ocio); }
@@ -108,9 +110,10 @@ int view_number(const DisplaySettings& settings, bool holds_display) {
 }
 
 ProgramSource source_of(const DisplayVariant& v, const OcioTables& ocio) {
-    ProgramSource source{.defines = {fmt::format("VIEW {}", v.view_a), fmt::format("TAPS_A {}", v.taps_a)},
+    ProgramSource source{.defines = {fmt::format("VIEW {}", v.view_a), fmt::format("TAPS_A {}", v.taps_a),
+                                     fmt::format("CHANNEL {}", v.channel)},
                          .vertex = {"screen_vertex.glsl"},
-                         .fragment = {"display_fragment.glsl"},
+                         .fragment = {"exposure_bands.glsl", "display_fragment.glsl"},
                          .samplers = {{"image_a", 0}, {"image_b", 1}}};
     if (v.mix != Mix::alone) {
         const char* mix = v.mix == Mix::over ? "OVER" : "DIFFERENCE";
@@ -119,6 +122,7 @@ ProgramSource source_of(const DisplayVariant& v, const OcioTables& ocio) {
     }
     if (v.masked) source.defines.push_back("MASKED");
     if (v.dither) source.defines.push_back("DITHER");
+    if (v.gamma) source.defines.push_back("GAMMA");
     if (v.managed()) {
         source.defines.push_back("WITH_OCIO");
         source.fragment_head = ocio.text();
@@ -265,13 +269,17 @@ struct Display::State {
         glUniform1f(p.uniform("difference_gain"), s.difference_gain);
     }
 
-    void draw(const PixelRect& r, const DisplayVariant& variant, const DisplaySettings& s) {
+    void draw(const PixelRect& r, DisplayVariant variant, const DisplaySettings& s) {
         if (!cut(r)) return;
+        variant.channel = static_cast<int>(s.inspection.channel);
+        variant.gamma = s.inspection.gamma != 1.0f;
         const GlProgram& p = programs.use(variant, s.ocio);
         glUniform4f(p.uniform("place"), s.x, static_cast<float>(drawn_height) - s.y, 1.0f / s.width,
                     1.0f / s.height);
         glUniform1f(p.uniform("codes"), codes);
-        glUniform1f(p.uniform("gain"), float(real::pow(2.0, double(s.exposure))));
+        glUniform1f(p.uniform("gain"),
+                    float(real::pow(2.0, double(s.exposure) + double(s.inspection.exposure))));
+        if (variant.gamma) glUniform1f(p.uniform("bend"), 1.0f / s.inspection.gamma);
         if (variant.mix != Mix::alone) set_b(p, s);
         triangle.draw();
     }
@@ -346,6 +354,7 @@ Display::Compared Display::read_compared(const DisplaySettings& settings, int ta
     state.begin_drawing(state.values);
     DisplaySettings alone = settings;
     alone.dither = false;
+    alone.inspection = {};
     alone.b_opacity = 1.0f;
     const auto read = [&](Image& side) {
         glReadPixels(r.x0, target_height - r.y1, r.x1 - r.x0, r.y1 - r.y0, GL_RGBA, GL_FLOAT,

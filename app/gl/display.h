@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/image.h"
+#include "output/inspection.h"
 #include "scene/reference_place.h"
 #include "scene/scene.h"
 
@@ -18,7 +19,8 @@ struct DisplaySettings {
     OutputParams::View view = OutputParams::View::srgb;
     std::shared_ptr<const DisplayTransform> ocio;  // in place of `view`; null: none
     float exposure = 0.0f;                         // stops
-    unsigned a = 0, b = 0;                         // textures; b 0: only a
+    Inspection inspection;
+    unsigned a = 0, b = 0;  // textures; b 0: only a
     /// Difference: a - b of display values times difference_gain, about middle grey; where b does not lie, a
     /// darker grey.
     enum class Mode { a, wipe, b, difference } mode = Mode::a;
@@ -44,8 +46,8 @@ class Display {
     /// Draws at target_width x target_height px, unless just that was drawn last; returns the texture (RGBA8,
     /// bottom row first as ImGui's ImVec2(0, 1) .. ImVec2(1, 0) expects).
     unsigned draw(const DisplaySettings& settings, int target_width, int target_height);
-    /// Display values of what a difference of a and b compares: the part of a target of this size that the
-    /// image covers, rows from the bottom. Alpha of b is 1 where b lies, else 0.
+    /// Display values, without inspection, of what a difference of a and b compares: the part of a target of
+    /// this size that the image covers, rows from the bottom. Alpha of b is 1 where b lies, else 0.
     struct Compared {
         Image a, b;
     };

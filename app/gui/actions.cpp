@@ -286,6 +286,19 @@ void render(F f) {
     open_render_dialog(f.document, f.view, kind);
 }
 
+template <Inspection::Channel channel>
+Action look_at(const char* label, Shortcut shortcut = {}) {
+    return {.menu = "View/Channels",
+            .label = label,
+            .shortcut = shortcut,
+            .run =
+                [](F f) {
+                    Inspection::Channel& seen = f.view.inspection.channel;
+                    seen = seen == channel ? Inspection::Channel::color : channel;
+                },
+            .checked = [](C f) { return f.view.inspection.channel == channel; }};
+}
+
 template <CompareMode mode>
 Action compare(const char* label) {
     return {.menu = "View",
@@ -365,10 +378,19 @@ const Action table[] = {
     {"View", "Blink", plain('X'), toggle_compare<CompareMode::blink>, nullptr,
      compares_by<CompareMode::blink>},
     compare<CompareMode::difference>("Difference"),
-    {"View", "Compare with the reference, not B", shift('B'), toggle_compare_with_reference, nullptr,
+    {"View", "Compare with the reference, not B", ctrl('B'), toggle_compare_with_reference, nullptr,
      compares_with_reference},
     {"View", "Front against its picture", plain('D'), toggle_compare<CompareMode::front>, has_front,
      compares_by<CompareMode::front>},
+    look_at<Inspection::Channel::color>("All colours"),
+    look_at<Inspection::Channel::red>("Red", shift('R')),
+    look_at<Inspection::Channel::green>("Green", shift('G')),
+    look_at<Inspection::Channel::blue>("Blue", shift('B')),
+    look_at<Inspection::Channel::alpha>("Alpha", shift('A')),
+    look_at<Inspection::Channel::luminance>("Luminance", shift('L')),
+    look_at<Inspection::Channel::stops>("Stops, in false colours", shift('E')),
+    below_line(
+        {"View/Channels", "Neutral exposure and colours", shift('N'), [](F f) { f.view.inspection = {}; }}),
     below_line({"View", "Load reference...", {}, ask<Kind::set_reference>}),
     {"View", "Place reference", plain('P'), toggle_placing, has_reference, is_placing},
     {"View", "Align reference to this view", {}, ask<Kind::align_reference>, has_reference},

@@ -311,10 +311,10 @@ int choice(GuiFrame& frame, const char* id, std::initializer_list<Segment> segme
 // A field that opens a list of choices.
 template <class Enum>
 void combo(GuiFrame& frame, const char* name, Enum& value, const std::vector<const char*>& names, float width,
-           const std::string& says) {
+           const std::string& says, ImU32 ink = color::text) {
     ImGui::SetNextItemWidth(px(width));
     const auto index = static_cast<std::size_t>(value);
-    ImGui::PushStyleColor(ImGuiCol_Text, index == 0 ? color::dim : color::text);
+    ImGui::PushStyleColor(ImGuiCol_Text, index == 0 ? color::dim : ink);
     const bool open =
         ImGui::BeginCombo((std::string("##") + name).c_str(), names[index], ImGuiComboFlags_NoArrowButton);
     ImGui::PopStyleColor();
@@ -373,7 +373,7 @@ void compare_settings(GuiFrame& frame) {
     if (!compares(view)) return;
     CompareWith with = view.compare_with;
     combo(frame, "compare with", with, {"with B", "with Ref"}, 76,
-          "What is compared with: the stored look B, or the reference picture (Shift+B)");
+          "What is compared with: the stored look B, or the reference picture (Ctrl+B)");
     if (with != view.compare_with) compare_with(frame, with);
     if (view.compare == CompareMode::difference) {
         ImGui::SameLine(0, px(small_gap));
@@ -406,13 +406,41 @@ void display_control(GuiFrame& frame) {
           "How the frame's linear light is shown; rendered files follow the panel Output");
 }
 
+void channel_control(GuiFrame& frame) {
+    combo(frame, "channel", frame.view.inspection.channel, {"RGB", "R", "G", "B", "A", "Lum", "Stops"}, 56,
+          "What of a pixel is seen: one channel alone (Shift+R, G, B, A), its luminance (Shift+L), or its "
+          "light "
+          "in stops as false colours (Shift+E)",
+          color::attention);
+}
+
+/// Of this window only: a number of the inspection that is amber while it is not `neutral`.
+void inspection_field(GuiFrame& frame, float& value, float neutral, DragField field) {
+    field.ink = value != neutral ? color::attention : color::dim;
+    drag_field(frame, value, field);
+    if (ImGui::IsItemClicked(ImGuiMouseButton_Right)) value = neutral;
+}
+
 void exposure_control(GuiFrame& frame) {
-    float& stops = frame.view.inspect_exposure;
-    drag_field(
-        frame, stops,
-        {"exposure", 0.02f, -20, 20, "%+.1f EV", 72, stops != 0 ? color::attention : color::dim,
+    inspection_field(
+        frame, frame.view.inspection.exposure, 0.0f,
+        {"exposure", 0.02f, -20, 20, "%+.1f EV", 72, 0,
          "Exposure of this window only, to look into dark and bright parts. Never saved. Right click: 0"});
-    if (ImGui::IsItemClicked(ImGuiMouseButton_Right)) stops = 0.0f;
+}
+
+void gamma_control(GuiFrame& frame) {
+    inspection_field(frame, frame.view.inspection.gamma, 1.0f,
+                     {"gamma", 0.01f, 0.2f, 5, "g %.2f", 56, 0,
+                      "Gamma of this window only, which lifts what is dark. Never saved. Right click: 1"});
+}
+
+void neutral_control(GuiFrame& frame) {
+    const bool neutral = frame.view.inspection == Inspection();
+    if (icon_button("neutral", Icon::cross, {px(control_height), px(control_height)}, px(10),
+                    neutral ? color::dim : color::attention,
+                    "All colours, exposure and gamma as they are (Shift+N)"))
+        frame.view.inspection = {};
+    note_item(frame, "neutral");
 }
 
 // From as many splats as hold the frame rate to all of them.
@@ -444,8 +472,13 @@ struct Tool {
     float width;  // at scale 1
     void (*draw)(GuiFrame&);
 };
-constexpr std::array<Tool, 4> right_tools{
-    {{84, display_control}, {72, exposure_control}, {158, preview_control}, {96, engine_control}}};
+constexpr std::array<Tool, 7> right_tools{{{84, display_control},
+                                           {56, channel_control},
+                                           {72, exposure_control},
+                                           {56, gamma_control},
+                                           {control_height, neutral_control},
+                                           {158, preview_control},
+                                           {96, engine_control}}};
 
 // The tools that had no room: the settings of the comparison where `with_compare`, and the tools from one on.
 void rest_of_tools(GuiFrame& frame, bool with_compare, std::size_t from) {

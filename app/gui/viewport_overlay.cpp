@@ -134,6 +134,37 @@ void draw_wipe(const GuiFrame& frame, const Rect& area, const Rect& frame_area) 
     ImGui::PopFont();
 }
 
+namespace {
+
+/// "red alone   +1.0 EV   in this window only": what is not neutral.
+std::string inspection_text(const Inspection& inspection) {
+    constexpr std::array<const char*, 7> channels{
+        "", "red alone   ", "green alone   ", "blue alone   ", "alpha alone   ", "luminance   ", "stops   "};
+    std::string text = channels[static_cast<std::size_t>(inspection.channel)];
+    if (inspection.exposure != 0.0f) text += fmt::format("{:+.1f} EV   ", inspection.exposure);
+    if (inspection.gamma != 1.0f) text += fmt::format("gamma {:.2f}   ", inspection.gamma);
+    return text.empty() ? text : text + "in this window only";
+}
+
+/// What the false colours mean, the brightest at the top; where a band begins, in stops about middle grey.
+/// `corner`: the upper right.
+void draw_stops(ImVec2 corner) {
+    constexpr float height = 15, width = 22;
+    constexpr std::array<const char*, shared::BAND_COUNT> begins{
+        "below", "-6", "-4", "-2", "-\xC2\xBD", "+\xC2\xBD", "+1\xC2\xBD", "white", "white +2"};
+    for (int band = 0; band < shared::BAND_COUNT; ++band) {
+        const float y = corner.y + px(height) * static_cast<float>(shared::BAND_COUNT - 1 - band);
+        const glm::vec3 c = shared::band_color(band);
+        fill_rect(Rect{corner.x - px(width), y, px(width), px(height)},
+                  ImGui::ColorConvertFloat4ToU32({c.x, c.y, c.z, 1.0f}));
+        const char* const begin = begins[static_cast<std::size_t>(band)];
+        shadowed({std::floor(corner.x - px(width + 6) - ImGui::CalcTextSize(begin).x), y}, color::text,
+                 begin);
+    }
+}
+
+}  // namespace
+
 void draw_view_line(const GuiFrame& frame, const Rect& area, const Rect& frame_area) {
     const OutputParams& output = frame.document.scene().output;
     const bool difference = frame.view.compare == CompareMode::front;
@@ -155,6 +186,10 @@ void draw_view_line(const GuiFrame& frame, const Rect& area, const Rect& frame_a
     ImGui::PushFont(small_font());
     const Rect room = room_for_words(frame, area, frame_area);
     shadowed({room.x + px(inset), room.y + px(inset)}, color::dim, text);
+    const std::string looks = inspection_text(frame.view.inspection);
+    const float right = room.end().x - px(inset), y = room.y + px(inset);
+    shadowed({std::floor(right - ImGui::CalcTextSize(looks.c_str()).x), y}, color::attention, looks);
+    if (frame.view.inspection.channel == Inspection::Channel::stops) draw_stops({right, y + px(20)});
     ImGui::PopFont();
 }
 

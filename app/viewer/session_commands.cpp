@@ -180,6 +180,7 @@ void snapshot(State& s, const Command&) {
     const bool final = shown.state == ViewFrameState::final;
     DisplaySettings alone = s.displayed;
     alone.b = 0;
+    alone.inspection = {};
     s.display.draw(alone, s.viewport_px.x, s.viewport_px.y);
     snapshots.add(store_look({snapshots.next_name(), s.view.frame, final ? shown.total : shown.shown,
                               final ? shown.seconds : 0.0},
@@ -191,7 +192,7 @@ void store_b(State& s, const Command& c) {
     const std::size_t index = s.snapshots.size();
     say(s.status,
         std::string("B is the look as it is now; ") +
-            (s.view.compare_with == CompareWith::b ? "the key A shows it" : "Shift+B compares with it"));
+            (s.view.compare_with == CompareWith::b ? "the key A shows it" : "Ctrl+B compares with it"));
     try {
         snapshot(s, c);
     } catch (const OutputError& error) {

@@ -152,7 +152,8 @@ DisplaySettings display_settings(const Session& session, const OutputParams& out
     DisplaySettings shown;
     shown.view = display_view(session.view.display, output.view);
     if (session.view.display == OutputParams::View::automatic) shown.ocio = session.color.transform();
-    shown.exposure = static_cast<float>(output.exposure) + session.view.inspect_exposure;
+    shown.exposure = static_cast<float>(output.exposure);
+    shown.inspection = session.view.inspection;
     shown.a = session.view_frame.texture();
     shown.x = place.x;
     shown.y = place.y;
@@ -292,6 +293,7 @@ void draw_viewport(Session& session, glm::ivec2 viewport_px, double now, bool hu
         rendered.view = shown.view;
         rendered.ocio = shown.ocio;
         rendered.exposure = shown.exposure;
+        rendered.inspection = shown.inspection;
         rendered.a = shown.a;
         shown = rendered;
     }

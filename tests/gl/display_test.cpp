@@ -80,6 +80,54 @@ TEST_F(DisplayPicture, EveryViewAsTheWriter) {
         }
 }
 
+/// Alone, bent and in bands; negative light and what is no number is dark.
+TEST_F(DisplayPicture, AnInspectionIsOfTheWritersPixels) {
+    using Channel = Inspection::Channel;
+    const Image image = ramp(width, height);
+    for (int c = 1; c <= 6; ++c)
+        for (const float gamma : {1.0f, 2.0f}) {
+            DisplaySettings settings = whole(image);
+            settings.exposure = 0.5f;
+            settings.inspection = {static_cast<Channel>(c), 1.0f, gamma};
+            const Shown shown = show(settings);
+            for (int y = 0; y < height; ++y)
+                for (int x = 4; x < width; ++x) {
+                    const float* const p = image.at(x, y);
+                    const float gain = std::exp2(1.5f),
+                                sum = 0.2126f * p[0] + 0.7152f * p[1] + 0.0722f * p[2];
+                    const float one = c <= 3 ? p[c - 1] : sum;
+                    const float view =
+                        c == 4 ? std::clamp(p[3], 0.0f, 1.0f) : apply_view(View::srgb, one * gain);
+                    const glm::vec3 band = shared::band_color(shared::band_of(sum * gain));
+                    for (int k = 0; k < 3; ++k)
+                        ASSERT_NEAR(float(shown.at(x, y)[k]),
+                                    255.0f * (c == 6 ? band[k] : std::pow(view, 1.0f / gamma)), 0.52f)
+                            << c << " " << x << " " << y << " " << k;
+                }
+        }
+}
+
+/// Both sides of a wipe are looked at alike; figures of a comparison are those of the pictures.
+TEST_F(DisplayPicture, WhatIsComparedIsInspectedAndMeasuredAsItIs) {
+    DisplaySettings settings = compared(grey(0.2f), grey(0.5f));
+    settings.mode = Mode::wipe;
+    settings.inspection.channel = Inspection::Channel::stops;
+    const Shown shown = show(settings);
+    for (const auto& [x, light] : {std::pair{4, 0.2f}, {width - 4, 0.5f}})
+        EXPECT_NEAR(float(shown.at(x, 9)[0]), 255.0f * shared::band_color(shared::band_of(light)).x, 0.51f);
+    Display display;
+    const Display::Compared inspected = display.read_compared(settings, width, height);
+    settings.inspection = {};
+    EXPECT_EQ(inspected.a.pixels, display.read_compared(settings, width, height).a.pixels);
+}
+
+TEST(ExposureBands, BeginAtStopsAboutMiddleGrey) {
+    const float stops[] = {-6.0f, -4.0f, -2.0f, -0.5f, 0.5f, 1.5f};
+    for (int i = 0; i < 6; ++i) EXPECT_FLOAT_EQ(shared::band_begin(i + 1), 0.18f * std::exp2(stops[i]));
+    for (int band = 0; band < shared::BAND_COUNT; ++band)
+        EXPECT_EQ(shared::band_of(shared::band_begin(band)), band);
+}
+
 // Matrix and root, a table, and the light itself: at most half a code of 8 bits, what OpenGL's roots lose,
 // and of the table of 33 what cards lose that find places between two entries to 1/256 of the step (the least
 // that Direct3D asks for; OpenGL names none).

@@ -178,7 +178,7 @@ TEST_P(References, FirstStart) {
 TEST_P(References, FreeViewWithOverlays) {
     window.status.view_frame.state = ViewFrameState::preview;
     window.view.view = ViewKind::free;
-    window.view.inspect_exposure = 2.5f;
+    window.view.inspection.exposure = 2.5f;
     window.view.preview_share = 0.25f;
     window.view.safe_areas = true;
     window.view.layer = 1;

@@ -82,7 +82,7 @@ TEST_F(ToolRowTest, WhatIsComparedWithIsChosen) {
     EXPECT_FALSE(window.has("place/Place"));
     EXPECT_TRUE(window.take_commands().empty());
     window.status.reference = ReferenceStatus{0, 1.5, ""};
-    window.tap('B', false, true);
+    window.tap('B', true);
     EXPECT_EQ(window.view.compare_with, CompareWith::reference);
     window.frame();
     window.click("compare/A|Ref");
@@ -91,11 +91,39 @@ TEST_F(ToolRowTest, WhatIsComparedWithIsChosen) {
     EXPECT_TRUE(window.take_commands().empty());
 }
 
+/// One channel alone, and back by the same key; no key of the looks that are compared is lost.
+TEST_F(ToolRowTest, ChannelsAndExposureOfTheView) {
+    using Channel = Inspection::Channel;
+    for (const auto& [key, channel] : {std::pair{'R', Channel::red},
+                                       {'G', Channel::green},
+                                       {'B', Channel::blue},
+                                       {'A', Channel::alpha},
+                                       {'L', Channel::luminance},
+                                       {'E', Channel::stops}}) {
+        window.tap(key, false, true);
+        EXPECT_EQ(window.view.inspection.channel, channel) << key;
+        EXPECT_EQ(window.view.compare, CompareMode::a);
+        window.tap(key, false, true);
+        EXPECT_EQ(window.view.inspection.channel, Channel::color) << key;
+    }
+    window.choose("View/Channels/Alpha");
+    EXPECT_EQ(window.view.inspection.channel, Channel::alpha);
+    window.drag(window.at("gamma"), {30, 0});
+    window.drag(window.at("exposure"), {30, 0});
+    EXPECT_GT(window.view.inspection.gamma, 1.0f);
+    EXPECT_GT(window.view.inspection.exposure, 0.0f);
+    window.click(window.at("gamma"), 1);
+    EXPECT_EQ(window.view.inspection.gamma, 1.0f);
+    window.click("neutral");
+    EXPECT_EQ(window.view.inspection, Inspection());
+    EXPECT_FALSE(window.document.edited()) << "nothing of it is the scene's";
+}
+
 TEST_F(ToolRowTest, WhatIsMissingIsAskedForOrSaid) {
     window.click("compare/A|B");
     EXPECT_EQ(window.take_only(Kind::say).text,
               "Nothing is stored as B yet: the key B stores the look as it is");
-    window.tap('B', false, true);
+    window.tap('B', true);
     EXPECT_TRUE(window.has("file/path")) << "there is no reference yet";
 }
 
