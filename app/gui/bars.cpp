@@ -472,13 +472,14 @@ struct Tool {
     float width;  // at scale 1
     void (*draw)(GuiFrame&);
 };
+// The ones that are looked for most first: the last go behind "..." where there is no room.
 constexpr std::array<Tool, 7> right_tools{{{84, display_control},
-                                           {56, channel_control},
-                                           {72, exposure_control},
-                                           {56, gamma_control},
-                                           {control_height, neutral_control},
                                            {158, preview_control},
-                                           {96, engine_control}}};
+                                           {96, engine_control},
+                                           {72, exposure_control},
+                                           {56, channel_control},
+                                           {56, gamma_control},
+                                           {control_height, neutral_control}}};
 
 // The tools that had no room: the settings of the comparison where `with_compare`, and the tools from one on.
 void rest_of_tools(GuiFrame& frame, bool with_compare, std::size_t from) {
