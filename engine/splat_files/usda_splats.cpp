@@ -90,7 +90,9 @@ int degree_of(const UsdText& text, const GaussianPrim& own, std::string_view lis
     return each >= 16 ? 3 : each >= 9 ? 2 : each >= 4 ? 1 : 0;
 }
 
-GaussianPrim prim_of(const UsdText& text, std::span<const UsdPrim* const> chain, const glm::dmat4& world) {
+/// Nothing where it, or one above it, is invisible.
+std::optional<GaussianPrim> prim_of(const UsdText& text, std::span<const UsdPrim* const> chain,
+                                    const glm::dmat4& world) {
     const UsdPrim& prim = *chain.back();
     if (const std::string unread = left_out(chain); !unread.empty())
         log_warning(fmt::format("{}: {}", text.file, unread));
@@ -99,6 +101,8 @@ GaussianPrim prim_of(const UsdText& text, std::span<const UsdPrim* const> chain,
     if (!times.empty())
         log_warning(fmt::format("{}: the motion of '{}' is not followed: it stands as at time code 0",
                                 text.file, printable(prim.name)));
+    for (const UsdPrim* const each : chain)
+        if (each->attribute("visibility").value.is("invisible")) return {};
     GaussianPrim own;
     own.prim = &prim;
     const std::optional<GaussianPlacement> placement = gaussian_placement(world);
@@ -124,7 +128,8 @@ void add_prims(const UsdText& text, const std::vector<UsdPrim>& prims, std::vect
         if (!prim.defined) continue;
         chain.push_back(&prim);
         if (prim.type == usd_gaussians)
-            all.push_back(prim_of(text, chain, above * world_from_prim(chain, 0.0, text.file)));
+            if (const auto own = prim_of(text, chain, above * world_from_prim(chain, 0.0, text.file)))
+                all.push_back(*own);
         add_prims(text, prim.children, chain, above, all);
         chain.pop_back();
     }
@@ -142,7 +147,8 @@ std::vector<GaussianPrim> prims_of(const UsdText& text, const UsdStage& stage) {
     std::vector<GaussianPrim> all;
     std::vector<const UsdPrim*> chain;
     add_prims(text, stage.prims, chain, y_up_from(stage), all);
-    if (all.empty()) bad_input(text.file, fmt::format("Gaussians ({})", usd_gaussians), stage.none_found());
+    if (all.empty())
+        bad_input(text.file, fmt::format("visible Gaussians ({})", usd_gaussians), stage.none_found());
     return all;
 }
 

@@ -153,6 +153,7 @@ bool is_kept(std::string_view name) {
                                 "horizontalApertureOffset",
                                 "verticalApertureOffset",
                                 "projection",
+                                "visibility",
                                 "radiance:sphericalHarmonicsDegree"};
     return name.starts_with("xformOp") || std::ranges::find(others, name) != others.end();
 }
@@ -226,8 +227,9 @@ class Parser {
         }
     }
 
-    // { 1: value, 2: value, }; what is None is no sample.
-    void read_samples(UsdAttribute* attribute) {
+    // { 1: value, 2: value, }; what is None is no sample: true where there are such.
+    bool read_samples(UsdAttribute* attribute) {
+        bool some_none = false;
         scan_.require('{');
         while (!scan_.take('}')) {
             const std::size_t begin = scan_.place();
@@ -244,12 +246,12 @@ class Parser {
             UsdValue value;
             read_value(attribute ? &value : nullptr, 0);
             scan_.take(',');
-            if (attribute && (!value.numbers.empty() || !value.words.empty()))
-                attribute->samples.emplace_back(*time, std::move(value));
+            const bool none = value.numbers.empty() && value.words.empty();
+            some_none |= attribute && none;
+            if (attribute && !none) attribute->samples.emplace_back(*time, std::move(value));
         }
-        if (!attribute) return;
-        auto& samples = attribute->samples;
-        std::ranges::stable_sort(samples, {}, &std::pair<double, UsdValue>::first);
+        if (attribute) std::ranges::stable_sort(attribute->samples, {}, &std::pair<double, UsdValue>::first);
+        return some_none;
     }
 
     // ( key = value ... ), of which the first word of a key that stands alone is its name.
@@ -428,7 +430,8 @@ class Parser {
                                      "shutter:close", "stereoRole",    "exposure"};
         const bool camera = std::ranges::find(cameras, name) != cameras.end();
         const std::string base = name.substr(0, name.find('.'));
-        if ((list && samples) || (base != name && (is_kept(base) || is_list(base))))
+        const bool still = list || name == "visibility";
+        if ((still && samples) || (base != name && (is_kept(base) || is_list(base))))
             prim.unread.push_back(samples ? name + ".timeSamples" : name);
         UsdAttribute told;  // of a camera, where it is other than USD's own
         UsdAttribute* const attribute = is_kept(name) || list ? &prim.attributes[name]
@@ -436,11 +439,13 @@ class Parser {
                                                               : nullptr;
         if (list && !samples && scan_.peek() == '[') {
             attribute->list = scan_.numbers();
+        } else if (still && samples) {
+            read_samples(nullptr);
         } else if (list) {
-            samples ? read_samples(nullptr) : read_value(nullptr, 0);
+            read_value(nullptr, 0);
         } else if (samples) {
             if (attribute) attribute->samples.clear();
-            read_samples(attribute);
+            if (read_samples(attribute)) prim.unread.push_back("None in " + name + ".timeSamples");
         } else {
             UsdValue value;
             read_value(attribute ? &value : nullptr, 0);

@@ -320,7 +320,7 @@ TEST_F(Commands, InfoDescribesEveryKind) {
     EXPECT_EQ(info("cam.usda").at("projection"), "perspective");
     EXPECT_EQ(info("cam.usda").at("shifted"), true);
     write_text(folder / "none.usda", "#usda 1.0\n");
-    expect_one_line(run({"info", "none.usda"}), 2, "expected Gaussians");
+    expect_one_line(run({"info", "none.usda"}), 2, "expected visible Gaussians");
     write_text(folder / "a.json", "[]");
     expect_one_line(run({"info", "a.json"}), 2, "expected a transforms.json");
     write_text(folder / "move.csv", "frame,camera.fov\n2,30\n9,40\n");

@@ -387,6 +387,16 @@ TEST_F(Usda, CurvesAndConnectionsAreSaid) {
     EXPECT_HAS(track.warnings[0], "focalLength.spline, verticalAperture.connect of 'cam' are not followed");
 }
 
+TEST_F(Usda, SamplesThatAreNoneAreSaid) {
+    const CameraTrack track = read(camera(R"(
+        double3 xformOp:translate.timeSamples = { 0: (0, 0, 0), 1: None, 2: (2, 0, 0) }
+        uniform token[] xformOpOrder = ["xformOp:translate"]
+        float focalLength.timeSamples = { 0: 50, 2: None }
+)"));
+    ASSERT_EQ(track.warnings.size(), 1u);
+    EXPECT_HAS(track.warnings[0], "shot.usda: None in xformOp:translate.timeSamples, None in focalLength");
+}
+
 // UsdGeomCamera: focalLength 50, apertures 20.955 x 15.2908, offsets as parts of the apertures.
 TEST_F(Usda, LensesAreThoseOfTheSchemaWhereTheFileSaysNone) {
     const CameraTrack none = read(camera(""));

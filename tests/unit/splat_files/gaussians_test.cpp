@@ -329,10 +329,36 @@ def Scope "B" ( references = @more.usda@ )
     EXPECT_EQ(set.scale[2], glm::vec3(1.0f));
 }
 
+// UsdGeomImageable: what is invisible hides all below it.
+TEST_F(GaussianFiles, UsdaThatIsInvisibleIsNotShown) {
+    const auto usda = [](const std::string& above, const std::string& own) {
+        return "#usda 1.0\ndef Xform \"up\"\n{\n" + above + "\ndef ParticleField3DGaussianSplat \"A\"\n{\n" +
+               own + "\npoint3f[] positions = [(1, 2, 3)]\n}\n}\n" +
+               "def ParticleField3DGaussianSplat \"B\"\n{\npoint3f[] positions = [(4, 5, 6)]\n" +
+               "token visibility = \"inherited\"\n}\n";
+    };
+    const std::string hidden = "token visibility = \"invisible\"";
+    {
+        const Said said;
+        EXPECT_EQ(read(usda("", ""), "a.usda").size(), 2);
+        for (const std::string& text : {usda(hidden, ""), usda("", hidden)}) {
+            const SplatSet set = read(text, "a.usda");
+            ASSERT_EQ(set.size(), 1);
+            EXPECT_EQ(set.position[0], glm::vec3(4, 5, 6));
+        }
+        EXPECT_TRUE(said.warnings.empty());
+    }
+    EXPECT_EQ(error_usda(replaced(usda(hidden, ""), "inherited", "invisible")),
+              "a.usda: expected visible Gaussians (ParticleField3DGaussianSplat), found none");
+    const Said said;
+    EXPECT_EQ(read(usda("", "token visibility.timeSamples = { 1: \"invisible\" }"), "a.usda").size(), 2);
+    EXPECT_HAS(said.one_warning(), "a.usda: visibility.timeSamples of 'A' are not followed");
+}
+
 TEST_F(GaussianFiles, WrongUsda) {
     const std::string good = usda_of(capture(2, 1), 1);
     EXPECT_EQ(error_usda("#usda 1.0\ndef Xform \"World\"\n{\n}\n"),
-              "a.usda: expected Gaussians (ParticleField3DGaussianSplat), found none");
+              "a.usda: expected visible Gaussians (ParticleField3DGaussianSplat), found none");
     EXPECT_EQ(error_usda("PXR-USDC\1"),
               "a.usda: expected USD as text (usdcat FILE -o FILE.usda makes it), found a binary file");
     EXPECT_EQ(
