@@ -10,7 +10,7 @@
 namespace astrosplat {
 
 /// Raised whenever generation, or the reading of meshes and pictures, gives other bits than before.
-inline constexpr int set_version = 46;
+inline constexpr int set_version = 47;
 
 /// The same of the preparation of pictures.
 inline constexpr int prepare_version = 6;

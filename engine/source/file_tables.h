@@ -17,6 +17,9 @@ struct FileTable {
 /// file ends before they do. Throws InputError, Cancelled.
 std::vector<FileTable> fits_tables(const fs::path& file, const Progress& progress = {});
 
+/// Of "J2000", "2000.0" and empty texts: places are those of ICRS.
+bool is_equinox_2000(std::string_view equinox);
+
 /// Whether a text begins as a VOTable does.
 bool is_votable(std::string_view text);
 

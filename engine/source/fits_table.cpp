@@ -92,6 +92,11 @@ class FitsTable final : public RowTable {
 
 }  // namespace
 
+bool is_equinox_2000(std::string_view equinox) {
+    if (equinox.starts_with('J') || equinox.starts_with('j')) equinox.remove_prefix(1);
+    return equinox.empty() || parse_double(equinox) == 2000.0;
+}
+
 std::vector<FileTable> fits_tables(const fs::path& file, const Progress& progress) {
     const std::shared_ptr<fitsfile> in(open_fits(file, progress));
     std::vector<FileTable> tables;
@@ -106,10 +111,10 @@ std::vector<FileTable> fits_tables(const fs::path& file, const Progress& progres
         if (!frame.empty() && frame != "ICRS" && frame != "FK5")
             log_warning(fmt::format("{}: RADESYS = '{}' is not followed: places are taken for ICRS",
                                     file.string(), printable(frame)));
-        double equinox = 2000.0;
-        if (frame != "ICRS" && read_fits_keyword(in.get(), TDOUBLE, "EQUINOX", &equinox) && equinox != 2000.0)
+        const std::string equinox = fits_text(in.get(), "EQUINOX");
+        if (frame != "ICRS" && !is_equinox_2000(equinox))
             log_warning(fmt::format("{}: EQUINOX = {} is not followed: places are taken for ICRS",
-                                    file.string(), shortest(equinox)));
+                                    file.string(), printable(equinox)));
         tables.push_back({fmt::format("HDU {}{}{}", hdu, name.empty() ? "" : " ", name),
                           std::make_unique<FitsTable>(file, in)});
     }

@@ -82,11 +82,14 @@ float coordinate(const Reader& r, std::string_view word) {
     return float(*value);
 }
 
+// Of vertices without one until all are read.
+constexpr glm::vec3 no_color(std::numeric_limits<float>::infinity());
+
 void read_position(Reader& r, const Words& words) {
     if (words.size() < 4) bad_line(r, "three coordinates after 'v'", fmt::format("{}", words.size() - 1));
     r.mesh.positions.emplace_back(coordinate(r, words[1]), coordinate(r, words[2]), coordinate(r, words[3]));
     if (words.size() < 7) return;
-    r.mesh.vertex_colors.resize(r.mesh.positions.size(), glm::vec3(1.0f));
+    r.mesh.vertex_colors.resize(r.mesh.positions.size(), no_color);
     for (int c = 0; c < 3; ++c) r.mesh.vertex_colors.back()[c] = coordinate(r, words[4 + std::size_t(c)]);
 }
 
@@ -332,7 +335,7 @@ void check_whole(Reader& r) {
 void scale_vertex_colors(Reader& r) {
     bool beyond = false, codes = true;
     for (const glm::vec3& color : r.mesh.vertex_colors)
-        for (int c = 0; c < 3; ++c) {
+        for (int c = 0; c < 3 && color != no_color; ++c) {
             beyond = beyond || color[c] > 1.0f;
             codes = codes && color[c] == std::floor(color[c]) && color[c] >= 0.0f && color[c] <= 255.0f;
         }
@@ -378,7 +381,8 @@ Mesh load_obj(const fs::path& file, const Progress& progress) {
         log_warning(fmt::format("{}: its {} that are no faces (l, p, curv, surf) are not followed",
                                 file.string(), counted(r.others, "element")));
     scale_vertex_colors(r);
-    if (!r.mesh.vertex_colors.empty()) r.mesh.vertex_colors.resize(r.mesh.positions.size(), glm::vec3(1.0f));
+    if (!r.mesh.vertex_colors.empty()) r.mesh.vertex_colors.resize(r.mesh.positions.size(), no_color);
+    std::ranges::replace(r.mesh.vertex_colors, no_color, glm::vec3(1.0f));
     return std::move(r.mesh);
 }
 

@@ -199,9 +199,12 @@ struct TableFinder : pugi::xml_tree_walker {
         const auto said = [&](const char* name) { return lower_case(node.attribute(name).value()); };
         if (local_name(node) == "TABLE") tables.push_back(node);
         if (local_name(node) == "COOSYS" && said("system").find("icrs") == std::string::npos &&
-            !(said("system").ends_with("fk5") && (said("equinox").empty() || said("equinox") == "j2000")))
+            !(said("system").ends_with("fk5") && is_equinox_2000(said("equinox"))))
             unfollowed = fmt::format("coordinate system {} {} is not followed: places are taken for ICRS",
                                      shown(said("system")), printable(said("equinox")));
+        if (local_name(node) == "PARAM" && said("name") == "equinox" && !is_equinox_2000(said("value")))
+            unfollowed = fmt::format("EQUINOX = {} is not followed: places are taken for ICRS",
+                                     printable(node.attribute("value").value()));
         if (said("name") == "query_status" && said("value") == "overflow")
             unfollowed = "QUERY_STATUS is OVERFLOW: rows are missing, the service left them out";
         return true;

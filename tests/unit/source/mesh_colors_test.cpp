@@ -113,5 +113,14 @@ TEST_F(MeshColors, WholeNumbersOfVerticesAreCodes) {
     EXPECT_HAS(said.one_warning(), "its vertex colours are whole numbers: taken as parts of 255");
 }
 
+TEST_F(MeshColors, VerticesWithoutCodesAreWhite) {
+    const fs::path file =
+        folder.file("w.obj", "v 9 9 9\nv 0 0 0 255 0 51\nv 1 0 0\nv 1 1 0 0 0 255\nv 2 2 2\nf 2 3 4\n");
+    const std::vector<glm::vec3> wanted = {{1, 1, 1}, {1, 0, 0.2f}, {1, 1, 1}, {0, 0, 1}, {1, 1, 1}};
+    EXPECT_EQ(load_obj(file).vertex_colors, wanted);
+    const fs::path parts = folder.file("p.obj", "v 0 0 0\nv 0 1 0 1 0 0.5\nv 1 0 0\nf 1 2 3\n");
+    EXPECT_EQ(load_obj(parts).vertex_colors, (std::vector<glm::vec3>{{1, 1, 1}, {1, 0, 0.5f}, {1, 1, 1}}));
+}
+
 }  // namespace
 }  // namespace astrosplat

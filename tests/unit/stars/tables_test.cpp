@@ -356,6 +356,10 @@ TEST(VoTable, WhatItSaysOfItsPlacesAndRowsIsSaid) {
     EXPECT_EQ(said_of("<COOSYS ID='a' system='ICRS'/><COOSYS ID='b' system='eq_FK5' equinox='J2000'/>"), "");
     EXPECT_EQ(said_of("<COOSYS ID='a' system='eq_FK4' equinox='B1950'/>"),
               "t.vot: its coordinate system 'eq_fk4' b1950 is not followed: places are taken for ICRS");
+    EXPECT_EQ(said_of("<COOSYS ID='a' system='eq_FK5' equinox='2000.0'/>"), "");
+    EXPECT_EQ(said_of("<PARAM name='EQUINOX' datatype='char' arraysize='*' value='J2000.0'/>"), "");
+    EXPECT_EQ(said_of("<PARAM name='EQUINOX' datatype='char' arraysize='*' value='B1950'/>"),
+              "t.vot: its EQUINOX = B1950 is not followed: places are taken for ICRS");
     EXPECT_HAS(said_of("<COOSYS ID='a' system='galactic'/>"), "coordinate system 'galactic'");
     EXPECT_HAS(said_of("<INFO name='QUERY_STATUS' value='OVERFLOW'/>"),
                "QUERY_STATUS is OVERFLOW: rows are missing");
@@ -390,8 +394,11 @@ TEST(FitsTables, AFrameThatIsNotFollowedIsSaid) {
     };
     EXPECT_EQ(said_of("RADESYS = 'ICRS'"), "");
     EXPECT_HAS(said_of("RADESYS = 'FK4'"), "RADESYS = 'FK4' is not followed: places are taken for ICRS");
-    EXPECT_HAS(said_of("EQUINOX =               1950.0"), "EQUINOX = 1950 is not followed");
-    EXPECT_EQ(said_of("EQUINOX =               2000.0"), "");
+    EXPECT_HAS(said_of("EQUINOX =               1950.0"), "EQUINOX = 1950.0 is not followed");
+    EXPECT_HAS(said_of("EQUINOX = 'B1950   '"), "EQUINOX = B1950 is not followed: places are taken for ICRS");
+    for (const char* const usual :
+         {"              2000.0", "'J2000   '", "'J2000.0 '", "'2000.0  '", "'       '"})
+        EXPECT_EQ(said_of(fmt::format("EQUINOX = {}", usual).c_str()), "") << usual;
     const fs::path flux = table_with("TUNIT3  = 'Jy'");
     EXPECT_EQ(kind_of_catalogue(flux), CatalogueKind::sky) << "or info would look for a picture";
     EXPECT_HAS(ERROR_OF(read_catalogue(flux)), "found no mag (but mag in 'Jy')");
