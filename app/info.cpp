@@ -324,6 +324,8 @@ Report describe(const fs::path& file) {
             if (is_camera_file(file)) return describe_camera(file);
             if (is_keyframe_table(file)) return describe_keyframes(file);
             if (format_of_file(file) && format_of_file(file)->id == "table") return describe_catalogue(file);
+            if (const std::string_view advice = conversion_advice(file); !advice.empty())
+                bad_input(file, "a format that is read", file.extension().string() + std::string(advice));
             return is_fits(file) ? describe_fits_file(file) : describe_image(file);
     }
 }

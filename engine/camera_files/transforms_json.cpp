@@ -5,6 +5,7 @@
 #include <glm/geometric.hpp>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "core/error.h"
 #include "core/file.h"
@@ -78,6 +79,7 @@ std::optional<Projection> projection_of(const std::string& model) {
 /// What is told of all frames' lenses, each once: where it first holds.
 struct LensWords {
     std::string distortion, pixels, middle, model, sizes, axes;
+    std::set<std::string> unread;
 };
 
 /// Where the middle of a frame lies, and what is told of its lens.
@@ -90,6 +92,11 @@ void read_shift(const Json& frame, const Json& all, TrackSample& sample, CameraT
             distortion += fmt::format("{}{} = {}", distortion.empty() ? "" : ", ", name, shortest(k));
     if (words.distortion.empty() && !distortion.empty())
         words.distortion = distortion + ": distortions are left out";
+    for (const char* name : {"distortion_params", "fisheye_crop_radius", "rolling_shutter",
+                             "rolling_shutter_offset", "rolling_shutter_time"})
+        if (const Json& told = (frame.contains(name) ? frame : all).value(name, Json());
+            told.dump().find_first_of("123456789") != std::string::npos)  // not null or zeros
+            words.unread.insert(name);
     const auto w = number("w"), h = number("h"), fl_x = number("fl_x"), fl_y = number("fl_y"),
                cx = number("cx"), cy = number("cy");
     if (fl_x && fl_y && std::fabs(*fl_x - *fl_y) > 0.001 * std::fabs(*fl_y))
@@ -172,6 +179,9 @@ CameraTrack read_transforms_json(const fs::path& file, const FrameRate&) try {
     for (const std::string& word :
          {words.model, words.distortion, words.pixels, words.middle, words.sizes, words.axes})
         if (!word.empty()) track.warnings.push_back(fmt::format("{}: {}", file.string(), word));
+    if (!words.unread.empty())
+        track.warnings.push_back(fmt::format("{}: its values of {} are not followed", file.string(),
+                                             fmt::join(words.unread, ", ")));
     return track;
 } catch (const Json::exception& error) {  // a value of another type
     bad_input(file, "a transforms.json", printable(error.what()));

@@ -151,6 +151,8 @@ std::string names_of(FileKind kind, FileUse use) {
 
 std::string_view conversion_advice(const fs::path& file) {
     const std::string name = lower_case(file.filename().string());
+    if (name.ends_with(".abc")) return " (Alembic is not read: save cameras as .usda or .chan)";
+    if (name.ends_with(".fbx")) return " (FBX is not read: save cameras as .usda or .chan)";
     return name.ends_with(".ksplat") || name == "meta.json" ? " (splat-transform makes a .ply of it)" : "";
 }
 

@@ -62,8 +62,8 @@ std::vector<std::string> endings_of(FileUse use);
 /// "PDA, PLY or SPLATS": the names of a kind's formats, for messages; without those that need a converter.
 std::string names_of(FileKind kind, FileUse use = FileUse::read);
 
-/// What to do with splats that nothing here reads, .ksplat and SOG as a folder, behind "found": "
-/// (splat-transform makes a .ply of it)". Empty for other files.
+/// What to do with what nothing here reads, splats in .ksplat and SOG as a folder, cameras in Alembic and
+/// FBX, behind "found": " (splat-transform makes a .ply of it)". Empty for other files.
 std::string_view conversion_advice(const fs::path& file);
 
 }  // namespace astrosplat

@@ -65,6 +65,18 @@ TEST_F(Commands, InfoOfAPictureThatCannotBeReadSaysWhy) {
     EXPECT_HAS(expect_success(run({"info", "cut.ppm"})).err, "cut.ppm: cannot be read as a picture: ");
 }
 
+TEST_F(Commands, InfoNamesTheFormatsThatAreNotRead) {
+    write_text(folder / "c.abc", "Ogawa\xff");
+    write_text(folder / "c.FBX", "Kaydara FBX Binary  ");
+    write_text(folder / "c.ksplat", "x");
+    expect_one_line(run({"info", "c.abc"}), 2,
+                    "c.abc: expected a format that is read, found .abc (Alembic is not read: save cameras as "
+                    ".usda or .chan)");
+    expect_one_line(run({"info", "c.FBX"}), 2,
+                    "found .FBX (FBX is not read: save cameras as .usda or .chan)");
+    expect_one_line(run({"info", "c.ksplat"}), 2, "found .ksplat (splat-transform makes a .ply of it)");
+}
+
 TEST_F(Commands, ConvertRefusesWhatItShould) {
     expect_one_line(run({"convert", "stars.pda", "stars.xyz"}), 2, ".splats");
     expect_one_line(run({"convert", "stars.pda", "dust.pda"}), 2, "--overwrite");

@@ -221,6 +221,19 @@ TEST_F(TransformsJson, TheMiddleShiftsTheFrameAndDistortionsAreTold) {
     EXPECT_FALSE(read(two(R"("w":1920,"h":1000,"fl_x":500,"cx":960,"cy":500,)")).has_shift);
 }
 
+TEST_F(TransformsJson, WhatElseItSaysOfLensesIsToldWhereItIsNotZero) {
+    const CameraTrack track =
+        read(two(R"("fisheye_crop_radius":900.5,"rolling_shutter_time":0.01,"rolling_shutter":[0,0,0.5,0],)",
+                 R"("distortion_params":[0.1,0,0,0,0,0],)"));
+    ASSERT_EQ(track.warnings.size(), 1u);
+    EXPECT_HAS(track.warnings[0],
+               "transforms.json: its values of distortion_params, fisheye_crop_radius, rolling_shutter, "
+               "rolling_shutter_time are not followed");
+    const CameraTrack none = read(
+        two(R"("fisheye_crop_radius":null,"rolling_shutter_time":0.0,"distortion_params":[0,0.0,0,0,0,0],)"));
+    EXPECT_TRUE(none.warnings.empty());
+}
+
 TEST_F(TransformsJson, SizesBesideTheMatricesAreTold) {
     const std::string applied = R"("applied_transform":[[0,1,0,0],[1,0,0,0],[0,0,-1,0]],"applied_scale":3,)";
     const CameraTrack plain = read(two(applied + R"("scale":1,"offset":[0,0,0],)"));
