@@ -38,8 +38,8 @@ void parallel_each(Index count, std::int64_t chunk, const Body& body) {
 void parallel_parts(std::size_t count, const Progress& progress,
                     const std::function<void(std::size_t part)>& body);
 
-/// While it lives, the loops that this thread calls throw Cancelled before their next chunk once `progress` is
-/// asked to stop: long work of many short loops need not ask anywhere else.
+/// While it lives, the loops that this thread calls throw Cancelled before their next chunk once `progress`
+/// is asked to stop: long work of many short loops need not ask anywhere else.
 class StoppableLoops {
   public:
     explicit StoppableLoops(const Progress& progress);

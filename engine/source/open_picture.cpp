@@ -220,6 +220,29 @@ std::optional<double> check_tiff(const fs::path& file, int page) {
     return {};
 }
 
+TiffColors colors_of_tiff(const fs::path& file, int page) {
+    constexpr std::array d65_white{0.3127f, 0.3290f};
+    TiffColors found;
+    const QuietStderr quiet;
+    const std::unique_ptr<TIFF, void (*)(TIFF*)> tiff(TIFFOpen(file.c_str(), "r"), TIFFClose);
+    if (!tiff || !TIFFSetDirectory(tiff.get(), static_cast<tdir_t>(page))) return found;
+    const float *primaries = nullptr, *white = nullptr;
+    if (TIFFGetField(tiff.get(), TIFFTAG_PRIMARYCHROMATICITIES, &primaries) == 1) {
+        std::array<float, 8>& all = found.primaries.emplace();
+        std::copy_n(primaries, 6, all.begin());
+        const bool has_white = TIFFGetField(tiff.get(), TIFFTAG_WHITEPOINT, &white) == 1;
+        std::copy_n(has_white ? white : d65_white.data(), 2, all.begin() + 6);
+    }
+    std::array<const std::uint16_t*, 3> curves{};
+    std::uint16_t bits = 0;
+    if (TIFFGetField(tiff.get(), TIFFTAG_BITSPERSAMPLE, &bits) == 1 && bits <= 16 &&
+        TIFFGetField(tiff.get(), TIFFTAG_TRANSFERFUNCTION, &curves[0], &curves[1], &curves[2]) == 1)
+        for (std::size_t c = 0; c < 3; ++c)
+            for (std::size_t i = 0; i < std::size_t{1} << bits; ++i)
+                found.transfer[c].push_back(float((curves[c] ? curves[c] : curves[0])[i]) / 65535.0f);
+    return found;
+}
+
 bool bmp_has_alpha(const fs::path& file) {
     const std::string bytes = read_beginning(file, 70);
     const auto number = [&](std::size_t at) {

@@ -41,6 +41,9 @@ bool jpeg_is_whole(const fs::path& file);
 /// anything.
 std::optional<double> check_tiff(const fs::path& file, int page);
 
+/// What a TIFF's tags say of its colours.
+TiffColors colors_of_tiff(const fs::path& file, int page);
+
 /// False where BMP's fourth byte means nothing: without a mask for it.
 bool bmp_has_alpha(const fs::path& file);
 

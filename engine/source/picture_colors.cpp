@@ -4,8 +4,6 @@
 // (This line keeps clang-format from sorting the two.)
 #include "source/open_picture.h"
 
-#include <tiffio.h>
-
 #include "core/file.h"
 #include "core/log.h"
 #include "core/text.h"
@@ -13,7 +11,6 @@
 namespace astrosplat {
 namespace {
 
-constexpr std::array d65_white{0.3127f, 0.3290f};
 using namespace std::string_literals;
 constexpr std::size_t most_metadata = std::size_t{1} << 18;  // segments of a JPEG before its pixels
 
@@ -37,28 +34,6 @@ std::int64_t jpeg_pictures(const fs::path& file) {
     const std::size_t little = index.find("\1\xb0\4\0\1\0\0\0"s), big = index.find("\xb0\1\0\4\0\0\0\1"s);
     const std::size_t at = little != index.npos ? little + 8 : big != index.npos ? big + 11 : index.size();
     return at < index.size() ? std::uint8_t(index[at]) : 1;
-}
-
-TiffColors colors_of_tiff(const fs::path& file, int page) {
-    TiffColors found;
-    const QuietStderr quiet;
-    const std::unique_ptr<TIFF, void (*)(TIFF*)> tiff(TIFFOpen(file.c_str(), "r"), TIFFClose);
-    if (!tiff || !TIFFSetDirectory(tiff.get(), static_cast<tdir_t>(page))) return found;
-    const float *primaries = nullptr, *white = nullptr;
-    if (TIFFGetField(tiff.get(), TIFFTAG_PRIMARYCHROMATICITIES, &primaries) == 1) {
-        std::array<float, 8>& all = found.primaries.emplace();
-        std::copy_n(primaries, 6, all.begin());
-        const bool has_white = TIFFGetField(tiff.get(), TIFFTAG_WHITEPOINT, &white) == 1;
-        std::copy_n(has_white ? white : d65_white.data(), 2, all.begin() + 6);
-    }
-    std::array<const std::uint16_t*, 3> curves{};
-    std::uint16_t bits = 0;
-    if (TIFFGetField(tiff.get(), TIFFTAG_BITSPERSAMPLE, &bits) == 1 && bits <= 16 &&
-        TIFFGetField(tiff.get(), TIFFTAG_TRANSFERFUNCTION, &curves[0], &curves[1], &curves[2]) == 1)
-        for (std::size_t c = 0; c < 3; ++c)
-            for (std::size_t i = 0; i < std::size_t{1} << bits; ++i)
-                found.transfer[c].push_back(float((curves[c] ? curves[c] : curves[0])[i]) / 65535.0f);
-    return found;
 }
 
 }  // namespace
