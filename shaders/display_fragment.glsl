@@ -1,7 +1,8 @@
 // A pixel of an image on the screen: through exposure and view transform, alone, under another one or less another one.
 // The transform is that of engine/output/format.cpp for frames without alpha. What is chosen per image comes as defines
 // (a software rasteriser runs both sides of a branch): VIEW and VIEW_B of the images, TAPS_A and TAPS_B reads per axis,
-// DITHER; CHANNEL what is seen of a pixel, GAMMA bends it; OVER lays B over A, DIFFERENCE takes it from A; MASKED: alpha is 1 where B lies, else 0.
+// DITHER; CHANNEL what is seen of a pixel, GAMMA bends it; OVER lays B over A, DIFFERENCE takes it from A; MASKED: alpha
+// is 1 where B lies, else 0.
 
 const int VIEW_LINEAR = 0;
 const int VIEW_SRGB = 1;

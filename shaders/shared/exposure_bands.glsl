@@ -1,5 +1,5 @@
-// False colours of light: bands of stops about middle grey (0.18), and of what is white and beyond it. Light is linear, 1
-// the white of the display.
+// False colours of light: bands of stops about middle grey (0.18), and of what is white and beyond it. Light is linear,
+// 1 the white of the display.
 
 const int BAND_COUNT = 9;
 

@@ -85,19 +85,22 @@ TEST_P(Parallel, SeveralThreadsMayCallAtOnce) {
 
 // Its loops and those within them, in whatever thread they run; not another caller's, and not later.
 TEST_P(Parallel, StopsWhereItsCallerIsAskedTo) {
-    std::atomic<bool> cancelled{false};
     std::atomic<int> begun{0}, within{0};
-    const auto stop_at_once = [&] {
+    const auto stop_at_once = [&](bool nested) {
+        std::atomic<bool> cancelled{false};
+        begun = 0;
         const StoppableLoops stops({{}, &cancelled});
         parallel_for(1000, [&](std::int64_t, int) {
             ++begun;
             cancelled = true;
-            parallel_for(1000, [&](std::int64_t, int) { ++within; });
+            if (nested) parallel_for(1000, [&](std::int64_t, int) { ++within; });
         });
     };
-    EXPECT_THROW(stop_at_once(), Cancelled);
-    EXPECT_LE(begun, thread_count());
-    EXPECT_EQ(within, 0);
+    for (const bool nested : {false, true}) {
+        EXPECT_THROW(stop_at_once(nested), Cancelled);
+        EXPECT_LE(begun, thread_count());
+        EXPECT_EQ(within, 0);
+    }
     std::atomic<int> count{0};
     parallel_for(100, [&](std::int64_t, int) { ++count; });
     EXPECT_EQ(count, 100) << "it is over";
