@@ -339,7 +339,7 @@ class WindowReference : public WindowTest {
 TEST_F(WindowReference, IsPlacedByTheMouseSavedAndUndone) {
     const Pixels before = start_settled();
     EXPECT_EQ(seen(), 0);
-    person->press("shift+b");
+    person->press("ctrl+b");
     person->press("p");
     const double area = 0.5 * frame().height * frame().height;
     EXPECT_TRUE(comes_true([&] { return seen() > 0.97 * area; })) << seen();
@@ -359,7 +359,7 @@ TEST_F(WindowReference, IsPlacedByTheMouseSavedAndUndone) {
 
 TEST_F(WindowReference, IsNotInThePictureOfASnapshot) {
     start_settled();
-    person->press("shift+b");
+    person->press("ctrl+b");
     person->press("a");
     EXPECT_TRUE(comes_true([&] { return seen() > 0; }));
     person->press("b");
@@ -372,7 +372,7 @@ TEST_F(WindowReference, IsNotInThePictureOfASnapshot) {
 
 TEST_F(WindowReference, BlinksAndStops) {
     const Pixels before = start_settled();
-    person->press("shift+b");
+    person->press("ctrl+b");
     person->press("x");
     for (int change = 0; change < 2; ++change) {
         EXPECT_TRUE(comes_true([&] { return seen() > 0; }));
@@ -385,7 +385,7 @@ TEST_F(WindowReference, BlinksAndStops) {
 TEST_F(WindowReference, OneThatCannotBeReadIsSaid) {
     fs::remove(folder / "ferner Nebel ä.png");
     const Pixels before = start_settled();
-    person->press("shift+b");
+    person->press("ctrl+b");
     person->press("a");
     const Rect bar = layout().status;
     EXPECT_TRUE(comes_true([&] {
