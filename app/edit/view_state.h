@@ -162,8 +162,8 @@ inline void show_reference(ViewState& view) {
 
 struct Command {
     enum class Kind {
-        start_again,  // text: a kind of object, "film", "still", "part" or "keep": ViewState::start's
-                      // otherwise
+        start_again,  // text: a kind of object, "film", "still", "part", "keep", "whole" or "splats N":
+                      // ViewState::start's otherwise
         new_scene,    // text: a built-in shape; empty: a scene without layers
         open,         // path: a scene; a picture, mesh or splats become an untitled one
         open_demo,

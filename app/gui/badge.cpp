@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include "core/memory.h"
 #include "gui/parts.h"
 #include "gui/widgets.h"
 
@@ -113,11 +112,11 @@ BadgeText badge_text(const Scene& scene, const Status& status) {
     if (const std::size_t index = loading_layer(status); index < status.layers.size()) {
         const LayerStatus& layer = status.layers[index];
         const std::string name = index < scene.layers.size() ? scene.layers[index].name : "layer";
-        std::string more = layer.found > 0 ? splat_count(layer.found) : "";
-        if (const Making& all = layer.making; all.splats > 0)
-            more = fmt::format("{}, {}, {} in all", splat_count(all.splats), human_bytes(double(all.bytes)),
-                               duration_text(all.seconds));
-        return {fmt::format("Generating {} {:.0f} %", name, layer.progress * 100.0f), more, color::accent};
+        return {fmt::format("Generating {} {:.0f} %", name, layer.progress * 100.0f),
+                layer.making.splats > 0 ? making_text(layer.making) + " in all"
+                : layer.found > 0       ? splat_count(layer.found)
+                                        : "",
+                color::accent};
     }
     const std::string total = splat_count(shown.total);
     switch (shown.state) {

@@ -409,8 +409,7 @@ void display_control(GuiFrame& frame) {
 void channel_control(GuiFrame& frame) {
     combo(frame, "channel", frame.view.inspection.channel, {"RGB", "R", "G", "B", "A", "Lum", "Stops"}, 56,
           "What of a pixel is seen: one channel alone (Shift+R, G, B, A), its luminance (Shift+L), or its "
-          "light "
-          "in stops as false colours (Shift+E)",
+          "light in stops as false colours (Shift+E)",
           color::attention);
 }
 

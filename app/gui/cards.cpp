@@ -139,6 +139,11 @@ std::string duration_text(double seconds) {
                      : fmt::format("{}:{:02}", minutes, whole % 60);
 }
 
+std::string making_text(const Making& making, double share) {
+    return fmt::format("{}, {}, {}", splat_count(std::int64_t(share * double(making.splats))),
+                       human_bytes(share * double(making.bytes)), duration_text(share * making.seconds));
+}
+
 void draw_queue(GuiFrame& frame) {
     bool& open = frame.view.queue_open;
     if (!begin_dialog("queue", "Render queue", open, queue_width, queue_height)) return;
@@ -245,12 +250,6 @@ void start_choices(GuiFrame& frame, const PictureStart& start) {
                      film ? "Without the camera's move"
                           : "A camera move of ten seconds, with detail where it comes close"))
         request_text(frame, Command::Kind::start_again, film ? "still" : "film");
-}
-
-/// "61 M splats, 9.9 GiB, 5:20", of so large a share.
-std::string making_text(const Making& making, double share) {
-    return fmt::format("{}, {}, {}", splat_count(std::int64_t(share * double(making.splats))),
-                       human_bytes(share * double(making.bytes)), duration_text(share * making.seconds));
 }
 
 /// What a large picture will take, while it is made; and the same at half its width and height.

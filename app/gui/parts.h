@@ -87,6 +87,9 @@ void draw_queue(GuiFrame& frame);
 /// "2:05", "1:02:05".
 std::string duration_text(double seconds);
 
+/// "61 M splats, 9.9 GiB, 5:20", of so large a share of what is made.
+std::string making_text(const Making& making, double share = 1.0);
+
 /// Begins a modal dialog `width` px wide at scale 1 (`height` 0: as high as its content). `id` is opened when
 /// `open` turns true. True while it is shown; then call end_dialog().
 bool begin_dialog(const char* id, const std::string& title, bool open, float width, float height);

@@ -283,7 +283,8 @@ bool FlatLight::has_few(const Range& range, const Grid& seen) const {
     return double(splats) < few_share * double(seen.width * seen.height);
 }
 
-void FlatLight::multiply(const Range& range, const Image& factor, int of_factor, int channel, double step) {
+void FlatLight::multiply(const Range& range, const Image& factor, int channel, double step) {
+    const int of_factor = factor.channels == 1 ? 0 : channel;
     const auto scale = float(1.0 / step);
     parallel_each(range.chunks.size(), 16, [&](std::size_t c) {
         for (std::size_t i = range.chunks[c].begin; i < range.chunks[c].end; ++i) {
@@ -295,7 +296,7 @@ void FlatLight::multiply(const Range& range, const Image& factor, int of_factor,
 
 void FlatLight::multiply(const Image& factor, double step) {
     for (const Range& range : ranges_)
-        for (int c = 0; c < 3; ++c) multiply(range, factor, c, c, step);
+        for (int c = 0; c < 3; ++c) multiply(range, factor, c, step);
 }
 
 void FlatLight::correct(Fraction fraction, int channel, bool overshoot) {
@@ -308,7 +309,7 @@ void FlatLight::correct(Fraction fraction, int channel, bool overshoot) {
         const bool sharpens = overshoot && range.sigma <= fine_sigma;
         const bool there = !factor.pixels.empty() && sharpens == sharpened && grid_for(seen) == grid;
         if (there && has_few(range, grids_[grid])) {
-            multiply(range, factor, 0, channel, grids_[grid].step);
+            multiply(range, factor, channel, grids_[grid].step);
             continue;
         }
         for (const std::size_t to = grid_for(seen); grid < to; ++grid) {
@@ -326,7 +327,7 @@ void FlatLight::correct(Fraction fraction, int channel, bool overshoot) {
         factor = sharpens ? sharpening_factor_of(fraction, missing_px(around * seen))
                           : factor_of(fraction, overshoot);
         sharpened = sharpens;
-        multiply(range, factor, 0, channel, step);
+        multiply(range, factor, channel, step);
     }
 }
 

@@ -66,7 +66,7 @@ class FlatLight {
     bool has_few(const Range& range, const Grid& seen) const;
     glm::vec2 texel(std::size_t splat) const;
     void spread(const Range& range, double step, Image& sum) const;
-    void multiply(const Range& range, const Image& factor, int of_factor, int channel, double step);
+    void multiply(const Range& range, const Image& factor, int channel, double step);
 
     PictureSplats& set_;
     glm::vec2 middle_;           // of the picture, texels

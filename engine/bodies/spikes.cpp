@@ -354,9 +354,8 @@ Image filled_from_around(const Image& light, Holes& holes, const Region& region,
     constexpr float enough = 0.15f;  // of a blur's weight
     Image known = unfilled_image(region.width, region.height, 4);
     for_each_pixel(known, [&](std::int64_t x, std::int64_t y) {
-        const float share = holes.at(region.x + x, region.y + y) < 0 ? 1.0f : 0.0f, *const from = light.at(
-                                                                                        region.x + x,
-                                                                                        region.y + y);
+        const float share = holes.at(region.x + x, region.y + y) < 0 ? 1.0f : 0.0f;
+        const float* const from = light.at(region.x + x, region.y + y);
         float* const to = known.at(x, y);
         for (int c = 0; c < 3; ++c) to[c] = share * from[c];
         to[3] = share;

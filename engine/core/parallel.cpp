@@ -257,11 +257,11 @@ int available_threads() { return std::max(1, quota_of_groups(std::max(1, affinit
 DenormalsAreZero::DenormalsAreZero() : before_(float_control()) {
     set_float_control(before_ | zero_denormals);
 }
+DenormalsAreZero::~DenormalsAreZero() { set_float_control(before_); }
+
 StoppableLoops::StoppableLoops(const Progress& progress)
     : before_(std::exchange(stop_loops, progress.cancelled)) {}
 StoppableLoops::~StoppableLoops() { stop_loops = before_; }
-
-DenormalsAreZero::~DenormalsAreZero() { set_float_control(before_); }
 
 void set_thread_count(int threads) { pool().resize(std::max(0, threads)); }
 
