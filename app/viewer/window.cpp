@@ -44,6 +44,13 @@ bool fits_in_text(const std::vector<InputEvent>& frame) {
     });
 }
 
+/// Down again in the same frame, the key would seem to be held.
+bool lets_go(const std::vector<InputEvent>& frame, int code) {
+    return std::ranges::any_of(frame, [&](const InputEvent& event) {
+        return event.kind == EventKind::key_up && event.code == code;
+    });
+}
+
 /// A frame that has taken `frame` can take `next` too: none of those would be seen at the wrong place or in
 /// the wrong order.
 bool fits(const std::vector<InputEvent>& frame, const InputEvent& next) {
@@ -58,7 +65,7 @@ bool fits(const std::vector<InputEvent>& frame, const InputEvent& next) {
         case EventKind::release:  // what is dragged is not moved any more by the frame in which it is let go
             return frame.empty();
         case EventKind::key_down:  // with keys held, such as Ctrl, only from the frames before
-            return !has(frame, {EventKind::key_down, EventKind::character});
+            return !has(frame, {EventKind::key_down, EventKind::character}) && !lets_go(frame, next.code);
         case EventKind::key_up:  // also of Ctrl after S
             return !has(frame, {EventKind::key_down});
         case EventKind::character:  // of the key before it

@@ -436,6 +436,12 @@ TEST(InputQueue, AShortPressOfAKeyIsSeen) {
     EXPECT_EQ(frames_of({down, up}), (Frames{{down}, {up}}));
 }
 
+TEST(InputQueue, AKeyPressedTwiceIsTwoPresses) {
+    const InputEvent down = of(Kind::key_down, 258), up = of(Kind::key_up, 258),
+                     other = of(Kind::key_down, 264);
+    EXPECT_EQ(frames_of({down, up, down, up, other}), (Frames{{down}, {up}, {down}, {up, other}}));
+}
+
 TEST(InputQueue, CtrlIsHeldForAsLongAsItsKey) {
     const InputEvent ctrl = of(Kind::key_down, 341), s = of(Kind::key_down, 'S'),
                      s_up = of(Kind::key_up, 'S'), ctrl_up = of(Kind::key_up, 341);
