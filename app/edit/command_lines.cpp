@@ -20,12 +20,29 @@
 namespace astrosplat {
 namespace {
 
+constexpr const char* own_ending = ".splats";
+
 /// Of [output] path, with an absolute folder.
 OutputPattern pattern_of(const Document& document) {
     std::error_code ignored;
     const fs::path folder = document.file().empty() ? fs::current_path(ignored)
                                                     : fs::absolute(document.file(), ignored).parent_path();
     return output_pattern(folder, document.scene().output.path);
+}
+
+bool is_of_one_frame(RenderKind kind) { return kind == RenderKind::frame || kind == RenderKind::splats; }
+
+std::string splats_problem(const RenderTask& task) {
+    if (task.most_splats < 0) return "splats are merged to a number above 0";
+    if (is_own_format(task) && task.layer.empty())
+        return "choose a layer: such a file holds one layer's own splats";
+    if (is_own_format(task) && task.most_splats > 0) return "such a file holds all of the layer's splats";
+    try {
+        if (parse_frames(task.frames, "frames").size() == 1) return "";
+    } catch (const InputError& error) {
+        return error.what();
+    }
+    return "splats are those of one frame";
 }
 
 std::string frame_problem(const RenderTask& task, const CameraParams& camera) {
@@ -57,12 +74,13 @@ RenderTask make_render_task(const Document& document, RenderKind kind, double fr
     const fs::path name(pattern.name);
     RenderTask task;
     task.kind = kind;
-    task.frames = kind == RenderKind::frame ? fmt::format("{}", std::lround(frame)) : output.frames;
+    task.frames = is_of_one_frame(kind) ? fmt::format("{}", std::lround(frame)) : output.frames;
     task.width = output.width;
     task.height = output.height;
-    const bool movie = kind == RenderKind::movie;
-    task.folder = (movie ? pattern.common_folder() : pattern.folder / name.parent_path()).lexically_normal();
-    task.name = movie ? pattern.stem() + ".mp4" : name.filename().string();
+    const bool movie = kind == RenderKind::movie, splats = kind == RenderKind::splats;
+    task.folder =
+        (movie || splats ? pattern.common_folder() : pattern.folder / name.parent_path()).lexically_normal();
+    task.name = movie ? pattern.stem() + ".mp4" : splats ? pattern.stem() + ".ply" : name.filename().string();
     return task;
 }
 
@@ -74,7 +92,7 @@ RenderTask kept_render(const std::vector<KeptRender>& kept, const Document& docu
     });
     if (found == kept.end()) return task;
     const std::string now = std::exchange(task, found->task).frames;
-    if (kind == RenderKind::frame) task.frames = now;
+    if (is_of_one_frame(kind)) task.frames = now;
     task.existing = ExistingFrames::resume;
     return task;
 }
@@ -90,8 +108,11 @@ void keep_render(std::vector<KeptRender>& kept, const Document& document, const 
 fs::path render_target(const RenderTask& task) { return task.folder / task.name; }
 
 std::vector<std::string> render_endings(RenderKind kind) {
-    return kind == RenderKind::movie ? endings_of(FileUse::movie)
-                                     : endings_of({FileKind::picture}, FileUse::written);
+    if (kind == RenderKind::movie) return endings_of(FileUse::movie);
+    if (kind != RenderKind::splats) return endings_of({FileKind::picture}, FileUse::written);
+    std::vector<std::string> endings = endings_of(FileUse::exported);
+    endings.push_back(own_ending);
+    return endings;
 }
 
 std::string with_ending(const std::string& name, const std::string& ending) {
@@ -111,10 +132,11 @@ std::string render_problem(const RenderTask& task, const CameraParams& camera) {
         return fmt::format("the name ends with one of {}, not with '{}'", fmt::join(endings, " "), ending);
     if (renders_by_slurm(task) && (task.chunk < 1 || task.chunk > largest_chunk))
         return fmt::format("a task has 1 to {} frames, not {}", largest_chunk, task.chunk);
-    return frame_problem(task, camera);
+    return task.kind == RenderKind::splats ? splats_problem(task) : frame_problem(task, camera);
 }
 
 std::string render_title(const RenderTask& task) {
+    if (task.kind == RenderKind::splats) return "Splats of frame " + task.frames;
     const char* const what = task.kind == RenderKind::movie   ? "Movie of "
                              : task.kind == RenderKind::frame ? "Frame "
                                                               : "Frames ";
@@ -127,7 +149,22 @@ std::vector<std::string> frame_arguments(const RenderTask& task) {
             "--output=" + render_files(task).string()};
 }
 
-bool renders_by_slurm(const RenderTask& task) { return task.by_slurm && task.kind != RenderKind::movie; }
+bool is_own_format(const RenderTask& task) { return fs::path(task.name).extension() == own_ending; }
+
+std::string export_mode(const RenderTask& task) { return is_own_format(task) ? "generate" : "export"; }
+
+std::vector<std::string> export_arguments(const RenderTask& task) {
+    std::vector<std::string> words = {"--output=" + render_target(task).string()};
+    if (!is_own_format(task)) words.push_back("--frame=" + task.frames);
+    if (!task.layer.empty()) words.push_back("--layer=" + task.layer);
+    if (task.most_splats > 0) words.push_back(fmt::format("--count={}", task.most_splats));
+    if (task.existing == ExistingFrames::replace) words.push_back("--overwrite");
+    return words;
+}
+
+bool renders_by_slurm(const RenderTask& task) {
+    return task.by_slurm && (task.kind == RenderKind::frame || task.kind == RenderKind::range);
+}
 
 std::vector<std::string> submit_arguments(const RenderTask& task) {
     std::vector<std::string> words = frame_arguments(task);
@@ -286,8 +323,12 @@ BatchCommand batch_command(const Document& document, const BatchCommandOptions& 
 
 BatchCommand render_command(const Document& document, const RenderTask& task, const std::string& program) {
     BatchCommandOptions options;
-    options.arguments = renders_by_slurm(task) ? submit_arguments(task) : batch_arguments(task);
+    const bool splats = task.kind == RenderKind::splats;
+    options.arguments = splats                   ? export_arguments(task)
+                        : renders_by_slurm(task) ? submit_arguments(task)
+                                                 : batch_arguments(task);
     if (renders_by_slurm(task)) options.mode = "--submit slurm";
+    if (splats) options.mode = export_mode(task);
     options.program = program;
     BatchCommand command = batch_command(document, options);
     if (command.text.empty() || task.kind != RenderKind::movie) return command;

@@ -11,7 +11,7 @@
 
 namespace astrosplat {
 
-enum class RenderKind { frame, range, movie };
+enum class RenderKind { frame, range, movie, splats };
 enum class ExistingFrames {
     resume,   // finished frames of these settings stay, others are replaced
     replace,  // all are rendered again
@@ -28,10 +28,14 @@ struct RenderTask {
     bool by_slurm = false;    // on the machines of a farm; movies never are
     std::int64_t chunk = 10;  // frames of a task there
     std::string partition;    // of the cluster; empty: its own choice
+    // Of splats for other programs:
+    std::string layer;             // the only one; empty: all that are visible
+    std::int64_t most_splats = 0;  // to which they are merged; 0: any number
     bool operator==(const RenderTask&) const = default;
 };
 
-/// [output]'s value for `kind`; a frame is that of number `frame`, next to the scene's own frames.
+/// [output]'s value for `kind`; a frame and splats are those of number `frame`, next to the scene's own
+/// frames.
 RenderTask make_render_task(const Document& document, RenderKind kind, double frame);
 
 /// What was chosen for a scene, which holds while its [output] says what it said then.
@@ -42,8 +46,8 @@ struct KeptRender {
     bool operator==(const KeptRender&) const = default;
 };
 
-/// What was last kept for the document and `kind`, else make_render_task(). A frame is always the one of that
-/// number, and what becomes of files that are there is chosen anew.
+/// What was last kept for the document and `kind`, else make_render_task(). A frame, of splats too, is always
+/// the one of that number, and what becomes of files that are there is chosen anew.
 RenderTask kept_render(const std::vector<KeptRender>& kept, const Document& document, RenderKind kind,
                        double frame);
 /// Keeps a task as the newest of 24, in place of another of the same scene and kind.
@@ -60,7 +64,7 @@ std::vector<std::string> render_endings(RenderKind kind);
 /// The name with another ending.
 std::string with_ending(const std::string& name, const std::string& ending);
 
-/// "Frames 1-240, 1920x1080", "Frame 12, ...", "Movie of 1-240, ...".
+/// "Frames 1-240, 1920x1080", "Frame 12, ...", "Movie of 1-240, ...", "Splats of frame 12".
 std::string render_title(const RenderTask& task);
 
 /// Of the frames that are rendered: the target, or a movie's in its folder.
@@ -79,6 +83,15 @@ std::vector<std::string> frame_arguments(const RenderTask& task);
 /// Words of --batch behind the scene: frames, size, files, and what becomes of those that are there. A job of
 /// the window takes no more of the machine than the window itself.
 std::vector<std::string> batch_arguments(const RenderTask& task, const MachineLimits& limits = {});
+
+/// The file holds one layer's own splats, without its look: `generate` writes it, not `export`.
+bool is_own_format(const RenderTask& task);
+
+/// The subcommand that writes splats: "export" or "generate".
+std::string export_mode(const RenderTask& task);
+
+/// Words behind that and the scene. Only with ExistingFrames::replace a file is replaced.
+std::vector<std::string> export_arguments(const RenderTask& task);
 
 /// The farm renders it.
 bool renders_by_slurm(const RenderTask& task);

@@ -12,8 +12,8 @@
 
 namespace astrosplat {
 
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(RenderTask, kind, frames, width, height, folder, name, by_slurm, chunk,
-                                   partition)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(RenderTask, kind, frames, width, height, folder, name,
+                                                by_slurm, chunk, partition, layer, most_splats)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(KeptRender, scene, usual, task)
 
 namespace {
@@ -56,7 +56,7 @@ std::vector<KeptRender> renders_of(const nlohmann::json& json) try {
     auto renders = json.get<std::vector<KeptRender>>();
     std::erase_if(renders, [](const KeptRender& kept) {
         std::error_code ignored;
-        return kept.task.kind > RenderKind::movie || !fs::exists(kept.scene, ignored);
+        return kept.task.kind > RenderKind::splats || !fs::exists(kept.scene, ignored);
     });
     return renders;
 } catch (const nlohmann::json::exception&) {

@@ -137,6 +137,7 @@ struct QueuedJob {
     std::optional<double> seconds_left;
     std::vector<fs::path> files;  // frames that are finished
     bool is_movie = false;
+    bool is_splats = false;     // `text` says how many and how large, once it is done
     bool kept = false;          // the movie was there already
     std::uint64_t held_by = 0;  // number of the job that failed while this one waited; 0: none did
 };

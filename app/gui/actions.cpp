@@ -352,6 +352,7 @@ const Action table[] = {
     below_line({"File", "Import as a layer...", {}, ask<Kind::import_file>}),
     {"File", "Import camera...", {}, ask<Kind::import_camera>},
     {"File", "Export camera...", {}, ask<Kind::export_camera>},
+    {"File", "Export splats...", {}, render<RenderKind::splats>, has_layer},
     {"File", "Export look...", {}, ask<Kind::save_look>, has_layer},
     {"File", "Apply look...", {}, ask<Kind::apply_look>, has_layer},
     below_line({"File", "Save the frame as seen...", {}, ask<Kind::save_view>}),

@@ -111,7 +111,8 @@ void draw_frames(GuiFrame& frame, const QueuedJob& job) {
     image_box({ImGui::GetCursorScreenPos(), size}, finished.texture, finished.aspect, 3);
     ImGui::Dummy(size);
     if (!finished.error.empty()) ImGui::TextColored(color4(color::error), "%s", finished.error.c_str());
-    if (count == 0) return ImGui::TextColored(color4(color::dim), "%s", "No frame is finished yet.");
+    const std::string none = job.is_splats ? job.text : "No frame is finished yet.";
+    if (count == 0) return ImGui::TextColored(color4(color::dim), "%s", none.c_str());
     play(view, count, frame.document.scene().output.fps);
     int shown = view.queue_frame < 0 ? count - 1 : std::min(view.queue_frame, count - 1);
     if (dialog_button(view.queue_playing ? "Pause" : "Play", false, 64))

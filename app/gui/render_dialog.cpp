@@ -5,6 +5,7 @@
 #include <imgui_stdlib.h>
 
 #include "core/error.h"
+#include "core/memory.h"
 #include "scene/frames.h"
 
 namespace astrosplat {
@@ -43,7 +44,8 @@ void kind_row(GuiFrame& frame) {
         frame, "render",
         {{"Frame", "The frame that is seen"},
          {"Frames", "Numbered files of the scene's frames, or of others"},
-         {"Movie", frame.status.has_ffmpeg ? "A film of them" : "Needs ffmpeg, which is not installed"}},
+         {"Movie", frame.status.has_ffmpeg ? "A film of them" : "Needs ffmpeg, which is not installed"},
+         {"Splats", "The splats themselves, for other programs"}},
         static_cast<int>(render.kind), field_height);
     if (clicked < 0 || (clicked == 2 && !frame.status.has_ffmpeg)) return;
     const auto kind = static_cast<RenderKind>(clicked);
@@ -63,10 +65,69 @@ std::string count_of_frames(const RenderTask& render) {
 }
 
 void frames_row(GuiFrame& frame) {
-    label("Frames");
+    const bool splats = frame.view.render.kind == RenderKind::splats;
+    label(splats ? "Frame" : "Frames");
     text_field(frame, "frames", frame.view.render.frames, px(160));
     ImGui::SameLine(0, px(row_gap));
-    ImGui::TextColored(color4(color::dim), "%s", count_of_frames(frame.view.render).c_str());
+    ImGui::TextColored(color4(color::dim), "%s",
+                       splats ? "whose look they have" : count_of_frames(frame.view.render).c_str());
+}
+
+// A list whose button shows `chosen`; `rows` draws its entries while it is open.
+template <class Rows>
+void choice_list(GuiFrame& frame, const char* name, const std::string& chosen, float width,
+                 const Rows& rows) {
+    ImGui::SetNextItemWidth(width);
+    const ImVec2 corner = ImGui::GetCursorScreenPos();
+    const bool open =
+        ImGui::BeginCombo(fmt::format("##{}", name).c_str(), chosen.c_str(), ImGuiComboFlags_NoArrowButton);
+    if (!open)  // an open list would have it drawn into its own window
+        draw_icon(ImGui::GetWindowDrawList(), Icon::chevron_down,
+                  {corner.x + width - px(12), corner.y + ImGui::GetFrameHeight() * 0.5f}, px(9), color::dim);
+    if (open) {
+        rows();
+        close_on_escape();
+        ImGui::EndCombo();
+    }
+    note_item(frame, std::string("render/") + name);
+}
+
+void layer_row(GuiFrame& frame) {
+    std::string& layer = frame.view.render.layer;
+    label("Layer");
+    const char* const all = "All that are visible";
+    choice_list(frame, "layer", layer.empty() ? all : layer, px(240), [&] {
+        if (ImGui::Selectable(all, layer.empty())) layer.clear();
+        for (const LayerParams& other : frame.document.scene().layers)
+            if (ImGui::Selectable(other.name.c_str(), other.name == layer)) layer = other.name;
+    });
+}
+
+// Of the layers that are written, as far as their looks keep them.
+std::int64_t splats_to_write(const GuiFrame& frame) {
+    const std::vector<LayerParams>& layers = frame.document.scene().layers;
+    const RenderTask& task = frame.view.render;
+    std::int64_t count = 0;
+    for (std::size_t i = 0; i < std::min(layers.size(), frame.status.layers.size()); ++i) {
+        const LayerStatus& layer = frame.status.layers[i];
+        if (!task.layer.empty() ? layers[i].name != task.layer : !layers[i].visible) continue;
+        count += is_own_format(task) || layer.kept < 0 ? layer.splats : layer.kept;
+    }
+    return count;
+}
+
+void most_row(GuiFrame& frame) {
+    std::int64_t& most = frame.view.render.most_splats;
+    label("At most");
+    int value = static_cast<int>(std::min<std::int64_t>(most, 2'000'000'000));
+    ImGui::SetNextItemWidth(px(120));
+    if (ImGui::InputInt("##most", &value, 0)) most = std::max(0, value);
+    tooltip("Splats are merged until so many are left; 0: none is");
+    note_item(frame, "render/most");
+    ImGui::SameLine(0, px(row_gap));
+    const std::int64_t count = splats_to_write(frame);
+    ImGui::TextColored(color4(color::dim), "%s",
+                       count > 0 ? ("of about " + human_count(count, "splat")).c_str() : "splats");
 }
 
 void size_row(GuiFrame& frame) {
@@ -111,27 +172,18 @@ void name_row(GuiFrame& frame) {
     text_field(frame, "name", render.name, ImGui::GetContentRegionAvail().x - px(side_width) - px(row_gap));
     ImGui::SameLine(0, px(row_gap));
     const std::string ending = fs::path(render.name).extension().string();
-    ImGui::SetNextItemWidth(px(side_width));
-    const ImVec2 corner = ImGui::GetCursorScreenPos();
-    const bool open = ImGui::BeginCombo("##format", ending.c_str(), ImGuiComboFlags_NoArrowButton);
-    if (!open)  // an open list would have it drawn into its own window
-        draw_icon(ImGui::GetWindowDrawList(), Icon::chevron_down,
-                  {corner.x + px(side_width - 12), corner.y + ImGui::GetFrameHeight() * 0.5f}, px(9),
-                  color::dim);
-    if (open) {
+    choice_list(frame, "format", ending, px(side_width), [&] {
         for (const std::string& other : render_endings(render.kind))
             if (ImGui::Selectable(other.c_str(), other == ending))
                 render.name = with_ending(render.name, other);
-        close_on_escape();
-        ImGui::EndCombo();
-    }
-    note_item(frame, "render/format");
+    });
 }
 
 // Where the program finds a farm. Movies are written here, of frames rendered here.
 void machine_row(GuiFrame& frame) {
     RenderTask& render = frame.view.render;
-    if (!frame.status.has_slurm || render.kind == RenderKind::movie) return;
+    if (!frame.status.has_slurm || render.kind == RenderKind::movie || render.kind == RenderKind::splats)
+        return;
     label("On");
     const int clicked = segmented(frame, "render",
                                   {{"This machine", "In the background, one job after the other"},
@@ -157,6 +209,15 @@ void existing_row(GuiFrame& frame) {
     if (renders_by_slurm(frame.view.render))
         return ImGui::TextColored(color4(color::dim),
                                   "Finished frames of these settings stay, others are replaced");
+    ExistingFrames& existing = frame.view.render.existing;
+    if (frame.view.render.kind == RenderKind::splats) {
+        const int chosen = segmented(frame, "render",
+                                     {{"Replace", "A file of that name is replaced once this one is whole"},
+                                      {"Stop", "Nothing is written where a file of that name is"}},
+                                     existing == ExistingFrames::replace ? 0 : 1, field_height);
+        if (chosen >= 0) existing = chosen == 0 ? ExistingFrames::replace : ExistingFrames::refuse;
+        return;
+    }
     const bool movie = frame.view.render.kind == RenderKind::movie;
     const int clicked = segmented(
         frame, "render",
@@ -166,8 +227,8 @@ void existing_row(GuiFrame& frame) {
                                    "others are replaced"},
          {"Render again", "All frames are rendered, whatever is there"},
          {"Stop", "Nothing is rendered where a file is in the way"}},
-        static_cast<int>(frame.view.render.existing), field_height);
-    if (clicked >= 0) frame.view.render.existing = static_cast<ExistingFrames>(clicked);
+        static_cast<int>(existing), field_height);
+    if (clicked >= 0) existing = static_cast<ExistingFrames>(clicked);
 }
 
 std::string problem(const GuiFrame& frame) {
@@ -229,12 +290,18 @@ void draw_render_dialog(GuiFrame& frame) {
     push_field_height(px(field_height));
     kind_row(frame);
     frames_row(frame);
-    size_row(frame);
+    const bool splats = frame.view.render.kind == RenderKind::splats;
+    if (splats) {
+        layer_row(frame);
+        most_row(frame);
+    } else {
+        size_row(frame);
+    }
     folder_row(frame);
     name_row(frame);
     machine_row(frame);
     existing_row(frame);
-    estimate_row(frame);
+    if (!splats) estimate_row(frame);
     command_row(frame);
     const std::string wrong = problem(frame);
     ImGui::TextColored(color4(color::error), "%s", fitting(wrong, ImGui::GetContentRegionAvail().x).c_str());
@@ -242,6 +309,7 @@ void draw_render_dialog(GuiFrame& frame) {
     ImGui::PopStyleVar(2);
     const char* const go = renders_by_slurm(frame.view.render) ? "Submit"
                            : running_job(frame.status)         ? "Add to the queue"
+                           : splats                            ? "Export"
                                                                : "Render";
     const int button = dialog_buttons(frame, "render", {"Cancel", go}, 0);
     const bool render = button == 1 && wrong.empty();

@@ -9,6 +9,7 @@
 #include "core/error.h"
 #include "core/file.h"
 #include "core/hash.h"
+#include "core/memory.h"
 #include "core/text.h"
 #include "edit/edits.h"
 #include "scene/frames.h"
@@ -242,6 +243,7 @@ void RenderQueue::add(const RenderTask& task, const Document& document) {
     JobPlan plan = plan_of(task, document);
     Job& job = push(document.name() + ": " + render_title(task), render_target(task));
     job.is_movie = task.kind == RenderKind::movie;
+    job.is_splats = task.kind == RenderKind::splats;
     job.plan = std::move(plan);
 }
 
@@ -251,12 +253,15 @@ JobPlan RenderQueue::plan_of(const RenderTask& task, const Document& document) c
     if (task.kind == RenderKind::movie) plan.movie = target;
     plan.may_replace = task.existing != ExistingFrames::refuse;
     if (!plan.movie.empty() && !plan.may_replace) expect_none(target);
-    plan.frames = static_cast<std::int64_t>(parse_frames(task.frames, "frames").size());
+    const bool splats = task.kind == RenderKind::splats;
+    if (!splats) plan.frames = static_cast<std::int64_t>(parse_frames(task.frames, "frames").size());
     plan.folder = make_temporary_folder();
     const fs::path scene = plan.folder / "scene.toml";
     ProcessStep& render = plan.steps.emplace_back();
-    render = {"Rendering", {program_, "--batch", scene.string(), "--progress", "plain"}};
-    append(render.arguments, batch_arguments(task, limits_));
+    render = {splats ? "Writing the splats" : "Rendering",
+              {program_, splats ? export_mode(task) : "--batch", scene.string(), "--progress", "plain"}};
+    append(render.arguments, splats ? export_arguments(task) : batch_arguments(task, limits_));
+    if (splats) append(render.arguments, limit_arguments({.threads = limits_.threads}));
     if (!cache_.folder.empty()) append(render.arguments, {"--cache", cache_.folder.string()});
     if (task.kind == RenderKind::movie)
         plan.steps.push_back({"Writing the movie", movie_command(target, document.scene().output.fps)});
@@ -339,6 +344,16 @@ void RenderQueue::begin_next(double now) {
     }
 }
 
+namespace {
+
+std::string size_of(const fs::path& file) {
+    std::error_code failed;
+    const std::uintmax_t bytes = fs::file_size(file, failed);
+    return failed ? "" : human_bytes(static_cast<double>(bytes));
+}
+
+}  // namespace
+
 /// Nothing while the job has not ended.
 std::optional<Message> RenderQueue::take_end(Job& job, JobState end) {
     if (end != JobState::done && end != JobState::failed && end != JobState::cancelled) return std::nullopt;
@@ -349,7 +364,7 @@ std::optional<Message> RenderQueue::take_end(Job& job, JobState end) {
     if (end == JobState::failed) return Message{job.text, true};
     if (end == JobState::cancelled) return Message{cancelled_text};
     return Message{job.kept ? "Kept " + job.target.string() + ", which was made of these very frames"
-                            : "Saved " + job.target.string()};
+                            : "Saved " + (job.is_splats ? job.text : job.target.string())};
 }
 
 std::optional<Message> RenderQueue::poll_farm(Job& job, double now) {
@@ -388,6 +403,7 @@ std::optional<Message> RenderQueue::poll(double now) {
     }
     job->run.reset();
     if (state == JobState::done) job->progress = 1.0f;
+    if (state == JobState::done && job->is_splats) job->text += ", " + size_of(job->target);
     if (state == JobState::done && job->is_movie) {  // its frames go
         remove_folder(movie_folder(job->target));
         job->files.clear();
@@ -422,7 +438,8 @@ void RenderEstimate::want(const RenderQueue& jobs, const RenderTask& task, const
         *this = {};
         asked_ = {document.revision(), task};
         since_ = now;
-        waits_ = render_problem(task, document.scene().camera).empty() && !renders_by_slurm(task);
+        waits_ = task.kind != RenderKind::splats && !renders_by_slurm(task) &&
+                 render_problem(task, document.scene().camera).empty();
     }
     if (waits_ && now - since_ >= rest_s) {
         waits_ = false;

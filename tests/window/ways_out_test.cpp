@@ -117,6 +117,22 @@ TEST_F(WindowWaysOut, AFrameIsRendered) {
     expect_settled(before);
 }
 
+/// The splats of the scene as it stands, merged to fewer, and a layer's own.
+TEST_F(WindowWaysOut, SplatsAreExported) {
+    start_settled();
+    choose("File/Export splats...");
+    person->click(same_widgets().at("render/most"));
+    same_widgets().click("render/most");
+    person->press("ctrl+a");
+    person->type("200");
+    name_files("cloud.spz", "render/Export");
+    ASSERT_TRUE(comes("frames/cloud.spz")) << program->err_so_far();
+    EXPECT_NE(run({"info", "frames/cloud.spz"}).out.find("200"), std::string::npos);
+    EXPECT_TRUE(comes_true([&] { return names_in(folder / "tmp").empty(); })) << "the job's folder stays";
+    expect_success(run({"export", scene_file.string(), "-o", "own.spz", "--count", "200", "--no-cache"}));
+    EXPECT_EQ(text_of(folder / "own.spz"), text_of(folder / "frames/cloud.spz"));
+}
+
 TEST_F(WindowWaysOut, ACancelledRangeLeavesWholeFilesOnly) {
     replace_in_scene("1-24", "1-9000");
     start_settled();

@@ -283,6 +283,35 @@ TEST(RenderTask, AMoviesFramesLieBesideIt) {
     EXPECT_FALSE(has(batch_arguments(task_of(RenderKind::range, "a.####.exr")), "output.aovs=[]"));
 }
 
+TEST(RenderTask, SplatsAreExportedAsTheShellDoes) {
+    RenderTask task = task_of(RenderKind::splats, "a.glb");
+    EXPECT_NE(render_problem(task, {}), "") << "24 frames";
+    task.frames = "12";
+    EXPECT_EQ(render_problem(task, {}), "");
+    EXPECT_EQ(render_title(task), "Splats of frame 12");
+    EXPECT_EQ(export_mode(task), "export");
+    EXPECT_EQ(export_arguments(task),
+              (std::vector<std::string>{"--output=/films/[one]*/a.glb", "--frame=12"}));
+    task.most_splats = 5000;
+    task.layer = "the disc";
+    task.existing = ExistingFrames::replace;
+    EXPECT_EQ(export_arguments(task),
+              (std::vector<std::string>{"--output=/films/[one]*/a.glb", "--frame=12", "--layer=the disc",
+                                        "--count=5000", "--overwrite"}));
+    for (const std::string& ending : render_endings(RenderKind::splats))
+        EXPECT_TRUE(has({".ply", ".glb", ".usda", ".spz", ".vdb", ".splats"}, ending)) << ending;
+    EXPECT_EQ(render_endings(RenderKind::splats).size(), 6u);
+    task.name = "a.splats";
+    EXPECT_NE(render_problem(task, {}), "") << "that holds all of a layer's splats";
+    task.most_splats = 0;
+    EXPECT_EQ(render_problem(task, {}), "");
+    EXPECT_EQ(export_mode(task), "generate");
+    EXPECT_EQ(export_arguments(task), (std::vector<std::string>{"--output=/films/[one]*/a.splats",
+                                                                "--layer=the disc", "--overwrite"}));
+    task.layer.clear();
+    EXPECT_NE(render_problem(task, {}), "") << "of which layer?";
+}
+
 TEST(RenderTask, IsKeptWithTheSceneWhileItsOutputStays) {
     const TempFolder folder;
     const auto open = [&](const std::string& name) {

@@ -40,8 +40,8 @@ TEST_F(PreferencesTest, RoundTrip) {
     p.settings.cache_folder = "/gro\xc3\x9f/sets \"1\"";
     add_recent(p, folder.file("a \"b\" ä.toml", "x"));
     add_recent_folder(p, folder.path());
-    RenderTask task{RenderKind::movie,      "1-5", 320, 180,   "/films", "a \"b\".mp4",
-                    ExistingFrames::resume, true,  5,   "long"};
+    RenderTask task{RenderKind::movie,      "1-5", 320, 180,    "/films",   "a \"b\".mp4",
+                    ExistingFrames::resume, true,  5,   "long", "the disc", 5000};
     p.renders = {{folder / "a \"b\" ä.toml", "Movie of 1-9", task}};
     const fs::path file = folder / "neu/tiefer/viewer.json";
     EXPECT_TRUE(warnings_of([&] { save_preferences(p, file); }).empty());

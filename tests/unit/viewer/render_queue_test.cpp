@@ -87,6 +87,22 @@ TEST_F(QueueTest, TheOthersGoOnWithoutWhatFailed) {
     EXPECT_TRUE(becomes(jobs, 0, State::done));
 }
 
+TEST_F(QueueTest, SplatsSayHowManyTheyAreAndHowLarge) {
+    RenderQueue jobs = queue(
+        "echo \"$1 $3 $4 $5 $6\" > words\nprintf 0123456789 > a.ply\n"
+        "echo 'astrosplat: baking 40% eta 00:00:01'\necho \"$PWD/a.ply: 12 splats; 0.00 % of the light "
+        "lost\"\n");
+    RenderTask splats = make_render_task(document, RenderKind::splats, 3.0);
+    EXPECT_EQ(splats.name, "a.ply");
+    splats.folder = folder.path();
+    jobs.add(splats, document);
+    ASSERT_TRUE(becomes(jobs, 0, State::done));
+    const std::string file = (folder / "a.ply").string();
+    EXPECT_EQ(jobs.jobs()[0].text, file + ": 12 splats; 0.00 % of the light lost, 10 B");
+    EXPECT_EQ(news_.back().text, "Saved " + jobs.jobs()[0].text);
+    EXPECT_EQ(test::text_of(folder / "words"), "export --progress plain --output=" + file + " --frame=3\n");
+}
+
 // Which says what it did last, not why.
 TEST_F(QueueTest, AProgramThatFailsSaysItsFirstError) {
     RenderQueue jobs = queue(
