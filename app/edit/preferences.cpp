@@ -161,6 +161,8 @@ constexpr SettingChoice threads[] = {{0, "All"}, {1, "1"},   {2, "2"},  {4, "4"}
                                      {8, "8"},   {16, "16"}, {32, "32"}};
 constexpr SettingChoice caches[] = {{0, "Auto"},    {5, "5 GiB"},     {20, "20 GiB"},
                                     {50, "50 GiB"}, {100, "100 GiB"}, {500, "500 GiB"}};
+constexpr SettingChoice frames[] = {{0, "Auto"},  {-1, "Off"},    {1, "1 GiB"},  {4, "4 GiB"},
+                                    {8, "8 GiB"}, {16, "16 GiB"}, {32, "32 GiB"}};
 constexpr SettingChoice autosaves[] = {{15, "15 s"}, {30, "30 s"}, {60, "1 min"}, {300, "5 min"}};
 constexpr SettingChoice settles[] = {{1, "Goes on to the final frame"}, {0, "Stays a preview"}};
 constexpr SettingChoice engines[] = {{0, "Auto"}, {1, "Card"}, {2, "Processor"}};
@@ -190,6 +192,10 @@ constexpr SettingRow rows[] = {
     {"cache_gib", "Cache",
      "Most that generated sets may take, from the next start; Auto: 20 GiB or a tenth of the disk",
      &Settings::cache_gib, caches},
+    {"frames_gib", "Final frames",
+     "Most memory for final frames that were shown, which are there at once when they are to be seen again; "
+     "Auto: 2 GiB, but no more than a quarter of what is free",
+     &Settings::frames_gib, frames},
     {"autosave_s", "Autosave", "How soon an edit is safe from a crash, from the next start",
      &Settings::autosave_s, autosaves}};
 

@@ -14,6 +14,7 @@ struct Settings {
     int threads = 0;                // 0: the cores this process may use
     int memory_gib = 0;             // most that the window takes; 0: what is free
     int cache_gib = 0;              // most that generated sets may take; 0: 20 GiB or a tenth of the disk
+    int frames_gib = 0;             // most that kept final frames may take; 0: 2 GiB; -1: none is kept
     int autosave_s = 60;            // from an edit to the copy that survives a crash
     int settles = 1;                // 0: views begin without going on to the final frame
     int engine = 0;                 // a PreviewEngine, with which views begin

@@ -201,10 +201,13 @@ struct Status {
     bool has_slurm = false;
     std::string engine;  // "NVIDIA H100" or "processor"
 
-    double played_fps = 0.0;     // frames a second that playing reaches; 0: not playing
-    std::string rendered_frame;  // name of the file shown in place of the preview; empty: none
-    std::string played_movie;    // name of the one that is seen; empty: none
-    std::string missing_frame;   // name of the one that is not there, where one is wanted
+    double played_fps = 0.0;              // frames a second that playing reaches; 0: not playing
+    std::vector<double> final_frames;     // those of the timeline that are kept as they would be seen now
+    std::int64_t final_frames_bytes = 0;  // of all that are kept
+    bool final_frames_full = false;       // the last one found no room
+    std::string rendered_frame;           // name of the file shown in place of the preview; empty: none
+    std::string played_movie;             // name of the one that is seen; empty: none
+    std::string missing_frame;            // name of the one that is not there, where one is wanted
 
     double viewport_aspect = 0.0;      // width / height; 0: not known
     void* viewport_texture = nullptr;  // the viewport with the frame in its place, bottom row first

@@ -86,6 +86,7 @@ struct ViewState : PanelSizes {
     PlayMode play_mode = PlayMode::loop;
     std::optional<double> play_first, play_last;  // in and out points; none: the ends of the frames
     bool every_frame = false;                     // playing leaves none out, however long it takes
+    bool play_final = false;                      // playing waits for every final frame
     bool show_rendered = false;                   // frames of the output's files in place of the preview
 
     ViewKind view = ViewKind::camera;

@@ -452,6 +452,7 @@ const Action table[] = {
     flip<&ViewState::log_open>("Help", "Log"),
 
     flip<&ViewState::playing>("", "Play or pause", plain(key_code::space)),
+    flip<&ViewState::play_final>("", "Play final frames"),
     repeated("Next frame", key_code::right, next_frame),
     repeated("Previous frame", key_code::left, previous_frame),
     repeated("Next keyframe", key_code::up, next_keyframe),

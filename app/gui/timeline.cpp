@@ -6,6 +6,7 @@
 
 #include <glm/geometric.hpp>
 
+#include "core/memory.h"
 #include "edit/placement.h"
 #include "edit/view_camera.h"
 #include "gui/widgets.h"
@@ -85,6 +86,17 @@ bool word_toggle(GuiFrame& frame, const char* word, bool on, const char* says) {
     return clicked;
 }
 
+std::string final_tip(const Status& status) {
+    std::string text =
+        "Playing waits for every frame to be final; those that were are in memory (the line over the "
+        "numbers) and play at the scene's speed";
+    if (!status.final_frames.empty())
+        text += fmt::format(". {} frames here, {} in all", status.final_frames.size(),
+                            human_bytes(static_cast<double>(status.final_frames_bytes)));
+    if (status.final_frames_full) text += ". There is no room for more: Settings > Final frames";
+    return text;
+}
+
 void play_choices(GuiFrame& frame) {
     ViewState& view = frame.view;
     constexpr std::array<const char*, 3> modes{"Loop", "Ping-pong", "Once"};  // by PlayMode
@@ -96,6 +108,8 @@ void play_choices(GuiFrame& frame) {
     if (word_toggle(frame, "Every frame", view.every_frame,
                     "Leaves no frame out, however long one takes; else the speed is kept"))
         view.every_frame = !view.every_frame;
+    if (word_toggle(frame, "Final", view.play_final, final_tip(frame.status).c_str()))
+        view.play_final = !view.play_final;
     if (word_toggle(frame, "Rendered", view.show_rendered,
                     "Shows the frames that are rendered in the output's folder; the preview where one is "
                     "missing"))
@@ -226,6 +240,15 @@ double ruler_step(const TimeScale& scale, float least_px) {
     return step;
 }
 
+/// A line over the frames that are there at once.
+void draw_final_frames(const TimelineState& t, const std::vector<double>& frames, const Rect& area) {
+    const float half = std::max(0.5f * (t.scale.x_of(1.0) - t.scale.x_of(0.0)), 0.5f);
+    for (const double frame : frames) {
+        const float x = t.scale.x_of(frame);
+        fill_rect({x - half, area.y}, {x + half, area.y + px(2)}, color::accent);
+    }
+}
+
 void draw_ruler(TimelineState& t, GuiFrame& frame, const Rect& area) {
     ImGui::SetCursorScreenPos({t.scale.x0 - px(timeline_margin), area.y});
     ImGui::InvisibleButton("ruler", {t.scale.x1 - t.scale.x0 + 2 * px(timeline_margin), area.height});
@@ -253,6 +276,7 @@ void draw_ruler(TimelineState& t, GuiFrame& frame, const Rect& area) {
     }
     ImGui::PopFont();
     draw_in_and_out(t, frame, area);
+    draw_final_frames(t, frame.status.final_frames, area);
 }
 
 void draw_playhead(const TimelineState& t, const GuiFrame& frame, const Rect& ruler) {

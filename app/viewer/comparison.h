@@ -196,7 +196,8 @@ Image thumbnail_of(const std::vector<unsigned char>& rgba, int width, int height
 
 class Comparison {
   public:
-    Comparison(std::shared_ptr<PictureFiles> files, const CardChoice& card) : b_(std::move(files), card) {}
+    Comparison(std::shared_ptr<PictureFiles> files, const CardChoice& card, std::shared_ptr<FinalFrames> kept)
+        : b_(std::move(files), card, std::move(kept)) {}
 
     /// Chooses the reference of the view, reads its picture in the background, and says in `status` which it
     /// is. Call it every frame.

@@ -137,6 +137,7 @@ double due_of_view(const Session& session, double now) {
     const ViewFrameState reached = session.view_frame.status().state;
     if (reached == ViewFrameState::refining || session.comparison.waiting()) return 0.03;
     if (reached == ViewFrameState::preview && session.view.settle) return session.view_frame.due(now);
+    if (session.frame_looked_for) return 0.02;
     if (session.difference.waiting() || session.comparison.reference().working() ||
         session.alignment.working())
         return 0.1;
@@ -156,8 +157,8 @@ Session::Session(const ViewerOptions& options, const GlInfo& gl_info)
                                      : document_for(options.input, view.start, options.assignments)),
       cache(options.cache),
       sets(options.cache, sample_limit),
-      view_frame(files, card_choice),
-      comparison(files, card_choice),
+      view_frame(files, card_choice, final_frames),
+      comparison(files, card_choice, final_frames),
       front(front_check(1280, options.cache)),
       jobs(options.cache, options.program, options.limits),
       fresh_demo(options.input.empty()) {
@@ -266,8 +267,25 @@ Document demo_document(std::span<const Assignment> assignments) {
     return Document::untitled(read_file(file), file, assignments);
 }
 
+/// A, and B where that is compared with.
+bool is_as_final_as_it_gets(const Session& session) {
+    const ViewFrameState reached = session.view_frame.status().state;
+    const bool with_b = compares(session.view) && session.view.compare_with == CompareWith::b;
+    return reached == ViewFrameState::failed || !session.status.rendered_frame.empty() ||
+           (reached == ViewFrameState::final && !(with_b && session.comparison.waiting()));
+}
+
+/// Most bytes of final frames that are kept.
+std::int64_t limit_of_final_frames(const Settings& settings) {
+    constexpr int usual_gib = 2;  // 240 frames of 960x540 with their alpha, as floats
+    return std::int64_t{std::max(0, settings.frames_gib == 0 ? usual_gib : settings.frames_gib)} << 30;
+}
+
 void advance(Session& session, double now) {
-    session.playback.advance(session.view, session.document.scene().output, now);
+    session.final_frames->limit(limit_of_final_frames(session.view.settings));
+
+    session.playback.advance(session.view, session.document.scene().output, is_as_final_as_it_gets(session),
+                             now);
     session.status.played_fps = session.playback.shown_fps();
     want_sets(session, now);
     session.sets.follow(

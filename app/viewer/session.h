@@ -36,6 +36,18 @@ struct MessageAge {
     double since = 0.0;  // s
 };
 
+/// What decides how the frames of the timeline look, but for the frame itself.
+struct FramesContext {
+    std::uint64_t revision = 0, files = 0;  // of the document, of its files
+    ViewKind view = ViewKind::camera;
+    FreeCamera free;
+    std::set<std::string> solo;
+    glm::ivec2 size_px{0};
+    std::array<std::int64_t, 4> region{};
+    std::vector<const SplatSet*> sets;  // one a layer
+    bool operator==(const FramesContext&) const = default;
+};
+
 /// Document, view and status, and the parts that each keep a state of their own.
 struct Session {
     /// Opens options.input, or the demo. Throws InputError.
@@ -51,7 +63,11 @@ struct Session {
     SetCache cache;
     SetWishes sets;
     std::shared_ptr<PictureFiles> files = std::make_shared<PictureFiles>();
-    ViewFrame view_frame;  // A
+    std::shared_ptr<FinalFrames> final_frames = std::make_shared<FinalFrames>();
+    std::optional<FramesContext> frames_context;  // of Status::final_frames; none: to be counted again
+    std::uint64_t final_frames_dropped = 0;       // until then
+    std::optional<double> frame_looked_for;       // the next one; none: all have been
+    ViewFrame view_frame;                         // A
     SnapshotList snapshots;
     Comparison comparison;
     DifferenceMeter difference;

@@ -101,7 +101,8 @@ glm::ivec2 frame_size(const Session& session, const OutputParams& output) {
             std::max(1, static_cast<int>(std::lround(height)))};
 }
 
-ViewRequest make_request(const Session& session, Scene now) {
+/// `now`: the scene as it stands at the frame of `view`, which may differ from the session's in that alone.
+ViewRequest make_request(const Session& session, Scene now, const ViewState& view) {
     ViewRequest made;
     made.files = session.disk.changes();
     for (const LayerParams& layer : now.layers) {
@@ -113,11 +114,11 @@ ViewRequest make_request(const Session& session, Scene now) {
     made.width = size.x;
     made.height = size.y;
     const double aspect = static_cast<double>(made.width) / static_cast<double>(made.height);
-    if (sees_motion(now, session.view))
-        made.frame = session.view.frame;
+    if (sees_motion(now, view))
+        made.frame = view.frame;
     else
         stop_animation(now);
-    now.camera = view_camera(now, session.view, made.box, aspect);
+    now.camera = view_camera(now, view, made.box, aspect);
     forget_what_is_not_seen(now);
     now.output.width = made.width;
     now.output.height = made.height;
@@ -135,7 +136,9 @@ Rect crop_to_viewport(ViewRequest& request, const Rect& whole, glm::ivec2 viewpo
             scale * static_cast<float>(part.width), scale * static_cast<float>(part.height)};
 }
 
-bool settles(const Session& session) { return session.view.settle && !session.view.playing; }
+bool settles(const Session& session) {
+    return session.view.playing ? session.view.play_final : session.view.settle;
+}
 
 PreviewChoice preview_choice(Session& session) {
     PreviewChoice choice;
@@ -193,7 +196,7 @@ struct Drawing {
 Rect place_of_frame(Session& session, const Scene& now) {
     session.status.viewport_aspect =
         static_cast<double>(session.viewport_px.x) / static_cast<double>(session.viewport_px.y);
-    session.request = make_request(session, now);
+    session.request = make_request(session, now, session.view);
     keep_free_camera(session.view, session.shown());
     const Rect whole = frame_in_viewport(session);
     session.status.viewport_camera = camera_in_viewport(session.request, whole);
@@ -217,7 +220,7 @@ void compare_a(Session& session, const Rect& whole, const Drawing& how, DisplayS
     const ViewFrameState reached = session.view_frame.status().state;
     const bool a_is_done = reached == ViewFrameState::final || reached == ViewFrameState::failed;
     const auto request_for = [&](const Scene& other) {
-        ViewRequest wanted = make_request(session, evaluated(other, session.view));
+        ViewRequest wanted = make_request(session, evaluated(other, session.view), session.view);
         wanted.region = session.request.region;
         return wanted;
     };
@@ -227,6 +230,57 @@ void compare_a(Session& session, const Rect& whole, const Drawing& how, DisplayS
                             {session.snapshots.b(), request_for, how.choice, how.may_settle && a_is_done,
                              how.now, frame_on_screen(whole)},
                             shown);
+}
+
+FramesContext frames_context(const Session& session) {
+    const ViewRequest& request = session.request;
+    const ViewState& view = session.view;
+    FramesContext now{session.document.revision(),     request.files,           view.view, {}, view.solo,
+                      {request.width, request.height}, corners(request.region), {}};
+    for (const auto& layer : request.layers) now.sets.push_back(layer ? layer->set.get() : nullptr);
+    if (view.view != ViewKind::camera) now.free = view.free;
+    return now;
+}
+
+/// Fills Status::final_frames while the frame at hand is final: this one, and where something else came to be
+/// seen all of them, a few every time.
+void note_final_frames(Session& session) {
+    constexpr int at_a_time = 8;     // of a scene's frames, some 0.2 ms each
+    constexpr double most = 10'000;  // frames looked for
+    FinalFrames& kept = *session.final_frames;
+    std::vector<double>& frames = session.status.final_frames;
+    session.status.final_frames_bytes = kept.bytes();
+    session.status.final_frames_full = kept.full();
+    FramesContext context = frames_context(session);
+    const bool same = session.frames_context == context && session.final_frames_dropped == kept.drops();
+    if (!same) {
+        frames.clear();
+        session.frames_context.reset();
+        session.frame_looked_for.reset();
+    }
+    if (session.view_frame.status().state != ViewFrameState::final) return;
+    const FrameRange range = frame_range(session.document.scene().output);
+    if (!same) {
+        kept.begin_round();
+        session.frame_looked_for = range.first;
+    }
+    const auto look_for = [&](double frame) {
+        const auto at = std::ranges::lower_bound(frames, frame);
+        if (at != frames.end() && *at == frame) return;
+        ViewState view = session.view;
+        view.frame = frame;
+        ViewRequest wanted = make_request(session, evaluated(session.document.scene(), view), view);
+        wanted.region = session.request.region;
+        if (kept.find(wanted)) frames.insert(at, frame);
+    };
+    std::optional<double>& next = session.frame_looked_for;
+    for (int i = 0; i < at_a_time && next; ++i) {
+        look_for(*next);
+        if (++*next > std::min(range.last, range.first + most)) next.reset();
+    }
+    look_for(session.view.frame);
+    session.frames_context = std::move(context);
+    session.final_frames_dropped = kept.drops();
 }
 
 void fill_layers(Session& session, const Scene& now) {
@@ -273,7 +327,8 @@ void draw_viewport(Session& session, glm::ivec2 viewport_px, double now, bool hu
     session.viewport_px = glm::max(viewport_px, glm::ivec2(1));
     const Scene scene = evaluated(session.document.scene(), session.view);
     session.sets.see_sets();
-    Drawing how{now, hurry, false, {}};
+    const bool waits = session.view.playing && session.view.play_final;  // for the final frame
+    Drawing how{now, hurry || waits, false, {}};
     const Rect whole = place_of_frame(session, scene);
     const bool one_to_one = session.view.size == SizeMode::one_to_one;
     const Rect place = one_to_one ? crop_to_viewport(session.request, whole, session.viewport_px) : whole;
@@ -301,6 +356,7 @@ void draw_viewport(Session& session, glm::ivec2 viewport_px, double now, bool hu
                     session.view_frame.version() + session.comparison.version() +
                     session.front_difference.version();
     measure_difference(session, shown, now);
+    note_final_frames(session);
     session.displayed = shown;
     session.status.viewport_texture =
         to_handle(session.display.draw(shown, session.viewport_px.x, session.viewport_px.y));

@@ -126,23 +126,6 @@ std::vector<Region> FinalFrame::take_tiles(Image& image) {
 
 namespace {
 
-/// Histograms may come later than the set. What grows has none yet, and every sample of it is another.
-bool same_set(const std::shared_ptr<const LoadedLayer>& a, const std::shared_ptr<const LoadedLayer>& b) {
-    const auto set_of = [](const LoadedLayer& layer) { return layer.set ? layer.set : layer.sample.set; };
-    return (a ? set_of(*a) : nullptr) == (b ? set_of(*b) : nullptr);
-}
-
-bool have_same_sets(const ViewRequest& a, const ViewRequest& b) {
-    return std::ranges::equal(a.layers, b.layers, same_set);
-}
-
-/// They ask for the same, whatever sets there are.
-bool ask_the_same(const ViewRequest& a, const ViewRequest& b) {
-    return a.width == b.width && a.height == b.height && a.files == b.files && a.frame == b.frame &&
-           a.region.x == b.region.x && a.region.y == b.region.y && a.region.width == b.region.width &&
-           a.region.height == b.region.height && a.scene == b.scene;
-}
-
 constexpr double rest_s = 0.15;       // without a touch, before the final frame begins
 constexpr double step_rest_s = 0.06;  // and before the first finer preview does
 
@@ -154,19 +137,18 @@ Camera camera_of(const ViewRequest& request) {
     return make_camera(request.scene.camera, request.width, request.height, request.box);
 }
 
-/// Whatever is shown, something else may be to be seen, which begins with its preview or cannot be drawn.
-/// Else the stages follow each other, and finer previews may come one after the other.
+/// Whatever is shown, something else may be to be seen, which begins with its preview, is kept or cannot be
+/// drawn. Else the stages follow each other, and finer previews may come one after the other.
 constexpr bool ViewFrame::may_follow(Stage now, Stage next) {
     switch (next) {
         case Stage::preview:
+        case Stage::final:
         case Stage::failed:
             return true;
         case Stage::finer:
             return now == Stage::preview;
         case Stage::refining:
             return now == Stage::preview || now == Stage::final;
-        case Stage::final:
-            return now == Stage::refining;
         case Stage::empty:
             break;
     }
@@ -362,6 +344,33 @@ void ViewFrame::begin_final() {
     status_.progress = 0.0f;
 }
 
+/// False: no final frame of what is to be seen is kept.
+bool ViewFrame::take_kept() {
+    const FinalFrames::Kept* const kept = kept_finals_ ? kept_finals_->find(*request_) : nullptr;
+    if (!kept) return false;
+    try {
+        environment_ = files_->environment(request_->scene.environment);
+    } catch (const InputError&) {  // which the preview says
+        return false;
+    }
+    final_.cancel();
+    if (stage_ == Stage::finer) finer_.forget();
+    enter(Stage::final);
+    final_frame_ = kept->frame;
+    canvas_ = kept->frame->beauty;
+    canvas_texture_.upload(canvas_);
+    texture_ = canvas_texture_.handle();
+    ++version_;
+    behind_ = true;
+    status_.progress = 1.0f;
+    status_.seconds = kept->seconds;
+    status_.device = kept->frame->statistics.device;
+    status_.width = request_->width;
+    status_.height = request_->height;
+    status_.error.clear();
+    return true;
+}
+
 /// A frame of a card in place of the preview, over the last one. False: something is missing for that.
 bool ViewFrame::follow(double now) {
     const auto& loaded = request_->layers;
@@ -392,7 +401,9 @@ void ViewFrame::take_final(double now) {
     status_.error = outcome.error;
     if (outcome.state == FinalFrame::State::done) {
         enter(Stage::final);
+        final_frame_ = outcome.frame;
         final_s_ = outcome.seconds;
+        if (kept_finals_) kept_finals_->keep(*request_, outcome.frame, outcome.seconds);
         status_.device = outcome.frame->statistics.device;
         quick_ = !outcome.frame->statistics.device.empty() && outcome.seconds < choice_.quick_s;
         refine(now);  // for when the hand moves again
@@ -438,6 +449,7 @@ void ViewFrame::show(const ViewRequest& request, const PreviewChoice& choice, bo
         if (touched) touched_at_ = now;
         request_ = request;
         choice_ = choice;
+        if (changed && take_kept()) return;
         if (settle && changed && follow(now)) return;
         return start_over(now);
     }
@@ -479,7 +491,7 @@ std::vector<float> ViewFrame::layer_light(std::int64_t x, std::int64_t y) {
 }
 
 std::shared_ptr<const RenderedFrame> ViewFrame::final_frame() const {
-    return stage_ == Stage::final ? final_.outcome().frame : nullptr;
+    return stage_ == Stage::final ? final_frame_ : nullptr;
 }
 
 }  // namespace astrosplat

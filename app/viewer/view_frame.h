@@ -14,22 +14,12 @@
 #include "splats/splat_set.h"
 #include "viewer/background_work.h"
 #include "viewer/files.h"
+#include "viewer/final_frames.h"
 #include "viewer/preview_splats.h"
 
 namespace astrosplat {
 
 class Pipeline;
-
-/// A frame that is asked for, or a part of it.
-struct FrameRequest {
-    Scene scene;
-    double frame = 1.0;         // at which the scene's animation, if it has kept any, is evaluated
-    int width = 0, height = 0;  // px of the whole frame
-    Region region;              // the part of it; empty: all
-    std::uint64_t files = 0;    // another number: files were changed, and what is kept of them is read again
-    /// The same part, never empty.
-    Region part() const { return region.width > 0 ? region : Region{0, 0, width, height}; }
-};
 
 /// One frame to compute.
 struct FinalRequest : FrameRequest {
@@ -74,16 +64,6 @@ class FinalFrame {
     Work work_;
 };
 
-/// A frame to be shown: the scene as it stands, with the view's camera; layers that are not to be seen are
-/// invisible. Requests that ask for the same and have the same sets show equal frames.
-struct ViewRequest : FrameRequest {
-    std::vector<std::shared_ptr<const LoadedLayer>> layers;  // as in the scene; null: not loaded
-    Bounds box;                                              // of the visible layers, world space
-};
-
-/// The camera of a request, for its whole frame. Throws InputError.
-Camera camera_of(const ViewRequest& request);
-
 /// How previews are drawn.
 struct PreviewChoice {
     RenderDevice* device = nullptr;  // that draws; null: the processor
@@ -97,8 +77,10 @@ struct PreviewChoice {
 
 class ViewFrame {
   public:
-    explicit ViewFrame(std::shared_ptr<PictureFiles> files, const CardChoice& card = {})
-        : files_(std::move(files)), final_(card) {}
+    /// `kept`: where final frames are looked for and kept, which several views may share; null: nowhere.
+    explicit ViewFrame(std::shared_ptr<PictureFiles> files, const CardChoice& card = {},
+                       std::shared_ptr<FinalFrames> kept = nullptr)
+        : files_(std::move(files)), kept_finals_(std::move(kept)), final_(card) {}
 
     /// Shows `request`: draws a preview where it differs from the last one, else goes on towards the final
     /// frame once nothing has been touched for 0.15 s (`settle`; `hurry`: at once). Where the last final
@@ -156,12 +138,14 @@ class ViewFrame {
     void begin_step(std::int64_t splats);
     bool take_step();
     void begin_final();
+    bool take_kept();
     bool follow(double now);
     void take_final(double now);
     void start_over(double now);
     void come_closer(bool settle, double now, bool hurry);
 
     std::shared_ptr<PictureFiles> files_;
+    std::shared_ptr<FinalFrames> kept_finals_;
     Stage stage_ = Stage::empty;
     std::optional<ViewRequest> request_;
     std::shared_ptr<const Environment> environment_;  // of the last preview
@@ -172,6 +156,7 @@ class ViewFrame {
     bool waits_ = false;  // at rest, for sets that are being made
     FramePace pace_;
     FinalFrame final_;
+    std::shared_ptr<const RenderedFrame> final_frame_;  // that is shown
     FinerPreview finer_{finer_preview()};
     FinerRequest finer_request_;  // its number; the rest is with finer_
     int step_ = 0;                // of finer previews, the last one begun

@@ -238,10 +238,10 @@ double Playback::next_frame(double frame, double steps, ViewState& view, const O
     return backwards_ ? last - (at - length) : first + at;
 }
 
-void Playback::advance(ViewState& view, const OutputParams& output, double now) {
+void Playback::advance(ViewState& view, const OutputParams& output, bool is_final, double now) {
     if (!view.playing) {
         played_at_ = -1.0;
-        backwards_ = false;
+        backwards_ = waited_ = false;
         shown_at_.clear();
         return;
     }
@@ -252,8 +252,10 @@ void Playback::advance(ViewState& view, const OutputParams& output, double now) 
         return;
     }
     const double due = std::floor((now - played_at_) * output.fps);
-    if (due < 1.0) return;
-    const double steps = view.every_frame ? 1.0 : due;
+    const bool waits = view.play_final && !is_final;
+    waited_ = waited_ || waits;
+    if (due < 1.0 || waits) return;
+    const double steps = view.every_frame || std::exchange(waited_, false) ? 1.0 : due;
     view.frame = next_frame(std::floor(view.frame), steps, view, output);
     played_at_ = due > steps ? now : played_at_ + steps / output.fps;
     shown_at_.push_back(now);

@@ -70,7 +70,8 @@ class Playback {
   public:
     /// Runs the frames between the view's in and out points at the scene's speed: round and round, there and
     /// back, or once. Where drawing is slower, frames are dropped, or the speed with ViewState::every_frame.
-    void advance(ViewState& view, const OutputParams& output, double now);
+    /// With ViewState::play_final the next frame comes once this one `is_final`.
+    void advance(ViewState& view, const OutputParams& output, bool is_final, double now);
     /// Frames a second that were shown over the last second or so; 0 until that is known.
     double shown_fps() const;
 
@@ -79,6 +80,7 @@ class Playback {
 
     double played_at_ = -1.0;      // seconds; below 0: it does not play
     bool backwards_ = false;       // on the way back
+    bool waited_ = false;          // for this frame to be final
     std::deque<double> shown_at_;  // seconds of the last frames
 };
 

@@ -236,6 +236,24 @@ TEST_F(WindowPath, RenderedFramesAreShownAndTheOthersAsPreviews) {
     EXPECT_TRUE(comes_true([&] { return sees(150); })) << "and now it is";
 }
 
+/// Each is made once; what is edited and undone finds them all again.
+TEST_F(WindowPath, FinalFramesPlayFromMemory) {
+    start_settled();
+    const auto line = [&] { return count_of(pixels_of(&Layout::timeline), color::accent); };
+    const int one = line(), all = int(1.6f * layout().timeline.width);  // two rows of px over the numbers
+    EXPECT_LT(one, all / 2);
+    person->click(same_widgets().at("playing/Final"));
+    person->press("space");
+    EXPECT_TRUE(comes_true([&] { return line() > all; })) << "every frame is waited for";
+    person->press("space");
+    person->drag(value_box(power), {40.0f, 0.0f});
+    expect_title("scene.toml - edited");
+    EXPECT_TRUE(comes_true([&] { return line() < all / 2; })) << "none of them is as it would be now";
+    person->press("ctrl+z");
+    EXPECT_TRUE(comes_true([&] { return line() > all; }));
+    EXPECT_TRUE(settled());
+}
+
 /// Frames of scene light are seen through the viewport's exposure and view, as the preview is.
 TEST_F(WindowPath, RenderedLightIsShownThroughTheView) {
     show_rendered_light("view = \"linear\"");

@@ -11,6 +11,7 @@
 #include "support/small_scene.h"
 #include "support/test.h"
 #include "unit/edit/scenes.h"
+#include "viewer/final_frames.h"
 #include "viewer/view_motion.h"
 
 namespace astrosplat {
@@ -167,6 +168,81 @@ TEST_F(Followed, ACardsPreviewsAreThoseOfTheProcessor) {
         EXPECT_GT(shown.status().shown, 1000);
         EXPECT_FALSE(card.pass_times().empty()) << "it has drawn";
     }
+}
+
+/// Whatever was seen in between, and without a preview: the frame itself, as long as its sets are those.
+TEST_F(Followed, AFinalFrameThatIsKeptIsThereAtOnce) {
+    const auto kept = std::make_shared<FinalFrames>();
+    kept->limit(1 << 30);
+    ViewFrame keeps(std::make_shared<PictureFiles>(), {}, kept);
+    choice.quick_s = 0.0;
+    const auto settled = [&](const ViewRequest& wanted) {
+        keeps.show(wanted, choice, true, now += 1.0);
+        const bool at_once = keeps.final_frame() != nullptr;
+        while (!keeps.final_frame()) {
+            keeps.show(wanted, choice, true, now += 0.2);
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        }
+        return at_once;
+    };
+    const ViewRequest first = view(0), second = view(5), graded = view(2);
+    EXPECT_FALSE(settled(first));
+    EXPECT_FALSE(settled(second)) << "another camera and size";
+    EXPECT_FALSE(settled(graded));
+    const std::uint64_t version = keeps.version();
+    EXPECT_TRUE(settled(first));
+    EXPECT_GT(keeps.version(), version);
+    EXPECT_EQ(keeps.status().state, ViewFrameState::final);
+    EXPECT_EQ(keeps.status().width, first.width);
+    EXPECT_EQ(pixel_hash(*keeps.pixels()), hash_of(request(0)));
+    EXPECT_TRUE(settled(second));
+    EXPECT_EQ(pixel_hash(*keeps.pixels()), hash_of(request(5)));
+    const std::vector<float> light = keeps.layer_light(100, 50);
+    ViewFrame other(std::make_shared<PictureFiles>());
+    other.show(second, choice, false, 0.0);
+    EXPECT_EQ(light, other.layer_light(100, 50)) << "of what is shown, not of the last preview";
+    sets[0] = std::make_shared<const SplatSet>(*sets[0]);
+    EXPECT_FALSE(settled(view(0))) << "another set";
+    kept->limit(0);
+    EXPECT_FALSE(settled(view(4)));
+    EXPECT_FALSE(settled(view(0))) << "none is kept any more";
+}
+
+TEST_F(Followed, OfALoopThatIsTooLongTheSameFramesStay) {
+    FinalFrames kept;
+    auto frame = std::make_shared<RenderedFrame>();
+    frame->beauty = make_image(100, 100, 4);
+    const std::int64_t bytes = 100 * 100 * 4 * 4;
+    kept.limit(3 * bytes);
+    std::vector<ViewRequest> loop;
+    for (int i = 0; i < 5; ++i) {
+        loop.push_back(view(0));
+        loop.back().frame = i;
+    }
+    const auto count = [&] {
+        return std::ranges::count_if(loop, [&](const ViewRequest& r) { return kept.find(r) != nullptr; });
+    };
+    for (const ViewRequest& request : loop) {
+        kept.begin_round();
+        kept.keep(request, frame, 1.0);
+    }
+    EXPECT_EQ(count(), 3);
+    EXPECT_EQ(kept.bytes(), 3 * bytes);
+    EXPECT_FALSE(kept.full()) << "older ones made room";
+    EXPECT_TRUE(kept.find(loop[4]));
+    kept.begin_round();
+    for (const ViewRequest& request : loop)
+        if (!kept.find(request)) kept.keep(request, frame, 1.0);
+    EXPECT_TRUE(kept.full());
+    const std::uint64_t drops = kept.drops();
+    EXPECT_EQ(count(), 3);
+    for (int round = 0; round < 2; ++round)
+        for (const ViewRequest& request : loop)
+            EXPECT_TRUE(kept.find(request) || !kept.keep(request, frame, 1.0));
+    EXPECT_EQ(kept.drops(), drops) << "none makes room for another of the loop";
+    kept.limit(bytes);
+    kept.keep(view(1), frame, 1.0);
+    EXPECT_LE(kept.bytes(), bytes);
 }
 
 TEST_F(FinalFrameTest, DepthComesWithTheSamePixels) {
@@ -464,10 +540,24 @@ struct PlaybackTest : testing::Test {
         view.playing = true;
     }
     double frame_at(double now) {
-        playback.advance(view, output, now);
+        playback.advance(view, output, is_final, now);
         return view.frame;
     }
+    bool is_final = false;
 };
+
+TEST_F(PlaybackTest, WaitsForFinalFramesWhereTheyAreWanted) {
+    output.frames = "10-100";
+    view.play_final = true;
+    frame_at(100.0);
+    EXPECT_EQ(frame_at(101.0), 10.0);
+    is_final = true;
+    EXPECT_EQ(frame_at(102.0), 11.0) << "the next one, however late";
+    EXPECT_EQ(frame_at(102.25), 12.0);
+    EXPECT_EQ(frame_at(102.75), 14.0) << "those that are there keep the speed";
+    view.every_frame = true;
+    EXPECT_EQ(frame_at(103.5), 15.0);
+}
 
 TEST_F(PlaybackTest, AfterTheLastFrameComesTheFirst) {
     EXPECT_EQ(frame_at(100.0), 10.0);
