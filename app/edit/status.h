@@ -213,7 +213,8 @@ struct Status {
     void* viewport_texture = nullptr;  // the viewport with the frame in its place, bottom row first
     std::optional<Camera>
         viewport_camera;  // what the view looks through, in px of the viewport; none: nothing
-    std::vector<std::vector<glm::vec2>> overlay_lines;  // camera path, frustum; px of the viewport
+    std::vector<std::vector<glm::vec2>>
+        overlay_lines;  // camera path, frustum; px of the viewport; one point: a tick
 };
 
 /// Null: none.

@@ -115,6 +115,8 @@ void draw_gate(const GuiFrame& frame, const Rect& area, const Rect& frame_area) 
 void draw_overlay_lines(const GuiFrame& frame, const Rect& area) {
     ImDrawList* list = ImGui::GetWindowDrawList();
     for (const auto& line : frame.status.overlay_lines) {
+        if (line.size() == 1)
+            list->AddCircleFilled({area.x + line[0].x, area.y + line[0].y}, px(2.4f), color::attention, 12);
         for (const glm::vec2& p : line) list->PathLineTo({area.x + p.x, area.y + p.y});
         list->PathStroke(color::with_opacity(color::attention, 0.75f), ImDrawFlags_None, px(1.2f));
     }

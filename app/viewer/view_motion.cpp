@@ -84,26 +84,41 @@ Scene camera_part(const Scene& scene) {
     part.output.width = scene.output.width;
     part.output.height = scene.output.height;
     part.output.frames = scene.output.frames;
+    part.output.fps = scene.output.fps;
     part.imported = scene.imported;
     for (const Track& track : scene.animation)
         if (track.key.is_below("camera")) part.animation.push_back(track);
     return part;
 }
 
-/// Places of the scene's camera over the frames of [output], at most 256 of them; one where it does not move.
-std::vector<glm::dvec3> camera_path(const Scene& scene, const Bounds& box) {
-    constexpr double most = 256.0;
+/// Places of the scene's camera over the frames of [output], `step` frames apart; one where it stands still.
+std::vector<glm::dvec3> camera_places(const Scene& scene, const Bounds& box, double step) {
     const auto [first, last] = frame_range(scene.output);
-    const double step = std::max(1.0, (last - first) / (most - 1.0));
-    std::vector<glm::dvec3> path;
+    std::vector<glm::dvec3> places;
     for (double frame = first; frame <= last; frame += step) {
         const Scene now = scene_at(scene, frame);
         const glm::dvec3 eye = make_camera(now.camera, static_cast<double>(now.output.width),
                                            static_cast<double>(now.output.height), box)
                                    .eye;
-        if (path.empty() || path.back() != eye) path.push_back(eye);
+        if (places.empty() || places.back() != eye) places.push_back(eye);
     }
-    return path;
+    return places;
+}
+
+std::vector<glm::dvec3> camera_path(const Scene& scene, const Bounds& box) {
+    constexpr double most = 256.0;
+    const auto [first, last] = frame_range(scene.output);
+    return camera_places(scene, box, std::max(1.0, (last - first) / (most - 1.0)));
+}
+
+/// Frames between two ticks: a second, halved or doubled until there are neither few nor a crowd.
+double tick_frames(const OutputParams& output) {
+    constexpr double few = 8.0, many = 40.0;
+    const auto [first, last] = frame_range(output);
+    double step = std::max(1.0, std::round(output.fps));
+    while (step > 1.0 && (last - first) / step < few) step = std::max(1.0, 0.5 * step);
+    while ((last - first) / step > many) step *= 2.0;
+    return step;
 }
 
 /// Edges of the pyramid that `camera` sees, out to `length` scene units: lines of the four corners, then the
@@ -201,6 +216,7 @@ std::vector<CameraOverlay::Line> CameraOverlay::lines(const Scene& scene, const 
         const bool same_box = path_box_.lo == box.lo && path_box_.hi == box.hi;
         if (Scene part = camera_part(scene); !same_box || part != path_of_) {
             path_ = camera_path(part, box);
+            ticks_ = camera_places(part, box, tick_frames(part.output));
             path_of_ = std::move(part);
             path_box_ = box;
         }
@@ -217,6 +233,9 @@ std::vector<CameraOverlay::Line> CameraOverlay::lines(const Scene& scene, const 
                 for (glm::vec2& p : part) p = glm::vec2(place.x, place.y) + scale * p;
                 result.push_back(std::move(part));
             }
+        for (const glm::dvec3& tick : ticks_)
+            if (const auto at = project_point(seen_through, tick); at && ticks_.size() > 1)
+                result.push_back({glm::vec2(place.x, place.y) + scale * *at});
     } catch (const InputError&) {
         result.clear();
     }

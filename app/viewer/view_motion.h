@@ -50,7 +50,8 @@ inline constexpr const char* left_camera_message = "Free view, a copy of the cam
 /// The whole box in a free view. True: the view left the scene's camera.
 bool frame_in_view(ViewState& view, const Bounds& box, const ShownView& shown);
 
-/// The scene camera's path and its frustum, as lines in px of the viewport.
+/// The scene camera's path and its frustum, as lines in px of the viewport; lines of one point are ticks of
+/// equal time along the path.
 class CameraOverlay {
   public:
     using Line = std::vector<glm::vec2>;
@@ -60,8 +61,8 @@ class CameraOverlay {
                             const ViewRequest& request, const Rect& place);
 
   private:
-    std::vector<glm::dvec3> path_;  // of the scene's camera
-    Scene path_of_;                 // the part of the scene that it was made of, with this box
+    std::vector<glm::dvec3> path_, ticks_;  // of the scene's camera
+    Scene path_of_;                         // the part of the scene that it was made of, with this box
     Bounds path_box_;
 };
 

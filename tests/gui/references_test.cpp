@@ -183,7 +183,7 @@ TEST_P(References, FreeViewWithOverlays) {
     window.view.safe_areas = true;
     window.view.layer = 1;
     window.view.solo = {"stars"};
-    window.status.overlay_lines = {{{100, 300}, {300, 250}, {500, 330}}};
+    window.status.overlay_lines = {{{100, 300}, {300, 250}, {500, 330}}, {{100, 300}}, {{300, 250}}};
     expect_reference("free");
 }
 TEST_P(References, WithoutPanels) {

@@ -445,6 +445,26 @@ TEST_F(CameraOverlayTest, AViewFromElsewhereSeesTheWholeFrustum) {
     }
 }
 
+/// Eight seconds; the camera is twice as fast in the second half of its way.
+TEST_F(CameraOverlayTest, TicksLieWhereTheCameraIsAtEqualTimes) {
+    scene.output.frames = "1-193";
+    scene.output.fps = 24.0;
+    const auto key = [](double frame, double x) {
+        return Keyframe<std::vector<double>>(frame, {x, 4.0, 10.0}, Interpolation::linear);
+    };
+    Track way{.key = ParameterKey("camera.position"), .keyframes = {}};
+    way.keyframes = {key(1.0, 0.0), key(97.0, 4.0), key(193.0, 12.0)};
+    scene.animation = {way};
+    request.scene.camera.position = glm::dvec3(6.0, 60.0, 10.0);
+    request.scene.camera.target = glm::dvec3(6.0, 0.0, 9.99);
+    std::vector<float> x;
+    for (const Line& line : lines())
+        if (line.size() == 1) x.push_back(line[0].x);
+    ASSERT_EQ(x.size(), 9u);
+    for (std::size_t i = 1; i < x.size(); ++i)
+        EXPECT_NEAR((x[i] - x[i - 1]) / (x[1] - x[0]), i <= 4 ? 1.0f : 2.0f, 0.02f) << i;
+}
+
 TEST_F(CameraOverlayTest, ACameraThatCannotBeMadeHasNoLines) {
     request.scene.camera.fov = 0.0;
     EXPECT_TRUE(lines().empty());
