@@ -28,6 +28,7 @@ class SeenLayer {
         const glm::dmat3 rows = glm::transpose(layer.projection.camera_from_layer);
         right_ = rows[0] / double(layer.projection.radius_scale);
         up_ = rows[1] / double(layer.projection.radius_scale);
+        stars_ = find_stars();
     }
 
     const MergedSplats& merged() const { return *layer_.merged; }
@@ -120,7 +121,7 @@ class SeenLayer {
         const float hybrid =
             shared::hybrid_amount(shared::axis_cosine(l.lens, l.axis_in_camera, to_camera(sums.centre)),
                                   r.hybrid_from_deg, r.hybrid_to_deg);
-        const bool points = is_of_stars(merged().tree->nodes[index]);
+        const bool points = merged().tree->nodes[index].first >= stars_;
         const float share = 1.0f / float(row.count);
         sums.cover *= share;
         sums.squares *= share;
@@ -147,12 +148,17 @@ class SeenLayer {
   private:
     static constexpr float child_spread = 0.4f;  // of a splat's children along an axis, radii
 
-    /// Stars have nodes of their own.
-    bool is_of_stars(const MergeNode& node) const {
-        for (std::int64_t r = node.first; r < node.end; ++r)
-            if (const std::int64_t i = merged().place[merged().tree->rows[r]]; i >= 0)
-                return is_star(merged().splats.id[i]) || is_spike(merged().splats.id[i]);
-        return false;
+    /// Stars and their spikes have a root of their own, the last one: the first of its rows.
+    std::int64_t find_stars() const {
+        const MergeTree& tree = *merged().tree;
+        if (tree.root_count() == 0) return 0;
+        const MergeNode& last = tree.nodes[tree.root_count() - 1];
+        for (std::int64_t r = last.first; r < last.end; ++r)
+            if (const std::int64_t i = merged().place[tree.rows[r]]; i >= 0) {
+                const std::uint64_t id = merged().splats.id[i];
+                return is_star(id) || is_spike(id) ? last.first : last.end;
+            }
+        return last.end;
     }
 
     void relight(const MergeNode& node, NodeSums& sums) const {
@@ -185,6 +191,7 @@ class SeenLayer {
     const CutLayer& layer_;
     const CutSettings& settings_;
     glm::vec3 right_, up_;  // of the frame, in layer space
+    std::int64_t stars_;    // rows of the tree from here on are theirs
 };
 
 /// A node of a layer, or one of its splats.
