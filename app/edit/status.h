@@ -57,6 +57,7 @@ enum class ViewFrameState { loading, preview, refining, final, failed };
 struct ViewFrameStatus {
     ViewFrameState state = ViewFrameState::loading;
     std::int64_t shown = 0, total = 0;  // splats in the preview and in the sets
+    int samples = 1;                    // renderings that the preview is the mean of
     bool round_splats = false;          // the preview shows Gaussians as round splats
     float progress = 0.0f;              // refining
     double seconds = 0.0;               // final: how long it took

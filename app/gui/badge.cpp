@@ -138,6 +138,9 @@ BadgeText badge_text(const Scene& scene, const Status& status) {
         case ViewFrameState::preview:
             break;
     }
+    if (shown.samples > 1)
+        return {fmt::format("Preview, {} of {} samples", shown.samples, scene.output.samples), total,
+                color::accent};
     const char* const splats = shown.round_splats ? "round splats" : "splats";
     if (shown.shown >= shown.total)
         return {shown.round_splats ? "Preview, round splats" : "Preview", total, color::accent};

@@ -137,6 +137,12 @@ MergeSource source_of(std::shared_ptr<const SplatSet> set, std::int64_t stands_f
     return source;
 }
 
+MergeSource light_sample(const SplatSet& set, std::int64_t count) {
+    MergeSource source = sample_light(set, count);
+    source.tree = std::make_shared<const MergeTree>(build_merge_tree(*source.set));
+    return source;
+}
+
 LoadedLayer whole_layer(std::shared_ptr<const SplatSet> set, const SourceParams& source,
                         const std::string& name, std::int64_t sample_limit, const MergeSource* sample) {
     const std::int64_t splats = set->size();
@@ -146,6 +152,8 @@ LoadedLayer whole_layer(std::shared_ptr<const SplatSet> set, const SourceParams&
         seen.set = set;
     else if (is_small)
         seen = source_of(set, splats);
+    else if (!set->radius.empty())
+        seen = light_sample(*set, sample_limit);
     else
         seen = sample ? *sample
                       : source_of(std::make_shared<const SplatSet>(sample_rows(*set, sample_limit)), splats);
@@ -212,7 +220,7 @@ LayerHistograms histograms(const SplatSet& set, const SourceParams& source) {
 namespace {
 
 constexpr std::string_view magic = "\x89TREE\r\n\x1a";
-constexpr std::uint32_t version = 2;
+constexpr std::uint32_t version = 3;
 constexpr std::int64_t rows_a_chunk = 1 << 16;
 constexpr std::int64_t largest_share =
     8;  // a tree takes at most an eighth of the cache: none drives out its set

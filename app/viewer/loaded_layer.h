@@ -72,8 +72,11 @@ struct LoadedLayer {
 /// A set with its tree, as a sample of so many splats.
 MergeSource source_of(std::shared_ptr<const SplatSet> set, std::int64_t stands_for);
 
-/// A whole set, with a sample of at most `sample_limit` splats, in no time; `sample`: of a larger set one
-/// that is there already, or null.
+/// Of a set with radii, with its tree (sample_light of merge/tree.h).
+MergeSource light_sample(const SplatSet& set, std::int64_t count);
+
+/// A whole set, with a sample of at most `sample_limit` splats, in no time; `sample`: of a larger set without
+/// radii one that is there already, or null.
 LoadedLayer whole_layer(std::shared_ptr<const SplatSet> set, const SourceParams& source,
                         const std::string& name, std::int64_t sample_limit,
                         const MergeSource* sample = nullptr);
@@ -94,7 +97,7 @@ LayerHistograms histograms(const SplatSet& set, const SourceParams& source);
 // removed and built again; a folder that cannot be written costs a warning.
 //
 // NAME.tree; the name says of which positions, ids and absorbing splats the tree is, wherever the set came
-// from, so that sets that differ in the rest share theirs. Format version 2, in the machine's byte order:
+// from, so that sets that differ in the rest share theirs. Format version 3, in the machine's byte order:
 //   header  8 bytes  89 'T' 'R' 'E' 'E' 0d 0a 1a, u32 version, u32 levels (ends of them, with the first 0),
 //           u64 rows, u64 nodes
 //   levels (i64), rows (i64), nodes (three i64 each)

@@ -3,6 +3,7 @@
 
 #include <iterator>
 
+#include "core/parallel.h"
 #include "core/progress.h"
 
 namespace astrosplat {
@@ -38,6 +39,14 @@ bool hides(const RenderLayer& layer) {
 }
 
 }  // namespace
+
+PreviewView halved(const PreviewView& view) {
+    PreviewView half = view;
+    for (double* px : {&half.camera.focal_px, &half.camera.center_x_px, &half.camera.center_y_px}) *px *= 0.5;
+    half.width = (view.width + 1) / 2;
+    half.height = (view.height + 1) / 2;
+    return half;
+}
 
 const Image& DrawnPreview::draw(const std::vector<PreviewLayer>& layers, const PreviewView& view,
                                 const Progress& progress) {
@@ -117,7 +126,8 @@ std::vector<SharedSplats> cut_layers(std::vector<PreviewLayer>& layers, std::spa
         if (const CutSource& source = sources[i]; source.merged)
             seen.push_back(
                 {source.merged.get(), source.merging.get(),
-                 make_projection(layers[i].layer, static_cast<std::uint16_t>(i), view.camera, frame)});
+                 make_projection(layers[i].layer, static_cast<std::uint16_t>(i), view.camera, frame),
+                 source.relight.get()});
     std::vector<ShadedSplats> cut = cut_splats(seen, {budget, least_px, view.width, view.height});
     std::vector<SharedSplats> splats;
     for (std::size_t i = 0, next = 0; i < layers.size(); ++i) {
@@ -133,16 +143,31 @@ std::vector<SharedSplats> cut_layers(std::vector<PreviewLayer>& layers, std::spa
     return splats;
 }
 
+/// Adds a share of it.
+void add_share(const Image& image, float share, Image& sum) {
+    if (sum.pixels.empty()) sum = make_image(image.width, image.height, image.channels);
+    parallel_each(sum.pixels.size(), 1 << 16,
+                  [&](std::size_t i) { sum.pixels[i] += share * image.pixels[i]; });
+}
+
 FinerFound draw_finer(const FinerRequest& request, DrawnPreview& preview, const Progress& progress) {
     const auto start = Clock::now();
-    std::vector<PreviewLayer> layers(request.layers.size());
-    for (std::size_t i = 0; i < layers.size(); ++i) layers[i].layer = request.layers[i];
-    const std::vector<SharedSplats> splats =
-        cut_layers(layers, request.sources, request.view, request.budget, CutSettings().least_px);
-    progress.check();
+    const auto moments = static_cast<std::int64_t>(request.moments.size());
     FinerFound found;
-    for (const SharedSplats& of_layer : splats) found.shown += of_layer->size();
-    found.image = preview.draw(layers, request.view, progress);
+    for (const PreviewMoment& moment : request.moments) {
+        std::vector<PreviewLayer> layers(moment.layers.size());
+        for (std::size_t i = 0; i < layers.size(); ++i) layers[i].layer = moment.layers[i];
+        const std::vector<SharedSplats> splats =
+            cut_layers(layers, moment.sources, moment.view, request.budget, CutSettings().least_px);
+        progress.check();
+        for (const SharedSplats& of_layer : splats) found.shown += of_layer->size();
+        const Image& drawn = preview.draw(layers, moment.view, progress);
+        if (moments == 1)
+            found.image = drawn;
+        else
+            add_share(drawn, 1.0f / static_cast<float>(moments), found.image);
+    }
+    found.shown /= std::max<std::int64_t>(1, moments);
     found.seconds = seconds_since(start);
     return found;
 }
@@ -160,6 +185,9 @@ void PreviewBudget::measured(double milliseconds, double target_ms, std::int64_t
     frames_ = 0;
     if (std::fabs(wanted - 1.0) <= dead_zone) return;
     if (wanted > 1.0 && shown < splats - splats / 8) return;
+    constexpr std::int64_t few = 100'000, many = 500'000;
+    if (wanted < 1.0 && pixels == 1 && splats <= few) return static_cast<void>(pixels = 2);
+    if (wanted > 1.0 && pixels == 2 && splats >= many) return static_cast<void>(pixels = 1);
     const double factor = std::clamp(std::sqrt(wanted), 0.5, 1.5);
     const double moved = static_cast<double>(splats) * factor;
     splats = std::clamp(static_cast<std::int64_t>(moved), least, most);
@@ -191,6 +219,12 @@ std::int64_t splats_of_step(int step, std::int64_t total, std::int64_t shown, do
     const double most = static_cast<double>(shown) * (most_s > 0.0 && seconds > 0.0 ? most_s / seconds : 1e9);
     splats = std::min(splats, most);
     return splats < least_gain * static_cast<double>(shown) ? 0 : std::llround(splats);
+}
+
+int samples_of_step(int step, std::int64_t samples) {
+    constexpr std::int64_t most[] = {4, 16};
+    if (step < 1 || step > static_cast<int>(std::size(most))) return 0;
+    return static_cast<int>(std::min(most[step - 1], samples));
 }
 
 FinerPreview::Work finer_preview() {
@@ -226,14 +260,20 @@ void PreviewSplats::shade(Layer& layer, const PreviewLayer& wanted) {
     if (layer.shading == shading) return;
     layer.shading.reset();  // an exception below must not leave old splats under a new look
     if (!stars) {
-        layer.of_whole.reset();
         looks_changed_ = true;
         work_.forget();
     }
     ShadedSplats splats = apply_look(*layer.sample.set, shading.look, shading.inputs);
+    layer.kept = static_cast<double>(splats.size()) /
+                 static_cast<double>(std::max<std::int64_t>(1, layer.sample.set->size()));
+    layer.relight.reset();
+    layer.of_sample.reset();
+    if (layer.has_whole() && layer.whole_shading != shading)
+        layer.relight = std::make_shared<const Relight>(layer.of_whole->merged, *layer.sample.set, splats);
+    const bool of_whole = layer.has_whole() && (!layer.relight || layer.relight->is_true());
     if (stars)
         layer.splats = std::make_shared<const ShadedSplats>(std::move(splats));
-    else
+    else if (!of_whole)
         layer.of_sample = std::make_shared<const MergedSplats>(merge_splats(layer.sample, std::move(splats)));
     layer.shading = std::move(shading);
 }
@@ -249,15 +289,25 @@ void PreviewSplats::cut(std::vector<PreviewLayer>& layers,
 
 std::optional<SumsRequest> PreviewSplats::missing() const {
     for (const Layer& layer : layers_)
-        if (layer.whole.tree && layer.shading && !layer.of_whole)
+        if (layer.whole.tree && layer.shading && layer.whole_shading != layer.shading)
             return SumsRequest{layer.whole, *layer.shading};
     return std::nullopt;
 }
 
 bool PreviewSplats::whole() const {
     return std::ranges::all_of(layers_, [](const Layer& layer) {
-        return !layer.sample.tree || layer.sample.weight <= 1.0f || layer.best() != layer.of_sample;
+        return !layer.sample.tree || layer.sample.weight <= 1.0f || !layer.of_sample;
     });
+}
+
+std::int64_t PreviewSplats::finest() const {
+    std::int64_t finest = 0;
+    for (const Layer& layer : layers_) {
+        const bool of_leaves = layer.of_sample && layer.sample.weight > 1.0f;
+        if (layer.sample.tree)
+            finest += of_leaves ? std::ssize(layer.sample.tree->nodes) / 2 : layer.best()->splats.size();
+    }
+    return finest;
 }
 
 bool PreviewSplats::refine(double now) {
@@ -269,8 +319,14 @@ bool PreviewSplats::refine(double now) {
     work_.want(*wanted);
     const std::shared_ptr<const FoundSums> found = work_.found(*wanted);
     if (!found) return false;
-    for (Layer& layer : layers_)
-        if (layer.whole == wanted->source && layer.shading == wanted->shading) layer.of_whole = found;
+    for (Layer& layer : layers_) {
+        if (!(layer.whole == wanted->source) || layer.shading != wanted->shading) continue;
+        layer.whole_shading = layer.shading;
+        if (!found->error.empty()) continue;  // what is drawn stays
+        layer.of_whole = found;
+        layer.relight.reset();
+        layer.of_sample.reset();
+    }
     work_.forget();  // or sums under a look would outlive it
     return found->error.empty();
 }
@@ -279,20 +335,17 @@ std::vector<CutSource> PreviewSplats::sources() const {
     std::vector<CutSource> sources;
     for (const Layer& layer : layers_) {
         if (layer.sample.tree)
-            sources.push_back({layer.best(), layer.merging, nullptr});
+            sources.push_back(
+                {layer.best(), layer.of_sample ? nullptr : layer.relight, layer.merging, nullptr});
         else
-            sources.push_back({nullptr, nullptr, layer.splats});
+            sources.push_back({nullptr, nullptr, nullptr, layer.splats});
     }
     return sources;
 }
 
 std::vector<double> PreviewSplats::kept() const {
     std::vector<double> shares;
-    for (const Layer& layer : layers_) {
-        const auto rows = static_cast<double>(std::max<std::int64_t>(1, layer.sample.set->size()));
-        const std::int64_t seen = layer.sample.tree ? layer.of_sample->splats.size() : layer.splats->size();
-        shares.push_back(static_cast<double>(seen) / rows);
-    }
+    for (const Layer& layer : layers_) shares.push_back(layer.kept);
     return shares;
 }
 

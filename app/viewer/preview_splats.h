@@ -1,9 +1,9 @@
 // The splats that a preview draws, and the frame made of them by the engine's renderer. How many: in
 // motion a budget that follows the measured time of a frame, at rest a few steps of more; plain numbers in
 // and out, no clock. Which of each layer: a cut through its tree (merge/README.md), of the whole set where
-// its sums are there, else of a sample, whose sums take no time. In: layers, a camera and a number of splats.
-// Out: shaded splats; the frame in motion, the light of each layer at a pixel; and at rest, until the final
-// frame comes, images of the same view with more of them.
+// its sums are there, under another look relit by a sample of it, else of that sample, whose sums take no
+// time. In: layers, a camera and a number of splats. Out: shaded splats; the frame in motion, the light of
+// each layer at a pixel; and at rest, until the final frame comes, images of the same view with more of them.
 #pragma once
 
 #include "camera/camera.h"
@@ -71,6 +71,9 @@ inline RenderSettings settings_of(const PreviewView& view) {
     return settings;
 }
 
+/// The same with a fourth of the pixels; its image is doubled (image/blur.h).
+PreviewView halved(const PreviewView& view);
+
 class DrawnPreview {
   public:
     /// Renders the layers' splats into an image that stays valid until the next call, by the view's device or
@@ -102,6 +105,9 @@ std::optional<std::size_t> clicked_layer(const std::vector<std::size_t>& seen, s
 struct PreviewBudget {
     std::int64_t least = 30000, most = 4000000;  // splats
     std::int64_t splats = 200000;                // the budget
+    /// Of the frame that one of the preview's covers, each way: 2 where the frame's own would leave the time
+    /// for so few splats only that these were blotches.
+    int pixels = 1;
 
     /// Takes in one frame that drew `shown` splats in `milliseconds`. A frame that drew fewer than the
     /// budget, because no more are there, does not raise it.
@@ -157,6 +163,7 @@ struct FoundSums {
 /// The source of a layer's cuts, or, of stars, all of its splats. Does not change.
 struct CutSource {
     std::shared_ptr<const MergedSplats> merged;  // null: stars
+    std::shared_ptr<const Relight> relight;      // null: they are under the layer's look
     std::shared_ptr<const MergeSettings> merging;
     std::shared_ptr<const ShadedSplats> stars;
 };
@@ -174,6 +181,8 @@ class PreviewSplats {
     bool lacks_sums() const { return missing().has_value(); }
     /// It was of whole sets: one of more splats would show more.
     bool whole() const;
+    /// Splats of the finest cut there can be.
+    std::int64_t finest() const;
     /// Goes on making them in the background, once looks have been at rest for a while: sums of a look that
     /// is dragged come too late, and take the processor from its preview. True: there are more. `now` in s.
     bool refine(double now);
@@ -187,15 +196,19 @@ class PreviewSplats {
   private:
     struct Layer {
         MergeSource sample, whole;
-        std::optional<Shading> shading;  // of the sums there are
+        std::optional<Shading> shading;  // of what is drawn
         std::shared_ptr<const MergedSplats> of_sample;
         std::shared_ptr<const FoundSums> of_whole;  // with an error: there will be none
+        std::optional<Shading> whole_shading;       // of these
+        std::shared_ptr<const Relight> relight;     // from that look to this one
+        double kept = 1.0;                          // share of the splats
         std::shared_ptr<const MergeSettings> merging;
         std::shared_ptr<const ShadedSplats> splats;
 
+        bool has_whole() const { return of_whole && of_whole->error.empty(); }
         std::shared_ptr<const MergedSplats> best() const {
-            if (of_whole && of_whole->error.empty()) return {of_whole, &of_whole->merged};
-            return of_sample;
+            if (of_sample) return of_sample;
+            return {of_whole, &of_whole->merged};
         }
     };
 
@@ -209,20 +222,29 @@ class PreviewSplats {
     LatestWork<SumsRequest, FoundSums> work_;
 };
 
-/// The view of a preview with more splats, drawn in the background.
-struct FinerRequest {
-    std::uint64_t number = 0;  // another one is another request
+/// Renderings that step 1, 2 .. of a blurred frame is the mean of, where the final one is that of `samples`:
+/// few first. 0: there is no such step.
+int samples_of_step(int step, std::int64_t samples);
+
+/// One of the renderings that a preview is the mean of: where layers and camera are at that moment.
+struct PreviewMoment {
     std::vector<RenderLayer> layers;
     std::vector<CutSource> sources;  // of each layer
     PreviewView view;
-    std::shared_ptr<const Environment> environment;  // of the view
-    std::int64_t budget = 0;                         // splats
+};
+
+/// The view of a preview with more splats, or of a blurred frame, drawn in the background.
+struct FinerRequest {
+    std::uint64_t number = 0;  // another one is another request
+    std::vector<PreviewMoment> moments;
+    std::shared_ptr<const Environment> environment;  // of their views
+    std::int64_t budget = 0;                         // splats of each
     bool operator==(const FinerRequest& other) const { return number == other.number; }
 };
 
 struct FinerFound {
     Image image;             // RGBA, linear
-    std::int64_t shown = 0;  // splats
+    std::int64_t shown = 0;  // splats of a moment
     double seconds = 0.0;
     std::string error;
 };

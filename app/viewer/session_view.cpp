@@ -146,6 +146,7 @@ PreviewChoice preview_choice(Session& session) {
     choice.share = session.view.preview_share;
     choice.splats = session.fixed_splats;
     choice.steps = settles(session);
+    choice.arriving = choice.steps && !session.sets.following() && !session.sets.loader().sets_there();
     return choice;
 }
 

@@ -14,6 +14,7 @@ namespace {
 
 constexpr std::int64_t most_pixels = 200'000;  // of a picture in a preview: splats hardly lie closer
 constexpr std::int64_t live_rows_at_once = 1 << 13;
+constexpr std::int64_t most_moved = 80'000;  // splats of a body that follow a hand
 constexpr std::int64_t most_kept_ready =
     30'000'000;  // splats of bodies whose pictures are read only to be ready
 
@@ -159,7 +160,9 @@ void LiveSample::begin(const LoadedLayer& loaded, const Progress& progress) {
     if (loaded.columns.set) {
         sample = source_of(loaded.columns.set, loaded.columns.of);
     } else {
-        sample = loaded.sample;
+        sample = loaded.sample.weight > 1.0f && !loaded.set->radius.empty()
+                     ? light_sample(*loaded.set, most_moved)
+                     : loaded.sample;
         moved.emplace(moved_bodies(loaded.source, std::move(meshes), loaded.name, *sample.set));
         meshes = load_meshes(loaded.source, progress, {prepared, files.reader()});
         before = blurred_pictures(meshes);

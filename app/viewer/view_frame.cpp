@@ -12,6 +12,8 @@
 
 #include "core/error.h"
 #include "core/progress.h"
+#include "frame/frame_scene.h"
+#include "image/blur.h"
 #include "look/apply.h"
 #include "pipeline.h"
 #include "scene/layer_setup.h"
@@ -128,6 +130,7 @@ namespace {
 
 constexpr double rest_s = 0.15;       // without a touch, before the final frame begins
 constexpr double step_rest_s = 0.06;  // and before the first finer preview does
+constexpr double arrivals_s = 0.25;   // between previews of sets that arrive
 
 double milliseconds_since(Clock::time_point start) { return 1e3 * seconds_since(start); }
 
@@ -234,10 +237,12 @@ bool ViewFrame::refine(double now) {
 }
 
 /// The part of the frame that is seen, as a frame of its own.
-PreviewView ViewFrame::preview_view() const {
+PreviewView ViewFrame::preview_view() const { return view_through(camera_of(*request_)); }
+
+PreviewView ViewFrame::view_through(const Camera& camera) const {
     PreviewView view;
     const Region part = request_->part();
-    view.camera = camera_of(*request_);
+    view.camera = camera;
     view.camera.center_x_px -= static_cast<double>(part.x);
     view.camera.center_y_px -= static_cast<double>(part.y);
     view.environment = environment_.get();
@@ -254,16 +259,22 @@ void ViewFrame::draw_preview(double now) {
     ++version_;
     layers_ = preview_layers();
     environment_ = files_->environment(request_->scene.environment);
-    const PreviewView view = preview_view();
+    const PreviewView whole = preview_view();
+    const bool halves =
+        budget_.pixels == 2 && choice_.share == 0.0f && choice_.splats == 0 && !choice_.device;
+    const PreviewView view = halves ? halved(whole) : whole;
     cut(layers_, view);
     status_.shown = 0;
+    status_.samples = 1;
     for (std::size_t n = 0; n < layers_.size(); ++n)
         status_.shown += shown_[places_[n]] = shown_count(layers_[n]);
     drawn_ = &preview_.draw(layers_, view);
+    if (halves) drawn_ = &(doubled_ = doubled(*drawn_, whole.width, whole.height));
     canvas_texture_.upload(*drawn_);
     texture_ = canvas_texture_.handle();
     behind_ = false;
-    draw_s_ = seconds_since(start);
+    draw_s_ = (halves ? 2.0 : 1.0) * seconds_since(start);  // steps have all pixels
+    drawn_at_ = Clock::now();
     pace_.drew(milliseconds_since(start));
     budget_.measured(milliseconds_since(start), target_ms, status_.shown);
     enter(Stage::preview);
@@ -280,31 +291,71 @@ StepPlan ViewFrame::plan() const {
 
 /// Steps of finer previews come before the final frame, where that takes its time.
 bool ViewFrame::takes_steps(bool hurry) const {
-    return !hurry && (splats_.whole() || waits_) && !choice_.device && choice_.share == 0.0f &&
-           step_ < plan().count;
+    const bool more = choice_.share == 0.0f && !choice_.device && (splats_.whole() || waits_);
+    return !hurry && (more || blurred()) && step_ < plan().count;
 }
 
-/// Begins the next step, or passes it over where it would show little more. False: none is left.
+/// Whether the frame is the mean of several renderings, which its preview in motion is not.
+bool ViewFrame::blurred() const { return is_blurred(request_->scene.camera); }
+
+/// Splats of this step; 0: it would show little more, or take too long.
+std::int64_t ViewFrame::splats_of_next(const StepPlan& steps) const {
+    const double most_s = choice_.splats > 0 ? 0.0 : steps.most_s;
+    if (!blurred()) {
+        const std::int64_t finest = splats_.finest();
+        if (2 * finest < 3 * status_.shown) return 0;  // where sets are made, of their samples
+        return std::min(finest, splats_of_step(step_, status_.total, status_.shown, draw_s_, most_s));
+    }
+    constexpr double most_blurred_s = 2.0;  // the first step comes whatever it takes: nothing else is blurred
+    const int samples = samples_of_step(step_, request_->scene.output.samples);
+    const double would_take_s = draw_s_ / status_.samples * samples;
+    if (samples <= status_.samples || (step_ > 1 && would_take_s > most_blurred_s)) return 0;
+    return std::max<std::int64_t>(1, status_.shown);
+}
+
+/// Begins the next step, or passes it over. False: none is left.
 bool ViewFrame::step_is_due(double now) {
     if (now - touched_at_ < step_rest_s) return true;
     const StepPlan steps = plan();
-    const double most_s = choice_.splats > 0 ? 0.0 : steps.most_s;
     for (++step_; step_ <= steps.count; ++step_)
-        if (const std::int64_t n = splats_of_step(step_, status_.total, status_.shown, draw_s_, most_s)) {
-            begin_step(n);
-            return true;
-        }
+        if (const std::int64_t n = splats_of_next(steps)) try {
+                begin_step(n);
+                return true;
+            } catch (const InputError&) {  // a camera of some moment, which the final frame says
+            }
     return false;
+}
+
+/// Places on the lens and moments of the shutter as of a final frame with so many samples.
+std::vector<PreviewMoment> ViewFrame::moments(int samples) const {
+    Scene scene = request_->scene;
+    scene.output.samples = samples;
+    const FrameScene frame = frame_scene(scene, request_->frame);
+    const std::vector<CutSource> sources = splats_.sources();
+    std::vector<PreviewMoment> moments;
+    for (std::size_t i = 0; i < frame.samples.size(); ++i) {
+        const Scene& then = frame.at_sample(i);
+        PreviewMoment& moment = moments.emplace_back();
+        const Camera middle = make_camera(then.camera, request_->width, request_->height, request_->box);
+        moment.view = view_through(through_lens(middle, then.camera, frame.samples[i].lens, request_->width));
+        moment.view.device = nullptr;  // which is the window's
+        for (std::size_t n = 0; n < places_.size(); ++n) {
+            const LayerParams& params = then.layers[places_[n]];
+            if (!params.visible) continue;
+            RenderLayer& layer = moment.layers.emplace_back(render_layer(then, params));
+            layer.absorbs = layers_[n].layer.absorbs;
+            layer.star_pixels = layers_[n].layer.star_pixels;
+            moment.sources.push_back(sources[n]);
+        }
+    }
+    return moments;
 }
 
 void ViewFrame::begin_step(std::int64_t splats) {
     FinerRequest wanted;
     wanted.number = ++finer_request_.number;
-    for (const PreviewLayer& layer : layers_) wanted.layers.push_back(layer.layer);
-    for (std::size_t n = 0; n < places_.size(); ++n)
-        wanted.layers[n].render = render_layer(request_->scene.layers[places_[n]]).render;
-    wanted.sources = splats_.sources();
-    wanted.view = preview_view();
+    finer_samples_ = blurred() ? samples_of_step(step_, request_->scene.output.samples) : 1;
+    wanted.moments = moments(finer_samples_);
     wanted.environment = environment_;
     wanted.budget = splats;
     finer_.want(wanted);
@@ -323,6 +374,7 @@ bool ViewFrame::take_step() {
     canvas_texture_.upload(finer_image_);
     texture_ = canvas_texture_.handle();
     status_.shown = found->shown;
+    status_.samples = finer_samples_;
     draw_s_ = found->seconds;
     ++version_;
     return true;
@@ -443,6 +495,8 @@ void ViewFrame::show(const ViewRequest& request, const PreviewChoice& choice, bo
     if (hurries && stage_ == Stage::refining) take_final(now);
     if (hurries && stage_ == Stage::refining) return;
     choice_.steps = choice.steps;
+    const bool may_wait = choice.arriving && !touched && stage_ <= Stage::finer && drawn_;
+    if (may_wait && seconds_since(drawn_at_) < arrivals_s) return;
     const bool refined = request_ && refine(now);
     const bool fuller = !changed && stage_ <= Stage::finer && (refined || previews_arrived(request));
     if (changed || fuller) {

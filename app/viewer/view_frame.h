@@ -71,6 +71,7 @@ struct PreviewChoice {
     std::int64_t splats = 0;         // with share 0: this many in all, whatever the frame rate; 0: by it
     bool refined = true;             // cuts of whole sets, once there is time to make them; else of samples
     bool steps = false;              // finer previews at rest though no final frame may begin
+    bool arriving = false;           // sets come, each of which makes the last preview stale
     double target_ms = 25.0;         // of one preview
     double quick_s = 0.04;           // a card's final frame within this takes the place of previews
 };
@@ -116,7 +117,7 @@ class ViewFrame {
     enum class Stage {
         empty,     // nothing has been asked for
         preview,   // drawn
-        finer,     // and one of more splats is on its way, while nothing is touched
+        finer,     // and one of more splats or samples is on its way, while nothing is touched
         refining,  // tiles of the final frame replace the preview
         final,     // all have
         failed     // the status says why; until something else is to be seen
@@ -126,6 +127,7 @@ class ViewFrame {
 
     std::vector<PreviewLayer> preview_layers();
     PreviewView preview_view() const;
+    PreviewView view_through(const Camera& camera) const;
     std::int64_t splats_wanted() const;
     void cut(std::vector<PreviewLayer>& layers, const PreviewView& view);
     bool refine(double now);
@@ -134,7 +136,10 @@ class ViewFrame {
     void draw_preview(double now);
     StepPlan plan() const;
     bool takes_steps(bool hurry) const;
+    bool blurred() const;
     bool step_is_due(double now);
+    std::int64_t splats_of_next(const StepPlan& plan) const;
+    std::vector<PreviewMoment> moments(int samples) const;
     void begin_step(std::int64_t splats);
     bool take_step();
     void begin_final();
@@ -158,14 +163,16 @@ class ViewFrame {
     FinalFrame final_;
     std::shared_ptr<const RenderedFrame> final_frame_;  // that is shown
     FinerPreview finer_{finer_preview()};
-    FinerRequest finer_request_;  // its number; the rest is with finer_
-    int step_ = 0;                // of finer previews, the last one begun
-    double draw_s_ = 0.0;         // the last preview or step took so long
-    double final_s_ = -1.0;       // the last final frame; below 0: there was none
-    bool quick_ = false;          // that was a card's, in no more time than a preview
-    bool behind_ = false;         // what the preview drew is older than what is shown
-    double followed_at_ = 0.0;    // when the last frame began that took a preview's place
-    Image finer_image_;
+    FinerRequest finer_request_;    // its number; the rest is with finer_
+    int step_ = 0;                  // of finer previews, the last one begun
+    int finer_samples_ = 1;         // of it
+    Clock::time_point drawn_at_{};  // the last preview
+    double draw_s_ = 0.0;           // the last preview or step took so long
+    double final_s_ = -1.0;         // the last final frame; below 0: there was none
+    bool quick_ = false;            // that was a card's, in no more time than a preview
+    bool behind_ = false;           // what the preview drew is older than what is shown
+    double followed_at_ = 0.0;      // when the last frame began that took a preview's place
+    Image finer_image_, doubled_;
     double touched_at_ = 0.0;
     ImageTexture canvas_texture_;
     const Image* drawn_ = nullptr;  // the preview

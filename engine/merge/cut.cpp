@@ -28,6 +28,7 @@ class SeenLayer {
         const glm::dmat3 rows = glm::transpose(layer.projection.camera_from_layer);
         right_ = rows[0] / double(layer.projection.radius_scale);
         up_ = rows[1] / double(layer.projection.radius_scale);
+        stars_ = find_stars();
     }
 
     const MergedSplats& merged() const { return *layer_.merged; }
@@ -83,20 +84,28 @@ class SeenLayer {
         return share * share * std::sqrt(12.0f * spread) * l.radius_scale * px_per_unit;
     }
 
-    /// One of its splats, as row i.
-    void put_splat(std::int64_t index, ShadedSplats& out, std::size_t i) const {
+    /// The splat of one of the tree's rows, as row i.
+    void put_splat(std::int64_t row, ShadedSplats& out, std::size_t i) const {
+        const std::int64_t index = merged().place[merged().tree->rows[row]];
         const ShadedSplats& splats = merged().splats;
         out.position[i] = splats.position[index];
         out.color[i] = splats.color[index];
-        out.alpha[i] = splats.alpha[index] * layer_.merging->render.opacity;
+        out.alpha[i] = splats.alpha[index];
         out.radius[i] = splats.radius[index];
+        if (layer_.relight) {
+            const Relight::Factors now = layer_.relight->of(row, row + 1);
+            out.color[i] *= now.light / std::max(now.cover, 1e-6f);
+            out.alpha[i] = std::min(1.0f, out.alpha[i] * now.cover / now.own);
+            out.radius[i] *= std::sqrt(now.own);
+        }
+        out.alpha[i] *= layer_.merging->render.opacity;
         CloudPlace place;
         if (is_star(splats.id[index])) {
             const float size = near_star_size(layer_.projection, to_camera(out.position[i]));
             out.color[i] /= size * size;
             out.radius[i] *= size;
         } else {
-            place.radius = splats.radius[index];
+            place.radius = out.radius[i];
             place.spread = glm::vec3(child_spread * place.radius);
         }
         light_as_cloud(place, out, i);
@@ -106,16 +115,19 @@ class SeenLayer {
     void put_node(std::int64_t index, ShadedSplats& out, std::size_t first) const {
         NodeSums sums = merged().sums[index];
         const NodeRow row = row_of(sums);
+        if (layer_.relight) relight(merged().tree->nodes[index], sums);
         const LayerProjection& l = layer_.projection;
         const LayerRender& r = layer_.merging->render;
         const float hybrid =
             shared::hybrid_amount(shared::axis_cosine(l.lens, l.axis_in_camera, to_camera(sums.centre)),
                                   r.hybrid_from_deg, r.hybrid_to_deg);
+        const bool points = merged().tree->nodes[index].first >= stars_;
         const float share = 1.0f / float(row.count);
         sums.cover *= share;
         sums.squares *= share;
         sums.light *= share;
-        const NodeSplat splat = splat_of(*layer_.merging, sums, row.each, hybrid);
+        const NodeSplat splat =
+            sums.cover > 0.0f ? splat_of(*layer_.merging, sums, row.each, hybrid) : NodeSplat();
         CloudPlace place;
         place.radius = std::sqrt(sums.own);
         place.spread = glm::sqrt(glm::max(sums.spread, 0.0f) + child_spread * child_spread * sums.own);
@@ -126,12 +138,36 @@ class SeenLayer {
             out.color[i] = splat.color;
             out.alpha[i] = splat.alpha;
             out.radius[i] = splat.radius;
-            light_as_cloud(place, out, i);
+            if (points)
+                out.id[i] = i;
+            else
+                light_as_cloud(place, out, i);
         }
     }
 
   private:
     static constexpr float child_spread = 0.4f;  // of a splat's children along an axis, radii
+
+    /// Stars and their spikes have a root of their own, the last one: the first of its rows.
+    std::int64_t find_stars() const {
+        const MergeTree& tree = *merged().tree;
+        if (tree.root_count() == 0) return 0;
+        const MergeNode& last = tree.nodes[tree.root_count() - 1];
+        for (std::int64_t r = last.first; r < last.end; ++r)
+            if (const std::int64_t i = merged().place[tree.rows[r]]; i >= 0) {
+                const std::uint64_t id = merged().splats.id[i];
+                return is_star(id) || is_spike(id) ? last.first : last.end;
+            }
+        return last.end;
+    }
+
+    void relight(const MergeNode& node, NodeSums& sums) const {
+        const Relight::Factors now = layer_.relight->of(node.first, node.end);
+        sums.cover *= now.cover;
+        sums.squares *= now.squares;
+        sums.light *= now.light;
+        sums.own *= now.own;
+    }
 
     void light_as_cloud(CloudPlace place, ShadedSplats& out, std::size_t i) const {
         place.centre = out.position[i];
@@ -155,12 +191,13 @@ class SeenLayer {
     const CutLayer& layer_;
     const CutSettings& settings_;
     glm::vec3 right_, up_;  // of the frame, in layer space
+    std::int64_t stars_;    // rows of the tree from here on are theirs
 };
 
 /// A node of a layer, or one of its splats.
 struct Piece {
-    std::int64_t index;
-    float size_px;  // 0: not to be divided
+    std::int64_t index;  // of the node, or the splat's in MergeTree::rows
+    float size_px;       // 0: not to be divided
     std::uint16_t layer;
     std::uint8_t splats;  // that it becomes
     bool is_leaf : 1;     // and was found to be one
@@ -277,8 +314,7 @@ struct Cutter {
         if (merged.weight > 1.0f)
             return out.push_back({piece.index, 0.0f, piece.layer, piece.splats, true, false});
         for (std::int64_t r = node.first; r < node.end; ++r) {
-            const std::int64_t splat = merged.place[merged.tree->rows[r]];
-            if (splat >= 0) out.push_back({splat, 0.0f, piece.layer, 1, true, true});
+            if (merged.place[merged.tree->rows[r]] >= 0) out.push_back({r, 0.0f, piece.layer, 1, true, true});
         }
     }
 
@@ -288,6 +324,10 @@ struct Cutter {
         if (!(sums.cover > 0.0f)) return;
         const glm::vec3 p = layer.to_camera(sums.centre);
         if (!layer.shows(sums, p)) return;
+        const MergedSplats& merged = layer.merged();
+        const MergeNode& node = merged.tree->nodes[index];
+        if (node.end - node.first == 1 && !(merged.weight > 1.0f))
+            return out.push_back({node.first, 0.0f, l, 1, true, true});
         const NodeRow row = layer.row_of(sums);
         add_piece({index, layer.size_px(sums, row, p), l, std::uint8_t(row.count), false, false}, limit_px,
                   out);

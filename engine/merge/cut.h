@@ -75,7 +75,8 @@ float cloud_light(const LayerProjection& layer, const CloudPlace& place);
 struct CutLayer {
     const MergedSplats* merged = nullptr;
     const MergeSettings* merging = nullptr;
-    LayerProjection projection;  // of make_projection; its splats are not used
+    LayerProjection projection;        // of make_projection; its splats are not used
+    const Relight* relight = nullptr;  // under another look than that of `merged`
 };
 
 struct CutSettings {

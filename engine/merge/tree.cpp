@@ -65,7 +65,9 @@ MergeTree build_merge_tree(const SplatSet& set, const Progress& progress) {
     const Buffer<MortonRow> sorted = morton_order(set, progress);
     const std::int64_t emitting = first_from(sorted, 0, set.size(), morton_absorbs);
     if (emitting > 0) tree.nodes.push_back({0, emitting, 0});
-    if (emitting < set.size()) tree.nodes.push_back({emitting, set.size(), 0});
+    const std::int64_t stars = first_from(sorted, emitting, set.size(), morton_stars);
+    if (emitting < stars) tree.nodes.push_back({emitting, stars, 0});
+    if (stars < set.size()) tree.nodes.push_back({stars, set.size(), 0});
     for (std::int64_t first = 0; first < std::int64_t(tree.nodes.size()); first = tree.levels.back()) {
         if (tree.levels.empty()) tree.levels.push_back(0);
         progress.check();
@@ -81,8 +83,35 @@ SplatSet sample_tree(const MergeTree& tree, const SplatSet& set, std::int64_t co
     Buffer<std::int64_t> rows(std::size_t(std::min(count, set.size())));
     const auto sampled = std::int64_t(rows.size());
     for (std::int64_t i = 0; i < sampled; ++i) rows[i] = tree.rows[sampled_row(set.size(), sampled, i)];
-    std::sort(rows.begin(), rows.end());
     return take_rows(set, rows);
+}
+
+MergeSource sample_light(const SplatSet& set, std::int64_t count) {
+    constexpr float dark = 0.1f;  // light that those without any count as having
+    const auto light_of = [&](std::int64_t i) {
+        const glm::vec3& c = set.color[i];
+        return double(set.alpha[i] * set.radius[i] * set.radius[i] *
+                      (dark + std::fabs(std::max({c.x, c.y, c.z}))));
+    };
+    double all = 0.0;
+    for (std::int64_t i = 0; i < set.size(); ++i) all += light_of(i);
+    const double each = all / double(std::max<std::int64_t>(1, count));
+    Buffer<std::int64_t> rows;
+    std::vector<float> weights;
+    double passed = 0.0, next = 0.5 * each;
+    for (std::int64_t i = 0; i < set.size(); ++i) {
+        const double light = light_of(i);
+        passed += std::min(light, each);
+        if (passed < next) continue;
+        next += each;
+        rows.push_back(i);
+        weights.push_back(float(std::max(1.0, each / light)));
+    }
+    MergeSource sample;
+    sample.set = std::make_shared<const SplatSet>(take_rows(set, rows));
+    sample.weight = float(double(set.size()) / double(std::max<std::size_t>(1, rows.size())));
+    sample.weights = std::make_shared<const std::vector<float>>(std::move(weights));
+    return sample;
 }
 
 namespace {
@@ -122,34 +151,40 @@ double cover_of(const ShadedSplats& splats, std::int64_t i) {
     return double(splats.alpha[i]) * radius * radius;
 }
 
+/// Of a place among the tree's rows.
+double weight_of(const MergedSplats& merged, std::int64_t r) {
+    return double(merged.weights ? (*merged.weights)[std::size_t(merged.tree->rows[r])] : merged.weight);
+}
+
 NodeSums sums_of_leaf(const MergedSplats& merged, const MergeNode& node) {
     const ShadedSplats& splats = merged.splats;
     const auto each = [&](const auto& visit) {
         for (std::int64_t r = node.first; r < node.end; ++r) {
             const std::int64_t i = merged.place[merged.tree->rows[r]];
-            if (i >= 0) visit(i, cover_of(splats, i));
+            if (i >= 0) visit(i, cover_of(splats, i), weight_of(merged, r));
         }
     };
     double cover = 0.0, squares = 0.0;
     glm::dvec3 light(0.0), centre(0.0);
-    each([&](std::int64_t i, double c) {
+    each([&](std::int64_t i, double c, double weight) {
+        squares += weight * c * c;
+        c *= weight;
         cover += c;
-        squares += c * c;
         light += c * glm::dvec3(splats.color[i]);
         centre += c * glm::dvec3(splats.position[i]);
     });
     NodeSums sums;
     if (!(cover > 0.0)) return sums;
     Adder adder(centre / cover);
-    each([&](std::int64_t i, double c) {
+    each([&](std::int64_t i, double c, double weight) {
         const double radius = splats.radius[i];
         if (c > 0.0)
-            adder.add(c, splats.position[i], glm::dvec3(0.0), glm::dvec3(0.0), radius * radius, radius);
+            adder.add(weight * c, splats.position[i], glm::dvec3(0.0), glm::dvec3(0.0), radius * radius,
+                      radius);
     });
-    const double weight = merged.weight;
-    sums.cover = float(weight * cover);
-    sums.squares = float(weight * squares);
-    sums.light = glm::vec3(weight * light);
+    sums.cover = float(cover);
+    sums.squares = float(squares);
+    sums.light = glm::vec3(light);
     adder.finish(cover, sums);
     return sums;
 }
@@ -189,6 +224,7 @@ MergedSplats merge_splats(const MergeSource& source, ShadedSplats splats, const 
     MergedSplats merged;
     merged.tree = source.tree;
     merged.weight = source.weight;
+    merged.weights = source.weights;
     const Buffer<MergeNode>& nodes = merged.tree->nodes;
     claim_memory(std::int64_t(nodes.size() * sizeof(NodeSums) + set.id.size() * sizeof(std::int64_t)),
                  "the merged splats of a preview");
@@ -209,6 +245,67 @@ MergedSplats merge_splats(const MergeSource& source, ShadedSplats splats, const 
         });
     }
     return merged;
+}
+
+namespace {
+
+constexpr std::int64_t least_sampled = 8;  // rows that factors are of
+
+float ratio(double now, double before, double otherwise) {
+    return static_cast<float>(before > 0.0 ? now / before : otherwise);
+}
+
+}  // namespace
+
+void Relight::Sums::add(const ShadedSplats& splats, std::int64_t i) {
+    const double c = cover_of(splats, i), radius = splats.radius[i];
+    cover += c;
+    squares += c * c;
+    own += c * radius * radius;
+    light += c * glm::dvec3(splats.color[i]);
+}
+
+Relight::Sums Relight::Sums::minus(const Sums& other) const {
+    return {cover - other.cover, squares - other.squares, own - other.own, light - other.light};
+}
+
+Relight::Relight(const MergedSplats& merged, const SplatSet& sample, const ShadedSplats& splats)
+    : rows_(std::ssize(merged.tree->rows)) {
+    const std::int64_t count = sample.size();
+    const Buffer<std::int64_t> places = places_of_rows(sample, splats);
+    before_.resize(std::size_t(count) + 1);
+    now_.resize(std::size_t(count) + 1);
+    double appeared = 0.0;
+    for (std::int64_t i = 0; i < count; ++i) {
+        before_[i + 1] = before_[i];
+        now_[i + 1] = now_[i];
+        const std::int64_t was = merged.place[merged.tree->rows[sampled_row(rows_, count, i)]];
+        if (was >= 0) before_[i + 1].add(merged.splats, was);
+        if (places[i] >= 0) now_[i + 1].add(splats, places[i]);
+        if ((i + 1) % least_sampled != 0) continue;
+        const std::int64_t first = i + 1 - least_sampled;
+        if (!(before_[i + 1].cover > before_[first].cover)) appeared += now_[i + 1].cover - now_[first].cover;
+    }
+    constexpr double most_appeared = 0.02;  // of the cover
+    is_true_ = count >= least_sampled && appeared <= most_appeared * now_.back().cover;
+    kept_ = double(splats.size()) / double(std::max<std::int64_t>(1, count));
+}
+
+Relight::Factors Relight::of(std::int64_t first, std::int64_t end) const {
+    const std::int64_t count = std::ssize(now_) - 1;
+    const double sampled_per_row = double(count) / double(rows_);
+    auto lo = std::int64_t(double(first) * sampled_per_row), hi = std::int64_t(double(end) * sampled_per_row);
+    if (hi - lo < least_sampled) {
+        lo = std::clamp<std::int64_t>((lo + hi - least_sampled) / 2, 0, count - least_sampled);
+        hi = lo + least_sampled;
+    }
+    const Sums before = before_[hi].minus(before_[lo]), now = now_[hi].minus(now_[lo]);
+    Factors found;
+    found.cover = ratio(now.cover, before.cover, 1.0);
+    found.squares = ratio(now.squares, before.squares, 1.0);
+    found.own = found.cover > 0.0f ? ratio(now.own, before.own, 1.0) / found.cover : 1.0f;
+    for (int c = 0; c < 3; ++c) found.light[c] = ratio(now.light[c], before.light[c], found.cover);
+    return found;
 }
 
 }  // namespace astrosplat

@@ -20,8 +20,8 @@ struct MergeNode {
     bool is_leaf() const { return children == 0; }
 };
 
-/// Cells are cubes halved along x, y and z in turn. Splats that absorb (SplatSetFacts::absorbs) and others
-/// are never below one node: they have a root each.
+/// Cells are cubes halved along x, y and z in turn. Splats that absorb (SplatSetFacts::absorbs), stars of
+/// pictures and others are never below one node: they have a root each.
 struct MergeTree {
     static constexpr std::int64_t leaf_rows = 16;  // at most, but for splats at one place
 
@@ -38,8 +38,8 @@ struct MergeTree {
 /// The same for any thread count. Throws Cancelled, and InputError when memory does not suffice.
 MergeTree build_merge_tree(const SplatSet& set, const Progress& progress = {});
 
-/// A stratified sample of the set that the tree is of: at most `count` rows, spread evenly over space, in
-/// order of the set's rows.
+/// A stratified sample of the set that the tree is of: at most `count` rows, spread evenly over space, in the
+/// tree's order.
 SplatSet sample_tree(const MergeTree& tree, const SplatSet& set, std::int64_t count);
 
 /// Sums over the splats below a node; a splat counts by its cover, alpha * radius^2. Layer space. All 0 where
@@ -60,9 +60,15 @@ static_assert(sizeof(NodeSums) == 64);
 struct MergeSource {
     std::shared_ptr<const SplatSet> set;
     std::shared_ptr<const MergeTree> tree;
-    float weight = 1.0f;  // so many splats does each one stand for
+    float weight = 1.0f;                                          // so many splats does each one stand for
+    std::shared_ptr<const std::vector<float>> weights = nullptr;  // of each row; null: `weight`
     bool operator==(const MergeSource&) const = default;
 };
+
+/// A sample of at most `count` splats of a set that has radii: the more light of its own one has, the
+/// likelier it is taken, and the fewer it stands for. Where bodies have large splats among small ones, every
+/// n-th of them would be blotches. Without a tree.
+MergeSource sample_light(const SplatSet& set, std::int64_t count);
 
 /// A layer's splats, one by one and merged.
 struct MergedSplats {
@@ -71,10 +77,45 @@ struct MergedSplats {
     ShadedSplats splats;
     Buffer<std::int64_t> place;  // in `splats`, of each row of the set; below 0: the look dropped it
     float weight = 1.0f;         // of the source; those of a sample are never shown one by one
+    std::shared_ptr<const std::vector<float>> weights;  // likewise
 };
 
 /// `splats` are those of the source's set after a look. The same bits for any thread count. Throws Cancelled,
 /// and InputError when memory does not suffice.
 MergedSplats merge_splats(const MergeSource& source, ShadedSplats splats, const Progress& progress = {});
+
+/// What another look makes of merged splats, by a sample of their rows: the same cuts show it, long before
+/// there are sums of all. Light is in the same places, as much as it became in the rows around.
+class Relight {
+  public:
+    /// Factors of the sums of a run of rows, and of each of its splats.
+    struct Factors {
+        float cover = 1.0f, squares = 1.0f, own = 1.0f;
+        glm::vec3 light{1.0f};
+    };
+
+    /// `sample`: of sample_tree(), of the tree of `merged`; `splats`: it under the other look.
+    Relight(const MergedSplats& merged, const SplatSet& sample, const ShadedSplats& splats);
+
+    /// Of a run of the tree's rows, by the nearest few of the sample.
+    Factors of(std::int64_t first, std::int64_t end) const;
+    /// False where splats shine that did not: merged ones do not know where.
+    bool is_true() const { return is_true_; }
+    /// The share of the rows that the other look keeps, 0..1.
+    double kept() const { return kept_; }
+
+  private:
+    struct Sums {
+        double cover = 0.0, squares = 0.0, own = 0.0;
+        glm::dvec3 light{0.0};
+        void add(const ShadedSplats& splats, std::int64_t i);
+        Sums minus(const Sums& other) const;
+    };
+
+    std::int64_t rows_ = 0;           // of the tree
+    std::vector<Sums> before_, now_;  // over the sampled rows before each, and over all
+    bool is_true_ = true;
+    double kept_ = 1.0;
+};
 
 }  // namespace astrosplat

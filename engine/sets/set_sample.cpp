@@ -150,8 +150,12 @@ void show_quick_sets(const SetCache& cache, const SourceParams& source, const st
                      const QuickSets& quick, const Progress& progress) {
     constexpr std::int64_t smaller = 16;  // times as few texels, as takes a second of a usual picture
     constexpr std::int64_t most_texels = 150'000;  // and of a large one
-    if (auto there = sample_there(cache, source, layer_name, quick.rows, progress))
-        return quick.show(std::move(*there));
+    constexpr std::int64_t soon = 20'000'000;      // splats of bodies, which are read in a second or two
+    if (auto there = sample_there(cache, source, layer_name, quick.rows, progress)) {
+        const bool bodies = source.kind == SourceKind::mesh && !makes_columns(source);
+        if (!bodies || there->splats > soon) quick.show(std::move(*there));
+        return;
+    }
     if (source.kind != SourceKind::mesh) return;
     const auto show = [&](SetSample sample) {
         sample.stands_in = true;

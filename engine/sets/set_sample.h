@@ -41,9 +41,10 @@ SetSample sample_set(const SetCache& cache, const SourceParams& source, const st
                      const Progress& progress = {});
 
 /// What is to be seen of a set until it is there, each for as long as the next one takes: rows of one that is
-/// kept, about `rows`; else the flat picture, where it is asked for, and then bodies of a smaller picture, or
-/// columns on a coarser lattice, unless the set takes hardly longer. Nothing of splat files of other formats
-/// and of catalogues. Throws Cancelled; InputError where load_source will.
+/// kept, about `rows`, but of bodies, of which a few are blotches, only where there are very many; else the
+/// flat picture, where it is asked for, and then bodies of a smaller picture, or columns on a coarser
+/// lattice, unless the set takes hardly longer. Nothing of splat files of other formats and of catalogues.
+/// Throws Cancelled; InputError where load_source will.
 struct QuickSets {
     std::int64_t rows = 0;
     bool flat = true;

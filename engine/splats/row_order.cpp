@@ -151,7 +151,7 @@ template Buffer<std::uint64_t> spatial_order(const SplatSet& set);
 namespace {
 
 constexpr unsigned code_bits = 64;
-constexpr unsigned part_bits = 13;  // of the code, highest first: absorbing, and four halvings of the box
+constexpr unsigned part_bits = 13;  // of the code, highest first: what it is, and four halvings of the box
 constexpr std::size_t parts = std::size_t{1} << part_bits;
 constexpr std::int64_t rows_a_chunk = 1 << 16;
 
@@ -178,7 +178,9 @@ class MortonCodes {
     MortonRow operator()(std::int64_t row) const {
         const glm::dvec3 p = (glm::dvec3(set_.position[row]) - lo_) * cells_per_unit_ + shift_;
         const std::uint64_t place = morton_place(cell(p.x), cell(p.y), cell(p.z));
-        return {set_.absorbs && set_.color[row].x < 0.0f ? place | morton_absorbs : place, row};
+        if (set_.absorbs && set_.color[row].x < 0.0f) return {place >> 1 | morton_absorbs, row};
+        const std::uint64_t id = set_.id[row];
+        return {is_star(id) || is_spike(id) ? place >> 1 | morton_stars : place, row};
     }
 
   private:

@@ -78,8 +78,10 @@ class SpatialCells {
 template <class Row>
 Buffer<Row> spatial_order(const SplatSet& set);
 
-/// The highest bit of a code, below which are 21 bits an axis: the splat absorbs.
+/// Codes have 21 bits an axis; those from here on are of splats that absorb, and last come stars of pictures
+/// and their spikes, whose lowest bit of x is lost.
 constexpr std::uint64_t morton_absorbs = std::uint64_t{1} << 63;
+constexpr std::uint64_t morton_stars = std::uint64_t{3} << 62;
 
 struct MortonRow {
     std::uint64_t code;

@@ -177,6 +177,7 @@ inline constexpr std::uint64_t star_band = 255, dust_band = 254, spike_band = 25
 
 constexpr std::uint64_t band_of(std::uint64_t id) { return id >> band_bit & 255; }
 constexpr bool is_star(std::uint64_t id) { return band_of(id) == star_band; }
+constexpr bool is_spike(std::uint64_t id) { return band_of(id) == spike_band; }
 /// As it was before the picture and the face were added.
 constexpr std::uint64_t id_in_picture(std::uint64_t id) {
     return id & ~(~std::uint64_t{0} << picture_bit | std::uint64_t{63} << instance_bit);

@@ -249,6 +249,35 @@ void measure_levels(Viewer& viewer) {
     }
 }
 
+/// How bodies lie, to and fro, until the preview shows it.
+void measure_shaping(Viewer& viewer) {
+    const Scene scene = viewer.session().document.scene();
+    for (std::size_t i = 0; i < scene.layers.size(); ++i) {
+        const StructureKind kind = scene.layers[i].source.structure.kind;
+        if (scene.layers[i].source.kind != SourceKind::mesh || kind == StructureKind::columns) continue;
+        const auto drag_to = [&](int step) {
+            viewer.session().document.edit(
+                "Drag",
+                [&](Scene& now) {
+                    StructureParams& structure = now.layers[i].source.structure;
+                    structure.height = 0.15 + 0.005 * step;
+                    structure.depth = 0.1 + 0.005 * step;
+                },
+                1);
+            viewer.run_until([&] {
+                const LayerParams& now = viewer.session().document.scene().layers[i];
+                return viewer.session().sets.layer(now)->source == now.source;
+            });
+        };
+        drag_to(0);
+        Times times;
+        for (int step = 1; step <= samples; ++step) times.measure([&] { drag_to(step); });
+        print_wait("structure of layer " + scene.layers[i].name, "<= 80 ms", times);
+        viewer.session().document.edit("Back", [&](Scene& now) { now = scene; });
+        viewer.run_until([&] { return viewer.session().sets.loaded(viewer.session().document); });
+    }
+}
+
 void measure_scrubbing(Viewer& viewer) {
     Times times;
     viewer.session().view.view = ViewKind::camera;
@@ -309,6 +338,7 @@ void measure_viewport(Viewer& viewer, const Parts& wanted) {
                    shown_of(viewer.session().status.view_frame));
     if (wanted("slider")) measure_sliders(viewer);
     if (wanted("level")) measure_levels(viewer);
+    if (wanted("shape")) measure_shaping(viewer);
     if (wanted("scrub")) measure_scrubbing(viewer);
     if (!wanted("settle")) return;
     viewer.orbit(1);
@@ -335,8 +365,8 @@ void measure_window(Viewer& viewer, const Parts& wanted) {
 
 void measure_session(const ViewerOptions& options, const GlInfo& gl, const Parts& wanted, double started,
                      double processor_started) {
-    if (wanted("start") || wanted("orbit") || wanted("slider") || wanted("level") || wanted("scrub") ||
-        wanted("settle")) {
+    if (wanted("start") || wanted("orbit") || wanted("slider") || wanted("level") || wanted("shape") ||
+        wanted("scrub") || wanted("settle")) {
         Viewer viewer(options, gl, 960, 540, false);
         measure_start(viewer, started, processor_started);
         if (wanted.names != std::vector<std::string>{"start"}) measure_viewport(viewer, wanted);
@@ -391,6 +421,24 @@ void measure_truths(const ViewerOptions& options, const GlInfo& gl, std::int64_t
     }
 }
 
+/// Previews of a scene after each cause against its final frames.
+void measure_causes(const ViewerOptions& options, std::int64_t shown, const fs::path& pictures) {
+    for (const test::CausedView& seen :
+         test::measure_causes(options.input, shown == 0 ? 60'000 : shown, options.cache)) {
+        const std::string name = seen.view + ", " + test::cause_names[int(seen.cause)];
+        if (!pictures.empty()) {
+            save_picture(seen.truth.preview, pictures / (name + ".png"));
+            save_picture(seen.truth.final,
+                         pictures / (seen.view + (seen.cause == test::Cause::edit ? ", final edited.png"
+                                                                                  : ", final.png")));
+        }
+        print_row("preview " + name, "light 3 %",
+                  fmt::format("{:+.1f} %, {} of {} blocks", 100.0 * (seen.truth.light - 1.0), seen.truth.near,
+                              seen.truth.bright_blocks),
+                  fmt::format("{} thousand splats", seen.truth.shown / 1000));
+    }
+}
+
 int run(int argc, char** argv) {
     const double started = seconds_now(), processor_started = processor_seconds();
     ViewerOptions options;
@@ -400,7 +448,8 @@ int run(int argc, char** argv) {
     CLI::App app("Measures the viewer: the table of issue 4.");
     app.add_option("scene", options.input, "default: the demo");
     app.add_option("--cache", cache, "folder of generated sets");
-    app.add_option("--only", wanted.names, "some of: start orbit slider scrub settle window idle truth");
+    app.add_option("--only", wanted.names,
+                   "some of: start orbit slider scrub settle window idle truth causes");
     app.add_option("--pictures", pictures, "folder for the frames of truth");
     app.add_option("--shown", shown, "of the previews of truth; default: those that hold 24 frames a second");
     CLI11_PARSE(app, argc, argv);
@@ -413,6 +462,7 @@ int run(int argc, char** argv) {
     print_head();
     measure_session(options, context.info(), wanted, started, processor_started);
     if (wanted("truth")) measure_truths(options, context.info(), shown, pictures);
+    if (wanted("causes")) measure_causes(options, shown, pictures);
     return 0;
 }
 

@@ -133,4 +133,95 @@ ViewTruth measure_truth(const NamedView& view, std::int64_t shown, const SetCach
     return truth;
 }
 
+namespace {
+
+struct SeenFromSide {
+    const char* name;
+    glm::dvec3 from, at;  // of the box's half diagonal in its plane
+    glm::dvec3 up;
+};
+constexpr SeenFromSide sides[] = {
+    {"front", {0, 2.2, 0}, {}, {0, 0, -1}},
+    {"45 degrees off", {0, 1.5, 1.5}, {}, {0, 1, 0}},
+    {"aside", {2.1, 0.45, 0.2}, {}, {0, 1, 0}},
+    {"from its edge", {0, 0, 2.2}, {}, {0, 1, 0}},
+    {"from behind", {0.4, -2.1, 0.5}, {}, {0, 0, -1}},
+    {"close by", {0.16, 0.12, 0.2}, {-0.2, 0.0, -0.1}, {0, 1, 0}},
+};
+
+}  // namespace
+
+std::vector<CausedView> measure_causes(const std::filesystem::path& scene, std::int64_t shown,
+                                       const SetCache& cache) {
+    std::vector<CausedView> found;
+    std::vector<Image> opened(std::size(sides));
+    const auto options = [&] {
+        ViewerOptions o;
+        o.cache = cache;
+        o.input = scene;
+        return o;
+    };
+    glm::dvec3 middle(0.0);
+    double size = 0.0;
+    const auto look_from = [&](Session& session, const SeenFromSide& side) {
+        session.view.view = ViewKind::free;
+        session.view.free = camera_at(middle + size * side.from, middle + size * side.at, side.up);
+    };
+    const auto begin = [&](Session& session) {
+        session.gl.software = true;
+        session.fixed_splats = shown;
+        session.view.settle = false;
+        session.document.edit("No sky", [](Scene& s) { s.environment.image.clear(); });
+    };
+    Session session(options(), {});
+    begin(session);
+    draw_until(session, [&] { return preview_exact(session); });
+    const Bounds box = session.status.box;
+    middle = 0.5 * (box.lo + box.hi);
+    size = 0.5 * std::max(box.extent().x, box.extent().z);
+    for (std::size_t i = 0; i < std::size(sides); ++i) {
+        Session fresh(options(), {});
+        begin(fresh);
+        look_from(fresh, sides[i]);
+        while (fresh.status.view_frame.shown == 0 || !fresh.sets.loader().sets_there()) {
+            advance(fresh, seconds_now());
+            draw_viewport(fresh, {frame_width, frame_height}, seconds_now(), true);
+        }
+        opened[i] = *fresh.view_frame.pixels();
+    }
+    const Scene before = session.document.scene();
+    for (std::size_t i = 0; i < std::size(sides); ++i) {
+        const auto add = [&](Cause cause, const Image& preview, std::int64_t splats) {
+            const Image& final = *session.view_frame.pixels();
+            ViewTruth truth = compare_frames(preview, final, false);
+            truth.shown = splats;
+            truth.preview = preview;
+            truth.final = final;
+            found.push_back({sides[i].name, cause, std::move(truth)});
+        };
+        look_from(session, sides[i]);
+        session.view.settle = false;
+        draw_until(session, [&] { return preview_exact(session); });
+        const Image moved = *session.view_frame.pixels();
+        const std::int64_t splats = session.view_frame.status().shown;
+        session.view.settle = true;
+        draw_until(session, [&] { return settled(session); });
+        add(Cause::opening, opened[i], 0);
+        add(Cause::move, moved, splats);
+        session.view.settle = false;
+        session.document.edit("Look", [&](Scene& s) {
+            for (LayerParams& layer : s.layers)
+                layer.look.alpha.power = 1.3f * layer.look.alpha.power, layer.look.density = 0.7f;
+        });
+        draw_viewport(session, {frame_width, frame_height}, seconds_now(), true);
+        const Image edited = *session.view_frame.pixels();
+        const std::int64_t then = session.view_frame.status().shown;
+        session.view.settle = true;
+        draw_until(session, [&] { return settled(session); });
+        add(Cause::edit, edited, then);
+        session.document.edit("Back", [&](Scene& s) { s = before; });
+    }
+    return found;
+}
+
 }  // namespace astrosplat::test

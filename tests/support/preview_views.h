@@ -32,6 +32,20 @@ struct ViewTruth {
 /// The preview draws so many splats; sets come from the cache.
 ViewTruth measure_truth(const NamedView& view, std::int64_t shown, const SetCache& cache);
 
+/// What a preview comes after.
+enum class Cause { opening, move, edit };
+inline constexpr const char* cause_names[] = {"opened", "moved", "look edited"};
+
+/// Six views of any scene: its own camera's, 45 degrees off, aside, from its edge, from behind and close by.
+struct CausedView {
+    std::string view;
+    Cause cause;
+    ViewTruth truth;
+};
+/// The previews of a scene draw so many splats after each cause.
+std::vector<CausedView> measure_causes(const std::filesystem::path& scene, std::int64_t shown,
+                                       const SetCache& cache);
+
 /// Compares two frames of the same size. `is_edge`: also how thick they are.
 ViewTruth compare_frames(const Image& preview, const Image& final, bool is_edge);
 

@@ -391,7 +391,7 @@ TEST(Merge, ASampleStandsForTheWhole) {
     const MergeTree tree = build_merge_tree(*cloud.set);
     const SplatSet taken = sample_tree(tree, *cloud.set, 4000);
     EXPECT_EQ(taken.size(), 4000);
-    EXPECT_TRUE(std::is_sorted(taken.id.begin(), taken.id.end()));
+    EXPECT_EQ(std::set(taken.id.begin(), taken.id.end()).size(), 4000u);
     Cloud sample;
     for (const std::uint64_t id : taken.id)
         sample.add(cloud.splats.position[id], cloud.splats.color[id], cloud.splats.alpha[id],
@@ -399,6 +399,108 @@ TEST(Merge, ASampleStandsForTheWhole) {
     const ShadedSplats cut = cut_of(sample.merged(16.0f), 4000, render_as(Blend::add));
     EXPECT_LT(cut.size(), 1000) << "no splat of a sample is shown by itself";
     for (int k = 0; k < 3; ++k) EXPECT_NEAR(light_of(cut)[k] / light_of(cloud.splats)[k], 1.0, 0.03);
+}
+
+/// A few bright ones in a haze of the same place.
+TEST(Merge, StarsOfPicturesStayPointsInAHaze) {
+    Cloud cloud = random_cloud(40000, {1.0f, 1.0f, 0.1f}, 0.1f, 0.05f);
+    constexpr int stars = 20;
+    for (std::uint32_t i = 0; i < stars; ++i)
+        cloud.add({1.6f * uniform(i, 8) - 0.8f, 1.6f * uniform(i, 9) - 0.8f, 0.0f}, glm::vec3(5.0f), 1.0f,
+                  0.01f, star_band << band_bit | i);
+    const ShadedSplats cut = cut_of(cloud.merged(), 2000, render_as(Blend::add));
+    int points = 0;
+    for (std::int64_t i = 0; i < cut.size(); ++i)
+        points += cut.radius[i] <= 0.0101f && cut.color[i].x > 4.99f;
+    EXPECT_EQ(points, stars);
+}
+
+/// Large splats among many small ones, as of bodies: by number they would hardly be met, and then stand for
+/// many.
+TEST(Merge, ASampleByLightHasTheLightOfLargeSplatsAndOfSmallOnes) {
+    Cloud cloud = random_cloud(60000, {1.0f, 1.0f, 0.2f}, 0.01f, 0.5f);
+    for (std::uint32_t i = 0; i < 10; ++i)
+        cloud.add({2.0f * uniform(i, 8) - 1.0f, 2.0f * uniform(i, 9) - 1.0f, 0.0f}, {1.0f, 0.0f, 0.0f}, 0.5f,
+                  0.7f);
+    cloud.set->alpha = cloud.splats.alpha;
+    cloud.set->radius = cloud.splats.radius;
+    const auto sums_of = [&](MergeSource source) {
+        Cloud few;
+        for (const std::uint64_t id : source.set->id)
+            few.add(cloud.splats.position[id], cloud.splats.color[id], cloud.splats.alpha[id],
+                    cloud.splats.radius[id], id);
+        source.tree = std::make_shared<const MergeTree>(build_merge_tree(*source.set));
+        return NodeSums(merge_splats(source, few.splats).sums[0]);
+    };
+    const NodeSums all = cloud.merged().sums[0];
+    const MergeSource sample = sample_light(*cloud.set, 2000);
+    EXPECT_LE(sample.set->size(), 2001);
+    EXPECT_GT(sample.set->size(), 900);
+    const NodeSums found = sums_of(sample);
+    EXPECT_NEAR(found.cover / all.cover, 1.0, 0.03);
+    EXPECT_NEAR(found.light.x / all.light.x, 1.0, 0.03);
+    EXPECT_NEAR(found.squares / all.squares, 1.0, 0.05) << "each is as many as it stands for";
+    const auto rows = std::make_shared<const SplatSet>(sample_rows(*cloud.set, 2000));
+    const NodeSums by_number = sums_of({rows, nullptr, float(cloud.set->size()) / 2000.0f, nullptr});
+    EXPECT_GT(std::fabs(by_number.cover / all.cover - 1.0f), 0.05f) << "what this is for";
+}
+
+/// Brighter, wider, fewer and of another colour, in one half more than in the other.
+TEST(Merge, RelitCutsHaveTheLightOfTheOtherLook) {
+    const Cloud cloud = random_cloud(64000, {1.0f, 1.0f, 0.2f}, 0.02f, 0.2f);
+    const auto tree = std::make_shared<const MergeTree>(build_merge_tree(*cloud.set));
+    const MergedSplats merged = merge_splats({cloud.set, tree, 1.0f}, cloud.splats);
+    const auto under_another = [&](const SplatSet& set) {
+        ShadedSplats splats;
+        for (const std::uint64_t id : set.id) {
+            const glm::vec3 p = cloud.splats.position[id];
+            if (uniform(std::uint32_t(id), 11) < 0.4f) continue;
+            splats.position.push_back(p);
+            splats.color.push_back(cloud.splats.color[id] * glm::vec3(p.x < 0.0f ? 2.0f : 0.5f, 1.5f, 0.1f));
+            splats.alpha.push_back(cloud.splats.alpha[id] * 0.7f);
+            splats.radius.push_back(cloud.splats.radius[id] * 1.5f);
+            splats.id.push_back(id);
+        }
+        return splats;
+    };
+    const SplatSet sample = sample_tree(*tree, *cloud.set, 4000);
+    const Relight relight(merged, sample, under_another(sample));
+    EXPECT_TRUE(relight.is_true());
+    EXPECT_NEAR(relight.kept(), 0.6, 0.03);
+    const ShadedSplats all = under_another(*cloud.set);
+    const MergeSettings merging(render_as(Blend::add));
+    RenderLayer layer;
+    layer.render = merging.render;
+    RenderSettings frame;
+    frame.width = width;
+    frame.height = height;
+    const CutLayer seen{&merged, &merging, make_projection(layer, 0, camera(), frame), &relight};
+    for (const std::int64_t budget : {500, 3000, 100000}) {
+        const ShadedSplats cut = std::move(cut_splats(std::span(&seen, 1), {budget, 0.0f, width, height})[0]);
+        for (int k = 0; k < 3; ++k) EXPECT_NEAR(light_of(cut)[k] / light_of(all)[k], 1.0, 0.03) << budget;
+        const Image wanted = picture_of(all, merging.render), got = picture_of(cut, merging.render);
+        double left[2] = {0.0, 0.0};
+        for (std::int64_t y = 0; y < height; ++y)
+            for (std::int64_t x = 0; x < width / 2; ++x)
+                left[0] += double(wanted.at(x, y)[0]), left[1] += double(got.at(x, y)[0]);
+        EXPECT_NEAR(left[1] / left[0], 1.0, 0.05) << budget;
+    }
+}
+
+TEST(Merge, WhatAppearsCannotBeRelit) {
+    Cloud cloud = random_cloud(64000, {1.0f, 1.0f, 0.2f}, 0.02f, 0.2f);
+    const auto tree = std::make_shared<const MergeTree>(build_merge_tree(*cloud.set));
+    const SplatSet sample = sample_tree(*tree, *cloud.set, 4000);
+    ShadedSplats of_sample;
+    for (const std::uint64_t id : sample.id)
+        for_each_member([&](auto member) { (of_sample.*member).push_back((cloud.splats.*member)[id]); });
+    const auto is_true = [&] {
+        return Relight(merge_splats({cloud.set, tree, 1.0f}, cloud.splats), sample, of_sample).is_true();
+    };
+    EXPECT_TRUE(is_true());
+    for (std::size_t i = 0; i < cloud.splats.alpha.size(); ++i)
+        if (cloud.splats.position[i].x > 0.5f) cloud.splats.alpha[i] = 0.0f;
+    EXPECT_FALSE(is_true()) << "a quarter was dark";
 }
 
 TEST(Merge, TheSameBitsForAnyThreadCount) {

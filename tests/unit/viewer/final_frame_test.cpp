@@ -245,6 +245,75 @@ TEST_F(Followed, OfALoopThatIsTooLongTheSameFramesStay) {
     EXPECT_LE(kept.bytes(), bytes);
 }
 
+/// What is seen of a blurred frame before it is final: every lens, eye, projection and kind of layer.
+class Blurred : public Followed {
+  protected:
+    using Change = std::function<void(Scene& scene)>;
+
+    ViewRequest blurred(const Change& change) const {
+        ViewRequest wanted = view(0);
+        wanted.scene.output.samples = 20;
+        change(wanted.scene);
+        return wanted;
+    }
+    static double off(const Image& a, const Image& b) {
+        double sum = 0.0;
+        for (std::size_t i = 0; i < a.pixels.size(); ++i)
+            sum += std::pow(double(a.pixels[i]) - double(b.pixels[i]), 2.0);
+        return sum;
+    }
+};
+
+void open_lens(Scene& scene) {
+    scene.camera.f_number = 1.0;
+    scene.camera.unit_mm = 2.0;
+    scene.camera.focus_distance = 9.0;
+}
+void open_shutter(Scene& scene) {
+    scene.camera.shutter = 360.0;
+    set_keyframe(scene, "camera.position", 0.0, Value::List{2.0, 6.0, 12.0});
+    set_keyframe(scene, "camera.position", 2.0, Value::List{6.0, 6.0, 12.0});
+}
+
+TEST_F(Blurred, FewSamplesComeFirstAndAreNotCalledFinal) {
+    choice.splats = 200'000;  // or what merges them would be most of the difference
+    const Change changes[] = {
+        open_lens,
+        open_shutter,
+        [](Scene& scene) { open_lens(scene), open_shutter(scene), scene.camera.eye = Eye::right; },
+        [](Scene& scene) {
+            open_shutter(scene), scene.camera.projection = Projection::equirectangular;
+            set_keyframe(scene, "camera.position", 0.0, Value::List{-8.0, 2.0, 7.0});  // close by
+            set_keyframe(scene, "camera.position", 2.0, Value::List{12.0, 2.0, 7.0});
+        },
+        [](Scene& scene) {
+            open_lens(scene), open_shutter(scene);
+            scene.layers[0].render.isolate = true;
+            set_keyframe(scene, "layer." + scene.layers[1].name + ".visible", 0.0, true);
+            set_keyframe(scene, "layer." + scene.layers[1].name + ".visible", 1.2, false);
+        },
+    };
+    for (const Change& change : changes) {
+        const ViewRequest wanted = blurred(change);
+        const auto which = &change - changes;
+        ViewFrame processors(std::make_shared<PictureFiles>());  // that knows of no quick frame
+        std::map<int, Image> seen;                               // by samples
+        do {
+            processors.show(wanted, choice, true, now += 0.02);
+            const ViewFrameStatus& status = processors.status();
+            ASSERT_NE(status.state, ViewFrameState::failed) << status.error;
+            if (status.state != ViewFrameState::final) seen.try_emplace(status.samples, *processors.pixels());
+            ASSERT_EQ(status.state == ViewFrameState::final, processors.final_frame() != nullptr);
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        } while (!processors.final_frame());
+        ASSERT_EQ(seen.size(), 3u) << which;
+        const Image& final = *processors.pixels();
+        EXPECT_LT(off(seen.at(4), final), 0.6 * off(seen.at(1), final)) << which;
+        EXPECT_LT(off(seen.at(16), final), off(seen.at(4), final)) << which;
+        EXPECT_EQ(seen.begin()->first, 1);
+    }
+}
+
 TEST_F(FinalFrameTest, DepthComesWithTheSamePixels) {
     FinalRequest wanted = request(0);
     wanted.depth = true;

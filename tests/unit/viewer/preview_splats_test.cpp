@@ -1,6 +1,7 @@
 // How many splats a preview draws, and which.
 #include "viewer/preview_splats.h"
 #include "core/progress.h"
+#include "image/blur.h"
 #include "output/write.h"
 #include "render/render.h"
 #include "scene/layer_setup.h"
@@ -233,9 +234,47 @@ TEST_F(SampledSplatsTest, ASampleComesFirstAndTheWholeSetOnceItsSumsAreThere) {
     EXPECT_FALSE(splats.refine(seconds_now())) << "nothing is missing";
     EXPECT_NEAR(light_of(whole) / light_of(rendered()), 1.0, 0.03);
     layers[0].look.grade.gain = 0.5f;
+    const std::string dimmed = hash(splats);
+    wait(splats);
+    EXPECT_EQ(hash(splats), dimmed) << "half the light, to the bit";
+    layers[0].look.density = 0.5f;
     const std::string edited = hash(splats);
     wait(splats);
     EXPECT_NE(hash(splats), edited);
+}
+
+/// The splats of a moved camera with what the look did to them, whatever it did.
+TEST_F(SampledSplatsTest, AnEditedLookIsShownAsAMovedCameraIs) {
+    arrange();
+    budget = 3000;
+    PreviewSplats splats;
+    draw(splats);
+    wait(splats);
+    const auto off = [](const Image& a, const Image& b) {
+        double sum = 0.0;
+        for (std::size_t i = 0; i < a.pixels.size(); ++i)
+            sum += std::pow(double(a.pixels[i]) - double(b.pixels[i]), 2.0);
+        return std::sqrt(sum);
+    };
+    const std::function<void(Look&)> edits[] = {
+        [](Look& look) { look.grade.gain = 0.4f; },
+        [](Look& look) { look.density = 0.6f; },
+        [](Look& look) { look.alpha.power = 1.6f; },
+        [](Look& look) { look.reach = 0.2f; },
+    };
+    for (const auto& edit : edits) {
+        for (PreviewLayer& layer : layers) edit(layer.look);
+        const Image edited = draw(splats), wanted = rendered();
+        EXPECT_TRUE(splats.whole());
+        EXPECT_TRUE(splats.lacks_sums());
+        wait(splats);
+        const Image moved = draw(splats);
+        EXPECT_NEAR(light_of(edited) / light_of(wanted), 1.0, 0.03) << &edit - edits;
+        PreviewSplats without_sums;
+        const Image sampled = draw(without_sums);
+        EXPECT_LT(off(edited, wanted), 0.7 * off(sampled, wanted)) << &edit - edits;
+        EXPECT_LT(off(edited, wanted), 2.0 * off(moved, wanted)) << &edit - edits;
+    }
 }
 
 // The budget against machines of known speed, and steps of more splats at rest.
@@ -275,6 +314,43 @@ TEST_P(Budget, ReachesTheTargetAndStaysThere) {
 INSTANTIATE_TEST_SUITE_P(Machines, Budget,
                          testing::Values(Machine{6.0, 0.05}, Machine{15.0, 0.1}, Machine{1.0, 0.02},
                                          Machine{0.0, 0.3}));
+
+TEST(PreviewBudgetTest, FewSplatsGetFewerPixelsAndManyAllOfThem) {
+    PreviewBudget budget;
+    run(budget, {1.0, 0.05}, 25.0, 100);
+    EXPECT_EQ(budget.pixels, 1);
+    run(budget, {20.0, 0.5}, 25.0, 100);
+    EXPECT_EQ(budget.pixels, 2);
+    run(budget, {20.0, 0.1}, 25.0, 100);
+    EXPECT_EQ(budget.pixels, 2) << "there are few still";
+    run(budget, {1.0, 0.02}, 25.0, 100);
+    EXPECT_EQ(budget.pixels, 1);
+}
+
+TEST_F(PreviewSplatsTest, AFourthOfThePixelsHasTheSameLight) {
+    PreviewSplats splats;
+    for (const int odd : {0, 1}) {
+        PreviewView whole = view();
+        whole.width -= odd;
+        whole.height -= odd;
+        std::vector<PreviewLayer> seen = layers;
+        splats.cut(seen, loaded, whole, budget, least_px);
+        DrawnPreview preview;
+        const Image wanted = preview.draw(seen, whole);
+        const PreviewView half = halved(whole);
+        EXPECT_EQ(half.width, width / 2);
+        const Image got = doubled(preview.draw(seen, half), whole.width, whole.height);
+        ASSERT_EQ(got.width, wanted.width);
+        ASSERT_EQ(got.height, wanted.height);
+        EXPECT_NEAR(light_of(got) / light_of(wanted), 1.0, 0.01);
+        double off = 0.0, all = 0.0;
+        for (std::size_t i = 0; i < got.pixels.size(); ++i) {
+            off += std::fabs(double(got.pixels[i]) - double(wanted.pixels[i]));
+            all += double(wanted.pixels[i]);
+        }
+        EXPECT_LT(off, 0.1 * all) << "it lies elsewhere";
+    }
+}
 
 TEST(PreviewBudgetTest, NeverFallsBelowTheLeast) {
     PreviewBudget budget;
