@@ -91,6 +91,8 @@ struct Step {
     /// The file's content as it was read or written with this very scene; null: it never was. Saving again
     /// what was undone to leaves no trace of what lay there meanwhile.
     std::shared_ptr<const std::string> text = nullptr;
+    /// The text that an untitled document begins with here; null: it goes on.
+    std::shared_ptr<const std::string> began = nullptr;
 };
 
 /// Grows through all documents, so that a revision never means two scenes.
@@ -162,6 +164,18 @@ struct Document::State {
         now = 0;
     }
 
+    /// The step that the scene goes on from, of an untitled document; null: none is known any more.
+    const Step* beginning() const {
+        if (!file.empty()) return nullptr;
+        for (std::size_t i = now + 1; i-- > 0;)
+            if (history[i].began) return &history[i];
+        return nullptr;
+    }
+    const std::shared_ptr<const Scene>& unedited() const {
+        const Step* const step = beginning();
+        return step ? step->scene : saved;
+    }
+
     /// `content` is what lies in the document's file. Throws InputError, and nothing has changed.
     void know_disk(const std::string& content) {
         Scene read = parse_unchecked(content, file);
@@ -195,7 +209,8 @@ struct Document::State {
     /// Of `shown` in the file `target`, with the comments and the order of what was read.
     std::string text_of(Scene shown, const fs::path& target) const {
         shown.file = text_place;
-        return save_text(shown, text, target);
+        const Step* const step = beginning();
+        return save_text(shown, step ? *step->began : text, target);
     }
 
     void forget_assignments() {
@@ -214,7 +229,13 @@ struct Document::State {
             history.push_back(std::move(step));
         }
         if (merges && *history[now].scene == *history[now - 1].scene) history.pop_back();  // dragged back
-        if (history.size() > most_undo_steps + 1) history.pop_front();
+        if (history.size() > most_undo_steps + 1) {
+            if (file.empty() && history[0].began) {  // its text and its scene are known beyond it
+                text = *history[0].began;
+                saved = history[0].scene;
+            }
+            history.pop_front();
+        }
         now = history.size() - 1;
         revision = next_revision();
     }
@@ -255,6 +276,7 @@ Document Document::untitled(const std::string& toml, const fs::path& place,
     state->text_place = fs::absolute(place);
     state->text = toml;
     state->begin(parse_scene(toml, state->text_place, assignments));
+    state->history[0].began = std::make_shared<const std::string>(toml);
     state->remember_assignments(assignments);
     state->saved = state->history[0].scene;
     return Document(std::move(state));
@@ -287,9 +309,24 @@ const fs::path& Document::file() const { return state_->file; }
 std::string Document::name() const {
     return state_->file.empty() ? "Untitled" : state_->file.filename().string();
 }
-const Scene& Document::saved_scene() const { return *state_->saved; }
+const Scene& Document::saved_scene() const { return *state_->unedited(); }
 bool Document::edited() const {
-    return state_->history[state_->now].scene != state_->saved && !(scene() == *state_->saved);
+    const std::shared_ptr<const Scene>& unedited = state_->unedited();
+    return state_->history[state_->now].scene != unedited && !(scene() == *unedited);
+}
+
+std::shared_ptr<const std::string> Document::began() const {
+    const Step* const step = state_->beginning();
+    return step ? step->began : nullptr;
+}
+
+void Document::begin_again(const std::string& name, const std::string& toml, const fs::path& place,
+                           std::span<const Assignment> assignments) {
+    Scene scene = parse_scene(toml, fs::absolute(place), assignments);
+    scene.file = this->scene().file;
+    state_->record({std::make_shared<const Scene>(std::move(scene)), name, 0, nullptr,
+                    std::make_shared<const std::string>(toml)});
+    state_->remember_assignments(assignments);
 }
 
 void Document::edit(const std::string& name, const std::function<void(Scene&)>& change, Gesture gesture) {

@@ -88,6 +88,13 @@ class Document {
     bool edited() const;       // differs from what lies on disk; untitled: from what it began as
     /// The text on disk (untitled: the one it began with), as far as this document knows.
     const Scene& saved_scene() const;
+    /// The text that it began with, or began again with, where that is the scene that is edited; else null.
+    std::shared_ptr<const std::string> began() const;
+    /// Begins again with another text, as if it were at `place`, as one undo step called `name`; an untitled
+    /// one is then not edited.
+    /// Throws InputError; the scene is then as before.
+    void begin_again(const std::string& name, const std::string& toml, const fs::path& place,
+                     std::span<const Assignment> assignments = {});
 
     /// Applies `change` to a copy and makes it the scene as one undo step called `name` ("Opacity of dust").
     /// Throws what `change` throws, and InputError where the result breaks a rule between parameters; the

@@ -20,6 +20,7 @@ struct LayerPlacement {
     glm::dmat3 rotation{1.0};  // world from layer
     double scale = 1.0;
     glm::dvec3 translate{0.0};  // scene units
+    bool operator==(const LayerPlacement&) const = default;
 };
 
 LayerPlacement placement_of(const LayerTransform& transform);

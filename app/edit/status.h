@@ -9,6 +9,7 @@
 
 #include "camera/camera.h"
 #include "core/bounds.h"
+#include "objects/impression.h"
 #include "scene/scene.h"
 #include "sets/set_sample.h"
 
@@ -169,8 +170,23 @@ struct Message {
     std::uint64_t number = 0;  // differs from message to message, also where the text is the same
 };
 
+/// The scene of a picture that is being made.
+struct StartingStatus {
+    fs::path picture;
+    std::string choice;     // of Command::start_again; empty: it is being opened
+    float progress = 0.0f;  // 0..1
+};
+
+/// What a picture would be as another kind, seen from aside.
+struct KindStatus {
+    void* texture = nullptr;  // handle for the widgets, top row first; null: not made yet
+    std::string error;        // why it cannot be, one line
+};
+
 struct Status {
     ViewFrameStatus view_frame;
+    std::optional<StartingStatus> starting;    // none: nothing is made
+    std::map<SkyObject, KindStatus> kinds;     // of ViewState::start
     std::optional<FrontStatus> front;          // none: no layer has a picture
     std::optional<PrepareStatus> preparation;  // none: nothing to prepare, or not asked for
     std::vector<LayerStatus> layers;           // as in the scene

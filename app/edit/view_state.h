@@ -111,6 +111,7 @@ struct ViewState : PanelSizes {
     HandleTool tool = HandleTool::none;  // handles in the view
     HandleTarget handle_target = HandleTarget::layer;
     std::size_t handle_crop = 0;  // of the selected layer
+    bool lying = false;           // handles of how its picture's bodies lie
     PreviewEngine engine = PreviewEngine::automatic;
     float preview_share = 0.0f;  // 0: sized to hold the frame rate; else 0..1 of every layer
     bool settle = true;          // the final frame follows by itself
@@ -121,8 +122,9 @@ struct ViewState : PanelSizes {
     bool graph_open = false;
     std::string graph_parameter;            // parameter shown in the timeline's graph
     std::set<std::string> hidden_channels;  // of graphs: "camera.position 1"
-    std::string hovered_parameter;  // of the panel's row under the mouse, set every frame; K sets a keyframe
-    bool preparation_open = false;  // the panel shows before and after; set every frame
+    std::string hovered_row;                // key of the panel's row under the mouse, set every frame
+    std::string hovered_parameter;          // the same where it can be animated; K sets a keyframe
+    bool preparation_open = false;          // the panel shows before and after; set every frame
     bool snapshots_open = false;
     int renamed_snapshot = -1;               // whose name is being typed; -1: none
     std::string typed_name;                  // so far
@@ -163,10 +165,11 @@ inline void show_reference(ViewState& view) {
 
 struct Command {
     enum class Kind {
-        start_again,  // text: a kind of object, "film", "still", "part", "keep", "whole" or "splats N":
-                      // ViewState::start's otherwise
-        new_scene,    // text: a built-in shape; empty: a scene without layers
-        open,         // path: a scene; a picture, mesh or splats become an untitled one
+        start_again,   // text: a kind of object, "film", "still", "part", "keep", "whole" or "splats N":
+                       // ViewState::start's otherwise
+        cancel_start,  // the making of a picture's scene
+        new_scene,     // text: a built-in shape; empty: a scene without layers
+        open,          // path: a scene; a picture, mesh or splats become an untitled one
         open_demo,
         save,
         save_as,  // path

@@ -6,6 +6,7 @@
 #include "edit/edits.h"
 #include "edit/layer_steps.h"
 #include "edit/layers.h"
+#include "edit/lying.h"
 #include "edit/view_camera.h"
 #include "scene/animate.h"
 #include "scene/describe.h"
@@ -228,8 +229,12 @@ void cancel(F f) {
     } else if (f.view.tool != HandleTool::none) {
         f.view.tool = HandleTool::none;
         f.view.handle_target = HandleTarget::layer;
+    } else if (f.view.lying) {
+        f.view.lying = false;
     } else if (f.view.selected_box) {
         f.view.selected_box = false;
+    } else if (f.status.starting) {
+        request(f, Kind::cancel_start);
     } else if (has_job(f)) {
         request(f, Kind::cancel_render);
     } else {
@@ -323,6 +328,15 @@ Action handles(const char* label, int code) {
         .enabled = has_layer,
         .checked =
             [](C f) { return f.view.tool == tool && f.view.handle_target != HandleTarget::camera_target; }};
+}
+
+/// Of how the bodies of its picture lie.
+Action incline_in_view() {
+    Action action = flip<&ViewState::lying>("Layer", "Incline in the view");
+    action.enabled = [](C f) {
+        return !lying_rings(scene_at(f.document.scene(), f.view.frame), f.view.layer).empty();
+    };
+    return action;
 }
 
 template <CameraMove move>
@@ -426,6 +440,7 @@ const Action table[] = {
     below_line(handles<HandleTool::move>("Move in the view", 'W')),
     handles<HandleTool::rotate>("Rotate in the view", 'E'),
     handles<HandleTool::scale>("Scale in the view", 'R'),
+    incline_in_view(),
     below_line({"Layer", "Regenerate", {}, ask_for_layer<Kind::regenerate>, layer_stale}),
 
     {"Camera", "Key camera here", {}, set_camera_keyframe_here},

@@ -47,12 +47,14 @@ std::string lacking(const Scene& scene, const Status& status) {
 // Words of the button that belongs to the state; nullptr: none.
 const char* button_word(const Status& status) {
     if (!status.played_movie.empty()) return nullptr;
-    if (loads(status)) return "Cancel";
+    if (status.starting || loads(status)) return "Cancel";
     return status.view_frame.state == ViewFrameState::failed ? "Copy" : nullptr;
 }
 
 void press_button(GuiFrame& frame) {
-    if (loads(frame.status))
+    if (frame.status.starting)
+        request(frame, Command::Kind::cancel_start);
+    else if (loads(frame.status))
         request(frame, Command::Kind::cancel_load, loading_layer(frame.status));
     else
         request_text(frame, Command::Kind::copy_text, frame.status.view_frame.error);
@@ -109,6 +111,10 @@ BadgeText badge_text(const Scene& scene, const Status& status) {
     if (!status.played_movie.empty())
         return {"Movie", status.played_movie + "  (Esc or a click ends it)", color::good};
     if (!status.rendered_frame.empty()) return {"Rendered", status.rendered_frame, color::good};
+    if (status.starting)
+        return {
+            fmt::format("{} {:.0f} %", starting_text(*status.starting), status.starting->progress * 100.0f),
+            "", color::accent};
     if (const std::size_t index = loading_layer(status); index < status.layers.size()) {
         const LayerStatus& layer = status.layers[index];
         const std::string name = index < scene.layers.size() ? scene.layers[index].name : "layer";

@@ -6,6 +6,7 @@
 #include <imgui_stdlib.h>
 
 #include "core/memory.h"
+#include "edit/picture_start.h"
 #include "gui/parts.h"
 
 namespace astrosplat {
@@ -166,27 +167,6 @@ namespace {
 
 constexpr float start_width = 430, start_inset = 12, start_padding = 12;
 
-/// Of a SkyObject: after "Taken for", and on a button.
-struct ObjectWords {
-    const char *with_article, *button;
-};
-constexpr ObjectWords object_words[] = {{"a galaxy", "Galaxy"},
-                                        {"an elliptical galaxy", "Elliptical galaxy"},
-                                        {"a nebula", "Nebula"},
-                                        {"a planetary nebula", "Planetary nebula"},
-                                        {"a supernova remnant", "Supernova remnant"},
-                                        {"a field of stars or galaxies", "Field of stars or galaxies"},
-                                        {"a globular cluster", "Globular cluster"},
-                                        {"something flat", "Flat, as a comet"}};
-static_assert(std::size(object_words) == sky_object_count);
-
-const ObjectWords& kind_words(SkyObject object) { return object_words[static_cast<std::size_t>(object)]; }
-
-double share_of(const PictureStart& start, SkyObject object) {
-    const auto guess = std::ranges::find(start.guesses, object, &ObjectGuess::object);
-    return guess == start.guesses.end() ? 0.0 : guess->sure;
-}
-
 /// Beside the last one where there is room, else in a new line.
 bool start_button(GuiFrame& frame, const char* name, const std::string& label, bool chosen,
                   const char* hint) {
@@ -201,42 +181,88 @@ bool start_button(GuiFrame& frame, const char* name, const std::string& label, b
     return clicked && !chosen;
 }
 
-void start_head(GuiFrame& frame, const PictureStart& start, float right) {
+/// "Taken for a galaxy (72 %), seen at 62 degrees"; while it is made, as what.
+std::string start_title(const GuiFrame& frame, const PictureStart& start) {
+    if (frame.status.starting) return starting_text(*frame.status.starting);
     const double sure = share_of(start, start.object);
     std::string title = std::string("Taken for ") + kind_words(start.object).with_article;
     if (!start.as && sure < 0.9) title += fmt::format(" ({:.0f} %)", 100.0 * sure);
-    if (!start.seen.empty()) title += ", " + start.seen;
+    const std::string seen =
+        frame.document.edited() ? seen_in_words(frame.document.scene(), start.object) : start.seen;
+    return seen.empty() ? title : title + ", " + seen;
+}
+
+/// True: closed.
+bool start_head(GuiFrame& frame, const std::string& title, float right) {
     const ImVec2 corner = ImGui::GetCursorScreenPos();
-    ImGui::TextUnformatted(title.c_str());
+    ImGui::TextUnformatted(fitting(title, right - px(26) - corner.x).c_str());
     const ImVec2 below = ImGui::GetCursorScreenPos();
     ImGui::SetCursorScreenPos({right - px(22), corner.y - px(3)});
     const bool closed = icon_button("close", Icon::cross, {px(22), px(22)}, px(9), color::dim, "Close");
     note_item(frame, "start/close");
     ImGui::SetCursorScreenPos(below);
-    ImGui::PushFont(small_font());
-    ImGui::PushTextWrapPos(ImGui::GetCursorPosX() + right - px(12) - below.x);
-    ImGui::TextColored(color4(color::dim), "because %s", start.because.c_str());
-    ImGui::PopTextWrapPos();
-    ImGui::PopFont();
-    if (closed) frame.view.start.reset();
+    return closed;
 }
 
-/// What else it may be, the likeliest first.
-void start_kinds(GuiFrame& frame, const PictureStart& start) {
-    std::vector<SkyObject> objects;
-    for (std::size_t i = 0; i < std::size(object_words); ++i) objects.push_back(static_cast<SkyObject>(i));
-    std::ranges::stable_sort(objects, std::ranges::greater(),
-                             [&](SkyObject object) { return share_of(start, object); });
-    row_text("Or is it", px(24), color::dim);
-    for (const SkyObject object : objects) {
-        if (object == start.object) continue;
-        const ObjectWords& words = kind_words(object);
-        const double share = share_of(start, object);
-        const std::string label =
-            share > 0.0 ? fmt::format("{} {:.0f} %", words.button, 100.0 * share) : words.button;
-        if (start_button(frame, words.button, label, false, "Makes the scene again as that"))
-            request_text(frame, Command::Kind::start_again, std::string(name_of(object)));
+void start_reason(const std::string& text, bool compact) {
+    ImGui::PushFont(small_font());
+    const float room = ImGui::GetContentRegionAvail().x;
+    ImGui::PushTextWrapPos(ImGui::GetCursorPosX() + room);
+    ImGui::TextColored(color4(color::dim), "%s", compact ? fitting(text, room).c_str() : text.c_str());
+    ImGui::PopTextWrapPos();
+    if (compact) tooltip(text.c_str());
+    ImGui::PopFont();
+}
+
+/// A kind as it would look from aside, `size` px, with its name and share below. True when clicked.
+bool kind_button(GuiFrame& frame, const PictureStart& start, SkyObject object, ImVec2 size) {
+    const ObjectWords& words = kind_words(object);
+    const bool chosen = object == start.object;
+    const auto found = frame.status.kinds.find(object);
+    const KindStatus kind = found == frame.status.kinds.end() ? KindStatus{} : found->second;
+    const float line = px(15);
+    const ImVec2 corner = ImGui::GetCursorScreenPos(), whole{size.x, size.y + 2 * line};
+    const bool clicked = ImGui::InvisibleButton(words.button, whole);
+    note_item(frame, std::string("start/") + words.button);
+    const bool hovered = ImGui::IsItemHovered();
+    tooltip(chosen ? "It is taken for that" : "Makes the scene again as that");
+    const Rect picture{corner, size};
+    image_box(picture, kind.texture, size.x / size.y, 3);
+    ImGui::PushFont(small_font());
+    if (!kind.texture) {
+        const char* const why = kind.error.empty() ? "..." : "no preview";
+        const ImVec2 room = ImGui::CalcTextSize(why);
+        draw_text({picture.middle().x - room.x * 0.5f, picture.middle().y - room.y * 0.5f}, color::dim, why);
     }
+    outline_rect(picture,
+                 chosen    ? color::accent
+                 : hovered ? color::text
+                           : color::hover,
+                 px(3), px(chosen ? 2.0f : 1.0f));
+    const double share = share_of(start, object);
+    const std::string sure = share >= 0.01 ? fmt::format("{:.0f} %", 100.0 * share) : "unlikely";
+    draw_text({corner.x, picture.end().y + px(2)}, chosen || hovered ? color::text : color::dim,
+              fitting(words.button, size.x));
+    draw_text({corner.x, picture.end().y + line}, color::dim, chosen && start.as ? "as you say" : sure);
+    ImGui::PopFont();
+    return clicked && !chosen;
+}
+
+/// What it is taken for and what else it may be, the likeliest first, in a row that scrolls.
+void start_kinds(GuiFrame& frame, const PictureStart& start, bool compact) {
+    const ImVec2 size = compact ? ImVec2(px(80), px(50)) : ImVec2(px(112), px(70));
+    const float bar = ImGui::GetStyle().ScrollbarSize;
+    ImGui::BeginChild("kinds", {0, size.y + px(32) + bar}, false,
+                      ImGuiWindowFlags_HorizontalScrollbar | ImGuiWindowFlags_NoScrollWithMouse |
+                          ImGuiWindowFlags_NavFlattened);
+    if (ImGui::IsWindowHovered() && ImGui::GetIO().MouseWheel != 0.0f)
+        ImGui::SetScrollX(ImGui::GetScrollX() - ImGui::GetIO().MouseWheel * size.x);
+    for (const SkyObject object : kinds_by_share(start)) {
+        if (kind_button(frame, start, object, size))
+            request_text(frame, Command::Kind::start_again, std::string(name_of(object)));
+        ImGui::SameLine(0, px(6));
+    }
+    ImGui::EndChild();
 }
 
 void start_choices(GuiFrame& frame, const PictureStart& start) {
@@ -276,25 +302,51 @@ void start_size(GuiFrame& frame, const PictureStart& start) {
 
 }  // namespace
 
+std::string starting_text(const StartingStatus& starting) {
+    const std::string name = starting.picture.filename().string();
+    return starting.choice.empty() ? "Looking at " + name : choice_in_words(starting.choice) + ": it is made";
+}
+
 void draw_start_card(GuiFrame& frame, const Rect& viewport) {
     std::optional<PictureStart>& start = frame.view.start;
-    if (start && frame.document.edited()) start.reset();
+    if (start && !only_lies_otherwise(frame.document)) start.reset();
+    const std::optional<StartingStatus>& starting = frame.status.starting;
     const float width = std::min(px(start_width), viewport.width - 2 * px(start_inset));
-    if (!start || width < px(200)) return;
+    if (!(start || starting) || width < px(200)) return;
+    const bool compact = viewport.height < px(430);
+    const float most = viewport.height * 0.62f;
     float& height = *ImGui::GetStateStorage()->GetFloatRef(ImGui::GetID("start card"), px(190));
     ImGui::SetCursorScreenPos({viewport.x + px(start_inset), viewport.y + px(start_inset)});
-    const PictureStart shown = *start;
+    // A picture that is opened has no kinds yet.
+    const bool opens = starting && starting->choice.empty();
+    const std::optional<PictureStart> shown = opens ? std::nullopt : start;
     ImGui::PushStyleColor(ImGuiCol_ChildBg, color4(color::with_opacity(color::window, 0.92f)));
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(px(start_padding), px(start_padding)));
     ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(px(6), px(6)));
-    ImGui::BeginChild("start card", {width, height}, false,
-                      ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse |
-                          ImGuiWindowFlags_AlwaysUseWindowPadding);
+    ImGui::BeginChild(
+        "start card", {width, std::min(height, most)}, false,
+        (height > most ? 0 : ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse) |
+            ImGuiWindowFlags_AlwaysUseWindowPadding);
     enter_part("start card");
-    start_head(frame, shown, ImGui::GetWindowPos().x + width - px(start_padding) + px(4));
-    start_kinds(frame, shown);
-    start_choices(frame, shown);
-    start_size(frame, shown);
+    const float right = ImGui::GetCursorScreenPos().x + ImGui::GetContentRegionAvail().x + px(4);
+    if (!shown) {
+        ImGui::TextUnformatted(
+            fitting(starting_text(*starting), right - ImGui::GetCursorScreenPos().x).c_str());
+        start_reason("to see what it shows and how that lies. Esc cancels.", compact);
+    } else if (start_head(frame, start_title(frame, *shown), right)) {
+        start.reset();
+        if (starting) request(frame, Command::Kind::cancel_start);
+    }
+    if (starting) {
+        progress_bar(ImGui::GetCursorScreenPos(), ImGui::GetContentRegionAvail().x, starting->progress);
+        ImGui::Dummy({0, px(4)});
+    }
+    if (shown) {
+        if (!starting) start_reason("because " + shown->because, compact);
+        start_kinds(frame, *shown, compact);
+        start_choices(frame, *shown);
+        start_size(frame, *shown);
+    }
     height = ImGui::GetCursorPosY() - px(6) + px(start_padding);
     ImGui::EndChild();
     ImGui::PopStyleVar(2);

@@ -195,7 +195,7 @@ namespace {
 constexpr float dialog_width = 820, dialog_height = 520, places_width = 168;
 constexpr std::size_t most_places = 12;
 
-bool is_picture(const FileEntry& entry) {
+bool shows_picture(const FileEntry& entry) {
     return !entry.folder && kind_of(format_by_name(entry.name)) == FileKind::picture;
 }
 
@@ -245,7 +245,7 @@ void FileDialog::take_entries() {
     entries_ = std::move(found->entries);
     sort_entries(entries_, order_, backwards_);
     folders_ = static_cast<std::size_t>(std::ranges::count_if(entries_, &FileEntry::folder));
-    pictures_ = std::ranges::any_of(entries_, is_picture);
+    pictures_ = std::ranges::any_of(entries_, shows_picture);
 }
 
 void FileDialog::draw_places(GuiFrame& frame) {
@@ -348,7 +348,7 @@ FileClick FileDialog::draw_entry(GuiFrame& frame, const FileEntry& entry) {
     FileRow row{entry.folder ? Icon::folder : Icon::file, entry.name, entry.name == typed_,
                 time_text(entry.changed), entry.folder ? "" : size_text(entry.bytes)};
     row.high = !entry.folder && pictures_;
-    row.picture = is_picture(entry);
+    row.picture = shows_picture(entry);
     if (row.picture) {
         const ListedPicture listed{folder_ / entry.name, entry.changed, entry.bytes};
         const auto seen = frame.status.thumbnails.find(listed);

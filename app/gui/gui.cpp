@@ -278,14 +278,14 @@ void begin_host() {
     ImGui::PopStyleVar(3);
 }
 
-// The parameter that K sets a keyframe of: of the panel's row that the mouse is on.
-std::string parameter_under_mouse(const Panel& panel, const Rect& area) {
+/// The row of the panel; none: null.
+const DrawnRow* row_under_mouse(const Panel& panel, const Rect& area) {
     constexpr float half_row = 13;
     const ImVec2 mouse = ImGui::GetIO().MousePos;
-    if (!ImGui::IsMouseHoveringRect(area.corner(), area.end(), false)) return "";
+    if (!ImGui::IsMouseHoveringRect(area.corner(), area.end(), false)) return nullptr;
     for (const DrawnRow& row : panel.rows())
-        if (row.diamond.x >= 0 && std::fabs(mouse.y - row.value.y) <= px(half_row)) return row.key;
-    return "";
+        if (std::fabs(mouse.y - row.value.y) <= px(half_row)) return &row;
+    return nullptr;
 }
 
 bool keyboard_is_free() { return !ImGui::GetIO().WantTextInput && !ImGui::IsAnyItemActive() && !any_popup(); }
@@ -320,7 +320,9 @@ void Gui::State::draw_parts(GuiFrame& frame, const Layout& layout, Commands& com
         panel.draw(frame);
         ImGui::EndChild();
     }
-    frame.view.hovered_parameter = parameter_under_mouse(panel, layout.panel);
+    const DrawnRow* const row = row_under_mouse(panel, layout.panel);
+    frame.view.hovered_row = row ? row->key : "";
+    frame.view.hovered_parameter = row && row->diamond.x >= 0 ? row->key : "";
     if (begin_part("status", layout.status, still)) {
         status_bar.draw(frame, layout.status);
         ImGui::EndChild();

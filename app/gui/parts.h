@@ -29,8 +29,11 @@ void draw_tool_row(GuiFrame& frame, const Rect& area);
 /// The one line under the tools: that the scene's file changed on disk, or the hint of the first start.
 void draw_notice(GuiFrame& frame, const Rect& area);
 
+/// "Looking at m51.png".
+std::string starting_text(const StartingStatus& starting);
+
 /// At the frame's top left, while ViewState::start: what the picture was taken for, what else it may be, a
-/// film, its stars.
+/// film, its stars; before that, that it is looked at.
 void draw_start_card(GuiFrame& frame, const Rect& viewport);
 
 /// The strip of snapshots under the frame: a thumbnail, its name, splats and time of each; clicked it

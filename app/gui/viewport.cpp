@@ -56,6 +56,8 @@ void Viewport::begin_drag(GuiFrame& frame, const Rect& area, const Rect& frame_a
     } else if (button_ == 0 && !io.KeyAlt && places_reference(frame)) {
         input_.drag = ViewportInput::Drag::place;
         placing_.press(frame, frame_on_screen(frame_area), io.KeyShift);
+    } else if (button_ == 0 && !io.KeyAlt && !io.KeyShift && lying_.press(frame, input_.mouse_px)) {
+        input_.drag = ViewportInput::Drag::lying;
     } else if (button_ == 0 && !io.KeyAlt && path_points_.press(frame, area)) {
         input_.drag = ViewportInput::Drag::path;
     } else if (button_ == 0 && !io.KeyAlt && !io.KeyShift && handles_.press(frame, input_.mouse_px)) {
@@ -140,6 +142,8 @@ void Viewport::read_mouse(GuiFrame& frame, const Rect& area, const Rect& frame_a
         ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
     if (places_reference(frame)) placing_.read(frame, frame_on_screen(frame_area), input_);
     handles_.read(frame, input_.mouse_px, input_.drag == ViewportInput::Drag::handle);
+    lying_.read(frame, input_.mouse_px, input_.drag == ViewportInput::Drag::lying);
+    if (input_.drag == ViewportInput::Drag::lying) input_.double_click = false;
     if (input_.drag == ViewportInput::Drag::path) {
         input_.double_click = false;
         if (!input_.drag_begins) path_points_.drag(frame);
@@ -171,6 +175,7 @@ void Viewport::draw(GuiFrame& frame, const Rect& area) {
     draw_frame_in_view(frame, area);
     draw_view_marks(frame, area);
     draw_overlay_lines(frame, area);
+    lying_.draw(frame, area, input_.mouse_px);
     handles_.draw(frame, area, input_.mouse_px);
     path_points_.draw(frame, area);
     draw_gate(frame, area, frame_area);

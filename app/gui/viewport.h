@@ -6,6 +6,7 @@
 #include <glm/vec3.hpp>
 
 #include "edit/edits.h"
+#include "edit/lying.h"
 #include "edit/placement.h"
 #include "gui/gui_frame.h"
 #include "scene/reference_place.h"
@@ -46,6 +47,23 @@ class Handles {
     HandleDrag drag_;
     Scene pressed_at_frame_;  // as it stood at the frame
     Camera camera_;           // through which it was pressed
+    DragEdit edit_;
+};
+
+/// How the bodies of the selected layer's picture lie: a ring with handles, while a picture's card is open,
+/// one of the rows that say it is under the mouse, or it is asked for.
+class LyingHandles {
+  public:
+    /// As Handles has it.
+    bool press(const GuiFrame& frame, const glm::dvec2& mouse_px);
+    void read(GuiFrame& frame, const glm::dvec2& mouse_px, bool dragged);
+    void draw(GuiFrame& frame, const Rect& area, const glm::dvec2& mouse_px) const;
+
+  private:
+    LyingGrip grip_;
+    LyingRing pressed_;
+    glm::dvec2 from_px_{0.0}, to_px_{0.0};
+    Camera camera_;  // through which it was pressed
     DragEdit edit_;
 };
 
@@ -99,6 +117,7 @@ class Viewport {
     ViewportInput input_;
     ReferencePlacing placing_;
     Handles handles_;
+    LyingHandles lying_;
     PathPoints path_points_;
     int button_ = -1;              // that began the drag
     bool moves_frame_ = false;     // 1:1: a pan stays in the window

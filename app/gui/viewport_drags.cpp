@@ -170,6 +170,109 @@ void Handles::draw(const GuiFrame& frame, const Rect& area, const glm::dvec2& mo
 
 namespace {
 
+// How bodies lie.
+
+/// Those that are seen now.
+std::vector<LyingRing> seen_rings(const GuiFrame& frame) {
+    const ViewState& view = frame.view;
+    if (!frame.status.viewport_camera || frame.status.starting || view.compare == CompareMode::front ||
+        !frame.status.rendered_frame.empty())
+        return {};
+    std::vector<LyingRing> rings = lying_rings(scene_now(frame), view.layer);
+    if (view.lying || view.start) return rings;
+    std::erase_if(rings, [&](const LyingRing& ring) {
+        const std::string& row = view.hovered_row;
+        return !std::ranges::any_of(lying_keys,
+                                    [&](const char* key) { return row == ParameterKey(ring.key) / key; });
+    });
+    return rings;
+}
+
+}  // namespace
+
+bool LyingHandles::press(const GuiFrame& frame, const glm::dvec2& mouse_px) {
+    grip_ = {};
+    const std::vector<LyingRing> rings = seen_rings(frame);
+    if (rings.empty()) return false;
+    camera_ = *frame.status.viewport_camera;
+    grip_ = grip_at(camera_, rings, mouse_px, sizes().reach);
+    if (grip_.of == LyingGrip::Of::none) return false;
+    pressed_ = rings[grip_.ring];
+    from_px_ = to_px_ = mouse_px;
+    edit_.begin(frame.document);
+    return true;
+}
+
+void LyingHandles::read(GuiFrame& frame, const glm::dvec2& mouse_px, bool is_dragged) {
+    if (grip_.of == LyingGrip::Of::none) return;
+    const auto set = [&](const LyingRing& ring) {
+        try_edit([&] {
+            for (const NewValue& value : changed_values(pressed_, ring))
+                frame.document.set(value.key, value.value, frame.view.frame, edit_.gesture());
+        });
+    };
+    if (edit_.taken_back(frame)) {
+        grip_ = {};
+    } else if (!is_dragged) {
+        if (grip_.is_mark() && to_px_ == from_px_) set(turned_over(pressed_));
+        grip_ = {};
+    } else if (mouse_px != to_px_) {
+        to_px_ = mouse_px;
+        set(dragged(pressed_, grip_.of, camera_, from_px_, to_px_));
+    }
+}
+
+void LyingHandles::draw(GuiFrame& frame, const Rect& area, const glm::dvec2& mouse_px) const {
+    using Of = LyingGrip::Of;
+    const std::vector<LyingRing> rings = seen_rings(frame);
+    if (rings.empty()) return;
+    const Camera& camera = *frame.status.viewport_camera;
+    const bool drags = grip_.of != Of::none;
+    const LyingGrip lit = drags ? grip_ : grip_at(camera, rings, mouse_px, sizes().reach);
+    ImDrawList* const list = ImGui::GetWindowDrawList();
+    const auto line = [&](const LyingRing& ring, double from, double to, int pieces, ImU32 ink) {
+        std::vector<glm::dvec3> points;
+        for (int i = 0; i <= pieces; ++i)
+            points.push_back(point_on(ring, from + (to - from) * double(i) / pieces));
+        draw_handle(camera, area, points, ink, false);
+    };
+    for (std::size_t i = 0; i < rings.size(); ++i) {
+        const LyingRing& ring = rings[i];
+        constexpr ImU32 faint = color::with_opacity(IM_COL32_WHITE, 0.45f);
+        line(ring, 180.0, 360.0, 48, faint);
+        line(ring, 0.0, 180.0, 48, color::accent);  // the nearer half
+        for (const double end : {0.0, 90.0}) {
+            const std::vector<glm::dvec3> axis{point_on(ring, end), point_on(ring, end + 180.0)};
+            draw_handle(camera, area, axis, faint, false);
+        }
+        if (ring.about_axis)
+            draw_handle(camera, area, {0.5 * (point_on(ring, 0.0) + point_on(ring, 180.0)), axis_end(ring)},
+                        color::accent, true);
+        for (const SeenGrip& grip : grips_of(camera, ring)) {
+            const ImVec2 at{area.x + float(grip.px.x), area.y + float(grip.px.y)};
+            note_item(frame, fmt::format("lying {} {}", i, lying_grips[std::size_t(grip.of)].name),
+                      {at.x, at.y});
+            const bool is_lit = lit == LyingGrip{grip.of, i};
+            const ImU32 ink = is_lit ? color::attention : grip.of == Of::near ? color::accent : color::text;
+            list->AddCircleFilled(at, px(is_lit ? 8 : 7), shade, 16);
+            if (grip.of == Of::near)
+                list->AddNgonFilled(at, px(6), ink, 3);
+            else if (grip.of == Of::far)
+                list->AddNgon(at, px(5), ink, 3, px(1.5f));
+            else
+                list->AddCircleFilled(at, px(is_lit ? 6 : 5), ink, 16);
+        }
+    }
+    if (lit.of == Of::none || lit.ring >= rings.size()) return;
+    if (drags)
+        ImGui::SetTooltip("%s", lying_in_words(rings[lit.ring]).c_str());
+    else if (!ImGui::IsAnyItemActive() && ImGui::IsItemHovered())
+        tooltip(rings[lit.ring].about_axis ? lying_grips[std::size_t(lit.of)].of_equator
+                                           : lying_grips[std::size_t(lit.of)].of_disk);
+}
+
+namespace {
+
 // Points of the camera's path.
 
 constexpr float path_reach = 8, least_handle = 6;  // px at scale 1

@@ -286,6 +286,7 @@ void take(const ScreenshotOptions& options, const GlInfo& gl) {
         bad_input("--screenshot", "", "no --ui with an .exr file, which holds the frame's light",
                   options.output.string());
     Session session(options.scene, gl);
+    wait_for_start(session);
     check_renderable(session.document.scene(), {});
     if (options.frame) session.view.frame = parse_frame(*options.frame);
     session.view.settle = options.settled;

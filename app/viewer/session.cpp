@@ -1,6 +1,7 @@
 #include "viewer/session.h"
 
 #include <new>
+#include <thread>
 
 #include "camera_files/camera_track.h"
 #include "core/error.h"
@@ -12,6 +13,7 @@
 #include "edit/picture_start.h"
 #include "scene/camera_file.h"
 #include "scene/source_metadata.h"
+#include "source/picture.h"
 #include "source/write_image.h"
 
 namespace astrosplat {
@@ -20,22 +22,24 @@ namespace {
 /// Splats of a layer that previews know until its tree is there.
 constexpr std::int64_t sample_limit = 1 << 18;
 
-/// The first scene of a picture, untitled. Throws InputError.
-Document document_of(PictureStart& start, const SetCache& cache,
-                     std::span<const Assignment> assignments = {}) {
-    const fs::path place = fs::absolute(start.picture).replace_extension(".toml");
-    return Document::untitled(picture_start_text(start, place, cache), place, assignments);
-}
+fs::path place_beside(const fs::path& file) { return fs::absolute(file).replace_extension(".toml"); }
 
-/// A scene, or what any other file becomes, untitled; `start`: of a picture. Throws InputError.
-Document document_for(const fs::path& file, std::optional<PictureStart>& start,
-                      std::span<const Assignment> assignments = {}) {
-    start.reset();
+/// A scene, or what any other file becomes, untitled: a picture an empty one until its own is made. Throws
+/// InputError.
+Document document_for(const fs::path& file, std::span<const Assignment> assignments = {}) {
     if (kind_of_file(file) == FileKind::scene) return Document::open(file, assignments);
     require_readable(file);
-    if (is_picture(file)) return document_of(start.emplace(PictureStart{file}), {}, assignments);
-    const fs::path place = fs::absolute(file).replace_extension(".toml");
+    const fs::path place = place_beside(file);
+    if (is_picture(file)) return Document::untitled(empty_scene_text(), place);
     return Document::untitled(scene_text_for(file, place), place, assignments);
+}
+
+void want_start(Session& session, StartRequest request) {
+    require_picture(request.start.picture);
+    session.after_start.clear();
+    request.place = place_beside(request.start.picture);
+    request.revision = session.document.revision();
+    session.starts.want(std::move(request));
 }
 
 /// A picture is first seen from the front, as it was before it had depth: by its own camera, if any.
@@ -154,20 +158,20 @@ Session::Session(const ViewerOptions& options, const GlInfo& gl_info)
       card_choice{options.device, options.cache.folder},
       preferences(load_preferences()),
       document(options.input.empty() ? demo_document(options.assignments)
-                                     : document_for(options.input, view.start, options.assignments)),
+                                     : document_for(options.input, options.assignments)),
       cache(options.cache),
       sets(options.cache, sample_limit),
       view_frame(files, card_choice, final_frames),
       comparison(files, card_choice, final_frames),
       front(front_check(1280, options.cache)),
       jobs(options.cache, options.program, options.limits),
+      starts(options.cache),
       fresh_demo(options.input.empty()) {
     view.hint_open = fresh_demo;
     static_cast<PanelSizes&>(view) = preferences;
     view.settle = view.settings.settles != 0;
     view.engine = static_cast<PreviewEngine>(view.settings.engine);
     view.frame = frame_range(document.scene().output).first;
-    if (!options.input.empty()) choose_first_view(view, document, options.input);
     if (!options.input.empty() && kind_of_file(options.input) == FileKind::mesh) offer_picture(*this, 0);
     find_recoveries(status);
     status.has_ffmpeg = has_program("ffmpeg");
@@ -175,6 +179,8 @@ Session::Session(const ViewerOptions& options, const GlInfo& gl_info)
     status.recent = preferences.recent;
     if (!options.input.empty()) note_recent(*this, options.input);
     show_what_was_made(*this);
+    opens_input = !options.input.empty() && is_picture(options.input);
+    if (opens_input) want_start(*this, {PictureStart{options.input}, {}, {}, options.assignments});
 }
 
 void say(Status& status, const std::string& text, bool error) {
@@ -205,11 +211,11 @@ void forget_old_message(Status& status, MessageAge& age, double now) {
         message.text.clear();
 }
 
-void take_document(Session& session, Document next) {
-    session.document = std::move(next);
-    ++session.status.scenes;
+namespace {
+
+/// Of a document that shows something else than before.
+void see_from_beginning(Session& session) {
     ViewState& view = session.view;
-    std::erase_if(view.renders, [](const KeptRender& kept) { return kept.scene.empty(); });
     view.frame = frame_range(session.document.scene().output).first;
     view.layer = 0;
     view.view = ViewKind::camera;
@@ -218,6 +224,18 @@ void take_document(Session& session, Document next) {
     view.movie.clear();
     view.play_first.reset();
     view.play_last.reset();
+}
+
+}  // namespace
+
+void take_document(Session& session, Document next) {
+    session.starts.cancel();
+    session.opens_input = false;
+    session.document = std::move(next);
+    ++session.status.scenes;
+    ViewState& view = session.view;
+    std::erase_if(view.renders, [](const KeptRender& kept) { return kept.scene.empty(); });
+    see_from_beginning(session);
     view.hint_open = session.fresh_demo = false;
     view.grey_layer.clear();
     view.start.reset();
@@ -231,20 +249,66 @@ void note_recent(Session& session, const fs::path& file) {
 }
 
 void open_file(Session& session, const fs::path& file) {
-    std::optional<PictureStart> start;
-    take_document(session, document_for(file, start));
-    session.view.start = std::move(start);
+    require_readable(file);
+    if (is_picture(file)) return want_start(session, {PictureStart{file}, {}, {}});
+    take_document(session, document_for(file));
     note_recent(session, file);
-    choose_first_view(session.view, session.document, file);
     if (kind_of_file(file) == FileKind::mesh) offer_picture(session, 0);
 }
 
 void start_again(Session& session, const std::string& choice) {
-    if (!session.view.start) return;
-    PictureStart start = chosen_start(*session.view.start, choice);
-    take_document(session, document_of(start, session.cache));
-    choose_first_view(session.view, session.document, start.picture);
-    session.view.start = std::move(start);
+    if (session.view.start)
+        want_start(session, {chosen_start(*session.view.start, choice), choice, {}, session.assignments});
+}
+
+void take_start(Session& session) {
+    const StartRequest* const wanted = session.starts.wanted();
+    session.status.starting.reset();
+    if (!wanted) {
+        if (!session.view.start || !session.document.began()) return;
+        // Undo may have brought another one back.
+        const PictureStart* const began = session.starts.of(session.document);
+        session.view.start = began ? std::optional(*began) : std::nullopt;
+        return;
+    }
+    session.status.starting = {wanted->start.picture, wanted->choice, *wanted->done};
+    const StartRequest request = *wanted;
+    const std::shared_ptr<const StartMade> made = session.starts.take();
+    if (!made) return;
+    session.status.starting.reset();
+    const bool is_input = std::exchange(session.opens_input, false);
+    if (!made->error.empty()) throw InputError(made->error);
+    const std::string name = request.start.picture.filename().string();
+    if (!request.choice.empty()) {
+        session.document.begin_again(choice_in_words(request.choice), made->text, request.place,
+                                     request.assignments);
+        see_from_beginning(session);
+    } else if (session.document.edited() && session.document.revision() != request.revision) {
+        return say(session.status, name + " was not opened, for the scene here was edited meanwhile", true);
+    } else {
+        take_document(session, Document::untitled(made->text, request.place, request.assignments));
+        session.assignments = request.assignments;
+        if (!is_input) note_recent(session, request.start.picture);
+    }
+    Commands after = std::exchange(session.after_start, {});
+    session.dropped.insert(session.dropped.end(), after.begin(), after.end());
+    choose_first_view(session.view, session.document, request.start.picture);
+    session.starts.keep(session.document, made->start);
+    session.view.start = made->start;
+}
+
+void cancel_start(Session& session) {
+    if (!session.starts.wanted()) return;
+    session.starts.cancel();
+    session.opens_input = false;
+    say(session.status, "Cancelled; what was there stays");
+}
+
+void wait_for_start(Session& session) {
+    while (session.starts.wanted()) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(2));
+        take_start(session);
+    }
 }
 
 void offer_picture(Session& session, std::size_t layer) {
@@ -294,9 +358,17 @@ void advance(Session& session, double now) {
     check_disk(session, now);
     say_missed_frames(session);
     count_memory(session, now);
+    const bool opens_input = session.opens_input;
+    try {
+        take_start(session);
+    } catch (const std::exception& error) {
+        if (opens_input) throw;  // as of any other file that the program is started with
+        say(session.status, error.what(), true);
+    }
     attempt(session.status, [&] { show_renderings(session, now); });
     attempt(session.status, [&] { take_alignment(session); });
     show_thumbnails(session);
+    show_kinds(session);
     session.autosave.update(session.document);
     fill_status(session);
     forget_old_message(session.status, session.message_age, now);
@@ -317,7 +389,12 @@ void navigate(Session& session, const ViewportInput& input, double now) {
 }
 
 void carry_out(Session& session, Commands& commands) {
-    for (const Command& command : commands) attempt(session.status, [&] { carry_out(session, command); });
+    for (auto command = commands.begin(); command != commands.end(); ++command) {
+        attempt(session.status, [&] { carry_out(session, *command); });
+        if (command->kind != Command::Kind::open || !session.starts.wanted()) continue;
+        session.after_start.assign(command + 1, commands.end());
+        break;
+    }
     commands.clear();
 }
 
@@ -341,7 +418,8 @@ double next_due(const Session& session, double now) {
     const SetLoader& loader = session.sets.loader();
     if (!loader.sets_there()) return session.view_frame.status().shown == 0 ? first_frame_s : at_work_s;
     if (session.view.playing) return 0.0;
-    const bool at_work = !loader.idle() || session.jobs.running() || session.estimate.working();
+    const bool at_work = !loader.idle() || session.jobs.running() || session.estimate.working() ||
+                         session.starts.wanted() || session.kind_views.working();
     return std::min(at_work ? at_work_s : idle_due_s, due_of_view(session, now));
 }
 

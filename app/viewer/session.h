@@ -22,6 +22,7 @@
 #include "viewer/comparison.h"
 #include "viewer/files.h"
 #include "viewer/movie_player.h"
+#include "viewer/picture_starts.h"
 #include "viewer/render_queue.h"
 #include "viewer/set_loader.h"
 #include "viewer/view_frame.h"
@@ -94,12 +95,19 @@ struct Session {
     RenderedFrames rendered;
     UploadedImage<PackedImage> rendered_image;
     MoviePlayer movie;
+    PictureStarts starts;
+    KindViews kind_views;
+    std::vector<Assignment> assignments;              // `--set`, of the picture that is open
+    std::optional<fs::path> kinds_of;                 // the picture of Status::kinds
+    std::map<SkyObject, ImageTexture> kind_textures;  // of the picture of view.start
     Thumbnails thumbnails;
     std::map<ListedPicture, ImageTexture> thumbnail_textures;  // of those that are seen
     std::optional<ChildProcess> file_manager;                  // that a folder was opened with
     Autosave autosave{autosave_folder(), autosave_interval(preferences.settings)};
 
     bool quitting = false, fresh_demo = false;
+    Commands after_start;                  // asked for together with the picture that is on its way
+    bool opens_input = false;              // the picture that the program was started with is on its way
     bool viewport_is_frame = false;        // for a screenshot without panels
     std::int64_t fixed_splats = 0;         // of the preview; 0: by the frame rate
     std::optional<fs::path> screenshot;    // asked for: the caller reads the window and saves it
@@ -140,8 +148,14 @@ std::string title(const Session& session);
 
 /// For the message line and the log.
 void say(Status& status, const std::string& text, bool error = false);
-/// A scene, or anything that becomes one. Throws InputError.
+/// A scene, or anything that becomes one; that of a picture is made in the background. Throws InputError.
 void open_file(Session& session, const fs::path& file);
+/// The scene of a picture that is made in the background is there; until then Status::starting says how far
+/// it is. Throws InputError, OutputError where it cannot be made and the program was started with it; else
+/// the message line says so.
+void take_start(Session& session);
+/// Waits for that. Throws likewise.
+void wait_for_start(Session& session);
 
 /// For screenshots: the preview draws a fixed number of splats instead of one that holds a frame rate; and
 /// where the panels are left out, the whole viewport is the frame, whatever the output's aspect.
@@ -165,9 +179,11 @@ void close(Session& session, int window_width, int window_height);
 void take_document(Session& session, Document next);
 /// The demo as an untitled scene. Throws InputError where it is not installed.
 Document demo_document(std::span<const Assignment> assignments = {});
-/// The scene of the picture that was opened is made again: Command::start_again. Throws InputError,
-/// OutputError.
+/// The scene of the picture that was opened is made again, in the background: Command::start_again. Throws
+/// InputError.
 void start_again(Session& session, const std::string& choice);
+/// What was there stays. Says so.
+void cancel_start(Session& session);
 /// Offers to choose a picture for a layer whose mesh has none; takes an older offer back.
 void offer_picture(Session& session, std::size_t layer);
 /// The first of File > Open recent.
@@ -218,6 +234,8 @@ void show_front(Session& session, const Scene& now, DisplaySettings& shown);
 void show_preparation(Session& session);
 /// Fills Status::thumbnails with those of view.listed_pictures that are read; the others' textures go.
 void show_thumbnails(Session& session);
+/// Fills Status::kinds with views of what the picture of view.start may be, while its card is shown.
+void show_kinds(Session& session);
 /// Starts to align the reference with what the view shows now. Throws InputError where nothing is shown.
 void begin_alignment(Session& session);
 /// Places the reference where that was found, or says that it was not.

@@ -264,6 +264,7 @@ struct Entry {
 
 constexpr Entry entries[] = {
     {Kind::start_again, [](State& s, const Command& c) { start_again(s, c.text); }},
+    {Kind::cancel_start, [](State& s, const Command&) { cancel_start(s); }},
     {Kind::new_scene, new_scene},
     {Kind::open, [](State& s, const Command& c) { open_file(s, c.path); }},
     {Kind::open_demo, open_demo},

@@ -279,6 +279,36 @@ void show_thumbnails(Session& session) {
     }
 }
 
+void show_kinds(Session& session) {
+    std::map<SkyObject, KindStatus>& shown = session.status.kinds;
+    const std::optional<PictureStart>& start = session.view.start;
+    if (!start || (session.kinds_of && *session.kinds_of != start->picture)) {
+        shown.clear();
+        session.kind_textures.clear();
+        session.kinds_of.reset();
+    }
+    if (!start || session.starts.wanted()) return session.kind_views.want({});
+    session.kinds_of = start->picture;
+    // The body itself comes first, unless one could as well look about meanwhile.
+    constexpr double long_s = 10.0;
+    const bool is_long = std::ranges::any_of(
+        session.status.layers, [](const LayerStatus& layer) { return layer.making.seconds >= long_s; });
+    std::vector<KindKey> keys;
+    for (const SkyObject object : kinds_by_share(*start))
+        if (!shown.count(object)) keys.push_back({start->picture, object});
+    session.kind_views.want(session.sets.loader().sets_there() || is_long ? keys : std::vector<KindKey>());
+    for (const KindKey& key : keys) {
+        const std::shared_ptr<const KindView> found = session.kind_views.found(key);
+        if (!found) continue;
+        KindStatus& kind = shown[key.object];
+        kind.error = found->error;
+        if (!kind.error.empty()) continue;
+        ImageTexture& texture = session.kind_textures[key.object];
+        texture.upload_smooth(found->image);
+        kind.texture = to_handle(texture.handle());
+    }
+}
+
 void begin_alignment(Session& session) {
     const ReferenceParams* reference = seen_reference(session.document.scene(), session.status);
     const Image* picture = session.comparison.reference().picture();

@@ -521,12 +521,11 @@ void take_stars(PictureScene& scene, const fs::path& table, const Progress& prog
 PictureScene picture_scene(const fs::path& image, const PictureRequest& request, Identification& found,
                            const Progress& progress) {
     const StoppableLoops stops(progress);
-    constexpr std::int64_t most_texels = 4096 * 4096;  // more do not change what is seen in it
     TextureSettings settings;
     settings.prepare.starless = request.starless;
     if (!request.starless.empty()) settings.prepare.stars = PrepareParams::Stars::remove;
-    const Texture texture = load_texture({image}, settings, TextureSettings::Wrap::clamp, progress,
-                                         {make_prepared, {}, most_texels});
+    const Texture texture = load_texture({image}, settings, TextureSettings::Wrap::clamp, progress.silent(),
+                                         {make_prepared, {}, request.most_texels});
     const bool reduced = texture.file_width > 0;
     PictureScene scene{image, reduced ? texture.file_width : texture.image.width,
                        reduced ? texture.file_height : texture.image.height};
@@ -534,14 +533,16 @@ PictureScene picture_scene(const fs::path& image, const PictureRequest& request,
     scene.starless = request.starless;
     scene.lit_rim = lit_share_of_rim(light);
     if (request.stars.empty())
-        find_stars(scene, progress);
+        find_stars(scene, progress.silent());
     else
-        take_stars(scene, request.stars, progress);
+        take_stars(scene, request.stars, progress.silent());
     scene.mean_light = mean_light(light);
     ObjectClues clues = clues_of(request.starless.empty() ? image : request.starless);
     clues.named = request.named;
+    progress.at(0.4);  // by how long it takes, about
     found = identify(clues, light, request.as);
     scene.structure = found.structure;
+    progress.at(0.6);
     if (scene.structure == StructureKind::axis) find_axis(light, scene);
     scene.object = found.guesses.front().object;
     scene.subject = found.middle;

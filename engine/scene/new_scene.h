@@ -51,6 +51,8 @@ struct PictureRequest {
     const CatalogueObject* named = nullptr;  // the object that it shows
     fs::path starless = {};                  // the same without stars: then the picture shows them alone
     fs::path stars = {};  // the table of those; empty: what stars.csv beside the picture says
+    std::int64_t most_texels =
+        std::int64_t{4096} * 4096;  // to look at; more do not change what is seen in it
 };
 
 /// Reads the picture and what its file says, for its size and to choose a structure for it; `found`: what it

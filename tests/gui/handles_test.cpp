@@ -1,6 +1,7 @@
 // Handles and the camera's path over the viewport.
 #include "edit/edits.h"
 #include "edit/placement.h"
+#include "gui/panel/panel.h"
 #include "gui/test_window.h"
 #include "gui/widgets.h"
 #include "support/test.h"
@@ -206,6 +207,113 @@ TEST_F(ViewHandles, ANewCropFitsTheLayerAndHasHandles) {
     EXPECT_GT(layer().look.crop[0].center.x, 0.0f);
     EXPECT_GT(extent.x, 0.0);
     EXPECT_EQ(window.document.undo_name(), "Centre of dust");
+}
+
+/// A galaxy's picture before its own camera.
+class LyingHandlesTest : public testing::Test {
+  protected:
+    LyingHandlesTest() {
+        const CameraParams& seen = window.document.scene().camera;
+        window.status.viewport_camera = make_camera(seen, double(area.width), double(area.height), {});
+        window.status.layers.resize(1);
+        window.view.start = PictureStart{"m77.jpg"};
+        window.view.start->guesses = {{SkyObject::galaxy, 0.95}};
+        window.view.start->seen = "seen at 60 degrees";
+        window.frame(2);
+    }
+    const GalaxyParams& galaxy() const { return window.document.scene().layers[0].source.structure.galaxy; }
+    TestWindow window{Document::untitled(R"(astrosplat = 1
+[camera]
+position = [0, 20, 0]
+up = [0, 0, -1]
+fov = 17.762
+[[layer]]
+name = "m77"
+[layer.source]
+meshes = [ { mesh = "plane" } ]
+uv = "camera"
+uv_camera = { position = [0, 20, 0], up = [0, 0, -1], fov = 17.762 }
+structure = { kind = "disk", inclination = 60.0, position_angle = 30.0, center = [0.6, 0.4], near_side = 120 }
+)",
+                                         "/tmp/m77.toml")};
+    Rect area = make_layout(window.view, 1600.0f, 900.0f, 1.0f).viewport;
+    glm::vec2 middle() { return 0.5f * (window.at("lying 0 major") + window.at("lying 0 major other")); }
+};
+
+TEST_F(LyingHandlesTest, ADragIsOneStepAndTheCardStaysAndSaysIt) {
+    const glm::vec2 end = window.at("lying 0 minor far");
+    window.drag(end, 0.6f * (end - middle()));
+    EXPECT_NEAR(*galaxy().inclination, 36.9, 1.0);
+    EXPECT_EQ(window.document.undo_name(), "Inclination of m77");
+    EXPECT_TRUE(window.view.start) << "what it was taken for is as it was";
+    window.keep_screen("lying");
+    window.drag(window.at("lying 0 major"), {0.0f, -60.0f});
+    EXPECT_GT(*galaxy().position_angle, 32.0);
+    EXPECT_NEAR(*galaxy().near_side - *galaxy().position_angle, 90.0, 1e-6);
+    window.document.undo();
+    EXPECT_EQ(galaxy().position_angle, 30.0) << "with its near side one step";
+    EXPECT_EQ(galaxy().near_side, 120.0);
+    window.document.undo();
+    EXPECT_EQ(galaxy().inclination, 60.0);
+    EXPECT_FALSE(window.document.edited());
+}
+
+TEST_F(LyingHandlesTest, AClickOnAMarkTurnsItOver) {
+    window.click("lying 0 far");
+    EXPECT_EQ(galaxy().near_side, 300.0);
+    EXPECT_EQ(galaxy().position_angle, 30.0);
+    window.frame(2);
+    window.click("lying 0 near");
+    EXPECT_EQ(galaxy().near_side, 120.0);
+}
+
+TEST_F(LyingHandlesTest, EscapeGivesItBack) {
+    const glm::vec2 end = window.at("lying 0 minor far");
+    window.hover(end);
+    window.press(0);
+    window.move(end + 0.5f * (end - middle()));
+    window.frame(2);
+    EXPECT_LT(*galaxy().inclination, 50.0);
+    window.tap(key_code::escape);
+    EXPECT_EQ(galaxy().inclination, 60.0);
+    window.release(0);
+    EXPECT_FALSE(window.document.can_undo());
+}
+
+TEST_F(LyingHandlesTest, BesideItADragOrbits) {
+    window.hover(middle() + glm::vec2(40.0f, 150.0f));
+    window.press(0);
+    EXPECT_EQ(window.gui.viewport_input().drag, ViewportInput::Drag::orbit);
+    window.release(0);
+}
+
+TEST_F(LyingHandlesTest, WithoutTheCardItIsAskedFor) {
+    window.view.start.reset();
+    window.frame(2);
+    EXPECT_FALSE(window.has("lying 0 minor"));
+    window.choose("Layer/Incline in the view");
+    window.frame(2);
+    EXPECT_TRUE(window.has("lying 0 minor"));
+    window.tap(key_code::escape);
+    window.frame(2);
+    EXPECT_FALSE(window.has("lying 0 minor"));
+    window.view.tab = PanelTab::source;
+    window.frame(3);
+    const Rect panel = make_layout(window.view, 1600.0f, 900.0f, 1.0f).panel;
+    window.hover({panel.middle().x, panel.end().y - 60.0f});
+    const auto y_of_row = [&] {
+        for (const DrawnRow& row : window.gui.panel().rows())
+            if (row.key == "layer.m77.source.structure.inclination") return row.label.y;
+        return 1e9f;
+    };
+    while (y_of_row() > panel.end().y - 80.0f) {
+        window.wheel(-1.0f);
+        window.frame(2);
+    }
+    window.hover({panel.x + 30.0f, y_of_row()});
+    EXPECT_TRUE(window.has("lying 0 minor")) << "its row is under the mouse";
+    window.hover({5.0f, 5.0f});
+    EXPECT_FALSE(window.has("lying 0 minor"));
 }
 
 // The camera's keyframes as points in the view, by mouse.

@@ -310,7 +310,7 @@ TEST_F(ViewportTest, APicturesSceneIsMadeAgainAsWhatElseItMayBe) {
     EXPECT_FALSE(window.has("start/Nebula"));
     window.view.start = galaxy_start();
     window.frame(2);
-    EXPECT_FALSE(window.has("start/Galaxy")) << "which it is";
+    EXPECT_LT(window.at("start/Galaxy").x, window.at("start/Nebula").x) << "the likeliest";
     EXPECT_LT(window.at("start/Nebula").x, window.at("start/Elliptical galaxy").x) << "likelier";
     const auto choice_of = [&](const char* button) {
         window.click(button);
@@ -321,8 +321,61 @@ TEST_F(ViewportTest, APicturesSceneIsMadeAgainAsWhatElseItMayBe) {
     EXPECT_EQ(choice_of("start/Make a film"), "film");
     EXPECT_EQ(choice_of("start/Part"), "part");
     window.click("start/Keep");
+    window.click("start/Galaxy");
     EXPECT_TRUE(window.take_commands().empty()) << "as it is";
     window.keep_screen("start");
+    const float before = window.at("start/Nebula").x;
+    window.hover(window.at("start/Nebula"));
+    window.wheel(-2.0f);
+    window.frame(2);
+    EXPECT_LT(window.at("start/Nebula").x, before) << "the wheel scrolls the row";
+}
+
+TEST_F(ViewportTest, APictureThatIsLookedAtIsSaidAndCancelledAtOnePlace) {
+    window.status.starting = {"m77.jpg", "", 0.4f};
+    window.frame(2);
+    EXPECT_EQ(badge_text(window.document.scene(), window.status).text, "Looking at m77.jpg 40 %");
+    window.keep_screen("starting");
+    window.take_commands();
+    window.click("badge/Cancel");
+    window.take_only(Command::Kind::cancel_start);
+    window.tap(key_code::escape);
+    window.take_only(Command::Kind::cancel_start);
+    window.view.start = galaxy_start();
+    window.status.starting = {"m77.jpg", "nebula", 0.4f};
+    window.frame(2);
+    EXPECT_EQ(badge_text(window.document.scene(), window.status).text, "Taken for a nebula: it is made 40 %");
+    window.click("start/Elliptical galaxy");
+    EXPECT_EQ(window.take_only(Command::Kind::start_again).text, "elliptical") << "in its place";
+}
+
+/// At the least size and at twice the scale the frame is still seen beside it.
+TEST(StartCard, LeavesTheFrameInSight) {
+    for (const auto& [width, height, scale] :
+         {std::tuple(1280, 800, 1.0f), {900, 600, 1.0f}, {1280, 800, 2.0f}, {1920, 1080, 1.5f}}) {
+        TestWindow window(example_document(), width, height, scale);
+        const auto grey = [&](const Picture8& picture) {
+            const Rect view = make_layout(window.view, float(width), float(height), scale).viewport;
+            int found = 0, all = 0;
+            for (int y = int(view.y); y < int(view.y + view.height); ++y)
+                for (int x = int(view.x); x < int(view.x + view.width); ++x) {
+                    const Rgba8 p = picture.at(x, y);
+                    found += p.r + p.g + p.b > 0 ? 1 : 0;
+                    ++all;
+                }
+            return double(found) / all;
+        };
+        window.frame(2);
+        const double before = grey(window.picture());
+        window.view.start = galaxy_start();
+        window.status.layers[0].making = {300.0, 10LL << 30, 60'000'000, 60'000'000};
+        window.frame(4);
+        EXPECT_LT(grey(window.picture()) - before, 0.62) << width << " at " << scale;
+        EXPECT_TRUE(window.has("start/close"));
+        const Rect view = make_layout(window.view, float(width), float(height), scale).viewport;
+        EXPECT_LT(window.at("start/close").x, view.end().x);
+        window.keep_screen(fmt::format("start {} at {}", width, scale));
+    }
 }
 
 TEST_F(ViewportTest, ALargePictureSaysWhatItTakesAndMayBeHalved) {

@@ -396,6 +396,24 @@ TEST_F(WindowFileDialog, PicturesAreSeenBeforeTheyAreChosen) {
     EXPECT_EQ(end(SIGTERM).err.find("broken"), std::string::npos) << "it was not opened";
 }
 
+using WindowStart = WindowTest;
+
+TEST_F(WindowStart, AnotherKindIsTakenAndUndone) {
+    start({ASTROSPLAT_SOURCE_DIR "/assets/textures/spiral.jpg", "--no-cache"});
+    settled_frame();
+    EXPECT_EQ(title(), "Untitled - astrosplat");
+    same_widgets().view.start = PictureStart{"spiral.jpg"};
+    same_widgets().frame(3);
+    person->click(same_widgets().at("start/Make a film"));
+    const auto keyframes = [&] { return count_of(pixels_of(&Layout::timeline), color::attention); };
+    EXPECT_TRUE(comes_true([&] { return keyframes() > 0; }));
+    EXPECT_EQ(title(), "Untitled - astrosplat") << "as it began again";
+    person->press("ctrl+z");
+    EXPECT_TRUE(comes_true([&] { return keyframes() == 0; }));
+    person->press("ctrl+shift+z");
+    EXPECT_TRUE(comes_true([&] { return keyframes() > 0; }));
+}
+
 TEST_F(WindowFileDialog, WhateverWasOpenedIsRecent) {
     start({(folder / "rings.png").string(), "--no-cache"});
     person->press("ctrl+o");

@@ -2,6 +2,7 @@
 // of a preparation, handles in the view, references, a look as a whole.
 
 #include "core/text.h"
+#include "edit/lying.h"
 #include "gui/panel/parts.h"
 #include "scene/detail_tiles.h"
 
@@ -164,6 +165,9 @@ void draw_preparation(Context& context) {
 
 void detail_buttons(Context& context) {
     if (!has_bodies(context.layer())) return;
+    if (!lying_rings(context.scene(), context.view.layer).empty() &&
+        button_line(context, {context.view.lying ? "Done inclining" : "Incline in the view"}) == 0)
+        context.view.lying = !context.view.lying;
     if (button_line(context, {"Detail where the camera comes close"}) == 0)
         request(context, Command::Kind::make_detail);
 }

@@ -1,11 +1,14 @@
 // A window's session without a window, and the queues beneath it.
 #include "viewer/session.h"
 
+#include <atomic>
 #include <glm/vec2.hpp>
 
+#include "fidelity/front.h"
 #include "gl/gl_fixture.h"
 #include "support/test.h"
 #include "viewer/background_work.h"
+#include "viewer/picture_starts.h"
 #include "viewer/render_queue.h"
 #include "viewer/window.h"
 
@@ -49,6 +52,14 @@ class Start : public DiskSession {
   protected:
     Start() : DiskSession(1'500'000, {320, 180}) {}
     std::shared_ptr<const LoadedLayer> disk() const { return session.sets.loader().layer("disk"); }
+    std::string name() const { return session.document.scene().layers[0].name; }
+    StructureKind kind() const { return session.document.scene().layers[0].source.structure.kind; }
+    void choose(const char* choice) {
+        Commands chosen{{Command::Kind::start_again, {}, choice, 0}};
+        carry_out(session, chosen);
+        wait_for_start(session);
+    }
+    const fs::path picture = ASTROSPLAT_SOURCE_DIR "/assets/textures/spiral.jpg";
 };
 
 // The clock stands: a set that arrives is no touch, after which the picture would have to rest.
@@ -70,6 +81,7 @@ TEST_F(Start, APictureIsSeenByItsOwnCamera) {
     ASSERT_EQ(session.view.view, ViewKind::camera);
     session.view.view = ViewKind::free;
     open_file(session, ASTROSPLAT_SOURCE_DIR "/assets/textures/spiral.jpg");
+    wait_for_start(session);
     EXPECT_EQ(session.view.view, ViewKind::camera);
     ASSERT_TRUE(session.document.scene().camera.position);
     EXPECT_EQ(*session.document.scene().camera.position,
@@ -78,18 +90,18 @@ TEST_F(Start, APictureIsSeenByItsOwnCamera) {
 
 TEST_F(Start, APictureOpensWithWhatItWasTakenFor) {
     EXPECT_FALSE(session.view.start);
-    open_file(session, ASTROSPLAT_SOURCE_DIR "/assets/textures/spiral.jpg");
+    open_file(session, picture);
+    EXPECT_EQ(name(), "disk") << "until it is made";
+    wait_for_start(session);
     ASSERT_TRUE(session.view.start);
     EXPECT_EQ(session.view.start->object, SkyObject::galaxy);
-    Commands again{{Command::Kind::start_again, {}, "nebula", 0}};
-    carry_out(session, again);
+    choose("nebula");
     ASSERT_TRUE(session.view.start);
     EXPECT_EQ(session.view.start->object, SkyObject::nebula);
-    EXPECT_NE(session.document.scene().layers[0].source.structure.kind, StructureKind::disk);
+    EXPECT_NE(kind(), StructureKind::disk);
     EXPECT_FALSE(session.document.edited());
     const auto with = [&](const char* choice) {
-        Commands chosen{{Command::Kind::start_again, {}, choice, 0}};
-        carry_out(session, chosen);
+        choose(choice);
         return session.document.scene().layers[0].source.splats;
     };
     EXPECT_EQ(with("splats 20000"), 20000);
@@ -97,6 +109,115 @@ TEST_F(Start, APictureOpensWithWhatItWasTakenFor) {
     EXPECT_EQ(with("whole"), 0);
     take_document(session, demo_document());
     EXPECT_FALSE(session.view.start);
+}
+
+TEST_F(Start, AnotherKindIsOneUndoStepAndTheCardFollows) {
+    open_file(session, picture);
+    wait_for_start(session);
+    choose("nebula");
+    choose("film");
+    EXPECT_EQ(session.document.undo_name(), "Make a film");
+    session.document.undo();
+    EXPECT_EQ(session.document.undo_name(), "Taken for a nebula");
+    session.document.undo();
+    draw();
+    EXPECT_EQ(session.view.start->object, SkyObject::galaxy);
+    EXPECT_FALSE(session.view.start->film);
+    EXPECT_EQ(kind(), StructureKind::disk);
+    EXPECT_FALSE(session.document.can_undo());
+    EXPECT_FALSE(session.document.edited());
+    session.document.redo();
+    session.document.redo();
+    draw();
+    EXPECT_EQ(session.view.start->object, SkyObject::nebula);
+    EXPECT_TRUE(session.view.start->film);
+    session.document.undo();
+    const std::string text = session.document.text_for(folder / "later.toml");
+    for (const char* of_the_galaxy : {"kind = \"disk\"", "how it lies is unsure"})
+        EXPECT_EQ(text.find(of_the_galaxy), std::string::npos) << of_the_galaxy;
+}
+
+TEST_F(Start, WhatIsDroppedWithAPictureComesAfterIt) {
+    Commands both{{Command::Kind::open, picture, {}, 0}, {Command::Kind::add_shape, {}, "disk", 0}};
+    carry_out(session, both);
+    EXPECT_FALSE(session.document.edited());
+    wait_for_start(session);
+    EXPECT_EQ(name(), "spiral");
+    ASSERT_EQ(session.dropped.size(), 1u);
+    EXPECT_EQ(session.dropped[0].kind, Command::Kind::add_shape);
+}
+
+// The window's thread goes on.
+TEST_F(Start, APictureThatIsLookedAtIsCancelled) {
+    open_file(session, picture);
+    draw();
+    ASSERT_TRUE(session.status.starting);
+    EXPECT_EQ(session.status.starting->picture, picture);
+    EXPECT_LE(next_due(session, now), 0.1);
+    carry_out(session, {Command::Kind::cancel_start, {}, {}, 0});
+    draw();
+    EXPECT_FALSE(session.status.starting);
+    EXPECT_EQ(name(), "disk");
+    EXPECT_FALSE(session.view.start);
+}
+
+TEST_F(Start, WhatIsMadeForAnotherSceneIsDropped) {
+    open_file(session, picture);
+    take_document(session, demo_document());
+    wait_for_start(session);
+    EXPECT_EQ(name(), demo_document().scene().layers[0].name);
+    EXPECT_FALSE(session.view.start);
+    open_file(session, picture);
+    session.document.edit("Wider", [](Scene& scene) { scene.camera.fov = 41.0; });
+    wait_for_start(session);
+    EXPECT_TRUE(session.document.edited()) << "nothing that a person did is lost";
+    EXPECT_HAS(session.status.message.text, "was not opened");
+}
+
+TEST_F(Start, APictureThatCannotBeReadSaysSoAndTheSceneStays) {
+    const std::string whole = read_file(picture);
+    open_file(session, folder.file("cut.jpg", whole.substr(0, whole.size() / 3)));
+    while (session.starts.wanted()) draw();
+    EXPECT_TRUE(session.status.message.error);
+    EXPECT_HAS(session.status.message.text, "cut.jpg");
+    EXPECT_EQ(name(), "disk");
+}
+
+// Each with another light from aside; gone with the card.
+TEST_F(Start, WhatElseItMayBeIsSeenFromAside) {
+    open_file(session, picture);
+    wait_for_start(session);
+    session.view.settle = false;
+    while (session.status.kinds.size() < sky_object_count) draw();
+    for (const auto& [object, kind] : session.status.kinds) {
+        EXPECT_TRUE(kind.texture) << int(object);
+        EXPECT_EQ(kind.error, "");
+    }
+    choose("nebula");
+    draw();
+    EXPECT_EQ(session.status.kinds.size(), sky_object_count) << "they are of the same picture";
+    session.view.start.reset();
+    draw();
+    EXPECT_TRUE(session.status.kinds.empty());
+    EXPECT_FALSE(session.kind_views.working());
+}
+
+TEST(KindView, ShowsBodiesFromAside) {
+    const fs::path picture = ASTROSPLAT_SOURCE_DIR "/assets/textures/spiral.jpg";
+    const KindView disk = kind_view({picture, SkyObject::galaxy}, {}),
+                   flat = kind_view({picture, SkyObject::thin}, {});
+    ASSERT_EQ(disk.image.width, 160);
+    ASSERT_EQ(disk.image.height, 100);
+    const auto mean = [](const Image& image) {
+        double sum = 0.0;
+        for (std::size_t i = 0; i < image.pixels.size(); ++i) sum += i % 4 == 3 ? 0.0 : image.pixels[i];
+        return sum / double(image.width * image.height * 3);
+    };
+    EXPECT_GT(mean(disk.image), 0.03);
+    EXPECT_GT(mean(flat.image), 0.03);
+    EXPECT_LT(psnr_db(disk.image, flat.image), 40.0);
+    std::atomic<bool> stop{true};
+    EXPECT_THROW(kind_view({picture, SkyObject::galaxy}, {{}, &stop}), Cancelled);
 }
 
 TEST_F(Start, ACameraMadeForOtherFramesIsSaid) {
