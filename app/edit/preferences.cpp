@@ -12,8 +12,8 @@
 
 namespace astrosplat {
 
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(RenderTask, kind, frames, width, height, folder, name,
-                                                by_slurm, chunk, partition, layer, most_splats)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(RenderTask, kind, frames, width, height, folder, name, by_slurm, chunk,
+                                   partition, layer, most_splats)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(KeptRender, scene, usual, task)
 
 namespace {

@@ -59,7 +59,7 @@ class FinalFrames {
     void begin_round() { round_ = clock_; }
 
     std::int64_t bytes() const { return bytes_; }
-    bool empty() const { return kept_.empty(); }
+    std::size_t count() const { return kept_.size(); }
     /// The last one found no room.
     bool full() const { return full_; }
     /// Grows whenever some go.

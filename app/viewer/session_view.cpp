@@ -263,7 +263,7 @@ void note_final_frames(Session& session) {
     const FrameRange range = frame_range(session.document.scene().output);
     if (!same) {
         kept.begin_round();
-        session.frame_looked_for = range.first;
+        if (kept.count() > 1) session.frame_looked_for = range.first;  // else it is this one
     }
     const auto look_for = [&](double frame) {
         const auto at = std::ranges::lower_bound(frames, frame);

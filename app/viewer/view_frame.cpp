@@ -16,6 +16,7 @@
 #include "image/blur.h"
 #include "look/apply.h"
 #include "pipeline.h"
+#include "scene/animate.h"
 #include "scene/layer_setup.h"
 
 namespace astrosplat {

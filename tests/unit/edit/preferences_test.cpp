@@ -83,7 +83,7 @@ TEST_F(PreferencesTest, RendersOfScenesThatAreGoneOrNotToldInFullAreLeftOut) {
     p.renders.resize(1);
     EXPECT_EQ(load_preferences(file), p);
     for (const auto& [part, by] : {std::pair{"\"width\": 0", "\"width\": \"x\""},
-                                   {"\"kind\": 1", "\"kind\": 3"},
+                                   {"\"kind\": 1", "\"kind\": 4"},
                                    {"\"chunk\"", "\"junk\""}}) {
         folder.file("viewer.json", test::replaced(test::text_of(file), part, by));
         EXPECT_TRUE(load_preferences(file).renders.empty()) << by;
