@@ -279,12 +279,16 @@ void take_start(Session& session) {
     const bool is_input = std::exchange(session.opens_input, false);
     if (!made->error.empty()) throw InputError(made->error);
     const std::string name = request.start.picture.filename().string();
-    if (!request.choice.empty()) {
+    const bool again = !request.choice.empty();
+    if ((again || session.document.edited()) && session.document.revision() != request.revision) {
+        const std::string what =
+            again ? choice_in_words(request.choice) + ": not made" : name + " was not opened";
+        return say(session.status, what + ", for the scene here was edited meanwhile", true);
+    }
+    if (again) {
         session.document.begin_again(choice_in_words(request.choice), made->text, request.place,
                                      request.assignments);
         see_from_beginning(session);
-    } else if (session.document.edited() && session.document.revision() != request.revision) {
-        return say(session.status, name + " was not opened, for the scene here was edited meanwhile", true);
     } else {
         take_document(session, Document::untitled(made->text, request.place, request.assignments));
         session.assignments = request.assignments;

@@ -215,13 +215,16 @@ TEST_F(WindowWaysOut, ByKeysAloneToAMovie) {
     const auto keyframes = [&] { return count_of(pixels_of(&Layout::timeline), color::attention); };
     EXPECT_TRUE(comes_true([&] { return keyframes() == 0; })) << "nothing is left";
     expect_title("Untitled");
+    const Pixels no_layer = pixels_of(&Layout::panel);
     person->press("ctrl+o");
     person->type("rings.png");
     person->press("Return");
+    EXPECT_TRUE(comes_true([&] { return pixels_of(&Layout::panel) != no_layer; })) << "once it was looked at";
     settled_frame();
     person->press("Tab");  // what it was taken for; the last of its buttons is for the film
     person->press("shift+Tab");
     person->press("space");
+    EXPECT_TRUE(comes_true([&] { return keyframes() > 0; })) << "the film is made";
     find("output.exposure");
     person->press("Return");
     person->type("0.5");

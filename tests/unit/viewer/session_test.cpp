@@ -172,6 +172,14 @@ TEST_F(Start, WhatIsMadeForAnotherSceneIsDropped) {
     wait_for_start(session);
     EXPECT_TRUE(session.document.edited()) << "nothing that a person did is lost";
     EXPECT_HAS(session.status.message.text, "was not opened");
+    take_document(session, demo_document());
+    open_file(session, picture);
+    wait_for_start(session);
+    start_again(session, "film");
+    session.document.edit("Wider", [](Scene& scene) { scene.camera.fov = 41.0; });
+    wait_for_start(session);
+    EXPECT_EQ(session.document.scene().camera.fov, 41.0);
+    EXPECT_HAS(session.status.message.text, "Make a film: not made");
 }
 
 TEST_F(Start, APictureThatCannotBeReadSaysSoAndTheSceneStays) {
