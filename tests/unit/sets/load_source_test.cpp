@@ -471,9 +471,8 @@ TEST_F(FlatStartTest, AQuickBodyStandsForTheSetUntilItIsThere) {
     };
     EXPECT_NEAR(covers(quick) / covers(whole), 1.0, 0.35) << "as wide as few splats must be";
     EXPECT_EQ(quick_sets({}, source, false).size(), 1u) << "a body before is better than a flat picture";
-    const std::vector<SetSample> kept = quick_sets(cache, source);
-    ASSERT_EQ(kept.size(), 1u);
-    EXPECT_EQ(kept[0].splats, whole.size());
+    EXPECT_TRUE(quick_sets(cache, source).empty())
+        << "a kept one is there before a few of it were more than blotches";
     source.structure.kind = StructureKind::columns;
     source.count = 2000000;
     const std::vector<SetSample> columns = quick_sets({}, source);
