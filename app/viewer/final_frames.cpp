@@ -17,13 +17,11 @@ bool have_same_sets(const ViewRequest& a, const ViewRequest& b) {
     return std::ranges::equal(a.layers, b.layers, same_set);
 }
 
-std::array<std::int64_t, 4> corners(const Region& region) {
-    return {region.x, region.y, region.width, region.height};
-}
-
 bool ask_the_same(const FrameRequest& a, const FrameRequest& b) {
-    return a.width == b.width && a.height == b.height && a.files == b.files && a.frame == b.frame &&
-           corners(a.region) == corners(b.region) && a.scene == b.scene;
+    const auto view = [](const FrameRequest& r) { return std::tie(r.width, r.height, r.files, r.frame); };
+    return view(a) == view(b) && a.region == b.region &&
+           a.scene.camera == b.scene.camera &&  // soon found out
+           a.scene == b.scene;
 }
 
 namespace {

@@ -29,8 +29,6 @@ struct ViewRequest : FrameRequest {
 /// The camera of a request, for its whole frame. Throws InputError.
 Camera camera_of(const ViewRequest& request);
 
-/// To be compared.
-std::array<std::int64_t, 4> corners(const Region& region);
 /// They ask for the same, whatever sets there are.
 bool ask_the_same(const FrameRequest& a, const FrameRequest& b);
 /// Of the sets, or of what there is of them so far: every sample of a set that is being made is another.

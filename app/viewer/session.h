@@ -44,7 +44,7 @@ struct FramesContext {
     FreeCamera free;
     std::set<std::string> solo;
     glm::ivec2 size_px{0};
-    std::array<std::int64_t, 4> region{};
+    Region region;
     std::vector<const SplatSet*> sets;  // one a layer
     bool operator==(const FramesContext&) const = default;
 };

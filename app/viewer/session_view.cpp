@@ -236,8 +236,8 @@ void compare_a(Session& session, const Rect& whole, const Drawing& how, DisplayS
 FramesContext frames_context(const Session& session) {
     const ViewRequest& request = session.request;
     const ViewState& view = session.view;
-    FramesContext now{session.document.revision(),     request.files,           view.view, {}, view.solo,
-                      {request.width, request.height}, corners(request.region), {}};
+    FramesContext now{session.document.revision(),     request.files,  view.view, {}, view.solo,
+                      {request.width, request.height}, request.region, {}};
     for (const auto& layer : request.layers) now.sets.push_back(layer ? layer->set.get() : nullptr);
     if (view.view != ViewKind::camera) now.free = view.free;
     return now;

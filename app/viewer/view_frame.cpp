@@ -504,11 +504,12 @@ void ViewFrame::show(const ViewRequest& request, const PreviewChoice& choice, bo
         if (touched) touched_at_ = now;
         request_ = request;
         choice_ = choice;
-        if (changed && take_kept()) return;
-        if (settle && changed && follow(now)) return;
+        if (settle && changed && (take_kept() || follow(now))) return;
         return start_over(now);
     }
-    if (stage_ == Stage::preview || stage_ == Stage::finer) return come_closer(settle, now, hurry);
+    const bool is_preview = stage_ == Stage::preview || stage_ == Stage::finer;
+    if (is_preview && settle && take_kept()) return;  // such as where playing stopped
+    if (is_preview) return come_closer(settle, now, hurry);
     if (stage_ == Stage::refining) take_final(now);
 }
 

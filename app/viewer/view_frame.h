@@ -84,8 +84,9 @@ class ViewFrame {
         : files_(std::move(files)), kept_finals_(std::move(kept)), final_(card) {}
 
     /// Shows `request`: draws a preview where it differs from the last one, else goes on towards the final
-    /// frame once nothing has been touched for 0.15 s (`settle`; `hurry`: at once). Where the last final
-    /// frame came quickly, from a card, the next one takes the preview's place. `now` in seconds.
+    /// frame once nothing has been touched for 0.15 s (`settle`; `hurry`: at once). With `settle` one
+    /// that is kept is shown at once; where the last one came quickly, from a card, the next one takes the
+    /// preview's place. `now` in seconds.
     void show(const ViewRequest& request, const PreviewChoice& choice, bool settle, double now,
               bool hurry = false);
     unsigned texture() const { return texture_; }

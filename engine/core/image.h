@@ -34,6 +34,7 @@ inline Image unfilled_image(std::int64_t width, std::int64_t height, int channel
 /// Part of an image plane in pixels, from the top left; empty when width or height is 0.
 struct Region {
     std::int64_t x = 0, y = 0, width = 0, height = 0;
+    bool operator==(const Region&) const = default;
 };
 
 }  // namespace astrosplat

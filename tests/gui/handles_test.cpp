@@ -5,6 +5,7 @@
 #include "gui/test_window.h"
 #include "gui/widgets.h"
 #include "support/test.h"
+#include "unit/edit/scenes.h"
 
 namespace astrosplat {
 namespace {
@@ -222,20 +223,7 @@ class LyingHandlesTest : public testing::Test {
         window.frame(2);
     }
     const GalaxyParams& galaxy() const { return window.document.scene().layers[0].source.structure.galaxy; }
-    TestWindow window{Document::untitled(R"(astrosplat = 1
-[camera]
-position = [0, 20, 0]
-up = [0, 0, -1]
-fov = 17.762
-[[layer]]
-name = "m77"
-[layer.source]
-meshes = [ { mesh = "plane" } ]
-uv = "camera"
-uv_camera = { position = [0, 20, 0], up = [0, 0, -1], fov = 17.762 }
-structure = { kind = "disk", inclination = 60.0, position_angle = 30.0, center = [0.6, 0.4], near_side = 120 }
-)",
-                                         "/tmp/m77.toml")};
+    TestWindow window{Document::untitled(test::inclined_scene, "/tmp/m77.toml")};
     Rect area = make_layout(window.view, 1600.0f, 900.0f, 1.0f).viewport;
     glm::vec2 middle() { return 0.5f * (window.at("lying 0 major") + window.at("lying 0 major other")); }
 };

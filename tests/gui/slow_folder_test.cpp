@@ -60,12 +60,10 @@ TEST_F(SlowFolder, DoesNotStopTheWindow) {
     };
     window.choose("File/Open...");
     folders_stand_still = true;
-    const auto begun = std::chrono::steady_clock::now();
     go_to("more");
     window.type("x");  // not there, then
     go_to("scenes");
-    EXPECT_FALSE(window.has("file/old.toml"));
-    EXPECT_LT(std::chrono::steady_clock::now() - begun, std::chrono::seconds(20));
+    EXPECT_FALSE(window.has("file/old.toml")) << "and no frame waited, or this one would for ever";
     folders_stand_still = false;
     wait_for([&] { return window.has("file/old.toml"); });
     EXPECT_FALSE(window.has("file/new.toml")) << "the last folder asked for";

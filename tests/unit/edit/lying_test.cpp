@@ -5,29 +5,14 @@
 
 #include "scene/load.h"
 #include "support/test.h"
+#include "unit/edit/scenes.h"
 
 namespace astrosplat {
 namespace {
 
 class LyingTest : public testing::Test {
   protected:
-    /// A picture of 10 x 6.25 units before a camera at 20 units, and that camera on 1600 x 1000 px.
-    Scene scene = parse_scene(R"(astrosplat = 1
-[output]
-resolution = [1600, 1000]
-[camera]
-position = [0, 20, 0]
-up = [0, 0, -1]
-fov = 17.762
-[[layer]]
-name = "m77"
-[layer.source]
-meshes = [ { mesh = "plane" } ]
-uv = "camera"
-uv_camera = { position = [0, 20, 0], up = [0, 0, -1], fov = 17.762 }
-structure = { kind = "disk", inclination = 60.0, position_angle = 30.0, center = [0.4, 0.6], near_side = 120 }
-)",
-                              "/tmp/scene.toml");
+    Scene scene = parse_scene(test::inclined_scene, "/tmp/scene.toml");
     Camera front = make_camera(scene.camera, 1600.0, 1000.0, {});
     using Of = LyingGrip::Of;
 
@@ -47,7 +32,7 @@ structure = { kind = "disk", inclination = 60.0, position_angle = 30.0, center =
 };
 
 TEST_F(LyingTest, FromItsCameraTheRingIsTheEllipseInThePicture) {
-    const glm::dvec2 middle(0.4 * 1600.0, 0.4 * 1000.0);
+    const glm::dvec2 middle(0.6 * 1600.0, 0.6 * 1000.0);
     const double radius = 0.36 * 1000.0;
     const glm::dvec2 major(std::sqrt(0.75), -0.5), minor(-0.5, -std::sqrt(0.75));
     for (const double degrees : {0.0, 50.0, 90.0, 180.0, 270.0}) {

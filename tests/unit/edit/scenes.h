@@ -45,6 +45,23 @@ opacity = 0.5
 "layer.dust.look.noise.1.jitter" = { keys = [[1, 0.0], [48, 0.2]] }
 )toml";
 
+/// A galaxy's disk, in a picture of 10 x 6.25 units that its camera sees whole from 20 units before it.
+inline const char* const inclined_scene = R"toml(astrosplat = 1
+[output]
+resolution = [1600, 1000]
+[camera]
+position = [0, 20, 0]
+up = [0, 0, -1]
+fov = 17.762
+[[layer]]
+name = "m77"
+[layer.source]
+meshes = [ { mesh = "plane" } ]
+uv = "camera"
+uv_camera = { position = [0, 20, 0], up = [0, 0, -1], fov = 17.762 }
+structure = { kind = "disk", inclination = 60.0, position_angle = 30.0, center = [0.6, 0.4], near_side = 120 }
+)toml";
+
 /// A parameter of edit_scene that the file gives and no track moves.
 inline const std::string opacity = "layer.stars.render.opacity";
 

@@ -197,6 +197,11 @@ TEST_F(Followed, AFinalFrameThatIsKeptIsThereAtOnce) {
     EXPECT_EQ(pixel_hash(*keeps.pixels()), hash_of(request(0)));
     EXPECT_TRUE(settled(second));
     EXPECT_EQ(pixel_hash(*keeps.pixels()), hash_of(request(5)));
+    keeps.show(first, choice, false, now += 1.0);
+    EXPECT_EQ(keeps.status().state, ViewFrameState::preview) << "while a scene plays one would flash up";
+    keeps.show(first, choice, true, now);
+    EXPECT_TRUE(keeps.final_frame()) << "and stopped";
+    EXPECT_TRUE(settled(second));
     const std::vector<float> light = keeps.layer_light(100, 50);
     ViewFrame other(std::make_shared<PictureFiles>());
     other.show(second, choice, false, 0.0);
