@@ -134,6 +134,7 @@ class Loop {
             return window_.drop_frame();
         }
         still_ = !window_.end_frame(session_.display.version());
+        session_.frame_took_s = seconds_now() - now;
         if (const auto text = std::exchange(session_.clipboard, {})) ImGui::SetClipboardText(text->c_str());
         if (const auto file = std::exchange(session_.screenshot, {})) {
             int width = 0, height = 0;

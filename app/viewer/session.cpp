@@ -132,6 +132,12 @@ Command::Kind command_for(FileKind kind, bool fresh) {
     return fresh ? Command::Kind::open : Command::Kind::import_file;
 }
 
+/// Seconds between frames of the window while others work: a window that is drawn without a graphics card
+/// takes a fifth of their processor at most.
+double paced(const Session& session, double least) {
+    return std::clamp(4.0 * session.frame_took_s, least, 0.25);
+}
+
 /// Until what is seen, or is worked out of it, may change by itself; idle_due_s: it will not.
 double due_of_view(const Session& session, double now) {
     if (!session.status.rendered_frame.empty()) return session.rendered.working() ? 0.03 : 1.0;
@@ -139,7 +145,7 @@ double due_of_view(const Session& session, double now) {
     if (!session.sets.wanted(session.document.scene())) return 0.1;
     if (!session.view_frame.exact()) return 0.02;
     const ViewFrameState reached = session.view_frame.status().state;
-    if (reached == ViewFrameState::refining || session.comparison.waiting()) return 0.03;
+    if (reached == ViewFrameState::refining || session.comparison.waiting()) return paced(session, 0.03);
     if (reached == ViewFrameState::preview && session.view.settle) return session.view_frame.due(now);
     if (session.frame_looked_for) return 0.02;
     if (session.difference.waiting() || session.comparison.reference().working() ||
@@ -424,7 +430,7 @@ double next_due(const Session& session, double now) {
     if (session.view.playing) return 0.0;
     const bool at_work = !loader.idle() || session.jobs.running() || session.estimate.working() ||
                          session.starts.wanted() || session.kind_views.working();
-    return std::min(at_work ? at_work_s : idle_due_s, due_of_view(session, now));
+    return std::min(at_work ? paced(session, at_work_s) : idle_due_s, due_of_view(session, now));
 }
 
 bool preview_exact(const Session& session) { return session.view_frame.exact() && session.sets.same_sets(); }

@@ -119,6 +119,7 @@ struct Session {
 
     // Of the last draw_viewport():
     ViewRequest request;
+    double frame_took_s = 0.0;  // the last frame of the window, until it was shown
     glm::ivec2 viewport_px{0};
     DisplaySettings displayed;
 

@@ -212,7 +212,9 @@ Rect place_of_frame(Session& session, const Scene& now) {
 bool draw_a(Session& session, const Rect& whole, const Drawing& how, DisplaySettings& rendered) {
     const bool from_disk = show_movie(session, rendered) || show_rendered_frame(session, whole, rendered);
     if (!from_disk) session.view_frame.show(session.request, how.choice, how.may_settle, how.now, how.hurry);
-    session.sets.loader().hold(settles(session) && !from_disk && session.view_frame.final_is_next(how.now));
+    const bool comes = settles(session) && !from_disk && session.view_frame.final_comes();
+    const bool is_next = comes && session.view_frame.final_is_next(how.now);
+    session.sets.loader().hold_after(is_next ? SetTask::load : comes ? SetTask::arrange : SetTask::describe);
     return from_disk;
 }
 

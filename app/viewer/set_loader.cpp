@@ -149,7 +149,7 @@ void SetList::abandon(const std::string& name) {
 
 std::optional<SetTask> SetList::next_task() const {
     for (const auto& [task, names] : queues_)
-        if (!names.empty() && !(held_ && task > SetTask::load)) return task;
+        if (!names.empty() && task <= last_) return task;
     return std::nullopt;
 }
 

@@ -59,8 +59,8 @@ class SetList {
     void cancel_job() {
         if (job_) job_->cancelled = true;
     }
-    /// False: it was so already.
-    bool hold(bool held) { return std::exchange(held_, held) != held; }
+    /// Tasks after `last` do not begin. False: it was so already.
+    bool hold_after(SetTask last) { return std::exchange(last_, last) != last; }
     std::uint64_t revision() const { return revision_; }
     Layer shown(const std::string& name) const;
     LayerStatus status(const LayerParams& layer) const;
@@ -112,7 +112,7 @@ class SetList {
     std::map<SetTask, std::list<std::string>> queues_{{SetTask::load, {}}};  // names of layers, in order
     std::shared_ptr<SetJob> job_;                                            // being done
     std::uint64_t revision_ = 0;
-    bool held_ = false;
+    SetTask last_ = SetTask::describe;  // that may begin
 };
 
 class SetLoader {
@@ -167,9 +167,9 @@ class SetLoader {
     void wait() {
         worker_.wait([&] { return list_.resting(); });
     }
-    /// Does not begin what comes later, while something more urgent needs the processor.
-    void hold(bool rest) {
-        if (list()->hold(rest)) worker_.wake();
+    /// Does not begin what comes after `last`, while something more urgent needs the processor.
+    void hold_after(SetTask last) {
+        if (list()->hold_after(last)) worker_.wake();
     }
 
   private:

@@ -101,6 +101,8 @@ class ViewFrame {
     const std::vector<std::int64_t>& kept() const { return kept_; }
     /// The preview is that of the present request, in order.
     bool exact() const;
+    /// What is seen is no final frame yet.
+    bool final_comes() const { return stage_ <= Stage::refining; }
     /// The hand rests, and the final frame is being made or will be as soon as everything is there for it.
     bool final_is_next(double now) const;
     /// Seconds until the final frame may begin.

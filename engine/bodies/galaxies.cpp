@@ -44,7 +44,7 @@ bool needs_fit(const GalaxyParams& told) {
 // A picture's galaxies: what the scene says of each, the light that is its own, and how it lies.
 struct PictureGalaxies {
     std::vector<GalaxyParams> told;
-    Image to_fit;
+    const Image& to_fit;
     std::vector<Image> shares;
     std::vector<GalaxyPlane> planes;
 };
@@ -64,11 +64,17 @@ GalaxyPlane plane_in(const PictureGalaxies& galaxies, std::size_t k, glm::dvec2 
     return plane;
 }
 
-PictureGalaxies galaxies_in(const Image& light, const StructureParams& params) {
-    PictureGalaxies galaxies{params.galaxies, light_to_fit(light), {}, {}};
+// `light`: of that sight.
+PictureGalaxies galaxies_in(GalaxySight& sight, const Image& light, const StructureParams& params) {
+    if (sight.to_fit.pixels.empty()) {
+        sight.to_fit = light_to_fit(light);
+        sight.centers = galaxy_centers(sight.to_fit);
+        if (sight.coarse) sight.to_fit = at_half_size(sight.to_fit);
+    }
+    PictureGalaxies galaxies{params.galaxies, sight.to_fit, {}, {}};
     if (galaxies.told.empty()) galaxies.told.push_back(params.galaxy);
     const double height_over_width = double(light.height) / double(light.width);
-    const std::vector<glm::dvec2> found = galaxy_centers(galaxies.to_fit);
+    const std::vector<glm::dvec2>& found = sight.centers;
     std::vector<glm::dvec2> centers;
     for (std::size_t k = 0; k < galaxies.told.size(); ++k) {
         const std::optional<glm::dvec2>& told = galaxies.told[k].center;
@@ -165,35 +171,64 @@ void set_fields(const Image& to_fit, double texels, double offset, GalaxyBody& b
 }  // namespace
 
 std::vector<GalaxyPlane> galaxy_planes(const Image& light, const StructureParams& params) {
-    return galaxies_in(light, params).planes;
+    GalaxySight sight;
+    return galaxies_in(sight, light, params).planes;
 }
 
 OwnLight first_galaxy(const Image& light, const StructureParams& params) {
-    PictureGalaxies galaxies = galaxies_in(light, params);
+    GalaxySight sight;
+    PictureGalaxies galaxies = galaxies_in(sight, light, params);
     const bool alone = galaxies.planes.size() == 1;
     return {galaxies.planes.front(), alone ? Image() : std::move(galaxies.shares.front())};
 }
 
+namespace {
+
+// As `sight` has it from before, where it is the same.
+GalaxySight::Galaxy galaxy_seen(GalaxySight& sight, const Image& light, const PictureGalaxies& galaxies,
+                                std::size_t k) {
+    GalaxyPlane plane = galaxies.planes[k];
+    plane.near_side = 1;  // of which nothing here depends
+    const bool only_spheroid = galaxies.told[k].bulge == 1.0;
+    if (k < sight.galaxies.size()) {
+        GalaxySight::Galaxy& before = sight.galaxies[k];
+        if (before.plane == plane && before.only_spheroid == only_spheroid &&
+            before.share.pixels == galaxies.shares[k].pixels)
+            return std::move(before);
+    }
+    GalaxySight::Galaxy seen{plane, only_spheroid, galaxies.shares[k], {}, {}, 0.0};
+    seen.gaussians = light_of_galaxy(galaxies.to_fit, seen.share, plane, only_spheroid);
+    seen.roughness = roughness_of(light, plane, galaxies.to_fit);
+    seen.rough = rough_share(galaxies.to_fit, seen.roughness);
+    return seen;
+}
+
+}  // namespace
+
 std::vector<GalaxyBody> galaxies_of(const Image& light, const StructureParams& params, double thicker,
-                                    std::int64_t width, std::int64_t margin_px, std::uint32_t seed) {
-    PictureGalaxies galaxies = galaxies_in(light, params);
+                                    std::int64_t width, std::int64_t margin_px, std::uint32_t seed,
+                                    GalaxySight* sight) {
+    GalaxySight own;
+    if (!sight) sight = &own;
+    PictureGalaxies galaxies = galaxies_in(*sight, light, params);
+    std::vector<GalaxySight::Galaxy> seen;
+    for (std::size_t k = 0; k < galaxies.planes.size(); ++k)
+        seen.push_back(galaxy_seen(*sight, light, galaxies, k));
+    sight->galaxies = std::move(seen);
     const double texels = double(width) / double(galaxies.to_fit.width);
     std::vector<GalaxyBody> bodies;
     for (std::size_t k = 0; k < galaxies.planes.size(); ++k) {
         const GalaxyPlane& plane = galaxies.planes[k];
         const std::optional<double> bulge = galaxies.told[k].bulge;
-        const GalaxyLight gaussians =
-            light_of_galaxy(galaxies.to_fit, galaxies.shares[k], plane, bulge == 1.0);
-        Image roughness = roughness_of(light, plane, galaxies.to_fit);
-        const double rough = rough_share(galaxies.to_fit, roughness);
-        GalaxyBody body =
-            make_galaxy_body(gaussians, plane, {thicker, params.flare, bulge, rough}, double(width));
+        const GalaxySight::Galaxy& found = sight->galaxies[k];
+        GalaxyBody body = make_galaxy_body(found.gaussians, plane,
+                                           {thicker, params.flare, bulge, found.rough}, double(width));
         log_detail(
             fmt::format("a galaxy of {:.0f} texels, what is small in it {:.1f} thick; {:.0f} % rough, {:.0f} "
                         "% of its light a spheroid's",
-                        body.radius, body.thickness, 100.0 * rough, 100.0 * gaussians.bulge));
+                        body.radius, body.thickness, 100.0 * found.rough, 100.0 * found.gaussians.bulge));
         body.center += float(margin_px);
-        body.roughness = std::move(roughness);
+        body.roughness = found.roughness;
         set_fields(galaxies.to_fit, texels, double(margin_px), body);
         if (galaxies.planes.size() > 1) body.share = std::move(galaxies.shares[k]);
         if (body.hidden > 0.0f)

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "bodies/galaxy_body.h"
+#include "bodies/galaxy_light.h"
 #include "core/image.h"
 #include "source/source.h"
 
@@ -20,9 +21,27 @@ struct OwnLight {
 };
 OwnLight first_galaxy(const Image& light, const StructureParams& params);
 
+/// What galaxies_of() found in one light for the scene before, where a hand changes the scene: the next one
+/// finds only what differs.
+struct GalaxySight {
+    struct Galaxy {
+        GalaxyPlane plane;  // of one near side
+        bool only_spheroid = false;
+        Image share;
+        GalaxyLight gaussians;
+        Image roughness;
+        double rough = 0.0;
+    };
+    bool coarse = false;              // fitted at half the size, four times as quickly
+    Image to_fit;                     // empty: nothing was asked for yet
+    std::vector<glm::dvec2> centers;  // that are seen
+    std::vector<Galaxy> galaxies;
+};
+
 /// Their bodies, in texels of the picture with a margin of so many around `width` texels, which `light`
-/// shows, perhaps smaller. `thicker`: than they are by themselves.
+/// shows, perhaps smaller. `thicker`: than they are by themselves. `sight`: of the same light; may be null.
 std::vector<GalaxyBody> galaxies_of(const Image& light, const StructureParams& params, double thicker,
-                                    std::int64_t width, std::int64_t margin_px, std::uint32_t seed);
+                                    std::int64_t width, std::int64_t margin_px, std::uint32_t seed,
+                                    GalaxySight* sight = nullptr);
 
 }  // namespace astrosplat

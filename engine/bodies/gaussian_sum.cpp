@@ -46,13 +46,24 @@ struct Equations {
     explicit Equations(std::size_t n) : matrix(n * n, 0.0), right(n, 0.0) {}
 };
 
-void add_pixel(std::span<const float> values, double weight, double light, Equations& e) {
-    const std::size_t n = values.size();
+// Pixels that are added in one pass over the matrix, each after the one before.
+struct PixelGroup {
+    static constexpr std::size_t size = 4;
+    std::vector<double> values;  // of each pixel, side by side
+    std::array<double, size> weight{}, light{};
+    explicit PixelGroup(std::size_t n) : values(size * n) {}
+};
+
+void add_pixels(const PixelGroup& g, Equations& e) {
+    const std::size_t n = e.right.size();
+    const double *const v0 = g.values.data(), *const v1 = v0 + n, *const v2 = v1 + n, *const v3 = v2 + n;
     for (std::size_t i = 0; i < n; ++i) {
-        const double a = weight * double(values[i]);
+        const double a0 = g.weight[0] * v0[i], a1 = g.weight[1] * v1[i], a2 = g.weight[2] * v2[i],
+                     a3 = g.weight[3] * v3[i];
         double* const row = e.matrix.data() + i * n;
-        for (std::size_t j = i; j < n; ++j) row[j] += a * double(values[j]);
-        e.right[i] += a * light;
+        for (std::size_t j = i; j < n; ++j)
+            row[j] = row[j] + a0 * v0[j] + a1 * v1[j] + a2 * v2[j] + a3 * v3[j];
+        e.right[i] = e.right[i] + a0 * g.light[0] + a1 * g.light[1] + a2 * g.light[2] + a3 * g.light[3];
     }
 }
 
@@ -62,8 +73,17 @@ Equations equations_of(const GaussianBasis& basis, const Image& light, const std
     const auto pixels = std::int64_t(light.pixels.size());
     std::vector<Equations> parts(std::size_t((pixels + chunk - 1) / chunk), Equations(n));
     parallel_chunks(pixels, chunk, [&](std::int64_t begin, std::int64_t end, int) {
-        for (std::int64_t p = begin; p < end; ++p)
-            add_pixel(basis.of(std::size_t(p)), weights[p], double(light.pixels[p]), parts[begin / chunk]);
+        PixelGroup group(n);
+        for (std::int64_t first = begin; first < end; first += PixelGroup::size) {
+            for (std::size_t k = 0; k < PixelGroup::size; ++k) {
+                const std::int64_t p = std::min(first + std::int64_t(k), end - 1);
+                const bool there = first + std::int64_t(k) < end;
+                std::ranges::copy(basis.of(std::size_t(p)), group.values.begin() + std::ptrdiff_t(k * n));
+                group.weight[k] = there ? weights[p] : 0.0;
+                group.light[k] = double(light.pixels[p]);
+            }
+            add_pixels(group, parts[begin / chunk]);
+        }
     });
     Equations sum(n);
     for (const Equations& part : parts) {

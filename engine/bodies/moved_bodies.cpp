@@ -78,6 +78,7 @@ struct MovedBodies::Picture {
     std::vector<Band> bands;
     std::vector<Star> stars;  // texels of the picture
     std::vector<GalaxyPlane> planes;
+    mutable GalaxySight sight{true, {}, {}, {}};  // of the model asked for last
     Placement before;
     std::vector<Group> groups;
 
@@ -123,7 +124,7 @@ struct MovedBodies::Picture {
         if (!planes.empty())
             now = with_planes(std::move(now), planes, double(light.height) / double(light.width));
         return make_placement(light, now, surface.texels_per_unit(), surface.flat(), seed, stars,
-                              std::move(about), size);
+                              std::move(about), size, &sight);
     }
 
     BandSplats splats_of(const Group& group, const Placement& placement) const {

@@ -23,7 +23,7 @@ class MovedBodies {
     ~MovedBodies();
 
     /// The rows as `now` has them: their places, distances and radii; opacity, density and dust in alpha and
-    /// colour. Those under the parameters that they were made by are as they were.
+    /// colour. Those under the parameters that they were made by are as they were. One thread at a time.
     SplatSet under(const StructureParams& now) const;
 
   private:

@@ -173,7 +173,7 @@ Placement placement_without_fields(std::int64_t width, std::int64_t height, cons
 
 Placement make_placement(const Image& light, const StructureParams& params, double texels_per_unit, bool flat,
                          std::uint32_t seed, std::span<const Star> stars, std::optional<AxisDepths> axis,
-                         ImageSize size) {
+                         ImageSize size, GalaxySight* sight) {
     if (size.width == 0) size = {light.width, light.height};
     Placement placement = placement_without_fields(size.width, size.height, params, texels_per_unit);
     placement.to_light = float(double(light.width) / double(size.width));
@@ -192,7 +192,7 @@ Placement make_placement(const Image& light, const StructureParams& params, doub
         const auto margin_px = margin_of(light.width), margin = margin_of(size.width);
         placement.galaxies = galaxies_of(margin_px > 0 ? inside_margin(light, margin_px) : light, params,
                                          times_as_thick(params, texels_per_unit, placement),
-                                         size.width - 2 * margin, margin, seed);
+                                         size.width - 2 * margin, margin, seed, sight);
     } else {
         placement.thickness = times(thickness_field(shown, placement.height * px), texels);
         placement.structure = structure_field(shown);

@@ -22,6 +22,8 @@
 
 namespace astrosplat {
 
+struct GalaxySight;
+
 /// Scale heights by themselves, of a picture's longest side.
 inline constexpr double disk_thickness = 0.018, sheet_thickness = 0.011;
 /// Sigma of the widest splats, of the scale height; larger ones would be a fog of their own.
@@ -86,10 +88,12 @@ struct Placement {
 /// `texels_per_unit`: of the surface that carries the picture; `flat`: it is a plane, so a sheet takes its
 /// relief from the picture instead. What `stars` of a disk leave around themselves stays at their depth: a
 /// profile is never quite that of their Gaussians, and would be a row of splats in depth. `axis`: of the
-/// kind. `size`: of the picture, where `light` is smaller; 0: as that.
+/// kind. `size`: of the picture, where `light` is smaller; 0: as that. `sight`: of galaxies, as galaxies_of()
+/// has it.
 Placement make_placement(const Image& light, const StructureParams& params, double texels_per_unit, bool flat,
                          std::uint32_t seed, std::span<const Star> stars = {},
-                         std::optional<AxisDepths> axis = {}, ImageSize size = {0, 0});
+                         std::optional<AxisDepths> axis = {}, ImageSize size = {0, 0},
+                         GalaxySight* sight = nullptr);
 
 /// What the number of splats depends on, besides the light: no fields, but the galaxies of a disk.
 Placement placement_to_count(const Texture& texture, const StructureParams& params);

@@ -125,6 +125,32 @@ StructureParams galaxy_params(double inclination) {
     return params;
 }
 
+// What a sight keeps is that of its picture, not of where the hand was before.
+TEST(GalaxySight, FindsTheSameAfterOtherModels) {
+    const Image light = painted::tilted_galaxy(320, 200, {60.0, 20.0, true, 6.0, 0.0});
+    std::vector<StructureParams> dragged(7, galaxy_params(60.0));
+    dragged[1].galaxy.inclination = 40.0;
+    dragged[2].galaxy.near_side = 290.0;
+    dragged[3].galaxy.center = glm::dvec2(0.55, 0.5);
+    dragged[4].galaxy.bulge = 1.0;
+    dragged[5].galaxies = {dragged[0].galaxy, dragged[3].galaxy};
+    GalaxySight sight{true, {}, {}, {}};
+    for (const StructureParams& now : dragged) {
+        GalaxySight fresh{true, {}, {}, {}};
+        const auto bodies_in = [&](GalaxySight& in) { return galaxies_of(light, now, 1.0, 320, 0, 1, &in); };
+        const std::vector<GalaxyBody> seen = bodies_in(sight), wanted = bodies_in(fresh);
+        ASSERT_EQ(seen.size(), wanted.size());
+        for (std::size_t k = 0; k < seen.size(); ++k) {
+            for (const auto field : {&GalaxyBody::share, &GalaxyBody::spheroid, &GalaxyBody::excess,
+                                     &GalaxyBody::lit, &GalaxyBody::roughness})
+                EXPECT_EQ((seen[k].*field).pixels, (wanted[k].*field).pixels) << k;
+            EXPECT_EQ(seen[k].thickness, wanted[k].thickness);
+            EXPECT_EQ(seen[k].near, wanted[k].near);
+            EXPECT_EQ(light_at(seen[k], 170.0f, 90.0f).disk, light_at(wanted[k], 170.0f, 90.0f).disk);
+        }
+    }
+}
+
 // Splats of one band of a painted galaxy with a bulge, by family.
 struct Families {
     Image light = painted::tilted_galaxy(320, 200, {60.0, 20.0, true, 6.0, 0.0});

@@ -168,15 +168,21 @@ TEST_F(SetListTest, WhatComesLaterWaitsForAllSetsAndWhileItIsHeld) {
     EXPECT_TRUE(list.loading());
     keep(false);
     EXPECT_FALSE(list.loading());
-    EXPECT_TRUE(list.hold(true));
-    EXPECT_FALSE(list.hold(true));
+    EXPECT_TRUE(list.hold_after(SetTask::load));
+    EXPECT_FALSE(list.hold_after(SetTask::load));
     EXPECT_EQ(begun(), "");
     EXPECT_FALSE(list.resting());
-    list.hold(false);
-    for (const char* next : {"arrange gas", "arrange dust", "describe gas", "describe dust"}) {
-        EXPECT_EQ(begun(), next);
-        list.end();
-    }
+    const auto expect_begun = [&](std::initializer_list<const char*> tasks) {
+        for (const char* next : tasks) {
+            EXPECT_EQ(begun(), next);
+            list.end();
+        }
+    };
+    list.hold_after(SetTask::arrange);
+    expect_begun({"arrange gas", "arrange dust"});
+    EXPECT_EQ(begun(), "") << "histograms while the final frame is on its way";
+    list.hold_after(SetTask::describe);
+    expect_begun({"describe gas", "describe dust"});
     EXPECT_TRUE(list.resting());
 }
 

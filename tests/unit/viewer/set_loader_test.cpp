@@ -258,7 +258,7 @@ TEST_F(QuickSetsTest, WhatIsKeptIsSeenBeforeItIsRead) {
         EXPECT_NEAR(sampled->box.hi[axis], bounds(wanted).hi[axis], 0.05) << axis;
     EXPECT_TRUE(loader.status(gas()).loading);
     EXPECT_FALSE(loader.sets_there());
-    loader.hold(true);
+    loader.hold_after(SetTask::load);
     held.go_on();
     while (!loader.sets_there()) std::this_thread::yield();
     const auto whole = loader.layer("gas");
@@ -266,7 +266,7 @@ TEST_F(QuickSetsTest, WhatIsKeptIsSeenBeforeItIsRead) {
     EXPECT_EQ(whole->set->size(), wanted.size());
     EXPECT_EQ(whole->sample, sampled->sample) << "which would be looked at and merged once more";
     EXPECT_FALSE(whole->arranged);
-    loader.hold(false);
+    loader.hold_after(SetTask::describe);
     loader.wait();
     EXPECT_TRUE(loader.layer("gas")->arranged);
 }
