@@ -234,6 +234,13 @@ FinerPreview::Work finer_preview() {
         };
 }
 
+namespace {
+
+/// As what is made of a mesh's lattice, and of a picture: both lie in rows.
+bool is_even(const SplatSet& set) { return set.is_on_lattice() || !set.radius.empty(); }
+
+}  // namespace
+
 PreviewSplats::PreviewSplats() : work_(make_sums) {}
 
 /// The state that is kept of the layer with this set: when a layer before it is hidden, the others stay.
@@ -254,8 +261,7 @@ PreviewSplats::Layer& PreviewSplats::layer_at(std::size_t index, const LoadedLay
 void PreviewSplats::shade(Layer& layer, const PreviewLayer& wanted) {
     const bool stars = wanted.layer.stars.has_value();
     if (!stars && (!layer.merging || !(layer.merging->render == wanted.layer.render)))
-        layer.merging =
-            std::make_shared<const MergeSettings>(wanted.layer.render, wanted.set->is_on_lattice());
+        layer.merging = std::make_shared<const MergeSettings>(wanted.layer.render, is_even(*wanted.set));
     Shading shading = shading_of(wanted);
     if (layer.shading == shading) return;
     layer.shading.reset();  // an exception below must not leave old splats under a new look

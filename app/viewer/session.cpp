@@ -141,7 +141,7 @@ double paced(const Session& session, double least) {
 /// Until what is seen, or is worked out of it, may change by itself; idle_due_s: it will not.
 double due_of_view(const Session& session, double now) {
     if (!session.status.rendered_frame.empty()) return session.rendered.working() ? 0.03 : 1.0;
-    if (session.sets.following()) return 0.004;
+    if (session.sets.following()) return 0.01;
     if (!session.sets.wanted(session.document.scene())) return 0.1;
     if (!session.view_frame.exact()) return 0.02;
     const ViewFrameState reached = session.view_frame.status().state;

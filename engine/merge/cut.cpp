@@ -32,7 +32,7 @@ class SeenLayer {
     }
 
     const MergedSplats& merged() const { return *layer_.merged; }
-    bool is_lattice() const { return layer_.merging->lattice; }
+    bool is_even() const { return layer_.merging->even; }
     glm::vec3 to_camera(const glm::vec3& p) const { return astrosplat::to_camera(layer_.projection, p); }
 
     /// Whether the frame may show anything of the node, whose centre is p in camera space.
@@ -48,15 +48,16 @@ class SeenLayer {
                                        float(settings_.width), float(settings_.height));
     }
 
-    /// One splat, but for a node of a lattice that looks longer than wide: round ones in line with each other
-    /// would overlap in one direction and leave gaps, which add up to stripes, in the other.
-    NodeRow row_of(const NodeSums& s) const {
-        constexpr float most = 4.0f;
+    /// One splat, but for a node of evenly spread ones that looks longer than wide: round ones in line with
+    /// each other would overlap in one direction and leave gaps, which add up to stripes, in the other.
+    /// `rows` below it: what a few of them look like is not how they are spread.
+    NodeRow row_of(const NodeSums& s, std::int64_t rows) const {
+        const float most = std::min(4.0f, std::sqrt(float(rows)));
         const float xx = along(s, right_, right_), yy = along(s, up_, up_), xy = along(s, right_, up_);
         const float mean = 0.5f * (xx + yy), half = 0.5f * (xx - yy), root = std::sqrt(half * half + xy * xy);
         const float longer = mean + root, shorter = std::max(0.0f, mean - root);
         NodeRow row{1, glm::vec3(0.0f), {mean, longer}};
-        if (!is_lattice() || !(longer > 0.0f)) return row;
+        if (!is_even() || !(longer > 0.0f)) return row;
         const float own = float(layer_.merging->variance) * s.own;
         const float splats = s.cover * s.cover / s.squares;
         row.count =
@@ -114,7 +115,7 @@ class SeenLayer {
     /// A node's merged splats, as rows from `first`.
     void put_node(std::int64_t index, ShadedSplats& out, std::size_t first) const {
         NodeSums sums = merged().sums[index];
-        const NodeRow row = row_of(sums);
+        const NodeRow row = row_of(sums, merged().tree->nodes[index].size());
         if (layer_.relight) relight(merged().tree->nodes[index], sums);
         const LayerProjection& l = layer_.projection;
         const LayerRender& r = layer_.merging->render;
@@ -209,7 +210,7 @@ struct Piece {
 struct Cutter {
     const std::vector<SeenLayer>& layers;
     const CutSettings& settings;
-    bool in_rows = std::ranges::any_of(layers, &SeenLayer::is_lattice);  // some nodes may be
+    bool in_rows = std::ranges::any_of(layers, &SeenLayer::is_even);  // some nodes may be
     std::vector<Piece> pieces = {};
 
     std::vector<Piece> cut() {
@@ -230,7 +231,7 @@ struct Cutter {
     };
 
     std::optional<Round> next_round() const {
-        // Pieces of half the size are up to eight times as many, each of up to four splats on a lattice:
+        // Pieces of half the size are up to eight times as many, each of up to four splats in a row:
         // while that leaves room, many sizes at once.
         constexpr double most_growth = 64.0;
         const double margin = in_rows ? 0.0625 : 0.25, least_growth = in_rows ? 2.0 : 1.5;
@@ -290,8 +291,11 @@ struct Cutter {
         const MergeNode& node = node_of(piece);
         if (node.is_leaf()) return node.end - node.first - piece.splats;
         const SeenLayer& layer = layers[piece.layer];
-        const NodeSums* const parts = &layer.merged().sums[node.children];
-        return layer.row_of(parts[0]).count + layer.row_of(parts[1]).count - piece.splats;
+        const auto splats_of = [&](std::int64_t part) {
+            const MergedSplats& merged = layer.merged();
+            return layer.row_of(merged.sums[part], merged.tree->nodes[part].size()).count;
+        };
+        return splats_of(node.children) + splats_of(node.children + 1) - piece.splats;
     }
 
     /// Divided until its parts are within the limit, or leaves.
@@ -326,9 +330,9 @@ struct Cutter {
         if (!layer.shows(sums, p)) return;
         const MergedSplats& merged = layer.merged();
         const MergeNode& node = merged.tree->nodes[index];
-        if (node.end - node.first == 1 && !(merged.weight > 1.0f))
+        if (node.size() == 1 && !(merged.weight > 1.0f))
             return out.push_back({node.first, 0.0f, l, 1, true, true});
-        const NodeRow row = layer.row_of(sums);
+        const NodeRow row = layer.row_of(sums, node.size());
         add_piece({index, layer.size_px(sums, row, p), l, std::uint8_t(row.count), false, false}, limit_px,
                   out);
     }

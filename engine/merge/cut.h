@@ -31,11 +31,11 @@ class DepthTable {
 
 /// Values that all merged splats of a layer share.
 struct MergeSettings {
-    /// `lattice`: the set's splats are on one.
-    explicit MergeSettings(const LayerRender& render, bool lattice = false);
+    /// `even`: the set's splats are spread evenly, as on a lattice or all over a picture.
+    explicit MergeSettings(const LayerRender& render, bool even = false);
 
     LayerRender render;
-    bool lattice;
+    bool even;
     DepthTable depths;
     double variance;  // of the falloff, square radii
     double overlap;   // variance of a merged one over that of what it stands for, where as wide as high

@@ -11,9 +11,10 @@ namespace astrosplat {
 namespace {
 
 /// A row of splats with the moments of what they stand for has dips between them; wider ones have few.
-/// Cells of a lattice are all alike and in line, so that what dips are left add up to stripes: for a bell of
-/// variance s^2 every a they are 2 e^(-2 pi^2 s^2 / a^2) deep, 28 % for 1.2 times the a^2 / 12 of a cell, 17
-/// % for 1.5. A cell that is longer than wide gets less of that: what is thin hides more than what is wide.
+/// Cells of what is spread evenly are all alike and in line, so that what dips are left add up to stripes:
+/// for a bell of variance s^2 every a they are 2 e^(-2 pi^2 s^2 / a^2) deep, 28 % for 1.2 times the a^2 / 12
+/// of a cell, 17 % for 1.5. A cell that is longer than wide gets less of that: what is thin hides more than
+/// what is wide.
 constexpr double least_overlap = 1.2;
 
 /// n splats, each of which would cover so much of the merged one's disc, as its alpha.
@@ -33,12 +34,12 @@ int level_seen(const CloudPlace& place) {
 
 }  // namespace
 
-MergeSettings::MergeSettings(const LayerRender& r, bool on_lattice)
+MergeSettings::MergeSettings(const LayerRender& r, bool is_even)
     : render(r),
-      lattice(on_lattice),
+      even(is_even),
       depths(r.falloff),
       variance(falloff_variance(r.falloff)),
-      overlap(on_lattice ? 1.5 : least_overlap) {}
+      overlap(is_even ? 1.5 : least_overlap) {}
 
 NodeSplat splat_of(const MergeSettings& settings, const NodeSums& sums, const Across& across, float hybrid) {
     const LayerRender& render = settings.render;

@@ -18,6 +18,7 @@ struct MergeNode {
     std::int64_t children = 0;        // the first of two, one after the other; 0: a leaf
 
     bool is_leaf() const { return children == 0; }
+    std::int64_t size() const { return end - first; }
 };
 
 /// Cells are cubes halved along x, y and z in turn. Splats that absorb (SplatSetFacts::absorbs), stars of
