@@ -301,6 +301,7 @@ struct Gui::State {
     CommandFlow flow;
     std::vector<DrawnItem> drawn;
     bool popup = false;
+    bool popup_closed = false;  // in the last frame: what it chose comes with the next one
 
     void draw_parts(GuiFrame& frame, const Layout& layout, Commands& commands);
 };
@@ -356,7 +357,8 @@ void Gui::draw(Document& document, ViewState& view, const Status& status, Comman
     state.draw_parts(frame, layout, commands);
     ImGui::End();
     draw_ring();
-    state.popup = any_popup();
+    const bool had_popup = std::exchange(state.popup, any_popup());
+    state.popup_closed = had_popup && !state.popup;
 }
 
 const ViewportInput& Gui::viewport_input() const { return state_->viewport.input(); }
@@ -371,7 +373,8 @@ bool Gui::busy() const {
 bool Gui::opening() const {
     if (state_->flow.awaits_typing() || keys_steer() || state_->panel.awaits_ring()) return true;
     const bool takes_text = ImGui::GetIO().WantTextInput || ImGui::IsAnyItemActive();
-    return !takes_text && (state_->popup || state_->flow.busy() || state_->panel.busy());
+    return !takes_text &&
+           (state_->popup || state_->popup_closed || state_->flow.busy() || state_->panel.busy());
 }
 
 const std::vector<DrawnItem>& Gui::drawn_items() const { return state_->drawn; }
