@@ -301,11 +301,17 @@ void Window::feed_frame(bool opening) {
     constexpr double double_click_s = 0.3, shortest_frame_s = 1e-4;
     constexpr int longest_opening = 4;  // frames until the keyboard's focus has come to a new widget
     frames_opening_ = opening ? frames_opening_ + 1 : 0;
-    const bool may_type = frames_opening_ == 0 || frames_opening_ > longest_opening;
+    const bool focus_moves = frames_until_focus_ > 0 && frames_until_focus_-- > 0;
+    const bool may_type = !focus_moves && (frames_opening_ == 0 || frames_opening_ > longest_opening);
     ImGuiIO& io = ImGui::GetIO();
     const Typing typing = !may_type ? Typing::later : io.WantTextInput ? Typing::text : Typing::shortcuts;
     const std::vector<InputEvent> events = input_.take(typing);
     for (const InputEvent& event : events) feed(event);
+    // The text that has the focus keeps it for a frame, and would take what is meant for the next one.
+    const auto is_tab = [](const InputEvent& e) {
+        return e.kind == EventKind::key_down && e.code == GLFW_KEY_TAB;
+    };
+    if (std::ranges::any_of(events, is_tab)) frames_until_focus_ = 2;
     std::copy(std::begin(button_down_), std::end(button_down_), io.MouseDown);
     if (mouse_known_ && ImGui::IsMousePosValid(&io.MousePos))
         io.MousePos = {static_cast<float>(mouse_x_), static_cast<float>(mouse_y_)};
