@@ -117,9 +117,10 @@ struct Session {
     std::string missed_frames;        // what was said of the camera's
     Commands dropped;  // from files, to be shown to the widgets, which ask about unsaved changes
 
+    double frame_took_s = 0.0;  // the last frame of the window, until it was shown
+
     // Of the last draw_viewport():
     ViewRequest request;
-    double frame_took_s = 0.0;  // the last frame of the window, until it was shown
     glm::ivec2 viewport_px{0};
     DisplaySettings displayed;
 

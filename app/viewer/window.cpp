@@ -301,7 +301,8 @@ void Window::feed_frame(bool opening) {
     constexpr double double_click_s = 0.3, shortest_frame_s = 1e-4;
     constexpr int longest_opening = 4;  // frames until the keyboard's focus has come to a new widget
     frames_opening_ = opening ? frames_opening_ + 1 : 0;
-    const bool focus_moves = frames_until_focus_ > 0 && frames_until_focus_-- > 0;
+    const bool focus_moves = frames_until_focus_ > 0;
+    frames_until_focus_ = std::max(0, frames_until_focus_ - 1);
     const bool may_type = !focus_moves && (frames_opening_ == 0 || frames_opening_ > longest_opening);
     ImGuiIO& io = ImGui::GetIO();
     const Typing typing = !may_type ? Typing::later : io.WantTextInput ? Typing::text : Typing::shortcuts;
