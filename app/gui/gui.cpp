@@ -301,7 +301,6 @@ struct Gui::State {
     CommandFlow flow;
     std::vector<DrawnItem> drawn;
     bool popup = false;
-    bool popup_closed = false;  // in the last frame: what it chose comes with the next one
 
     void draw_parts(GuiFrame& frame, const Layout& layout, Commands& commands);
 };
@@ -357,8 +356,7 @@ void Gui::draw(Document& document, ViewState& view, const Status& status, Comman
     state.draw_parts(frame, layout, commands);
     ImGui::End();
     draw_ring();
-    const bool had_popup = std::exchange(state.popup, any_popup());
-    state.popup_closed = had_popup && !state.popup;
+    state.popup = any_popup();
 }
 
 const ViewportInput& Gui::viewport_input() const { return state_->viewport.input(); }
@@ -373,8 +371,7 @@ bool Gui::busy() const {
 bool Gui::opening() const {
     if (state_->flow.awaits_typing() || keys_steer() || state_->panel.awaits_ring()) return true;
     const bool takes_text = ImGui::GetIO().WantTextInput || ImGui::IsAnyItemActive();
-    return !takes_text &&
-           (state_->popup || state_->popup_closed || state_->flow.busy() || state_->panel.busy());
+    return !takes_text && (state_->popup || state_->flow.busy() || state_->panel.busy());
 }
 
 const std::vector<DrawnItem>& Gui::drawn_items() const { return state_->drawn; }

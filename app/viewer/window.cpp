@@ -199,6 +199,7 @@ void Window::wait(double seconds) {
         glfwWaitEventsTimeout(seconds);
     else
         glfwPollEvents();
+    frame_began_s_ = glfwGetTime();  // until now, not until the frame is made, a key is known to be held
 }
 
 void Window::wake() { glfwPostEmptyEvent(); }
@@ -308,17 +309,18 @@ void Window::feed_frame(bool opening) {
     const Typing typing = !may_type ? Typing::later : io.WantTextInput ? Typing::text : Typing::shortcuts;
     const std::vector<InputEvent> events = input_.take(typing);
     for (const InputEvent& event : events) feed(event);
-    // The text that has the focus keeps it for a frame, and would take what is meant for the next one.
-    const auto is_tab = [](const InputEvent& e) {
-        return e.kind == EventKind::key_down && e.code == GLFW_KEY_TAB;
+    // Dialogs, menus and fields come a frame or two after what opens them; till then others have the focus.
+    const auto moves_focus = [](const InputEvent& event) {
+        const bool shifts = event.code >= GLFW_KEY_LEFT_SHIFT && event.code <= GLFW_KEY_RIGHT_SUPER;
+        return event.kind == EventKind::release ||
+               (event.kind == EventKind::key_down && !writes(event) && !shifts);
     };
-    if (std::ranges::any_of(events, is_tab)) frames_until_focus_ = 2;
+    if (std::ranges::any_of(events, moves_focus)) frames_until_focus_ = 3;
     std::copy(std::begin(button_down_), std::end(button_down_), io.MouseDown);
     if (mouse_known_ && ImGui::IsMousePosValid(&io.MousePos))
         io.MousePos = {static_cast<float>(mouse_x_), static_cast<float>(mouse_y_)};
     // The widgets' clock stands while they catch up. When an event came is known to a frame: as much later
     // may the second click of two be seen.
-    frame_began_s_ = glfwGetTime();
     const double now = input_.empty() || events.empty() ? frame_began_s_ : events.back().time_s;
     const double step = std::max(shortest_frame_s, now - widget_time_s_);
     widget_time_s_ += step;

@@ -101,7 +101,7 @@ class Window {
     bool mouse_known_ = false;
     bool button_down_[3] = {};
     int frames_opening_ = 0;
-    int frames_until_focus_ = 0;  // after Tab
+    int frames_until_focus_ = 0;  // after what may move it
     double widget_time_s_ = 0.0, frame_began_s_ = 0.0, frame_took_s_ = 0.0;
     GlInfo gl_;
     std::vector<fs::path> dropped_;

@@ -399,7 +399,7 @@ TEST_F(WindowFileDialog, PicturesAreSeenBeforeTheyAreChosen) {
 using WindowStart = WindowTest;
 
 TEST_F(WindowStart, AnotherKindIsTakenAndUndone) {
-    start({ASTROSPLAT_SOURCE_DIR "/assets/textures/spiral.jpg", "--no-cache"});
+    start({(folder / "rings.png").string(), "--no-cache"});
     settled_frame();
     EXPECT_EQ(title(), "Untitled - astrosplat");
     person->press("Tab");  // to the card, whose last button it is

@@ -242,6 +242,7 @@ TEST_F(WindowWaysOut, ByKeysAloneToAMovie) {
     same_widgets().status.has_ffmpeg = true;  // to know where Tab leads
     open_render_dialog(same_widgets().document, same_widgets().view, RenderKind::movie);
     same_widgets().frame(3);
+    stop();  // all that follows is typed ahead
     person->press("alt+r");
     person->press_often("Down", 2);  // Frame, Frames, Movie
     person->press("Return");
@@ -263,6 +264,7 @@ TEST_F(WindowWaysOut, ByKeysAloneToAMovie) {
     }
     tab_to("render/Render");
     person->press("Return");
+    go_on();
     const fs::path movie = folder / "frames/walk.mp4";
     ASSERT_TRUE(comes_true([&] { return fs::exists(movie); })) << program->err_so_far();
     EXPECT_EQ(facts_of(movie), "160,90,24/1,6\n");

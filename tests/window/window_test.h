@@ -13,11 +13,11 @@
 
 namespace astrosplat::test {
 
-/// Asks again and again, for as long as the slowest machine may need. False: it never came.
+/// Asks again and again, for longer than the slowest machine needs. False: it never came.
 template <class Condition>
 bool comes_true(const Condition& condition) {
     using Clock = std::chrono::steady_clock;
-    const Clock::time_point end = Clock::now() + std::chrono::seconds(60);
+    const Clock::time_point end = Clock::now() + std::chrono::minutes(5);
     do {
         if (condition()) return true;
         usleep(20'000);
