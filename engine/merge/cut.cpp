@@ -2,6 +2,8 @@
 // pieces as wanted.
 #include "merge/cut.h"
 
+#include <atomic>
+#include <bit>
 #include <glm/common.hpp>
 #include <glm/exponential.hpp>
 #include <glm/geometric.hpp>
@@ -251,20 +253,32 @@ struct Cutter {
         return Round{std::max(settings.least_px, step * largest_node), false};
     }
 
-    /// So few pieces are larger that dividing them has room.
+    /// So few pieces are larger that dividing them has room; where it has, an eighth of all at least: parts
+    /// of long ones may look larger than any other, and a round for each of these would take longer than the
+    /// frame.
     std::optional<Round> round_with_room(float largest, std::int64_t room) const {
-        const float lowest = std::max(0.8f * largest, settings.least_px);
+        std::vector<float> sizes(pieces.size());
+        std::ranges::transform(pieces, sizes.begin(), &Piece::size_px);
+        const auto eighth = sizes.begin() + std::ptrdiff_t(sizes.size() / 8);
+        std::nth_element(sizes.begin(), eighth, sizes.end(), std::greater<>());
+        const float lowest =
+            std::max({std::min(0.8f * largest, *eighth), largest / 64.0f, settings.least_px});
         if (!(largest > lowest))
             return std::nullopt;  // a round that divides nothing would be the next one, too
-        const float bins_per_px = bins / (largest - lowest);
-        std::array<std::int64_t, bins> more{};
-        for (const Piece& piece : pieces)
-            if (piece.size_px > lowest)
-                more[std::min(bins - 1, int((piece.size_px - lowest) * bins_per_px))] += more_of(piece);
-        int bin = bins;
+        // The bits of positive numbers are in their order, and nearly in equal ratios.
+        const std::uint64_t low = std::bit_cast<std::uint32_t>(lowest),
+                            range = std::bit_cast<std::uint32_t>(largest) - low + 1;
+        std::array<std::atomic<std::int64_t>, bins> more{};
+        parallel_each(pieces.size(), pieces_at_once, [&](std::size_t i) {
+            if (!(pieces[i].size_px > lowest)) return;
+            const std::uint64_t above = std::bit_cast<std::uint32_t>(pieces[i].size_px) - low;
+            more[above * bins / range].fetch_add(more_of(pieces[i]), std::memory_order_relaxed);
+        });
+        std::uint64_t bin = bins;
         while (bin > 0 && (room -= more[bin - 1]) >= 0) --bin;
         if (bin == bins) return std::nullopt;
-        return Round{lowest + float(bin) / bins_per_px, true};
+        const std::uint64_t first = low + (bin * range + bins - 1) / bins;
+        return Round{std::max(lowest, std::bit_cast<float>(std::uint32_t(first - 1))), true};
     }
 
     void divide(const Round& round) {
