@@ -57,6 +57,10 @@ class LogLines {
     std::vector<Message> messages_;
 };
 
+ShownPicture shown_picture(const Session& session) {
+    return {session.status.viewport_texture, session.viewport_px.x, session.viewport_px.y};
+}
+
 class Loop {
   public:
     Loop(const ViewerOptions& options, const Preferences& preferences, const std::atomic<bool>& interrupted)
@@ -133,7 +137,7 @@ class Loop {
             frames_left_ = frames_after_event;
             return window_.drop_frame();
         }
-        still_ = !window_.end_frame(session_.display.version());
+        still_ = !window_.end_frame(session_.display.version(), shown_picture(session_));
         session_.frame_took_s = seconds_now() - now;
         if (const auto text = std::exchange(session_.clipboard, {})) ImGui::SetClipboardText(text->c_str());
         if (const auto file = std::exchange(session_.screenshot, {})) {
@@ -267,7 +271,7 @@ void take_window(const ScreenshotOptions& options, glm::ivec2 size, Session& ses
         draw_viewport(session,
                       {static_cast<int>(layout.viewport.width), static_cast<int>(layout.viewport.height)},
                       now, true);
-        target.end();
+        target.end(shown_picture(session));
     };
     wait_for_frame(session, options.settled, draw_frame);
     for (int i = 0; i < 3; ++i) {  // until the widgets have seen the last status

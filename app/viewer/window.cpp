@@ -86,6 +86,56 @@ void mix(std::uint64_t& hash, const void* bytes, std::size_t size) {
     hash = hash * odd + xxh64({static_cast<const char*>(bytes), size});
 }
 
+/// The pixels that a command of `fb_height` px may change, as the backend cuts them.
+PixelBox cut_of(const ImDrawCmd& command, const ImVec2& origin, int fb_height) {
+    const float x0 = std::max(0.0f, command.ClipRect.x - origin.x), x1 = command.ClipRect.z - origin.x;
+    const float y0 = std::max(0.0f, command.ClipRect.y - origin.y), y1 = command.ClipRect.w - origin.y;
+    const int from_below = static_cast<int>(static_cast<float>(fb_height) - y1);
+    const int height = static_cast<int>(y1 - y0), left = static_cast<int>(x0);
+    const int bottom = fb_height - from_below;
+    return {left, bottom - height, left + static_cast<int>(x1 - x0), bottom};
+}
+
+/// What a command draws; `frames` stands for the pixels of every texture but the font's.
+DrawnCommand drawn_by(const ImDrawCmd& command, const ImDrawList& list, const ImVec2& origin, int fb_height,
+                      std::uint64_t frames) {
+    const ImDrawIdx* const first = list.IdxBuffer.Data + command.IdxOffset;
+    std::vector<ImDrawIdx> indices(first, first + command.ElemCount);
+    DrawnCommand drawn;
+    if (indices.empty()) return drawn;
+    const auto [least, most] = std::ranges::minmax(indices);
+    for (ImDrawIdx& index : indices) index = static_cast<ImDrawIdx>(index - least);
+    const std::span<const ImDrawVert> vertices(list.VtxBuffer.Data + command.VtxOffset + least,
+                                               std::size_t(most - least) + 1);
+    ImVec2 lo = vertices[0].pos, hi = lo;
+    for (const ImDrawVert& vertex : vertices) {
+        lo = {std::min(lo.x, vertex.pos.x), std::min(lo.y, vertex.pos.y)};
+        hi = {std::max(hi.x, vertex.pos.x), std::max(hi.y, vertex.pos.y)};
+    }
+    const PixelBox cut = cut_of(command, origin, fb_height);
+    const void* const texture = command.GetTexID();
+    mix(drawn.hash, vertices.data(), vertices.size_bytes());
+    mix(drawn.hash, indices.data(), indices.size() * sizeof(ImDrawIdx));
+    mix(drawn.hash, &cut, sizeof cut);
+    mix(drawn.hash, &texture, sizeof texture);
+    if (texture != ImGui::GetIO().Fonts->TexID) mix(drawn.hash, &frames, sizeof frames);
+    const auto whole = [](float px) { return static_cast<int>(std::clamp(px, -1e6f, 1e6f)); };
+    drawn.box = intersection(cut, {whole(std::floor(lo.x - origin.x)), whole(std::floor(lo.y - origin.y)),
+                                   whole(std::ceil(hi.x - origin.x)), whole(std::ceil(hi.y - origin.y))});
+    return drawn;
+}
+
+DrawnFrame drawn_by(const ImDrawData& data, int fb_height, std::uint64_t frames) {
+    DrawnFrame frame;
+    for (int i = 0; i < data.CmdListsCount; ++i) {
+        const ImDrawList& list = *data.CmdLists[i];
+        std::vector<DrawnCommand>& drawn = frame.emplace_back();
+        for (const ImDrawCmd& command : list.CmdBuffer)
+            drawn.push_back(drawn_by(command, list, data.DisplayPos, fb_height, frames));
+    }
+    return frame;
+}
+
 /// Into the bound target.
 void draw_widgets() {
     glClearColor(0.0f, 0.0f, 0.0f, 1.0f);
@@ -93,30 +143,81 @@ void draw_widgets() {
     ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
 }
 
-/// Into the buffer that is not shown yet.
-void draw_widgets(int width, int height) {
-    glBindFramebuffer(GL_FRAMEBUFFER, 0);
-    glViewport(0, 0, width, height);
-    draw_widgets();
+/// Where the picture is drawn pixel by pixel, so that nothing below it is seen.
+struct Cover {
+    const ImDrawCmd* command = nullptr;
+    PixelBox at, cut;  // the picture; what of it is drawn
+    unsigned framebuffer = 0;
+    int fb_height = 0;
+};
+
+/// Copies the part: drawn as a shape it would take a software rasteriser five times as long.
+void copy_picture(const ImDrawList*, const ImDrawCmd* command) {
+    const Cover& cover = *static_cast<const Cover*>(command->UserCallbackData);
+    const PixelBox &at = cover.at, &cut = cover.cut;
+    glDisable(GL_SCISSOR_TEST);
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, cover.framebuffer);
+    glBlitFramebuffer(cut.x0 - at.x0, at.y1 - cut.y1, cut.x1 - at.x0, at.y1 - cut.y0, cut.x0,
+                      cover.fb_height - cut.y1, cut.x1, cover.fb_height - cut.y0, GL_COLOR_BUFFER_BIT,
+                      GL_NEAREST);
+    glEnable(GL_SCISSOR_TEST);
 }
 
-/// Of all that the widgets draw: shapes, and with which texture and within which rectangle.
-std::uint64_t hash_of(const ImDrawData& data) {
-    std::uint64_t hash = 0;
-    for (int i = 0; i < data.CmdListsCount; ++i) {
-        const ImDrawList& list = *data.CmdLists[i];
-        mix(hash, list.VtxBuffer.Data, static_cast<std::size_t>(list.VtxBuffer.size_in_bytes()));
-        mix(hash, list.IdxBuffer.Data, static_cast<std::size_t>(list.IdxBuffer.size_in_bytes()));
-        for (const ImDrawCmd& command : list.CmdBuffer) {
-            const float clip[] = {command.ClipRect.x, command.ClipRect.y, command.ClipRect.z,
-                                  command.ClipRect.w};
-            const void* texture = command.GetTexID();
-            mix(hash, clip, sizeof clip);
-            mix(hash, &texture, sizeof texture);
-            mix(hash, &command.ElemCount, sizeof command.ElemCount);
-        }
+template <class Call>
+void for_each_command(const ImDrawData& data, const Call& call) {
+    for (int i = 0; i < data.CmdListsCount; ++i)
+        for (ImDrawCmd& command : data.CmdLists[i]->CmdBuffer) call(*data.CmdLists[i], command);
+}
+
+/// Of the picture in this part of the target, if it fills that.
+Cover find_cover(const ImDrawData& data, const PixelBox& box, int fb_height, const ShownPicture& picture) {
+    Cover cover;
+    for_each_command(data, [&](const ImDrawList& list, const ImDrawCmd& command) {
+        if (!picture.texture || command.GetTexID() != picture.texture || command.ElemCount != 6) return;
+        const ImDrawIdx* const indices = list.IdxBuffer.Data + command.IdxOffset;
+        const auto corner = [&](int k) { return list.VtxBuffer[int(command.VtxOffset) + indices[k]].pos; };
+        const ImVec2 from = corner(0), to = corner(2);
+        const PixelBox at{int(from.x - data.DisplayPos.x), int(from.y - data.DisplayPos.y),
+                          int(to.x - data.DisplayPos.x), int(to.y - data.DisplayPos.y)};
+        const bool whole_px =
+            float(at.x0) == from.x - data.DisplayPos.x && float(at.y0) == from.y - data.DisplayPos.y;
+        const PixelBox cut = intersection(at, cut_of(command, data.DisplayPos, fb_height));
+        const bool same_size = at.x1 - at.x0 == picture.width && at.y1 - at.y0 == picture.height;
+        if (whole_px && same_size && intersection(cut, box) == box) cover = {&command, at, box, 0, fb_height};
+    });
+    return cover;
+}
+
+/// Into this part of the bound target.
+void draw_widgets(const PixelBox& box, int fb_height, const ShownPicture& picture) {
+    ImDrawData& data = *ImGui::GetDrawData();
+    GlFramebuffer source;
+    Cover cover = find_cover(data, box, fb_height, picture);
+    if (cover.command) {
+        glBindFramebuffer(GL_READ_FRAMEBUFFER, cover.framebuffer = source.get());
+        glFramebufferTexture2D(GL_READ_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D,
+                               static_cast<GLuint>(reinterpret_cast<std::uintptr_t>(picture.texture)), 0);
     }
-    return hash;
+    std::vector<ImDrawCmd> whole;
+    bool below = cover.command != nullptr;
+    for_each_command(data, [&](const ImDrawList&, ImDrawCmd& command) {
+        whole.push_back(command);
+        PixelBox cut = intersection(cut_of(command, data.DisplayPos, fb_height), box);
+        if (&command == cover.command) {
+            below = false;
+            command.UserCallback = &copy_picture;
+            command.UserCallbackData = &cover;
+        }
+        if (below) cut = {};
+        command.ClipRect = {float(cut.x0) + data.DisplayPos.x, float(cut.y0) + data.DisplayPos.y,
+                            float(cut.x1) + data.DisplayPos.x, float(cut.y1) + data.DisplayPos.y};
+    });
+    glEnable(GL_SCISSOR_TEST);
+    glScissor(box.x0, fb_height - box.y1, box.x1 - box.x0, box.y1 - box.y0);
+    draw_widgets();
+    glDisable(GL_SCISSOR_TEST);
+    auto next = whole.begin();
+    for_each_command(data, [&](const ImDrawList&, ImDrawCmd& command) { command = *next++; });
 }
 
 constexpr glm::ivec2 smallest_px(1100, 680);  // at scale 1
@@ -149,6 +250,69 @@ std::vector<InputEvent> InputQueue::take(Typing typing) {
         events_.pop_front();
     }
     return frame;
+}
+
+std::vector<PixelBox> changed_boxes(const DrawnFrame& before, const DrawnFrame& now) {
+    std::vector<PixelBox> boxes;
+    // A box takes in those that it meets: where two are drawn nothing is drawn twice.
+    const auto add = [&](PixelBox box) {
+        if (box.empty()) return;
+        for (std::size_t i = 0; i < boxes.size();) {
+            if (intersection(boxes[i], box).empty()) {
+                ++i;
+                continue;
+            }
+            box = {std::min(box.x0, boxes[i].x0), std::min(box.y0, boxes[i].y0),
+                   std::max(box.x1, boxes[i].x1), std::max(box.y1, boxes[i].y1)};
+            boxes.erase(boxes.begin() + static_cast<std::ptrdiff_t>(i));
+            i = 0;
+        }
+        boxes.push_back(box);
+    };
+    const std::vector<DrawnCommand> none;
+    for (std::size_t i = 0; i < std::max(before.size(), now.size()); ++i) {
+        std::span<const DrawnCommand> a = i < before.size() ? before[i] : none,
+                                      b = i < now.size() ? now[i] : none;
+        while (!a.empty() && !b.empty() && a.front() == b.front()) a = a.subspan(1), b = b.subspan(1);
+        while (!a.empty() && !b.empty() && a.back() == b.back())
+            a = a.first(a.size() - 1), b = b.first(b.size() - 1);
+        for (const DrawnCommand& command : a) add(command.box);
+        for (const DrawnCommand& command : b) add(command.box);
+    }
+    return boxes;
+}
+
+bool WidgetPainter::paint(int width, int height, std::uint64_t frames, const ShownPicture& picture) {
+    const ImDrawData& data = *ImGui::GetDrawData();
+    const bool resized = target_.width() != width || target_.height() != height;
+    if (resized) forget();
+    const bool whole = drawn_.empty() || data.FramebufferScale.x != 1.0f || data.FramebufferScale.y != 1.0f;
+    DrawnFrame now = drawn_by(data, height, frames);
+    const std::vector<PixelBox> boxes = changed_boxes(drawn_, now);
+    drawn_ = std::move(now);
+    if (boxes.empty()) return false;
+    target_.resize(width, height, GL_RGBA8);
+    target_.bind();
+    if (whole) {
+        draw_widgets();
+        return true;
+    }
+    for (const PixelBox& box : boxes) draw_widgets(intersection(box, {0, 0, width, height}), height, picture);
+    return true;
+}
+
+void WidgetPainter::copy_to(unsigned framebuffer) const {
+    const int width = target_.width(), height = target_.height();
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, target_.framebuffer());
+    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer);
+    glBlitFramebuffer(0, 0, width, height, 0, 0, width, height, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
+}
+
+std::vector<unsigned char> WidgetPainter::read(int& width, int& height) const {
+    width = target_.width();
+    height = target_.height();
+    return read_rgba8(target_.framebuffer(), width, height);
 }
 
 Window::Window(int width, int height, const std::string& title) {
@@ -187,6 +351,7 @@ Window::Window(int width, int height, const std::string& title) {
 }
 
 Window::~Window() {
+    painter_.reset();
     ImGui_ImplOpenGL3_Shutdown();
     ImGui_ImplGlfw_Shutdown();
     ImGui::DestroyContext();
@@ -220,16 +385,14 @@ void Window::drop_frame() {
     frame_took_s_ = glfwGetTime() - frame_began_s_;
 }
 
-bool Window::end_frame(std::uint64_t frames) {
+bool Window::end_frame(std::uint64_t frames, const ShownPicture& picture) {
     ImGui::Render();
     frame_took_s_ = glfwGetTime() - frame_began_s_;
     int width = 0, height = 0;
     glfwGetFramebufferSize(window_, &width, &height);
-    const FrameMark frame{hash_of(*ImGui::GetDrawData()), frames, width, height};
-    if (frame == shown_ && !damaged_) return false;
-    shown_ = frame;
+    if (!painter_->paint(width, height, frames, picture) && !damaged_) return false;
     damaged_ = false;
-    draw_widgets(width, height);
+    painter_->copy_to(0);
     glfwSwapBuffers(window_);
     return true;
 }
@@ -353,13 +516,11 @@ float Window::content_scale() const {
 void Window::reload_fonts() {
     ImGui_ImplOpenGL3_DestroyFontsTexture();
     ImGui_ImplOpenGL3_CreateFontsTexture();
+    painter_->forget();
 }
 
 std::vector<unsigned char> Window::read(int& width, int& height) const {
-    glfwGetFramebufferSize(window_, &width, &height);
-    draw_widgets(width, height);  // again: not every driver lets what is shown be read
-    glReadBuffer(GL_BACK);
-    return read_rgba8(0, width, height);
+    return painter_->read(width, height);
 }
 
 WidgetTarget::WidgetTarget(int width, int height) {
@@ -370,7 +531,6 @@ WidgetTarget::WidgetTarget(int width, int height) {
     io.DeltaTime = 1.0f / 60.0f;
     apply_theme(1.0f);
     ImGui_ImplOpenGL3_Init("#version 410 core");
-    target_.resize(width, height, GL_RGBA8);
 }
 
 WidgetTarget::~WidgetTarget() {
@@ -383,14 +543,15 @@ void WidgetTarget::begin() {
     ImGui::NewFrame();
 }
 
-void WidgetTarget::end() {
+void WidgetTarget::end(const ShownPicture& picture) {
     ImGui::Render();
-    target_.bind();
-    draw_widgets();
+    const ImVec2 size = ImGui::GetIO().DisplaySize;
+    painter_.paint(static_cast<int>(size.x), static_cast<int>(size.y), ++frames_, picture);
 }
 
 std::vector<unsigned char> WidgetTarget::read() const {
-    return read_rgba8(target_.framebuffer(), target_.width(), target_.height());
+    int width = 0, height = 0;
+    return painter_.read(width, height);
 }
 
 }  // namespace astrosplat

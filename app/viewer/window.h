@@ -41,6 +41,52 @@ class InputQueue {
     std::deque<InputEvent> events_;
 };
 
+/// Pixels of a window, the upper left one first; ends excluded.
+struct PixelBox {
+    int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
+    bool empty() const { return x1 <= x0 || y1 <= y0; }
+    bool operator==(const PixelBox&) const = default;
+};
+inline PixelBox intersection(const PixelBox& a, const PixelBox& b) {
+    return {std::max(a.x0, b.x0), std::max(a.y0, b.y0), std::min(a.x1, b.x1), std::min(a.y1, b.y1)};
+}
+
+/// One of the widgets' draw commands: where it draws, and a number that differs when it draws something else.
+struct DrawnCommand {
+    PixelBox box;
+    std::uint64_t hash = 0;
+    bool operator==(const DrawnCommand&) const = default;
+};
+using DrawnFrame =
+    std::vector<std::vector<DrawnCommand>>;  // of each of Dear ImGui's windows, the hindmost first
+
+/// Outside of these boxes, no two of which overlap, both frames look the same.
+std::vector<PixelBox> changed_boxes(const DrawnFrame& before, const DrawnFrame& now);
+
+/// What the widgets show as the texture of this handle: opaque, lowest row first, of this size in px.
+struct ShownPicture {
+    void* texture = nullptr;
+    int width = 0, height = 0;
+};
+
+/// Keeps the widgets' last frame, and draws of the next one what differs: filling a window of 1320x765 takes
+/// a software rasteriser 30 ms, and mostly only the picture moves.
+class WidgetPainter {
+  public:
+    /// Of what ImGui::Render() made; `frames`: differs whenever the pixels of a texture do that the widgets
+    /// show. Returns whether the frame looks different.
+    bool paint(int width, int height, std::uint64_t frames, const ShownPicture& picture);
+    /// Everything is drawn the next time.
+    void forget() { drawn_.clear(); }
+    void copy_to(unsigned framebuffer) const;
+    /// RGBA, top row first.
+    std::vector<unsigned char> read(int& width, int& height) const;
+
+  private:
+    GlTarget target_;
+    DrawnFrame drawn_;  // that the target holds
+};
+
 /// GLFW, an OpenGL context and Dear ImGui's backends, owned for as long as the viewer runs.
 class Window {
   public:
@@ -62,10 +108,9 @@ class Window {
     bool begin_frame(bool opening);
     /// Ends the frame without showing it.
     void drop_frame();
-    /// Draws the widgets and shows the frame, unless it would look like the one before: filling the window
-    /// takes a software rasteriser 30 ms. `frames`: differs whenever the pixels of a texture do that the
-    /// widgets show. Returns whether it was shown.
-    bool end_frame(std::uint64_t frames);
+    /// Draws the widgets and shows the frame, unless it would look like the one before
+    /// (WidgetPainter::paint). Returns whether it was shown.
+    bool end_frame(std::uint64_t frames, const ShownPicture& picture);
 
     bool close_requested();  // and forgets it
     std::vector<fs::path> take_dropped();
@@ -86,15 +131,8 @@ class Window {
     /// Gives the widgets a portion of what the hand did, as if it were now.
     void feed_frame(bool opening);
 
-    /// The image of a frame.
-    struct FrameMark {
-        std::uint64_t widgets = 0, frames = 0;
-        int width = 0, height = 0;
-        bool operator==(const FrameMark&) const = default;
-    };
-
     GLFWwindow* window_ = nullptr;
-    FrameMark shown_;
+    std::unique_ptr<WidgetPainter> painter_ = std::make_unique<WidgetPainter>();  // ends before the context
     bool damaged_ = true;  // the system wants the frame drawn again
     InputQueue input_;
     double mouse_x_ = 0.0, mouse_y_ = 0.0;  // as the widgets know it
@@ -118,12 +156,13 @@ class WidgetTarget {
 
     /// Between these the widgets are called.
     void begin();
-    void end();
+    void end(const ShownPicture& picture = {});
     /// The frame last ended as 8-bit RGBA, top row first.
     std::vector<unsigned char> read() const;
 
   private:
-    GlTarget target_;
+    WidgetPainter painter_;
+    std::uint64_t frames_ = 0;
 };
 
 }  // namespace astrosplat
