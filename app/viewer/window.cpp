@@ -364,7 +364,8 @@ void Window::wait(double seconds) {
         glfwWaitEventsTimeout(seconds);
     else
         glfwPollEvents();
-    frame_began_s_ = glfwGetTime();  // until now, not until the frame is made, a key is known to be held
+    // What is let go while the frame is made counts as held until here only: a long frame repeats no key.
+    frame_began_s_ = glfwGetTime();
 }
 
 void Window::wake() { glfwPostEmptyEvent(); }
