@@ -44,9 +44,9 @@ constexpr std::int64_t shaded_bytes = 40;
 // and colours by direction.
 constexpr std::int64_t capture_row_bytes = 68, harmonics_row_bytes = 180;
 constexpr std::int64_t shape_bytes = 68, harmonics_bytes = 204;
-// A row of a .splats file on top of its bytes, whose rows are put in order of id: 41, as VmHWM shows for a
-// file of 2.5 M splats, and a little for what follows at once.
-constexpr std::int64_t sorting_bytes = 44;
+// A row of a .splats file on top of its bytes, whose rows are put in order of id: bins, the order and a
+// column in it; and the last pages of all arrays, 2 MiB each. As VmHWM shows for files of 1 to 12 M splats.
+constexpr std::int64_t sorting_bytes = 20, most_last_pages = 22'000'000;
 constexpr std::int64_t streamed_bytes_per_block = 128 * shaded_bytes + 256;  // sample, bounds
 constexpr std::int64_t catalogue_bytes_per_star = 100;                       // HYG; Hipparcos, compressed
 
@@ -74,7 +74,8 @@ LayerNeed need_of_file(const LayerParams& layer) try {
     if (format == "splats") {
         const NativeBlocks file(path);
         need.splats = file.splats();
-        need.making = file.bytes() + need.splats * sorting_bytes;
+        need.making = file.bytes() + need.splats * sorting_bytes +
+                      std::min(need.splats * sorting_bytes, most_last_pages);
         need.streamed = static_cast<std::int64_t>(file.size()) * streamed_bytes_per_block;
         need.may_stream =
             !is_mixed_in_display_space(layer.render) && why_not_streamed(file, look_of(layer)).empty();
@@ -110,7 +111,7 @@ LayerNeed need_of_source(const SetCache& cache, const LayerParams& layer) {
     const BodiesPlan plan = plan_bodies(source, std::move(meshes), layer.name);
     const std::int64_t splats = expected_splats(plan.meshes, plan.structure);
     return {.splats = std::min(splats, source.splats > 0 ? source.splats : most_splats),
-            .making = bodies_memory_bytes(plan.meshes, splats)};
+            .making = bodies_memory_bytes(plan.meshes, plan.structure, splats)};
 }
 
 /// Loads meshes and pictures where `count` alone does not tell and the set is not in the cache. Throws as
@@ -314,6 +315,24 @@ JobNeed need_of(const BatchPlan& plan, std::vector<LayerNeed> layers) {
     return need;
 }
 
+/// Pictures that take seconds to read are read once, for a sample: of so many texels bodies are hardly ever
+/// so few that none is wanted.
+bool has_large_picture(const BatchPlan& plan) try {
+    constexpr std::int64_t large = 16'000'000;  // texels
+    return std::ranges::any_of(plan.scene.layers, [&](const LayerParams& layer) {
+        const SourceParams& source = layer.source;
+        if (!ever_visible(plan.scene, layer) || source.kind != SourceKind::mesh || makes_columns(source))
+            return false;
+        return std::ranges::any_of(source.meshes, [](const MeshInput& mesh) {
+            if (mesh.texture.empty()) return false;
+            const ImageRows rows = open_picture_rows(mesh.texture.front()).rows;
+            return rows.width * rows.height >= large;
+        });
+    });
+} catch (const InputError&) {  // which its reader will say
+    return false;
+}
+
 [[noreturn]] void refuse_limit(std::int64_t least, std::int64_t limit) {
     constexpr double gib = 1073741824.0;
     bad_input("--memory", "",
@@ -324,7 +343,7 @@ JobNeed need_of(const BatchPlan& plan, std::vector<LayerNeed> layers) {
 }  // namespace
 
 JobEstimate estimate(const BatchPlan& plan) {
-    {
+    if (!has_large_picture(plan)) {
         SampledRun sample(plan, SampledRun::Layers::there);
         JobEstimate job = estimate(plan, sample);
         if (!job.guesses_much) return job;

@@ -78,13 +78,13 @@ std::vector<DetailPart> add_splats(const PictureLight& picture, const UvSurface&
     progress.at(0.3);
     std::optional<AxisDepths> axis = axis_of(rest, params, task.layer_name);
     if (params.kind == StructureKind::axis && !axis) params.kind = StructureKind::walls;
-    const Image brightest = brightest_channel(picture.light), without_stars = brightest_channel(rest);
-    const Placement placement = make_placement(rest, params, surface.texels_per_unit(), surface.flat(),
-                                               task.seed, stars.all, std::move(axis));
+    const double dust = dust_of(params);
+    const Image without_stars = dust > 0.0 ? brightest_channel(rest) : Image();
+    Placement placement = make_placement(rest, params, surface.texels_per_unit(), surface.flat(), task.seed,
+                                         stars.all, std::move(axis));
     progress.at(0.45);
     const Opacity opacity{float(params.opacity), float(params.density)};
     const std::vector<Band> bands = make_bands(rest.width);
-    const double dust = dust_of(params);
     Image emission;  // of all bands, where there is dust
     const bool detailed = placement.detail.any();
     const Image all_bands = detailed ? copied(rest) : Image();
@@ -92,13 +92,16 @@ std::vector<DetailPart> add_splats(const PictureLight& picture, const UvSurface&
     release_spare_pages();  // of reading and of the fields: bands and their splats are the most there is
     split_bands(std::move(rest), bands, dust > 0.0, [&](const Band& band, const Image& light) {
         progress.check();
+        release_spare_pages();  // of splitting: there are more splats before it is done again
         if (dust > 0.0) add(light, emission);
         const bool coarsest = band.index + 1 == int(bands.size());
         for (const BandSplats& size : band_splats(band, coarsest, placement))
-            add_band(whole_band(light), size, brightest, picture.alpha, placement, opacity, set);
+            add_band(whole_band(light), size, picture.light, picture.alpha, placement, opacity, set);
         if (detailed && band.index == 0)
-            detail = add_detail(picture.light, all_bands, light, brightest, picture.alpha, params, placement,
-                                opacity, progress.part(0.45, 0.55), set);
+            detail = add_detail(picture.light, all_bands, light, picture.alpha, params, placement, opacity,
+                                progress.part(0.45, 0.55), set);
+        if (none_in_knots(std::span(bands).subspan(std::size_t(band.index) + 1), placement))
+            placement.knots = {};  // two numbers a texel
         progress.at(0.55 + 0.4 * (band.index + 1.0) / double(bands.size()));
     });
     if (dust > 0.0)
@@ -224,7 +227,7 @@ constexpr double most_expected = 1.08;  // times as many splats as are expected
 MadeSplats made_of(Texture& texture, const UvSurface& surface, const BodiesTask& task, double expected,
                    bool once_more, const Progress& progress) {
     PictureLight picture = picture_light(texture, task.params.border);
-    if (!once_more) texture.image.pixels = {};
+    if (!once_more) texture.image.pixels = Buffer<float>();
     MadeSplats made;
     reserve_splats(made.set, std::int64_t(most_expected * expected));
     made.detail = add_splats(picture, surface, task, progress, made.set);
@@ -260,7 +263,7 @@ SplatSet bodies_of(const PictureOnMesh& picture, std::size_t number, Texture& te
                                    task.layer_name, rows, most, texture.image.width, texture.image.height));
             continue;
         }
-        texture.image.pixels = {};
+        texture.image.pixels = Buffer<float>();
         release_spare_pages();  // of the bands
         const FrontFit fit = fit_front(made.set, std::move(made.light), texture.times > 1,
                                        progress.part(made_share, 1.0), made.detail);
@@ -299,7 +302,7 @@ SplatSet make_bodies(std::vector<TexturedMesh> meshes, const StructureParams& pa
     for (const PictureOnMesh& picture : pictures)
         expected.push_back(expected_splats(picture.texture(), params));
     const double all = std::accumulate(expected.begin(), expected.end(), 0.0);
-    claim_memory(bodies_memory_bytes(meshes, std::int64_t(all)) + detail_memory_bytes(meshes, params),
+    claim_memory(bodies_memory_bytes(meshes, params, std::int64_t(all)) + detail_memory_bytes(meshes, params),
                  fmt::format("making bodies for layer '{}'", layer_name));
     SplatSet set;
     for (std::size_t i = 0; i < pictures.size(); ++i) {

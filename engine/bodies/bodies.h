@@ -40,7 +40,8 @@ std::int64_t expected_splats(std::span<const TexturedMesh> meshes, const Structu
 
 /// Bytes that make_bodies() will take at its peak beside the meshes and pictures for so many splats, within
 /// about 15 %.
-std::int64_t bodies_memory_bytes(std::span<const TexturedMesh> meshes, std::int64_t splats);
+std::int64_t bodies_memory_bytes(std::span<const TexturedMesh> meshes, const StructureParams& params,
+                                 std::int64_t splats);
 
 /// No picture of more texels could be made bodies of in so many bytes.
 std::int64_t most_texels_within(std::int64_t bytes);

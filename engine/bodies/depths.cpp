@@ -481,6 +481,13 @@ void copy_splat(const PlacedBlock& from, int i, PlacedBlock& to, int k) {
     to.knot[k] = from.knot[i];
 }
 
+bool none_in_knots(std::span<const Band> bands, const Placement& placement) {
+    return std::ranges::all_of(bands, [&](const Band& band) {
+        return std::ranges::all_of(band_splats(band, &band == &bands.back(), placement),
+                                   [](const BandSplats& splats) { return splats.sigma > widest_in_knots; });
+    });
+}
+
 void place(const Placement& placement, const BandSplats& splats, PlacedBlock& block) {
     place_freely(placement, splats, block);
     std::fill_n(block.knot, block.count, -1);

@@ -71,7 +71,7 @@ std::vector<Band> bands_of(int octaves) {
 }  // namespace
 
 std::vector<DetailPart> add_detail(const Image& with_stars, const Image& light, const Image& finest,
-                                   const Image& brightest, const Image& alpha, const StructureParams& params,
+                                   const Image& alpha, const StructureParams& params,
                                    const Placement& placement, const Opacity& opacity,
                                    const Progress& progress, PictureSplats& out) {
     const DetailLevels& levels = placement.detail;
@@ -103,7 +103,7 @@ std::vector<DetailPart> add_detail(const Image& with_stars, const Image& light, 
             [&](const Band& band, const Image& of_band) {
                 for (const BandSplats& size : detail_splats(band, part.octaves, placement)) {
                     const BandLight here{of_band, part.shown, part.region, float(1 << part.octaves)};
-                    part.ranges.push_back(add_band(here, size, brightest, alpha, placement, opacity, out));
+                    part.ranges.push_back(add_band(here, size, with_stars, alpha, placement, opacity, out));
                 }
             });
     }

@@ -21,7 +21,7 @@ struct DetailPart {
 /// `light`: of the picture, with stars and without; `finest`: of the band that they take the place of. Throws
 /// Cancelled; NotEnoughMemory, an InputError.
 std::vector<DetailPart> add_detail(const Image& with_stars, const Image& light, const Image& finest,
-                                   const Image& brightest, const Image& alpha, const StructureParams& params,
+                                   const Image& alpha, const StructureParams& params,
                                    const Placement& placement, const Opacity& opacity,
                                    const Progress& progress, PictureSplats& out);
 

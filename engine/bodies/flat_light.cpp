@@ -261,7 +261,7 @@ Image FlatLight::sum() const {
         double now = missing - still_missing;
         for (std::size_t g = to; g < grid; ++g) now -= doubling_variance * grids_[g].step * grids_[g].step;
         const double step = grids_[grid].step;
-        if (now > 0.0) sum = gaussian_blur(sum, sampled_sigma(now / (step * step)));
+        if (now > 0.0) sum = gaussian_blur(std::move(sum), sampled_sigma(now / (step * step)));
         for (; grid > to; --grid) sum = doubled(sum, grids_[grid - 1].width, grids_[grid - 1].height);
         missing = still_missing;
     };
@@ -320,10 +320,11 @@ void FlatLight::correct(Fraction fraction, int channel, bool overshoot) {
         const double step = grids_[grid].step;
         const auto missing_px = [&](double wanted) { return std::sqrt(wanted - variance) / step; };
         if (missing_px(std::max(seen, variance)) > narrowest_blur_px) {
-            fraction.wanted = gaussian_blur(fraction.wanted, missing_px(seen));
-            fraction.seen = gaussian_blur(fraction.seen, missing_px(seen));
+            fraction.wanted = gaussian_blur(std::move(fraction.wanted), missing_px(seen));
+            fraction.seen = gaussian_blur(std::move(fraction.seen), missing_px(seen));
             variance = seen;
         }
+        factor = {};  // before the next one takes as much
         factor = sharpens ? sharpening_factor_of(fraction, missing_px(around * seen))
                           : factor_of(fraction, overshoot);
         sharpened = sharpens;

@@ -88,14 +88,13 @@ class Steps {
     /// step down the square of what differs there weighs the ratio by seen^(1 - 2 * .58): what is dark counts
     /// beside what is bright. What is too bright is weighed so; for what is to be raised less of that is as
     /// good, and flux is kept. The last step keeps it. Each step asks for every channel once.
-    Fraction weighted_ratio(const Image& seen, int channel, bool last) {
+    Fraction weighted_ratio(Image seen, int channel, bool last) {
         Image& momentum = momentum_[channel];
         const bool first = momentum.pixels.empty();
         if (first) momentum = unfilled_image(seen.width, seen.height, 1);
-        Fraction ratio{unfilled_image(seen.width, seen.height, 1),
-                       unfilled_image(seen.width, seen.height, 1)};
+        Fraction ratio{unfilled_image(seen.width, seen.height, 1), std::move(seen)};
         parallel_each(momentum.pixels.size(), 65536, [&](std::size_t i) {
-            float here = seen.pixels[3 * i + channel] + sky;
+            float here = ratio.seen.pixels[i] + sky;
             const auto held = [](float r) { return std::clamp(r, 1.0f / largest_ratio, largest_ratio); };
             const float now = held((target_.pixels[3 * i + channel] + sky) / here);
             const float step = first ? now : held(now * momentum.pixels[i]);
@@ -110,7 +109,11 @@ class Steps {
 
     /// Takes the colours a step on from what is seen.
     void take(Image seen, FlatLight& flat, bool last) {
-        for (int c = 0; c < 3; ++c) flat.correct(weighted_ratio(seen, c, last), c, !last);
+        std::array<Image, 3> channels;  // each is used up when it is taken
+        for (int c = 0; c < 3; ++c) channels[c] = channel_of(seen, c);
+        seen = {};
+        for (int c = 0; c < 3; ++c) flat.correct(weighted_ratio(std::move(channels[c]), c, last), c, !last);
+        if (last) momentum_ = {};
     }
 
   private:
@@ -186,10 +189,10 @@ Image FittedView::supposed() {
 
 Image FittedView::rendered(const Progress& progress) {
     share_ = {};
-    Image flat = flat_.sum();
     release_spare_pages();  // of the steps
     Image beauty = render({&layer_, 1}, camera_, nullptr, settings_, progress).beauty;
-    if (beauty.width == flat.width && beauty.height == flat.height) beauty = halved(beauty);
+    if (beauty.width == target_.width && beauty.height == target_.height) beauty = halved(beauty);
+    Image flat = flat_.sum();
     share_ = share_of(beauty, halved(flat));
     beauty = {};
     release_spare_pages();
@@ -352,6 +355,7 @@ FrontFit fit_front(PictureSplats& set, Image light, bool small, const Progress& 
                    std::span<const DetailPart> detail) {
     FittedView view(set, light, small);
     const int steps_after = small || set.absorbs ? last_steps_of_detail : last_steps;
+    const std::int64_t width = light.width, height = light.height;
     light = {};
     Image seen = view.supposed();
     for (int step = 0; step < first_steps; ++step) {
@@ -366,13 +370,15 @@ FrontFit fit_front(PictureSplats& set, Image light, bool small, const Progress& 
         progress.at(0.7 + 0.3 * (step + 1) / steps_after);
         seen = view.seen();  // after the last step the light of wide areas is right, too
     }
+    const double psnr_db = view.psnr_db(seen);
     view.match_cells(seen);
+    seen = {};
     view.match_cells(view.seen());  // between the cells' middles a factor is that of neither
     if (!detail.empty()) {
         constexpr double texel_deviation = 0.2887;  // of a square's light, texels
         AboutDetail about;
-        about.coarser = flat_light_of(SplatRange::Of::bands, set, seen.width, seen.height, 0.25 * filter_px);
-        about.stars = flat_light_of(SplatRange::Of::stars, set, seen.width, seen.height, texel_deviation);
+        about.coarser = flat_light_of(SplatRange::Of::bands, set, width, height, 0.25 * filter_px);
+        about.stars = flat_light_of(SplatRange::Of::stars, set, width, height, texel_deviation);
         for (const int count : detail_steps) {
             about.share = view.share_by_texel(progress);
             Buffer<glm::vec3> colors = set.splats.color;
@@ -383,7 +389,7 @@ FrontFit fit_front(PictureSplats& set, Image light, bool small, const Progress& 
             set.splats.color = std::move(colors);
         }
     }
-    return {first_steps + steps_after, view.psnr_db(seen)};
+    return {first_steps + steps_after, psnr_db};
 }
 
 }  // namespace astrosplat

@@ -55,7 +55,7 @@ Image common_share(Image brightest, double blur) {
     const Image means = gaussian_blur(brightest, blur);
     parallel_each(brightest.pixels.size(), 65536,
                   [&](std::size_t i) { brightest.pixels[i] *= brightest.pixels[i]; });
-    Image share = gaussian_blur(brightest, blur);
+    Image share = gaussian_blur(std::move(brightest), blur);
     parallel_each(share.pixels.size(), 65536, [&](std::size_t i) {
         const float mean = means.pixels[i], square = share.pixels[i];
         const float deviation = std::sqrt(std::max(0.0f, square - mean * mean));
@@ -85,9 +85,9 @@ Image take_band(Image& light, double blur, bool fill_holes) {
     const Image share = common_share(std::move(brightest), blur);
     Image band = unfilled_image(light.width, light.height, 3);
     for (std::size_t c = 0; c < 3; ++c) {
-        Image channel = channel_of(light, int(c));
-        multiply(channel, factor);
-        const Image mean = gaussian_blur(channel, blur);
+        Image mean = channel_of(light, int(c));
+        multiply(mean, factor);
+        mean = gaussian_blur(std::move(mean), blur);
         parallel_each(mean.pixels.size(), 65536, [&](std::size_t i) {
             float& here = light.pixels[3 * i + c];
             const float common = std::max(0.0f, mean.pixels[i] * share.pixels[i]);

@@ -23,7 +23,8 @@
 namespace astrosplat {
 namespace {
 
-constexpr std::int64_t bytes_a_texel = 92;                 // while bodies are made, measured
+constexpr std::int64_t bytes_a_texel = 60;                 // while bodies are made, measured
+constexpr std::int64_t bytes_of_dust = 4;                  // the same, where there is dust
 constexpr int most_pictures = 255;                         // ids hold 8 bits of their number
 constexpr std::int64_t sample_px = 64, margin_px = 16;     // of a sample; around it, for its fine bands
 constexpr std::int64_t apart_px = 240, most_samples = 16;  // along a side
@@ -174,13 +175,15 @@ std::int64_t most_texels_within(std::int64_t bytes) {
     return std::max<std::int64_t>(1, bytes / bytes_a_texel);
 }
 
-std::int64_t bodies_memory_bytes(std::span<const TexturedMesh> meshes, std::int64_t splats) {
-    // Measured. Blocks that wait for their next use are a part of it (core/buffer.cpp).
-    constexpr std::int64_t bytes_a_splat = 44, bytes_on_mesh = 68;
-    constexpr std::int64_t most_waiting = std::int64_t{256} << 20;
-    const std::int64_t images = largest_picture(meshes) * bytes_a_texel;
-    const std::int64_t used = std::max(images + splats * bytes_a_splat, splats * bytes_on_mesh);
-    return used + std::max(used / 8, std::min(most_waiting, images));
+std::int64_t bodies_memory_bytes(std::span<const TexturedMesh> meshes, const StructureParams& params,
+                                 std::int64_t splats) {
+    // Measured. What does not grow with the picture is what malloc keeps of reading it and of a sample's
+    // bodies, and the ends of blocks: 64 MiB, of 1.9 to 8.6 M texels.
+    constexpr std::int64_t bytes_a_splat = 44, bytes_sorted = 84;
+    constexpr std::int64_t most_besides = std::int64_t{64} << 20;
+    const std::int64_t of_texel = bytes_a_texel + (dust_of(params) > 0.0 ? bytes_of_dust : 0);
+    const std::int64_t images = largest_picture(meshes) * of_texel;
+    return std::max(images + splats * bytes_a_splat, splats * bytes_sorted) + std::min(most_besides, images);
 }
 
 namespace {
@@ -190,15 +193,15 @@ std::int64_t most_bytes(std::span<const TexturedMesh> meshes, const StructurePar
     double splats = 0.0;
     for (const PictureOnMesh& picture : pictures_of(meshes))
         splats += splats_at_most(picture.texture().image.width, picture.texture().image.height, params);
-    return bodies_memory_bytes(meshes, std::int64_t(splats));
+    return bodies_memory_bytes(meshes, params, std::int64_t(splats));
 }
 
 // How much of the limit is used; more than 1 is too much.
 double used_share(std::span<const TexturedMesh> meshes, const StructureParams& params,
                   const BodiesLimit& limit) {
     const std::int64_t splats = expected_splats(meshes, params);
-    const double memory =
-        double(bodies_memory_bytes(meshes, splats)) / double(std::max<std::int64_t>(1, limit.room_bytes));
+    const double memory = double(bodies_memory_bytes(meshes, params, splats)) /
+                          double(std::max<std::int64_t>(1, limit.room_bytes));
     if (limit.splats <= 0) return memory;
     return std::max(memory, double(splats) / double(limit.splats));
 }

@@ -50,10 +50,10 @@ void shade(const Candidate& splat, float hiding, float footprint, const Opacity&
 struct BandMaker {
     const BandLight& band;
     const BandSplats& splats;
-    const Image &brightest, &alpha;
+    const Image &picture, &alpha;
     const Placement& placement;
     const Opacity& opacity;
-    SplatLattice lattice{brightest.width, brightest.height, splats.spacing, band.region};
+    SplatLattice lattice{picture.width, picture.height, splats.spacing, band.region};
 
     // A cell's splat, where there is light and it is not thinned out.
     std::optional<Candidate> candidate_of(const LatticeCell& cell) const {
@@ -71,7 +71,7 @@ struct BandMaker {
             splat.y >= float(part.y + part.height))
             return {};
         if (splats.index == 0 && placement.detail.at(splat.x, splat.y) != splats.octaves) return {};
-        const LinearSample place(brightest, splat.x, splat.y);
+        const LinearSample place(picture, splat.x, splat.y);
         const LinearSample fine(band.light, (splat.x - float(band.shown.x)) * band.times,
                                 (splat.y - float(band.shown.y)) * band.times);
         splat.light = share_of(placement, splats, splat.x, splat.y) *
@@ -80,7 +80,7 @@ struct BandMaker {
         if (splat.amplitude <= 0.0f) return {};
         splat.opacity_limit = alpha.pixels.empty() ? 1.0f : place.of(alpha);
         if (splat.opacity_limit <= 0.0f) return {};
-        splat.brightest = place.of(brightest);
+        splat.brightest = place.brightest_of(picture);
         const float kept = kept_share(splat.amplitude, splat.brightest, splats);
         if (as_uniform(placement.hash_of(splat.id, shared::PURPOSE_DENSITY)) >= kept) return {};
         const float gain = splats.spacing * splats.spacing / kept;
@@ -177,11 +177,10 @@ float Opacity::depth_of(float brightest, float alpha) const {
 
 float boost_of(float tau) { return tau > 1e-4f ? tau / (1.0f - as_exp(-tau)) : 1.0f; }
 
-SplatRange add_band(const BandLight& band, const BandSplats& splats, const Image& brightest,
-                    const Image& alpha, const Placement& placement, const Opacity& opacity,
-                    PictureSplats& out) {
+SplatRange add_band(const BandLight& band, const BandSplats& splats, const Image& picture, const Image& alpha,
+                    const Placement& placement, const Opacity& opacity, PictureSplats& out) {
     out.ranges.push_back(
-        add_on_lattice(BandMaker{band, splats, brightest, alpha, placement, opacity}, splats.sigma, out));
+        add_on_lattice(BandMaker{band, splats, picture, alpha, placement, opacity}, splats.sigma, out));
     if (splats.octaves > 0) out.ranges.back().of = SplatRange::Of::detail;
     return out.ranges.back();
 }

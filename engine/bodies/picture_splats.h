@@ -69,9 +69,8 @@ inline BandLight whole_band(const Image& light) {
 }
 
 /// Adds a band's splats. `picture` is the whole picture's light, whose brightness decides the opacity.
-SplatRange add_band(const BandLight& band, const BandSplats& splats, const Image& brightest,
-                    const Image& alpha, const Placement& placement, const Opacity& opacity,
-                    PictureSplats& out);
+SplatRange add_band(const BandLight& band, const BandSplats& splats, const Image& picture, const Image& alpha,
+                    const Placement& placement, const Opacity& opacity, PictureSplats& out);
 
 /// Adds one splat for each Gaussian of a star, at a depth of the layer's own distribution.
 void add_picture_stars(const PictureStars& stars, const Placement& placement, const Opacity& opacity,

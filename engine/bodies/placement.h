@@ -162,6 +162,9 @@ void add_small(float x, float y, std::uint32_t random, PlacedBlock& block);
 void copy_splat(const DepthBlock& from, int i, DepthBlock& to, int k);
 void copy_splat(const PlacedBlock& from, int i, PlacedBlock& to, int k);
 
+/// Whether no splats of these bands, which end with the coarsest, follow a knot.
+bool none_in_knots(std::span<const Band> bands, const Placement& placement);
+
 /// The share of the light at a place of the picture that such splats show, 0..1.
 float share_of(const Placement& placement, const BandSplats& splats, float x, float y);
 

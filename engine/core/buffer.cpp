@@ -6,6 +6,7 @@
 
 #include <sys/mman.h>
 
+#include <map>
 #include <mutex>
 
 namespace astrosplat {
@@ -36,9 +37,8 @@ void* map_block(std::size_t size) {
     return first + head;
 }
 
-// The blocks of this process. Those in use and the spare ones together exceed the most that was ever in use
-// at once by an eighth or by 256 MiB at most: what a stage takes only for a while is not in that most, but
-// wanted again next time.
+// The blocks of this process. Those in use and the spare ones together never exceed the most that was ever in
+// use at once: whatever their sizes, new blocks are made of the pages of spare ones.
 class Blocks {
   public:
     Blocks() { spare_.reserve(most_spare); }
@@ -46,27 +46,28 @@ class Blocks {
     void* take(std::size_t size) {
         const std::lock_guard lock(mutex_);
         void* memory = take_spare(size);
-        if (!memory) memory = map_block(size);
+        if (!memory) memory = map_of_spare(size);
         if (!memory) {
             drop_spare(0);
-            memory = map_block(size);
+            memory = map_of_spare(size);
         }
         if (!memory) throw std::bad_alloc();
         used_bytes_ += size;
         most_used_bytes_ = std::max(most_used_bytes_, used_bytes_);
-        drop_spare(most_used_bytes_ - used_bytes_ + std::max(most_used_bytes_ / 8, least_more));
+        drop_spare(most_used_bytes_ - used_bytes_);
         return memory;
     }
 
     // The system may take the pages when it is short of some; else they are here when they are wanted next.
     void give_back(void* memory, std::size_t size) noexcept {
+        char* const block = static_cast<char*>(memory);
         const std::lock_guard lock(mutex_);
         used_bytes_ -= size;
         if (spare_.size() == most_spare || madvise(memory, size, MADV_FREE) != 0) {
-            munmap(memory, size);
+            unmap({block, size});
             return;
         }
-        spare_.push_back({memory, size});
+        spare_.push_back({block, size});
         spare_bytes_ += size;
     }
 
@@ -77,7 +78,7 @@ class Blocks {
 
   private:
     struct Block {
-        void* memory;
+        char* memory;
         std::size_t size;
     };
 
@@ -92,20 +93,54 @@ class Blocks {
         return memory;
     }
 
+    // A new block with the pages of the oldest spare ones, as far as they go: moving them costs next to
+    // nothing, and fresh ones would have to be cleared while those stay. Null when there is no room.
+    void* map_of_spare(std::size_t size) {
+        char* const block = static_cast<char*>(map_block(size));
+        if (!block) return nullptr;
+        std::size_t filled = 0;
+        while (filled < size && !spare_.empty() && pieces_.size() < most_pieces) {
+            Block& from = spare_.front();
+            const auto last = std::prev(pieces_.lower_bound(from.memory + from.size));
+            const std::size_t moved = std::min(last->second, size - filled);
+            pieces_[block + filled] = moved;
+            char* const place = last->first + last->second - moved;
+            if (mremap(place, moved, moved, MREMAP_MAYMOVE | MREMAP_FIXED, block + filled) == MAP_FAILED) {
+                pieces_.erase(block + filled);  // where the rest was, there may be nothing, or another's
+                unmap({block, filled});
+                return nullptr;
+            }
+            filled += moved;
+            spare_bytes_ -= moved;
+            from.size -= moved;
+            last->second -= moved;
+            if (last->second == 0) pieces_.erase(last);
+            if (from.size == 0) spare_.erase(spare_.begin());
+        }
+        if (filled < size) pieces_[block + filled] = size - filled;
+        return block;
+    }
+
+    void unmap(const Block& block) noexcept {
+        pieces_.erase(pieces_.lower_bound(block.memory), pieces_.lower_bound(block.memory + block.size));
+        munmap(block.memory, block.size);
+    }
+
     // The oldest, until at most `bytes` are left.
     void drop_spare(std::size_t bytes) {
         std::size_t count = 0;
         for (; spare_bytes_ > bytes; ++count) {
-            munmap(spare_[count].memory, spare_[count].size);
+            unmap(spare_[count]);
             spare_bytes_ -= spare_[count].size;
         }
         spare_.erase(spare_.begin(), spare_.begin() + std::ptrdiff_t(count));
     }
 
-    static constexpr std::size_t most_spare = 256;                     // blocks
-    static constexpr std::size_t least_more = std::size_t{256} << 20;  // bytes
+    static constexpr std::size_t most_spare = 256;    // blocks
+    static constexpr std::size_t most_pieces = 4096;  // of 65530 that the system maps
     std::mutex mutex_;
-    std::vector<Block> spare_;  // by age
+    std::vector<Block> spare_;             // by age
+    std::map<char*, std::size_t> pieces_;  // of all blocks, in use or spare: what can be moved at once
     std::size_t used_bytes_ = 0, most_used_bytes_ = 0, spare_bytes_ = 0;
 };
 

@@ -211,11 +211,27 @@ Image doubled(const Image& image, std::int64_t width, std::int64_t height) {
     return out;
 }
 
-Image gaussian_blur(const Image& image, double sigma_px, double widest_direct_px) {
+namespace {
+
+// `used_up`: the image itself, where it is not wanted any more.
+Image blurred(const Image& image, Image* used_up, double sigma_px, double widest_direct_px) {
     if (sigma_px <= widest_direct_px || std::max(image.width, image.height) < 4)
         return convolved_with_gaussian(image, sigma_px);
+    const std::int64_t width = image.width, height = image.height;
     const double rest = std::sqrt((sigma_px * sigma_px - halving_variance) / 4.0);
-    return doubled(gaussian_blur(halved(image), rest, widest_direct_px), image.width, image.height);
+    Image half = halved(image);
+    if (used_up) *used_up = {};
+    return doubled(blurred(half, &half, rest, widest_direct_px), width, height);
+}
+
+}  // namespace
+
+Image gaussian_blur(const Image& image, double sigma_px, double widest_direct_px) {
+    return blurred(image, nullptr, sigma_px, widest_direct_px);
+}
+
+Image gaussian_blur(Image&& image, double sigma_px, double widest_direct_px) {
+    return blurred(image, &image, sigma_px, widest_direct_px);
 }
 
 Image opened(Image image, std::int64_t reach_px) {

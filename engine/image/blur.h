@@ -19,6 +19,10 @@ Image convolved_with_gaussian(const Image& image, double sigma_px);
 /// to a quarter less or more.
 Image gaussian_blur(const Image& image, double sigma_px, double widest_direct_px = 4.0);
 
+/// The same of an image that is not wanted any more: a wide blur gives its memory back before it takes its
+/// own.
+Image gaussian_blur(Image&& image, double sigma_px, double widest_direct_px = 4.0);
+
 /// Half as wide and high (rounded up): each pixel a binomial average, weights 1 3 3 1 a side, about the
 /// corner of four.
 Image halved(const Image& image);

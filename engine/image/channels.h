@@ -62,6 +62,19 @@ class LinearSample {
         return top * (1.0f - ty_) + bottom * ty_;
     }
 
+    /// Of max(R, G, B), or of the only channel.
+    float brightest_of(const Image& image) const {
+        const std::int64_t n = image.channels;
+        const auto at = [&](std::int64_t pixel) {
+            const float* const p = image.pixels.data() + pixel * n;
+            return n < 3 ? p[0] : std::max({p[0], p[1], p[2]});
+        };
+        const std::int64_t below = pixel_ + down_;
+        const float top = at(pixel_) * (1.0f - tx_) + at(pixel_ + right_) * tx_;
+        const float bottom = at(below) * (1.0f - tx_) + at(below + right_) * tx_;
+        return top * (1.0f - ty_) + bottom * ty_;
+    }
+
   private:
     std::int64_t pixel_, right_, down_;  // pixels: the upper left one, and to its neighbours
     float tx_, ty_;                      // shares of these

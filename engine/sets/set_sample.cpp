@@ -53,8 +53,9 @@ Making making_of(const BodiesPlan& plan, std::int64_t limit) {
     Making making;
     making.whole_splats = expected_splats(plan.meshes, plan.structure);
     making.splats = limit > 0 ? std::min(making.whole_splats, limit) : making.whole_splats;
-    making.bytes = std::int64_t(double(bodies_memory_bytes(plan.meshes, making.whole_splats)) *
-                                double(making.splats) / std::max(1.0, double(making.whole_splats)));
+    making.bytes =
+        std::int64_t(double(bodies_memory_bytes(plan.meshes, plan.structure, making.whole_splats)) *
+                     double(making.splats) / std::max(1.0, double(making.whole_splats)));
     return making;
 }
 

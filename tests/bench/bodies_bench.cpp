@@ -32,7 +32,8 @@ void bodies(benchmark::State& state) {
     for (auto _ : state) splats = make_bodies(meshes, params, 1, "galaxy").size();
     const auto texels = double(width * height);
     state.counters["texel_B"] = double(peak_bytes() - before) / texels;
-    state.counters["told_B"] = double(bodies_memory_bytes(meshes, expected_splats(meshes, params))) / texels;
+    state.counters["told_B"] =
+        double(bodies_memory_bytes(meshes, params, expected_splats(meshes, params))) / texels;
     state.counters["Mpx"] = 1e-6 * texels;
     state.counters["Msplats"] = 1e-6 * double(splats);
 }

@@ -210,6 +210,48 @@ TEST_F(Memory, CapturesAreCountedWithTheirShapesAndHarmonics) {
     }
 }
 
+// Away from them, so that making them takes the most: what is told is enough, of clouds and disks, and each
+// texel of a cloud adds no more than what 8192x8192 px leave it of 6 GiB.
+TEST_F(Memory, BodiesOfLargePicturesTakeFewBytesATexel) {
+    struct Size {
+        int width, height;
+        double texels() const { return double(width) * height; }
+    };
+    constexpr Size small{1700, 1133}, large{2400, 1600};
+    constexpr double most_a_texel = 6.0 * 1024.0 * 1048576.0 / (8192.0 * 8192.0);  // bytes
+    std::vector<double> cloud_mib;
+    for (const auto& [width, height] : {small, large}) {
+        std::uint32_t state = 7;
+        write_text(
+            folder / "large.ppm", pixmap(width, height, [&](int x, int y, int k) {
+                if (k == 0) state = state * 1664525u + 1013904223u;
+                const double r = std::hypot(x - 0.5 * width, y - 0.5 * height) / height;
+                return std::lround((1.0 - 0.2 * k) * std::max(0.0, 1.0 - r) * (150.0 + double(state >> 28)));
+            }));
+        for (const std::string_view kind : {"disk", "walls"}) {
+            write_text(folder / "scene.toml", fmt::format(R"(astrosplat = 1
+[output]
+resolution = [64, 36]
+frames = "1"
+path = "frames/shot.####.exr"
+[camera]
+position = [0, 0, 40]
+target = [0, 0, 80]
+[[layer]]
+name = "gas"
+[layer.source]
+meshes = [ {{ mesh = "plane", texture = "large.ppm" }} ]
+structure = {{ kind = "{}", margin = 0.0 }}
+)",
+                                                          kind));
+            const Run run = rendered({});
+            expect_enough(run);
+            if (kind == "walls") cloud_mib.push_back(run.taken_mib);
+        }
+    }
+    EXPECT_LT((cloud_mib[1] - cloud_mib[0]) * 1048576.0 / (large.texels() - small.texels()), most_a_texel);
+}
+
 TEST_F(Memory, ColumnsThatMemoryDoesNotHoldAreWrittenInParts) {
     make_ball(1'500'000, "[64, 36]");
     const RunResult parts = expect_success(run({"generate", "mesh.toml", "--layer", "ball", "-o",

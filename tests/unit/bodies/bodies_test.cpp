@@ -34,7 +34,7 @@ std::vector<SurfacePlace> places(const UvSurface& surface, glm::vec2 uv) {
 }
 
 std::int64_t told_bytes(const std::vector<TexturedMesh>& meshes, const StructureParams& params) {
-    return bodies_memory_bytes(meshes, expected_splats(meshes, params));
+    return bodies_memory_bytes(meshes, params, expected_splats(meshes, params));
 }
 
 TEST(Bodies, PicturesThatDoNotFitAreReducedAsFarAsIsNeeded) {
