@@ -46,8 +46,12 @@ constexpr float highest_peak = 2.0f;     // times what is around it, that counts
 constexpr double widest_peak_px = 12.0;  // blur up to which peaks are small; beyond are bulges
 constexpr float least_share = 0.25f;     // of the mean that the coarser band gets
 
+// Every channel.
 void multiply(Image& values, const Image& factor) {
-    parallel_each(factor.pixels.size(), 65536, [&](std::size_t i) { values.pixels[i] *= factor.pixels[i]; });
+    const auto channels = std::size_t(values.channels);
+    parallel_each(factor.pixels.size(), 65536, [&](std::size_t i) {
+        for (std::size_t c = 0; c < channels; ++c) values.pixels[channels * i + c] *= factor.pixels[i];
+    });
 }
 
 // The share of the mean that the coarser bands get.
@@ -75,27 +79,33 @@ Image peak_factor(const Image& brightest, double blur) {
     return factor;
 }
 
-// Leaves in `light` what the coarser bands share and returns the rest. A channel at a time: pictures are
-// large.
+// `factor`: of every pixel; without pixels: of 1.
+Image blurred(const Image& light, Image factor, double blur) {
+    if (factor.pixels.empty()) return gaussian_blur(light, blur);
+    Image scaled = copied(light);
+    multiply(scaled, factor);
+    factor = {};
+    return gaussian_blur(std::move(scaled), blur);
+}
+
+// Leaves in `light` what the coarser bands share and returns the rest. Pictures are large: the rest takes the
+// place of what the light is when it is blurred.
 Image take_band(Image& light, double blur, bool fill_holes) {
     Image brightest = brightest_channel(light);
     const bool peaked = fill_holes && blur < widest_peak_px;
-    const Image factor = peaked ? peak_factor(brightest, blur) : Image();  // without pixels: of 1
+    Image factor = peaked ? peak_factor(brightest, blur) : Image();
     multiply(brightest, factor);
     const Image share = common_share(std::move(brightest), blur);
-    Image band = unfilled_image(light.width, light.height, 3);
-    for (std::size_t c = 0; c < 3; ++c) {
-        Image mean = channel_of(light, int(c));
-        multiply(mean, factor);
-        mean = gaussian_blur(std::move(mean), blur);
-        parallel_each(mean.pixels.size(), 65536, [&](std::size_t i) {
-            float& here = light.pixels[3 * i + c];
-            const float common = std::max(0.0f, mean.pixels[i] * share.pixels[i]);
+    Image band = blurred(light, std::move(factor), blur);
+    parallel_each(share.pixels.size(), 65536, [&](std::size_t pixel) {
+        for (std::size_t i = 3 * pixel; i < 3 * pixel + 3; ++i) {
+            float& here = light.pixels[i];
+            const float common = std::max(0.0f, band.pixels[i] * share.pixels[pixel]);
             const float coarser = fill_holes ? common : std::min(common, here);
-            band.pixels[3 * i + c] = std::max(0.0f, here - coarser);
+            band.pixels[i] = std::max(0.0f, here - coarser);
             here = coarser;
-        });
-    }
+        }
+    });
     return band;
 }
 
