@@ -228,6 +228,7 @@ MadeSplats made_of(Texture& texture, const UvSurface& surface, const BodiesTask&
                    bool once_more, const Progress& progress) {
     PictureLight picture = picture_light(texture, task.params.border);
     if (!once_more) texture.image.pixels = Buffer<float>();
+    release_spare_pages();  // or splats that are not made yet would hold some
     MadeSplats made;
     reserve_splats(made.set, std::int64_t(most_expected * expected));
     made.detail = add_splats(picture, surface, task, progress, made.set);
