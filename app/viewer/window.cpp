@@ -151,7 +151,7 @@ struct Cover {
     int fb_height = 0;
 };
 
-/// Copies the part: drawn as a shape it would take a software rasteriser five times as long.
+/// Copies the part: drawn as a shape it would take a software rasteriser more than twice as long.
 void copy_picture(const ImDrawList*, const ImDrawCmd* command) {
     const Cover& cover = *static_cast<const Cover*>(command->UserCallbackData);
     const PixelBox &at = cover.at, &cut = cover.cut;
