@@ -198,11 +198,6 @@ void bind(int unit, const ShownImage& image) {
     glActiveTexture(GL_TEXTURE0);
 }
 
-/// Columns and rows of the target, from its upper left; ends excluded.
-struct PixelRect {
-    int x0, y0, x1, y1;
-};
-
 int rounded(float px) { return static_cast<int>(std::floor(std::clamp(px, -1e6f, 1e6f) + 0.5f)); }
 
 PixelRect rect_of(const DisplaySettings& s, int width, int height) {

@@ -7,6 +7,7 @@
 
 #include <glad/gl.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <glm/vec2.hpp>
@@ -107,6 +108,16 @@ class GlTarget {
     GlFramebuffer framebuffer_;
     int width_ = 0, height_ = 0;
 };
+
+/// Columns and rows of a target, from its upper left; ends excluded.
+struct PixelRect {
+    int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
+    bool empty() const { return x1 <= x0 || y1 <= y0; }
+    bool operator==(const PixelRect&) const = default;
+};
+inline PixelRect intersection(const PixelRect& a, const PixelRect& b) {
+    return {std::max(a.x0, b.x0), std::max(a.y0, b.y0), std::min(a.x1, b.x1), std::min(a.y1, b.y1)};
+}
 
 /// A triangle over the whole of the bound target, as screen_vertex.glsl makes it without any array.
 class WholeTarget {

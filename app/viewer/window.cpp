@@ -87,9 +87,9 @@ void mix(std::uint64_t& hash, const void* bytes, std::size_t size) {
 }
 
 /// The pixels that a command of `fb_height` px may change, as the backend cuts them.
-PixelBox cut_of(const ImDrawCmd& command, const ImVec2& origin, int fb_height) {
-    const float x0 = std::max(0.0f, command.ClipRect.x - origin.x), x1 = command.ClipRect.z - origin.x;
-    const float y0 = std::max(0.0f, command.ClipRect.y - origin.y), y1 = command.ClipRect.w - origin.y;
+PixelRect cut_of(const ImDrawCmd& command, const ImVec2& origin, int fb_height) {
+    const float x0 = command.ClipRect.x - origin.x, x1 = command.ClipRect.z - origin.x;
+    const float y0 = command.ClipRect.y - origin.y, y1 = command.ClipRect.w - origin.y;
     const int from_below = static_cast<int>(static_cast<float>(fb_height) - y1);
     const int height = static_cast<int>(y1 - y0), left = static_cast<int>(x0);
     const int bottom = fb_height - from_below;
@@ -112,7 +112,7 @@ DrawnCommand drawn_by(const ImDrawCmd& command, const ImDrawList& list, const Im
         lo = {std::min(lo.x, vertex.pos.x), std::min(lo.y, vertex.pos.y)};
         hi = {std::max(hi.x, vertex.pos.x), std::max(hi.y, vertex.pos.y)};
     }
-    const PixelBox cut = cut_of(command, origin, fb_height);
+    const PixelRect cut = cut_of(command, origin, fb_height);
     const void* const texture = command.GetTexID();
     mix(drawn.hash, vertices.data(), vertices.size_bytes());
     mix(drawn.hash, indices.data(), indices.size() * sizeof(ImDrawIdx));
@@ -146,7 +146,7 @@ void draw_widgets() {
 /// Where the picture is drawn pixel by pixel, so that nothing below it is seen.
 struct Cover {
     const ImDrawCmd* command = nullptr;
-    PixelBox at, cut;  // the picture; what of it is drawn
+    PixelRect at, cut;  // the picture; what of it is drawn
     unsigned framebuffer = 0;
     int fb_height = 0;
 };
@@ -154,7 +154,7 @@ struct Cover {
 /// Copies the part: drawn as a shape it would take a software rasteriser more than twice as long.
 void copy_picture(const ImDrawList*, const ImDrawCmd* command) {
     const Cover& cover = *static_cast<const Cover*>(command->UserCallbackData);
-    const PixelBox &at = cover.at, &cut = cover.cut;
+    const PixelRect &at = cover.at, &cut = cover.cut;
     glDisable(GL_SCISSOR_TEST);
     glBindFramebuffer(GL_READ_FRAMEBUFFER, cover.framebuffer);
     glBlitFramebuffer(cut.x0 - at.x0, at.y1 - cut.y1, cut.x1 - at.x0, at.y1 - cut.y0, cut.x0,
@@ -170,18 +170,18 @@ void for_each_command(const ImDrawData& data, const Call& call) {
 }
 
 /// Of the picture in this part of the target, if it fills that.
-Cover find_cover(const ImDrawData& data, const PixelBox& box, int fb_height, const ShownPicture& picture) {
+Cover find_cover(const ImDrawData& data, const PixelRect& box, int fb_height, const ShownPicture& picture) {
     Cover cover;
     for_each_command(data, [&](const ImDrawList& list, const ImDrawCmd& command) {
         if (!picture.texture || command.GetTexID() != picture.texture || command.ElemCount != 6) return;
         const ImDrawIdx* const indices = list.IdxBuffer.Data + command.IdxOffset;
         const auto corner = [&](int k) { return list.VtxBuffer[int(command.VtxOffset) + indices[k]].pos; };
         const ImVec2 from = corner(0), to = corner(2);
-        const PixelBox at{int(from.x - data.DisplayPos.x), int(from.y - data.DisplayPos.y),
-                          int(to.x - data.DisplayPos.x), int(to.y - data.DisplayPos.y)};
+        const PixelRect at{int(from.x - data.DisplayPos.x), int(from.y - data.DisplayPos.y),
+                           int(to.x - data.DisplayPos.x), int(to.y - data.DisplayPos.y)};
         const bool whole_px =
             float(at.x0) == from.x - data.DisplayPos.x && float(at.y0) == from.y - data.DisplayPos.y;
-        const PixelBox cut = intersection(at, cut_of(command, data.DisplayPos, fb_height));
+        const PixelRect cut = intersection(at, cut_of(command, data.DisplayPos, fb_height));
         const bool same_size = at.x1 - at.x0 == picture.width && at.y1 - at.y0 == picture.height;
         if (whole_px && same_size && intersection(cut, box) == box) cover = {&command, at, box, 0, fb_height};
     });
@@ -189,7 +189,7 @@ Cover find_cover(const ImDrawData& data, const PixelBox& box, int fb_height, con
 }
 
 /// Into this part of the bound target.
-void draw_widgets(const PixelBox& box, int fb_height, const ShownPicture& picture) {
+void draw_widgets(const PixelRect& box, int fb_height, const ShownPicture& picture) {
     ImDrawData& data = *ImGui::GetDrawData();
     GlFramebuffer source;
     Cover cover = find_cover(data, box, fb_height, picture);
@@ -202,7 +202,7 @@ void draw_widgets(const PixelBox& box, int fb_height, const ShownPicture& pictur
     bool below = cover.command != nullptr;
     for_each_command(data, [&](const ImDrawList&, ImDrawCmd& command) {
         whole.push_back(command);
-        PixelBox cut = intersection(cut_of(command, data.DisplayPos, fb_height), box);
+        PixelRect cut = intersection(cut_of(command, data.DisplayPos, fb_height), box);
         if (&command == cover.command) {
             below = false;
             command.UserCallback = &copy_picture;
@@ -252,10 +252,10 @@ std::vector<InputEvent> InputQueue::take(Typing typing) {
     return frame;
 }
 
-std::vector<PixelBox> changed_boxes(const DrawnFrame& before, const DrawnFrame& now) {
-    std::vector<PixelBox> boxes;
+std::vector<PixelRect> changed_boxes(const DrawnFrame& before, const DrawnFrame& now) {
+    std::vector<PixelRect> boxes;
     // A box takes in those that it meets: where two are drawn nothing is drawn twice.
-    const auto add = [&](PixelBox box) {
+    const auto add = [&](PixelRect box) {
         if (box.empty()) return;
         for (std::size_t i = 0; i < boxes.size();) {
             if (intersection(boxes[i], box).empty()) {
@@ -288,7 +288,7 @@ bool WidgetPainter::paint(int width, int height, std::uint64_t frames, const Sho
     if (resized) forget();
     const bool whole = drawn_.empty() || data.FramebufferScale.x != 1.0f || data.FramebufferScale.y != 1.0f;
     DrawnFrame now = drawn_by(data, height, frames);
-    const std::vector<PixelBox> boxes = changed_boxes(drawn_, now);
+    const std::vector<PixelRect> boxes = changed_boxes(drawn_, now);
     drawn_ = std::move(now);
     if (boxes.empty()) return false;
     target_.resize(width, height, GL_RGBA8);
@@ -297,7 +297,8 @@ bool WidgetPainter::paint(int width, int height, std::uint64_t frames, const Sho
         draw_widgets();
         return true;
     }
-    for (const PixelBox& box : boxes) draw_widgets(intersection(box, {0, 0, width, height}), height, picture);
+    for (const PixelRect& box : boxes)
+        draw_widgets(intersection(box, {0, 0, width, height}), height, picture);
     return true;
 }
 

@@ -41,19 +41,9 @@ class InputQueue {
     std::deque<InputEvent> events_;
 };
 
-/// Pixels of a window, the upper left one first; ends excluded.
-struct PixelBox {
-    int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
-    bool empty() const { return x1 <= x0 || y1 <= y0; }
-    bool operator==(const PixelBox&) const = default;
-};
-inline PixelBox intersection(const PixelBox& a, const PixelBox& b) {
-    return {std::max(a.x0, b.x0), std::max(a.y0, b.y0), std::min(a.x1, b.x1), std::min(a.y1, b.y1)};
-}
-
 /// One of the widgets' draw commands: where it draws, and a number that differs when it draws something else.
 struct DrawnCommand {
-    PixelBox box;
+    PixelRect box;
     std::uint64_t hash = 0;
     bool operator==(const DrawnCommand&) const = default;
 };
@@ -61,7 +51,7 @@ using DrawnFrame =
     std::vector<std::vector<DrawnCommand>>;  // of each of Dear ImGui's windows, the hindmost first
 
 /// Outside of these boxes, no two of which overlap, both frames look the same.
-std::vector<PixelBox> changed_boxes(const DrawnFrame& before, const DrawnFrame& now);
+std::vector<PixelRect> changed_boxes(const DrawnFrame& before, const DrawnFrame& now);
 
 /// What the widgets show as the texture of this handle: opaque, lowest row first, of this size in px.
 struct ShownPicture {

@@ -10,21 +10,21 @@
 namespace astrosplat {
 namespace {
 
-constexpr PixelBox left{0, 0, 10, 10}, middle{20, 0, 30, 10}, right{40, 0, 50, 10};
+constexpr PixelRect left{0, 0, 10, 10}, middle{20, 0, 30, 10}, right{40, 0, 50, 10};
 
 TEST(ChangedBoxes, AreThoseOfWhatDiffers) {
     const DrawnFrame before{{{left, 1}, {middle, 2}, {right, 3}}, {{left, 4}}};
     EXPECT_TRUE(changed_boxes(before, before).empty());
     DrawnFrame now = before;
     now[0][1] = {{22, 5, 35, 12}, 9};
-    EXPECT_EQ(changed_boxes(before, now), (std::vector<PixelBox>{{20, 0, 35, 12}})) << "where it was and is";
+    EXPECT_EQ(changed_boxes(before, now), (std::vector<PixelRect>{{20, 0, 35, 12}})) << "where it was and is";
     now = before;
     now[0].erase(now[0].begin());
-    EXPECT_EQ(changed_boxes(before, now), std::vector<PixelBox>{left});
-    EXPECT_EQ(changed_boxes(now, before), std::vector<PixelBox>{left});
+    EXPECT_EQ(changed_boxes(before, now), std::vector<PixelRect>{left});
+    EXPECT_EQ(changed_boxes(now, before), std::vector<PixelRect>{left});
     now = before;
     now.push_back({{right, 5}});
-    EXPECT_EQ(changed_boxes(before, now), std::vector<PixelBox>{right}) << "a window more";
+    EXPECT_EQ(changed_boxes(before, now), std::vector<PixelRect>{right}) << "a window more";
     now = before;
     std::swap(now[0][0], now[0][2]);
     EXPECT_EQ(changed_boxes(before, now).size(), 3u) << "in another order something else may be on top";
@@ -33,7 +33,7 @@ TEST(ChangedBoxes, AreThoseOfWhatDiffers) {
 TEST(ChangedBoxes, DoNotOverlap) {
     const DrawnFrame now{
         {{{0, 0, 10, 10}, 1}, {{20, 0, 30, 10}, 2}, {{5, 5, 25, 8}, 3}, {{50, 50, 50, 60}, 4}}};
-    EXPECT_EQ(changed_boxes({}, now), (std::vector<PixelBox>{{0, 0, 30, 10}}))
+    EXPECT_EQ(changed_boxes({}, now), (std::vector<PixelRect>{{0, 0, 30, 10}}))
         << "one joins two, one is empty";
 }
 
