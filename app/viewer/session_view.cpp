@@ -59,7 +59,10 @@ void forget_what_is_not_seen(Scene& scene) {
     scene.file.clear();
     scene.provenance = {};
     scene.references.clear();
-    for (LayerParams& layer : scene.layers) layer.source.texture = {};  // the sets have what it says
+    for (LayerParams& layer : scene.layers) {  // the sets have what these say
+        layer.source.texture = {};
+        layer.source.structure = {};
+    }
     OutputParams& output = scene.output;
     output.frames = standard.frames;
     output.fps = standard.fps;

@@ -229,8 +229,9 @@ class LiveSets {
     std::shared_ptr<const LoadedLayer> layer(const std::shared_ptr<const LoadedLayer>& loaded) const;
     /// Whether the last request was of that set.
     bool knows(const LoadedLayer& loaded) const { return asked_.loaded && asked_.loaded->set == loaded.set; }
-    /// There may be a newer one soon.
     bool working() const { return work_.working(); }
+    /// The next want() may find a newer one.
+    bool comes() const { return !taken_; }
     void forget();
 
   private:
@@ -238,6 +239,7 @@ class LiveSets {
     LiveRequest asked_;
     std::shared_ptr<const LoadedLayer> found_;
     std::shared_ptr<const SplatSet> base_;  // whose preview found_ is
+    bool taken_ = true;                     // what was asked for
 };
 
 class SetWishes {
@@ -257,7 +259,7 @@ class SetWishes {
     /// Works towards a preview of what a source is edited to, where that needs no set; else, with time to
     /// `spare`, gets ready to do so at once for bodies of the layer of that number.
     void follow(const Scene& scene, std::size_t layer = 0, bool spare = false);
-    bool following() const { return follows_ && live_.working(); }
+    bool following() const { return follows_ && live_.comes(); }
     bool prepares() const { return !follows_ && live_.working(); }
     /// The visible state of a layer: the loader's, or a preview under the levels that it has now.
     std::shared_ptr<const LoadedLayer> layer(const LayerParams& layer) const;

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::int64_t most_pixels = 200'000;  // of a picture in a preview: splats hardly lie closer
 constexpr std::int64_t live_rows_at_once = 1 << 13;
-constexpr std::int64_t most_moved = 80'000;  // splats of a body that follow a hand
+constexpr std::int64_t most_moved = 40'000;  // splats of a body that follow a hand
 constexpr std::int64_t most_kept_ready =
     30'000'000;  // splats of bodies whose pictures are read only to be ready
 
@@ -240,8 +240,10 @@ void LiveSets::want(const LiveRequest& request) {
     if (const auto found = work_.found(asked_)) {
         base_ = asked_.loaded->set;
         found_ = found->layer;
+        taken_ = true;
     }
     if (work_.working() && asked_.loaded->set == request.loaded->set) return;
+    if (!(asked_ == request)) taken_ = false;
     asked_ = request;
     work_.want(request);
 }
@@ -254,6 +256,8 @@ void LiveSets::forget() {
     work_.cancel();
     base_.reset();
     found_.reset();
+    asked_.source = {};  // it is asked for again
+    taken_ = true;
 }
 
 bool SetWishes::due(const Document& document, double now) {

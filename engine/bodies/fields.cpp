@@ -201,9 +201,9 @@ Image blown_up(const Image& silhouette) {
 
 }  // namespace
 
-Image shell_field(const Image& brightest, double depth, double steepest) {
+Image shell_field(const Image& brightest, double depth, double steepest, std::optional<Image>* kept) {
     const SilhouetteGrid grid = silhouette_grid(brightest);
-    Image shell = blown_up(silhouette_of(grid.light));
+    Image shell = made_once(kept, [&] { return blown_up(silhouette_of(grid.light)); });
     const float highest = std::ranges::max(shell.pixels);
     if (highest <= 0.0f) return to_field_size(std::move(shell), grid);
     change_each(shell, [&](float v) { return float(depth) * std::sqrt(std::max(0.0f, v) / highest); });

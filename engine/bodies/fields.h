@@ -4,6 +4,8 @@
 // smoothness allows.
 #pragma once
 
+#include <optional>
+
 #include "core/image.h"
 
 namespace astrosplat {
@@ -29,8 +31,17 @@ Image structure_field(const Image& brightest);
 /// solves the Poisson equation -laplace(h) = 1 inside of it and is 0 outside, and its root is an ellipsoid's
 /// height over an ellipse, a ridge's over a filament. At most `depth`, at the middle of the widest part;
 /// nowhere steeper than `steepest`. The silhouette is where the light of wide areas is above a twelfth of its
-/// range.
-Image shell_field(const Image& brightest, double depth, double steepest);
+/// range. `kept`: h of the same light, where it was solved before; may be null.
+Image shell_field(const Image& brightest, double depth, double steepest,
+                  std::optional<Image>* kept = nullptr);
+
+/// Made once, where it is kept; `kept` may be null.
+template <class T, class Make>
+T made_once(std::optional<T>* kept, const Make& make) {
+    if (!kept) return make();
+    if (!*kept) *kept = make();
+    return **kept;
+}
 
 /// Light of a shell that is on neither of its walls: that of compact bright cores inside, and that of the
 /// dark sky around. On the walls a core would be seen twice, with a column between, and the sky would be a

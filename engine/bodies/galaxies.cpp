@@ -196,7 +196,7 @@ GalaxySight::Galaxy galaxy_seen(GalaxySight& sight, const Image& light, const Pi
             before.share.pixels == galaxies.shares[k].pixels)
             return std::move(before);
     }
-    GalaxySight::Galaxy seen{plane, only_spheroid, galaxies.shares[k], {}, {}, 0.0};
+    GalaxySight::Galaxy seen{plane, only_spheroid, galaxies.shares[k], {}, {}, 0.0, {}};
     seen.gaussians = light_of_galaxy(galaxies.to_fit, seen.share, plane, only_spheroid);
     seen.roughness = roughness_of(light, plane, galaxies.to_fit);
     seen.rough = rough_share(galaxies.to_fit, seen.roughness);
@@ -220,7 +220,7 @@ std::vector<GalaxyBody> galaxies_of(const Image& light, const StructureParams& p
     for (std::size_t k = 0; k < galaxies.planes.size(); ++k) {
         const GalaxyPlane& plane = galaxies.planes[k];
         const std::optional<double> bulge = galaxies.told[k].bulge;
-        const GalaxySight::Galaxy& found = sight->galaxies[k];
+        GalaxySight::Galaxy& found = sight->galaxies[k];
         GalaxyBody body = make_galaxy_body(found.gaussians, plane,
                                            {thicker, params.flare, bulge, found.rough}, double(width));
         log_detail(
@@ -231,8 +231,13 @@ std::vector<GalaxyBody> galaxies_of(const Image& light, const StructureParams& p
         body.roughness = found.roughness;
         set_fields(galaxies.to_fit, texels, double(margin_px), body);
         if (galaxies.planes.size() > 1) body.share = std::move(galaxies.shares[k]);
-        if (body.hidden > 0.0f)
-            invent_plane(body, params.spiral * double(body.hidden), seed + std::uint32_t(k));
+        if (body.hidden > 0.0f) {
+            if (found.invented.pixels.empty())
+                found.invented = invented_plane(body.radius, seed + std::uint32_t(k));
+            const auto strength = float(params.spiral * double(body.hidden));
+            body.plane =
+                made_by_pixel(found.invented, 1, [&](const float* p, float* to) { *to = strength * *p; });
+        }
         bodies.push_back(std::move(body));
     }
     return bodies;

@@ -31,6 +31,7 @@ struct GalaxySight {
         GalaxyLight gaussians;
         Image roughness;
         double rough = 0.0;
+        Image invented;  // of invented_plane(); empty: none was asked for yet
     };
     bool coarse = false;              // fitted at half the size, four times as quickly
     Image to_fit;                     // empty: nothing was asked for yet

@@ -1,5 +1,7 @@
 #include "bodies/galaxy_body.h"
 
+#include <limits>
+
 #include "core/real.h"
 #include "core/shared_maths.h"
 #include "image/channels.h"
@@ -207,13 +209,13 @@ GalaxyLightAt light_at(const GalaxyBody& body, float x, float y) {
             sum_there(part_of(body, GalaxyPart::spheroid), uv)};
 }
 
-void invent_plane(GalaxyBody& body, double strength, std::uint32_t seed) {
+Image invented_plane(float radius, std::uint32_t seed) {
     constexpr float pitch = 0.30573068f, steep = 3.3f;  // tan 17 degrees; of the clouds' direction
     constexpr float arms = 1.1f, bent = 0.7f, bend_wave = 0.8f, cloud_wave = 0.35f;  // radii: INCLINED 3
     constexpr float unit = 1.0f / 0.26f;  // over an octave's deviation
-    const float radius = body.radius, step = float(2.0 * plane_reach) * radius / float(plane_px);
-    body.plane = unfilled_image(plane_px, plane_px, 1);
-    for_each_pixel(body.plane, [&](std::int64_t column, std::int64_t row) {
+    const float step = float(2.0 * plane_reach) * radius / float(plane_px);
+    Image plane = unfilled_image(plane_px, plane_px, 1);
+    for_each_pixel(plane, [&](std::int64_t column, std::int64_t row) {
         const float x = (float(column) + 0.5f) * step - float(plane_reach) * radius,
                     y = (float(row) + 0.5f) * step - float(plane_reach) * radius;
         const float r = std::sqrt(x * x + y * y) + 1e-3f, turn = float(real::atan2(double(y), double(x)));
@@ -225,11 +227,11 @@ void invent_plane(GalaxyBody& body, double strength, std::uint32_t seed) {
         const float sheared = turn + steep * wound;
         const float arm =
             float(real::cos(double(2.0f * turn - 2.0f * wound / pitch + bent * noise(x, y, bend_wave, 3))));
-        *body.plane.at(column, row) =
-            float(strength) * (arms * arm * std::min(1.0f, r / (cloud_wave * radius)) +
-                               noise(r * float(real::cos(double(sheared))),
-                                     r * float(real::sin(double(sheared))), cloud_wave, 4));
+        *plane.at(column, row) = arms * arm * std::min(1.0f, r / (cloud_wave * radius)) +
+                                 noise(r * float(real::cos(double(sheared))),
+                                       r * float(real::sin(double(sheared))), cloud_wave, 4);
     });
+    return plane;
 }
 
 float depth_of(const GalaxyBody& body, GalaxyPart part, float x, float y, float share) {
@@ -245,8 +247,54 @@ float depth_of(const GalaxyBody& body, GalaxyPart part, float x, float y, float 
     return 0.0f;
 }
 
+namespace {
+
+constexpr float cloud_scatter = 0.45f, cloud_depth = 0.4f;  // of a cloud's length: INCLINED 3
+
+}  // namespace
+
+std::vector<std::size_t> reached_clouds(const GalaxyBody& body, float width, float height) {
+    constexpr float rounding = 0.05f;  // texels
+    const GalaxyClouds& clouds = body.clouds;
+    const Image& excess = body.excess;
+    const float texels = 1.0f / body.to_field;  // of a field's pixel
+    const glm::vec2 reach =
+        cloud_scatter * clouds.length * spread_of(1.0f) * glm::vec2(1.0f, cloud_flat) + rounding;
+    const glm::i64vec2 last(clouds.columns - 1, clouds.rows - 1);
+    const auto cell_at = [&](glm::vec2 uv) {
+        const glm::vec2 cell = uv / (clouds.length * glm::vec2(1.0f, cloud_flat)) +
+                               0.5f * glm::vec2(clouds.columns, clouds.rows);
+        return glm::clamp(glm::i64vec2(glm::floor(cell)), glm::i64vec2(0), last);
+    };
+    // Where a pixel of the field counts; the outermost ones do in all of a margin.
+    const auto span = [&](std::int64_t pixel, std::int64_t count, float end) {
+        const float middle = (float(pixel) + 0.5f) * texels + body.field_begins;
+        return glm::vec2(pixel == 0 ? -texels : middle - texels,
+                         pixel + 1 == count ? end + texels : middle + texels);
+    };
+    std::vector<bool> reached(clouds.z.size());
+    for (std::int64_t y = 0; y < excess.height; ++y)
+        for (std::int64_t x = 0; x < excess.width; ++x) {
+            if (!(*excess.at(x, y) > 0.0f)) continue;
+            const glm::vec2 xs = span(x, excess.width, width), ys = span(y, excess.height, height);
+            glm::vec2 low(std::numeric_limits<float>::max()), high = -low;
+            for (const float px : {xs.x, xs.y})
+                for (const float py : {ys.x, ys.y}) {
+                    const glm::vec2 uv = along_and_across(body, px, py);
+                    low = glm::min(low, uv);
+                    high = glm::max(high, uv);
+                }
+            const glm::i64vec2 from = cell_at(low - reach), to = cell_at(high + reach);
+            for (std::int64_t row = from.y; row <= to.y; ++row)
+                std::fill_n(reached.begin() + row * clouds.columns + from.x, to.x - from.x + 1, true);
+        }
+    std::vector<std::size_t> clouds_reached;
+    for (std::size_t i = 0; i < reached.size(); ++i)
+        if (reached[i]) clouds_reached.push_back(i);
+    return clouds_reached;
+}
+
 void gather_in_clouds(const GalaxyBody& body, DepthBlock& block) {
-    constexpr float scatter = 0.45f, depth = 0.4f;  // of a cloud's length: INCLINED 3
     const GalaxyClouds& clouds = body.clouds;
     for (int i = 0; i < block.count; ++i) {
         std::uint32_t random = as_mix(block.random[i] ^ 0x3c6ef372u);
@@ -255,9 +303,9 @@ void gather_in_clouds(const GalaxyBody& body, DepthBlock& block) {
         if (next() >= body.hidden * body.value_at(body.excess, x, y)) continue;
         const glm::vec2 uv =
             along_and_across(body, x, y) +
-            scatter * clouds.length * glm::vec2(spread_of(next()), cloud_flat * spread_of(next()));
+            cloud_scatter * clouds.length * glm::vec2(spread_of(next()), cloud_flat * spread_of(next()));
         if (const std::optional<std::size_t> cloud = clouds.at(uv))
-            block.z[i] = clouds.z[*cloud] + depth * clouds.length * spread_of(next());
+            block.z[i] = clouds.z[*cloud] + cloud_depth * clouds.length * spread_of(next());
     }
 }
 

@@ -26,7 +26,7 @@ inline constexpr float cloud_flat = 0.4f;  // of a cloud's length, its width acr
 struct GalaxyClouds {
     float length = 0.0f;  // texels
     std::int64_t columns = 0, rows = 0;
-    std::vector<float> z;  // texels, row by row
+    std::vector<float> z;  // texels, row by row; of those that nothing reaches 0
     /// The cloud at a place along and across the major axis; empty beyond the lattice.
     std::optional<std::size_t> at(glm::vec2 uv) const;
     /// Its middle.
@@ -83,8 +83,8 @@ struct GalaxyLightAt {
 };
 GalaxyLightAt light_at(const GalaxyBody& body, float x, float y);
 
-/// Fills body.plane: two arms and clouds in their direction, as strong as `strength`.
-void invent_plane(GalaxyBody& body, double strength, std::uint32_t seed);
+/// For body.plane, of strength 1: two arms and clouds in their direction. `radius`: the body's.
+Image invented_plane(float radius, std::uint32_t seed);
 
 /// A depth of one part there: the share (0..1) of its light along the line of sight that is counted before
 /// it, Gaussian by Gaussian.
@@ -97,6 +97,9 @@ glm::vec2 place_of(const GalaxyBody& body, glm::vec2 uv);
 /// Takes splats whose light is above the smooth galaxy's to the depths of clouds, as far as the picture
 /// cannot tell.
 void gather_in_clouds(const GalaxyBody& body, DepthBlock& block);
+/// Those of its clouds that this may take splats of a picture of that size to, texels: a tenth of them, most
+/// often.
+std::vector<std::size_t> reached_clouds(const GalaxyBody& body, float width, float height);
 
 /// The depth below which the share `u` of a place's stars lies, of which `in_disk` (0..1) are the disk's and
 /// the others about the spheroid.

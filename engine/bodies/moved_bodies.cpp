@@ -24,7 +24,7 @@ namespace astrosplat {
 namespace {
 
 constexpr std::int64_t texels_with_stars = 2'000'000;  // of which stars are found
-constexpr std::int64_t rows_at_once = 64;              // blocks of a thread
+constexpr std::int64_t rows_at_once = 8;               // blocks of a thread
 
 /// Rows of one band and size; texels of the picture.
 struct Group {
@@ -78,7 +78,7 @@ struct MovedBodies::Picture {
     std::vector<Band> bands;
     std::vector<Star> stars;  // texels of the picture
     std::vector<GalaxyPlane> planes;
-    mutable GalaxySight sight{true, {}, {}, {}};  // of the model asked for last
+    mutable PlacementSight sight{{true, {}, {}, {}}, {}, {}, {}, {}};  // of the model asked for last
     Placement before;
     std::vector<Group> groups;
 
@@ -327,7 +327,7 @@ void MovedBodies::Picture::move(const Group& group, const StructureParams& made,
     const bool same_opacity = made.opacity == now.opacity && made.density == now.density;
     const auto dust = float(dust_of(now) / std::max(1e-6, dust_of(made)));
     const bool is_band = group.number < int(spike_band), is_dust = group.number == int(dust_band);
-    parallel_each(group.row.size(), 4096, [&](std::size_t i) {
+    parallel_each(group.row.size(), 512, [&](std::size_t i) {
         const std::uint32_t row = group.row[i];
         const SurfacePlace& place = group.place[i];
         const float old_along = along_rays(place, group.z[i]);

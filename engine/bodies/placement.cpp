@@ -2,7 +2,6 @@
 
 #include <glm/vec2.hpp>
 
-#include "bodies/galaxies.h"
 #include "bodies/margin.h"
 #include "core/parallel.h"
 #include "core/shared_maths.h"
@@ -62,15 +61,17 @@ void set_cloud_depths(Placement& placement, GalaxyBody& galaxy) {
     clouds.columns = clouds.rows = 2 * std::int64_t(std::ceil(1.0 / length)) + 1;
     clouds.rows = std::int64_t(float(clouds.rows) / cloud_flat);
     clouds.z.resize(std::size_t(clouds.columns * clouds.rows));
-    parallel_chunks(std::ssize(clouds.z), DepthBlock::size, [&](std::int64_t begin, std::int64_t end, int) {
+    const std::vector<std::size_t> reached =
+        reached_clouds(galaxy, float(placement.picture_width), float(placement.picture_height));
+    parallel_chunks(std::ssize(reached), DepthBlock::size, [&](std::int64_t begin, std::int64_t end, int) {
         PlacedBlock block;
-        for (std::int64_t i = begin; i < end; ++i) {
-            const glm::vec2 place = place_of(galaxy, clouds.middle(std::size_t(i)));
+        for (const std::size_t i : std::span(reached).subspan(begin, end - begin)) {
+            const glm::vec2 place = place_of(galaxy, clouds.middle(i));
             add_small(place.x, place.y, as_hash(placement.seed, std::uint32_t(i), 2u, shared::PURPOSE_KNOT),
                       block);
         }
         place_small_in_galaxy(placement, galaxy, block);
-        std::copy_n(block.z, block.count, clouds.z.data() + begin);
+        for (int k = 0; k < block.count; ++k) clouds.z[reached[std::size_t(begin + k)]] = block.z[k];
     });
 }
 
@@ -173,7 +174,7 @@ Placement placement_without_fields(std::int64_t width, std::int64_t height, cons
 
 Placement make_placement(const Image& light, const StructureParams& params, double texels_per_unit, bool flat,
                          std::uint32_t seed, std::span<const Star> stars, std::optional<AxisDepths> axis,
-                         ImageSize size, GalaxySight* sight) {
+                         ImageSize size, PlacementSight* sight) {
     if (size.width == 0) size = {light.width, light.height};
     Placement placement = placement_without_fields(size.width, size.height, params, texels_per_unit);
     placement.to_light = float(double(light.width) / double(size.width));
@@ -190,17 +191,22 @@ Placement make_placement(const Image& light, const StructureParams& params, doub
             return std::llround(double(width) * params.margin / (1.0 + 2.0 * params.margin));
         };
         const auto margin_px = margin_of(light.width), margin = margin_of(size.width);
-        placement.galaxies = galaxies_of(margin_px > 0 ? inside_margin(light, margin_px) : light, params,
-                                         times_as_thick(params, texels_per_unit, placement),
-                                         size.width - 2 * margin, margin, seed, sight);
+        placement.galaxies =
+            galaxies_of(margin_px > 0 ? inside_margin(light, margin_px) : light, params,
+                        times_as_thick(params, texels_per_unit, placement), size.width - 2 * margin, margin,
+                        seed, sight ? &sight->galaxies : nullptr);
     } else {
         placement.thickness = times(thickness_field(shown, placement.height * px), texels);
-        placement.structure = structure_field(shown);
+        placement.structure =
+            made_once(sight ? &sight->structure : nullptr, [&] { return structure_field(shown); });
         if (!axis) stars = {};
     }
     if (params.kind == StructureKind::walls) {
-        placement.relief = times(shell_field(shown, placement.depth * px, steepest_wall), texels);
-        placement.filled = find_filled_light(shown);
+        placement.relief =
+            times(shell_field(shown, placement.depth * px, steepest_wall, sight ? &sight->blown_up : nullptr),
+                  texels);
+        placement.filled =
+            made_once(sight ? &sight->filled : nullptr, [&] { return find_filled_light(shown); });
         placement.filled.core_reach = times(std::move(placement.filled.core_reach), texels);
     }
     if (params.kind == StructureKind::sheet && flat)
@@ -212,7 +218,9 @@ Placement make_placement(const Image& light, const StructureParams& params, doub
     std::vector<Knot> around = around_stars(stars);
     placement.star_knots = std::int32_t(around.size());
     scale(around, placement.to_light);
-    placement.knots = find_knots(brightest, around);
+    if (sight && std::exchange(sight->knots_around, around.size()) != around.size()) sight->knots.reset();
+    placement.knots =
+        made_once(sight ? &sight->knots : nullptr, [&] { return find_knots(brightest, around); });
     scale(placement.knots.knots, float(texels));
     set_knot_depths(placement, stars);
     return placement;

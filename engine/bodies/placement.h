@@ -10,6 +10,7 @@
 #include "bodies/depth_kernel.h"
 #include "bodies/detail_levels.h"
 #include "bodies/fields.h"
+#include "bodies/galaxies.h"
 #include "bodies/galaxy_body.h"
 #include "bodies/picture_light.h"
 #include "bodies/stars.h"
@@ -21,8 +22,6 @@
 #include "source/texture.h"
 
 namespace astrosplat {
-
-struct GalaxySight;
 
 /// Scale heights by themselves, of a picture's longest side.
 inline constexpr double disk_thickness = 0.018, sheet_thickness = 0.011;
@@ -85,15 +84,24 @@ struct Placement {
     }
 };
 
+/// What make_placement() found in one light and its stars for the model before, where a hand changes the
+/// model: the next one finds only what differs.
+struct PlacementSight {
+    GalaxySight galaxies;
+    std::optional<Image> structure, blown_up;  // of shell_field()
+    std::optional<FilledLight> filled;
+    std::optional<Knots> knots;
+    std::size_t knots_around = 0;  // so many stars
+};
+
 /// `texels_per_unit`: of the surface that carries the picture; `flat`: it is a plane, so a sheet takes its
 /// relief from the picture instead. What `stars` of a disk leave around themselves stays at their depth: a
 /// profile is never quite that of their Gaussians, and would be a row of splats in depth. `axis`: of the
-/// kind. `size`: of the picture, where `light` is smaller; 0: as that. `sight`: of galaxies, as galaxies_of()
-/// has it.
+/// kind. `size`: of the picture, where `light` is smaller; 0: as that. `sight`: may be null.
 Placement make_placement(const Image& light, const StructureParams& params, double texels_per_unit, bool flat,
                          std::uint32_t seed, std::span<const Star> stars = {},
                          std::optional<AxisDepths> axis = {}, ImageSize size = {0, 0},
-                         GalaxySight* sight = nullptr);
+                         PlacementSight* sight = nullptr);
 
 /// What the number of splats depends on, besides the light: no fields, but the galaxies of a disk.
 Placement placement_to_count(const Texture& texture, const StructureParams& params);

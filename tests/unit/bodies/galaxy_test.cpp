@@ -128,12 +128,14 @@ StructureParams galaxy_params(double inclination) {
 // What a sight keeps is that of its picture, not of where the hand was before.
 TEST(GalaxySight, FindsTheSameAfterOtherModels) {
     const Image light = painted::tilted_galaxy(320, 200, {60.0, 20.0, true, 6.0, 0.0});
-    std::vector<StructureParams> dragged(7, galaxy_params(60.0));
+    std::vector<StructureParams> dragged(10, galaxy_params(60.0));
     dragged[1].galaxy.inclination = 40.0;
     dragged[2].galaxy.near_side = 290.0;
     dragged[3].galaxy.center = glm::dvec2(0.55, 0.5);
     dragged[4].galaxy.bulge = 1.0;
     dragged[5].galaxies = {dragged[0].galaxy, dragged[3].galaxy};
+    for (const std::size_t k : {7u, 8u, 9u}) dragged[k].galaxy.inclination = k == 9 ? 80.0 : 74.0;
+    dragged[8].spiral = 0.4;
     GalaxySight sight{true, {}, {}, {}};
     for (const StructureParams& now : dragged) {
         GalaxySight fresh{true, {}, {}, {}};
@@ -142,12 +144,76 @@ TEST(GalaxySight, FindsTheSameAfterOtherModels) {
         ASSERT_EQ(seen.size(), wanted.size());
         for (std::size_t k = 0; k < seen.size(); ++k) {
             for (const auto field : {&GalaxyBody::share, &GalaxyBody::spheroid, &GalaxyBody::excess,
-                                     &GalaxyBody::lit, &GalaxyBody::roughness})
+                                     &GalaxyBody::lit, &GalaxyBody::roughness, &GalaxyBody::plane})
                 EXPECT_EQ((seen[k].*field).pixels, (wanted[k].*field).pixels) << k;
             EXPECT_EQ(seen[k].thickness, wanted[k].thickness);
             EXPECT_EQ(seen[k].near, wanted[k].near);
             EXPECT_EQ(light_at(seen[k], 170.0f, 90.0f).disk, light_at(wanted[k], 170.0f, 90.0f).disk);
         }
+    }
+}
+
+TEST(PlacementSight, FindsTheSameAfterOtherModels) {
+    const Image light = painted::tilted_galaxy(320, 200, {60.0, 20.0, true, 6.0, 0.0});
+    const std::vector<Star> stars = {{100.0f, 80.0f, 2.0f}};
+    std::vector<StructureParams> dragged(5, galaxy_params(60.0));
+    for (const std::size_t k : {0u, 2u, 4u}) dragged[k].kind = StructureKind::walls;
+    dragged[1].kind = StructureKind::sheet;
+    dragged[2].depth = 0.7, dragged[2].height = 0.4;
+    PlacementSight sight;
+    for (const StructureParams& now : dragged) {
+        const auto placed_in = [&](PlacementSight* in) {
+            return make_placement(light, now, 32.0, true, 1u, stars, {}, {640, 400}, in);
+        };
+        const Placement seen = placed_in(&sight), wanted = placed_in(nullptr);
+        for (const auto field : {&Placement::thickness, &Placement::structure, &Placement::relief})
+            EXPECT_EQ((seen.*field).pixels, (wanted.*field).pixels);
+        EXPECT_EQ(seen.filled.core_share.pixels, wanted.filled.core_share.pixels);
+        EXPECT_EQ(seen.filled.core_reach.pixels, wanted.filled.core_reach.pixels);
+        EXPECT_EQ(seen.knot_z, wanted.knot_z);
+        EXPECT_EQ(seen.star_knots, wanted.star_knots);
+    }
+}
+
+// A cloud that something may be taken to has its depth, and most have none to be found.
+TEST(GalaxyClouds, OfWhatIsReachedAllAreFound) {
+    for (const double margin : {0.0, 0.2}) {
+        StructureParams params = galaxy_params(80.0);
+        params.margin = margin;
+        const auto width = std::int64_t(320.0 * (1.0 + 2.0 * margin)),
+                   height = std::int64_t(200 + 2 * 320 * margin);
+        const Image light = painted::tilted_galaxy(int(width), int(height), {80.0, 20.0, true, 6.0, 0.0});
+        GalaxyBody body = make_placement(light, params, 32.0, true, 1u).galaxies.at(0);
+        constexpr std::int64_t finer = 4;  // than of pictures, or its pixels alone reach as far
+        body.to_field *= float(finer);
+        Image& excess = body.excess =
+            unfilled_image(finer * body.excess.width, finer * body.excess.height, 1);
+        for (std::size_t i = 0; i < excess.pixels.size(); ++i)
+            excess.pixels[i] = i % 997 == 0 || i + 1 == excess.pixels.size() ? 1.0f : 0.0f;
+        const std::vector<std::size_t> reached = reached_clouds(body, float(width), float(height));
+        const std::size_t clouds = body.clouds.z.size();
+        EXPECT_LT(reached.size(), clouds / 2);
+        body.clouds.z.assign(clouds, -1e6f);
+        for (const std::size_t i : reached) body.clouds.z[i] = 1e6f;
+        std::int64_t gathered = 0;
+        for (std::uint32_t n = 0; n < 4000; ++n) {
+            DepthBlock block;
+            for (block.count = 0; block.count < DepthBlock::size; ++block.count) {
+                const auto random = [&](std::uint32_t k) {
+                    return shared::as_hash(n, std::uint32_t(block.count), k, 1u);
+                };
+                block.x[block.count] = shared::as_uniform(random(0)) * float(width);
+                block.y[block.count] = shared::as_uniform(random(1)) * float(height);
+                block.random[block.count] = random(2);
+                block.z[block.count] = 0.0f;
+            }
+            gather_in_clouds(body, block);
+            for (int i = 0; i < block.count; ++i) {
+                ASSERT_GT(block.z[i], -1e5f) << block.x[i] << ", " << block.y[i];
+                gathered += block.z[i] > 1e5f;
+            }
+        }
+        EXPECT_GT(gathered, 500);
     }
 }
 
