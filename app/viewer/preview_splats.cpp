@@ -272,10 +272,12 @@ void PreviewSplats::shade(Layer& layer, const PreviewLayer& wanted) {
     ShadedSplats splats = apply_look(*layer.sample.set, shading.look, shading.inputs);
     layer.kept = static_cast<double>(splats.size()) /
                  static_cast<double>(std::max<std::int64_t>(1, layer.sample.set->size()));
+    const std::shared_ptr<const Relight> last = std::move(layer.relight);
     layer.relight.reset();
     layer.of_sample.reset();
     if (layer.has_whole() && layer.whole_shading != shading)
-        layer.relight = std::make_shared<const Relight>(layer.of_whole->merged, *layer.sample.set, splats);
+        layer.relight =
+            std::make_shared<const Relight>(layer.of_whole->merged, *layer.sample.set, splats, last.get());
     const bool of_whole = layer.has_whole() && (!layer.relight || layer.relight->is_true());
     if (stars)
         layer.splats = std::make_shared<const ShadedSplats>(std::move(splats));

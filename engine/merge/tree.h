@@ -95,8 +95,10 @@ class Relight {
         glm::vec3 light{1.0f};
     };
 
-    /// `sample`: of sample_tree(), of the tree of `merged`; `splats`: it under the other look.
-    Relight(const MergedSplats& merged, const SplatSet& sample, const ShadedSplats& splats);
+    /// `sample`: of sample_tree(), of the tree of `merged`; `splats`: it under the other look. `last`: of the
+    /// same two and a look before, which saves half of the time; may be null.
+    Relight(const MergedSplats& merged, const SplatSet& sample, const ShadedSplats& splats,
+            const Relight* last = nullptr);
 
     /// Of a run of the tree's rows, by the nearest few of the sample.
     Factors of(std::int64_t first, std::int64_t end) const;
@@ -110,11 +112,22 @@ class Relight {
         double cover = 0.0, squares = 0.0, own = 0.0;
         glm::dvec3 light{0.0};
         void add(const ShadedSplats& splats, std::int64_t i);
-        Sums minus(const Sums& other) const;
+        Sums plus(const Sums& other, double times = 1.0) const;
     };
 
-    std::int64_t rows_ = 0;           // of the tree
-    std::vector<Sums> before_, now_;  // over the sampled rows before each, and over all
+    /// Over the sampled rows before each, and over all.
+    struct RunningSums {
+        static constexpr std::int64_t block = 4096;  // rows
+        Buffer<Sums> in_block;                       // over those of its block
+        std::vector<Sums> of_blocks;                 // over the blocks before each
+        Sums between(std::int64_t first, std::int64_t end) const;
+    };
+    template <class Add>
+    static RunningSums running_sums(std::int64_t count, const Add& add);
+
+    std::int64_t rows_ = 0, count_ = 0;          // of the tree, of the sample
+    std::shared_ptr<const RunningSums> before_;  // under the look of the sums
+    RunningSums now_;
     bool is_true_ = true;
     double kept_ = 1.0;
 };

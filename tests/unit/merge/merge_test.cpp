@@ -450,14 +450,14 @@ TEST(Merge, RelitCutsHaveTheLightOfTheOtherLook) {
     const Cloud cloud = random_cloud(64000, {1.0f, 1.0f, 0.2f}, 0.02f, 0.2f);
     const auto tree = std::make_shared<const MergeTree>(build_merge_tree(*cloud.set));
     const MergedSplats merged = merge_splats({cloud.set, tree, 1.0f}, cloud.splats);
-    const auto under_another = [&](const SplatSet& set) {
+    const auto under_another = [&](const SplatSet& set, float dimmer = 1.0f) {
         ShadedSplats splats;
         for (const std::uint64_t id : set.id) {
             const glm::vec3 p = cloud.splats.position[id];
             if (uniform(std::uint32_t(id), 11) < 0.4f) continue;
             splats.position.push_back(p);
             splats.color.push_back(cloud.splats.color[id] * glm::vec3(p.x < 0.0f ? 2.0f : 0.5f, 1.5f, 0.1f));
-            splats.alpha.push_back(cloud.splats.alpha[id] * 0.7f);
+            splats.alpha.push_back(cloud.splats.alpha[id] * 0.7f * dimmer);
             splats.radius.push_back(cloud.splats.radius[id] * 1.5f);
             splats.id.push_back(id);
         }
@@ -467,6 +467,12 @@ TEST(Merge, RelitCutsHaveTheLightOfTheOtherLook) {
     const Relight relight(merged, sample, under_another(sample));
     EXPECT_TRUE(relight.is_true());
     EXPECT_NEAR(relight.kept(), 0.6, 0.03);
+    const Relight dimmed(merged, sample, under_another(sample, 0.1f)),
+        again(merged, sample, under_another(sample), &dimmed);
+    for (std::int64_t first = 0; first + 50 < 64000; first += 997) {
+        EXPECT_EQ(again.of(first, first + 50).light, relight.of(first, first + 50).light) << first;
+        EXPECT_NE(again.of(first, first + 50).light, dimmed.of(first, first + 50).light) << first;
+    }
     const ShadedSplats all = under_another(*cloud.set);
     const MergeSettings merging(render_as(Blend::add));
     RenderLayer layer;
