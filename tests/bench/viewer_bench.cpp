@@ -289,6 +289,32 @@ void measure_scrubbing(Viewer& viewer) {
     print_wait("scrub to another frame", "<= 80 ms", times);
 }
 
+/// From the last touch until the frame is blurred, as the mean of its first few renderings or of all.
+void measure_blurring(Viewer& viewer) {
+    Session& session = viewer.session();
+    const auto measure = [&](const std::string& what, const std::function<void(CameraParams&)>& blur) {
+        session.document.edit("Blur", [&](Scene& now) { blur(now.camera); });
+        viewer.run_until([&] { return session.sets.loaded(session.document); });
+        Times times;
+        std::int64_t samples_seen = 0;
+        session.view.settle = true;
+        session.view.view = ViewKind::camera;
+        for (int i = 0; i < 5; ++i) {
+            session.view.frame = 40.0 + 9.0 * i;
+            viewer.frame();
+            times.measure([&] {
+                viewer.run_until([&] { return session.status.view_frame.samples > 1 || settled(session); });
+            });
+            samples_seen = session.status.view_frame.samples;
+        }
+        print_wait(fmt::format("blurred by {}: {} samples", what, samples_seen), "<= 500 ms", times);
+        session.document.undo();
+        session.view.settle = false;
+    };
+    measure("the lens", [](CameraParams& camera) { camera.f_number = 2.8; });
+    measure("the shutter", [](CameraParams& camera) { camera.shutter = 180.0; });
+}
+
 /// A touch while the final frame is being computed.
 void measure_cancelling(Viewer& viewer) {
     Times times;
@@ -340,6 +366,7 @@ void measure_viewport(Viewer& viewer, const Parts& wanted) {
     if (wanted("level")) measure_levels(viewer);
     if (wanted("shape")) measure_shaping(viewer);
     if (wanted("scrub")) measure_scrubbing(viewer);
+    if (wanted("blur")) measure_blurring(viewer);
     if (!wanted("settle")) return;
     viewer.orbit(1);
     measure_settling(viewer, "after looks and a camera");
@@ -366,7 +393,7 @@ void measure_window(Viewer& viewer, const Parts& wanted) {
 void measure_session(const ViewerOptions& options, const GlInfo& gl, const Parts& wanted, double started,
                      double processor_started) {
     if (wanted("start") || wanted("orbit") || wanted("slider") || wanted("level") || wanted("shape") ||
-        wanted("scrub") || wanted("settle")) {
+        wanted("scrub") || wanted("blur") || wanted("settle")) {
         Viewer viewer(options, gl, 960, 540, false);
         measure_start(viewer, started, processor_started);
         if (wanted.names != std::vector<std::string>{"start"}) measure_viewport(viewer, wanted);
@@ -449,7 +476,7 @@ int run(int argc, char** argv) {
     app.add_option("scene", options.input, "default: the demo");
     app.add_option("--cache", cache, "folder of generated sets");
     app.add_option("--only", wanted.names,
-                   "some of: start orbit slider scrub settle window idle truth causes");
+                   "some of: start orbit slider level shape scrub blur settle window idle truth causes");
     app.add_option("--pictures", pictures, "folder for the frames of truth");
     app.add_option("--shown", shown, "of the previews of truth; default: those that hold 24 frames a second");
     CLI11_PARSE(app, argc, argv);
