@@ -117,7 +117,9 @@ class SeenLayer {
     /// A node's merged splats, as rows from `first`.
     void put_node(std::int64_t index, ShadedSplats& out, std::size_t first) const {
         NodeSums sums = merged().sums[index];
-        const NodeRow row = row_of(sums, merged().tree->nodes[index].size());
+        NodeRow row = row_of(sums, merged().tree->nodes[index].size());
+        if (merged().weight > 1.0f)
+            for (float* spread : {&row.each.mean, &row.each.largest}) *spread *= sample_overlap;
         if (layer_.relight) relight(merged().tree->nodes[index], sums);
         const LayerProjection& l = layer_.projection;
         const LayerRender& r = layer_.merging->render;
@@ -149,6 +151,8 @@ class SeenLayer {
     }
 
   private:
+    /// Where a few rows are all that is known their cells are never small enough for their dips not to show.
+    static constexpr float sample_overlap = 1.8f;
     static constexpr float child_spread = 0.4f;  // of a splat's children along an axis, radii
 
     /// Stars and their spikes have a root of their own, the last one: the first of its rows.

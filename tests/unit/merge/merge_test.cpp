@@ -644,8 +644,8 @@ struct Seen {
 };
 
 /// A block of 48 x 48 x `deep` splats through merged ones that stand for 64 each, from so many degrees off
-/// its front.
-Seen seen_through_splats(bool lattice, int deep = 48, double degrees = 0.0) {
+/// its front. `weight`: of a sample.
+Seen seen_through_splats(bool lattice, int deep = 48, double degrees = 0.0, float weight = 1.0f) {
     constexpr int splats_a_side = 48, side = 256, first = 96, end = 160;  // px
     Cloud cloud;
     const auto at = [](int i) { return (float(i) + 0.5f) / splats_a_side * 2.0f - 1.0f; };
@@ -665,7 +665,7 @@ Seen seen_through_splats(bool lattice, int deep = 48, double degrees = 0.0) {
     const Camera camera = make_camera(params, side, side, {});
     RenderSettings frame;
     frame.width = frame.height = side;
-    const ShadedSplats cut = cut_of(cloud.merged(), MergeSettings(layer.render, lattice),
+    const ShadedSplats cut = cut_of(cloud.merged(weight), MergeSettings(layer.render, lattice),
                                     make_projection(layer, 0, camera, frame), {count / 64, 0.0f, side, side});
     layer.splats = &cut;
     const Image image = render(std::span(&layer, 1), camera, nullptr, frame).beauty;
@@ -688,6 +688,13 @@ TEST(MergedLattice, HasNoStripes) {
     const double even = seen_through_splats(true).unevenness;
     EXPECT_LT(even, 0.14) << "waves 17 % high along either axis; the root mean square of both";
     EXPECT_GT(seen_through_splats(false).unevenness, 1.6 * even) << "as other sets' splats would look";
+}
+
+TEST(MergedLattice, SamplesHaveNoneThatCouldBeSeen) {
+    for (const double degrees : {0.0, 60.0})
+        EXPECT_LT(seen_through_splats(true, 48, degrees, 14.0f).unevenness,
+                  0.3 * seen_through_splats(true, 48, degrees).unevenness)
+            << degrees;
 }
 
 // Its cells look wider than high: each becomes several splats, which lie side by side and share its light.
