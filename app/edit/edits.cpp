@@ -373,6 +373,17 @@ void set_handle_kind(Scene& scene, const std::string& key, double frame, HandleK
             kind == HandleKind::free ? freed(scene, key, frame, side) : Handle<Numbers>{kind, 0.0, {}};
 }
 
+void ease(Scene& scene, const std::string& key, double frame, HandleSide side) {
+    TrackKeyframe* const keyframe = keyframe_of(scene, key, frame);
+    if (!keyframe) return;
+    std::vector<TrackKeyframe>& all = find_track(scene, key)->keyframes;
+    const bool before = side == HandleSide::in;
+    if (keyframe == (before ? &all.front() : &all.back())) return;
+    (before ? keyframe - 1 : keyframe)->interpolation = Interpolation::bezier;
+    handle_at(*keyframe, side) = {HandleKind::flat, 0.0, {}};
+    keyframe->broken = handle_at(*keyframe, other(side)).kind != HandleKind::flat;
+}
+
 void set_broken(Scene& scene, const std::string& key, double frame, bool broken) {
     TrackKeyframe* const keyframe = keyframe_of(scene, key, frame);
     if (!keyframe) return;

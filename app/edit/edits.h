@@ -85,6 +85,11 @@ bool has_handle(const Track& track, std::size_t i, HandleSide side);
 /// Both handles of a keyframe. Free ones begin where they are.
 void set_handle_kind(Scene& scene, const std::string& key, double frame, HandleKind kind);
 
+/// The value comes to rest at the keyframe (in) or leaves it slowly (out): a flat handle of a Bezier segment,
+/// which the one at that side becomes. Nothing where there is none. The handle at the other side stays, and
+/// so, unless it is flat too, the two are broken.
+void ease(Scene& scene, const std::string& key, double frame, HandleSide side);
+
 /// Broken handles are moved one by one; joined again, the one before the keyframe follows the one after it.
 void set_broken(Scene& scene, const std::string& key, double frame, bool broken);
 

@@ -60,6 +60,23 @@ void interpolation_items(const TimelineState& t, GuiFrame& frame) {
     }
 }
 
+/// Ready-made curves.
+void ease_items(const TimelineState& t, GuiFrame& frame) {
+    struct Preset {
+        const char* label;
+        std::vector<HandleSide> sides;
+    };
+    const bool bezier =
+        all_selected(t, frame, [&](const Track& track, std::size_t) { return may_be_bezier(t, track); });
+    for (const auto& [label, sides] :
+         {Preset{"Ease in and out", {HandleSide::in, HandleSide::out}}, Preset{"Ease in", {HandleSide::in}},
+          Preset{"Ease out", {HandleSide::out}}})
+        if (noted_menu_item(frame, menu_name, label, false, bezier))
+            on_selected(t, frame, label, [&](Scene& scene, const KeyframePlace& place) {
+                for (const HandleSide side : sides) ease(scene, place.key, place.frame, side);
+            });
+}
+
 /// Of keyframes next to a Bezier segment.
 void handle_items(const TimelineState& t, GuiFrame& frame) {
     constexpr std::array<const char*, 3> labels{"Auto handles", "Flat handles", "Free handles"};
@@ -95,10 +112,12 @@ void remove_selected(TimelineState& t, GuiFrame& frame) {
     t.selected.clear();
 }
 
-/// The popup "keyframe menu": interpolation, the ends of tracks, removal.
+/// The popup "keyframe menu": interpolation, easing, handles, the ends of tracks, removal.
 void draw_keyframe_menu(TimelineState& t, GuiFrame& frame) {
     if (!begin_menu_popup(menu_name)) return;
     interpolation_items(t, frame);
+    ImGui::Separator();
+    ease_items(t, frame);
     ImGui::Separator();
     handle_items(t, frame);
     ImGui::Separator();

@@ -320,6 +320,19 @@ TEST_F(GraphTest, TheMenuMakesBezierKeyframesAndTheirHandles) {
     EXPECT_EQ(keyframe(1).out.kind, HandleKind::automatic);
 }
 
+TEST_F(GraphTest, TheMenuEases) {
+    choose_in_menu("Ease out");
+    EXPECT_EQ(keyframe(1).interpolation, Interpolation::bezier);
+    EXPECT_EQ(keyframe(1).out.kind, HandleKind::flat);
+    EXPECT_EQ(keyframe(1).in.kind, HandleKind::automatic);
+    choose_in_menu("Ease in and out");
+    EXPECT_EQ(keyframe(0).interpolation, Interpolation::bezier);
+    EXPECT_EQ(keyframe(1).in.kind, HandleKind::flat);
+    window.document.undo();
+    window.document.undo();
+    EXPECT_NE(keyframe(1).interpolation, Interpolation::bezier);
+}
+
 TEST_F(GraphTest, TheMenuTicksWhatIsSet) {
     make_bezier();
     const auto tick = [&](const char* item) {

@@ -475,6 +475,27 @@ TEST_F(KeyframeHandles, FlatOnesRestAtTheKeyframe) {
     EXPECT_GT(fov_at(12.01), 32.005);
 }
 
+TEST_F(KeyframeHandles, EaseOneSideOrBoth) {
+    for (const double frame : {0.0, 12.0, 36.0}) set_interpolation(scene, fov, frame, Interpolation::linear);
+    const auto speed = [&](double frame) { return (fov_at(frame + 0.01) - fov_at(frame - 0.01)) / 0.02; };
+    const double before = speed(11.9), after = speed(12.1);
+    ASSERT_GT(before, 0.5);
+    ASSERT_GT(after, 0.5);
+    ease(scene, fov, 12.0, HandleSide::in);
+    EXPECT_LT(speed(11.9), 0.1 * before);
+    EXPECT_NEAR(speed(12.1), after, 1e-9);
+    EXPECT_TRUE(at(fov, 12.0).broken);
+    ease(scene, fov, 12.0, HandleSide::out);
+    EXPECT_LT(speed(12.1), 0.1 * after);
+    EXPECT_FALSE(at(fov, 12.0).broken);
+    EXPECT_EQ(fov_at(12.0), 32.0);
+    const Scene eased = scene;
+    ease(scene, fov, 0.0, HandleSide::in);  // no segments
+    ease(scene, fov, 36.0, HandleSide::out);
+    ease(scene, fov, 13.0, HandleSide::out);
+    EXPECT_EQ(scene, eased);
+}
+
 TEST_F(KeyframeHandles, BecomeFreeWhereTheyAre) {
     const double before = fov_at(7.0), after = fov_at(20.0);
     set_handle_kind(scene, fov, 12.0, HandleKind::free);
