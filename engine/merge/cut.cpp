@@ -151,7 +151,8 @@ class SeenLayer {
     }
 
   private:
-    /// Where a few rows are all that is known their cells are never small enough for their dips not to show.
+    /// Times the overlap of others (node_splat.cpp): cells of a sample stay so large that their dips would
+    /// show.
     static constexpr float sample_overlap = 1.8f;
     static constexpr float child_spread = 0.4f;  // of a splat's children along an axis, radii
 

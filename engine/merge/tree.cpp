@@ -275,60 +275,59 @@ Relight::Sums Relight::Sums::plus(const Sums& other, double times) const {
             light + times * other.light};
 }
 
-Relight::Sums Relight::RunningSums::between(std::int64_t first, std::int64_t end) const {
-    const Sums in_blocks =
-        of_blocks[std::size_t(end / block)].plus(of_blocks[std::size_t(first / block)], -1.0);
-    return in_blocks.plus(in_block[end]).plus(in_block[first], -1.0);
-}
-
-/// add(i, sums) adds a sampled row's.
+/// In blocks, whose sums are then added to: of rows without light the difference is exactly 0, across blocks,
+/// too, since the sum before a block is worked out as that at the end of the one before.
 template <class Add>
-Relight::RunningSums Relight::running_sums(std::int64_t count, const Add& add) {
-    RunningSums running{Buffer<Sums>(std::size_t(count) + 1),
-                        std::vector<Sums>(std::size_t(count / RunningSums::block) + 2)};
-    parallel_chunks(count + 1, RunningSums::block, [&](std::int64_t begin, std::int64_t end, int) {
+Buffer<Relight::Sums> Relight::running_sums(std::int64_t count, const Add& add) {
+    constexpr std::int64_t block = 4096;  // rows
+    Buffer<Sums> running(std::size_t(count) + 1);
+    std::vector<Sums> before(std::size_t(count / block) + 2);
+    parallel_chunks(count + 1, block, [&](std::int64_t begin, std::int64_t end, int) {
         Sums sums;
         for (std::int64_t i = begin; i < end; ++i) {
-            running.in_block[i] = sums;
+            running[i] = sums;
             if (i < count) add(i, sums);
         }
-        running.of_blocks[std::size_t(begin / RunningSums::block) + 1] = sums;
+        before[std::size_t(begin / block) + 1] = sums;
     });
-    for (std::size_t b = 1; b < running.of_blocks.size(); ++b)
-        running.of_blocks[b] = running.of_blocks[b].plus(running.of_blocks[b - 1]);
+    for (std::size_t b = 1; b < before.size(); ++b) before[b] = before[b - 1].plus(before[b]);
+    parallel_each(count + 1, block,
+                  [&](std::int64_t i) { running[i] = before[std::size_t(i / block)].plus(running[i]); });
     return running;
 }
 
 Relight::Relight(const MergedSplats& merged, const SplatSet& sample, const ShadedSplats& splats,
                  const Relight* last)
-    : rows_(std::ssize(merged.tree->rows)), count_(sample.size()) {
+    : rows_(std::ssize(merged.tree->rows)) {
+    const std::int64_t count = sample.size();
     const Buffer<std::int64_t> places = places_of_rows(sample, splats);
     if (last) before_ = last->before_;
     if (!before_)
-        before_ = std::make_shared<const RunningSums>(running_sums(count_, [&](std::int64_t i, Sums& sums) {
-            const std::int64_t was = merged.place[merged.tree->rows[sampled_row(rows_, count_, i)]];
+        before_ = std::make_shared<const Buffer<Sums>>(running_sums(count, [&](std::int64_t i, Sums& sums) {
+            const std::int64_t was = merged.place[merged.tree->rows[sampled_row(rows_, count, i)]];
             if (was >= 0) sums.add(merged.splats, was);
         }));
-    now_ = running_sums(count_, [&](std::int64_t i, Sums& sums) {
+    now_ = running_sums(count, [&](std::int64_t i, Sums& sums) {
         if (places[i] >= 0) sums.add(splats, places[i]);
     });
+    const Buffer<Sums>& before = *before_;
     double appeared = 0.0;
-    for (std::int64_t end = least_sampled; end <= count_; end += least_sampled)
-        if (!(before_->between(end - least_sampled, end).cover > 0.0))
-            appeared += now_.between(end - least_sampled, end).cover;
+    for (std::int64_t first = 0, end = least_sampled; end <= count; first = end, end += least_sampled)
+        if (!(before[end].cover > before[first].cover)) appeared += now_[end].cover - now_[first].cover;
     constexpr double most_appeared = 0.02;  // of the cover
-    is_true_ = count_ >= least_sampled && appeared <= most_appeared * now_.between(0, count_).cover;
-    kept_ = double(splats.size()) / double(std::max<std::int64_t>(1, count_));
+    is_true_ = count >= least_sampled && appeared <= most_appeared * now_.back().cover;
+    kept_ = double(splats.size()) / double(std::max<std::int64_t>(1, count));
 }
 
 Relight::Factors Relight::of(std::int64_t first, std::int64_t end) const {
-    const double sampled_per_row = double(count_) / double(rows_);
+    const std::int64_t count = std::ssize(now_) - 1;
+    const double sampled_per_row = double(count) / double(rows_);
     auto lo = std::int64_t(double(first) * sampled_per_row), hi = std::int64_t(double(end) * sampled_per_row);
     if (hi - lo < least_sampled) {
-        lo = std::clamp<std::int64_t>((lo + hi - least_sampled) / 2, 0, count_ - least_sampled);
+        lo = std::clamp<std::int64_t>((lo + hi - least_sampled) / 2, 0, count - least_sampled);
         hi = lo + least_sampled;
     }
-    const Sums before = before_->between(lo, hi), now = now_.between(lo, hi);
+    const Sums before = (*before_)[hi].plus((*before_)[lo], -1.0), now = now_[hi].plus(now_[lo], -1.0);
     Factors found;
     found.cover = ratio(now.cover, before.cover, 1.0);
     found.squares = ratio(now.squares, before.squares, 1.0);

@@ -115,19 +115,13 @@ class Relight {
         Sums plus(const Sums& other, double times = 1.0) const;
     };
 
-    /// Over the sampled rows before each, and over all.
-    struct RunningSums {
-        static constexpr std::int64_t block = 4096;  // rows
-        Buffer<Sums> in_block;                       // over those of its block
-        std::vector<Sums> of_blocks;                 // over the blocks before each
-        Sums between(std::int64_t first, std::int64_t end) const;
-    };
+    /// Over the sampled rows before each, and over all. add(i, sums) adds a row's.
     template <class Add>
-    static RunningSums running_sums(std::int64_t count, const Add& add);
+    static Buffer<Sums> running_sums(std::int64_t count, const Add& add);
 
-    std::int64_t rows_ = 0, count_ = 0;          // of the tree, of the sample
-    std::shared_ptr<const RunningSums> before_;  // under the look of the sums
-    RunningSums now_;
+    std::int64_t rows_ = 0;                       // of the tree
+    std::shared_ptr<const Buffer<Sums>> before_;  // under the look of the sums
+    Buffer<Sums> now_;
     bool is_true_ = true;
     double kept_ = 1.0;
 };

@@ -509,6 +509,26 @@ TEST(Merge, WhatAppearsCannotBeRelit) {
     EXPECT_FALSE(is_true()) << "a quarter was dark";
 }
 
+// What rounding left between two sums would make any light there many times as much. Dark: at the ends of
+// blocks, in which sums are made.
+TEST(Merge, WhereAllWasDarkNothingIsRelit) {
+    Cloud cloud = random_cloud(64000, {1.0f, 1.0f, 0.2f}, 0.02f, 0.2f);
+    const auto tree = std::make_shared<const MergeTree>(build_merge_tree(*cloud.set));
+    const SplatSet sample = sample_tree(*tree, *cloud.set, 64000);
+    ShadedSplats lit;
+    for (const std::uint64_t id : sample.id)
+        for_each_member([&](auto member) { (lit.*member).push_back((cloud.splats.*member)[id]); });
+    const auto is_dark = [](std::int64_t row) { return (row + 16) % 1024 < 32; };
+    for (std::int64_t row = 0; row < 64000; ++row)
+        if (is_dark(row)) cloud.splats.alpha[std::size_t(tree->rows[row])] = 0.0f;
+    const Relight relight(merge_splats({cloud.set, tree, 1.0f}, cloud.splats), sample, lit);
+    for (std::int64_t end = 1024; end < 64000; end += 1024) {
+        const Relight::Factors found = relight.of(end - 8, end + 8);
+        EXPECT_EQ(found.cover, 1.0f) << end;
+        EXPECT_EQ(found.light, glm::vec3(1.0f)) << end;
+    }
+}
+
 TEST(Merge, TheSameBitsForAnyThreadCount) {
     const Cloud cloud = random_cloud(50000, {1.0f, 0.1f, 1.0f}, 0.01f, 0.5f);
     test::expect_same_bits([&] {
