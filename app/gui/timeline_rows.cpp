@@ -44,10 +44,13 @@ bool may_be_bezier(const TimelineState& t, const Track& track) {
            spec->second.animation == Animation::yes;
 }
 
+bool all_may_be_bezier(const TimelineState& t, const GuiFrame& frame) {
+    return all_selected(t, frame, [&](const Track& track, std::size_t) { return may_be_bezier(t, track); });
+}
+
 void interpolation_items(const TimelineState& t, GuiFrame& frame) {
     constexpr std::array<const char*, 4> labels{"Linear", "Smooth", "Step", "Bezier"};  // by Interpolation
-    const bool bezier =
-        all_selected(t, frame, [&](const Track& track, std::size_t) { return may_be_bezier(t, track); });
+    const bool bezier = all_may_be_bezier(t, frame);
     for (std::size_t i = 0; i < labels.size(); ++i) {
         const auto kind = static_cast<Interpolation>(i);
         const bool set = all_selected(t, frame, [&](const Track& track, std::size_t at) {
@@ -66,8 +69,7 @@ void ease_items(const TimelineState& t, GuiFrame& frame) {
         const char* label;
         std::vector<HandleSide> sides;
     };
-    const bool bezier =
-        all_selected(t, frame, [&](const Track& track, std::size_t) { return may_be_bezier(t, track); });
+    const bool bezier = all_may_be_bezier(t, frame);
     for (const auto& [label, sides] :
          {Preset{"Ease in and out", {HandleSide::in, HandleSide::out}}, Preset{"Ease in", {HandleSide::in}},
           Preset{"Ease out", {HandleSide::out}}})

@@ -231,7 +231,11 @@ class LiveSets {
     bool knows(const LoadedLayer& loaded) const { return asked_.loaded && asked_.loaded->set == loaded.set; }
     bool working() const { return work_.working(); }
     /// The next want() may find a newer one.
-    bool comes() const { return !taken_; }
+    bool comes() const {
+        if (work_.working()) return true;
+        const auto found = work_.found(asked_);
+        return found && found->layer != found_;
+    }
     void forget();
 
   private:
@@ -239,7 +243,6 @@ class LiveSets {
     LiveRequest asked_;
     std::shared_ptr<const LoadedLayer> found_;
     std::shared_ptr<const SplatSet> base_;  // whose preview found_ is
-    bool taken_ = true;                     // what was asked for
 };
 
 class SetWishes {

@@ -240,10 +240,8 @@ void LiveSets::want(const LiveRequest& request) {
     if (const auto found = work_.found(asked_)) {
         base_ = asked_.loaded->set;
         found_ = found->layer;
-        taken_ = true;
     }
     if (work_.working() && asked_.loaded->set == request.loaded->set) return;
-    if (!(asked_ == request)) taken_ = false;
     asked_ = request;
     work_.want(request);
 }
@@ -256,8 +254,6 @@ void LiveSets::forget() {
     work_.cancel();
     base_.reset();
     found_.reset();
-    asked_.source = {};  // it is asked for again
-    taken_ = true;
 }
 
 bool SetWishes::due(const Document& document, double now) {

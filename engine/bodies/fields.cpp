@@ -201,9 +201,10 @@ Image blown_up(const Image& silhouette) {
 
 }  // namespace
 
-Image shell_field(const Image& brightest, double depth, double steepest, std::optional<Image>* kept) {
+Image balloon_of(const Image& brightest) { return blown_up(silhouette_of(silhouette_grid(brightest).light)); }
+
+Image shell_field(const Image& brightest, Image shell, double depth, double steepest) {
     const SilhouetteGrid grid = silhouette_grid(brightest);
-    Image shell = made_once(kept, [&] { return blown_up(silhouette_of(grid.light)); });
     const float highest = std::ranges::max(shell.pixels);
     if (highest <= 0.0f) return to_field_size(std::move(shell), grid);
     change_each(shell, [&](float v) { return float(depth) * std::sqrt(std::max(0.0f, v) / highest); });

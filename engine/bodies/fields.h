@@ -4,8 +4,6 @@
 // smoothness allows.
 #pragma once
 
-#include <optional>
-
 #include "core/image.h"
 
 namespace astrosplat {
@@ -27,21 +25,15 @@ Image relief_field(const Image& brightest, double depth, double steepest);
 /// size there, for light that is smooth from the front is so from aside (INCLINED 3).
 Image structure_field(const Image& brightest);
 
-/// Half of the distance between the walls of a shell: the picture's silhouette blown up like a balloon. h
-/// solves the Poisson equation -laplace(h) = 1 inside of it and is 0 outside, and its root is an ellipsoid's
-/// height over an ellipse, a ridge's over a filament. At most `depth`, at the middle of the widest part;
-/// nowhere steeper than `steepest`. The silhouette is where the light of wide areas is above a twelfth of its
-/// range. `kept`: h of the same light, where it was solved before; may be null.
-Image shell_field(const Image& brightest, double depth, double steepest,
-                  std::optional<Image>* kept = nullptr);
+/// The picture's silhouette blown up like a balloon, on a coarse grid: h solves the Poisson equation
+/// -laplace(h) = 1 inside of it and is 0 outside. The silhouette is where the light of wide areas is above a
+/// twelfth of its range.
+Image balloon_of(const Image& brightest);
 
-/// Made once, where it is kept; `kept` may be null.
-template <class T, class Make>
-T made_once(std::optional<T>* kept, const Make& make) {
-    if (!kept) return make();
-    if (!*kept) *kept = make();
-    return **kept;
-}
+/// Half of the distance between the walls of a shell: the root of that light's balloon, which is an
+/// ellipsoid's height over an ellipse, a ridge's over a filament. At most `depth`, at the middle of the
+/// widest part; nowhere steeper than `steepest`.
+Image shell_field(const Image& brightest, Image balloon, double depth, double steepest);
 
 /// Light of a shell that is on neither of its walls: that of compact bright cores inside, and that of the
 /// dark sky around. On the walls a core would be seen twice, with a column between, and the sky would be a

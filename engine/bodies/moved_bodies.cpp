@@ -78,7 +78,7 @@ struct MovedBodies::Picture {
     std::vector<Band> bands;
     std::vector<Star> stars;  // texels of the picture
     std::vector<GalaxyPlane> planes;
-    mutable PlacementSight sight{{true, {}, {}, {}}, {}, {}, {}, {}};  // of the model asked for last
+    mutable PlacementSight sight;  // of the model asked for last
     Placement before;
     std::vector<Group> groups;
 
@@ -89,6 +89,7 @@ struct MovedBodies::Picture {
           surface(surface_of(mesh, material)),
           seed(picture_seed),
           bands(make_bands(size.width)) {
+        sight.galaxies.coarse = true;
         PictureLight picture = picture_light(seen, params.border);
         brightest = reduced_by_area(brightest_channel(picture.light), small.width, small.height);
         take_stars_out(picture.light, params);

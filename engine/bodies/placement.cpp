@@ -139,6 +139,15 @@ void scale(std::vector<Knot>& knots, float factor) {
     }
 }
 
+// Made once where there is a sight, which keeps it.
+template <class T, class Make>
+T made_once(PlacementSight* sight, std::optional<T> PlacementSight::*member, const Make& make) {
+    if (!sight) return make();
+    std::optional<T>& kept = sight->*member;
+    if (!kept) kept = make();
+    return *kept;
+}
+
 // How many times as thick as by itself the scene wants a disk to be.
 double times_as_thick(const StructureParams& params, double texels_per_unit, const Placement& placement) {
     if (!(params.height > 0.0)) return 1.0;
@@ -198,15 +207,15 @@ Placement make_placement(const Image& light, const StructureParams& params, doub
     } else {
         placement.thickness = times(thickness_field(shown, placement.height * px), texels);
         placement.structure =
-            made_once(sight ? &sight->structure : nullptr, [&] { return structure_field(shown); });
+            made_once(sight, &PlacementSight::structure, [&] { return structure_field(shown); });
         if (!axis) stars = {};
     }
     if (params.kind == StructureKind::walls) {
+        Image balloon = made_once(sight, &PlacementSight::balloon, [&] { return balloon_of(shown); });
         placement.relief =
-            times(shell_field(shown, placement.depth * px, steepest_wall, sight ? &sight->blown_up : nullptr),
-                  texels);
+            times(shell_field(shown, std::move(balloon), placement.depth * px, steepest_wall), texels);
         placement.filled =
-            made_once(sight ? &sight->filled : nullptr, [&] { return find_filled_light(shown); });
+            made_once(sight, &PlacementSight::filled, [&] { return find_filled_light(shown); });
         placement.filled.core_reach = times(std::move(placement.filled.core_reach), texels);
     }
     if (params.kind == StructureKind::sheet && flat)
@@ -219,8 +228,7 @@ Placement make_placement(const Image& light, const StructureParams& params, doub
     placement.star_knots = std::int32_t(around.size());
     scale(around, placement.to_light);
     if (sight && std::exchange(sight->knots_around, around.size()) != around.size()) sight->knots.reset();
-    placement.knots =
-        made_once(sight ? &sight->knots : nullptr, [&] { return find_knots(brightest, around); });
+    placement.knots = made_once(sight, &PlacementSight::knots, [&] { return find_knots(brightest, around); });
     scale(placement.knots.knots, float(texels));
     set_knot_depths(placement, stars);
     return placement;

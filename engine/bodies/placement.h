@@ -88,7 +88,7 @@ struct Placement {
 /// model: the next one finds only what differs.
 struct PlacementSight {
     GalaxySight galaxies;
-    std::optional<Image> structure, blown_up;  // of shell_field()
+    std::optional<Image> structure, balloon;
     std::optional<FilledLight> filled;
     std::optional<Knots> knots;
     std::size_t knots_around = 0;  // so many stars

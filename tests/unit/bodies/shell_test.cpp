@@ -26,9 +26,13 @@ Image ellipse(double half_width, double half_height) {
     return image;
 }
 
+Image shell_of(const Image& brightest, double depth, double steepest) {
+    return shell_field(brightest, balloon_of(brightest), depth, steepest);
+}
+
 TEST(Shell, OverAnEllipseIsAnEllipsoid) {
     for (const auto& [width, height] : {std::array{160.0, 160.0}, {240.0, 120.0}}) {
-        const Image field = shell_field(ellipse(width, height), 60.0, 10.0);
+        const Image field = shell_of(ellipse(width, height), 60.0, 10.0);
         const double outline =
             width + 9.0;  // an eleventh of the light is left there after the blur of 6.7 px
         const auto at = [&](double share) {
@@ -44,7 +48,7 @@ TEST(Shell, OverAnEllipseIsAnEllipsoid) {
 
 TEST(Shell, IsNowhereTooSteepAndNothingOverNothing) {
     for (const double steepest : {0.8, 0.2}) {
-        const Image field = shell_field(ellipse(100.0, 100.0), 90.0, steepest);
+        const Image field = shell_of(ellipse(100.0, 100.0), 90.0, steepest);
         float slope = 0.0f;
         for (std::int64_t y = 0; y < field.height; ++y)
             for (std::int64_t x = 0; x + 1 < field.width; ++x)
@@ -52,7 +56,7 @@ TEST(Shell, IsNowhereTooSteepAndNothingOverNothing) {
         EXPECT_LE(slope, 1.03 * steepest);
         EXPECT_GT(slope, 0.5 * steepest);
     }
-    const Image nothing = shell_field(make_image(320, 200, 1), 60.0, 0.8);
+    const Image nothing = shell_of(make_image(320, 200, 1), 60.0, 0.8);
     EXPECT_EQ(*std::max_element(nothing.pixels.begin(), nothing.pixels.end()), 0.0f);
 }
 
