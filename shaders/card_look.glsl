@@ -42,7 +42,8 @@ void shade(uint i) {
     float radius = 0.0f;
     if (look.radius.own != 0) radius = raw_radius[i];
     uvec2 id = raw_id[i];
-    LookOutput o = look_splat(look, LookInput(place, color, raw_alpha[i], raw_distance[i], radius, chosen, id.x, id.y));
+    LookInput raw = LookInput(place, color, raw_alpha[i], raw_distance[i], radius, chosen, id.x, id.y, 1.0f);
+    LookOutput o = look_splat(look, raw);
     position[3u * i] = o.position.x;
     position[3u * i + 1u] = o.position.y;
     position[3u * i + 2u] = o.position.z;

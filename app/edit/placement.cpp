@@ -388,7 +388,7 @@ const Crop* chosen_crop(const Scene& now, const ViewState& view) {
 }
 
 glm::dmat3 axes_of(const Crop& crop) {
-    const bool turns = crop.shape == Crop::Shape::box;
+    const bool turns = crop.shape != Crop::Shape::sphere;
     return turns ? rotation_from_degrees(glm::dvec3(crop.rotate)) : glm::dmat3(1.0);
 }
 
@@ -467,6 +467,7 @@ std::optional<Handled> handled_in(const Scene& now, const ViewState& view) {
     const Crop* crop = chosen_crop(now, view);
     const bool is_sphere = crop && crop->shape == Crop::Shape::sphere;
     if (!crop || (is_sphere && view.tool == HandleTool::rotate)) return std::nullopt;
+    if (crop->shape == Crop::Shape::outline && view.tool == HandleTool::scale) return std::nullopt;
     const LayerPlacement placement = placement_of(layer.transform);
     handled.origin = to_world(placement, glm::dvec3(crop->center));
     handled.axes = placement.rotation * axes_of(*crop);
@@ -499,6 +500,16 @@ std::vector<std::vector<glm::dvec3>> crop_outline(const LayerParams& layer, std:
     if (crop.shape == Crop::Shape::box) {
         const Bounds box{-0.5 * glm::dvec3(crop.size), 0.5 * glm::dvec3(crop.size)};
         for (const MarkLine& edge : box_edges(box, {})) lines.push_back({at(edge.from), at(edge.to)});
+        return lines;
+    }
+    if (crop.shape == Crop::Shape::outline) {  // as it is beside the middle of the layer
+        const double depth = std::max(1e-3, glm::dot(axes[2], glm::dvec3(crop.center)));
+        const double scale = crop.parallel ? 1.0 : depth;
+        for (const std::vector<glm::vec2>& line : outline_lines(crop.outline)) {
+            lines.emplace_back();
+            for (const glm::vec2& p : line) lines.back().push_back(at({scale * glm::dvec2(p), -depth}));
+            if (crop.width == 0.0f) lines.back().push_back(lines.back().front());
+        }
         return lines;
     }
     const glm::dmat3 radii(double(crop.radius));  // along x, y and z

@@ -137,7 +137,7 @@ struct NewValue {
 NewValue dragged_value(const Scene& pressed, const ViewState& view, const Camera& camera,
                        const HandleDrag& drag);
 
-/// Boxes and spheres of the crops of a layer, as lines in the world.
+/// Boxes, spheres and outlines of the crops of a layer, as lines in the world.
 std::vector<std::vector<glm::dvec3>> crop_outline(const LayerParams& layer, std::size_t crop);
 
 }  // namespace astrosplat

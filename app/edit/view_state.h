@@ -43,6 +43,10 @@ enum class PreviewEngine { automatic, card, processor };
 enum class HandleTool { none, move, rotate, scale };
 enum class HandleTarget { layer, crop, camera_target };  // the selected layer's placement, one of its crops
 
+enum class SelectTool { none, lasso, box, brush };
+/// What becomes of what is selected: erased, alone kept, or made a layer of its own.
+enum class SelectionFate { erase, keep, part };
+
 /// A camera that belongs to the window, not to the scene.
 struct FreeCamera {
     glm::dvec3 position{0.0, 0.0, 10.0}, pivot{0.0}, up{0.0, 1.0, 0.0};
@@ -110,8 +114,11 @@ struct ViewState : PanelSizes {
     bool grid = false, axes = false, scale_bar = false;
     HandleTool tool = HandleTool::none;  // handles in the view
     HandleTarget handle_target = HandleTarget::layer;
-    std::size_t handle_crop = 0;  // of the selected layer
-    bool lying = false;           // handles of how its picture's bodies lie
+    std::size_t handle_crop = 0;           // of the selected layer
+    SelectTool select = SelectTool::none;  // in place of orbiting with the left button
+    SelectionFate selection = SelectionFate::erase;
+    float brush_px = 24.0f, feather_px = 0.0f;  // radius, and width of the soft edge; px at scale 1
+    bool lying = false;                         // handles of how its picture's bodies lie
     PreviewEngine engine = PreviewEngine::automatic;
     float preview_share = 0.0f;  // 0: sized to hold the frame rate; else 0..1 of every layer
     bool settle = true;          // the final frame follows by itself

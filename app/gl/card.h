@@ -53,7 +53,7 @@ class Card final : public RenderDevice, public LookDevice {
     std::string cannot(const FrameJob& job) const override;
     std::optional<GroupPlanes> draw(const FrameJob& job, std::size_t group, bool alone) override;
     LookDevice* looks() override { return this; }
-    std::optional<DeviceLook> shade(const SplatSet& set, std::uint64_t set_stamp, const LookUniforms& look,
+    std::optional<DeviceLook> shade(const SplatSet& set, std::uint64_t set_stamp, const PreparedLook& look,
                                     const Image* map, std::uint64_t stamp) override;
 
     /// Slabs of depth from now on, which change no pixel; 0: as many as suit the memory.

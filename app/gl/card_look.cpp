@@ -21,9 +21,9 @@ bool Card::keep_set(const SplatSet& set, const LookUniforms& look, bool with_uv,
            put(4, set.id) && (!look.radius.own || put(5, set.radius)) && (!with_uv || put(6, set.uv));
 }
 
-std::optional<DeviceLook> Card::shade(const SplatSet& set, std::uint64_t set_stamp, const LookUniforms& look,
+std::optional<DeviceLook> Card::shade(const SplatSet& set, std::uint64_t set_stamp, const PreparedLook& look,
                                       const Image* map, std::uint64_t stamp) try {
-    if (lost_ || set.size() == 0) return {};
+    if (lost_ || set.size() == 0 || !look.outlines.empty()) return {};
     const bool with_map = look.stop_count > 1;
     KeptSet& raw = sets_[set_stamp];
     raw.frame = frames_ + 1;  // which is about to be drawn
@@ -44,7 +44,8 @@ std::optional<DeviceLook> Card::shade(const SplatSet& set, std::uint64_t set_sta
         keep_set(set, look, with_map, raw) &&
         make_room(32 * n - positions.bytes() - radii.bytes() - alphas.bytes() - colors.bytes()) &&
         positions.reserve(12 * n) && radii.reserve(4 * n) && alphas.reserve(4 * n) &&
-        colors.reserve(12 * n) && look_uniforms_.fill(&look, sizeof look) &&
+        colors.reserve(12 * n) &&
+        look_uniforms_.fill(static_cast<const LookUniforms*>(&look), sizeof(LookUniforms)) &&
         look_map_.fill(texels.pixels.data(), 4 * std::ssize(texels.pixels)) &&
         look_totals_.fill(none, sizeof none);
     if (!fits) {

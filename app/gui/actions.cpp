@@ -7,6 +7,7 @@
 #include "edit/layer_steps.h"
 #include "edit/layers.h"
 #include "edit/lying.h"
+#include "edit/selection.h"
 #include "edit/view_camera.h"
 #include "scene/animate.h"
 #include "scene/describe.h"
@@ -226,6 +227,8 @@ void cancel(F f) {
         f.view.help_open = f.view.log_open = false;
     } else if (is_placing(f)) {
         toggle_placing(f);
+    } else if (f.view.select != SelectTool::none) {
+        f.view.select = SelectTool::none;
     } else if (f.view.tool != HandleTool::none) {
         f.view.tool = HandleTool::none;
         f.view.handle_target = HandleTarget::layer;
@@ -328,6 +331,31 @@ Action handles(const char* label, int code) {
         .enabled = has_layer,
         .checked =
             [](C f) { return f.view.tool == tool && f.view.handle_target != HandleTarget::camera_target; }};
+}
+
+template <SelectTool tool>
+Action select_by(const char* label, int code) {
+    return {.menu = "Layer/Select",
+            .label = label,
+            .shortcut = plain(code),
+            .run = [](F f) { f.view.select = f.view.select == tool ? SelectTool::none : tool; },
+            .enabled = has_layer,
+            .checked = [](C f) { return f.view.select == tool; }};
+}
+
+template <SelectionFate fate>
+Action selected_parts(const char* label) {
+    return {.menu = "Layer/Select",
+            .label = label,
+            .run = [](F f) { f.view.selection = fate; },
+            .checked = [](C f) { return f.view.selection == fate; }};
+}
+
+void scale_brush(F f, float by) { f.view.brush_px = std::clamp(f.view.brush_px * by, 2.0f, 400.0f); }
+bool brushes(C f) { return f.view.select == SelectTool::brush; }
+bool has_outlines(C f) {
+    return has_layer(f) && std::ranges::any_of(f.document.scene().layers[f.view.layer].look.crop,
+                                               [](const Crop& c) { return c.shape == Crop::Shape::outline; });
 }
 
 /// Of how the bodies of its picture lie.
@@ -441,6 +469,20 @@ const Action table[] = {
     handles<HandleTool::rotate>("Rotate in the view", 'E'),
     handles<HandleTool::scale>("Scale in the view", 'R'),
     incline_in_view(),
+    select_by<SelectTool::lasso>("Lasso", 'L'),
+    select_by<SelectTool::box>("Box", 'M'),
+    select_by<SelectTool::brush>("Brush", 'Q'),
+    below_line(selected_parts<SelectionFate::erase>("Erases")),
+    selected_parts<SelectionFate::keep>("Keeps alone"),
+    selected_parts<SelectionFate::part>("Makes a layer"),
+    below_line({"Layer/Select", "Smaller brush", plain('['), [](F f) { scale_brush(f, 0.8f); }, brushes}),
+    {"Layer/Select", "Larger brush", plain(']'), [](F f) { scale_brush(f, 1.25f); }, brushes},
+    below_line(
+        {"Layer/Select",
+         "Forget what was drawn",
+         {},
+         [](F f) { edit(f, "Forget outlines", [&](Scene& scene) { forget_outlines(scene, f.view.layer); }); },
+         has_outlines}),
     below_line({"Layer", "Regenerate", {}, ask_for_layer<Kind::regenerate>, layer_stale}),
 
     {"Camera", "Key camera here", {}, set_camera_keyframe_here},

@@ -56,6 +56,8 @@ void Viewport::begin_drag(GuiFrame& frame, const Rect& area, const Rect& frame_a
     } else if (button_ == 0 && !io.KeyAlt && places_reference(frame)) {
         input_.drag = ViewportInput::Drag::place;
         placing_.press(frame, frame_on_screen(frame_area), io.KeyShift);
+    } else if (button_ == 0 && !io.KeyAlt && !io.KeyShift && selecting_.press(frame, input_.mouse_px)) {
+        input_.drag = ViewportInput::Drag::select;
     } else if (button_ == 0 && !io.KeyAlt && !io.KeyShift && lying_.press(frame, input_.mouse_px)) {
         input_.drag = ViewportInput::Drag::lying;
     } else if (button_ == 0 && !io.KeyAlt && path_points_.press(frame, area)) {
@@ -143,7 +145,9 @@ void Viewport::read_mouse(GuiFrame& frame, const Rect& area, const Rect& frame_a
     if (places_reference(frame)) placing_.read(frame, frame_on_screen(frame_area), input_);
     handles_.read(frame, input_.mouse_px, input_.drag == ViewportInput::Drag::handle);
     lying_.read(frame, input_.mouse_px, input_.drag == ViewportInput::Drag::lying);
-    if (input_.drag == ViewportInput::Drag::lying) input_.double_click = false;
+    selecting_.read(frame, input_.mouse_px, input_.drag == ViewportInput::Drag::select);
+    if (frame.view.select != SelectTool::none || input_.drag == ViewportInput::Drag::lying)
+        input_.double_click = false;
     if (input_.drag == ViewportInput::Drag::path) {
         input_.double_click = false;
         if (!input_.drag_begins) path_points_.drag(frame);
@@ -178,6 +182,7 @@ void Viewport::draw(GuiFrame& frame, const Rect& area) {
     lying_.draw(frame, area, input_.mouse_px);
     handles_.draw(frame, area, input_.mouse_px);
     path_points_.draw(frame, area);
+    selecting_.draw(frame, area, input_.mouse_px, input_.hovered);
     draw_gate(frame, area, frame_area);
     draw_wipe(frame, area, frame_area);
     if (places_reference(frame)) draw_placing(frame, frame_on_screen(frame_area));
@@ -186,6 +191,7 @@ void Viewport::draw(GuiFrame& frame, const Rect& area) {
     draw_side_badge(frame, area, draw_badge(frame, area));
     ImGui::PopClipRect();
     draw_start_card(frame, area);
+    draw_select_bar(frame, area);
 }
 
 }  // namespace astrosplat

@@ -8,6 +8,7 @@
 #include "edit/edits.h"
 #include "edit/lying.h"
 #include "edit/placement.h"
+#include "edit/selection.h"
 #include "gui/gui_frame.h"
 #include "scene/reference_place.h"
 
@@ -67,6 +68,26 @@ class LyingHandles {
     DragEdit edit_;
 };
 
+/// Lasso, box and brush, while ViewState::select: a drag with the left button takes that part of the selected
+/// layer, one undo step; Escape drops what is being drawn.
+class Selecting {
+  public:
+    /// As Handles has it.
+    bool press(const GuiFrame& frame, const glm::dvec2& mouse_px);
+    void read(GuiFrame& frame, const glm::dvec2& mouse_px, bool dragged);
+    /// What is being drawn, and the brush under the mouse.
+    void draw(const GuiFrame& frame, const Rect& area, const glm::dvec2& mouse_px, bool hovered) const;
+
+  private:
+    DrawnLine drawn() const;
+    std::vector<glm::dvec2> points_;  // px of the viewport; none: nothing is being drawn
+    SelectTool tool_ = SelectTool::none;
+    double radius_px_ = 0.0, feather_px_ = 0.0;
+    Camera camera_;  // through which it is drawn
+};
+/// At the view's top, while ViewState::select: the tool, what becomes of what it takes, and the brush.
+void draw_select_bar(GuiFrame& frame, const Rect& area);
+
 /// A keyframe of the camera's position, or one of its handles.
 struct PathGrip {
     double frame = 0.0;
@@ -118,6 +139,7 @@ class Viewport {
     ReferencePlacing placing_;
     Handles handles_;
     LyingHandles lying_;
+    Selecting selecting_;
     PathPoints path_points_;
     int button_ = -1;              // that began the drag
     bool moves_frame_ = false;     // 1:1: a pan stays in the window

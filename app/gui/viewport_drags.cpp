@@ -271,6 +271,122 @@ void LyingHandles::draw(GuiFrame& frame, const Rect& area, const glm::dvec2& mou
                                            : lying_grips[std::size_t(lit.of)].of_disk);
 }
 
+// Parts that are selected.
+
+bool Selecting::press(const GuiFrame& frame, const glm::dvec2& mouse_px) {
+    const ViewState& view = frame.view;
+    points_.clear();
+    const bool can = view.select != SelectTool::none && frame.status.viewport_camera &&
+                     view.layer < frame.document.scene().layers.size() && view.compare != CompareMode::front;
+    if (!can) return false;
+    tool_ = view.select;
+    radius_px_ = double(px(view.brush_px));
+    feather_px_ = double(px(view.feather_px));
+    camera_ = *frame.status.viewport_camera;
+    points_ = {mouse_px};
+    return true;
+}
+
+DrawnLine Selecting::drawn() const {
+    const double radius = tool_ == SelectTool::brush ? radius_px_ : 0.0;
+    if (tool_ != SelectTool::box) return {points_, radius, feather_px_};
+    const glm::dvec2 &a = points_.front(), &b = points_.back();
+    return {{a, {b.x, a.y}, b, {a.x, b.y}}, radius, feather_px_};
+}
+
+void Selecting::read(GuiFrame& frame, const glm::dvec2& mouse_px, bool dragged) {
+    if (points_.empty()) return;
+    if (key_pressed(key_code::escape)) return points_.clear();
+    if (mouse_px != points_.back()) points_.push_back(mouse_px);
+    if (dragged) return;
+    const DrawnLine line = drawn();
+    points_.clear();
+    ViewState& view = frame.view;
+    const Scene now = scene_now(frame);
+    if (view.layer >= now.layers.size()) return;
+    const LayerParams& layer = now.layers[view.layer];
+    const std::optional<Crop> crop = crop_behind(camera_, placement_of(layer.transform), line);
+    if (!crop && tool_ == SelectTool::brush)
+        return request_text(frame, Command::Kind::say, "Too wide a part of the view to be drawn at once");
+    if (!crop) return;  // a click
+    constexpr std::array names{"Erase a part of ", "Keep a part of ", "Part off "};
+    try_edit([&] {
+        std::size_t part = view.layer;
+        frame.document.edit(names[std::size_t(view.selection)] + layer.name,
+                            [&](Scene& scene) { part = select_part(scene, part, *crop, view.selection); });
+    });
+}
+
+void Selecting::draw(const GuiFrame& frame, const Rect& area, const glm::dvec2& mouse_px,
+                     bool hovered) const {
+    if (frame.view.select == SelectTool::none) return;
+    ImDrawList* const list = ImGui::GetWindowDrawList();
+    const ImU32 ink = frame.view.selection == SelectionFate::erase ? color::error : color::attention;
+    const auto at = [&](const glm::dvec2& p) { return ImVec2(area.x + float(p.x), area.y + float(p.y)); };
+    const auto path = [&](const DrawnLine& line, ImU32 own, ImDrawFlags flags, float width) {
+        for (const glm::dvec2& p : line.points) list->PathLineTo(at(p));
+        list->PathStroke(own, flags, width);
+    };
+    if (!points_.empty() && tool_ == SelectTool::brush) {
+        path(drawn(), color::with_opacity(ink, 0.35f), ImDrawFlags_None, 2.0f * float(radius_px_));
+    } else if (!points_.empty()) {
+        path(drawn(), shade, ImDrawFlags_Closed, px(4));
+        path(drawn(), ink, ImDrawFlags_Closed, px(1.5f));
+    }
+    if (frame.view.select != SelectTool::brush || !(hovered || !points_.empty())) return;
+    list->AddCircle(at(mouse_px), px(frame.view.brush_px), shade, 48, px(3));
+    list->AddCircle(at(mouse_px), px(frame.view.brush_px), ink, 48, px(1.5f));
+}
+
+void draw_select_bar(GuiFrame& frame, const Rect& area) {
+    ViewState& view = frame.view;
+    if (view.select == SelectTool::none) return;
+    constexpr float inset = 10, padding = 6, control = 22, field = 64, space = 8;
+    static constexpr std::initializer_list<Segment> tools{
+        {"Lasso", "Drag around what is meant (L)"},
+        {"Box", "Drag from corner to corner (M)"},
+        {"Brush", "Paint over what is meant; [ and ] change its size (Q)"}};
+    static constexpr std::initializer_list<Segment> fates{
+        {"Erase", "What is drawn around goes: all of it that lies behind, at any depth"},
+        {"Keep", "All else goes"},
+        {"To a layer", "What is drawn around becomes a layer of its own"}};
+    const bool brushes = view.select == SelectTool::brush;
+    const float width = segmented_width(tools) + segmented_width(fates) + px(control + 2 * space) +
+                        px((brushes ? 2 : 1) * (field + space)) + px(2 * padding);
+    ImGui::SetCursorScreenPos(
+        {std::floor(area.x + std::max(px(inset), 0.5f * (area.width - width))), area.y + px(inset)});
+    ImGui::PushStyleColor(ImGuiCol_ChildBg, color4(color::with_opacity(color::window, 0.92f)));
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(px(padding), px(padding)));
+    ImGui::BeginChild("select bar", {width, px(control + 2 * padding)}, false,
+                      ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse |
+                          ImGuiWindowFlags_AlwaysUseWindowPadding);
+    enter_part("select bar");
+    push_field_height(px(control));
+    const int tool = segmented(frame, "select tool", tools, int(view.select) - 1, control);
+    if (tool >= 0) view.select = SelectTool(tool + 1);
+    ImGui::SameLine(0, px(space));
+    const int fate = segmented(frame, "selection", fates, int(view.selection), control);
+    if (fate >= 0) view.selection = SelectionFate(fate);
+    if (brushes) {
+        ImGui::SameLine(0, px(space));
+        drag_field(frame, view.brush_px,
+                   {"brush", 0.25f, 2, 400, "%.0f px", field, color::text, "Radius of the brush ([ and ])"});
+    }
+    ImGui::SameLine(0, px(space));
+    drag_field(frame, view.feather_px,
+               {"feather", 0.25f, 0, 400, "~ %.0f px", field, color::dim,
+                "Width of the soft edge, at the middle of the layer"});
+    ImGui::SameLine(0, px(space));
+    if (icon_button("close selecting", Icon::cross, {px(control), px(control)}, px(10), color::dim,
+                    "Done (Esc)"))
+        view.select = SelectTool::none;
+    note_item(frame, "close selecting");
+    ImGui::PopStyleVar();
+    ImGui::EndChild();
+    ImGui::PopStyleVar();
+    ImGui::PopStyleColor();
+}
+
 namespace {
 
 // Points of the camera's path.

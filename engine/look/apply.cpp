@@ -125,7 +125,7 @@ void apply_look(const SplatSet& set, const Look& look, const LookInputs& inputs,
                 const Progress& progress, LookStatistics* statistics) {
     const auto start = Clock::now();
     const DenormalsAreZero as_on_cards;
-    const LookUniforms uniforms = prepare_look(set, look, inputs);
+    const PreparedLook uniforms = prepare_look(set, look, inputs);
     make_room(shaded, set.size());
     LookColumns columns(set);
     if (inputs.seen_colors) columns.color = inputs.seen_colors->data();
@@ -141,7 +141,7 @@ ShadedSplats apply_look_in_place(SplatSet& set, const Look& look, const LookInpu
     assert(!inputs.seen_colors);
     const auto start = Clock::now();
     const DenormalsAreZero as_on_cards;
-    const LookUniforms uniforms = prepare_look(set, look, inputs);
+    const PreparedLook uniforms = prepare_look(set, look, inputs);
     progress.check();
     const std::int64_t count = set.size();
     const LookColumns columns(set);  // where the arrays are does not change when they are handed over

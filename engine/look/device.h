@@ -17,9 +17,10 @@ class LookDevice {
     virtual ~LookDevice() = default;
     /// Applies a prepared look to a set; what it draws as splats of this `stamp` from then on, row by row
     /// with alpha 0 where one is dropped. `set_stamp`: another number for every set there was. `map`: raw
-    /// values, read where there are several stops. None where it has not the memory.
+    /// values, read where there are several stops. None where it has not the memory, or for a look with
+    /// outlines.
     virtual std::optional<DeviceLook> shade(const SplatSet& set, std::uint64_t set_stamp,
-                                            const LookUniforms& look, const Image* map,
+                                            const PreparedLook& look, const Image* map,
                                             std::uint64_t stamp) = 0;
 };
 

@@ -197,15 +197,15 @@ void colors(const LookUniforms& u, Block& b, glm::vec3* out) {
 
 // Splats [begin, begin + b.count) of the set to out[at], ...; b.count becomes the number kept.
 void shade_block(const LookRun& run, std::int64_t begin, std::int64_t at, Block& b) {
-    const LookUniforms& u = run.uniforms;
-    const bool positions = u.noise_count > 0 || u.crop_count > 0, moved = any(u, &LookNoise::jitter);
+    const PreparedLook& u = run.uniforms;
+    const bool positions = u.noise_count > 0 || u.is_cropped(), moved = any(u, &LookNoise::jitter);
     read_ids(run.in.id + begin, b);
     std::memcpy(b.distance, run.in.distance + begin, sizeof(float) * std::size_t(b.count));
     if (positions) read_positions(run.in.position + begin, b);
     thickness(run, begin, b);
     probabilities(u, b);
     decide(b, u.density, u.seed);
-    if (u.crop_count > 0) crop(u, b);
+    if (u.is_cropped()) crop(u, b);
     compact(u, positions, b);
     remaining_noise(u, b);
     read_colors(run.in.color + begin, run.in.alpha + begin, b);
@@ -220,7 +220,7 @@ void shade_block(const LookRun& run, std::int64_t begin, std::int64_t at, Block&
     colors(u, b, out.color.data() + at);  // before alphas: step 4 divides by the alpha it finds
     alphas(u, b, out.alpha.data() + at);
     if (u.absorbs) restore(absorbers, out.color.data() + at, out.alpha.data() + at);
-    if (u.crop_count > 0) fade_at_crops(b, out.alpha.data() + at);
+    if (u.is_cropped()) fade_at_crops(b, out.alpha.data() + at);
     radii(run, begin, b, out.radius.data() + at);
     for (int i = 0; i < b.count; ++i) out.id[at + i] = std::uint64_t(b.id_high[i]) << 32 | b.id_low[i];
 }

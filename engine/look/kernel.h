@@ -21,7 +21,7 @@ struct LookColumns {
 
 struct LookRun {
     LookColumns in;
-    const LookUniforms& uniforms;
+    const PreparedLook& uniforms;
     const Image* map;   // raw values; read where there are several stops
     ShadedSplats& out;  // arrays at least as long as the set's
 };

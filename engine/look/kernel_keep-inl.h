@@ -47,6 +47,8 @@ struct Block {
     Lane r, g, b;                      // map value, later colour
     Lane probability, bites;
     Lane cropped;  // what the crops leave of alpha; read where there are any
+    Lane seen_x, seen_y, seen_scale, distance2, inside;  // in an outline's view
+    int beyond[block_size], crossed[block_size];
     Lane alpha, alpha_factor, color_factor, radius_factor, radius, f;
     int keep[block_size];
 };
@@ -273,8 +275,54 @@ ASTROSPLAT_LOOP crop_away(LookCrop crop, Block& b) {
         b.cropped[i] = b.cropped[i] * look_crop(crop, b.px[i], b.py[i], b.pz[i]);
 }
 
-void crop(const LookUniforms& u, Block& b) {
+ASTROSPLAT_LOOP see_from(LookOutline outline, Block& b) {
+    for (int i = 0; i < b.count; ++i) {
+        const vec3 place = look_outline_place(outline, b.px[i], b.py[i], b.pz[i]);
+        b.seen_x[i] = place.x;
+        b.seen_y[i] = place.y;
+        b.seen_scale[i] = place.z;
+        b.beyond[i] = look_beyond_outline(outline, place.x, place.y, place.z) ? 1 : 0;
+        b.distance2[i] = 3.0e38f;
+        b.crossed[i] = 0;
+    }
+}
+
+ASTROSPLAT_LOOP measure_edge(LookEdge edge, Block& b) {
+    for (int i = 0; i < b.count; ++i) {
+        b.distance2[i] = min(b.distance2[i], look_edge_distance2(edge, b.seen_x[i], b.seen_y[i]));
+        b.crossed[i] = b.crossed[i] + look_edge_crossed(edge, b.seen_x[i], b.seen_y[i]);
+    }
+}
+
+ASTROSPLAT_LOOP join_outline(LookOutline outline, Block& b) {
+    for (int i = 0; i < b.count; ++i)
+        b.inside[i] = max(b.inside[i], look_inside_outline(outline, b.distance2[i], b.crossed[i],
+                                                           b.seen_scale[i], b.beyond[i] != 0));
+}
+
+ASTROSPLAT_LOOP outline_away(bool outside, Block& b) {
+    for (int i = 0; i < b.count; ++i)
+        b.cropped[i] = b.cropped[i] * (outside ? 1.0f - b.inside[i] : b.inside[i]);
+}
+
+// Most blocks lie beyond most outlines, which then cost no edge.
+void crop_by_outlines(const PreparedLook& u, Block& b) {
+    bool begins = true;
+    for (const LookOutline& outline : u.outlines) {
+        if (begins) fill(b.inside, 0.0f, b.count);
+        see_from(outline, b);
+        if (std::any_of(b.beyond, b.beyond + b.count, [](int beyond) { return beyond == 0; })) {
+            for (int k = 0; k < outline.edge_count; ++k) measure_edge(u.edges[outline.first_edge + k], b);
+            join_outline(outline, b);
+        }
+        begins = outline.goes_on == 0;
+        if (begins) outline_away(outline.outside != 0, b);
+    }
+}
+
+void crop(const PreparedLook& u, Block& b) {
     fill(b.cropped, 1.0f, b.count);
+    crop_by_outlines(u, b);
     for (int j = 0; j < u.crop_count; ++j) crop_away(u.crops[j], b);
     for (int i = 0; i < b.count; ++i) b.keep[i] = b.keep[i] && b.cropped[i] > 0.0f ? 1 : 0;
 }
@@ -285,7 +333,7 @@ void gather(T* values, const int* from, int count) {
 }
 
 // Moves the kept splats to the front of every array that is still needed.
-void compact(const LookUniforms& u, bool positions, Block& b) {
+void compact(const PreparedLook& u, bool positions, Block& b) {
     int kept = 0;
     for (int i = 0; i < b.count; ++i) {
         b.from[kept] = i;
@@ -300,7 +348,7 @@ void compact(const LookUniforms& u, bool positions, Block& b) {
     gather(b.x, b.from, kept);
     gather(b.reach, b.from, kept);
     gather(b.column, b.from, kept);
-    if (u.crop_count > 0) gather(b.cropped, b.from, kept);
+    if (u.is_cropped()) gather(b.cropped, b.from, kept);
     if (!positions) return;
     gather(b.px, b.from, kept);
     gather(b.py, b.from, kept);

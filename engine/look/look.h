@@ -106,10 +106,14 @@ struct Grade {
 };
 
 /// A volume of layer space outside of which (or within it) splats are cut away, before they are displaced.
-/// Opacity falls over a band of `soft` scene units that lies half inside. Of several, all hold. At most 8.
+/// Opacity falls over a band of `soft` scene units that lies half inside. Of several, all hold. At
+/// most 8 boxes and spheres and 64 outlines. An outline is drawn in a view, and the volume is what lies
+/// behind it: seen from `center` along -z as `rotate` turns it, at any depth. Its lines close polygons,
+/// inside of which is what they go around an odd number of times, or with a `width` they are the middles of
+/// strokes.
 struct Crop {
-    enum class Shape { box, sphere };
-    friend constexpr auto names_of(Shape) { return names_up_to<Shape::sphere>("box", "sphere"); }
+    enum class Shape { box, sphere, outline };
+    friend constexpr auto names_of(Shape) { return names_up_to<Shape::outline>("box", "sphere", "outline"); }
     enum class Keep { inside, outside };
     friend constexpr auto names_of(Keep) { return names_up_to<Keep::outside>("inside", "outside"); }
     Shape shape = Shape::box;
@@ -117,10 +121,21 @@ struct Crop {
     glm::vec3 size{1.0f};    // scene units, of a box from side to side, > 0
     glm::vec3 rotate{0.0f};  // of a box, degrees about x, then y, then z
     float radius = 1.0f;     // scene units, of a sphere, > 0
+    std::string outline;     // lines: outline_lines()
+    float width = 0.0f;      // of strokes, as the points of the lines; 0: polygons
+    bool parallel = false;   // an outline's rays do not meet in `center`
     float soft = 0.0f;       // scene units
     Keep keep = Keep::inside;
     bool operator==(const Crop&) const = default;
 };
+
+/// The lines of an outline: SVG path data of straight lines, "M 0.1 0.2 0.3 0.2 0.3 0.4 M ...", where M
+/// begins a line. Points are places right of and above the view's line, per unit of depth; in scene units
+/// where rays are parallel. Throws InputError for anything else, for a line of less than two points and for
+/// more than 4096 points.
+std::vector<std::vector<glm::vec2>> outline_lines(std::string_view outline);
+/// The reverse, with as many digits as a picture's pixels need.
+std::string outline_text(std::span<const std::vector<glm::vec2>> lines);
 
 struct Look {
     float density = 1.0f;

@@ -89,17 +89,18 @@ namespace {
 constexpr std::int64_t cells_chunk = 1 << 12;  // positions
 
 // The look without what varies it from place to place.
-LookUniforms unvaried(const LookUniforms& uniforms) {
-    LookUniforms plain = uniforms;
+PreparedLook unvaried(const PreparedLook& uniforms) {
+    PreparedLook plain = uniforms;
     plain.noise_count = plain.crop_count = 0;
+    plain.outlines.clear();
     return plain;
 }
 
-bool varies(const LookUniforms& u) {
+bool varies(const PreparedLook& u) {
     const auto has_effect = [](const shared_types::LookNoise& n) {
         return n.cull != 0.0f || n.silhouette != 0.0f || n.alpha != 0.0f;
     };
-    return u.crop_count > 0 || std::any_of(u.noises, u.noises + u.noise_count, has_effect);
+    return u.is_cropped() || std::any_of(u.noises, u.noises + u.noise_count, has_effect);
 }
 
 struct CellRange {
@@ -111,7 +112,7 @@ struct CellSums {
     const SplatSet& set;
     const PictureChart& chart;
     double falloff_integral;
-    LookUniforms plain = unvaried(run.uniforms);
+    PreparedLook plain = unvaried(run.uniforms);
     bool varied = varies(run.uniforms);
     PictureCells cells = {};
     std::vector<CellRange> ranges = {};  // of chunks
@@ -162,7 +163,7 @@ struct CellSums {
     }
 
     void add(std::int64_t i, std::size_t cell, std::size_t block) {
-        const LookUniforms& u = run.uniforms;
+        const PreparedLook& u = run.uniforms;
         const OneSplat look = look_at(run, u, i);
         const bool beyond = PictureChart::on_edge(set, i);
         const std::uint32_t kept_in = beyond ? beyond_cells : std::uint32_t(cell);

@@ -43,7 +43,7 @@ glm::vec3 map_value(const Image& map, const glm::vec2& uv) {
 
 }  // namespace
 
-OneSplat look_at(const LookRun& run, const LookUniforms& uniforms, std::int64_t i) {
+OneSplat look_at(const LookRun& run, const PreparedLook& uniforms, std::int64_t i) {
     const LookColumns& in = run.in;
     shared::LookInput s{};
     s.position = in.position[i];
@@ -54,6 +54,7 @@ OneSplat look_at(const LookRun& run, const LookUniforms& uniforms, std::int64_t 
     s.map_value = uniforms.stop_count > 1 ? map_value(*run.map, in.uv[i]) : glm::vec3(0.0f);
     s.id_low = std::uint32_t(in.id[i]);
     s.id_high = std::uint32_t(in.id[i] >> 32);
+    s.outlined = outlined(uniforms, in.position[i]);
     const shared::LookOutput look = shared::look_splat(uniforms, s);
     return {look.keep, look.probability, look.color, look.alpha, look.radius};
 }

@@ -300,7 +300,7 @@ double positions_due(const SplatSet& set) {
 }
 
 // Noise that only moves splats along the axis does not show from there, and takes longer than the rest.
-LookUniforms without_jitter(LookUniforms u) {
+PreparedLook without_jitter(PreparedLook u) {
     using shared_types::LookNoise;
     const auto shows = [](const LookNoise& n) {
         return n.cull != 0.0f || n.silhouette != 0.0f || n.alpha != 0.0f || n.brightness != 0.0f;
@@ -313,7 +313,7 @@ LookUniforms without_jitter(LookUniforms u) {
 }  // namespace
 
 PictureFactors picture_factors(const LookRun& whole, const SplatSet& set, const FalloffMoments& falloff) {
-    const LookUniforms uniforms = without_jitter(whole.uniforms);
+    const PreparedLook uniforms = without_jitter(whole.uniforms);
     const LookRun run{whole.in, uniforms, whole.map, whole.out};
     PictureFactors factors;
     if (set.uv.empty() || set.size() == 0) return factors;

@@ -23,7 +23,7 @@ struct OneSplat {
 };
 
 /// Under `uniforms`, which need not be the run's own.
-OneSplat look_at(const LookRun& run, const LookUniforms& uniforms, std::int64_t i);
+OneSplat look_at(const LookRun& run, const PreparedLook& uniforms, std::int64_t i);
 
 /// Footprints in one part of a picture.
 struct ChartBlock {

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <charconv>
+
 #include "core/error.h"
 #include "core/log.h"
 #include "core/parallel.h"
@@ -126,11 +128,64 @@ LookCrop prepare_crop(const Crop& crop) {
     return c;
 }
 
-void prepare_crops(const Look& look, LookUniforms& u) {
-    if (look.crop.size() > std::size_t(LOOK_MAX_CROPS))
-        bad_input("look.crop", fmt::format("at most {} crops", LOOK_MAX_CROPS),
-                  fmt::format("{}", look.crop.size()));
-    for (const Crop& crop : look.crop) u.crops[u.crop_count++] = prepare_crop(crop);
+LookEdge edge_between(const glm::vec2& from, const glm::vec2& to) {
+    const glm::dvec2 along = glm::dvec2(to) - glm::dvec2(from);
+    const double length2 = along.x * along.x + along.y * along.y;
+    const double per_length2 = length2 > 1e-30 ? 1.0 / length2 : 0.0;
+    const double slope = to.y != from.y ? along.x / along.y : 0.0;
+    return {from.x, from.y, float(along.x), float(along.y), float(per_length2), float(slope), to.y, 0};
+}
+
+// Strokes are one by one, so that a splat is measured against those near it; polygons may be holes of others.
+void add_outline(LookOutline o, std::span<const std::vector<glm::vec2>> lines, PreparedLook& u) {
+    o.first_edge = int(u.edges.size());
+    glm::vec2 lo(std::numeric_limits<float>::max()), hi(-lo);
+    for (const std::vector<glm::vec2>& line : lines) {
+        for (const glm::vec2& p : line) lo = glm::min(lo, p), hi = glm::max(hi, p);
+        for (std::size_t i = 1; i < line.size(); ++i) u.edges.push_back(edge_between(line[i - 1], line[i]));
+        if (o.half_width == 0.0f) u.edges.push_back(edge_between(line.back(), line.front()));
+    }
+    o.bounds = vec4(lo.x, lo.y, hi.x, hi.y);
+    o.edge_count = int(u.edges.size()) - o.first_edge;
+    u.outlines.push_back(o);
+}
+
+void prepare_outline(const Crop& crop, PreparedLook& u) {
+    const glm::dmat3 axes = rotation_from_degrees(glm::dvec3(crop.rotate));
+    LookOutline o{};
+    o.eye = crop.center;
+    o.half_width = 0.5f * crop.width;
+    o.right = vec3(axes[0]);
+    o.up = vec3(axes[1]);
+    o.forward = vec3(-axes[2]);
+    o.soft = crop.soft;
+    o.outside = crop.keep == Crop::Keep::outside ? 1 : 0;
+    o.parallel = crop.parallel ? 1 : 0;
+    const std::vector<std::vector<glm::vec2>> lines = outline_lines(crop.outline);
+    if (crop.width == 0.0f) return add_outline(o, lines, u);
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+        o.goes_on = i + 1 < lines.size() ? 1 : 0;
+        add_outline(o, {&lines[i], 1}, u);
+    }
+}
+
+void prepare_crops(const Look& look, PreparedLook& u) {
+    constexpr std::size_t most_outlines = 64;  // each costs every splat about what a box does
+    std::size_t outlines = 0;
+    for (const Crop& crop : look.crop) {
+        if (crop.shape == Crop::Shape::outline) {
+            if (++outlines <= most_outlines) prepare_outline(crop, u);
+        } else if (u.crop_count < LOOK_MAX_CROPS) {
+            u.crops[u.crop_count++] = prepare_crop(crop);
+        }
+    }
+    const std::size_t volumes = look.crop.size() - outlines;
+    if (volumes > std::size_t(LOOK_MAX_CROPS))
+        bad_input("look.crop", fmt::format("at most {} boxes and spheres", LOOK_MAX_CROPS),
+                  fmt::format("{}", volumes));
+    if (outlines > most_outlines)
+        bad_input("look.crop", fmt::format("at most {} outlines", most_outlines),
+                  fmt::format("{}", outlines));
 }
 
 void prepare_alpha(const SplatSet& set, const Look& look, LookUniforms& u) {
@@ -250,8 +305,8 @@ LookAlpha horizontal_step(const HorizontalAlpha& alpha) {
     return {alpha.threshold, alpha.power, alpha.gain, alpha.unpremultiply ? 1 : 0};
 }
 
-LookUniforms prepare_look(const SplatSet& set, const Look& look, const LookInputs& inputs) {
-    LookUniforms u{};
+PreparedLook prepare_look(const SplatSet& set, const Look& look, const LookInputs& inputs) {
+    PreparedLook u{};
     u.seed = inputs.seed;
     u.axis = unit_axis(inputs.axis);
     u.reach = look.reach > 0.0f ? look.reach : float(set.max_distance);
@@ -264,6 +319,77 @@ LookUniforms prepare_look(const SplatSet& set, const Look& look, const LookInput
     prepare_grade(look.grade, u);
     prepare_match(set, look, inputs, u);
     return u;
+}
+
+float outlined(const PreparedLook& look, const glm::vec3& place) {
+    float left = 1.0f, inside = 0.0f;
+    for (const LookOutline& outline : look.outlines) {
+        const vec3 seen = shared::look_outline_place(outline, place.x, place.y, place.z);
+        const bool beyond = shared::look_beyond_outline(outline, seen.x, seen.y, seen.z);
+        float distance2 = 3.0e38f;
+        int crossed = 0;
+        for (int k = 0; k < outline.edge_count && !beyond; ++k) {
+            const LookEdge& edge = look.edges[std::size_t(outline.first_edge + k)];
+            distance2 = std::min(distance2, shared::look_edge_distance2(edge, seen.x, seen.y));
+            crossed += shared::look_edge_crossed(edge, seen.x, seen.y);
+        }
+        inside = std::max(inside, shared::look_inside_outline(outline, distance2, crossed, seen.z, beyond));
+        if (outline.goes_on != 0) continue;
+        left *= outline.outside != 0 ? 1.0f - inside : inside;
+        inside = 0.0f;
+    }
+    return left;
+}
+
+std::vector<std::vector<glm::vec2>> outline_lines(std::string_view outline) {
+    constexpr std::size_t most_points = 4096;
+    const auto refuse = [](const std::string& found) {
+        throw InputError("expected lines \"M x y x y ... M ...\" of at least two points each, found " +
+                         found);
+    };
+    std::vector<std::vector<glm::vec2>> lines;
+    std::vector<float> numbers;
+    std::size_t points = 0;
+    const auto close_line = [&] {
+        if (lines.empty() && numbers.empty()) return;
+        if (lines.empty()) refuse("a number before the first M");
+        if (numbers.size() % 2 != 0 || numbers.size() < 4)
+            refuse(fmt::format("a line of {} numbers", numbers.size()));
+        for (std::size_t i = 0; i < numbers.size(); i += 2)
+            lines.back().emplace_back(numbers[i], numbers[i + 1]);
+        if ((points += numbers.size() / 2) > most_points)
+            refuse(fmt::format("more than {} points", most_points));
+        numbers.clear();
+    };
+    for (std::size_t at = 0; at < outline.size();) {
+        if (std::string_view(" ,\t\n\r").find(outline[at]) != std::string_view::npos) {
+            ++at;
+        } else if (outline[at] == 'M') {
+            close_line();
+            lines.emplace_back();
+            ++at;
+        } else {
+            float number = 0.0f;
+            const auto [end, error] =
+                std::from_chars(outline.data() + at, outline.data() + outline.size(), number);
+            if (error != std::errc() || !(std::fabs(number) <= 1e6f))
+                refuse(fmt::format("'{}'", outline.substr(at, 12)));
+            numbers.push_back(number);
+            at = std::size_t(end - outline.data());
+        }
+    }
+    close_line();
+    if (lines.empty()) refuse("nothing");
+    return lines;
+}
+
+std::string outline_text(std::span<const std::vector<glm::vec2>> lines) {
+    std::string text;
+    for (const std::vector<glm::vec2>& line : lines) {
+        text += text.empty() ? "M" : " M";
+        for (const glm::vec2& p : line) text += fmt::format(" {:.5g} {:.5g}", p.x, p.y);
+    }
+    return text;
 }
 
 }  // namespace astrosplat

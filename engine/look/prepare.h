@@ -13,7 +13,10 @@
 namespace astrosplat {
 
 /// Throws InputError as apply_look does. Warns where colours would be divided by alpha twice.
-LookUniforms prepare_look(const SplatSet& set, const Look& look, const LookInputs& inputs);
+PreparedLook prepare_look(const SplatSet& set, const Look& look, const LookInputs& inputs);
+
+/// Share of a splat's alpha that the outlines leave at a place of the layer: LookInput::outlined.
+float outlined(const PreparedLook& look, const glm::vec3& place);
 
 /// Of the steps alone, for the curves an artist looks at. `key` begins the messages of make_curve.
 LookProfile density_profile(const DensityCurve& pdf, const std::string& key);

@@ -23,6 +23,16 @@ static_assert(offsetof(LookStop, pdf) % 16 == 0 && offsetof(LookUniforms, alpha)
 namespace astrosplat {
 using shared_types::LookAlpha;
 using shared_types::LookCurve;
+using shared_types::LookEdge;
+using shared_types::LookOutline;
 using shared_types::LookProfile;
 using shared_types::LookUniforms;
+
+/// What looks need: the uniforms, and outlines with their edges.
+struct PreparedLook : LookUniforms {
+    std::vector<LookOutline> outlines;
+    std::vector<LookEdge> edges;  // of all outlines
+
+    bool is_cropped() const { return crop_count > 0 || !outlines.empty(); }
+};
 }  // namespace astrosplat

@@ -51,7 +51,21 @@ void check_curve(const Curve& curve, const ParameterKey& at, const Checker& chec
                   "expected at least 2 points for shape \"curve\", found none");
 }
 
+void check_crops(const std::vector<Crop>& crops, const ParameterKey& at, const Checker& check) {
+    for (std::size_t i = 0; i < crops.size(); ++i) {
+        if (crops[i].shape != Crop::Shape::outline) continue;
+        std::string problem;
+        try {
+            outline_lines(crops[i].outline);
+        } catch (const InputError& error) {
+            problem = error.what();
+        }
+        check.require(problem.empty(), {at / i / "outline", at / i / "shape"}, problem);
+    }
+}
+
 void check_look(const Look& look, const ParameterKey& at, const Checker& check) {
+    check_crops(look.crop, at / "crop", check);
     check_curve(look.pdf, at / "pdf", check);
     for (std::size_t i = 0; i < look.thickness.stops.size(); ++i)
         check_curve(look.thickness.stops[i].pdf, at / "thickness.keys" / i, check);

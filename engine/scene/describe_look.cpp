@@ -51,14 +51,24 @@ void describe_noise(const Describer& d, Noise& n) {
 void describe_crop(const Describer& d, Crop& c) {
     d(c.shape, "shape", "Crop", "", "What is kept of the layer, or cut from it.", shown_as("Shape"));
     d(c.keep, "keep", "Keeps", "", "Which side of the shape stays.");
-    d(c.center, "center", "Centre", "scene units", "Of the shape, in the layer's own space.",
-      as(Type::position), slider(-10, 10));
+    d(c.center, "center", "Centre", "scene units",
+      "Of the shape, in the layer's own space; the eye that an outline was drawn from.", as(Type::position),
+      slider(-10, 10));
     d(c.size, "size", "Size", "scene units", "Of the box, from side to side.", within(1e-6, 1e12),
       slider(0, 10), only_with("shape", {"box"}));
-    d(c.rotate, "rotate", "Rotation", "degrees", "Turns the box about x, then y, then z.", within(-1e6, 1e6),
-      slider(-180, 180), only_with("shape", {"box"}));
+    d(c.rotate, "rotate", "Rotation", "degrees", "Turns box or view about x, then y, then z.",
+      within(-1e6, 1e6), slider(-180, 180), never_with("shape", {"sphere"}));
     d(c.radius, "radius", "Radius", "scene units", "Of the sphere.", within(1e-6, 1e12), slider(0, 10),
       only_with("shape", {"sphere"}));
+    d(c.outline, "outline", "Outline", "",
+      "Drawn in a view: \"M x y x y x y M ...\", right of and above its line, per unit of depth.",
+      only_with("shape", {"outline"}));
+    d(c.width, "width", "Stroke", "",
+      "Lines are the middles of strokes of this width; 0: they close polygons.", within(0, 1e6),
+      slider(0, 0.2), only_with("shape", {"outline"}), zero_is("None"));
+    d(c.parallel, "parallel", "Parallel", "",
+      "The view has no eye: points are in scene units, and hold at any depth.",
+      only_with("shape", {"outline"}));
     d(c.soft, "soft", "Soft edge", "scene units",
       "Width of the band at the surface over which opacity falls.", at_least(0), slider(0, 2));
 }

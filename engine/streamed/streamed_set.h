@@ -39,7 +39,7 @@ class StreamedSet : public ShadedBlocks {
     bool is_checked_ = false;  // every block has the file's checksum
     bool has_max_distance_ = false;
     OptionalColumns wanted_;
-    LookUniforms uniforms_{};
+    PreparedLook uniforms_{};
     const Image* map_ = nullptr;
 };
 

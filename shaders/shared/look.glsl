@@ -102,13 +102,61 @@ float look_crop_distance(LookCrop crop, float px, float py, float pz) {
     return sqrt(oa * oa + ob * ob + oc * oc) + min(max(a, max(b, c)), 0.0f) - crop.radius;
 }
 
-// Share of a splat's alpha that a crop leaves there. With a band of no width the surface itself is inside.
-float look_crop(LookCrop crop, float px, float py, float pz) {
-    float d = look_crop_distance(crop, px, py, pz);
+// How far within a surface at distance d a splat is: 1 inside of a band of width `soft`, 0 outside of it. With a band
+// of no width the surface itself is inside.
+float look_inside(float d, float soft) {
     float hard = d <= 0.0f ? 1.0f : 0.0f;
-    float t = crop.soft > 0.0f ? clamp(0.5f - as_div(d, crop.soft), 0.0f, 1.0f) : hard;
-    float inside = as_smooth(t);
+    return as_smooth(soft > 0.0f ? clamp(0.5f - as_div(d, soft), 0.0f, 1.0f) : hard);
+}
+
+// Share of a splat's alpha that a crop leaves there.
+float look_crop(LookCrop crop, float px, float py, float pz) {
+    float inside = look_inside(look_crop_distance(crop, px, py, pz), crop.soft);
     return crop.outside != 0 ? 1.0f - inside : inside;
+}
+
+// A splat as an outline's view has it: right and up as its points are, and what they are multiplied by there to be
+// scene units; 0 behind the eye.
+vec3 look_outline_place(LookOutline outline, float px, float py, float pz) {
+    float dx = px - outline.eye.x;
+    float dy = py - outline.eye.y;
+    float dz = pz - outline.eye.z;
+    float right = dx * outline.right.x + dy * outline.right.y + dz * outline.right.z;
+    float up = dx * outline.up.x + dy * outline.up.y + dz * outline.up.z;
+    float depth = dx * outline.forward.x + dy * outline.forward.y + dz * outline.forward.z;
+    bool seen = outline.parallel != 0 || depth > 0.0f;
+    float scale = outline.parallel != 0 ? 1.0f : (seen ? depth : 1.0f);
+    return vec3(as_div(right, scale), as_div(up, scale), seen ? scale : 0.0f);
+}
+
+// Whether a place lies so far from all of an outline that nothing of its band reaches it.
+bool look_beyond_outline(LookOutline outline, float x, float y, float scale) {
+    float off = max(max(outline.bounds.x - x, x - outline.bounds.z), max(outline.bounds.y - y, y - outline.bounds.w));
+    return !((off - outline.half_width) * scale <= 0.5f * outline.soft) || !(scale > 0.0f);
+}
+
+// Square of the distance from an edge.
+float look_edge_distance2(LookEdge edge, float x, float y) {
+    float px = x - edge.x;
+    float py = y - edge.y;
+    float t = clamp((px * edge.dx + py * edge.dy) * edge.per_length2, 0.0f, 1.0f);
+    float ox = px - t * edge.dx;
+    float oy = py - t * edge.dy;
+    return ox * ox + oy * oy;
+}
+
+// 1 where a ray to the right crosses an edge.
+int look_edge_crossed(LookEdge edge, float x, float y) {
+    bool spans = (edge.y > y) != (edge.end_y > y);
+    return spans && x - edge.x < (y - edge.y) * edge.slope ? 1 : 0;
+}
+
+// As look_inside: from the least squared distance of its edges, how often they are crossed, and the scale of
+// look_outline_place().
+float look_inside_outline(LookOutline outline, float distance2, int crossed, float scale, bool beyond) {
+    float off = sqrt(distance2);
+    float d = outline.half_width > 0.0f ? off - outline.half_width : ((crossed & 1) != 0 ? -off : off);
+    return beyond ? 0.0f : look_inside(d * scale, outline.soft);
 }
 
 // --- 4: horizontal alpha ---
@@ -201,6 +249,7 @@ struct LookInput {
     vec3 map_value;      // used where there are several stops
     uint id_low;
     uint id_high;
+    float outlined;  // share of alpha that outlines leave; 1 without them
 };
 
 struct LookOutput {
@@ -261,7 +310,7 @@ LookOutput look_splat(LookUniforms u, LookInput s) {
     }
     reach = u.reach * scale * reach;
     float x = look_x(s.from_surface, reach);
-    float cropped = 1.0f;
+    float cropped = s.outlined;
     for (int j = 0; j < LOOK_MAX_CROPS; ++j) {
         if (j < u.crop_count) cropped = cropped * look_crop(u.crops[j], s.position.x, s.position.y, s.position.z);
     }

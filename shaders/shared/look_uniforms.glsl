@@ -89,6 +89,40 @@ struct LookCrop {
     int unused_1;
 };
 
+// What lies behind lines that were drawn in a view: one stroke, or polygons. Not in the uniforms: their block stays small, and what applies
+// a look on a card leaves looks with outlines to the processor.
+struct LookOutline {
+    vec3 eye;          // layer space
+    float half_width;  // of a stroke; 0: its edges close a polygon
+
+    vec3 right;  // unit vectors of the view; forward is the line of sight
+    float soft;  // scene units
+
+    vec3 up;
+    int outside;
+
+    vec3 forward;
+    int parallel;  // 1: rays do not meet in the eye
+
+    vec4 bounds;  // of its points: least x and y, largest x and y
+    int first_edge;
+    int edge_count;
+    int goes_on;  // 1: the next one is of the same crop, inside of which is what is inside of either
+    int unused_0;
+};
+
+// Between two points of an outline.
+struct LookEdge {
+    float x;
+    float y;
+    float dx;  // to its end
+    float dy;
+    float per_length2;  // 1 / (dx^2 + dy^2), 0 where that is 0
+    float slope;        // dx / dy, 0 where it is level
+    float end_y;        // as the next edge has it
+    int unused_0;
+};
+
 // Step 4.
 struct LookAlpha {
     float threshold;

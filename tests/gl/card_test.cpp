@@ -239,7 +239,8 @@ TEST_F(Cards, LooksAppliedInItsMemory) {
             ShadedSplats shaded = apply_look(c.set, c.look, c.inputs);
             const auto found = card().shade(c.set, set_stamp, prepare_look(c.set, c.look, c.inputs),
                                             c.inputs.thickness_map, ++stamp);
-            ASSERT_TRUE(found) << c.name;
+            ASSERT_EQ(found.has_value(), c.name != "everything, and outlines") << c.name;
+            if (!found) continue;  // outlines are the processor's
             EXPECT_EQ(found->kept, shaded.size()) << c.name;
             float largest[2] = {};
             for (std::size_t i = 0; i < shaded.id.size(); ++i) {

@@ -3,6 +3,7 @@
 
 #include "core/text.h"
 #include "edit/lying.h"
+#include "edit/selection.h"
 #include "gui/panel/parts.h"
 #include "scene/detail_tiles.h"
 
@@ -178,7 +179,14 @@ void placement_buttons(Context& context) {
 }
 
 void crop_buttons(Context& context) {
-    for (std::size_t i = 0; i < context.layer().look.crop.size(); ++i) {
+    const std::vector<Crop>& crops = context.layer().look.crop;
+    const auto is_outline = [](const Crop& crop) { return crop.shape == Crop::Shape::outline; };
+    note("Layer > Select erases, keeps or parts what is drawn around in the view");
+    if (std::ranges::any_of(crops, is_outline) && button_line(context, {"Forget what was drawn"}) == 0)
+        return edit(context, context.layer_key(), "Forget outlines",
+                    [&](Scene& scene) { forget_outlines(scene, context.view.layer); });
+    for (std::size_t i = 0; i < crops.size(); ++i) {
+        if (is_outline(crops[i])) continue;
         ImGui::PushID(static_cast<int>(i));
         note(fmt::format("Handles of crop {} in the view", i));
         handle_buttons(context, HandleTarget::crop, i);

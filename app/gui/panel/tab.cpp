@@ -91,6 +91,12 @@ bool has_less_than(const LayerParams& layer) {
     return list(layer).size() < most;
 }
 
+/// Outlines are drawn in the view.
+bool can_take_crop(const LayerParams& layer) {
+    return std::ranges::count_if(layer.look.crop,
+                                 [](const Crop& c) { return c.shape != Crop::Shape::outline; }) < 8;
+}
+
 const ListRows lists[] = {list_of_tables<meshes_of>({.key = "layer.source.meshes",
                                                      .section = "Files",
                                                      .after = "layer.source.kind",
@@ -117,7 +123,7 @@ const ListRows lists[] = {list_of_tables<meshes_of>({.key = "layer.source.meshes
                                                     .element = "crop",
                                                     .add = add_crop,
                                                     .added = handle_last_crop,
-                                                    .can_grow = has_less_than<crops_of, 8>}),
+                                                    .can_grow = can_take_crop}),
                           list_of_tables<stops_of>({.key = "layer.look.thickness.keys",
                                                     .section = "Thickness map",
                                                     .after = "layer.look.thickness.map",

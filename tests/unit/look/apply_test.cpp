@@ -108,7 +108,7 @@ glm::vec3 map_value(const Case& c, glm::vec2 uv) {
 
 TEST(SameBits, AsLookSplatOneByOne) {
     for (const Case& c : test::look_cases()) {
-        const LookUniforms uniforms = prepare_look(
+        const PreparedLook uniforms = prepare_look(
             c.set, c.look, c.inputs.thickness_map ? c.inputs : [&] {
                 LookInputs inputs = c.inputs;
                 inputs.thickness_map = &c.map;
@@ -121,7 +121,8 @@ TEST(SameBits, AsLookSplatOneByOne) {
                 c.set.position[i], c.set.color[i],
                 c.set.alpha[i],    c.set.distance[i],
                 c.set.radius[i],   map_value(c, c.set.uv.empty() ? glm::vec2(0.0f) : c.set.uv[i]),
-                std::uint32_t(id), std::uint32_t(id >> 32)};
+                std::uint32_t(id), std::uint32_t(id >> 32),
+                outlined(uniforms, c.set.position[i])};
             const shared::LookOutput output = shared::look_splat(uniforms, input);
             if (!output.keep) continue;
             expected.position.push_back(output.position);

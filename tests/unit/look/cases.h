@@ -46,8 +46,28 @@ inline void use_everything(LookCase& c) {
     c.look.grade = {1.3f, {1.0f, 0.8f, 0.9f}, 1.4f, 1.8f, 0.05f};
 }
 
+/// Polygons one within the other, a long stroke and two short ones, from near, from far and without an eye.
+inline void use_outlines(Look& look) {
+    const auto add = [&](const char* lines, float width, const glm::vec3& eye, Crop::Keep keep) -> Crop& {
+        Crop crop;
+        crop.shape = Crop::Shape::outline;
+        crop.outline = lines;
+        crop.width = width;
+        crop.center = eye;
+        crop.keep = keep;
+        look.crop.push_back(crop);
+        return look.crop.back();
+    };
+    add("M -2 -2 2 -1.7 0.3 2.5 M -0.2 -0.2 0.2 -0.2 0.1 0.3", 0.0f, {0.2f, 0.1f, 2.0f}, Crop::Keep::inside)
+        .soft = 0.3f;
+    add("M -0.1 0.4 0 0.1 0.2 -0.3 M 0.3 0.3 0.4 0.1 M -0.4 -0.4 -0.3 -0.3", 0.05f, {1.0f, 4.0f, 3.0f},
+        Crop::Keep::outside)
+        .rotate = {-40.0f, 15.0f, 3.0f};
+    add("M -0.3 0.5 0.5 -0.4", 0.1f, {0.0f, 0.0f, 0.0f}, Crop::Keep::outside).parallel = true;
+}
+
 inline std::vector<LookCase> look_cases() {
-    std::vector<LookCase> all(5);
+    std::vector<LookCase> all(7);
     all[0].name = "everything";
     use_everything(all[0]);
     all[1].name = "defaults";
@@ -66,12 +86,16 @@ inline std::vector<LookCase> look_cases() {
     all[3].look.thickness.stops = {{glm::vec3(1.0f), 0.7f, {}}};
     all[3].look.thickness.stops[0].pdf.shape = DensityCurve::Shape::smooth;
     all[3].look.noise = {{2.0f, 3, 2.0f, 0.5f, 1, 0.7f, 0.0f, 0.0f, 0.0f, 0.0f}};
-    all[4].name = "picture under screen";
-    use_everything(all[4]);
-    all[4].look.thickness = {};
-    all[4].set.uv.clear();  // and with it the cells of the picture
-    all[4].look.vertical.match = VerticalAlpha::Match::picture;
-    all[4].inputs.column = ColumnLaw::screen;
+    all[5].name = "picture under screen";
+    use_everything(all[5]);
+    all[5].set.absorbs = true;
+    all[5].look.thickness = {};
+    all[5].set.uv.clear();  // and with it the cells of the picture
+    all[5].look.vertical.match = VerticalAlpha::Match::picture;
+    all[5].inputs.column = ColumnLaw::screen;
+    all[6].name = "everything, and outlines";
+    use_everything(all[6]);
+    use_outlines(all[6].look);
     return all;
 }
 

@@ -213,6 +213,112 @@ TEST(Crop, ASphereKeepsWhatLiesInIt) {
     EXPECT_EQ(left_at({1.0f, 0.0f, -6.01f}, {sphere}), 0.0f);
 }
 
+Crop outline_of(const std::string& lines, float width = 0.0f) {
+    Crop crop;
+    crop.shape = Crop::Shape::outline;
+    crop.outline = lines;
+    crop.width = width;
+    crop.center = {1.0f, 2.0f, 10.0f};
+    return crop;
+}
+
+/// A place at a depth of an unturned outline's view.
+glm::vec3 seen_at(const glm::vec2& place, float depth) {
+    return {1.0f + depth * place.x, 2.0f + depth * place.y, 10.0f - depth};
+}
+
+TEST(Crop, AnOutlineKeepsWhatLiesBehindIt) {
+    const Crop square = outline_of("M -0.5 -0.25 0.5 -0.25 0.5 0.25 -0.5 0.25");
+    for (const float depth : {0.25f, 4.0f, 1024.0f}) {  // powers of two: no rounding
+        EXPECT_EQ(left_at(seen_at({0.4375f, 0.1875f}, depth), {square}), 1.0f) << depth;
+        EXPECT_EQ(left_at(seen_at({0.5625f, 0.1875f}, depth), {square}), 0.0f) << depth;
+        EXPECT_EQ(left_at(seen_at({0.4375f, -0.3125f}, depth), {square}), 0.0f) << depth;
+    }
+    EXPECT_EQ(left_at(seen_at({0.0f, 0.0f}, -4.0f), {square}), 0.0f) << "behind the eye";
+    Crop turned = square;
+    turned.rotate = {0.0f, 0.0f, 90.0f};  // of the view: its right is the layer's up
+    EXPECT_EQ(left_at(seen_at({0.1875f, 0.4375f}, 4.0f), {turned}), 1.0f);
+    EXPECT_EQ(left_at(seen_at({0.4375f, 0.1875f}, 4.0f), {turned}), 0.0f);
+    Crop parallel = square;
+    parallel.parallel = true;
+    EXPECT_EQ(left_at({1.4375f, 2.1875f, -90.0f}, {parallel}), 1.0f);
+    EXPECT_EQ(left_at({1.4375f, 2.1875f, 90.0f}, {parallel}), 1.0f) << "there is no eye";
+    EXPECT_EQ(left_at({1.5625f, 2.1875f, -90.0f}, {parallel}), 0.0f);
+}
+
+TEST(Crop, APolygonInAnotherIsAHole) {
+    const Crop ring = outline_of("M -1 -1 1 -1 1 1 -1 1 M -0.5 -0.5 0.5 -0.5 0.5 0.5 -0.5 0.5");
+    EXPECT_EQ(left_at(seen_at({0.75f, 0.0f}, 3.0f), {ring}), 1.0f);
+    EXPECT_EQ(left_at(seen_at({0.25f, 0.0f}, 3.0f), {ring}), 0.0f);
+}
+
+/// Polygons that cross themselves, against the angles that their edges span, which go around a place.
+TEST(Crop, PolygonsAgainstTheirAngles) {
+    for (std::int64_t shape = 0; shape < 8; ++shape) {
+        std::vector<std::vector<glm::vec2>> lines(1);
+        for (std::int64_t i = 0; i < 3 + 2 * shape; ++i)
+            lines[0].emplace_back(test::uniform(64 * shape + i, 81) - 0.5f,
+                                  std::round(8.0f * test::uniform(64 * shape + i, 82)) / 8.0f - 0.5f);
+        const Crop crop = outline_of(outline_text(lines));
+        lines = outline_lines(crop.outline);
+        for (std::int64_t i = 0; i < 200; ++i) {
+            const glm::vec2 place{test::uniform(i, 83) - 0.5f, test::uniform(i, 84) - 0.5f};
+            double angle = 0.0;
+            for (std::size_t k = 0; k < lines[0].size(); ++k) {
+                const glm::dvec2 a = glm::dvec2(lines[0][k]) - glm::dvec2(place);
+                const glm::dvec2 b = glm::dvec2(lines[0][(k + 1) % lines[0].size()]) - glm::dvec2(place);
+                angle += std::atan2(a.x * b.y - a.y * b.x, a.x * b.x + a.y * b.y);
+            }
+            const bool inside = std::llround(angle / (2.0 * 3.14159265358979)) % 2 != 0;
+            ASSERT_EQ(left_at(seen_at(place, 2.0f), {crop}), inside ? 1.0f : 0.0f)
+                << crop.outline << " at " << place.x << " " << place.y;
+        }
+    }
+}
+
+TEST(Crop, StrokesTakeWhatAnyOfThemCovers) {
+    Crop strokes = outline_of("M -0.5 0 0 0 M -0.25 -0.25 -0.25 0.25 M 0.5 0.5 0.5 0.75", 0.25f);
+    for (const Crop::Keep keep : {Crop::Keep::inside, Crop::Keep::outside}) {
+        strokes.keep = keep;
+        const float covered = keep == Crop::Keep::inside ? 1.0f : 0.0f;
+        for (const glm::vec2& place : {glm::vec2(-0.25f, 0.0f),
+                                       {-0.4375f, 0.0625f},
+                                       {-0.1875f, 0.1875f},
+                                       {0.0625f, 0.0f},
+                                       {0.4375f, 0.625f}})
+            EXPECT_EQ(left_at(seen_at(place, 4.0f), {strokes}), covered) << place.x << " " << place.y;
+        for (const glm::vec2& place :
+             {glm::vec2(0.1875f, 0.0f), {-0.4375f, 0.1875f}, {0.09375f, 0.09375f}, {0.3125f, 0.625f}})
+            EXPECT_EQ(left_at(seen_at(place, 4.0f), {strokes}), 1.0f - covered) << place.x << " " << place.y;
+    }
+}
+
+/// In scene units at the splat's depth, on both sides of the line.
+TEST(Crop, TheSoftEdgeOfAnOutline) {
+    Crop square = outline_of("M -0.5 -0.5 0.5 -0.5 0.5 0.5 -0.5 0.5");
+    Crop stroke = outline_of("M -0.25 -0.5 -0.25 0.5", 1.5f);  // its right rim at the square's
+    square.soft = stroke.soft = 0.8f;
+    for (const Crop& crop : {square, stroke})
+        for (const float depth : {2.0f, 8.0f}) {
+            const float rim = 1.0f + 0.5f * depth, z = 10.0f - depth;
+            EXPECT_NEAR(left_at({rim - 0.2f, 2.0f, z}, {crop}), smooth(0.75f), 2e-5f);
+            EXPECT_NEAR(left_at({rim, 2.0f, z}, {crop}), 0.5f, 2e-5f);
+            EXPECT_NEAR(left_at({rim + 0.2f, 2.0f, z}, {crop}), smooth(0.25f), 2e-5f);
+            EXPECT_EQ(left_at({rim + 0.41f, 2.0f, z}, {crop}), 0.0f);
+        }
+}
+
+TEST(Crop, OutlinesAreReadAsTheyAreWritten) {
+    const std::vector<std::vector<glm::vec2>> lines{{{0.125f, -3.0f}, {1e-4f, 2.5f}},
+                                                    {{7.0f, 8.0f}, {9.0f, 10.0f}}};
+    EXPECT_EQ(outline_text(lines), "M 0.125 -3 0.0001 2.5 M 7 8 9 10");
+    EXPECT_EQ(outline_lines(outline_text(lines)), lines);
+    EXPECT_EQ(outline_lines(" M0.125,-3 1e-4,2.5\nM7 8 9 10 "), lines);
+    for (const char* wrong : {"", "1 2 3 4", "M", "M 1 2", "M 1 2 3", "M 1 2 3 4 M", "M 1 2 3 x",
+                              "M 1 2 L 3 4", "M 1 2 3 nan", "M 1 2 3 1e9", "M 1 2 3 4e99"})
+        EXPECT_THROW(outline_lines(wrong), InputError) << wrong;
+}
+
 TEST(Crop, OpacityFallsOverTheSoftEdge) {
     Crop box = box_of({0.0f, 0.0f, 0.0f}, {4.0f, 4.0f, 4.0f});
     Crop sphere = sphere_of({0.0f, 0.0f, 0.0f}, 2.0f);
@@ -291,7 +397,7 @@ TEST(Crop, OneThatCutsNothingChangesNoBit) {
 TEST(Crop, MoreThanEightAreRefused) {
     Look look;
     look.crop.resize(9);
-    EXPECT_EQ(ERROR_OF(test::shade(test::file_set(1), look)), "look.crop: expected at most 8 crops, found 9");
+    EXPECT_EQ(ERROR_OF(test::shade(test::file_set(1), look)), "look.crop: expected at most 8 boxes and spheres, found 9");
 }
 
 }  // namespace

@@ -97,7 +97,7 @@ void meet_conditions(const Description& description, const ParameterSpec& spec) 
 
 /// Whether blocks are shaded as look_splat, which the preview runs, shades each splat alone.
 void expect_alike(const LookCase& c, const ShadedSplats& shaded, const std::string& what) {
-    const LookUniforms uniforms = prepare_look(c.set, c.look, c.inputs());
+    const PreparedLook uniforms = prepare_look(c.set, c.look, c.inputs());
     ShadedSplats unused;
     const LookRun run{LookColumns(c.set), uniforms, &c.map, unused};
     std::size_t kept = 0;
