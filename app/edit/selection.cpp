@@ -40,6 +40,19 @@ double area_of(std::span<const glm::dvec2> polygon) {
     return 0.5 * std::fabs(twice);
 }
 
+// A straight line of a frame that shows directions is none of an outline.
+std::vector<glm::dvec2> with_short_edges(std::span<const glm::dvec2> line, bool closes) {
+    constexpr double longest = 12.0;  // px; off by the square of that over 8 radii of curvature
+    std::vector<glm::dvec2> points;
+    for (std::size_t i = 0; i + (closes ? 0 : 1) < line.size(); ++i) {
+        const glm::dvec2 &a = line[i], &b = line[(i + 1) % line.size()];
+        const int pieces = std::max(1, int(std::ceil(glm::distance(a, b) / longest)));
+        for (int k = 0; k < pieces; ++k) points.push_back(glm::mix(a, b, double(k) / pieces));
+    }
+    if (!closes) points.push_back(line.back());
+    return points;
+}
+
 // Right, up and back of a view along `forward` that stands as upright as the camera does.
 glm::dmat3 axes_along(const Camera& camera, const glm::dvec3& forward) {
     const glm::dmat3& axes = camera.world_from_camera;
@@ -48,13 +61,14 @@ glm::dmat3 axes_along(const Camera& camera, const glm::dvec3& forward) {
     return {right, glm::cross(right, forward), -forward};
 }
 
-// The camera's own axes wherever they do, so that strokes of one view have one view.
+// The camera's own axes where the frame is flat as an outline is: strokes of one view have one view. Else
+// those of the middle of the line, where an outline stretches a brush the least.
 std::optional<glm::dmat3> axes_for(const Camera& camera, std::span<const ViewRay> rays) {
     const auto fits = [&](const glm::dmat3& axes) {
         return std::ranges::all_of(
             rays, [&](const ViewRay& ray) { return glm::dot(ray.direction, -axes[2]) >= least_cosine; });
     };
-    if (fits(camera.world_from_camera)) return camera.world_from_camera;
+    if (!is_onto_sphere(camera.projection) && fits(camera.world_from_camera)) return camera.world_from_camera;
     glm::dvec3 sum(0.0);
     for (const ViewRay& ray : rays) sum += ray.direction;
     if (!(glm::length(sum) > 1e-6)) return std::nullopt;
@@ -100,8 +114,9 @@ std::optional<Crop> crop_behind(const Camera& camera, const LayerPlacement& plac
                                 const DrawnLine& line) {
     constexpr double tolerance = 0.5;  // px
     const bool is_stroke = line.radius > 0.0;
-    const std::vector<glm::dvec2> points = simplified(line.points, tolerance);
+    std::vector<glm::dvec2> points = simplified(line.points, tolerance);
     if (!is_stroke && (points.size() < 3 || area_of(points) < 1.0)) return std::nullopt;
+    if (is_onto_sphere(camera.projection)) points = with_short_edges(points, !is_stroke);
     std::vector<ViewRay> rays;
     for (const glm::dvec2& point : points) rays.push_back(ray_through(camera, point));
     rays.push_back(ray_through(camera, points[0] + glm::dvec2(line.radius, 0.0)));  // the brush's rim

@@ -10,8 +10,8 @@ namespace astrosplat {
 /// A line that was drawn in a view, px.
 struct DrawnLine {
     std::vector<glm::dvec2> points;  // at least one, of a polygon three
-    double radius = 0.0;             // of a brush; 0: it goes around what is selected
-    double feather = 0.0;            // width of the soft edge where the layer has its middle
+    double radius = 0.0;   // of a brush, in the middle of the line; 0: it goes around what is selected
+    double feather = 0.0;  // width of the soft edge where the layer has its middle
 };
 
 /// The line without the points that lie within `tolerance` px of it without them (Ramer 1972; Douglas and

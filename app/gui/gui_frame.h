@@ -19,7 +19,19 @@ struct ViewportInput {
     bool hovered = false;
     glm::dvec2 mouse_px{0.0}, delta_px{0.0};
     float wheel = 0.0f;
-    enum class Drag { none, orbit, pan, dolly, look, wipe, place, handle, lying, path, select } drag = Drag::none;
+    enum class Drag {
+        none,
+        orbit,
+        pan,
+        dolly,
+        look,
+        wipe,
+        place,
+        handle,
+        lying,
+        path,
+        select
+    } drag = Drag::none;
     bool drag_begins = false, drag_ends = false;
     bool double_click = false;
     /// The left button was pressed and let go in one place: `behind` with Ctrl, or in the place of

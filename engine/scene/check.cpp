@@ -60,7 +60,7 @@ void check_crops(const std::vector<Crop>& crops, const ParameterKey& at, const C
         } catch (const InputError& error) {
             problem = error.what();
         }
-        check.require(problem.empty(), {at / i / "outline", at / i / "shape"}, problem);
+        check.require(problem.empty(), {at / i / (crops[i].outline.empty() ? "shape" : "outline")}, problem);
     }
 }
 

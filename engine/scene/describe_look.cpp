@@ -60,7 +60,7 @@ void describe_crop(const Describer& d, Crop& c) {
       within(-1e6, 1e6), slider(-180, 180), never_with("shape", {"sphere"}));
     d(c.radius, "radius", "Radius", "scene units", "Of the sphere.", within(1e-6, 1e12), slider(0, 10),
       only_with("shape", {"sphere"}));
-    d(c.outline, "outline", "Outline", "",
+    d(c.outline, "outline", "Drawn lines", "",
       "Drawn in a view: \"M x y x y x y M ...\", right of and above its line, per unit of depth.",
       only_with("shape", {"outline"}));
     d(c.width, "width", "Stroke", "",

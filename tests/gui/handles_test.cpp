@@ -210,6 +210,80 @@ TEST_F(ViewHandles, ANewCropFitsTheLayerAndHasHandles) {
     EXPECT_EQ(window.document.undo_name(), "Centre of dust");
 }
 
+// Lasso, box and brush.
+
+class ViewSelecting : public ViewHandles {
+  protected:
+    const std::vector<Crop>& crops() const { return layer().look.crop; }
+    std::vector<glm::vec2> points() const { return outline_lines(crops().back().outline).at(0); }
+};
+
+TEST_F(ViewSelecting, ABoxIsErasedInOneStep) {
+    window.tap('M');
+    EXPECT_EQ(window.view.select, SelectTool::box);
+    window.frame(2);
+    window.drag(at({1.0, 2.0, 0.0}), at({3.0, 5.0, 0.0}) - at({1.0, 2.0, 0.0}));
+    ASSERT_EQ(crops().size(), 1u);
+    EXPECT_EQ(crops()[0].keep, Crop::Keep::outside);
+    EXPECT_TRUE(crops()[0].parallel);
+    ASSERT_EQ(points().size(), 4u);
+    EXPECT_LT(glm::distance(points()[0], glm::vec2(1.0f, 2.0f)), 0.02f);
+    EXPECT_LT(glm::distance(points()[2], glm::vec2(3.0f, 5.0f)), 0.02f);
+    EXPECT_EQ(window.document.undo_name(), "Erase a part of dust");
+    window.document.undo();
+    EXPECT_TRUE(crops().empty());
+    EXPECT_EQ(window.view.view, ViewKind::camera) << "the view did not turn";
+    window.drag(at({1.0, 2.0, 0.0}), {1.0f, 0.0f});
+    EXPECT_TRUE(crops().empty()) << "a click";
+    window.tap(key_code::escape);
+    EXPECT_EQ(window.view.select, SelectTool::none);
+}
+
+TEST_F(ViewSelecting, TheBarChoosesToolAndFate) {
+    window.tap('L');
+    window.frame(2);
+    window.click("select tool/Brush");
+    window.click("selection/To a layer");
+    window.frame(2);
+    const float before = window.view.brush_px;
+    window.tap(']');
+    EXPECT_GT(window.view.brush_px, before);
+    window.tap('[');
+    window.drag(at({-2.0, 0.0, 0.0}), at({2.0, 0.0, 0.0}) - at({-2.0, 0.0, 0.0}));
+    ASSERT_EQ(window.document.scene().layers.size(), 4u);
+    EXPECT_EQ(crops().size(), 1u);
+    EXPECT_EQ(window.document.scene().layers[1].look.crop.size(), 1u);
+    EXPECT_NEAR(crops()[0].width, 2.0f * before * 20.0f / area.height, 0.02f);
+    window.click("close selecting");
+    EXPECT_EQ(window.view.select, SelectTool::none);
+    EXPECT_EQ(window.view.layer, 0u) << "what is left stays selected";
+}
+
+TEST_F(ViewSelecting, EscapeDropsWhatIsBeingDrawn) {
+    window.tap('L');
+    window.frame(2);
+    window.hover(at({0.0, 0.0, 0.0}));
+    window.press();
+    window.hover(at({2.0, 0.0, 0.0}));
+    window.hover(at({2.0, 2.0, 0.0}));
+    window.tap(key_code::escape);
+    window.release();
+    EXPECT_TRUE(crops().empty());
+    EXPECT_EQ(window.view.select, SelectTool::lasso) << "the tool stays";
+}
+
+TEST_F(ViewSelecting, OutlinesAreForgottenTogether) {
+    window.tap('M');
+    window.frame(2);
+    window.drag(at({1.0, 2.0, 0.0}), {90.0f, 60.0f});
+    window.drag(at({-3.0, 2.0, 0.0}), {90.0f, 60.0f});
+    window.document.edit("Crop", [](Scene& scene) { scene.layers[0].look.crop.emplace_back(); });
+    ASSERT_EQ(crops().size(), 3u);
+    window.choose("Layer/Select/Forget what was drawn");
+    ASSERT_EQ(crops().size(), 1u);
+    EXPECT_EQ(crops()[0].shape, Crop::Shape::box);
+}
+
 /// A galaxy's picture before its own camera.
 class LyingHandlesTest : public testing::Test {
   protected:

@@ -153,7 +153,15 @@ INSTANTIATE_TEST_SUITE_P(
         look("density = -inf", "density: expected a finite number, found inf"),
         look("density = 1e39", "density: expected a number from 0 to 1000000, found 1e+39"),
         look("density = -1", "density: expected a number from 0 to 1000000, found -1"),
-        look("crop = [{ shape = \"cone\" }]", "crop.shape: expected box or sphere, found 'cone'"),
+        look("crop = [{ shape = \"cone\" }]", "crop.shape: expected box, sphere or outline, found 'cone'"),
+        Case{
+            "[layer.look]\ncrop = [{}, { shape = \"outline\" }]\n",
+            "6: layer.stars.look.crop.1.shape: expected lines \"M x y x y ... M ...\" of at least two points "
+            "each, found nothing"},
+        Case{"[layer.look]\ncrop = [{ shape = \"outline\", outline = \"M 1 2 3 4 L 5 6\" }]\n",
+             "6: layer.stars.look.crop.0.outline: expected lines \"M x y x y ... M ...\" of at least two "
+             "points "
+             "each, found 'L 5 6'"},
         look("crop = [{}, { radius = 0 }]", "crop.radius: expected a number of at least 1e-06, found 0"),
         Case{"[layer.look]\ncrop = [{ box = [0, 0, 0] }]\n",
              "6: unknown key 'crop.box'; 'astrosplat parameters' lists all keys"},

@@ -50,6 +50,7 @@ LookCase with_everything() {
     c.look.crop[0].rotate = {3.0f, 20.0f, 4.0f};
     c.look.crop[0].radius = 3.0f;
     c.look.crop[0].soft = 0.4f;
+    c.look.crop[0].outline = "M -2 -1 2 -1 0.5 1.5 M 0 0 0.3 0.2";
     c.look.alpha = {1.7f, 0.9f, true, 1.2f};
     c.look.vertical.shape = VerticalAlpha::Shape::linear;
     c.look.radius = {0.05f, 0.2f, 1.6f, 0.7f};
@@ -76,6 +77,8 @@ std::vector<Value> values_to_try(const ParameterSpec& spec) {
     if (spec.type == ParameterType::boolean) return {true, false};
     if (spec.type == ParameterType::curve)
         return {Value::List{Value::List{0.1, 0.9}, Value::List{0.5, 0.2}, Value::List{0.9, 0.6}}};
+    if (spec.type == ParameterType::text && spec.choices.empty())
+        return {"M -1 -1 1 -1 0 2", "M -3 -0.2 3 0.1 0 0.6"};
     if (is_numeric(spec.type)) return {number(spec, 0.37), number(spec, 0.9), number(spec, 0.0)};
     return {spec.choices.begin(), spec.choices.end()};
 }
