@@ -15,6 +15,7 @@
 #include "scene/load.h"
 #include "scene/new_scene.h"
 #include "scene/parameter.h"
+#include "scene/save.h"
 #include "sets/load_source.h"
 #include "source/mesh.h"
 #include "source/picture.h"
@@ -114,6 +115,80 @@ void rename_layer(Scene& scene, std::size_t index, const std::string& name) {
     for (LayerParams& other : scene.layers)
         if (other.source.stars.like == layer.name) other.source.stars.like = name;
     layer.name = name;
+}
+
+namespace {
+
+// First lines, which tell copied text from any other.
+constexpr std::array copied_heads{"# A layer of astrosplat", "# A look of astrosplat",
+                                  "# A camera of astrosplat"};
+const fs::path copied_place = "/copied.toml";  // so that paths are written from the root
+
+/// What of a layer its look is.
+bool is_of_look(const ParameterKey& key, const std::string& layer) {
+    return key.is_below(layer_key(layer) / "look") || key.is_below(layer_key(layer) / "render");
+}
+
+bool is_copied(const Track& track, CopiedKind kind, const std::string& layer) {
+    if (kind == CopiedKind::camera) return track.key.is_below("camera");
+    return kind == CopiedKind::layer ? belongs_to(track, layer) : is_of_look(track.key, layer);
+}
+
+}  // namespace
+
+std::string copied_text(const Scene& scene, CopiedKind kind, std::size_t layer) {
+    Scene alone;
+    std::string name;
+    if (kind == CopiedKind::camera) {
+        alone.camera = scene.camera;
+    } else {
+        alone.layers = {scene.layers.at(layer)};
+        name = alone.layers[0].name;
+    }
+    if (kind == CopiedKind::look) {
+        LayerParams bare;
+        bare.name = name;
+        bare.look = alone.layers[0].look;
+        bare.render = alone.layers[0].render;
+        alone.layers[0] = bare;
+    }
+    for (const Track& track : scene.animation)
+        if (is_copied(track, kind, name)) alone.animation.push_back(track);
+    return std::string(copied_heads[std::size_t(kind)]) + "\n" + save_text(alone, "", copied_place);
+}
+
+std::optional<CopiedKind> copied_kind(std::string_view text) {
+    for (std::size_t i = 0; i < copied_heads.size(); ++i)
+        if (text.starts_with(copied_heads[i])) return CopiedKind(i);
+    return std::nullopt;
+}
+
+std::size_t paste_text(Scene& scene, const std::string& text, std::size_t layer) {
+    const std::optional<CopiedKind> kind = copied_kind(text);
+    if (!kind)
+        throw InputError("Paste: expected a layer, look or camera that was copied, found another text");
+    const Scene copied = parse_unchecked(text, copied_place);
+    const std::string from = copied.layers.empty() ? "" : copied.layers[0].name;
+    std::string to = from;
+    if (*kind == CopiedKind::layer) {
+        LayerParams pasted = copied.layers.at(0);
+        to = pasted.name = free_layer_name(scene, from);
+        layer = scene.layers.empty() ? 0 : std::min(layer, scene.layers.size() - 1) + 1;
+        scene.layers.insert(scene.layers.begin() + std::ptrdiff_t(layer), std::move(pasted));
+    } else if (*kind == CopiedKind::look) {
+        LayerParams& target = scene.layers.at(layer);
+        to = target.name;
+        target.look = copied.layers.at(0).look;
+        target.render = copied.layers[0].render;
+    } else {
+        scene.camera = copied.camera;
+    }
+    std::erase_if(scene.animation, [&](const Track& track) { return is_copied(track, *kind, to); });
+    for (Track track : copied.animation) {
+        if (*kind != CopiedKind::camera) rekey(track, from, to);
+        scene.animation.push_back(std::move(track));
+    }
+    return layer;
 }
 
 bool is_visible(const Scene& scene, std::size_t index, double frame) {

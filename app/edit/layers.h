@@ -25,6 +25,16 @@ void rename_layer(Scene& scene, std::size_t index, const std::string& name);
 /// Look and render of a preset file (see save_preset_text) put on a layer. Throws InputError.
 void apply_preset(LayerParams& layer, const fs::path& preset);
 
+/// What is copied from one scene into another, keyframes included, as text for the clipboard.
+enum class CopiedKind { layer, look, camera };
+/// A scene of that alone; its paths are valid anywhere on this machine.
+std::string copied_text(const Scene& scene, CopiedKind kind, std::size_t layer);
+/// None for any other text.
+std::optional<CopiedKind> copied_kind(std::string_view text);
+/// A layer comes above `layer` under a name that is free, a look takes the place of its look, a camera that
+/// of the camera, keyframes included. Returns the layer that it is about. Throws InputError.
+std::size_t paste_text(Scene& scene, const std::string& text, std::size_t layer);
+
 bool is_visible(const Scene& scene, std::size_t index, double frame);
 
 /// By content or ending (core/file_format.h); a .toml is a look when it has a [look] or [render] and no

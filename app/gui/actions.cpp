@@ -14,6 +14,27 @@
 
 namespace astrosplat {
 
+void copy_part(GuiFrame& f, CopiedKind kind, std::size_t layer) {
+    ImGui::SetClipboardText(copied_text(f.document.scene(), kind, layer).c_str());
+    constexpr std::array said{"The layer is copied, with its keyframes",
+                              "The look is copied, with its keyframes",
+                              "The camera is copied, with its keyframes"};
+    request_text(f, Command::Kind::say, said[std::size_t(kind)]);
+}
+
+void paste_part(GuiFrame& f) {
+    const char* const text = ImGui::GetClipboardText();
+    const std::string copied = text ? text : "";
+    constexpr std::array names{"Paste layer", "Paste look", "Paste camera"};
+    const std::optional<CopiedKind> kind = copied_kind(copied);
+    try_edit([&] {
+        std::size_t layer = f.view.layer;
+        f.document.edit(kind ? names[std::size_t(*kind)] : "Paste",
+                        [&](Scene& scene) { layer = paste_text(scene, copied, layer); });
+        f.view.layer = layer;
+    });
+}
+
 void toggle_one_to_one(GuiFrame& f) {
     f.view.size = f.view.size == SizeMode::one_to_one ? SizeMode::fit : SizeMode::one_to_one;
     f.view.pan_px = {0.0, 0.0};
@@ -88,6 +109,11 @@ void take_snapshot(F f) {
 
 bool has_file(C f) { return !f.document.file().empty(); }
 bool has_layer(C f) { return f.view.layer < f.document.scene().layers.size(); }
+template <CopiedKind kind>
+void copy(F f) {
+    copy_part(f, kind, f.view.layer);
+}
+void paste(F f) { paste_part(f); }
 bool has_box(C f) { return !f.status.box.empty(); }
 bool has_job(C f) { return running_job(f.status) != nullptr; }
 bool has_ffmpeg(C f) { return f.status.has_ffmpeg; }
@@ -403,6 +429,10 @@ const Action table[] = {
 
     {"Edit", "Undo", ctrl('Z'), undo, can_undo, nullptr, undo_label, false, true},
     {"Edit", "Redo", ctrl_shift('Z'), redo, can_redo, nullptr, redo_label, false, true, ctrl('Y')},
+    below_line({"Edit", "Copy layer", ctrl('C'), copy<CopiedKind::layer>, has_layer}),
+    {"Edit", "Copy look", {}, copy<CopiedKind::look>, has_layer},
+    {"Edit", "Copy camera", {}, copy<CopiedKind::camera>},
+    {"Edit", "Paste", ctrl('V'), paste},
     below_line({"Edit", "Store as B", plain('B'), ask<Kind::store_b>}),
     {"Edit", "Take snapshot", {}, take_snapshot},
     below_line(flip<&ViewState::settings_open>("Edit", "Settings...")),

@@ -5,6 +5,7 @@
 
 #include <initializer_list>
 
+#include "edit/layers.h"
 #include "gui/gui_frame.h"
 #include "gui/widgets.h"
 
@@ -134,6 +135,10 @@ std::span<const Action> actions();
 /// Runs the shortcuts pressed this frame but for the keys of the ring. Call it only while no text is typed
 /// and nothing is dragged.
 void run_shortcuts(GuiFrame& frame);
+
+/// Onto the clipboard; and into the scene, as one undo step.
+void copy_part(GuiFrame& f, CopiedKind kind, std::size_t layer);
+void paste_part(GuiFrame& f);
 
 void toggle_one_to_one(GuiFrame& f);
 void set_compare(GuiFrame& f, CompareMode mode);   // asks for a reference where there is none yet

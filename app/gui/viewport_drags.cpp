@@ -350,9 +350,8 @@ void draw_select_bar(GuiFrame& frame, const Rect& area) {
         {"Erase", "What is drawn around goes: all of it that lies behind, at any depth"},
         {"Keep", "All else goes"},
         {"To a layer", "What is drawn around becomes a layer of its own"}};
-    const bool brushes = view.select == SelectTool::brush;
     const float width = segmented_width(tools) + segmented_width(fates) + px(control + 2 * space) +
-                        px((brushes ? 2 : 1) * (field + space)) + px(2 * padding);
+                        px(2 * (field + space)) + px(2 * padding);
     ImGui::SetCursorScreenPos(
         {std::floor(area.x + std::max(px(inset), 0.5f * (area.width - width))), area.y + px(inset)});
     ImGui::PushStyleColor(ImGuiCol_ChildBg, color4(color::with_opacity(color::window, 0.92f)));
@@ -367,11 +366,11 @@ void draw_select_bar(GuiFrame& frame, const Rect& area) {
     ImGui::SameLine(0, px(space));
     const int fate = segmented(frame, "selection", fates, int(view.selection), control);
     if (fate >= 0) view.selection = SelectionFate(fate);
-    if (brushes) {
-        ImGui::SameLine(0, px(space));
-        drag_field(frame, view.brush_px,
-                   {"brush", 0.25f, 2, 400, "%.0f px", field, color::text, "Radius of the brush ([ and ])"});
-    }
+    ImGui::SameLine(0, px(space));
+    drag_field(
+        frame, view.brush_px,
+        {"brush", 0.25f, 2, 400, "%.0f px", field,
+         view.select == SelectTool::brush ? color::text : color::dim, "Radius of the brush ([ and ])"});
     ImGui::SameLine(0, px(space));
     drag_field(frame, view.feather_px,
                {"feather", 0.25f, 0, 400, "~ %.0f px", field, color::dim,

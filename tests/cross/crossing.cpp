@@ -40,7 +40,10 @@ void visit_scene(auto& c, const auto& visit) {
 }
 
 /// Drawn after all else, so that seeds keep their scenes.
-void visit_device(auto& c, const auto& visit) { visit("device", c.device, {1, 2, 1}); }
+void visit_late(auto& c, const auto& visit) {
+    visit("device", c.device, {1, 2, 1});
+    visit("cut", c.cut, {2, 1});
+}
 
 void visit_layer(auto& layer, const auto& visit) {
     visit("source", layer.source, {});
@@ -153,7 +156,16 @@ std::string layer_text(const Crossing& c, std::size_t index) {
     std::string text = fmt::format("\n[[layer]]\nname = \"{}\"\n{}[layer.source]\n", layer_name(index),
                                    hidden ? "visible = false\n" : "");
     text += source_text(c, layer);
-    if (has_picture(layer)) text += "[layer.look]\nradius = { min = 0.1, max = 0.4 }\n";
+    const bool is_cut = c.cut == Answer::yes && index + 1 == c.layers.size();
+    if (has_picture(layer) || is_cut) text += "[layer.look]\n";
+    if (has_picture(layer)) text += "radius = { min = 0.1, max = 0.4 }\n";
+    if (is_cut)
+        text +=
+            "crop = [{ shape = \"outline\", center = [0.3, 0.2, 5], outline = \"M -.5 -.4 .4 -.5 .1 .5\", "
+            "soft = 0.3 "
+            "}, { shape = \"outline\", keep = \"outside\", center = [0.3, 0.2, 5], width = 0.05, outline = "
+            "\"M -.1 0 "
+            ".1 .05 M 0 -.1 0 0\" }]\n";
     text += fmt::format("[layer.render]\nblend = \"{}\"\n", name_of(layer.blend));
     if (layer.isolated == Answer::yes) text += "isolate = true\n";
     if (layer.holdout == Answer::yes) text += "holdout = true\n";
@@ -296,7 +308,7 @@ struct AddChoices {
 std::vector<int> choices_of(const Crossing& c, int& first) {
     std::vector<int> choices;
     visit_scene(c, AddChoices{&choices, &first});
-    visit_device(c, AddChoices{&choices, &first});
+    visit_late(c, AddChoices{&choices, &first});
     return choices;
 }
 
@@ -328,7 +340,7 @@ Crossing crossing_of(std::uint32_t seed) {
     c.layers.resize(1 + numbers.below(most_drawn_layers));
     for (CrossingLayer& layer : c.layers) visit_layer(layer, Draw{&numbers});
     Draw{&numbers}("scaled", c.scaled, {});  // after all else, as the device; in no pair
-    visit_device(c, Draw{&numbers});
+    visit_late(c, Draw{&numbers});
     settle(c);
     return c;
 }
@@ -406,7 +418,7 @@ const std::vector<std::string>& feature_names() {
         const Crossing scene;
         const CrossingLayer layer;
         visit_scene(scene, AddNames{&names});
-        visit_device(scene, AddNames{&names});
+        visit_late(scene, AddNames{&names});
         visit_layer(layer, AddNames{&names});
         return names;
     }();

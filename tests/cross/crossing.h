@@ -97,6 +97,7 @@ struct Crossing {
     Answer small_tiles = Answer::no;
     Target target = Target::best;
     Device device = Device::cpu;
+    Answer cut = Answer::no;  // the last layer, by outlines that were drawn in a view
     Folder folder = Folder::plain;
     Token token = Token::hashes;
     Answer token_in_folder = Answer::no;  // the places stand in a folder's name, not in the file's

@@ -54,6 +54,25 @@ TEST_F(ShortcutsTest, WhatIsUndoneIsSaid) {
     EXPECT_EQ(commands[1].text, "Redone: " + name);
 }
 
+TEST_F(ShortcutsTest, LayersLooksAndCamerasAreCopiedAndPasted) {
+    const Scene before = window.document.scene();
+    window.tap('C', true);
+    window.view.layer = 2;
+    window.tap('V', true);
+    ASSERT_EQ(window.document.scene().layers.size(), 4u);
+    EXPECT_EQ(window.view.layer, 3u);
+    EXPECT_EQ(window.document.undo_name(), "Paste layer");
+    EXPECT_EQ(window.document.scene().layers[3].source, before.layers[0].source);
+    window.choose("Edit/Copy camera");
+    window.document.edit("Lens", [](Scene& scene) { scene.camera.fov = 11.0; });
+    window.tap('V', true);
+    EXPECT_EQ(window.document.undo_name(), "Paste camera");
+    EXPECT_EQ(window.document.scene().camera, before.camera);
+    ImGui::SetClipboardText("of another program");
+    window.tap('V', true);
+    EXPECT_EQ(window.document.undo_name(), "Paste camera") << "nothing";
+}
+
 TEST(Menus, TheHistoryGoesToAnyStep) {
     TestWindow window(example_document());
     for (const double opacity : {0.9, 0.8, 0.7})

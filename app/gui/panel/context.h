@@ -34,12 +34,6 @@ struct Touch {
     bool to_next = false;         // Tab: the next field is typed into
 };
 
-/// Look and render of a layer, copied.
-struct CopiedLook {
-    Look look;
-    LayerRender render;
-};
-
 /// The field of a noise, drawn once: greys at the corners of cells, row by row.
 struct NoiseSketch {
     Noise noise;
@@ -69,7 +63,6 @@ struct Memory {
     int dragged_layer = -1;
     std::size_t layer_in_sight = 0;      // selected in the last frame
     std::set<std::string> second_lines;  // layers whose row has one
-    std::optional<CopiedLook> copied;
     std::vector<NoiseSketch> noises;  // by entry of the list
     float preparation_line = 0.5f;    // between before and after, 0..1 of the width
     float scroll = 0.0f;              // how far the tab can be scrolled

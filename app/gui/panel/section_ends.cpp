@@ -2,6 +2,7 @@
 // of a preparation, handles in the view, references, a look as a whole.
 
 #include "core/text.h"
+#include "edit/layers.h"
 #include "edit/lying.h"
 #include "edit/selection.h"
 #include "gui/panel/parts.h"
@@ -84,26 +85,27 @@ void handle_buttons(Context& context, HandleTarget target, std::size_t crop) {
     context.view.handle_crop = crop;
 }
 
-CopiedLook look_of(const Context& context) { return {context.layer().look, context.layer().render}; }
+void copy_look(const Context& context) {
+    ImGui::SetClipboardText(copied_text(context.scene(), CopiedKind::look, context.view.layer).c_str());
+}
 
-/// To so many layers from one on.
-void give_look(Context& context, const std::string& name, const CopiedLook& copied, std::size_t first,
-               std::size_t count) {
-    edit(context, context.layer_key(), name, [&](Scene& scene) {
-        for (std::size_t i = first; i < first + count; ++i) {
-            scene.layers[i].look = copied.look;
-            scene.layers[i].render = copied.render;
-        }
-    });
+std::string copied_look() {
+    const char* const text = ImGui::GetClipboardText();
+    return text && copied_kind(text) == CopiedKind::look ? text : "";
 }
 
 void paste_look(Context& context) {
-    give_look(context, "Paste look", *context.memory.copied, context.view.layer, 1);
+    const std::string look = copied_look();
+    if (look.empty()) return;
+    edit(context, context.layer_key(), "Paste look",
+         [&](Scene& scene) { paste_text(scene, look, context.view.layer); });
 }
 
 void look_to_all(Context& context) {
-    give_look(context, "Look of " + context.layer().name + " to all layers", look_of(context), 0,
-              context.scene().layers.size());
+    const LayerParams from = context.layer();
+    edit(context, context.layer_key(), "Look of " + from.name + " to all layers", [&](Scene& scene) {
+        for (LayerParams& layer : scene.layers) layer.look = from.look, layer.render = from.render;
+    });
 }
 
 }  // namespace
@@ -229,14 +231,14 @@ void look_buttons(Context& context) {
     if (files == 0) request(context, Command::Kind::save_look, context.view.layer);
     if (files == 1) request(context, Command::Kind::apply_look, context.view.layer);
     const int looks = button_line(context, {"Copy", "Paste", "To all layers"});
-    if (looks == 0) context.memory.copied = look_of(context);
-    if (looks == 1 && context.memory.copied) paste_look(context);
+    if (looks == 0) copy_look(context);
+    if (looks == 1) paste_look(context);
     if (looks == 2) look_to_all(context);
 }
 
 void look_menu(Context& context) {
-    if (ImGui::MenuItem("Copy look")) context.memory.copied = look_of(context);
-    if (ImGui::MenuItem("Paste look", nullptr, false, context.memory.copied.has_value())) paste_look(context);
+    if (ImGui::MenuItem("Copy look")) copy_look(context);
+    if (ImGui::MenuItem("Paste look", nullptr, false, !copied_look().empty())) paste_look(context);
     if (ImGui::MenuItem("Look to all layers")) look_to_all(context);
     if (ImGui::MenuItem("Export look...")) request(context, Command::Kind::save_look, context.view.layer);
     if (ImGui::MenuItem("Apply look...")) request(context, Command::Kind::apply_look, context.view.layer);

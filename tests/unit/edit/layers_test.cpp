@@ -35,6 +35,50 @@ TEST_F(Layers, FreeNames) {
     EXPECT_EQ(free_layer_name(scene, "dust_2"), "dust_2_2");
 }
 
+// Copied text, between scenes.
+
+TEST_F(Layers, ACopiedLayerComesWithItsKeyframesAndFiles) {
+    Scene other = parse_scene(test::inclined_scene, "/elsewhere/other.toml");
+    const std::string text = copied_text(scene, CopiedKind::layer, 0);
+    EXPECT_EQ(copied_kind(text), CopiedKind::layer);
+    EXPECT_EQ(paste_text(other, text, 0), 1u);
+    ASSERT_EQ(other.layers.size(), 2u);
+    EXPECT_EQ(other.layers[1], scene.layers[0]) << "paths, too: /Bilder/m 51 ä.png";
+    EXPECT_EQ(other.animation.back().key, "layer.dust.look.noise.1.jitter");
+    EXPECT_EQ(paste_text(other, text, 0), 1u) << "again, above the selected one";
+    EXPECT_EQ(other.layers[1].name, "dust_2");
+    EXPECT_EQ(other.animation.back().key, "layer.dust_2.look.noise.1.jitter");
+    check_edited_scene(other, "other");
+    Scene empty;
+    EXPECT_EQ(paste_text(empty, text, 0), 0u);
+}
+
+TEST_F(Layers, ACopiedLookTakesTheLooksPlace) {
+    paste_text(scene, copied_text(scene, CopiedKind::look, 0), 1);
+    EXPECT_EQ(scene.layers[1].look, scene.layers[0].look);
+    EXPECT_EQ(scene.layers[1].render, scene.layers[0].render);
+    EXPECT_EQ(scene.layers[1].source.kind, SourceKind::splats) << "the rest is its own";
+    EXPECT_TRUE(is_animated(scene, "layer.stars.look.noise.1.jitter"));
+    EXPECT_FALSE(is_animated(scene, "layer.stars.render.core")) << "keyframes of the look before";
+}
+
+TEST_F(Layers, ACopiedCameraTakesTheCamerasPlace) {
+    set_keyframe(scene, "camera.fov", 3.0, 30.0);
+    Scene from = parse_scene(test::inclined_scene, "/a/b.toml");
+    set_keyframe(from, "camera.roll", 7.0, 12.0);
+    EXPECT_EQ(paste_text(scene, copied_text(from, CopiedKind::camera, 0), 1), 1u);
+    EXPECT_EQ(scene.camera, from.camera);
+    EXPECT_TRUE(has_keyframe_at(scene, "camera.roll", 7.0));
+    EXPECT_FALSE(is_animated(scene, "camera.fov"));
+    EXPECT_TRUE(is_animated(scene, "layer.stars.render.core"));
+}
+
+TEST_F(Layers, OtherTextIsNotPasted) {
+    EXPECT_EQ(ERROR_OF(paste_text(scene, "hello", 0)),
+              "Paste: expected a layer, look or camera that was copied, found another text");
+    EXPECT_FALSE(copied_kind(""));
+}
+
 TEST_F(Layers, Duplicate) {
     EXPECT_EQ(duplicate_layer(scene, 1), 2u);
     EXPECT_EQ(names(), (Names{"dust", "stars", "stars_2"}));
