@@ -157,7 +157,8 @@ std::vector<std::string> telling_scenes() {
     return {
         layer(mesh,
               "pdf = { shape = \"exponential\" }\nvertical = { shape = \"exponential\" }\n"
-              "noise = { cull = 0.5 }\ncrop = [ {}, { shape = \"sphere\" } ]",
+              "noise = { cull = 0.5 }\n"
+              "crop = [ {}, { shape = \"sphere\" }, { shape = \"outline\", outline = \"M 0 0 1 0 1 1\" } ]",
               "falloff = \"trapezoid\"\nblend = \"hybrid\""),
         layer(mesh,
               "pdf = { shape = \"gaussian\" }\nvertical = { shape = \"curve\", points = [[0, 1], [1, 0]] }\n"
