@@ -60,9 +60,10 @@ inline void use_outlines(Look& look) {
     };
     add("M -2 -2 2 -1.7 0.3 2.5 M -0.2 -0.2 0.2 -0.2 0.1 0.3", 0.0f, {0.2f, 0.1f, 2.0f}, Crop::Keep::inside)
         .soft = 0.3f;
-    add("M -0.1 0.4 0 0.1 0.2 -0.3 M 0.3 0.3 0.4 0.1 M -0.4 -0.4 -0.3 -0.3", 0.05f, {1.0f, 4.0f, 3.0f},
-        Crop::Keep::outside)
-        .rotate = {-40.0f, 15.0f, 3.0f};
+    Crop& strokes = add("M -0.1 0.4 0 0.1 0.2 -0.3 M 0.05 0.25 0.2 0.3 M -0.4 -0.4 -0.3 -0.3", 0.05f,
+                        {1.0f, 4.0f, 3.0f}, Crop::Keep::outside);
+    strokes.rotate = {-40.0f, 15.0f, 3.0f};
+    strokes.soft = 0.2f;
     add("M -0.3 0.5 0.5 -0.4", 0.1f, {0.0f, 0.0f, 0.0f}, Crop::Keep::outside).parallel = true;
 }
 
