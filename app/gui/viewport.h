@@ -83,7 +83,9 @@ class Selecting {
     std::vector<glm::dvec2> points_;  // px of the viewport; none: nothing is being drawn
     SelectTool tool_ = SelectTool::none;
     double radius_px_ = 0.0, feather_px_ = 0.0;
-    Camera camera_;  // through which it is drawn
+    Camera camera_;             // through which it is drawn
+    std::string layer_;         // what it is drawn over
+    LayerPlacement placement_;  // of that, when it began
 };
 /// At the view's top, while ViewState::select: the tool, what becomes of what it takes, and the brush.
 void draw_select_bar(GuiFrame& frame, const Rect& area);

@@ -283,6 +283,9 @@ bool Selecting::press(const GuiFrame& frame, const glm::dvec2& mouse_px) {
     radius_px_ = double(px(view.brush_px));
     feather_px_ = double(px(view.feather_px));
     camera_ = *frame.status.viewport_camera;
+    const LayerParams layer = scene_now(frame).layers[view.layer];
+    layer_ = layer.name;
+    placement_ = placement_of(layer.transform);
     points_ = {mouse_px};
     return true;
 }
@@ -301,19 +304,19 @@ void Selecting::read(GuiFrame& frame, const glm::dvec2& mouse_px, bool dragged) 
     if (dragged) return;
     const DrawnLine line = drawn();
     points_.clear();
-    ViewState& view = frame.view;
-    const Scene now = scene_now(frame);
-    if (view.layer >= now.layers.size()) return;
-    const LayerParams& layer = now.layers[view.layer];
-    const std::optional<Crop> crop = crop_behind(camera_, placement_of(layer.transform), line);
+    const ViewState& view = frame.view;
+    const std::vector<LayerParams>& layers = frame.document.scene().layers;
+    const auto layer = std::ranges::find(layers, layer_, &LayerParams::name);
+    if (layer == layers.end()) return;
+    const std::optional<Crop> crop = crop_behind(camera_, placement_, line);
     if (!crop && tool_ == SelectTool::brush)
         return request_text(frame, Command::Kind::say, "Too wide a part of the view to be drawn at once");
     if (!crop) return;  // a click
     constexpr std::array names{"Erase a part of ", "Keep a part of ", "Part off "};
+    const auto index = std::size_t(layer - layers.begin());
     try_edit([&] {
-        std::size_t part = view.layer;
-        frame.document.edit(names[std::size_t(view.selection)] + layer.name,
-                            [&](Scene& scene) { part = select_part(scene, part, *crop, view.selection); });
+        frame.document.edit(names[std::size_t(view.selection)] + layer_,
+                            [&](Scene& scene) { select_part(scene, index, *crop, view.selection); });
     });
 }
 
