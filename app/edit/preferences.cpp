@@ -77,6 +77,8 @@ Preferences from_json(const Json& json) {
     read(json, "panel_width", p.panel_width, 300, 520);
     read(json, "timeline_height", p.timeline_height, 36, 2000);
     read(json, "timeline_open", p.timeline_open);
+    read(json, "scopes_open", p.scopes_open);
+    for (std::size_t i = 0; i < scope_count; ++i) read(json, scope_names[i], p.scopes[i]);
     for (const SettingRow& row : setting_rows()) {
         int value = 0;
         read(json, row.name, value, -1e9, 1e9);
@@ -95,11 +97,10 @@ Preferences from_json(const Json& json) {
 }
 
 Json to_json(const Preferences& p) {
-    Json json{{"window_width", p.window_width},
-              {"window_height", p.window_height},
-              {"panel_width", p.panel_width},
-              {"timeline_height", p.timeline_height},
-              {"timeline_open", p.timeline_open}};
+    Json json{{"window_width", p.window_width},   {"window_height", p.window_height},
+              {"panel_width", p.panel_width},     {"timeline_height", p.timeline_height},
+              {"timeline_open", p.timeline_open}, {"scopes_open", p.scopes_open}};
+    for (std::size_t i = 0; i < scope_count; ++i) json[scope_names[i]] = p.scopes[i];
     for (const SettingRow& row : setting_rows()) json[row.name] = p.settings.*row.value;
     json["cache_folder"] = p.settings.cache_folder;
     json["recent"] = json_of(p.recent);

@@ -10,6 +10,7 @@
 #include "camera/camera.h"
 #include "core/bounds.h"
 #include "objects/impression.h"
+#include "output/scopes.h"
 #include "scene/scene.h"
 #include "sets/set_sample.h"
 
@@ -230,6 +231,7 @@ struct Status {
     void* viewport_texture = nullptr;  // the viewport with the frame in its place, bottom row first
     std::optional<Camera>
         viewport_camera;  // what the view looks through, in px of the viewport; none: nothing
+    std::array<void*, scope_count> scopes{};  // handles of their pictures, top row first; null: not shown
     std::vector<std::vector<glm::vec2>>
         overlay_lines;  // camera path, frustum; px of the viewport; one point: a tick
 };

@@ -14,6 +14,7 @@
 #include "edit/status.h"
 #include "objects/identify.h"
 #include "output/inspection.h"
+#include "output/scopes.h"
 #include "scene/scene.h"
 
 namespace astrosplat {
@@ -40,6 +41,8 @@ inline bool is_of_layer(PanelTab tab) { return tab <= PanelTab::mixing; }
 enum class PlayMode { loop, ping_pong, once };
 enum class PreviewEngine { automatic, card, processor };
 
+inline constexpr std::array<const char*, scope_count> scope_names{"Histogram", "Waveform", "Vectorscope"};
+
 enum class HandleTool { none, move, rotate, scale };
 enum class HandleTarget { layer, crop, camera_target };  // the selected layer's placement, one of its crops
 
@@ -61,6 +64,8 @@ struct FreeCamera {
 struct PanelSizes {
     float panel_width = 360.0f, timeline_height = 148.0f;  // px at scale 1
     bool timeline_open = true;
+    bool scopes_open = false;  // those that are chosen, over the view
+    std::array<bool, scope_count> scopes{true, true, true};
     Settings settings;
     std::vector<fs::path> recent_folders;  // that files were chosen in, newest first
     std::vector<KeptRender> renders;       // newest first

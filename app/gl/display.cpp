@@ -220,6 +220,7 @@ struct Display::State {
     WholeTarget triangle;
     GlTarget target;
     GlTarget values;  // of what is compared, as floats
+    GlTarget points;
     int drawn_height = 0;
     float codes = 0.0f;     // the largest of a channel of the target that is drawn into; 0: it holds numbers
     DisplaySettings drawn;  // what the target holds, when version is above 0
@@ -368,6 +369,22 @@ std::uint64_t Display::version() const { return state_->version; }
 std::vector<unsigned char> Display::read() const {
     const GlTarget& target = state_->target;
     return read_rgba8(target.framebuffer(), target.width(), target.height());
+}
+
+ScreenPoints Display::points() {
+    constexpr int most_rows = 162;  // with 512 columns twice as wide as high: a waveform shows these apart
+    const GlTarget& target = state_->target;
+    GlTarget& points = state_->points;
+    const PixelRect r = rect_of(state_->drawn, target.width(), target.height());
+    if (r.empty() || (state_->drawn.a == 0 && state_->drawn.b == 0)) return {};
+    const int width = r.x1 - r.x0, columns = width >= 512 ? 512 : std::min(256, width);
+    points.resize(columns, std::min(most_rows, r.y1 - r.y0), GL_RGBA8);
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, target.framebuffer());
+    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, points.framebuffer());
+    glBlitFramebuffer(r.x0, target.height() - r.y1, r.x1, target.height() - r.y0, 0, 0, points.width(),
+                      points.height(), GL_COLOR_BUFFER_BIT, GL_NEAREST);
+    glBindFramebuffer(GL_FRAMEBUFFER, 0);
+    return {points.width(), read_rgba8(points.framebuffer(), points.width(), points.height())};
 }
 
 }  // namespace astrosplat

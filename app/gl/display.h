@@ -9,6 +9,7 @@
 
 #include "core/image.h"
 #include "output/inspection.h"
+#include "output/scopes.h"
 #include "scene/reference_place.h"
 #include "scene/scene.h"
 
@@ -56,6 +57,9 @@ class Display {
     std::uint64_t version() const;
     /// The last draw(), read back as 8-bit RGBA, top row first.
     std::vector<unsigned char> read() const;
+    /// Pixels of it that lie on the image or what it is compared with, 512 x 162 at most, evenly chosen, in
+    /// as many columns as a waveform takes alike; none where nothing is shown.
+    ScreenPoints points();
 
   private:
     struct State;

@@ -322,7 +322,7 @@ void render(F f) {
 
 template <Inspection::Channel channel>
 Action look_at(const char* label, Shortcut shortcut = {}) {
-    return {.menu = "View/Channels",
+    return {.menu = "View/Channels and scopes",
             .label = label,
             .shortcut = shortcut,
             .run =
@@ -331,6 +331,24 @@ Action look_at(const char* label, Shortcut shortcut = {}) {
                     seen = seen == channel ? Inspection::Channel::color : channel;
                 },
             .checked = [](C f) { return f.view.inspection.channel == channel; }};
+}
+
+template <Scope scope>
+Action see_scope() {
+    constexpr auto i = static_cast<std::size_t>(scope);
+    return {.menu = "View/Channels and scopes",
+            .label = scope_names[i],
+            .run =
+                [](F f) {
+                    f.view.scopes[i] = !(f.view.scopes_open && f.view.scopes[i]);
+                    f.view.scopes_open = f.view.scopes != std::array<bool, scope_count>{};
+                },
+            .checked = [](C f) { return f.view.scopes_open && f.view.scopes[i]; }};
+}
+/// Those that were open last.
+void toggle_scopes(F f) {
+    f.view.scopes_open = !f.view.scopes_open;
+    if (f.view.scopes == std::array<bool, scope_count>{}) f.view.scopes.fill(true);
 }
 
 template <CompareMode mode>
@@ -462,8 +480,13 @@ const Action table[] = {
     look_at<Inspection::Channel::alpha>("Alpha", shift('A')),
     look_at<Inspection::Channel::luminance>("Luminance", shift('L')),
     look_at<Inspection::Channel::stops>("Stops, in false colours", shift('E')),
-    below_line(
-        {"View/Channels", "Neutral exposure and colours", shift('N'), [](F f) { f.view.inspection = {}; }}),
+    below_line({"View/Channels and scopes", "Neutral exposure and colours", shift('N'),
+                [](F f) { f.view.inspection = {}; }}),
+    below_line({"View/Channels and scopes", "Scopes", plain('V'), toggle_scopes, nullptr,
+                [](C f) { return f.view.scopes_open; }}),
+    see_scope<Scope::histogram>(),
+    see_scope<Scope::waveform>(),
+    see_scope<Scope::vectorscope>(),
     below_line({"View", "Load reference...", {}, ask<Kind::set_reference>}),
     {"View", "Place reference", plain('P'), toggle_placing, has_reference, is_placing},
     {"View", "Align reference to this view", {}, ask<Kind::align_reference>, has_reference},

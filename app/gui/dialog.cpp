@@ -231,7 +231,7 @@ void draw_shortcut_sheet(GuiFrame& frame) {
     const float column = (ImGui::GetContentRegionAvail().x - 2 * px(28)) / 3;
     const std::array<std::vector<Group>, 3> columns{
         {mouse_groups(),
-         {group_of("View", {"View", "View/Channels"}), group_of("Layer", {"Layer"})},
+         {group_of("View", {"View", "View/Channels and scopes"}), group_of("Layer", {"Layer"})},
          {group_of("Time", {""}), group_of("Scene", {"File", "Edit", "Render", "Help"})}}};
     for (std::size_t i = 0; i < columns.size(); ++i) {
         if (i > 0) ImGui::SameLine();

@@ -164,6 +164,7 @@ void Viewport::draw_movie(GuiFrame& frame, const Rect& area) {
     note_item(frame, "frame in view");
     if (ImGui::IsItemActivated()) frame.view.movie.clear();
     draw_frame_in_view(frame, area);
+    draw_scopes(frame, area);
     draw_badge(frame, area);
 }
 
@@ -188,6 +189,7 @@ void Viewport::draw(GuiFrame& frame, const Rect& area) {
     if (places_reference(frame)) draw_placing(frame, frame_on_screen(frame_area));
     draw_view_line(frame, area, frame_area);
     draw_scale_bar(frame, area, frame_area);
+    draw_scopes(frame, area);
     draw_side_badge(frame, area, draw_badge(frame, area));
     ImGui::PopClipRect();
     draw_start_card(frame, area);

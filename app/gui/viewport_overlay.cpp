@@ -221,6 +221,95 @@ void draw_scale_bar(const GuiFrame& frame, const Rect& area, const Rect& frame_a
 
 namespace {
 
+const ImU32 scale_ink = color::with_opacity(IM_COL32_WHITE, 0.22f), scale_text = IM_COL32(150, 154, 160, 255);
+
+/// Lines at 0, 25, 50, 75 and 100 %, of which every other one is named at the left.
+void draw_levels(const Rect& plot) {
+    for (int percent = 0; percent <= 100; percent += 25) {
+        const float y = std::floor(plot.end().y - 1.0f - (plot.height - 1.0f) * 0.01f * float(percent));
+        const bool named = percent % 50 == 0;
+        line_across(plot.x, plot.end().x, y, color::with_opacity(scale_ink, named ? 0.22f : 0.1f));
+        if (!named) continue;
+        const std::string text = std::to_string(percent);
+        const ImVec2 size = ImGui::CalcTextSize(text.c_str());
+        draw_text({std::floor(plot.x - size.x - px(4)), std::floor(y - 0.5f * size.y)}, scale_text, text);
+    }
+}
+
+/// The same from left to right.
+void draw_values(const Rect& plot) {
+    for (int percent = 0; percent <= 100; percent += 25) {
+        const float x = std::floor(plot.x + (plot.width - 1.0f) * 0.01f * float(percent));
+        const bool named = percent % 50 == 0;
+        line_down(x, plot.y, plot.end().y, color::with_opacity(scale_ink, named ? 0.22f : 0.1f));
+        if (!named) continue;
+        const std::string text = std::to_string(percent);
+        const float width = ImGui::CalcTextSize(text.c_str()).x;
+        draw_text({std::floor(x - 0.01f * float(percent) * width), plot.end().y + px(1)}, scale_text, text);
+    }
+}
+
+/// Axes, the circle of the purest colours, the six colour bars at 75 %, and the hue of skin, which is that of
+/// the I axis of NTSC.
+void draw_hues(const Rect& plot) {
+    constexpr float box = 4;
+    constexpr glm::vec2 skin(-0.5446f, 0.8387f);  // at 123 degrees
+    constexpr std::array<const char*, 6> names{"R", "Mg", "B", "Cy", "G", "Yl"};
+    constexpr std::array<glm::vec3, 6> bars{glm::vec3(1, 0, 0), {1, 0, 1}, {0, 0, 1},
+                                            {0, 1, 1},          {0, 1, 0}, {1, 1, 0}};
+    const ImVec2 middle = plot.middle();
+    const float scale = 0.5f * plot.width / vector_reach;
+    const auto at = [&](glm::vec2 chroma) {
+        return ImVec2{middle.x + scale * chroma.x, middle.y - scale * chroma.y};
+    };
+    line_across(plot.x, plot.end().x, middle.y, scale_ink);
+    line_down(middle.x, plot.y, plot.end().y, scale_ink);
+    ImGui::GetWindowDrawList()->AddCircle(middle, 0.5f * scale, scale_ink, 64);
+    draw_line(middle, at(0.5f * skin), color::with_opacity(color::attention, 0.5f));
+    for (std::size_t i = 0; i < bars.size(); ++i) {
+        const glm::vec2 chroma = chroma_of(0.75f * bars[i]);
+        const ImVec2 bar = at(chroma), size = ImGui::CalcTextSize(names[i]);
+        outline_rect({std::round(bar.x - px(box)), std::round(bar.y - px(box)), px(2 * box), px(2 * box)},
+                     color::with_opacity(IM_COL32_WHITE, 0.45f));
+        const float side = chroma.x < 0.0f ? -px(box + 3) - size.x : px(box + 3);
+        draw_text({std::floor(bar.x + side), std::floor(bar.y - 0.5f * size.y)}, scale_text, names[i]);
+    }
+}
+
+}  // namespace
+
+void draw_scopes(const GuiFrame& frame, const Rect& area) {
+    constexpr float head = 22, foot = 20, gap = 8, right = 10, above_badge = 46, full = 160;
+    constexpr std::array<float, scope_count> left{10, 30, 10}, shape{1.6f, 1.6f, 1.0f};  // width / height
+    const ViewState& view = frame.view;
+    if (!view.scopes_open) return;
+    float margins = 2 * inset, shapes = 0.0f;
+    for (std::size_t i = 0; i < scope_count; ++i)
+        if (view.scopes[i]) margins += left[i] + right + gap, shapes += shape[i];
+    // As large as there is room for in one row.
+    const float width = (area.width - px(margins)) / shapes;
+    const float height = std::floor(std::clamp(std::min(width, 0.4f * area.height), px(40), px(full)));
+    ImGui::PushFont(small_font());
+    Rect box{area.x + px(inset), 0, 0, px(head + foot) + height};
+    box.y = std::floor(area.end().y - px(above_badge) - box.height);
+    for (std::size_t i = 0; i < scope_count; ++i) {
+        if (!view.scopes[i]) continue;
+        box.width = std::floor(px(left[i] + right) + shape[i] * height);
+        const Rect plot{box.x + px(left[i]), box.y + px(head), std::floor(shape[i] * height), height};
+        fill_rect(box, color::with_opacity(color::window, 0.92f), px(4));
+        draw_text({box.x + px(10), box.y + px(4)}, scale_text, scope_names[i]);
+        fill_rect(plot, IM_COL32_BLACK);
+        if (frame.status.scopes[i])
+            ImGui::GetWindowDrawList()->AddImage(frame.status.scopes[i], plot.corner(), plot.end());
+        constexpr std::array scales{draw_values, draw_levels, draw_hues};
+        scales[i](plot);
+        box.x += box.width + px(gap);
+    }
+    ImGui::PopFont();
+}
+
+namespace {
+
 constexpr float grid_width = 1.0f, box_width = 1.2f, axis_width = 1.6f;  // px at scale 1
 
 /// Depths between which lines fade.

@@ -16,6 +16,8 @@ std::string aspect_text(std::int64_t width, std::int64_t height);
 void draw_gate(const GuiFrame& frame, const Rect& area, const Rect& frame_area);
 void draw_overlay_lines(const GuiFrame& frame, const Rect& area);
 void draw_wipe(const GuiFrame& frame, const Rect& area, const Rect& frame_area);
+/// Status::scopes with their scales, as far as the View menu asks for them, along the lower edge.
+void draw_scopes(const GuiFrame& frame, const Rect& area);
 void draw_view_line(const GuiFrame& frame, const Rect& area, const Rect& frame_area);
 /// The length of a round number of light years where the view looks at, as far as the View menu asks for it.
 void draw_scale_bar(const GuiFrame& frame, const Rect& area, const Rect& frame_area);

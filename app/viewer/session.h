@@ -81,6 +81,9 @@ struct Session {
     bool card_asked = false;     // there is one, or there will be none
     Display display;
     ColorManagement color;
+    /// What the scopes' pictures are of: Display::version(), and which were chosen.
+    std::pair<std::uint64_t, std::array<bool, scope_count>> scopes_of;
+    std::array<ImageTexture, scope_count> scope_textures;
     CameraOverlay overlay;
     Navigator navigator;
     Playback playback;
@@ -238,6 +241,8 @@ void show_preparation(Session& session);
 void show_thumbnails(Session& session);
 /// Fills Status::kinds with views of what the picture of view.start may be, while its card is shown.
 void show_kinds(Session& session);
+/// Fills Status::scopes, where they are open, with those of what display draws last.
+void show_scopes(Session& session);
 /// Starts to align the reference with what the view shows now. Throws InputError where nothing is shown.
 void begin_alignment(Session& session);
 /// Places the reference where that was found, or says that it was not.

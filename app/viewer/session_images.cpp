@@ -309,6 +309,26 @@ void show_kinds(Session& session) {
     }
 }
 
+void show_scopes(Session& session) {
+    const ViewState& view = session.view;
+    std::array<void*, scope_count>& shown = session.status.scopes;
+    if (!view.scopes_open) {
+        shown = {};
+        session.scopes_of = {};
+        return;
+    }
+    const std::pair now(session.display.version(), view.scopes);
+    if (std::exchange(session.scopes_of, now) == now) return;
+    const ScreenPoints points = session.display.points();
+    for (std::size_t i = 0; i < scope_count; ++i) {
+        shown[i] = nullptr;
+        if (!view.scopes[i] || points.rgba.empty()) continue;
+        const auto scope = static_cast<Scope>(i);
+        session.scope_textures[i].upload_smooth(scope_picture(scope, count_points(scope, points)));
+        shown[i] = to_handle(session.scope_textures[i].handle());
+    }
+}
+
 void begin_alignment(Session& session) {
     const ReferenceParams* reference = seen_reference(session.document.scene(), session.status);
     const Image* picture = session.comparison.reference().picture();

@@ -366,6 +366,7 @@ void draw_viewport(Session& session, glm::ivec2 viewport_px, double now, bool hu
     session.displayed = shown;
     session.status.viewport_texture =
         to_handle(session.display.draw(shown, session.viewport_px.x, session.viewport_px.y));
+    show_scopes(session);
 }
 
 void fill_status(Session& session) {

@@ -62,6 +62,53 @@ class DisplayPicture : public GlTest {
     std::optional<ImageTexture> a, b;
 };
 
+/// The scopes' points: the very pixels of the screen, none of what lies around the picture.
+TEST_F(DisplayPicture, PointsAreThoseOfTheScreen) {
+    Display display;
+    EXPECT_TRUE(display.points().rgba.empty());
+    DisplaySettings settings = whole(ramp(width, height));
+    settings.inspection.gamma = 1.7f;
+    display.draw(settings, width, height);
+    EXPECT_EQ(display.points().width, width);
+    EXPECT_EQ(display.points().rgba, display.read());
+    // In a larger target, moved beyond its left edge, and larger than what is looked at.
+    settings.x = -16;
+    settings.y = 10;
+    settings.background[1] = 1.0f;
+    display.draw(settings, 200, 100);
+    const ScreenPoints moved = display.points();
+    const std::vector<unsigned char> screen = display.read();
+    ASSERT_EQ(moved.width, width - 16);
+    ASSERT_EQ(moved.rgba.size(), std::size_t((width - 16) * height * 4));
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < (width - 16) * 4; ++x)
+            ASSERT_EQ(moved.rgba[std::size_t(y * (width - 16) * 4 + x)],
+                      screen[std::size_t((y + 10) * 200 * 4 + x)]);
+    // Of a larger one every second pixel in x, one of 3.5 in y.
+    settings.x = 0;
+    settings.width = 1100;
+    settings.height = 700;
+    display.draw(settings, 1024, 576);
+    const ScreenPoints few = display.points();
+    const std::vector<unsigned char> large = display.read();
+    ASSERT_EQ(few.width, 512);
+    ASSERT_EQ(few.rgba.size(), std::size_t(512 * 162 * 4));
+    for (std::size_t row = 0; row < 162; row += 8)
+        for (std::size_t column = 0; column < 512; column += 16) {
+            const unsigned char* const p = &few.rgba[(row * 512 + column) * 4];
+            bool found = false;
+            for (std::size_t i = 0; i < 10; ++i) {
+                const std::size_t x = 2 * column + i % 2,
+                                  y = std::min<std::size_t>(575, 10 + row * 566 / 162 + i / 2);
+                found = found || std::equal(p, p + 3, &large[(y * 1024 + x) * 4]);
+            }
+            ASSERT_TRUE(found) << column << " " << row;
+        }
+    settings.a = 0;
+    display.draw(settings, 200, 100);
+    EXPECT_TRUE(display.points().rgba.empty());
+}
+
 TEST_F(DisplayPicture, EveryViewAsTheWriter) {
     const Image image = ramp(width, height);
     for (const View view : {View::linear, View::srgb, View::soft})

@@ -80,6 +80,11 @@ TEST_P(References, SnapshotsAndWipe) {
     window.status.b_name = "Warm dust";
     expect_reference("wipe");
 }
+TEST_P(References, Scopes) {
+    window.view.scopes_open = true;
+    window.status.scopes.fill(window.status.viewport_texture);
+    expect_reference("scopes");
+}
 TEST_P(References, Log) {
     window.view.log_open = true;
     window.status.log.push_back({"whirlpool.toml:12: expected over, add or screen, found 'plus'", true});

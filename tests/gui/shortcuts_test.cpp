@@ -89,6 +89,27 @@ TEST(Menus, TheHistoryGoesToAnyStep) {
     EXPECT_FALSE(window.document.can_undo());
 }
 
+/// The scopes that are chosen come and go together; the last one that is let go closes them.
+TEST_F(ShortcutsTest, ScopesAreChosenAndShown) {
+    using Chosen = std::array<bool, scope_count>;
+    ViewState& view = window.view;
+    window.tap('V');
+    EXPECT_TRUE(view.scopes_open);
+    EXPECT_EQ(view.scopes, (Chosen{true, true, true}));
+    window.choose("View/Channels and scopes/Waveform");
+    EXPECT_EQ(view.scopes, (Chosen{true, false, true}));
+    window.tap('V');
+    EXPECT_FALSE(view.scopes_open);
+    window.choose("View/Channels and scopes/Vectorscope");  // it is not seen: it is asked for
+    EXPECT_TRUE(view.scopes_open);
+    EXPECT_EQ(view.scopes, (Chosen{true, false, true}));
+    window.choose("View/Channels and scopes/Vectorscope");
+    window.choose("View/Channels and scopes/Histogram");
+    EXPECT_FALSE(view.scopes_open);
+    window.tap('V');
+    EXPECT_EQ(view.scopes, (Chosen{true, true, true}));
+}
+
 class ToolRowTest : public ExampleWindow {};
 
 /// B and the reference are two things, each chosen by name.
@@ -125,7 +146,7 @@ TEST_F(ToolRowTest, ChannelsAndExposureOfTheView) {
         window.tap(key, false, true);
         EXPECT_EQ(window.view.inspection.channel, Channel::color) << key;
     }
-    window.choose("View/Channels/Alpha");
+    window.choose("View/Channels and scopes/Alpha");
     EXPECT_EQ(window.view.inspection.channel, Channel::alpha);
     window.drag(window.at("gamma"), {30, 0});
     window.drag(window.at("exposure"), {30, 0});

@@ -36,6 +36,8 @@ TEST_F(PreferencesTest, RoundTrip) {
     p.panel_width = 401.5f;
     p.timeline_height = 200.25f;
     p.timeline_open = false;
+    p.scopes_open = true;
+    p.scopes = {true, false, false};
     for (const SettingRow& row : setting_rows()) p.settings.*row.value = row.choices.back().value;
     p.settings.cache_folder = "/gro\xc3\x9f/sets \"1\"";
     add_recent(p, folder.file("a \"b\" ä.toml", "x"));
