@@ -123,7 +123,8 @@ struct ViewState : PanelSizes {
     SelectTool select = SelectTool::none;  // in place of orbiting with the left button
     SelectionFate selection = SelectionFate::erase;
     float brush_px = 24.0f, feather_px = 0.0f;  // radius, and width of the soft edge; px at scale 1
-    bool lying = false;                         // handles of how its picture's bodies lie
+    bool picking_focus = false;  // the next click sets the camera's focus to what is seen there
+    bool lying = false;          // handles of how its picture's bodies lie
     PreviewEngine engine = PreviewEngine::automatic;
     float preview_share = 0.0f;  // 0: sized to hold the frame rate; else 0..1 of every layer
     bool settle = true;          // the final frame follows by itself

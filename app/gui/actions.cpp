@@ -246,6 +246,15 @@ void move_camera_target(F f) {
          [&](Scene& scene) { scene.camera = seen_camera(scene, through_camera, f.status); });
 }
 
+/// The camera has a focus.
+bool focuses(C f) {
+    const CameraParams camera = scene_at(f.document.scene(), f.view.frame).camera;
+    return camera.projection == Projection::perspective && camera.f_number > 0.0;
+}
+std::string focus_label(C f) {
+    return focuses(f) ? "Pick the focus in the view" : "Pick the focus in the view (needs an f-number)";
+}
+
 void cancel(F f) {
     if (!f.view.movie.empty()) {
         f.view.movie.clear();
@@ -253,6 +262,8 @@ void cancel(F f) {
         f.view.help_open = f.view.log_open = false;
     } else if (is_placing(f)) {
         toggle_placing(f);
+    } else if (f.view.picking_focus) {
+        f.view.picking_focus = false;
     } else if (f.view.select != SelectTool::none) {
         f.view.select = SelectTool::none;
     } else if (f.view.tool != HandleTool::none) {
@@ -541,6 +552,13 @@ const Action table[] = {
     {"Camera", "Key camera here", {}, set_camera_keyframe_here},
     {"Camera", "Camera from this view", {}, camera_from_view, in_free_view},
     {"Camera", "Move the target in the view", {}, move_camera_target, nullptr, moves_camera_target},
+    {"Camera",
+     "Pick the focus in the view",
+     {},
+     [](F f) { f.view.picking_focus = !f.view.picking_focus; },
+     focuses,
+     [](C f) { return f.view.picking_focus; },
+     focus_label},
     add_move<CameraMove::orbit>(),
     add_move<CameraMove::fly_in>(),
     add_move<CameraMove::face_on_to_edge_on>(),

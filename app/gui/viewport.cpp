@@ -56,6 +56,8 @@ void Viewport::begin_drag(GuiFrame& frame, const Rect& area, const Rect& frame_a
     } else if (button_ == 0 && !io.KeyAlt && places_reference(frame)) {
         input_.drag = ViewportInput::Drag::place;
         placing_.press(frame, frame_on_screen(frame_area), io.KeyShift);
+    } else if (button_ == 0 && frame.view.picking_focus) {
+        // a click, whatever could be dragged there
     } else if (button_ == 0 && !io.KeyAlt && !io.KeyShift && selecting_.press(frame, input_.mouse_px)) {
         input_.drag = ViewportInput::Drag::select;
     } else if (button_ == 0 && !io.KeyAlt && !io.KeyShift && lying_.press(frame, input_.mouse_px)) {
@@ -142,6 +144,7 @@ void Viewport::read_mouse(GuiFrame& frame, const Rect& area, const Rect& frame_a
             std::clamp((io.MousePos.x - frame_area.x) / std::max(frame_area.width, 1.0f), 0.0f, 1.0f);
     if (wiping || (input_.hovered && near_wipe(frame, frame_area)))
         ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
+    if (input_.hovered && frame.view.picking_focus) ImGui::SetMouseCursor(ImGuiMouseCursor_Hand);
     if (places_reference(frame)) placing_.read(frame, frame_on_screen(frame_area), input_);
     handles_.read(frame, input_.mouse_px, input_.drag == ViewportInput::Drag::handle);
     lying_.read(frame, input_.mouse_px, input_.drag == ViewportInput::Drag::lying);

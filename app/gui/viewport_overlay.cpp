@@ -188,7 +188,8 @@ void draw_view_line(const GuiFrame& frame, const Rect& area, const Rect& frame_a
     ImGui::PushFont(small_font());
     const Rect room = room_for_words(frame, area, frame_area);
     shadowed({room.x + px(inset), room.y + px(inset)}, color::dim, text);
-    const std::string looks = inspection_text(frame.view.inspection);
+    const std::string looks = frame.view.picking_focus ? "Click what shall be in focus; Escape cancels"
+                                                       : inspection_text(frame.view.inspection);
     const float right = room.end().x - px(inset), y = room.y + px(inset);
     shadowed({std::floor(right - ImGui::CalcTextSize(looks.c_str()).x), y}, color::attention, looks);
     if (frame.view.inspection.channel == Inspection::Channel::stops) draw_stops({right, y + px(20)});

@@ -447,11 +447,20 @@ void dots(const Pen& pen) {
 
 void tick(const Pen& pen) { pen.path({{-0.75f, 0.05f}, {-0.2f, 0.6f}, {0.75f, -0.55f}}, false); }
 
+/// An eyedropper.
+void pick(const Pen& pen) {
+    pen.path(
+        {{-0.8f, 0.8f}, {-0.65f, 0.25f}, {0.05f, -0.45f}, {0.45f, -0.05f}, {-0.25f, 0.65f}, {-0.8f, 0.8f}},
+        false);
+    pen.path({{-0.2f, -0.6f}, {0.6f, 0.2f}}, false);
+    pen.path({{0.3f, -0.3f}, {0.75f, -0.75f}}, false);
+}
+
 using Draw = void (*)(const Pen&);
 constexpr Draw drawings[] = {eye,          eye_closed, diamond, diamond_empty, play, pause,    chevron_right,
                              chevron_down, chevron_up, plus,    cross,         ring, ring_cut, curve,
-                             warning,      folder,     file,    dots,          tick};
-static_assert(std::size(drawings) == static_cast<std::size_t>(Icon::tick) + 1);
+                             warning,      folder,     file,    dots,          tick, pick};
+static_assert(std::size(drawings) == static_cast<std::size_t>(Icon::pick) + 1);
 
 }  // namespace
 

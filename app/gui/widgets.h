@@ -196,7 +196,8 @@ enum class Icon {
     folder,
     file,
     dots,
-    tick
+    tick,
+    pick  // from the picture
 };
 
 /// Draws an icon in a square of `size` px around `center`.

@@ -84,6 +84,38 @@ std::vector<float> light_of_layers(const std::vector<PreviewLayer>& layers, cons
     return light;
 }
 
+std::optional<double> depth_at(const std::vector<PreviewLayer>& layers, const PreviewView& view, double near,
+                               double far, std::int64_t x, std::int64_t y) {
+    constexpr double least = 0.01;  // of a pixel that is covered, or white
+    if (x < 0 || y < 0 || x >= view.width || y >= view.height) return std::nullopt;
+    const std::vector<RenderLayer> drawn = drawn_layers(layers);
+    RenderSettings settings = settings_of(view);
+    settings.region = around(view, x, y);
+    const auto pixels = static_cast<double>(settings.region.width * settings.region.height);
+    struct Seen {
+        double cover = 0.0, light = 0.0;
+    };
+    const auto seen_to = [&](double depth) {
+        Camera camera = view.camera;
+        camera.far = depth;
+        const Image image = render(drawn, camera, nullptr, settings).beauty;
+        Seen seen{0.0, light_of(image) / (3.0 * pixels)};
+        for (std::size_t i = 3; i < image.pixels.size(); i += 4)
+            seen.cover += static_cast<double>(image.pixels[i]) / pixels;
+        return seen;
+    };
+    const Seen all = seen_to(view.camera.far);
+    double Seen::*const what = all.cover < least ? &Seen::light : &Seen::cover;
+    if (all.*what < least) return std::nullopt;
+    if (view.camera.far > 0.0) far = std::min(far, view.camera.far);
+    near = std::max(near, view.camera.near);
+    for (int i = 0; i < 10; ++i) {
+        const double middle = 0.5 * (near + far);
+        (seen_to(middle).*what < 0.5 * all.*what ? near : far) = middle;
+    }
+    return far;
+}
+
 std::vector<std::size_t> seen_layers(const std::vector<float>& light) {
     std::vector<std::size_t> seen;
     const float brightest = light.empty() ? 0.0f : *std::ranges::max_element(light);

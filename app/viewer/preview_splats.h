@@ -92,6 +92,12 @@ class DrawnPreview {
 std::vector<float> light_of_layers(const std::vector<PreviewLayer>& layers, const PreviewView& view,
                                    std::int64_t x, std::int64_t y);
 
+/// Depth (view_depth) down to which lies half of what covers the pixels within one of (x, y), or where what
+/// is seen there covers nothing, as layers that add do, half of the light: between `near` and `far`, that of
+/// the camera's nearest and farthest splats, to a thousandth of their distance. None where nothing is seen.
+std::optional<double> depth_at(const std::vector<PreviewLayer>& layers, const PreviewView& view, double near,
+                               double far, std::int64_t x, std::int64_t y);
+
 /// Indices of the layers whose light is more than a fiftieth of the brightest one's, brightest first.
 std::vector<std::size_t> seen_layers(const std::vector<float>& light);
 

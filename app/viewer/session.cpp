@@ -389,6 +389,7 @@ void navigate(Session& session, const ViewportInput& input, double now) {
     probe(session, input.hovered ? input.mouse_px : glm::dvec2(-1.0));
     if (input.click != ViewportInput::Click::none)
         attempt(session.status, [&] {
+            if (session.view.picking_focus) return pick_focus_at(session, input.mouse_px);
             select_layer_at(session, input.mouse_px, input.click == ViewportInput::Click::behind);
         });
     if (session.view.size == SizeMode::one_to_one) return;  // the widgets move and zoom the frame

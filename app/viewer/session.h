@@ -223,6 +223,10 @@ std::optional<PixelProbe> probe_of(const Image& pixels, const Image* depth, cons
 /// next one after the selected layer. Shows its box and says which one of how many it is. Where no layer
 /// is seen the box goes.
 void select_layer_at(Session& session, glm::dvec2 mouse_px, bool behind);
+/// Sets camera.focus_distance at the view's frame, as a keyframe where it is animated, to that of what is
+/// seen at a place of the viewport, px, whatever camera it is seen through, and ends
+/// ViewState::picking_focus. Where nothing is seen it says so. Throws InputError where it cannot be set.
+void pick_focus_at(Session& session, glm::dvec2 mouse_px);
 
 // session_images.cpp: images in place of the frame or beside it. All need OpenGL's context.
 

@@ -4,9 +4,11 @@
 
 #include <glm/gtc/type_precision.hpp>
 
+#include "camera/projection.h"
 #include "core/error.h"
 #include "core/log.h"
 #include "core/parallel.h"
+#include "core/text.h"
 #include "edit/placement.h"
 #include "edit/view_camera.h"
 #include "scene/animate.h"
@@ -425,6 +427,28 @@ void select_layer_at(Session& session, glm::dvec2 mouse_px, bool behind) {
         text += fmt::format(", {} of {} layers here; another click takes the next", place, seen.size());
     }
     say(session.status, text);
+}
+
+void pick_focus_at(Session& session, glm::dvec2 mouse_px) {
+    const CompareMode compare = session.view.compare;
+    const bool other = compare == CompareMode::front || compare == CompareMode::other ||
+                       !session.status.rendered_frame.empty();
+    const glm::i64vec2 at = frame_pixel(session, mouse_px);
+    const std::optional<double> depth = other ? std::nullopt : session.view_frame.depth(at.x, at.y);
+    const std::optional<Camera>& seen = session.status.viewport_camera;
+    if (!depth || !seen) return say(session.status, "Nothing is seen there that could be in focus");
+    const glm::dvec3 point =
+        seen->eye + seen->world_from_camera *
+                        exact::point_at_depth(make_exact_lens(*seen), mouse_px.x, mouse_px.y, *depth);
+    const Scene now = scene_at(session.document.scene(), session.view.frame);
+    const Camera camera =
+        make_camera(now.camera, double(now.output.width), double(now.output.height), session.status.box);
+    const double distance = view_depth(camera, point);
+    if (distance <= camera.near) return say(session.status, "That lies behind the camera");
+    const std::string text = fmt::format("{:.4g}", distance);
+    session.document.set("camera.focus_distance", *parse_double(text), session.view.frame);
+    session.view.picking_focus = false;
+    say(session.status, "In focus at " + text + " scene units");
 }
 
 }  // namespace astrosplat

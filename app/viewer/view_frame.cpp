@@ -12,6 +12,7 @@
 
 #include "core/error.h"
 #include "core/progress.h"
+#include "edit/placement.h"
 #include "frame/frame_scene.h"
 #include "image/blur.h"
 #include "look/apply.h"
@@ -532,14 +533,33 @@ bool ViewFrame::exact() const {
     return request_ && !files_->loading() && !(choice_.refined && splats_.lacks_sums());
 }
 
-std::vector<float> ViewFrame::layer_light(std::int64_t x, std::int64_t y) {
-    std::vector<float> light(request_ ? request_->layers.size() : 0);
-    if (!request_ || stage_ == Stage::failed) return light;
+/// The preview's, whose layers are brought up to what is shown.
+PreviewView ViewFrame::view_of_layers() {
     const PreviewView view = preview_view();
     if (std::exchange(behind_, false)) {
         layers_ = preview_layers();
         cut(layers_, view);
     }
+    return view;
+}
+
+std::optional<double> ViewFrame::depth(std::int64_t x, std::int64_t y) {
+    if (!request_ || stage_ == Stage::failed || request_->box.empty()) return std::nullopt;
+    const PreviewView view = view_of_layers();
+    double near = std::numeric_limits<double>::max(), far = 0.0;
+    for (int corner = 0; corner < 8; ++corner) {
+        const double depth = view_depth(view.camera, request_->box.corner(corner));
+        near = std::min(near, depth), far = std::max(far, depth);
+    }
+    if (is_onto_sphere(view.camera.projection)) near = 0.0;  // a side may be nearer than its corners
+    const Region part = request_->part();
+    return depth_at(layers_, view, near, far, x - part.x, y - part.y);
+}
+
+std::vector<float> ViewFrame::layer_light(std::int64_t x, std::int64_t y) {
+    std::vector<float> light(request_ ? request_->layers.size() : 0);
+    if (!request_ || stage_ == Stage::failed) return light;
+    const PreviewView view = view_of_layers();
     const Region part = request_->part();
     const std::vector<float> drawn = light_of_layers(layers_, view, x - part.x, y - part.y);
     for (std::size_t n = 0; n < drawn.size(); ++n) light[places_[n]] = drawn[n];

@@ -112,6 +112,8 @@ class ViewFrame {
     /// Light of every layer of the scene at a pixel of the whole frame, by the splats of the preview
     /// (preview_splats.h).
     std::vector<float> layer_light(std::int64_t x, std::int64_t y);
+    /// Depth of what is seen at one, likewise (depth_at).
+    std::optional<double> depth(std::int64_t x, std::int64_t y);
     /// The final frame, when status says so.
     std::shared_ptr<const RenderedFrame> final_frame() const;
 
@@ -133,6 +135,7 @@ class ViewFrame {
     PreviewView view_through(const Camera& camera) const;
     std::int64_t splats_wanted() const;
     void cut(std::vector<PreviewLayer>& layers, const PreviewView& view);
+    PreviewView view_of_layers();
     bool refine(double now);
     bool environment_arrived();
     bool previews_arrived(const ViewRequest& now) const;

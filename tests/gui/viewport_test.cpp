@@ -81,6 +81,35 @@ TEST_F(ViewportTest, APressWithoutADragIsAClick) {
     EXPECT_EQ(click_in_view(window, {200, 0}), Click::none);
 }
 
+/// By the button at its row or by its action; a click is one, whatever could be dragged there.
+TEST_F(ViewportTest, TheFocusIsPicked) {
+    window.view.tab = PanelTab::camera;
+    window.frame(3);
+    EXPECT_FALSE(window.has("pick focus")) << "there is no focus";
+    window.choose("Camera/Pick the focus in the view");
+    EXPECT_FALSE(window.view.picking_focus);
+    window.tap(key_code::escape);
+    window.tap(key_code::escape);  // the menu stays open
+    window.document.edit("F-number", [](Scene& scene) { scene.camera.f_number = 2.0; });
+    window.frame(3);
+    window.click("pick focus");
+    EXPECT_TRUE(window.view.picking_focus);
+    window.click("pick focus");
+    EXPECT_FALSE(window.view.picking_focus);
+    window.choose("Camera/Pick the focus in the view");
+    EXPECT_TRUE(window.view.picking_focus);
+    window.view.tool = HandleTool::move;
+    window.view.select = SelectTool::lasso;
+    window.status.viewport_camera = make_camera({}, 100.0, 100.0, {});
+    EXPECT_EQ(click_in_view(window, {0, 0}), ViewportInput::Click::in_front);
+    window.view.picking_focus = false;
+    EXPECT_EQ(click_in_view(window, {40, 0}), ViewportInput::Click::none) << "it begins a lasso";
+    window.view.picking_focus = true;
+    window.tap(key_code::escape);
+    EXPECT_FALSE(window.view.picking_focus);
+    EXPECT_EQ(window.view.select, SelectTool::lasso) << "Escape ends one thing";
+}
+
 TEST_F(ViewportTest, ADoubleClickIsOneClickOnly) {
     const glm::vec2 at = window.at("frame in view");
     window.frame(60);

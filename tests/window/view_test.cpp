@@ -117,6 +117,39 @@ TEST_F(WindowSelect, AClickSelectsAndAnotherTakesTheOneBehind) {
     EXPECT_EQ(title(), "scene.toml - astrosplat") << "selecting is no edit";
 }
 
+/// The camera, 30 scene units over the squares, has a focus.
+class WindowFocus : public WindowSelect {
+  protected:
+    WindowFocus() { replace_in_scene("[camera]\n", "[camera]\nf_number = 8.0\n"); }
+    void pick() const {
+        person->press("ctrl+k");
+        person->type("pick the focus");
+        person->press("Return");
+        usleep(300'000);
+    }
+};
+
+TEST_F(WindowFocus, IsPickedInThePicture) {
+    start_settled();
+    const std::string untouched = title();
+    pick();
+    person->press("Escape");
+    person->click(in_view(-0.2f));  // selects
+    usleep(700'000);
+    pick();
+    person->click(in_view(0.0f));  // nothing is there
+    usleep(700'000);
+    EXPECT_EQ(title(), untouched);
+    person->click(in_view(-0.2f));
+    EXPECT_TRUE(comes_true([&] { return title() != untouched; }));
+    save();
+    EXPECT_NEAR(saved().camera.focus_distance, 30.0, 0.6);
+    person->press("ctrl+z");
+    EXPECT_TRUE(comes_true([&] { return title() != untouched; }));
+    save();
+    EXPECT_EQ(saved().camera.focus_distance, 0.0);
+}
+
 // A layer is moved by its handles in the picture, and a crop cuts it.
 
 class WindowHandles : public WindowTest {

@@ -496,10 +496,23 @@ void draw_diamond(Context& context, const Row& row) {
               animated ? color::attention : quiet);
 }
 
+/// At the end of the field, which gives it room: what is in focus can be picked in the view.
+void pick_button(Context& context, Rect& field) {
+    const float size = px(24);
+    field.width -= size + px(2);
+    ImGui::SetCursorScreenPos({field.end().x + px(2), field.y});
+    bool& picking = context.view.picking_focus;
+    if (icon_button("pick focus", Icon::pick, {size, field.height}, px(13),
+                    picking ? color::accent : color::dim, "Pick it in the view"))
+        picking = !picking;
+    note_item(context, "pick focus");
+}
+
 }  // namespace
 
 void parameter_row(Context& context, const Parameter& parameter) {
-    const Row row{parameter, parameter.get(), next_row()};
+    Row row{parameter, parameter.get(), next_row()};
+    if (row.key() == "camera.focus_distance") pick_button(context, row.layout.value);
     note_row(context, row);
     ImGui::PushID(row.key().text().c_str());
     draw_label(context, row);

@@ -276,6 +276,48 @@ TEST_F(LayersAtPixel, NothingIsSeenOutsideTheFrame) {
     EXPECT_GT(light(32, 32)[0], 0.0f);
 }
 
+/// Scene units from the camera, between 0 and 20 of them.
+std::optional<double> depth_of(const LayersAtPixel& seen, const PreviewView& view, std::int64_t x,
+                               std::int64_t y) {
+    return depth_at(seen.layers, view, 0.0, 20.0, x, y);
+}
+
+TEST_F(LayersAtPixel, DepthIsThatOfHalfOfWhatCovers) {
+    constexpr double exact = 20.0 / 1024.0;
+    add("behind", {0.0f, 0.0f, -1.0f}, glm::vec3(0.5f));
+    add("in front", {0.0f, 0.0f, 1.0f}, glm::vec3(0.5f), 0.75f);
+    EXPECT_NEAR(depth_of(*this, view(), 32, 32).value(), 9.0, exact);
+    splats[1].alpha[0] = 0.25f;
+    EXPECT_NEAR(depth_of(*this, view(), 32, 32).value(), 11.0, exact);
+    PreviewView near = view();
+    near.camera.far = 10.0;
+    EXPECT_NEAR(depth_of(*this, near, 32, 32).value(), 9.0, exact) << "the other is too far to be seen";
+    EXPECT_FALSE(depth_of(*this, view(), 2, 2));
+    EXPECT_FALSE(depth_of(*this, view(), 64, 32));
+    EXPECT_FALSE(depth_of(*this, view(), 32, -1));
+}
+
+TEST_F(LayersAtPixel, DepthOfLightIsThatOfHalfOfIt) {
+    constexpr double exact = 20.0 / 1024.0;
+    add("behind", {0.0f, 0.0f, -1.0f}, glm::vec3(0.5f)).layer.render.blend = Blend::add;
+    add("in front", {0.0f, 0.0f, 1.0f}, glm::vec3(0.1f)).layer.render.blend = Blend::add;
+    EXPECT_NEAR(depth_of(*this, view(), 32, 32).value(), 11.0, exact);
+    splats[1].color[0] = glm::vec3(0.9f);
+    EXPECT_NEAR(depth_of(*this, view(), 32, 32).value(), 9.0, exact);
+}
+
+/// As camera.focus_distance is.
+TEST_F(LayersAtPixel, DepthIsAlongTheAxis) {
+    add("aside", {3.0f, 0.0f, 0.0f}, glm::vec3(0.5f));
+    PreviewView perspective = view();
+    CameraParams params;
+    params.position = glm::dvec3(0.0, 0.0, 10.0);
+    perspective.camera = make_camera(params, double(size), double(size), {});
+    const auto x =
+        static_cast<std::int64_t>(perspective.camera.center_x_px + 0.3 * perspective.camera.focal_px);
+    EXPECT_NEAR(depth_of(*this, perspective, x, 32).value(), 10.0, 20.0 / 1024.0);
+}
+
 TEST(SeenLayers, WhatCannotBeToldFromBlackIsLeftOut) {
     EXPECT_EQ(seen_layers({1.0f, 0.01f, 5.0f, 0.2f, 0.0f}), (std::vector<std::size_t>{2, 0, 3}));
     EXPECT_TRUE(seen_layers({0.0f, 0.0f}).empty());
