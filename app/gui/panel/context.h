@@ -63,10 +63,10 @@ struct Memory {
     int dragged_layer = -1;
     std::size_t layer_in_sight = 0;      // selected in the last frame
     std::set<std::string> second_lines;  // layers whose row has one
-    std::vector<NoiseSketch> noises;  // by entry of the list
-    float preparation_line = 0.5f;    // between before and after, 0..1 of the width
-    float scroll = 0.0f;              // how far the tab can be scrolled
-    ParameterKey hovered;             // row under the mouse, and since when: tooltips wait a little
+    std::vector<NoiseSketch> noises;     // by entry of the list
+    float preparation_line = 0.5f;       // between before and after, 0..1 of the width
+    float scroll = 0.0f;                 // how far the tab can be scrolled
+    ParameterKey hovered;                // row under the mouse, and since when: tooltips wait a little
     double hovered_since = 0.0;
     ParameterKey wanted;                  // its field gets the ring in the next frame
     std::optional<ParameterKey> request;  // whose file is asked for

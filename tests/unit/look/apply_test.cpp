@@ -117,12 +117,15 @@ TEST(SameBits, AsLookSplatOneByOne) {
         ShadedSplats expected;
         for (std::size_t i = 0; i < std::size_t(count); ++i) {
             const std::uint64_t id = c.set.id[i];
-            const shared::LookInput input{
-                c.set.position[i], c.set.color[i],
-                c.set.alpha[i],    c.set.distance[i],
-                c.set.radius[i],   map_value(c, c.set.uv.empty() ? glm::vec2(0.0f) : c.set.uv[i]),
-                std::uint32_t(id), std::uint32_t(id >> 32),
-                outlined(uniforms, c.set.position[i])};
+            const shared::LookInput input{c.set.position[i],
+                                          c.set.color[i],
+                                          c.set.alpha[i],
+                                          c.set.distance[i],
+                                          c.set.radius[i],
+                                          map_value(c, c.set.uv.empty() ? glm::vec2(0.0f) : c.set.uv[i]),
+                                          std::uint32_t(id),
+                                          std::uint32_t(id >> 32),
+                                          outlined(uniforms, c.set.position[i])};
             const shared::LookOutput output = shared::look_splat(uniforms, input);
             if (!output.keep) continue;
             expected.position.push_back(output.position);

@@ -397,7 +397,8 @@ TEST(Crop, OneThatCutsNothingChangesNoBit) {
 TEST(Crop, MoreThanEightAreRefused) {
     Look look;
     look.crop.resize(9);
-    EXPECT_EQ(ERROR_OF(test::shade(test::file_set(1), look)), "look.crop: expected at most 8 boxes and spheres, found 9");
+    EXPECT_EQ(ERROR_OF(test::shade(test::file_set(1), look)),
+              "look.crop: expected at most 8 boxes and spheres, found 9");
 }
 
 }  // namespace
