@@ -353,10 +353,11 @@ void draw_select_bar(GuiFrame& frame, const Rect& area) {
         {"Erase", "What is drawn around goes: all of it that lies behind, at any depth"},
         {"Keep", "All else goes"},
         {"To a layer", "What is drawn around becomes a layer of its own"}};
-    const float width = segmented_width(tools) + segmented_width(fates) + px(control + 2 * space) +
+    const float whole = segmented_width(tools) + segmented_width(fates) + px(control + 2 * space) +
                         px(2 * (field + space)) + px(2 * padding);
-    ImGui::SetCursorScreenPos(
-        {std::floor(area.x + std::max(px(inset), 0.5f * (area.width - width))), area.y + px(inset)});
+    const float width = std::min(whole, area.width - px(2 * inset));
+    if (width < px(100)) return;
+    ImGui::SetCursorScreenPos({std::floor(area.x + 0.5f * (area.width - width)), area.y + px(inset)});
     ImGui::PushStyleColor(ImGuiCol_ChildBg, color4(color::with_opacity(color::window, 0.92f)));
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(px(padding), px(padding)));
     ImGui::BeginChild("select bar", {width, px(control + 2 * padding)}, false,

@@ -180,6 +180,23 @@ TEST_F(WindowHandles, ALayerIsDraggedUndoneAndSaved) {
     expect_settled(before);
 }
 
+TEST_F(WindowHandles, APartIsErasedUndoneAndSaved) {
+    const Pixels before = start_settled();
+    person->press("m");
+    const glm::vec2 from = at({-1.0, 0.0, 0.0}), to = at({1.0, 0.0, 1.5});
+    person->drag(from, to - from);
+    expect_title("scene.toml - edited");
+    save();
+    const std::vector<Crop> crops = saved().layers[0].look.crop;
+    ASSERT_EQ(crops.size(), 1u);
+    EXPECT_EQ(crops[0].keep, Crop::Keep::outside);
+    EXPECT_EQ(outline_lines(crops[0].outline).at(0).size(), 4u) << crops[0].outline;
+    person->press("ctrl+z");
+    expect_title("scene.toml - edited");
+    person->press("m");
+    expect_settled(before);
+}
+
 TEST_F(WindowHandles, ADragBesideThemOrbits) {
     start_settled();
     person->press("w");
