@@ -24,7 +24,7 @@ std::vector<glm::dvec2> simplified(std::span<const glm::dvec2> line, double tole
 std::optional<Crop> crop_behind(const Camera& camera, const LayerPlacement& placement, const DrawnLine& line);
 
 /// What `fate` says becomes of what a crop keeps: strokes of one view become one crop. Returns the layer of
-/// the part. Throws InputError where a layer can have no more crops.
+/// the part.
 std::size_t select_part(Scene& scene, std::size_t layer, const Crop& kept, SelectionFate fate);
 
 /// All of a layer that outlines took away is there again.

@@ -129,6 +129,9 @@ struct Crop {
     bool operator==(const Crop&) const = default;
 };
 
+/// Each costs every splat about what a box does.
+inline constexpr std::size_t most_outlines = 64;
+
 /// The lines of an outline: SVG path data of straight lines, "M 0.1 0.2 0.3 0.2 0.3 0.4 M ...", where M
 /// begins a line. Points are places right of and above the view's line, per unit of depth; in scene units
 /// where rays are parallel. Throws InputError for anything else, for a line of less than two points and for

@@ -170,7 +170,6 @@ void prepare_outline(const Crop& crop, PreparedLook& u) {
 }
 
 void prepare_crops(const Look& look, PreparedLook& u) {
-    constexpr std::size_t most_outlines = 64;  // each costs every splat about what a box does
     std::size_t outlines = 0;
     for (const Crop& crop : look.crop) {
         if (crop.shape == Crop::Shape::outline) {

@@ -52,8 +52,11 @@ void check_curve(const Curve& curve, const ParameterKey& at, const Checker& chec
 }
 
 void check_crops(const std::vector<Crop>& crops, const ParameterKey& at, const Checker& check) {
+    std::size_t outlines = 0;
     for (std::size_t i = 0; i < crops.size(); ++i) {
         if (crops[i].shape != Crop::Shape::outline) continue;
+        check.require(++outlines <= most_outlines, {at / i / "shape"},
+                      fmt::format("expected at most {} outlines, found more", most_outlines));
         std::string problem;
         try {
             outline_lines(crops[i].outline);

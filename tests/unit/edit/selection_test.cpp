@@ -170,6 +170,19 @@ TEST_F(SelectPart, APartIsALayerOfTheSameSplats) {
     EXPECT_EQ(scene.layers.size(), 4u) << "another part";
 }
 
+TEST_F(SelectPart, OneTooManyIsRefusedAndNothingChanges) {
+    Document document = Document::untitled(test::edit_scene, "/scene.toml");
+    const auto erase = [&] {
+        document.edit("Erase", [&](Scene& s) { select_part(s, 0, lasso(), SelectionFate::erase); });
+    };
+    for (std::size_t i = 0; i < most_outlines; ++i) erase();
+    const Scene before = document.scene();
+    const std::string said = ERROR_OF(erase());
+    EXPECT_NE(said.find("look.crop.64.shape: expected at most 64 outlines, found more"), std::string::npos)
+        << said;
+    EXPECT_EQ(document.scene(), before);
+}
+
 TEST_F(SelectPart, IsSavedAndReadAgain) {
     const TempFolder folder;
     Document document = Document::untitled(test::edit_scene, folder / "untitled.toml");
