@@ -169,6 +169,10 @@ std::size_t paste_text(Scene& scene, const std::string& text, std::size_t layer)
         throw InputError("Paste: expected a layer, look or camera that was copied, found another text");
     const Scene copied = parse_unchecked(text, copied_place);
     const std::string from = copied.layers.empty() ? "" : copied.layers[0].name;
+    if (*kind != CopiedKind::camera && from.empty())
+        throw InputError("Paste: expected a layer in the copied text, found none");
+    if (*kind == CopiedKind::look && layer >= scene.layers.size())
+        throw InputError("Paste: expected a layer that takes the look, found none");
     std::string to = from;
     if (*kind == CopiedKind::layer) {
         LayerParams pasted = copied.layers.at(0);

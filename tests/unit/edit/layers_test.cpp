@@ -77,6 +77,12 @@ TEST_F(Layers, OtherTextIsNotPasted) {
     EXPECT_EQ(ERROR_OF(paste_text(scene, "hello", 0)),
               "Paste: expected a layer, look or camera that was copied, found another text");
     EXPECT_FALSE(copied_kind(""));
+    const std::string look = copied_text(scene, CopiedKind::look, 0);
+    EXPECT_EQ(ERROR_OF(paste_text(scene, look.substr(0, look.find('\n') + 1) + "astrosplat = 1\n", 0)),
+              "Paste: expected a layer in the copied text, found none");
+    Scene empty;
+    EXPECT_EQ(ERROR_OF(paste_text(empty, look, 0)),
+              "Paste: expected a layer that takes the look, found none");
 }
 
 TEST_F(Layers, Duplicate) {
