@@ -6,30 +6,13 @@
 #include "edit/edits.h"
 #include "edit/layers.h"
 #include "generate/lattice.h"
+#include "stars/star_set.h"
 
 namespace astrosplat {
 namespace {
 
 // Of a line's directions from an outline's own: tangents beyond it are large and coarse.
 constexpr double least_cosine = 0.35;  // 70 degrees
-
-double distance_from(const glm::dvec2& p, const glm::dvec2& a, const glm::dvec2& b) {
-    const glm::dvec2 along = b - a;
-    const double length2 = glm::dot(along, along);
-    const double t = length2 > 0.0 ? std::clamp(glm::dot(p - a, along) / length2, 0.0, 1.0) : 0.0;
-    return glm::distance(p, a + t * along);
-}
-
-void simplify(std::span<const glm::dvec2> line, double tolerance, std::vector<glm::dvec2>& kept) {
-    std::size_t farthest = 0;
-    double most = tolerance;
-    for (std::size_t i = 1; i + 1 < line.size(); ++i)
-        if (const double d = distance_from(line[i], line.front(), line.back()); d > most)
-            farthest = i, most = d;
-    if (farthest == 0) return kept.push_back(line.back());
-    simplify(line.first(farthest + 1), tolerance, kept);
-    simplify(line.subspan(farthest), tolerance, kept);
-}
 
 double area_of(std::span<const glm::dvec2> polygon) {
     double twice = 0.0;
@@ -104,9 +87,11 @@ bool is_part_of(const LayerParams& part, const LayerParams& layer, const Crop& e
 }  // namespace
 
 std::vector<glm::dvec2> simplified(std::span<const glm::dvec2> line, double tolerance) {
-    std::vector<glm::dvec2> kept{line.front()};
-    simplify(line, tolerance, kept);
-    if (line.size() == 1) kept.assign(2, line.front());
+    std::vector<glm::dvec3> path;
+    for (const glm::dvec2& p : line) path.emplace_back(p, 0.0);
+    std::vector<glm::dvec2> kept;
+    for (const glm::dvec3& p : simplified_path(path, tolerance)) kept.emplace_back(p);
+    if (kept.size() == 1) kept.push_back(kept[0]);
     return kept;
 }
 

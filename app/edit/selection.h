@@ -14,8 +14,7 @@ struct DrawnLine {
     double feather = 0.0;  // width of the soft edge where the layer has its middle
 };
 
-/// The line without the points that lie within `tolerance` px of it without them (Ramer 1972; Douglas and
-/// Peucker 1973), and without repetitions; a single point is twice there.
+/// simplified_path() of the line, px; a single point is twice there.
 std::vector<glm::dvec2> simplified(std::span<const glm::dvec2> line, double tolerance);
 
 /// What lies behind a line, to be kept. None where it encloses nothing: a polygon of less than three points
